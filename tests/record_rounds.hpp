@@ -1,4 +1,5 @@
-// Packets of records for tests of walks over them: rounds that repeat, of few commands and lengths, and others between them.
+// Makes packets for tests that walk over records: repeated rounds with few commands and lengths, and other records
+// between.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace mural::testing {
 
-// A record of `words` words with its head; words 0: a head that is none.
+// Appends a record of `words` words with its header; words 0: an invalid header.
 inline void putRecord(std::vector<std::byte>& packet, uint32_t opcode, uint32_t words) {
     const uint32_t head = words << 16 | opcode;
     const size_t at = packet.size();
@@ -18,7 +19,8 @@ inline void putRecord(std::vector<std::byte>& packet, uint32_t opcode, uint32_t 
     std::memcpy(packet.data() + at, &head, sizeof head);
 }
 
-// Opcodes 1 to 5, of 1 to 6 words, seldom of about as many as a short record has at most; `between(packet)` puts what comes behind some rounds.
+// Appends rounds of opcodes 1 to 5 with 1 to 6 words, and rarely with about the maximum of a short record. Calls
+// `between(packet)` after some rounds.
 template <typename Between>
 std::vector<std::byte> recordRounds(std::mt19937& random, const Between& between) {
     std::vector<std::byte> packet;

@@ -1,4 +1,4 @@
-// Sanitizers make tests ten to fifty times slower: there the random ones take fewer rounds, of the same seeds.
+// Reduces the rounds of random tests under sanitizers, which are ten to fifty times slower. The seeds stay the same.
 #pragma once
 
 #include <cstdint>

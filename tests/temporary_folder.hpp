@@ -1,4 +1,4 @@
-// A folder of a test's own, gone afterwards.
+// A folder for one test, which is removed afterwards.
 #pragma once
 
 #include <cstdlib>
@@ -24,14 +24,14 @@ public:
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] std::string at(const std::string& name) const { return path_ + "/" + name; }
 
-    // mode: as for chmod, e.g. 0755.
+    // Writes a file and returns its path. `mode`: as for chmod, for example 0755.
     std::string file(const std::string& name, const std::string& bytes, int mode) const {
         std::ofstream(at(name), std::ios::binary) << bytes;
         std::filesystem::permissions(at(name), static_cast<std::filesystem::perms>(mode));
         return at(name);
     }
 
-    // Of the shell; its path.
+    // Writes a shell script and returns its path.
     [[nodiscard]] std::string script(const std::string& name, const std::string& text) const { return file(name, "#!/bin/sh\n" + text, 0755); }
 
 private:

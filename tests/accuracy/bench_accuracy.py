@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""mural bench accuracy as a user meets it: what it measures holds, files say the same as the table, and a fault is seen.
+"""Tests mural bench accuracy from the user's side: its bounds hold, its files agree with its table, and it detects a
+fault.
 
-  bench_accuracy.py MURAL
+bench_accuracy.py MURAL
 """
 import json
 import os
@@ -58,11 +59,11 @@ def quick(folder):
     for kind in ('2D', 'DB', 'DPlex', 'mixed', 'pixel', 'stereo', 'zoom'):
         expect(any(row['what'].startswith(kind) for row in rows), 'nothing of %s was measured' % kind)
     expect(len(exact) >= 10 and all(row['differingPixels'] == 0 and row['psnr'] is None for row in exact), '%d exact ones' % len(exact))
-    # What approximates must be seen to: a kernel or an eye that leaves every pixel as it was did nothing.
+    # Approximations must have a visible effect: a kernel or an eye without any wrong pixel did nothing.
     for kind in ('pixel, kernel of 2x2: triangles', 'zoom of 0.5: triangles', 'yuv420'):
         expect(any(row['what'].startswith(kind) and row['differingPixels'] > 0 for row in rows), '%s changed nothing' % kind)
     expect('%d measured, 0 broken, 0 failed' % len(rows) in out, 'the table tells something else')
-    # Costs: of what recordings, codecs and blending take; more samples are nearer to many and dearer.
+    # Costs of recordings, codecs and blending. More samples are closer to the reference and cost more.
     costs = {row['what']: row for row in rows if row['group'] == 'Recording: scenes'}
     expect(all(row['cpuNsPerPixel'] > 0 and row['bytesPerPixel'] > 0 for row in costs.values()) and len(costs) >= 5, 'costs of the recording: %s' % list(costs))
     one, two = costs.get('one sample'), costs.get('2 samples')
@@ -76,7 +77,7 @@ def quick(folder):
 
 
 def program(folder):
-    """A program of the user's, and the same with a tile that is read one pixel off."""
+    """Measures a program of the user, and the same with a tile read one pixel off."""
     scenes = os.path.join(os.path.dirname(os.path.abspath(sys.argv[1])), 'mural-scenes')
     path = os.path.join(folder, 'p.json')
     words = 'accuracy', '--quick', '--frames', '6', '--json', path, '--', scenes, '--size', '253x191', '--frames', '6'
@@ -94,13 +95,13 @@ def refused(folder):
         status, out, err = run(*words)
         expect(status == 2 and wanted in err and err.count('\n') == 1 and not out, '%s: %d %s %s' % (words, status, out, err))
     refused_before(folder)
-    # It can be run, and draws nothing.
+    # A program that can be run, but draws nothing.
     status, out, err = run('accuracy', '--quick', '--', 'true')
     expect(status == 2 and '\n0 measured, 0 broken, 3 failed\n' in out, 'a program that draws nothing: %d %s %s' % (status, out, err))
 
 
 def refused_before(folder):
-    """What can't come to anything is refused before anything is measured, in one line."""
+    """Checks that invalid requests are rejected before any measurement, with one line."""
     left, kept, lost = (os.path.join(folder, name) for name in ('left.json', 'kept.json', os.path.join('none', 'a')))
     damaged = os.path.join(folder, 'damaged.mural')
     with open(kept, 'w', encoding='utf-8') as f:
@@ -123,7 +124,7 @@ def refused_before(folder):
 
 
 def start(folder, *words):
-    """A bench that can be told by its folder for what is temporary."""
+    """Starts a bench that is identified by its folder for temporary files."""
     inside = tempfile.mkdtemp(dir=folder)
     process = subprocess.Popen([sys.argv[1], 'bench', 'accuracy', *words], env=environment_with(TMPDIR=inside), text=True, start_new_session=True,
                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -132,7 +133,7 @@ def start(folder, *words):
 
 
 def check_end(process, inside, name, status, result):
-    """What it said; nothing of it may be left."""
+    """Checks the output and that nothing remains."""
     try:
         out, err = process.communicate(timeout=END_SECONDS)
     except subprocess.TimeoutExpired:
@@ -142,12 +143,13 @@ def check_end(process, inside, name, status, result):
     expect(process.returncode == status and not out, '%s: status %d instead of %d; %s %s' % (name, process.returncode, status, out, err))
     expect(not os.listdir(inside), '%s: these are left: %s' % (name, os.listdir(inside)))
     expect(not os.path.exists(result), '%s: an empty file is left' % name)
-    expect(until(lambda: not processes_with(inside), 2), '%s: these go on: %s' % (name, processes_with(inside))) # what has been killed is gone a moment later
+    # a killed process disappears a moment later
+    expect(until(lambda: not processes_with(inside), 2), '%s: these go on: %s' % (name, processes_with(inside)))
     return err
 
 
 def stopped(folder):
-    """A signal, while a process runs whose command line is awaited. Ctrl-C goes to all processes of a terminal."""
+    """Sends a signal while a process with the given command line runs. Ctrl-C reaches all processes of a terminal."""
     result = os.path.join(folder, 'stopped.json')
     stubborn = '--', 'sh', '-c', 'trap "" INT TERM; while :; do sleep 0.1; done'
     for name, number, send, words, awaited in (('Ctrl-C, and a scene', signal.SIGINT, os.killpg, (), r'mural-scenes '),
@@ -164,7 +166,7 @@ def stopped(folder):
 
 
 def unread(folder):
-    """Who reads what it says goes away: that ends it as it ends other programs, and leaves nothing, either."""
+    """Closes the reader of the output: the bench ends like other programs, and leaves nothing behind, either."""
     result = os.path.join(folder, 'unread.json')
     process, inside = start(folder, '--quick', '--json', result)
     process.stderr.readline()

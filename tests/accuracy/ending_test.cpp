@@ -1,4 +1,5 @@
-// What is left when a measurement ends early: signals are noted and given back, files that nobody has written are removed.
+// A measurement that ends early: signals are recorded and their handlers restored, and result files without contents
+// are removed.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -19,7 +20,7 @@ std::string contentOf(const std::string& path) {
     return text.str();
 }
 
-TEST(ResultFile, isWrittenWhole) {
+TEST(ResultFile, isWrittenCompletely) {
     const test::TemporaryFolder folder;
     std::ofstream(folder.at("old")) << "much longer than what comes";
     for (const char* name : {"new", "old"}) {
@@ -31,7 +32,7 @@ TEST(ResultFile, isWrittenWhole) {
     EXPECT_EQ(contentOf(folder.at("old")), "measured\n");
 }
 
-TEST(ResultFile, unwrittenLeavesAllAsItWas) {
+TEST(ResultFile, leavesFilesUnchangedWhenNotWritten) {
     const test::TemporaryFolder folder;
     std::ofstream(folder.at("old")) << "of last week";
     for (const char* name : {"new", "old"}) {
@@ -44,7 +45,7 @@ TEST(ResultFile, unwrittenLeavesAllAsItWas) {
     EXPECT_EQ(contentOf(folder.at("old")), "of last week");
 }
 
-TEST(ResultFile, thatCannotBeWrittenIsRefusedAtOnce) {
+TEST(ResultFile, failsAtOnceWhenNotWritable) {
     const test::TemporaryFolder folder;
     const auto lost = ResultFile::open("--svg", folder.at("none/a.svg"));
     ASSERT_FALSE(lost);
@@ -52,7 +53,7 @@ TEST(ResultFile, thatCannotBeWrittenIsRefusedAtOnce) {
     EXPECT_FALSE(ResultFile::open("--svg", folder.at("")));
 }
 
-TEST(ResultFile, mayBeADeviceOrNone) {
+TEST(ResultFile, acceptsADeviceOrNoPath) {
     for (const char* path : {"/dev/null", ""}) {
         auto file = ResultFile::open("--json", path);
         ASSERT_TRUE(file) << file.error().message;
@@ -67,7 +68,7 @@ void (*handlerOf(int number))(int) {
     return now.sa_handler;
 }
 
-TEST(Interruption, notesSignalsAndGivesThemBack) {
+TEST(Interruption, recordsSignalsAndRestoresHandlers) {
     const auto before = handlerOf(SIGTERM);
     {
         const Interruption interruption;

@@ -1,4 +1,4 @@
-// Errors of known pictures, bounds at their edges, and what is told of both.
+// Errors of known pictures, bounds at their limits, and the reports of both.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ OwnedPicture grey(int width, int height, int value) {
     return p;
 }
 
-TEST(MeasuredError, ofKnownPictures) {
+TEST(MeasuredError, measuresKnownPictures) {
     const OwnedPicture black = grey(5, 4, 0), one = grey(5, 4, 1), white = grey(5, 4, 255);
     const MeasuredError none = errorOf(black.view(), black.view());
     EXPECT_EQ(none.pixels, 20);
@@ -33,7 +33,7 @@ TEST(MeasuredError, ofKnownPictures) {
     EXPECT_EQ(errorOf(black.view(), spot.view()).squares, 81) << "the fourth byte is no colour";
 }
 
-TEST(MeasuredError, picturesOfOtherSizesAreAllWrong) {
+TEST(MeasuredError, countsAllPixelsWhenSizesDiffer) {
     const MeasuredError error = errorOf(grey(5, 4, 7).view(), grey(4, 5, 7).view());
     EXPECT_EQ(error.pixels, 20);
     EXPECT_EQ(error.differing, 20);
@@ -48,7 +48,7 @@ TEST(MeasuredError, addsUp) {
     EXPECT_DOUBLE_EQ(sum.rootMeanSquare(), std::sqrt(2.0));
 }
 
-TEST(Bound, holdsAtItsEdgeAndNotBehind) {
+TEST(Bound, holdsUpToItsLimit) {
     MeasuredError error = errorOf(grey(10, 10, 0).view(), grey(10, 10, 0).view());
     EXPECT_TRUE(Bound::exact().holds(error));
     EXPECT_FALSE(Bound::exact().holds({})) << "nothing was compared";
@@ -66,7 +66,7 @@ TEST(Bound, holdsAtItsEdgeAndNotBehind) {
     EXPECT_EQ(Bound{}.text(), "none");
 }
 
-TEST(AccuracyReport, saysWhatIsBrokenAndWhatFailed) {
+TEST(AccuracyReport, namesBrokenBoundsAndFailures) {
     AccuracyReport report{"scenes & <more>", "", {}};
     EXPECT_FALSE(report.holds()) << "nothing was measured";
     AccuracyRow row{"group", "good", "native", errorOf(grey(5, 4, 0).view(), grey(5, 4, 0).view()), Bound::exact(), {}};
@@ -87,7 +87,7 @@ TEST(AccuracyReport, saysWhatIsBrokenAndWhatFailed) {
     EXPECT_NE(jsonOf(report).find("\"failure\": \"why it was\""), std::string::npos);
 }
 
-TEST(AccuracyReport, endsByWhatCouldBeMeasured) {
+TEST(AccuracyReport, returnsAStatusForTheMeasuredRows) {
     const AccuracyRow good{"group", "good", "native", errorOf(grey(5, 4, 0).view(), grey(5, 4, 0).view()), Bound::exact(), {}};
     AccuracyRow bad = good, lost = good;
     bad.error = errorOf(grey(5, 4, 0).view(), grey(5, 4, 1).view());
@@ -103,7 +103,7 @@ TEST(AccuracyReport, endsByWhatCouldBeMeasured) {
     EXPECT_NE(tableOf({"scenes", "", {lost, lost}}).find("\n0 measured, 0 broken, 2 failed\n"), std::string::npos);
 }
 
-TEST(AccuracyReport, numbersAreReadable) {
+TEST(AccuracyReport, formatsReadableNumbers) {
     EXPECT_EQ(spaced(0), "0");
     EXPECT_EQ(spaced(999), "999");
     EXPECT_EQ(spaced(1000), "1 000");

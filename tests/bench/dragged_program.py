@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""tools/bench/dragged: the mouse goes round over the program's window with its button down; the program's status comes back; a signal reaches it."""
+"""tools/bench/dragged moves the mouse over the program's window with the button pressed, returns the program's status,
+and passes signals on.
+"""
 
 import os
 import re
@@ -21,7 +23,7 @@ from processes import until
 
 
 def moves_fault(folder, environment):
-    """xev's window says where the mouse is, and what its button does."""
+    """Returns an error unless xev reports the mouse position and the button."""
     seen = os.path.join(folder, "seen")
     with open(seen, "wb") as file:
         process = subprocess.Popen([DRAGGED, "xev", "-geometry", "300x200+450+350", "-event", "mouse", "-event", "button"], env=environment, stdin=subprocess.DEVNULL, stdout=file)

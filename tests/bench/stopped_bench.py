@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A bench that is stopped while its programs run: it ends soon, says so, and leaves neither processes nor folders."""
+"""A bench that is stopped while its programs run ends soon, reports it, and leaves neither processes nor folders."""
 
 import argparse
 import os
@@ -18,7 +18,7 @@ from processes import processes_with, until
 
 
 def fault_of(a, number):
-    """Empty: all is as it should be."""
+    """Returns an error, or an empty text."""
     with tempfile.TemporaryDirectory(prefix="mural-stopped.") as folder:
         inside = os.path.join(folder, "temporary")
         os.mkdir(inside)
@@ -38,7 +38,7 @@ def fault_of(a, number):
             return "its status is %d, not %d; it said: %s" % (process.returncode, STOPPED, said)
         if "stopped" not in said:
             return "it does not say that it was stopped: " + said
-        # What Mural has started ends by itself, soon.
+        # Processes that Mural started end without help, soon.
         if not until(lambda: not processes_with(inside), END_SECONDS):
             return "these go on: " + ", ".join(processes_with(inside).values())
         left = os.listdir(inside)

@@ -8,7 +8,7 @@
 namespace mural {
 namespace {
 
-TEST(HugePages, WholeOnesWithinAreAskedFor) {
+TEST(HugePages, requestsWholePagesWithinTheRange) {
     constexpr size_t kRoom = 4 * kHugePageBytes;
     const std::unique_ptr<void, decltype(&std::free)> block(std::aligned_alloc(kHugePageBytes, kRoom), std::free);
     auto* const at = static_cast<std::byte*>(block.get());

@@ -1,4 +1,4 @@
-// That memory which was given back, or was asked to be there, needs no new pages: a fault for each takes 3 us in a virtual machine.
+// Memory that was freed, or reserved in advance, needs no new pages: a page fault takes 3 us in a virtual machine.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kPageBytes = 4096, kBlockBytes = size_t{6} << 20;
 
-// Of this thread, to get so much memory and write to each of its pages.
+// Returns the page faults of this thread while it allocates `sizeBytes` and writes to each page.
 long faultsOf(size_t sizeBytes) {
     rusage before{}, after{};
     getrusage(RUSAGE_THREAD, &before);
@@ -23,7 +23,7 @@ long faultsOf(size_t sizeBytes) {
     return after.ru_minflt - before.ru_minflt;
 }
 
-TEST(KeptMemory, IsThereWhenItIsFirstNeededAndAgain) {
+TEST(KeptMemory, isMappedAtFirstAndLaterUse) {
     if (testing::kSanitized) GTEST_SKIP() << "the sanitizers' malloc is another one";
     keepFreedMemory();
     haveKeptMemory(2 * kBlockBytes);

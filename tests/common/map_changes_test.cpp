@@ -1,5 +1,5 @@
-// Whoever writes into memory, and however: the next look tells it, with the bytes. Both for memory that
-// the kernel watches and for memory that is compared as a whole.
+// Changes of memory are found with their bytes, for all kinds of writers. Both for memory that the kernel watches and
+// for memory that is compared as a whole.
 #include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t kSmall = 4096, kLarge = 1 << 20;
 
-// Memory, what looks at it, and a copy kept up to date by what that tells.
+// Memory, its watcher, and a copy that is updated with the reported changes.
 class Watched {
 public:
     explicit Watched(size_t size, size_t offset = 0) : size_(size), mappedBytes_(size + 8192) {
@@ -67,7 +67,7 @@ bool kernelWatches() {
 class MapChangesOfSize : public testing::TestWithParam<size_t> {};
 INSTANTIATE_TEST_SUITE_P(Sizes, MapChangesOfSize, testing::Values(kSmall, kLarge));
 
-TEST_P(MapChangesOfSize, WritesAreToldOnce) {
+TEST_P(MapChangesOfSize, reportsWritesOnce) {
     Watched memory(GetParam());
     memory.memory[100] = std::byte{1};
     memory.look();
@@ -77,7 +77,7 @@ TEST_P(MapChangesOfSize, WritesAreToldOnce) {
     EXPECT_TRUE(memory.told.empty());
 }
 
-TEST_P(MapChangesOfSize, ManyRandomWritesInLongAndShortIntervals) {
+TEST_P(MapChangesOfSize, reportsRandomWritesInLongAndShortIntervals) {
     Watched memory(GetParam());
     std::mt19937 random(5);
     for (int step = 0; step < 3000; ++step) {
@@ -90,7 +90,7 @@ TEST_P(MapChangesOfSize, ManyRandomWritesInLongAndShortIntervals) {
     }
 }
 
-TEST_P(MapChangesOfSize, SystemCallsWrite) {
+TEST_P(MapChangesOfSize, reportsWritesOfSystemCalls) {
     Watched memory(GetParam());
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
@@ -103,7 +103,7 @@ TEST_P(MapChangesOfSize, SystemCallsWrite) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST_P(MapChangesOfSize, OtherThreadsWriteWhileWeLook) {
+TEST_P(MapChangesOfSize, reportsConcurrentWritesOfOtherThreads) {
     Watched memory(GetParam());
     std::thread writer([&] {
         std::mt19937 random(9);
@@ -115,7 +115,7 @@ TEST_P(MapChangesOfSize, OtherThreadsWriteWhileWeLook) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST_P(MapChangesOfSize, AForkedChildWritesIntoItsOwn) {
+TEST_P(MapChangesOfSize, reportsWritesOfAForkedChildOnlyToTheChild) {
     Watched memory(GetParam());
     const pid_t child = fork();
     if (child == 0) {
@@ -133,14 +133,14 @@ TEST_P(MapChangesOfSize, AForkedChildWritesIntoItsOwn) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST_P(MapChangesOfSize, ExactlyTheWordsThatChanged) {
+TEST_P(MapChangesOfSize, reportsExactlyTheChangedWords) {
     Watched memory(GetParam());
     memory.memory[4] = memory.memory[15] = memory.memory[40] = std::byte{1};
     memory.look(true);
     EXPECT_EQ(memory.told, (std::vector<Watched::Run>{{4, 4}, {12, 4}, {40, 4}}));
 }
 
-TEST_P(MapChangesOfSize, WhatOthersWroteIsNoChange) {
+TEST_P(MapChangesOfSize, ignoresAcceptedForeignWrites) {
     Watched memory(GetParam());
     std::vector<std::byte> news(memory.memory, memory.memory + 256);
     news[8] = std::byte{9};
@@ -150,15 +150,15 @@ TEST_P(MapChangesOfSize, WhatOthersWroteIsNoChange) {
     memory.memory[8] = std::byte{9};
     memory.look();
     EXPECT_TRUE(memory.told.empty());
-    memory.memory[8] = std::byte{7}; // what it was before
+    memory.memory[8] = std::byte{7}; // the previous value
     memory.look();
     EXPECT_EQ(memory.told.size(), 1U);
 }
 
-TEST(MapChanges, MemoryThatBeginsAndEndsWithinPages) {
+TEST(MapChanges, supportsMemoryThatBeginsAndEndsWithinPages) {
     Watched memory(kLarge - 1000, 300);
     for (int i = 0; i < 40; ++i) memory.look();
-    memory.memory[-1] = memory.memory[kLarge - 1000] = std::byte{1}; // others' bytes in the same pages
+    memory.memory[-1] = memory.memory[kLarge - 1000] = std::byte{1}; // foreign bytes in the same pages
     memory.look();
     EXPECT_TRUE(memory.told.empty());
     memory.memory[0] = memory.memory[kLarge - 1001] = std::byte{1};
@@ -167,10 +167,10 @@ TEST(MapChanges, MemoryThatBeginsAndEndsWithinPages) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST(MapChanges, AWatchThatIsLostIsReplacedByComparison) {
+TEST(MapChanges, comparesWhenTheKernelWatchIsLost) {
     if (!kernelWatches()) GTEST_SKIP() << "this kernel can't watch memory";
     Watched memory(kLarge);
-    // Another mapping in the same place: the kernel forgets what it has watched.
+    // Maps other memory at the same address, so the kernel drops its watch.
     auto* page = memory.memory + 8 * 4096;
     ASSERT_NE(mmap(page, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0), MAP_FAILED);
     memory.look();
@@ -181,7 +181,7 @@ TEST(MapChanges, AWatchThatIsLostIsReplacedByComparison) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST(MapChanges, SharedMemoryOfAFile) {
+TEST(MapChanges, supportsSharedMemoryOfAFile) {
     const int file = memfd_create("shared", MFD_CLOEXEC);
     ASSERT_EQ(ftruncate(file, kLarge), 0);
     auto* memory = static_cast<std::byte*>(mmap(nullptr, kLarge, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0));

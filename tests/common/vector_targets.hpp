@@ -1,4 +1,4 @@
-// Kernels written with Highway, by all instruction sets that they were built for.
+// Runs tests of Highway kernels with each instruction set of the build.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace mural::test {
 
-// Calls `each` once for every instruction set that this machine and this build have, with nothing better in use.
+// Calls `each` once for every instruction set of this machine and build, with all better ones disabled.
 template <class Each> void forEachTarget(Each&& each) {
     for (int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
         const int64_t target = left & -left;

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs tests of piglit (Debian package `piglit`), each natively and through Mural, there by the same nodes; the results must be
-the same. The tests look at their own pictures with glReadPixels, so this needs no stored results.
+"""Runs tests of piglit (Debian package `piglit`), each natively and through Mural on the same nodes. The results must
+be equal. The tests check their own pictures with glReadPixels, so no stored results are needed.
 
   run_piglit.py --build build/release [--list piglit.txt] [--filter glsl] [--part 1/3] [--tiles 2x2]
 
-One line per test that differs; the status is 1 when one does, 77 when piglit is not installed.
+Prints one line per test that differs; the status is 1 if one does, 77 if piglit is not installed.
 """
 
 import argparse
@@ -48,7 +48,7 @@ def commands(arguments):
 
 
 def results(output):
-    """The overall result and those of sub-tests, as piglit's tests print them."""
+    """Returns the total result and the results of sub-tests, as piglit's tests print them."""
     found = []
     for line in output.splitlines():
         if line.startswith("PIGLIT: "):
@@ -76,7 +76,7 @@ def run_natively(command, display_name, seconds):
 
 
 class Wall:
-    """Nodes that draw one test after another; others when one has not ended, or ended them."""
+    """Nodes that draw one test after another; new ones after a test that did not end, or that ended them."""
 
     def __init__(self, arguments, display_name, folder):
         self.arguments, self.display_name, self.folder = arguments, display_name, folder
@@ -94,13 +94,13 @@ class Wall:
         return status, results(output), output
 
     def end(self):
-        """The status of `mural run`."""
+        """Returns the status of `mural run`."""
         nodes, self.nodes = self.nodes, None
         return nodes.end(self.arguments.seconds) if nodes else 0
 
 
 def known_differences():
-    """Command -> reason, from known_differences.txt."""
+    """Returns command -> reason, from known_differences.txt."""
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "known_differences.txt")
     known = {}
     with open(path, encoding="utf-8") as lines:

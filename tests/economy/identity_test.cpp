@@ -7,7 +7,7 @@
 namespace mural::economy::testing {
 namespace {
 
-// Frames like those of programs: records of a small set, some changed, moved or omitted, some long, some malformed.
+// Frames similar to a program's: records of a small set, some changed, moved or omitted, some long, some malformed.
 class RandomProgram {
 public:
     explicit RandomProgram(uint32_t seed) : random_(seed) {

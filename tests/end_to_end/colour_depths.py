@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Windows with alpha, and of 5, 8 and 10 bits per channel, show and read as natively: all bits of every pixel.
+"""Windows with alpha, and with 5, 8 and 10 bits per channel, show and read all bits of every pixel as natively.
 
   colour_depths.py --build build/release [--depths 16,24,30] [--programs …] [--options "…"]
 
-Runs the programs on X screens of each depth, natively and through Mural, and compares what they print:
-sums of what GL reads and of what the X server shows. With --display app their windows are also compared by --verify.
+Runs the programs on X screens of each depth, natively and through Mural, and compares their output: sums of the pixels
+that GL reads and that the X server shows. With --display app their windows are also compared by --verify.
 """
 
 import argparse
@@ -17,12 +17,12 @@ import tempfile
 import display
 import programs
 
-# What is shown with fewer bits than the window has is said; nothing else is.
+# A warning appears exactly for windows shown with fewer bits than they have.
 EIGHT_BITS = "bits per channel; its picture is shown and saved with 8"
 
 
 def run(command, display_name, seconds):
-    """Status, output, and messages of a run."""
+    """Returns status, output, and messages of a run."""
     done = subprocess.run(command, env=programs.clean_environment(display_name), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, timeout=seconds, check=False)
     return done.returncode, done.stdout.decode(), done.stderr.decode()
@@ -50,7 +50,7 @@ class Comparison:
         self.failures += bool(problems)
 
     def through(self, display_name, program, options, native):
-        """What is wrong with one run through Mural."""
+        """Returns the error of one run through Mural, or None."""
         with tempfile.TemporaryDirectory() as folder:
             report = os.path.join(folder, "report.json")
             status, output, messages = run([os.path.join(self.build, "bin", "mural"), "run", "--report", report] + options + ["--", program], display_name, self.seconds)
@@ -68,7 +68,7 @@ class Comparison:
                 problems.append("no frame was verified")
             if numbers.get("differingPixels", 0) != 0:
                 problems.append("%d pixels differ" % numbers["differingPixels"])
-        halves = os.path.basename(program) == "deep_framebuffers"  # pbuffers of half floats are no windows
+        halves = os.path.basename(program) == "deep_framebuffers"  # pbuffers of half floats are not windows
         if "app" in options and (EIGHT_BITS in messages) != halves:
             problems.append("the line about 8 bits " + ("is missing" if halves else "came"))
         return problems
@@ -85,7 +85,7 @@ class Comparison:
                     self.say("depth %d, %s, %s" % (depth, name, words), self.through(display_name, program, words.split(), native))
 
     def lines(self):
-        """A line tells what is shown with fewer bits: of windows of 10 bits, and nowhere else."""
+        """Checks the line about windows shown with fewer bits: it appears for windows of 10 bits, and nowhere else."""
         for depth, expected in ((24, False), (30, True)):
             with display.PrivateDisplay("640x480x%d" % depth) as display_name, tempfile.TemporaryDirectory() as folder:
                 program = os.path.join(self.build, "tests", "programs", "window_colours")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Pictures that nodes put together in every way that there is, compared with the native ones, pixel by pixel.
+"""Compares pictures that nodes combine with every strategy with the native ones, pixel by pixel.
 
-  compositions.py --build build/release --programs range_ties --counts 2,3,4,5 --size 253x191
+compositions.py --build build/release --programs range_ties --counts 2,3,4,5 --size 253x191
 """
 
 import os
@@ -13,7 +13,7 @@ STRATEGIES = ("serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "st
 
 
 class Compositions(run_exact.Comparison):
-    """One program natively once, and then shared by so many nodes, by each strategy."""
+    """One program natively once, then divided among that number of nodes, with each strategy."""
 
     def launchers(self):
         arguments = self.arguments

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Runs a real program by configuration files, all nodes on this machine, and looks at what the wall shows.
+"""Runs a real program with configuration files, all nodes on this machine, and checks the picture of the wall.
 
   configurations.py --build build/release [--files a.eqc,b.eqc] [--shared] [--size 320x240]
 
-Without --files: all of configs/; with --shared also the example files beside the tree (or in MURAL_SHARED), when they are
-there. A file without stereo shows, over every part of the wall that it draws, exactly the native picture: 0 pixels differ.
-Screens at angles are laid flat for that (passes.py looks into rooms). What is zoomed must be near the native picture, and differ from it; what frames make smaller on their way, or show
-elsewhere, must be the native picture made so. Of one with stereo the picture is put together from the runs of each eye alone, and compared with that.
+Without --files: all of configs/. With --shared also the example files next to the tree (or in MURAL_SHARED), if
+present.
+  - A file without stereo shows exactly the native picture on every part of the wall that it draws: 0 pixels differ.
+    Screens at angles are laid flat for that (passes.py tests rooms).
+  - A zoomed part must be close to the native picture, and differ from it.
+  - A part that frames reduce in transit, or show elsewhere, must equal the native picture after the same change.
+  - A picture with stereo is combined from separate runs of each eye, and compared with that.
 """
 
 import argparse
@@ -25,16 +28,20 @@ import programs
 
 PROGRAM = "fixed_lighting"
 FRAMES = 3
-ZOOMED_MEAN = 12  # of half the size; a picture that is a few pixels off, or black, differs by more
-REDUCED_MEAN = 0.1  # of one that was drawn larger, from the native picture that was drawn so and reduced; a pixel off is 1 and more
-CANVAS_SIZE = "320x240"  # of the program's picture, so that those of canvases are whole parts or multiples of it
-CANVAS_MEAN = 3  # of a canvas with pixels of its own, from a native window of its size (0.97); a pixel off is 13 and more, the native picture made smaller 4.5
-WAY_MOST = 2  # of values that were rounded four times: pixels, and their weights, in 256ths; a part that is a pixel off differs by more
+ZOOMED_MEAN = 12  # at half the size; a picture that is a few pixels off, or black, differs by more
+# for a picture drawn larger, compared with the reduced native picture; a shift by one pixel gives 1 or more
+REDUCED_MEAN = 0.1
+CANVAS_SIZE = "320x240" # size of the program's picture; canvases are integer fractions or multiples of it
+# for a canvas with its own pixels, compared with a native window of its size (0.97); a shift by one pixel gives 13 or
+# more, the reduced native picture 4.5
+CANVAS_MEAN = 3
+# for values rounded four times: pixels and their weights, in 256ths; a part that is one pixel off differs by more
+WAY_MOST = 2
 SKIPPED = 77
 
 
 def read_png(path):
-    """(width, height, RGB rows)."""
+    """Returns (width, height, RGB rows)."""
     picture = pictures.read_png(path)
     return picture.width, picture.height, picture.rows
 
@@ -45,7 +52,8 @@ class Run:
         self.references = {}
 
     def picture(self, options, times=(1, 1)):
-        """The last frame, and what was said; of a program with a window so many times as large. Raises RuntimeError with the program's words."""
+        """Returns the last frame and the messages, for a program with a window of that relative size. Raises
+        RuntimeError with the program's messages."""
         a = self.arguments
         size = "x".join(str(math.ceil(int(length) * by - 0.5)) for length, by in zip(a.size.split("x"), times))
         with tempfile.TemporaryDirectory(prefix="mural-configurations.") as folder:
@@ -63,7 +71,7 @@ class Run:
             return read_png(files[-1]), said
 
     def reference(self, options, times=(1, 1)):
-        """The picture of a run that several files are compared with: drawn once."""
+        """Returns the picture of a run with which several files are compared; drawn once."""
         key = tuple(options), times
         if key not in self.references:
             self.references[key] = self.picture(options, times)[0]
@@ -71,7 +79,7 @@ class Run:
 
 
 def difference(expected, shown, areas):
-    """Pixels that differ inside of the areas, and how many lie outside of all of them."""
+    """Returns the number of differing pixels inside the areas, and outside all of them."""
     width, height, rows = expected
     if (shown[0], shown[1]) != (width, height):
         return width * height, 0
@@ -92,7 +100,7 @@ def difference(expected, shown, areas):
 
 
 def mean_difference(expected, shown, area):
-    """Of the values of an area: 0 to 255."""
+    """Returns the mean difference of the values of an area: 0 to 255."""
     width, height, rows = expected
     x, y, w, h = area
     x0, x1 = int(x * width + 1e-6), int((x + w) * width + 1e-6)
@@ -104,7 +112,8 @@ def mean_difference(expected, shown, area):
 
 
 def reduced(picture, times):
-    """Each pixel the mean of so many columns and rows, as a zoom above 1 shows what was drawn larger."""
+    """Returns a picture in which each pixel is the mean of a block of columns and rows, as a zoom above 1 shows a
+    larger picture."""
     columns, lines = times
     width, height = picture[0] // columns, picture[1] // lines
     rows = []
@@ -118,13 +127,14 @@ def reduced(picture, times):
 
 
 def pixels_of(area, width, height):
-    """x0, x1, and rows from the top, of a part of the picture."""
+    """Returns x0, x1, and the rows from the top, of a part of the picture."""
     x, y, w, h = area
     return int(x * width + 1e-6), int((x + w) * width + 1e-6), height - int((y + h) * height + 1e-6), height - int(y * height + 1e-6)
 
 
 def resized(lines, size):
-    """Rows of values (3 per pixel) of another size: the mean of what a pixel covers where it is smaller, else linear between the middles of pixels."""
+    """Returns rows of values (3 per pixel) at another size: the mean of the covered pixels if smaller, otherwise linear
+    between pixel centres."""
     def weights(count, wanted):
         by = count / wanted
         for i in range(wanted):
@@ -142,7 +152,8 @@ def resized(lines, size):
 
 
 def of_frames(said):
-    """Parts of the wall that frames have made smaller on their way, or show elsewhere: area, size on the way, where it is shown."""
+    """Returns the parts of the wall that frames reduce in transit, or show elsewhere: area, size in transit, shown
+    area."""
     found = []
     for pass_text, area, shown in re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ ([^]]+) \] of the wall(?:, shown in \[ ([^]]+) \])?", said):
         way = re.search(r"sent (\S+) by (\S+) times as large", pass_text)
@@ -153,10 +164,10 @@ def of_frames(said):
 
 
 def way_difference(native, shown, area, way, place):
-    """The largest difference of values from the native picture, made smaller and larger as the frame says."""
+    """Returns the largest difference from the native picture after the frame's reduction and enlargement."""
     width, height, rows = native
     x0, x1, y0, y1 = pixels_of(area, width, height)
-    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]  # upwards, as what is rounded is
+    lines = [rows[y][3 * x0:3 * x1] for y in range(y1 - 1, y0 - 1, -1)]  # bottom-up, like the rounded values
     small = (max(1, int((x1 - x0) * way[0] + 0.5)), max(1, int((y1 - y0) * way[1] + 0.5)))
     sent = [[int(v + 0.5) for v in line] for line in resized(lines, small)] if small != (x1 - x0, y1 - y0) else lines
     x0, x1, y0, y1 = pixels_of(place, width, height)
@@ -171,7 +182,7 @@ def side_by_side(left, right):
 
 
 def other_canvases(said):
-    """Of each canvas beside the first: its name, how much larger it is, and the first of its nodes."""
+    """Returns for each further canvas its name, its relative size, and the first of its nodes."""
     found = []
     for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture, too, in (\d+)x(\d+) pixels where the first has (\d+)x(\d+)', said):
         after = said[said.index("canvas \"%s\" shows" % name if "canvas \"%s\" shows" % name in said else "canvas %s shows" % name):]
@@ -187,7 +198,7 @@ def of_other_canvas(line, said):
 
 
 def check_canvases(run, path, canvases, said):
-    """What the other canvases show is what the program draws natively into a window of their size."""
+    """Compares the other canvases with native drawing into a window of their size."""
     about = ""
     for name, times, _ in other_canvases(said):
         if name not in canvases:
@@ -215,7 +226,7 @@ def check_canvases(run, path, canvases, said):
 
 
 def check(run, path, native):
-    """None, or what is wrong; and a line about what was seen."""
+    """Returns None or an error, and a line about the checks."""
     shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
     about_canvases, wrong = check_canvases(run, path, run.canvases, said)
     if wrong:
@@ -235,13 +246,15 @@ def check(run, path, native):
         zoomed += ", the zoomed part by %.2f of 255 in the mean" % mean
         if not all(z >= 1 and z == int(z) for z in zoom):
             continue
-        # Drawn larger: what the program draws natively in a window of that size, each pixel the mean of those in it.
+        # A picture drawn larger, compared with a native window of that size, in which each pixel is the mean of its
+        # block.
         times = tuple(int(z) for z in zoom)
         mean = mean_difference(reduced(run.reference([], times), times), shown, area)
         if mean > REDUCED_MEAN:
             return "zoomed, the part %s differs by %.3f of 255 in the mean from the native picture drawn larger" % (area, mean), ""
         zoomed += ", by %.3f from one that is drawn larger" % mean
-    # Both eyes of an anaglyph see one picture when nothing is between them; pairs side by side have parts of half the width, which are not compared.
+    # Both eyes of an anaglyph see one picture at eye base 0. Side-by-side pairs have parts of half the width, which are
+    # not compared.
     one = shown
     if sent and " eye" in said:
         one = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
@@ -253,7 +266,7 @@ def check(run, path, native):
         zoomed += ", what frames made smaller by at most %.2f of 255 from the native picture made so" % most
     if not told:
         return "no node is told of", ""
-    # Antialiased, or every nth pixel: as the short form draws it.
+    # Antialiased, or every nth pixel, compared with the short form of the options.
     samples, kernel = re.search(r"sample \d+ of (\d+)", said), re.search(r"of each (\d+x\d+)", said)
     options = (["--subpixel", samples.group(1)] if samples else []) + (["--pixel", kernel.group(1)] if kernel else [])
     expected, against = native, "the native picture"
@@ -264,15 +277,15 @@ def check(run, path, native):
     eyes = [word for word in ("left eye", "right eye") if word in said]
     if eyes:
         flat = one if one is not shown else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
-        # The file's own distance shows it already where it moves a pixel.
+        # The file's own eye base is sufficient where it moves a pixel.
         apart = shown if shown[2] != flat[2] else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0.5"])[0]
         if apart[2] == flat[2]:
             return "the eyes see the same, however far apart", ""
-        # Without a distance between them both eyes see what one sees.
+        # With eye base 0 both eyes see the picture of one.
         against += " for both eyes"
         if not (sent and eyes_as_one) and flat[2] != expected[2]:
             expected, areas, shown = side_by_side(expected, expected), [(0, 0, 1, 1)], flat
-            if sent:  # in halves of the picture: near it
+            if sent:  # in halves of the picture: approximate
                 mean = mean_difference(expected, shown, (0, 0, 1, 1))
                 about = "%d nodes, pictures that frames make smaller among them: by %.2f of 255 in the mean from %s" % (len(told), mean, against)
                 return (None if mean < ZOOMED_MEAN else about), about

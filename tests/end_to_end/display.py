@@ -1,4 +1,4 @@
-"""A private X server for tests and measurements, found by its own choice of a free number."""
+"""A private X server for tests and measurements, which chooses a free number itself."""
 
 import os
 import select
@@ -7,7 +7,7 @@ import time
 
 
 class PrivateDisplay:
-    """`with PrivateDisplay() as name:` starts Xvfb and stops it again."""
+    """`with PrivateDisplay() as name:` starts Xvfb and stops it at the end."""
 
     def __init__(self, size="2600x1700x24", start_seconds=30):
         self.size = size

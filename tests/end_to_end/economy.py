@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What goes to the nodes, with economy: little where frames are alike, and the pictures are right.
+"""Traffic to the nodes with delta coding: little for similar frames, with exact pictures.
 
-  economy.py --build build/release [--cases same_scene,same_texture] [--list]
+economy.py --build build/release [--cases same_scene,same_texture] [--list]
 """
 
 import json
@@ -11,12 +11,12 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 PATCH_BYTES = 64 * 64 * 4
 
 
 def report_of(context, program, frames, *options):
-    """The report of a run; a text when it went wrong."""
+    """Returns the report of a run, or an error text."""
     with tempfile.TemporaryDirectory(prefix="mural-economy.") as folder:
         report_file = os.path.join(folder, "report.json")
         command = [context.program(program), "--frames", str(frames), "--size", "253x191"]
@@ -29,7 +29,7 @@ def report_of(context, program, frames, *options):
 
 
 def verified(context, program, frames, *options, every=1):
-    """The same, of a run whose pictures were right; each so many frames are compared."""
+    """Returns the report of a run with exact pictures; every Nth frame is compared."""
     report = report_of(context, program, frames, "--economy", "on", "--verify=%d" % every, *options)
     if isinstance(report, dict) and (report["verifiedFrames"] != frames // every or report["differingPixels"] != 0):
         return "%s %s: %d frames verified, %d pixels differ" % (program, " ".join(options), report["verifiedFrames"], report["differingPixels"])
@@ -37,7 +37,7 @@ def verified(context, program, frames, *options, every=1):
 
 
 def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
-    """Between a run of few and one of more frames lie frames that nodes know all but the news of."""
+    """Compares a run of few frames with one of more: nodes know all data of the additional frames except the changes."""
     def check(context):
         wire = []
         for count in frames:
@@ -56,11 +56,11 @@ def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
     failures.case(check)
 
 
-per_frame("same_scene", "same_scene", 0.5, 100, (10, 310)) # how the first frames are coded is chosen by measured time
+per_frame("same_scene", "same_scene", 0.5, 100, (10, 310))  # measured times select the coding of the first frames
 per_frame("same_texture", "same_texture", 1, 1024)
 per_frame("changed_texture", "changed_texture", PATCH_BYTES, 1.5 * PATCH_BYTES + 1024)
 
-# Values of 16 to 36 kB that come again, in no order: a source, vertices, an image cost where they are.
+# Values of 16 to 36 kB that recur in random order: a source, vertices, or an image costs only a reference.
 for value in ("same_sources", "same_arrays", "same_pixels"):
     per_frame(value, value, 1, 300, (30, 90))
 
@@ -76,7 +76,7 @@ def verified_values(context):
 
 @failures.case
 def verified_texture(context):
-    """Patches arrive where they belong; also with a store that is too small for the texture."""
+    """Patches arrive at their position, also with a store that is too small for the texture."""
     for store in ("1GiB", "1MiB"):
         report = verified(context, "changed_texture", 3, "--store", store)
         if not isinstance(report, dict):
@@ -92,12 +92,13 @@ def left_out_of(report):
 
 @failures.case
 def late_uploads(context):
-    """What is replaced, the same again, or never drawn with does not go; what is drawn with late goes late."""
+    """Uploads that are replaced, unchanged, or never drawn are not sent; uploads that are drawn late are sent late."""
     report = verified(context, "late_uploads", 103)
     if not isinstance(report, dict):
         return report
     e = left_out_of(report)
-    # Of a frame at least: two of three textures and of three buffers, two of four parts, the unused, the same and the deleted one.
+    # Dropped per frame, at least: two of three textures and of three buffers, two of four parts, the unused, the equal
+    # and the deleted one.
     if e["leftOutRecords"] < 900 or e["heldRecords"] < 600 or e["rawBytes"] > 0.7 * e["programBytes"]:
         return "too little was left out: %s" % e
     return None
@@ -105,16 +106,17 @@ def late_uploads(context):
 
 @failures.case
 def equal_state(context):
-    """State that is as it was, or set again before a draw, stays behind, and the pictures are right.
+    """State that does not change, or is set again before a draw, is not sent, and the pictures are exact.
 
-    Whether frames go on without it is chosen by what they cost, CPU time with it, which another load of the machine makes longer: that it is chosen where
-    it is cheaper is asserted without a clock (tests/holding/small_choice_test.cpp). Here at least it is tried.
-    """
+    The filter decides by CPU time whether it skips frames, and other load of the machine makes that time longer. A test
+    without a clock asserts the choice where it is cheaper (tests/holding/small_choice_test.cpp). Here it is at least
+    tried."""
     report = verified(context, "equal_state", 300, every=10)
     if not isinstance(report, dict):
         return report
     e = left_out_of(report)
-    # Of each of 48 objects' 2 x 19 sets at least 30 change nothing that its draw sees: over 1 400 of a frame, and a try has at least eight.
+    # Each of 48 objects makes 2 x 19 state changes, of which at least 30 have no effect on its draw. That is over 1 400
+    # per frame, in at least eight frames of a run.
     if e["leftOutRecords"] < 8 * 1400 or e["programBytes"] - e["rawBytes"] < 0.4 * 8 / 300 * e["programBytes"]:
         return "too little was left out: %s" % e
     return None
@@ -122,7 +124,7 @@ def equal_state(context):
 
 @failures.case
 def off(context):
-    """Nodes of this machine are sent everything, unless asked otherwise."""
+    """Nodes of this machine receive everything, unless configured otherwise."""
     report = report_of(context, "same_scene", 5)
     if not isinstance(report, dict):
         return report

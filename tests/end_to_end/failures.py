@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What goes wrong, goes wrong well: render nodes and the head are killed, programs end in all ways,
-arguments are bad. In each case: the status, the number of lines said, and nothing left behind.
+"""Failures have a defined result: render nodes and the head are killed, programs end in all ways, arguments are
+invalid. Each case checks the status, the number of printed lines, and that nothing remains.
 
   failures.py --build build/release [--cases node,head,ends,arguments] [--list]
 """
@@ -18,7 +18,7 @@ import display
 import programs
 import session
 
-CASES = {}  # name: function(context) → None or what is wrong
+CASES = {}  # name: function(context) → None or an error
 
 
 def case(function):
@@ -48,7 +48,7 @@ def error_lines(run, words):
 
 
 def check_end(run, wanted_status, frames=None):
-    """Status, frames drawn, nothing left: what every case wants."""
+    """Checks the status, the drawn frames, and that nothing remains: common to all cases."""
     status = run.status()
     if status != wanted_status:
         return "status %s instead of %s; it said: %s" % (
@@ -67,7 +67,7 @@ def kill_all(pids):
 
 
 def kill_during_run(context, pattern, how_many, after_line, words):
-    """Kills processes of the session while the program draws; the program must not notice."""
+    """Kills processes of the session while the program draws; the program must not be affected."""
     frames = 60
     with context.drawing("long_run", frames) as run:
         if after_line and not run.wait_for_line(after_line):
@@ -103,7 +103,8 @@ def two_nodes_killed(context):
 
 
 def range_lost(context, composition):
-    """One of the nodes that share draws is killed: what it draws is missing, which is said, and nobody waits for long."""
+    """One of the nodes that divide draws is killed: its draws are missing, which one line reports, and no process waits
+    for long."""
     with context.drawing("long_scene", 10 ** 6, options=("--display", "none", "--db", "4", "--composition", composition), environment={"SCENE_SHARES": "1"}) as run:
         if not run.wait_for_line("frame 30 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -163,7 +164,7 @@ def all_nodes_killed(context):
 
 
 def killed_while_frames_are_counted(context, pattern, how_many):
-    """Nobody counts to --frames any more: the program ends all the same, and the run has failed."""
+    """The process that counts to --frames is killed: the program ends nevertheless, and the run has failed."""
     options = ("--tiles", "2x1", "--display", "none", "--restart-nodes", "0", "--frames", "1000000")
     with context.drawing("long_run", 10 ** 6, options=options) as run:
         if not run.wait_for_line("frame 20"):
@@ -187,7 +188,7 @@ def all_nodes_killed_while_frames_are_counted(context):
 
 @case
 def node_without_memory(context):
-    """One node finds no memory for a texture: the program is told as by its own driver, once."""
+    """One node has no memory for a texture: the program receives the error once, as from its own driver."""
     frames = 60
     with context.drawing("no_memory", frames) as run:
         if not run.wait_for_line("frame 3"):
@@ -195,7 +196,7 @@ def node_without_memory(context):
         node = run.wait_for_processes(NODE, 1)[0]
         with open("/proc/%d/statm" % node, encoding="ascii") as sizes:
             pages = int(sizes.read().split()[0])
-        limit = pages * resource.getpagesize() + (3 << 20) # less than one texture
+        limit = pages * resource.getpagesize() + (3 << 20)  # less than one texture
         resource.prlimit(node, resource.RLIMIT_AS, (limit, limit))
         wrong = check_end(run, 0, frames)
         if wrong is None and run.standard_output.count("no memory") != 1:
@@ -207,8 +208,8 @@ def node_without_memory(context):
 
 @case
 def node_driver_reset(context):
-    """One node's driver says that it was reset (a fault on purpose): a program that asked to be told is told, once, by the
-    status and by the error that GL has for it; another one by a line."""
+    """One node's driver reports a reset (a planted fault). A program with reset notification receives it once, through
+    the status and through GL's error for it; for another program one line is printed."""
     for arguments, told in (([], ["lost by status 0x8254, error 0x0507 behind it"]), (["--unasked"], [])):
         command = [context.program("context_lost"), "--frames", "60", "--size", "250x190"] + arguments
         with context.run(command, environment={"MURAL_PLANT": "reset"}) as run:
@@ -228,7 +229,7 @@ def node_driver_reset(context):
 
 @case
 def node_stopped_and_continued(context):
-    """A node that only sleeps for a while is not lost."""
+    """A node that is only stopped for a while is not lost."""
     with context.drawing("long_run", 60) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -244,7 +245,7 @@ def node_stopped_and_continued(context):
 
 @case
 def node_stopped_for_good(context):
-    """A node that hangs is given up, by one line; the others and the program go on."""
+    """A hanging node is dropped, with one line; the others and the program continue."""
     with context.drawing("long_run", 60) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -262,7 +263,7 @@ def program_killed(context):
     with context.drawing("long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        kill_all(run.processes(r"^\S*/long_run --frames"))  # not the launcher, which names it, too
+        kill_all(run.processes(r"^\S*/long_run --frames"))  # not the launcher, whose command line also has the name
         return check_end(run, 128 + signal.SIGKILL)
 
 
@@ -290,7 +291,7 @@ def launcher_terminated(context):
 
 @case
 def launcher_killed(context):
-    """kill -9 of `mural run` itself: the rest must find out by itself."""
+    """kill -9 of `mural run` itself: the other processes must notice it themselves."""
     return interrupted(context, signal.SIGKILL)
 
 
@@ -337,7 +338,7 @@ def ends_frames_reached(context):
 
 @case
 def ends_picture_that_nobody_sees(context):
-    # The wall's size needs a private display: the program's window is there.
+    # The size of the wall needs a private display, because the program's window is there.
     for options, told in ((("--size", "250x190", "--display", "app"), 1), (("--tiles", "1x1", "--display", "app"), 0)):
         with context.drawing("immediate", 3, options=options) as run:
             wrong = check_end(run, 0)
@@ -350,7 +351,7 @@ def ends_picture_that_nobody_sees(context):
 
 
 def complains(name, arguments, wanted_status, words, environment=None):
-    """One line on standard error that holds one of the words; nothing started."""
+    """Checks that standard error is one line with one of the words, and that nothing was started."""
     def check(context):
         command = [argument.replace("{programs}", os.path.join(context.build, "tests", "programs"))
                    for argument in arguments]

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Pictures in which rounding decides much, by every decomposition that is exact, against one node's: a table.
+"""Pictures in which rounding decides much, with every exact decomposition, compared with a native run: prints a table.
 
   hard_cases.py --build build/release
   hard_cases.py --build build/release --ways "2x2 tiles,3 ranges" --size 506x378
 
-A cell is how many pixels differ from the program's native picture, and by how much at most; 0 is what is promised. The arithmetic
-below the pictures has a table of its own: bin/numerics_test --gtest_brief=1.
+A cell is the number of pixels that differ from the program's native picture, and the largest difference; 0 is required.
+The arithmetic that the pictures depend on has a table of its own: bin/numerics_test --gtest_brief=1.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import display
 import pictures
 import programs
 
-# The frames of tests/programs/hard_cases.cpp, in its order.
+# Names of the frames of tests/programs/hard_cases.cpp, in its order.
 CASES = ["coplanar, GL_LESS, D24", "coplanar, GL_LEQUAL, D24", "near 10^-3, far 10^7", "near 10^-4, far 10^6", "far plane infinitely far", "far plane lost in floats",
          "reversed Z", "world at 10^6, matrices by the program", "eye 1 cm from a wall", "through the near plane, ground of 10^5", "lines and points of 1 pixel",
          "lines of 7, points of 9 pixels", "stippled lines and strips", "smooth lines", "mipmaps, anisotropy, derivatives", "gl_FragCoord, stipples, raster position",
@@ -29,7 +29,7 @@ CASES = ["coplanar, GL_LESS, D24", "coplanar, GL_LEQUAL, D24", "near 10^-3, far 
 WAYS = {"2x2 tiles": ["--tiles", "2x2"], "7x5 tiles on 4 nodes": ["--tiles", "7x5", "--local-nodes", "4"],
         "3x2 culled": ["--tiles", "3x2", "--tiling", "culled", "--local-nodes", "4"], "3 ranges": ["--db", "3"], "3 turns": ["--dplex", "3"],
         "2x1 tiles of 2 ranges": ["--tiles", "2x1", "--db", "2", "--local-nodes", "4"]}
-# The same by tiles of one pixel each: small, for a tile has its price.
+# The same with tiles of one pixel each. The picture is small, because each tile has a cost.
 SMALL_SIZE, SMALL_WAY = "37x23", {"tiles of 1 pixel": ["--tiles", "37x23", "--local-nodes", "3"]}
 PROGRAMS = {"hard_cases": "", "hard_cases_samples": ", 4 samples"}
 
@@ -59,7 +59,7 @@ def drawn_by_nodes(report):
 
 
 def draw(arguments, screen, folder, program, size, options=None):
-    """The frames of one run, in their order; None and what it said when they did not all come."""
+    """Returns the frames of one run, in order; None and the messages if any is missing."""
     report = folder + ".json"
     launcher = [] if options is None else [os.path.join(arguments.build, "bin", "mural"), "run", "--quiet", "--display", "none", "--report", report] + options + ["--"]
     run = programs.run_program(arguments.build, program, folder, screen, size, len(CASES), launcher, arguments.seconds)
@@ -78,7 +78,7 @@ def cell_of(wanted, got):
 
 
 def table_of(arguments, screen, scratch, program, title, size, ways):
-    """Prints it; how many cells are not what is promised."""
+    """Prints the table, and returns the number of cells that violate the requirement."""
     ways = {name: options for name, options in ways.items() if name in arguments.chosen}
     if not ways:
         return 0

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""What loaders do: GL libraries unloaded and loaded again, environments cleared, programs that execute others, hooks of other
-preloaded libraries, sandboxes with namespaces of their own. Each program says what it reads; natively it must be the same.
+"""Effects of loaders: GL libraries unloaded and loaded again, environments cleared, programs that execute others, hooks
+of other preloaded libraries, sandboxes with their own namespaces. Each program prints the pixels that it reads;
+natively they must be equal.
 
   loaders.py --build build/release [--cases reloaded,executed,hooked,sandboxed] [--list]
 """
@@ -18,18 +19,19 @@ import failures
 import processes
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 SOCKETS = ("/tmp", os.environ.get("XDG_RUNTIME_DIR") or "/tmp")
 
 
 def sockets_of(run):
-    """Folders of the run's session; other sessions may have theirs at the same time."""
+    """Returns the folders of the run's session; other sessions may have theirs at the same time."""
     return [path for place in set(SOCKETS) for path in glob.glob("%s/mural-%d-*" % (place, run.process.pid))]
 
 
 def compared(context, command, frames, options=(), said=(), through=None):
-    """None when the command says the same natively and through Mural (there it may be another: `through`), where `frames` come
-    to the wall, all pixels equal, and where standard error has one line for each of the words of `said`, and no other."""
+    """Compares the command's output natively and through Mural (where it may differ: `through`). Returns None if they
+    agree, `frames` are on the wall with equal pixels, and standard error has exactly one line for each of the words
+    of `said`."""
     with session.Session(command, context.display) as native:
         status = native.status()
         wanted = list(native.standard_output)
@@ -83,7 +85,7 @@ executed("system", 3, ["exec_rounds"])
 
 
 def hooked(name, program, frames, options=()):
-    """With an overlay in LD_PRELOAD, before Mural's library and behind it."""
+    """Runs with an overlay in LD_PRELOAD, before Mural's library and after it."""
     def check(context):
         overlay = os.path.join(context.build, "tests", "end_to_end", "overlay.so")
         command = [context.program(program[0])] + program[1:]
@@ -102,7 +104,7 @@ hooked("with_front", ["gl_reloaded", "both", "untouched"], 18, ["--front", "prel
 
 
 def sandboxed(name, unshare, script='exec "$@"'):
-    """In namespaces of its own; skipped where the kernel does not let this user have them."""
+    """Runs in namespaces of its own; skipped where the kernel does not permit them for this user."""
     def check(context):
         program = [context.program("gl_reloaded"), "both", "untouched"]
         words = ["unshare"] + unshare + ["sh", "-c", script, "sh"]
@@ -133,7 +135,7 @@ def sandboxed_socket_of_a_killed_launcher_goes(context):
 
 @failures.case
 def sandboxed_stale_sockets_go(context):
-    """What a session left that was killed as a whole is removed by the next; others' folders stay."""
+    """The next session removes the files of a session that was killed completely; other folders stay."""
     stale, foreign = "/tmp/mural-1-0123456789abcdef", "/tmp/mural-1-not-a-session"
     for folder in (stale, foreign):
         os.makedirs(folder, exist_ok=True)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Nothing grows while a program makes and deletes objects of every kind in each frame: neither the program, nor the
-head, nor a render node, beyond what the program grows by natively. Then a node forgets to delete textures
-(MURAL_PLANT=leak): that must be found. And large objects weigh natively what they weigh on a node, with what a node is
-besides; in the program they weigh no more than natively. tools/bench/memory shows the same over more frames.
+"""No process grows while a program creates and deletes objects of every kind in each frame: neither the program, nor
+the head, nor a render node, beyond the program's native growth. A planted leak of textures in a node
+(MURAL_PLANT=leak) must be detected. Large objects use the same memory natively and on a node, apart from the node's
+own memory. In the program they use no more than natively. tools/bench/memory shows the same over more frames.
 
   memory_growth.py --build build/release
 """
@@ -20,11 +20,11 @@ import programs  # noqa: E402
 from memory_watch import MemoryWatch  # noqa: E402
 
 MARKS = (150, 1650)
-LEAK_MARKS = (150, 550)  # enough to be seen: 25 MiB and more
-MOST_GROWTH_MIB = 4.0  # heaps settle; a texture forgotten in each frame makes 100, a context in every fourth 7.5
+LEAK_MARKS = (150, 550)  # frames between which a leak becomes visible: 25 MiB or more
+MOST_GROWTH_MIB = 4.0  # heaps settle; a texture leaked in each frame makes 100, a context in every fourth 7.5
 WEIGHT_MARKS = (4, 12)
-LEAST_WEIGHT_MIB = 200.0 # of large_objects natively: or the comparison says nothing
-MOST_NODE_SHARE = 1.3    # of the native run
+LEAST_WEIGHT_MIB = 200.0  # for large_objects natively; otherwise the comparison means nothing
+MOST_NODE_SHARE = 1.3  # relative to the native run
 
 
 def growth(seen, role, marks=MARKS):
@@ -37,7 +37,7 @@ def weight(seen, role):
 
 
 def heavy_objects(mural, environment, program, wall):
-    """How many of the comparisons are wrong. The ring is shared memory and not in these numbers."""
+    """Returns the number of failed comparisons. The ring is shared memory and not included."""
     native = weight(MemoryWatch(mural, environment).run(["--native"], program, WEIGHT_MARKS), "app")
     seen = MemoryWatch(mural, environment).run(wall, program, WEIGHT_MARKS)
     app, node = weight(seen, "app"), weight(seen, "node")
@@ -57,7 +57,7 @@ def main():
     build = os.path.abspath(arguments.build)
     mural = arguments.mural or os.path.join(build, "bin", "mural")
     program = [os.path.join(build, "tests", "programs", "object_churn"), "--frames", "100000", "--size", "96x96"]
-    # What is kept for nodes that come back grows with lists that call lists, up to --store: not what this is about.
+    # Without the rejoin log, which grows with lists that call lists, up to --store, and is not tested here.
     wall = ["--tiles", "2x1", "--display", "none", "--restart-nodes", "0"]
     wrong = 0
     with display.PrivateDisplay() as name:

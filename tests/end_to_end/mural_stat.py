@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""`mural stat`: what it shows of a session that runs, and which commands the report names for round trips.
+"""`mural stat`: its output for a running session, and the commands that the report names for round trips.
 
-  mural_stat.py --build build/release [--cases running,trips,none] [--list]
+mural_stat.py --build build/release [--cases running,trips,none] [--list]
 """
 
 import json
@@ -13,7 +13,7 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 PATIENCE_SECONDS = 60
 
 
@@ -22,7 +22,7 @@ def stat(context, *options):
 
 
 def own_session(context, run):
-    """What `mural stat --json` shows of this run; None when it is not there."""
+    """Returns the output of `mural stat --json` for this run; None if the run is missing."""
     shown = stat(context, "--json")
     if shown.returncode != 0:
         return None
@@ -31,7 +31,7 @@ def own_session(context, run):
 
 @failures.case
 def running_session(context):
-    """A program that draws, by two nodes."""
+    """Runs a program that draws on two nodes."""
     with context.run([context.program("long_run"), "--frames", "1000000", "--size", "250x190"], ["--tiles", "2x1", "--display", "none"]) as run:
         if not run.wait_for_line("frame 50"):
             return "no frames: %s" % " | ".join(run.standard_error[-3:])
@@ -52,7 +52,7 @@ def running_session(context):
 
 @failures.case
 def who_is_waited_for(context):
-    """A node that is stopped is named as the one that the program waits for."""
+    """A stopped node is named as the one for which the program waits."""
     with context.run([context.program("long_run"), "--frames", "1000000", "--size", "250x190"], ["--tiles", "3x1", "--display", "none"]) as run:
         if not run.wait_for_line("frame 50"):
             return "no frames: %s" % " | ".join(run.standard_error[-3:])
@@ -67,7 +67,7 @@ def who_is_waited_for(context):
 
 @failures.case
 def trips_are_named(context):
-    """In the report, by command, and the sum is right."""
+    """The report names round trips by command, with the correct sum."""
     with tempfile.TemporaryDirectory(prefix="mural-stat.") as folder:
         for program, wanted in (("pixels_read", "glReadPixels"), ("queries", "glGetQueryObjectuiv"), ("framebuffers", None), ("immediate", "")):
             report_file = os.path.join(folder, program + ".json")
@@ -90,7 +90,7 @@ def trips_are_named(context):
 
 @failures.case
 def none_of_this_user(context):
-    """A user without sessions is told so. Not asked as root: other tests' sessions may run now."""
+    """A user without sessions receives a message. Not tested as root, because sessions of other tests may run."""
     shown = stat(context)
     if shown.returncode == 0:
         return None if shown.stdout else "nothing shown, status 0"

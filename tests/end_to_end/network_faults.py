@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Reliable multicast (docs/architecture/transport.md) on a network that does what it may not (own_network.py): one sender, three receivers
-by `mural netperf`, which checks each byte that comes. Who survives has all bytes, once and in order.
+"""Reliable multicast (docs/architecture/transport.md) on a faulty network (own_network.py): one sender and three
+receivers with `mural netperf`, which checks each byte. Each surviving receiver has all bytes, once and in order.
 
   network_faults.py --build build/release [--cases duplicates,bursts] [--long]
-Exit status 77: this machine allows no namespaces, and why.
+Exit status 77, with a reason: this machine permits no namespaces.
 """
 
 import argparse
@@ -23,10 +23,10 @@ STRANGER = {"stranger": "192.0.2.24"}
 GROUP, GROUP_PORT, CONTROL_PORT = "239.255.77.90", 4277, 4278
 RATE_BYTES_PER_S = 10_000_000
 PATIENT = {"silent-ms": 20000, "stalled": "wait"}
-STEP_MS = 20  # of the timeline
+STEP_MS = 20  # step of the timeline
 MOST_GAP_S = 1.2
 DATAGRAMS = "udp dport %d" % GROUP_PORT
-PAYLOAD = {"counter": "@ih,96,16", "symbol": "@ih,800,16"}  # bits behind the UDP head: the seal's counter, the middle
+PAYLOAD = {"counter": "@ih,96,16", "symbol": "@ih,800,16"}  # bits after the UDP header: the cipher's counter, the middle
 ENDS_WITHIN_S = 40
 
 
@@ -71,7 +71,7 @@ class End:
 
 
 class Wrong(Exception):
-    """What does not hold."""
+    """A failed expectation."""
 
 
 class Lab:
@@ -102,14 +102,14 @@ class Lab:
                                   "--within", str(within_s), "--stream", self._stream(), *options])
 
     def begin(self, total_bytes, **parameters):
-        """(sender, receivers), in the middle of the stream."""
+        """Returns (sender, receivers) in the middle of the stream."""
         sender = self.send(total_bytes, **parameters)
         receivers = [self.receive(name) for name in RECEIVERS]
         self.wait_until_it_flows(sender)
         return sender, receivers
 
     def wait_until_it_flows(self, sender, seconds=10):
-        """The sender has put a tenth of a second's bytes on its card."""
+        """Waits until the sender has passed the bytes of a tenth of a second to its card."""
         wanted, until = self._sent_bytes() + RATE_BYTES_PER_S // 10, time.monotonic() + seconds
         while self._sent_bytes() < wanted:
             if time.monotonic() > until or sender.process.poll() is not None:
@@ -132,7 +132,8 @@ class Lab:
 
 
 def whole(receivers, total_bytes):
-    """Each has the stream from its first to its last byte; netperf itself looks at each of them."""
+    """Checks that each receiver has the stream from its first to its last byte; netperf itself checks the bytes
+    between."""
     told = [r.measured() for r in receivers]
     for r, m in zip(receivers, told):
         if r.status() != 0 or m.get("bytes") != total_bytes or m.get("firstByte") != 0:
@@ -160,7 +161,7 @@ def stream_of(measured):
 
 
 def counted(lab, name, table="faults"):
-    """How many packets the rules with a counter have seen."""
+    """Returns the number of packets counted by the rules."""
     rules = subprocess.run(["ip", "netns", "exec", name, "nft", "-j", "list", "table", "netdev", table], capture_output=True, text=True,
                            check=True, timeout=20).stdout
     return sum(part["counter"]["packets"] for item in json.loads(rules)["nftables"] for part in item.get("rule", {}).get("expr", [])
@@ -173,7 +174,7 @@ def need(good, what):
 
 
 def others_go_on(lab, seconds, lose):
-    """lose(receiver) takes the second of three away in the middle of a stream; the two others get all of it."""
+    """Removes the second of three receivers in mid-stream with lose(receiver); the other two must receive everything."""
     total = seconds * RATE_BYTES_PER_S
     sender, receivers = lab.begin(total)
     time.sleep(0.5)
@@ -190,7 +191,7 @@ def receiver_killed(lab):
 
 
 def receiver_cut_off(lab):
-    """No word of its end reaches anyone: it is removed for its silence."""
+    """A receiver without any contact, not even a connection reset, is evicted for its silence."""
     return others_go_on(lab, 4, lambda receiver: lab.network.cut("wall2"))
 
 
@@ -222,7 +223,7 @@ def sender_killed(lab):
 
 def comes_and_goes(lab):
     total = 3 * RATE_BYTES_PER_S
-    # Who comes hears what is written from then on: with a small window that is soon sent.
+    # A new member receives the stream from its join on: with a small window that data is sent soon.
     sender, receivers = lab.begin(total, window=512)
     guests = []
     for number in range(15):
@@ -257,7 +258,7 @@ def link_cut_and_healed(lab):
 
 
 def out_of_order(lab):
-    """Some take a longer way: 2 to 3 ms, that is some 17 datagrams."""
+    """Some datagrams take a longer path: 2 to 3 ms, about 17 datagrams."""
     total = RATE_BYTES_PER_S
     lab.network.detour("%s numgen random mod 100 < 5" % DATAGRAMS)
     try:
@@ -284,7 +285,7 @@ def duplicates(lab):
 
 
 def bit_errors(lab):
-    """The UDP checksum is mended by nft, so only the seal can tell."""
+    """nft corrects the UDP checksum, so only the cipher detects the errors."""
     total = RATE_BYTES_PER_S
     for name in RECEIVERS:
         lab.network.rules(name, "eth0", *("%s numgen random mod 100 < 2 counter %s set 0x5a5a" % (DATAGRAMS, field) for field in PAYLOAD.values()))
@@ -310,16 +311,17 @@ def stranger(lab):
         forger.kill()
         forger.wait()
     sent = dict(zip(said[::2], map(int, said[1::2])))
-    # It does what a busy machine lets it do: few are enough, as a check that is gone refuses none.
+    # The stranger's rate depends on the load of the machine. A small number is sufficient, because a missing check
+    # rejects none.
     need(sent.get("replayed", 0) > 100 and sent.get("changed", 0) > 100, "the stranger sent: %s" % sent)
-    # By kind: other refusals must not hide that one of the two checks is gone.
+    # Counted by kind: other rejections must not hide that one of the two checks is missing.
     refused = {kind: min(m[kind] for m in told) for kind in ("replayed", "forged")}
     need(min(refused.values()) > 20, "refused were only %s" % refused)
     return "%s; refused %s" % (sent, refused)
 
 
 def bursts(lab):
-    """Two lose all of 0.2 s, four times; not at the same time."""
+    """Two receivers lose everything for 0.2 s, four times, not at the same time."""
     total = 2 * RATE_BYTES_PER_S
     sender, receivers = lab.begin(total)
     make = "nft add table netdev bursts; nft add chain netdev bursts in { type filter hook ingress device eth0 priority 0\\; }; sleep %s; "
@@ -340,7 +342,7 @@ def bursts(lab):
 
 
 def billion(lab):
-    """A thousand million bytes at 5 % loss, each receiver's own."""
+    """Sends 10^9 bytes with 5 % loss, independent at each receiver."""
     total = 1_000_000_000
     for name in (*RECEIVERS,):
         lab.network.rules(name, "eth0", "%s numgen random mod 100 < 5 counter drop" % DATAGRAMS)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Render nodes on other machines (own_network.py): the stream goes to them by multicast, or by their own connections where
-that does not reach them, and every pixel is a native run's, whatever is lost on the way.
+"""Render nodes on other machines (own_network.py). The stream reaches them by multicast, or over their own connections
+where multicast fails. Every pixel equals a native run's, with any losses.
 
   network_nodes.py --build build/release [--cases good,loss]
-Exit status 77: this machine allows no namespaces, and why.
+Exit status 77, with a reason: this machine permits no namespaces.
 """
 
 import argparse
@@ -20,7 +20,7 @@ NODES = {"wall1": "10.79.0.2", "wall2": "10.79.0.3"}
 MULTICAST = "by reliable multicast"
 UNREACHED = "does not answer to multicast"
 REACHED_AGAIN = "multicast reaches it again"
-MOST_FRAMES = 20000  # of runs that end when enough was seen, after a few hundred
+MOST_FRAMES = 20000  # limit for runs that end after a few hundred frames, when enough was seen
 NO_MULTICAST = "ip daddr 239.0.0.0/8"
 
 
@@ -50,12 +50,12 @@ def drawn_by(run):
 
 
 def too_many(frames):
-    """Of a run that ends when enough was seen."""
+    """Returns an error if a run reached the frame limit instead of ending when enough was seen."""
     return None if frames < MOST_FRAMES else "it did not end before frame %d" % frames
 
 
 def finished(run, wants=(), wants_not=("was lost",)):
-    """Nothing, or what is wrong with a run that should now end well."""
+    """Returns None, or the error of a run that should now end well."""
     status = run.status()
     said = "\n".join(run.standard_error)
     if status != 0:
@@ -81,7 +81,7 @@ def loss(lab):
 
 
 def short_packets(lab):
-    """One node's card takes packets of 1500 bytes only: so do all datagrams."""
+    """One node's card accepts only packets of 1500 bytes: all datagrams are limited to it."""
     lab.network.at("wall2", "ip link set eth0 mtu 1500")
     with lab.run(30) as run:
         wrong = finished(run, [MULTICAST, "datagrams of 1472 bytes"], ["was lost", "TCP"])
@@ -120,7 +120,7 @@ def ceases_and_returns(lab):
 
 
 def killed(lab, *options):
-    """It comes back, first by its own connection, then into the group, and draws half of all frames there."""
+    """A killed node rejoins, first over its own connection, then in the group, and draws half of all frames there."""
     with lab.run(MOST_FRAMES, *options) as run:
         if not run.wait_for_line("frame 30"):
             return "it did not begin: %s" % run.standard_error
@@ -134,7 +134,7 @@ def killed(lab, *options):
         status = run.status()
         said = "\n".join(run.standard_error)
         drawn = drawn_by(run)
-        # Once only: a stream that goes on at a wrong place ends the node again.
+        # Exactly once: a stream that continues at a wrong position ends the node again.
         good = status == 0 and all(text in said for text in wanted) and said.count("was lost: ") == 1 and drawn_before < drawn / 2
         return too_many(drawn) if good else "status %s, %d frames, %d before it was back; it said:\n%s" % (status, drawn, drawn_before, said)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A program's window on another X display than DISPLAY: its pictures are there, and the window of that number on
-DISPLAY, which is another program's, stays as it is. All as natively.
+"""A program's window on an X display other than DISPLAY. Its pictures are there, and the window with the same number on
+DISPLAY, which belongs to another program, is unchanged, as in a native run.
 
   other_display.py --build build/release [--ways glx,both,egl,xcb,default]
 """
@@ -44,7 +44,7 @@ def main():
     arguments = parser.parse_args()
     failures = 0
     for way in arguments.ways.split(","):
-        # Fresh servers: both give the same numbers to their first programs.
+        # Fresh servers give the same numbers to their first programs.
         with display.PrivateDisplay("640x480x24") as first, display.PrivateDisplay("640x480x24") as second:
             wrong = check(os.path.abspath(arguments.build), way, (first, second))
         failures += wrong is not None

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Programs whose GL library GLVND does not lead to: caught by the preloaded front and exact, or told in
-one line that their calls go past Mural.
+"""Programs whose GL library GLVND does not use. Either the preloaded front captures them exactly, or one line reports
+that their calls pass around Mural.
 
   own_gl.py --build build/release [--cases caught,told] [--list]
 """
@@ -13,7 +13,7 @@ import tempfile
 import failures
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 4
 OPTIONS = ["--tiles", "2x2", "--display", "none", "--verify"]
 
@@ -23,7 +23,7 @@ def libraries(context, kind):
 
 
 def caught(case_name, program, kind, options=(), in_script=False, more=None):
-    """The program comes out exact, frame by frame, with the GL library of that folder."""
+    """Adds a case: the program with the GL library of that folder is exact, frame by frame."""
     def check(context):
         with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
             report_file = os.path.join(folder, "report.json")
@@ -59,13 +59,14 @@ caught("once_by_both_fronts", "immediate", "forwarding")
 caught("once_by_both_fronts_dlsym", "route_dlsym", "forwarding")
 caught("glvnd_with_front", "immediate", "none", ("--front", "preload"))
 caught("glvnd_with_front_dlsym", "route_dlsym", "none", ("--front", "preload"))
-# What the line of told_mixed_… advises.
+# The advice in the message of told_mixed_….
 caught("mixed_linked_when_glvnd_is_first", "mixed_linked", "none", more={"LD_PRELOAD": "libGL.so.1"})
 caught("in_script_when_asked", "immediate", "glx", ("--front", "preload"), in_script=True)
 
 
 def told(case_name, program, words, in_script=None, options=(), output=None, shell=None, status=0):
-    """The program, or a line of shell, runs as without Mural, and one line says why nothing of it is on the wall."""
+    """Adds a case: the program, or a line of shell, runs as without Mural, and one line says why the wall shows nothing
+    of it."""
     def check(context):
         command = ["sh", "-c", shell] if shell else [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
         if in_script is not None:
@@ -99,14 +100,15 @@ for name, library in (("mixed_glx_driver", "libGLX_mesa.so.0"), ("mixed_glx_osme
                       ("mixed_egl_osmesa", "libOSMesa.so.8"), ("mixed_linked", "libOSMesa.so.8")):
     told(name, name, ["part of the program's GL calls", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
 told("x11_only", "x11_window", ["loads no GL library"])
-# What fails early tells nothing by what it has not loaded yet.
+# For a program that fails early, missing libraries mean nothing.
 told("failed_early", None, ["sh ended before it made a GL context (exit status 3)", "mural doctor"], shell="exit 3", status=3)
 told("killed_early", None, ["sh ended before it made a GL context (signal 9 (Killed))"], shell="kill -9 $$", status=137)
 told("never_tried", None, ["sh never reached GL"], shell="exit 0")
 
 
 def silent(program):
-    """Whatever changes the pixels of its own window is Mural's doing: nothing is said, all frames are on the wall."""
+    """Adds a case: Mural itself changes the pixels of the program's window, so no line is printed, and all frames are
+    on the wall."""
     def check(context):
         with tempfile.TemporaryDirectory(prefix="mural-own-gl.") as folder:
             report_file = os.path.join(folder, "report.json")
@@ -131,7 +133,7 @@ for name in ("immediate", "display_lists", "x_fonts", "feedback_select", "pixels
 
 
 def says(context, program, expected):
-    """What is wrong when a program's one line through Mural is another."""
+    """Returns an error if the program's one line through Mural is not as expected."""
     with context.run([context.program(program)], ["--display", "none", "--quiet"]) as run:
         wrong = failures.check_end(run, 0)
         if wrong is None and run.standard_output != [expected]:
@@ -141,13 +143,13 @@ def says(context, program, expected):
 
 @failures.case
 def told_extensions_of_all_machines(context):
-    """No list of a window system's extensions names what only exists on one machine."""
+    """Checks that no list of a window system's extensions names one that exists only on one machine."""
     return says(context, "extension_strings", "0 of 5 lists name what is on one machine only")
 
 
 @failures.case
 def told_extensions_in_order(context):
-    """What is told of GL_EXTENSIONS stands in the driver's order: old programs see the first kilobytes of the text only."""
+    """Checks that GL_EXTENSIONS keeps the driver's order: old programs read only the first kilobytes of the text."""
     lists = []
     for run in (session.Session([context.program("gl_extensions")], context.display),
                 context.run([context.program("gl_extensions")], ["--display", "none", "--quiet"])):
@@ -168,13 +170,13 @@ def told_extensions_in_order(context):
 
 @failures.case
 def told_names_stay(context):
-    """Names of extensions can be read when EGL has ended, and unloaded the driver."""
+    """Checks that extension names are still readable after the end of EGL, which unloads the driver."""
     return says(context, "kept_names", "names, 0 gone")
 
 
 @failures.case
 def told_memory_of_other_apis(context):
-    """Memory objects have no memory, and their device is none that another API could have."""
+    """Checks that memory objects have no memory, and that their device matches none of another API."""
     expected = "object 1, one UUID 1, import 0x%04x, descriptor left 1, storage 0x%04x" % (0x0502, 0x0502)
     return says(context, "memory_import", expected)
 

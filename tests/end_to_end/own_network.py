@@ -1,8 +1,8 @@
-"""A network of a test's own: machines (network namespaces) on one bridge, within namespaces of users, mounts and networks that
-need no rights where the kernel lets users have them. Faults are made by rules at a machine's card.
+"""A private network for tests: machines (network namespaces) on one bridge, within user, mount and network namespaces.
+They need no privileges where the kernel permits user namespaces. Rules at a machine's card cause faults.
 
-  own_network.enter()                    starts the script again, inside; or says why not, and ends with 77
-  network = own_network.OwnNetwork(...)  may only be made there
+  own_network.enter()                    starts the script again, inside; or prints the reason, and ends with 77
+  network = own_network.OwnNetwork(...)  requires enter()
 """
 
 import os
@@ -12,12 +12,12 @@ import sys
 SKIP = 77
 INSIDE = "MURAL_TEST_OWN_NETWORK"
 
-# Rules of netdev see all that comes in, as a switch would.
+# Rules of the netdev family see all incoming packets, as a switch would.
 RULES = """
 add table netdev faults
 add chain netdev faults in { type filter hook ingress device "%s" priority 0; }
 """
-# Of a longer way: a packet of 1514 bytes takes 2.4 ms, and those behind it wait.
+# Rate of a slower path: a packet of 1514 bytes takes 2.4 ms, and the packets after it wait.
 DETOUR_RATE = "5mbit"
 
 
@@ -27,11 +27,12 @@ def skip(why):
 
 
 def enter(own_processes=False):
-    """own_processes: those that the script starts end with it, whatever happens; their numbers are then not those of /proc."""
+    """Starts the script inside the namespaces. own_processes: its child processes end with it in every case; their
+    numbers then differ from the numbers in /proc."""
     if os.environ.get(INSIDE):
         return
     reasons = []
-    # In a chroot nobody may have users of his own; root needs none.
+    # In a chroot the kernel permits no user namespaces; root needs none.
     for namespaces in ["-Urnm"] + (["-nm"] if os.getuid() == 0 else []):
         command = ["unshare", namespaces, "--kill-child", "--fork"] + (["--pid"] if own_processes else [])
         try:
@@ -53,8 +54,8 @@ def sh(script):
 
 
 class OwnNetwork:
-    """{name: address} of the other machines; this one has `here`. All have an eth0 in one /24. single_packets: what a sender
-    gives to its card as one leaves it as the packets of the wire, so faults are of each alone."""
+    """The network. {name: address} are the other machines; this one has `here`. All have an eth0 in one /24.
+    single_packets: a sender's packets leave its card one by one as on the wire, so each is lost on its own."""
 
     def __init__(self, here, others, mtu=1500, single_packets=False):
         self.others = others
@@ -63,7 +64,7 @@ class OwnNetwork:
             for at in (["ip"] + ["ip -n " + name for name in others]) if single_packets else []:
                 sh(at + " link set dev eth0 gso_max_segs 1")
             for name in others:
-                self.drop(name, "ip daddr 192.0.2.1")  # whether rules can be made at all
+                self.drop(name, "ip daddr 192.0.2.1")  # tests whether rules can be created
                 self.heal(name)
         except (RuntimeError, OSError, subprocess.SubprocessError) as e:
             skip("this machine makes no networks of namespaces: %s" % e)
@@ -84,7 +85,7 @@ class OwnNetwork:
         sh("ip netns exec %s sh -ec '%s'" % (name, script))
 
     def start(self, name, script):
-        """A shell's script there, beside this one."""
+        """Starts a shell script on that machine, in the background."""
         return subprocess.Popen(["ip", "netns", "exec", name, "sh", "-ec", script], stdin=subprocess.DEVNULL)
 
     def rules(self, name, card, *rules):
@@ -100,7 +101,7 @@ class OwnNetwork:
         self.at(name, "nft delete table netdev faults")
 
     def mend(self):
-        """No rules anywhere, all cables in."""
+        """Removes all rules and reconnects all cables."""
         for name in ("switch", *self.others):
             self.at(name, "nft flush ruleset")
         for name in self.others:
@@ -116,10 +117,10 @@ class OwnNetwork:
         sh("ip -n switch link set %s up" % self.port(name))
 
     def detour(self, what):
-        """What comes from this machine and is chosen comes to all others later than what was sent after it."""
+        """Delays the selected packets of this machine, so that they arrive after packets sent later."""
         sh("ip -n switch link add slow0 mtu 1500 type veth peer name slow1; ip -n switch link set slow0 up")
         sh("ip -n switch link set slow1 master bridge up; tc -n switch qdisc add dev slow0 root tbf rate %s burst 2kb limit 1mb" % DETOUR_RATE)
-        # Nobody lives there: nothing is learnt from it, nothing goes to it.
+        # An unused branch: no addresses are learnt from it, nothing is sent to it.
         sh("ip -n switch link set slow1 type bridge_slave learning off flood off mcast_flood off bcast_flood off")
         self.rules("switch", "port0", what + " counter fwd to \"slow0\"")
 
@@ -128,7 +129,7 @@ class OwnNetwork:
         sh("ip -n switch link del slow0")
 
     def launch_script(self, path):
-        """What `--launch` wants: HOST COMMAND..., with an address as HOST."""
+        """Returns the command for `--launch`: HOST COMMAND..., with an address as HOST."""
         with open(path, "w", encoding="utf-8") as file:
             file.write("#!/bin/sh\n# HOST COMMAND...: runs it there, as ssh would\ncase $1 in\n")
             for name, address in self.others.items():

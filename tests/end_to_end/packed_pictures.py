@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Pictures that nodes pack on their way to the head, and parts of them on their way to each other: what loses nothing shows every pixel as without
-Mural, what loses something is near; files of configurations say how, too.
+"""Pictures that nodes encode for the head, and parts that they encode for each other. Lossless codecs show every pixel
+as without Mural, lossy ones are close to it. Configuration files select codecs, too.
 
   packed_pictures.py --build build/release [--cases lossless,lossy] [--list]
 """
@@ -13,10 +13,10 @@ import failures
 import passes
 import pictures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 PROGRAMS = ("immediate", "fixed_lighting", "copied_scene", "es2_scene")
 TILES = ["--tiles", "2x2"]
-LEAST_DB = 20 # colours at half the resolution, at edges of triangles
+LEAST_DB = 20  # half the colour resolution, at edges of triangles
 
 
 @passes.case
@@ -44,7 +44,8 @@ def nearness(plain, got):
 
 @passes.case
 def however_they_leave_gl(context, notes):
-    """Read at once, or by buffers that another thread waits for, by all decompositions. (end_to_end.exact_readback has other kinds of windows.)"""
+    """Pictures read at once, or through buffers for which another thread waits, with all decompositions.
+    (end_to_end.exact_readback has other kinds of windows.)"""
     ways = (TILES + ["--codec", "bitplane"], ["--dplex", "2"], ["--db", "2"], ["--tile-queue", "32x32", "--local-nodes", "2"])
     wrong = None
     for program in ("immediate", "core_arrays", "es3_scene"):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Frames drawn in several passes: eyes, samples, pixels of a kernel, turns. Programs that can do natively what a pass
-does are the reference; the pictures of passes are put together once more, by this script.
+"""Frames drawn in several passes: eyes, samples, pixels of a kernel, phases. The reference is programs that do the work
+of a pass natively; this script combines the pictures of passes again.
 
   passes.py --build build/release [--cases stereo,subpixel] [--list]
 """
@@ -18,7 +18,7 @@ import failures
 import pictures
 import programs
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 4
 SIZE = (253, 191)
 WAYS = ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "tessellation")
@@ -26,7 +26,7 @@ EYE, FOCUS = 0.3, 6.0
 
 
 def case(function):
-    """The case's result, after what it has measured."""
+    """Registers a case, and prints its result after its measurements."""
     def measured(context):
         notes = []
         wrong = function(context, notes)
@@ -39,7 +39,7 @@ def case(function):
 
 
 def native(context, program, arguments=(), size=SIZE, frames=FRAMES):
-    """The pictures of all frames of the first window, without Mural."""
+    """Returns the pictures of all frames of the first window, without Mural."""
     with tempfile.TemporaryDirectory(prefix="mural-passes.") as folder:
         run = programs.run_program(context.build, program, os.path.join(folder, "native"), context.display,
                                    "%dx%d" % size, frames, arguments=arguments)
@@ -49,7 +49,7 @@ def native(context, program, arguments=(), size=SIZE, frames=FRAMES):
 
 
 def through(context, options, program, arguments=(), size=SIZE, frames=FRAMES):
-    """The pictures that the head has put together, in the order of --out."""
+    """Returns the pictures that the head has combined, in the order of --out."""
     with tempfile.TemporaryDirectory(prefix="mural-passes.") as folder:
         command = [context.program(program), "--frames", str(frames), "--size", "%dx%d" % size] + list(arguments)
         with context.run(command, ["--display", "none", "--out", folder] + list(options)) as run:
@@ -60,7 +60,7 @@ def through(context, options, program, arguments=(), size=SIZE, frames=FRAMES):
 
 
 def differing(expected, got):
-    """None, or how many pixels differ and where."""
+    """Returns None, or the number of differing pixels and the first position."""
     if len(expected) != len(got):
         return "%d pictures instead of %d" % (len(got), len(expected))
     difference = pictures.Difference()
@@ -71,7 +71,7 @@ def differing(expected, got):
 
 
 def first_wrong(results):
-    """The first of {what: None or what is wrong} that is wrong."""
+    """Returns the first error of {name: None or error}."""
     return next(("%s: %s" % item for item in results.items() if item[1] is not None), None)
 
 
@@ -83,13 +83,13 @@ def by_turns(context, program, turns, frames=9):
 
 @case
 def dplex_pictures_are_all_there(context, notes):
-    """Every frame, in its order, from programs that clear, that do not, and that copy their window."""
+    """Every frame arrives, in order, from programs that clear, that do not, and that copy their window."""
     return first_wrong({program: by_turns(context, program, 3) for program in ("immediate", "es2_scene", "core_arrays", "frames_kept", "pixels_read")})
 
 
 @case
 def dplex_shares_the_work(context, notes):
-    """A program that clears is drawn by all nodes in turn: no node owns more than its share."""
+    """All nodes draw a clearing program in turn, and no node more than its share."""
     frames = 30
     options = ["--display", "none", "--dplex", "3", "--explain"]
     with context.drawing("long_run", frames, options=options) as run:
@@ -101,7 +101,8 @@ def dplex_shares_the_work(context, notes):
 # ---- samples
 
 def jitter(sample, samples):
-    """Where the sample lies in its pixel: in column i of n, and in the row of its place among the radical inverses."""
+    """Returns the sample's position in its pixel: in column i of n, and in the row of its place among the radical
+    inverses."""
     def radical_inverse(i):
         return int(bin(i)[:1:-1], 2) / 2 ** (len(bin(i)) - 2)
     order = sorted(range(samples), key=radical_inverse)
@@ -109,7 +110,7 @@ def jitter(sample, samples):
 
 
 def largest_error(samples, got):
-    """Of a picture against the mean of others, not rounded."""
+    """Returns the largest error of a picture against the unrounded mean of others."""
     largest, n = 0, len(samples)
     for y, row in enumerate(got.rows):
         sums = map(sum, zip(*(picture.rows[y] for picture in samples)))
@@ -118,7 +119,7 @@ def largest_error(samples, got):
 
 
 def sampled(context, program, arguments, samples, size=SIZE):
-    """The largest error of Mural's pictures against the native mean."""
+    """Returns the largest error of Mural's pictures against the native mean."""
     moved = []
     for sample in range(samples):
         x, y = jitter(sample, samples)
@@ -152,7 +153,7 @@ def subpixel_is_the_mean(context, notes):
 
 @case
 def passes_copy_their_own_pixels(context, notes):
-    """Tiles of an eye or a sample that is copied: what others bring is another pass's."""
+    """Tiles of an eye or a sample that is copied: pixels from other nodes belong to another pass."""
     ways = {"samples": (["--subpixel", "2"], ["--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"]),
             "eyes": (["--stereo", "anaglyph"], ["--stereo", "anaglyph", "--tiles", "1x2", "--local-nodes", "4"])}
     return first_wrong({"%s, %s" % (program, name): differing(through(context, whole, program), through(context, tiles, program))
@@ -179,7 +180,8 @@ def pixel_polygons_are_near(context, notes):
 
 @case
 def pixel_fragments_know_their_place(context, notes):
-    """What is drawn by gl_FragCoord alone is as natively, derivatives and levels of textures nearly; by assembly, too."""
+    """Drawing that uses only gl_FragCoord equals the native one; derivatives and texture levels nearly. In assembly,
+    too."""
     wrong = None
     for program, kernel, least in (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf), ("textures_modern", "3x2", 60)):
         plain, got = native(context, program), through(context, ["--pixel", kernel], program)
@@ -199,7 +201,8 @@ def pixel_is_exact_where_pixels_are_copied(context, notes):
 
 @case
 def pixel_is_exact_where_levels_are_not_ours(context, notes):
-    """Fixed function and OpenGL ES choose levels of textures by the pixels that are drawn: all of them are, then, from the frame behind on."""
+    """The fixed function and OpenGL ES select texture levels by the drawn pixels. Such programs draw all pixels, from
+    the next frame on."""
     scenes = (("pass_scene", ["--draw", "textured"]), ("pass_scene_es2", ["--draw", "textured"]))
     wrong = first_wrong({"%s %s" % (program, kernel): differing(native(context, program, arguments), through(context, ["--pixel", kernel], program, arguments))
                          for program, arguments in scenes for kernel in ("2x1", "3x2")})
@@ -210,12 +213,12 @@ def pixel_is_exact_where_levels_are_not_ours(context, notes):
 # ---- eyes
 
 def overlay(picture):
-    """The quarter of the picture that no eye sees in perspective."""
+    """Returns the quarter of the picture without perspective, which is equal for all eyes."""
     return [row[:3 * (picture.width // 2 - 1)] for row in picture.rows[(picture.height + 1) // 2 + 1:]]
 
 
 def seen(context, program, arguments, eye):
-    """How near Mural's picture for an eye is to the native one, and whether its overlay is as it was."""
+    """Returns the distance of Mural's picture for an eye from the native one, and whether its overlay is unchanged."""
     base = ["--eye-base", str(2 * EYE), "--focus", str(FOCUS)]
     got = through(context, ["--stereo", "left" if eye < 0 else "right"] + base, program, arguments)
     wanted = native(context, program, list(arguments) + ["--eye", "%g,%g" % (eye, FOCUS)])
@@ -246,7 +249,8 @@ def stereo_eyes_fixed_and_es(context, notes):
 
 @case
 def scenes_drawn_elsewhere(context, notes):
-    """Into a framebuffer object, and then shown: what moves is the scene, not the quad or blit, nor its shadow map."""
+    """A scene in a framebuffer object that is then shown: the scene moves, but not the quad or blit, nor its shadow
+    map."""
     scenes = [("pass_scene", ["--draw", way]) for way in ("framebuffer", "blit")]
     return seen_ways(context, notes, scenes) or sampled_ways(context, notes, [scene + (2, SIZE) for scene in scenes])
 
@@ -303,7 +307,7 @@ server { config {
             wall { bottom_left [ 1 -.75 -1 ] bottom_right [ 1 -.75 1 ] top_left [ 1 .75 -1 ] } } }
     %(compounds)s } }
 """
-# The front wall by two nodes.
+# The front wall drawn by two nodes.
 SHARED_WALL = """
     node { pipe { window { viewport [ 0 0 %(w)d %(h)d ] channel { name "helper" } } } }
     compound {
@@ -314,7 +318,7 @@ SHARED_WALL = """
             compound { channel "helper" viewport [ .4 0 .6 1 ] outputframe { name "rest" } }
             inputframe { name "rest" } } }
 """
-# As the eye in ROOM sees them: distance, left and right edge, degrees to the left.
+# The walls as seen from the eye in ROOM: distance, left and right edge, degrees to the left.
 WALLS = ((1.2, -0.7, 1.3, 90), (1.3, -1.2, 0.8, 0), (0.8, -1.3, 0.7, -90))
 
 
@@ -328,20 +332,20 @@ def in_room(context, program, arguments, size, compounds=""):
 
 
 def room_ways(context, notes, scenes, size=(160, 120)):
-    """Every wall of a room against a native picture with that wall's frustum."""
+    """Compares every wall of a room with a native picture with that wall's frustum."""
     wrong = None
     for program, arguments in scenes:
         arguments = list(arguments) + ["--around"]
         got = in_room(context, program, arguments, size)
         worst, apart = math.inf, math.inf
-        # Over its right upper corner this one lays what a light sees.
+        # This scene draws the light's view over its upper right corner.
         has_shadow = "framebuffer" in arguments
         columns = size[0] * 3 // 4 if has_shadow else size[0]
         for wall, (distance, left, right, degrees) in enumerate(WALLS[:2] if has_shadow else WALLS):
             edges = (left / distance, right / distance, -0.65 / distance, 0.85 / distance, degrees, 0.2, -0.1, 0.3)
             wanted = native(context, program, arguments + ["--screen", ",".join("%.9g" % edge for edge in edges)], size)
             for number, (a, b) in enumerate(zip(wanted, got)):
-                # The overlay lies over the lower left quarter of the whole wall.
+                # The overlay covers the lower left quarter of the whole wall.
                 upper = slice(0, size[1] // 2)
                 start = 3 * wall * size[0]
                 part = pictures.Picture(columns, size[1] // 2, [row[start:start + 3 * columns] for row in b.rows[upper]])
@@ -358,12 +362,13 @@ def room_ways(context, notes, scenes, size=(160, 120)):
 
 @case
 def room_screens(context, notes):
-    """Walls at right angles, seen from beside the middle: each as a program with that wall's frustum draws it."""
+    """Walls at right angles, seen off-centre: each as a program with that wall's frustum draws it."""
     return room_ways(context, notes, [("pass_scene", ["--draw", way]) for way in ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "framebuffer")] + [("pass_scene_es2", [])])
 
 
 def shown_and_saved(context, command, options, titles, out, frames=400):
-    """What the wall's windows with these titles show, and all pictures that --out gets of the same run; or what is wrong."""
+    """Returns the contents of the wall windows with these titles, and all pictures of --out of the same run; or an
+    error."""
     if shutil.which("xwd") is None:
         raise SystemExit("xwd is not installed: apt-get install x11-apps")
     with context.run(command, options + ["--display", "windows", "--out", out, "--frames", str(frames)]) as run:
@@ -378,7 +383,7 @@ def shown_and_saved(context, command, options, titles, out, frames=400):
 
 @case
 def room_walls_have_windows(context, notes):
-    """--display windows: the node of each wall shows it in a window of its own; they lie side by side."""
+    """--display windows: the node of each wall shows it in its own window; the windows are side by side."""
     size, names = (160, 120), ("left", "front", "right")
     with tempfile.TemporaryDirectory(prefix="mural-room.") as folder:
         path, out = os.path.join(folder, "room.eqc"), os.path.join(folder, "out")
@@ -409,7 +414,7 @@ def subpixel_with_tiles(context, notes):
 
 
 def window_pixels(context, titles, seconds):
-    """The rows of the windows with these titles once all show something; None: not in time."""
+    """Returns the rows of the windows with these titles when all show a picture; None after a timeout."""
     environment = dict(os.environ, DISPLAY=context.display)
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
@@ -422,7 +427,7 @@ def window_pixels(context, titles, seconds):
 
 
 def xwd_rows(dump):
-    """RGB rows of a window dump with 32 bits per pixel."""
+    """Returns the RGB rows of a window dump with 32 bits per pixel."""
     header = struct.unpack(">25I", dump[:100])
     size, width, height, little, step, colours = header[0], header[4], header[5], header[7] == 0, header[12], header[19]
     start = size + 12 * colours
@@ -439,7 +444,7 @@ def xwd_rows(dump):
 
 @case
 def wall_windows_show_all_passes(context, notes):
-    """--display windows: each tile's window has its part of the picture that --out gets."""
+    """--display windows: each tile's window shows its part of the picture of --out."""
     with tempfile.TemporaryDirectory(prefix="mural-passes.") as out:
         options = ["--tiles", "2x1", "--local-nodes", "4", "--subpixel", "2", "--position", "40,30"]
         size, frames = (252, 190), 100000
@@ -455,7 +460,7 @@ def wall_windows_show_all_passes(context, notes):
 
 @case
 def node_of_a_pass_is_killed(context, notes):
-    """One line says so, all frames are there, the other passes go on."""
+    """One line reports the loss, all frames arrive, the other passes continue."""
     frames = 60
     with tempfile.TemporaryDirectory(prefix="mural-passes.") as out:
         with context.drawing("long_run", frames, options=["--display", "none", "--subpixel", "3", "--out", out]) as run:

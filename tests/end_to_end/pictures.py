@@ -1,4 +1,4 @@
-"""Pictures of frames: reading PPM and PNG, comparing pixel by pixel, writing what differs."""
+"""Pictures of frames: reads PPM and PNG, compares pixel by pixel, writes differences."""
 
 import math
 import operator
@@ -23,7 +23,7 @@ def read_ppm(path):
 
 
 def read_png(path):
-    """PNG of 8 bits per channel, RGB, as --out writes it."""
+    """Reads a PNG of 8 bits per channel, RGB, as --out writes it."""
     with open(path, "rb") as file:
         data = file.read()
     if data[:8] != b"\x89PNG\r\n\x1a\n":
@@ -48,7 +48,8 @@ def read_png(path):
 
 
 def _sums(first, second):
-    """Of bytes, modulo 256, all of a row by one addition: the highest bits are kept out of it, so that none is carried on."""
+    """Returns sums of bytes modulo 256, a whole row with one addition. The highest bits are added separately, so no
+    carry leaves a byte."""
     size = len(first)
     low = int.from_bytes(b"\x7f" * size, "little")
     a, b = int.from_bytes(first, "little"), int.from_bytes(second, "little")
@@ -56,7 +57,8 @@ def _sums(first, second):
 
 
 def _means(first, second):
-    """Of bytes, halves rounded up, all of a row at once: a | b is their mean, and half of where they differ."""
+    """Returns means of bytes, halves rounded up, a whole row at once: the mean is a | b minus half of the differing
+    bits."""
     size = len(first)
     low = int.from_bytes(b"\x7f" * size, "little")
     a, b = int.from_bytes(first, "little"), int.from_bytes(second, "little")
@@ -64,7 +66,7 @@ def _means(first, second):
 
 
 def halved(row, width):
-    """A row of so many pixels from one of twice as many: the means of two neighbours; one without a neighbour stays."""
+    """Returns a row of half the width: the means of two neighbours; a pixel without a neighbour is unchanged."""
     out = bytearray(3 * width)
     for k in range(3):
         channel = row[k:6 * width:3]
@@ -76,7 +78,7 @@ def halved(row, width):
 def _unfiltered(kind, row, above):
     if kind == 0:
         return bytes(row)
-    if kind == 2: # what --out writes
+    if kind == 2:  # format of --out
         return _sums(row, above)
     out = bytearray(row)
     for i in range(len(out)):
@@ -98,7 +100,7 @@ def _squares(first, second):
 
 
 def decibels(first, second):
-    """Peak signal to noise ratio of two pictures of one size."""
+    """Returns the peak signal-to-noise ratio of two pictures of one size."""
     squares = sum(_squares(x, y) for x, y in zip(first.rows, second.rows) if x != y)
     if squares == 0:
         return math.inf
@@ -106,7 +108,7 @@ def decibels(first, second):
 
 
 class Difference:
-    """Counts over any number of pictures; the place is that of the largest difference."""
+    """Counts over any number of pictures; the position is the largest difference's."""
 
     def __init__(self):
         self.pixels = 0
@@ -125,7 +127,7 @@ class Difference:
                 self._add_row(first.rows[y], second.rows[y], name, y)
 
     def _add_row(self, first, second, name, y):
-        """All of a row at once: a picture that is another altogether has tens of thousands of pixels to look at."""
+        """Compares a whole row at once: a completely different picture has tens of thousands of pixels."""
         self.pixels += sum(map(operator.ne, _pixels(first), _pixels(second)))
         apart = list(map(abs, map(operator.sub, first, second)))
         largest = max(apart)
@@ -141,7 +143,7 @@ def _pixels(row):
 
 
 def write_difference(path, first, second):
-    """White where the two pictures differ, a dimmed copy of the first elsewhere."""
+    """Writes white where the two pictures differ, a dimmed copy of the first elsewhere."""
     with open(path, "wb") as file:
         file.write(b"P6\n%d %d\n255\n" % (first.width, first.height))
         for a, b in zip(first.rows, second.rows):

@@ -1,13 +1,21 @@
 #!/usr/bin/env python3
-"""Shows that run_exact.py can fail: each fault that a render node, or the head, makes on purpose must be found.
+"""Proves that run_exact.py can fail: each planted fault of a render node, or of the head, must be detected.
 
-MURAL_PLANT=opcode changes one argument of one command, shift moves one tile by a pixel, drop leaves
-out one frame's draws; economy loses what has changed in commands that a node has had before, and the head with held
-all uploads that it has held back; of nodes that share draws, range loses the others' pictures, tie lets the
-earlier draw win where depths are equal, order takes later draws for earlier ones, and band loses a band that a node
-has put together; where areas move, early has one node take them before the clear that the others take them at, and uncleared all
-nodes without one; where shares of draws move, lateshare has one node take those that were announced before; edges cuts
-regions inside the bins of a software driver. Without a fault, the same comparison must be exact.
+Values of MURAL_PLANT:
+  opcode     changes one argument of one command
+  shift      moves one tile by a pixel
+  drop       skips one frame's draws
+  economy    loses the changed parts of commands that a node has received before
+  held       the head loses all uploads that it has deferred
+  range      loses the other nodes' pictures (nodes that divide draws)
+  tie        the earlier draw wins at equal depths
+  order      exchanges earlier and later draws
+  band       loses a band that a node has combined
+  early      one node adopts moving areas at an earlier clear than the others
+  uncleared  all nodes adopt moving areas without a clear
+  lateshare  one node uses the previously announced shares of draws
+  edges      cuts regions inside the bins of a software driver
+Without a fault the same comparison must be exact.
 """
 
 import argparse
@@ -23,7 +31,7 @@ HELD = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--displa
 CHUNKS = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --chunk-queue 40", "--frames", "12"]
 EDGES = ["--programs", "blended_rectangles", "--layouts", "3x2", "--frames", "4"]
 AREAS = ["--programs", "clears_in_turns,es2_scene", "--tile-queue", "16x16", "--layouts", "2,3", "--frames", "12"]
-# What is run, and the faults that it must find.
+# Settings of the runs, and the faults that they must detect.
 SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (ECONOMY, ("economy",)), (HELD, ("held",)), (EDGES, ("edges",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
 
 
@@ -35,7 +43,7 @@ def compare(arguments, setting, fault):
                "--size", "250x190", "--seconds", "60"] + setting
     if fault:
         environment["MURAL_PLANT"] = fault
-        command.append("--until-differs")  # one program that shows it is enough
+        command.append("--until-differs")  # one program that reveals it is sufficient
     if arguments.mural:
         command += ["--mural", arguments.mural]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -44,7 +52,7 @@ def compare(arguments, setting, fault):
 
 
 def found_in(output):
-    """The program in whose pictures the fault was seen: not by a crash, but by wrong pixels."""
+    """Returns the program whose pictures reveal the fault: with wrong pixels, not with a crash."""
     return [line.split()[0] for line in output.splitlines() if "pixels differ in" in line]
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Programs about processes (tests/programs/processes) tell natively and through Mural the same: what they read, how they and
-their children end; --verify finds no pixel that differs, and the wall has had the frames.
+"""Programs about processes (tests/programs/processes) print the same natively and through Mural: the pixels that they
+read, and the ends of their children. --verify finds no differing pixel, and the frames are on the wall.
 
   process_ways.py --build build/release [--cases calls,closed] [--repeat 20] [--list]
 """
@@ -15,7 +15,7 @@ import tempfile
 import display
 import programs
 
-# name: the least number of frames on the wall, over all processes
+# name: minimum number of frames on the wall, over all processes
 FORKS = {"calls": 4, "raw_calls": 4, "together": 20, "raw_together": 20, "egl_together": 0, "before": 10, "after": 3,
          "executed": 3, "threads": 17, "daemonised": 6, "inherited": 2}
 LIMITS = {"interrupted": 21, "interrupted_restart": 21, "closed": 24, "replaced": 24, "daemon_files": 4,
@@ -23,7 +23,7 @@ LIMITS = {"interrupted": 21, "interrupted_restart": 21, "closed": 24, "replaced"
 CASES = dict([(name, ("forked_children", frames)) for name, frames in FORKS.items()] +
              [(name, ("hard_limits", frames)) for name, frames in LIMITS.items()])
 SETTINGS = {"inherited": {"LP_NUM_THREADS": "0"}}
-# Timing decides whether they find anything.
+# Repetitions, because timing decides whether these detect an error.
 RUNS = {"interrupted": 3, "interrupted_restart": 2}
 SAID = {"inherited": "a forked child draws with a context of its parent"}
 
@@ -56,7 +56,7 @@ def differs(build, name, native, report):
         facts = json.load(file)
     if facts.get("differingPixels", 0):
         return "%d pixels differ" % facts["differingPixels"]
-    if facts.get("verifiedFrames", 0) < frames:  # of all processes; "frames" are the main window's
+    if facts.get("verifiedFrames", 0) < frames:  # over all processes; "frames" counts only the main window's
         return "%d frames on the wall instead of %d: %s" % (facts.get("verifiedFrames", 0), frames, said[-400:])
     if SAID.get(name, "") not in said:
         return "it did not say \"%s\"" % SAID[name]

@@ -1,11 +1,11 @@
-"""Processes of a run under test, known by a word that all of them have in their environment."""
+"""Processes of a run under test, identified by a word in their environment."""
 
 import os
 import time
 
 
 def processes_with(word):
-    """{pid: command line} of the live processes in whose environment the word stands."""
+    """Returns {pid: command line} of the live processes with the word in their environment."""
     found = {}
     for pid in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -14,14 +14,14 @@ def processes_with(word):
                     continue
                 words = command.read().split(b"\0")
         except OSError:
-            continue  # ended meanwhile, or another user's
+            continue  # has ended meanwhile, or belongs to another user
         if words != [b""]:  # a process that has ended has no command line
             found[int(pid)] = b" ".join(words).decode(errors="replace").strip()
     return found
 
 
 def until(condition, seconds):
-    """False: it did not come true in time."""
+    """Waits for a condition. Returns False after the timeout."""
     deadline = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > deadline:

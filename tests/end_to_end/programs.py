@@ -1,4 +1,4 @@
-"""The test programs: names, groups, what is special about each, and how to run one and keep its frames."""
+"""The test programs: names, groups, special cases, and functions that run one and keep its frames."""
 
 import os
 import select
@@ -6,7 +6,7 @@ import shlex
 import signal
 import subprocess
 
-# Every program must be in one group; CTest runs one group per test.
+# Groups of programs. Every program belongs to exactly one; CTest runs one group per test.
 GROUPS = {
     "vertices": ["immediate", "generic_attributes", "display_lists", "client_arrays", "draw_calls",
                  "core_arrays", "buffers", "persistent_mapping", "persistent_frames", "pinned_memory",
@@ -21,9 +21,9 @@ GROUPS = {
                 "fragment_counters", "fragment_sums", "frag_coord", "fragment_places", "many_triangles", "no_depth", "queries", "queries_later",
                 "direct_state_access", "program_binaries", "shader_includes",
                 "draw_errors_compat", "draw_errors_core", "draw_errors_es3"],
-    # Of what few drivers have: elsewhere they say so and are skipped.
+    # Programs whose extensions few drivers have: elsewhere they report it and are skipped.
     "bindless": ["bindless_textures", "sparse_textures", "sparse_buffers"],
-    # No test runs it: the one driver here that has images without a binding ends in it at times (docs/measurements/exactness.md).
+    # Run by no test: the only driver here with bindless images sometimes crashes in it (docs/measurements/exactness.md).
     "bindless_images": ["bindless_images"],
     "windows": ["es1_scene", "es1_draw_texture", "es2_scene", "es3_scene", "es_pipelines", "es_feedback_limit", "egl_desktop",
                 "egl_offscreen", "egl_buffer_names", "egl_blended_rectangles", "egl_images", "egl_pixmaps",
@@ -37,14 +37,14 @@ GROUPS = {
                   "exit_abort", "exit_segv", "exit_term", "fork_child", "fork_exec"],
 }
 
-# The status of a program whose driver lacks what it is about (tests/programs/support/needs.hpp).
+# Exit status of a program whose driver lacks its extension (tests/programs/support/needs.hpp).
 SKIPPED = 77
 
-# The status that a program ends with when it is not 0, as subprocess tells it.
+# Exit status of programs that do not end with 0, in the form of subprocess.
 STATUS = {"exit_three": 3, "exit_abort": -signal.SIGABRT, "exit_segv": -signal.SIGSEGV,
           "exit_term": -signal.SIGTERM}
 
-# Frames that are shown by glFlush and not by a swap.
+# Programs that show frames with glFlush instead of a swap.
 FLUSHING = {"single_buffered"}
 
 
@@ -53,7 +53,7 @@ def all_names():
 
 
 def choose(text):
-    """Names from a list of programs and groups, separated by commas; None: all."""
+    """Returns the names of a list of programs and groups, separated by commas; None: all."""
     if not text:
         return all_names()
     chosen = []
@@ -66,11 +66,11 @@ def choose(text):
 
 
 def clean_environment(display):
-    """Only what a program needs, so that results don't depend on the caller's settings."""
+    """Returns only the variables that a program needs, so that results do not depend on the caller's settings."""
     keep = ("PATH", "HOME", "TMPDIR", "XDG_RUNTIME_DIR", "LANG", "LC_ALL", "MURAL_PLANT",
             "MURAL_LOG", "ASAN_OPTIONS", "UBSAN_OPTIONS", "LD_LIBRARY_PATH", "LIBGL_ALWAYS_SOFTWARE",
             "EGL_PLATFORM", "LP_NUM_THREADS", "CLEARS_FRONT",
-            # which driver: another Mesa than the system's
+            # selection of the driver: a Mesa other than the system's
             "GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "LIBGL_DRIVERS_PATH", "GBM_BACKENDS_PATH",
             "VK_ICD_FILENAMES", "VK_DRIVER_FILES", "__EGL_VENDOR_LIBRARY_DIRS")
     environment = {key: os.environ[key] for key in keep if key in os.environ}
@@ -79,16 +79,16 @@ def clean_environment(display):
 
 
 class Run:
-    """What one run of a program gave."""
+    """The results of one run of a program."""
 
     def __init__(self, status, output, folder):
         self.status = status  # None: it did not end in time
         self.output = output
         self.folder = folder
-        self.captured = None  # frames through the nodes, where that is known
+        self.captured = None  # frames drawn by the nodes; None: unknown
 
     def frames(self):
-        """{"w0/f0003.ppm": path} of all pictures."""
+        """Returns {"w0/f0003.ppm": path} of all pictures."""
         found = {}
         for drawable in sorted(os.listdir(self.folder)):
             inside = os.path.join(self.folder, drawable)
@@ -99,7 +99,7 @@ class Run:
 
 
 def stop_group(process):
-    """Ends all that the run has left in its session."""
+    """Ends all processes that the run has left in its session."""
     try:
         os.killpg(process.pid, signal.SIGKILL)
     except ProcessLookupError:
@@ -107,7 +107,8 @@ def stop_group(process):
 
 
 def ended_within(process, seconds):
-    """The status; None: not in time. Popen.wait with a deadline looks again only each 50 ms, a third of what many runs take."""
+    """Returns the status, or None after the timeout. Popen.wait with a timeout polls only every 50 ms, a third of many
+    runs' duration."""
     pidfd = os.pidfd_open(process.pid)
     try:
         watch = select.poll()
@@ -118,16 +119,16 @@ def ended_within(process, seconds):
 
 
 def command_of(build, name, folder, size, frames, library="grab.so", arguments=()):
-    """What a shell sets for the program so that its frames are kept, and the words of its command."""
+    """Returns the shell settings that keep the program's frames, and the words of its command."""
     settings = "GRAB_OUT=%s " % shlex.quote(folder) + ("GRAB_FLUSH=1 " if name in FLUSHING else "")
-    # Our library is in front of whatever the launcher preloads.
+    # The test's library comes before any library that the launcher preloads.
     settings += 'LD_PRELOAD="%s${LD_PRELOAD:+ $LD_PRELOAD}"' % os.path.join(build, "tests", "end_to_end", library)
     return settings, [os.path.join(build, "tests", "programs", name), "--size", size, "--frames", str(frames)] + list(arguments)
 
 
 def run_program(build, name, folder, display, size, frames, launcher=(), seconds=120,
                 more_environment=None, library="grab.so", arguments=()):
-    """Runs a program, natively or behind `launcher`, with the grabbing library in front."""
+    """Runs a program, natively or with `launcher`, with the grabbing library preloaded."""
     os.makedirs(folder)
     environment = clean_environment(display)
     environment.update(more_environment or {})
@@ -145,12 +146,12 @@ def run_program(build, name, folder, display, size, frames, launcher=(), seconds
 
 
 def same_status(native, through):
-    """A launcher tells death by a signal as 128 + its number, as shells do."""
+    """Compares statuses. A launcher reports death by a signal as 128 + its number, as shells do."""
     if native is not None and native < 0:
         return through in (native, 128 - native)
     return native == through
 
-# Programs whose pictures are not yet the native ones, and why (docs/measurements/exactness.md has the proofs).
+# Programs whose pictures still differ from the native ones, with the reason (docs/measurements/exactness.md has the proofs).
 KNOWN_DIFFERENCES = {
     "egl_pbuffer_textures": "Mesa's software driver leaves textures of pbuffers empty; the nodes show the pictures",
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Windows of the wall with a buffer for each eye. No driver here has such windows: a library stands in for one (stereo_double.c), and writes down what both
-buffers hold at each swap.
+"""Windows of the wall with a buffer for each eye. No driver here has such windows: a library replaces it
+(stereo_double.c), and records the contents of both buffers at each swap.
 
   quad_windows.py --build build/release [--cases both,tiles] [--list]
 """
@@ -13,10 +13,10 @@ import failures
 import passes
 import pictures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 EYES = ["--eye-base", str(2 * passes.EYE), "--focus", str(passes.FOCUS)]
 DRAW = ["--draw", "fixed"]
-# Both eyes by one window; the sizes are those of the pictures.
+# Both eyes in one window; the sizes are the pictures' sizes.
 FILE = """#Equalizer 1.2 ascii
 server { config {
     appNode { pipe { window { viewport [ 0 0 %d %d ] attributes { hint_stereo ON } channel { name "screen" } } } }
@@ -27,7 +27,8 @@ server { config {
 
 
 def shown_in_quad(context, options, size=passes.SIZE, double=True, frames=passes.FRAMES):
-    """What the windows' buffers held, [(left, right), …] of each window, the pictures of --out, and what was said."""
+    """Returns the contents of the windows' buffers, [(left, right), …] of each window, the pictures of --out, and the
+    messages."""
     with tempfile.TemporaryDirectory(prefix="mural-quad.") as folder:
         out, buffers = os.path.join(folder, "out"), os.path.join(folder, "buffers")
         os.mkdir(buffers)
@@ -48,7 +49,8 @@ def shown_in_quad(context, options, size=passes.SIZE, double=True, frames=passes
 
 
 def frames_of(buffers):
-    """Without the black ones before the first, and without those that were shown again: a window that was covered is drawn once more."""
+    """Returns the frames without black ones before the first, and without repeated ones: a window that was covered is
+    drawn again."""
     shown = []
     for pair in buffers:
         if any(any(row) for picture in pair for row in picture.rows) and (not shown or not all(a.rows == b.rows for a, b in zip(shown[-1], pair))):
@@ -57,7 +59,7 @@ def frames_of(buffers):
 
 
 def wrong_eyes(wanted, buffers):
-    """None, or which of the windows' buffers differ from the eyes' pictures."""
+    """Returns None, or the window's buffers that differ from the eyes' pictures."""
     shown = frames_of(buffers)
     return passes.first_wrong({name: passes.differing(eye, [pair[i] for pair in shown]) for i, (name, eye) in enumerate(zip(("left", "right"), wanted))})
 
@@ -72,7 +74,7 @@ def cut(picture, x, width):
 
 @passes.case
 def both_eyes_are_whole(context, notes):
-    """As natively drawn with each eye's frustum; what is saved has them side by side."""
+    """Both buffers equal native drawing with each eye's frustum; saved pictures have the eyes side by side."""
     eyes = native_eyes(context)
     windows, saved, said = shown_in_quad(context, ["--stereo", "quad"] + EYES)
     if len(windows) != 1:
@@ -109,7 +111,7 @@ def files_open_them(context, notes):
 
 @passes.case
 def without_such_windows_they_lie_side_by_side(context, notes):
-    """One line says so, and why."""
+    """Without such windows the eyes are side by side, and one line gives the reason."""
     eyes = native_eyes(context)
     windows, saved, said = shown_in_quad(context, ["--stereo", "quad"] + EYES, double=False)
     lines = [line for line in said if "side by side" in line]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Recordings of programs' GL streams: what is replayed, on any nodes, shows what the program has shown natively.
+"""Traces of programs' GL streams: a replay, on any nodes, shows the program's native pictures.
 
-  recordings.py --build build/release [--cases replay,trim] [--list]
+recordings.py --build build/release [--cases replay,trim] [--list]
 """
 
 import os
@@ -18,14 +18,14 @@ import pictures
 import programs
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 6
 SIZE = (253, 191)
 RECORD = ("--display", "none", "--tiles", "1x1")
 
 
 class Workplace:
-    """A folder with recordings and pictures, and the commands that make them."""
+    """A folder with traces and pictures, and the commands that make them."""
 
     def __init__(self, context, folder):
         self.context = context
@@ -38,7 +38,7 @@ class Workplace:
         return session.Session([self.context.mural] + list(arguments), self.context.display, environment)
 
     def record(self, program, options=RECORD, arguments=(), frames=FRAMES, status=0):
-        """The pictures of --out of the run that is recorded, into a.mural."""
+        """Records a run into a.mural, and returns its pictures of --out."""
         out = self.path("live")
         shutil.rmtree(out, ignore_errors=True)
         command = [self.context.program(program), "--size", "%dx%d" % SIZE, "--frames", str(frames)] + list(arguments)
@@ -54,7 +54,7 @@ class Workplace:
         return shown(out)
 
     def trim(self, frames, file="a.mural", into="b.mural"):
-        """What is said about it."""
+        """Trims a trace, and returns the messages."""
         done = self.mural("trim", self.path(file), frames, "-o", self.path(into))
         if done.returncode != 0:
             raise AssertionError("trim fails: " + done.stderr)
@@ -65,21 +65,21 @@ class Workplace:
                               env=programs.clean_environment(self.context.display), check=False)
 
     def refused(self, words, *arguments, status=2):
-        """None when all that is said is one line with these words, and nothing is printed."""
+        """Returns None if the only message is one line with these words, and standard output is empty."""
         done = self.mural(*arguments)
         if done.returncode == status and done.stderr.count("\n") == 1 and words in done.stderr and not done.stdout:
             return None
         return "mural %s: status %d, %d lines, %s" % (" ".join(arguments), done.returncode, done.stdout.count("\n"), done.stderr.strip())
 
     def change(self, into, change):
-        """Another file, of the bytes of a.mural."""
+        """Writes another file from the bytes of a.mural."""
         with open(self.path("a.mural"), "rb") as file:
             whole = bytearray(file.read())
         with open(self.path(into), "wb") as file:
             file.write(change(whole))
 
     def native(self, program, arguments=(), frames=FRAMES):
-        """The pictures of all frames, by window."""
+        """Returns the pictures of all frames, by window."""
         shutil.rmtree(self.path("native"), ignore_errors=True)
         run = programs.run_program(self.context.build, program, self.path("native"), self.context.display, "%dx%d" % SIZE, frames, arguments=arguments)
         if run.status != 0:
@@ -107,7 +107,7 @@ def shown(folder):
 
 
 def differing(expected, got):
-    """None, or how many pixels differ and where."""
+    """Returns None, or the number of differing pixels and the first position."""
     if not expected or len(expected) != len(got):
         return "%d pictures instead of %d" % (len(got), len(expected))
     difference = pictures.Difference()
@@ -121,7 +121,7 @@ def alike(expected, got):
 
 
 def unlike_all(windows, got):
-    """None when the pictures are those of one of the windows; how they differ from each is only counted when they are of none."""
+    """Returns None if the pictures are one of the windows'. Differences are counted only if they match none."""
     if any(alike(expected, got) for expected in windows.values()):
         return None
     wrong = {name: differing(expected, got) for name, expected in windows.items()}
@@ -140,7 +140,7 @@ def case(function):
     return function
 
 
-# ---- what is replayed is what was drawn
+# ---- a replay shows the recorded pictures
 
 def replayed(place, program, layouts):
     windows = place.native(program)
@@ -161,13 +161,13 @@ def all_replayed(place, names, layouts=(("--tiles", "1x1"), ("--tiles", "2x2")))
 
 @case
 def replay_vertices(place):
-    """Calls of all kinds: at once, in lists, from the program's memory, from buffers and mappings; large values."""
+    """Calls of all kinds: immediate, in lists, from the program's memory, from buffers and mappings; large values."""
     return all_replayed(place, ("immediate", "display_lists", "client_arrays", "core_arrays", "persistent_frames", "large_objects"))
 
 
 @case
 def replay_reads(place):
-    """Questions whose answers nobody reads, and copies of windows: recorded with one node, they go with four."""
+    """Requests whose replies are not read, and copies of windows: recorded with one node, replayed with four."""
     return all_replayed(place, ("pixels_read", "reads_owed", "queries_later", "accum_buffer", "frames_kept", "front_and_back"))
 
 
@@ -178,13 +178,13 @@ def replay_threads(place):
 
 @case
 def replay_shared_work(place):
-    """The same file with turns and with ranges of draws."""
+    """The same file with time-multiplexing and with ranges of draws."""
     return all_replayed(place, ("immediate", "fixed_lighting"), (("--dplex", "2"), ("--db", "2")))
 
 
 @case
 def replay_windows(place):
-    """Windows that come and go, and several processes: the wall shows what it showed."""
+    """Windows that are created and destroyed, and several processes: the wall shows the same as before."""
     for program in ("several_windows", "window_switch", "window_churn", "fork_child", "fork_exec"):
         live = place.record(program)
         for tiles in ("1x1", "2x2"):
@@ -196,7 +196,7 @@ def replay_windows(place):
 
 @case
 def replay_on_a_display(place):
-    """Windows of its own for the program's."""
+    """The replay opens its own windows for the program's."""
     live = place.record("immediate")
     out = place.path("replayed")
     with place.session(["replay", place.path("a.mural"), "--display", "app", "--tiles", "2x1", "--out", out]) as run:
@@ -206,7 +206,7 @@ def replay_on_a_display(place):
 
 @case
 def replay_finds_a_planted_fault(place):
-    """A node that draws something else than was recorded is seen."""
+    """A node that draws differently from the trace is detected."""
     live = place.record("immediate")
     for fault in ("opcode", "drop"):
         if differing(live, place.replay(["--tiles", "2x2"], environment={"MURAL_PLANT": fault})) is None:
@@ -216,7 +216,7 @@ def replay_finds_a_planted_fault(place):
 
 @case
 def replay_again_and_again(place):
-    """--loop goes on until --frames; --pace takes as long as it took."""
+    """--loop continues until --frames; --pace takes the recorded time."""
     live = place.record("immediate")
     return differing(live + live + live[:2], place.replay(["--loop", "--pace", "--frames", str(2 * FRAMES + 2)]))
 
@@ -235,11 +235,11 @@ def killed_head_leaves_what_is_whole(place):
     with place.context.drawing("long_run", 20000, options=list(RECORD) + ["--record", place.path("a.mural")]) as run:
         if not run.wait_for_line("frame 20"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        time.sleep(2.5) # what is older than about a second is in the file
+        time.sleep(2.5)  # data older than about a second is in the file
         failures.kill_all(run.wait_for_processes(failures.HEAD))
         if not run.wait_for_line("head"):
             return "nobody said that the head has ended"
-        run.process.send_signal(signal.SIGTERM) # the program would go on alone
+        run.process.send_signal(signal.SIGTERM)  # the program would continue without nodes
         run.status()
     done = place.mural("dump", place.path("a.mural"), "--summary")
     if done.returncode == 2 and "is not a recording" in done.stderr:
@@ -260,7 +260,7 @@ def full_disk_ends_the_recording_only(place):
 
 @case
 def arguments_that_are_wrong(place):
-    """Each is one line with what to do, and status 2."""
+    """Each causes one line with the next step, and status 2."""
     with open(place.path("text"), "w", encoding="utf-8") as file:
         file.write("no recording\n" * 10)
     place.record("immediate", frames=2)
@@ -279,8 +279,8 @@ def arguments_that_are_wrong(place):
 
 @case
 def arguments_of_a_damaged_file(place):
-    """What is before the damage is named, with what saves it; and it does."""
-    live = place.record("fixed_lighting", frames=20) # some blocks
+    """The message names the valid part before the damage and a command that saves it; the command works."""
+    live = place.record("fixed_lighting", frames=20)  # several blocks
     place.change("damaged.mural", lambda whole: flipped(whole, len(whole) * 2 // 3))
     file = place.path("damaged.mural")
     done = place.mural("replay", file)
@@ -296,7 +296,7 @@ def arguments_of_a_damaged_file(place):
 
 @case
 def arguments_of_a_file_without_a_frame(place):
-    """One that is cut before its first frame is not one whose program showed no picture."""
+    """A file truncated before its first frame differs from a trace of a program without pictures."""
     place.record("immediate", frames=2)
     place.change("cut.mural", lambda whole: whole[:len(whole) // 2])
     cut = place.path("cut.mural")
@@ -308,7 +308,7 @@ def arguments_of_a_file_without_a_frame(place):
 # ---- trim
 
 def trimmed(place, program, frames=(3, 5), options=("--tiles", "2x2")):
-    """None when a part shows what the whole shows there; and what was said of it."""
+    """Returns None if a part shows the same as the whole file there, and the messages about it."""
     live = place.record(program)
     said = place.trim("%d-%d" % frames)
     return differing(live[frames[0] - 1:frames[1]], place.replay(options, "b.mural")), said
@@ -346,7 +346,7 @@ TRIMMED_ON_TILES = ("pixels_draw", "framebuffers", "textures_classic", "textures
 
 
 def trim_on_tiles(first):
-    """What is trimmed shows on other tiles what the program shows natively."""
+    """A trimmed trace shows, on other tiles, the program's native pictures."""
     def check(place):
         for program in TRIMMED_ON_TILES[first::2]:
             windows = place.native(program)
@@ -368,7 +368,7 @@ trim_on_tiles(1)
 
 @case
 def trim_to_one_frame(place):
-    """The last one, with objects and state of all before; of several windows."""
+    """The last frame, with objects and state of all earlier ones; of several windows."""
     return all_trimmed(place, ("textures_classic", "glsl_uniforms", "persistent_frames", "several_windows", "fork_child"), frames=(FRAMES, FRAMES), options=("--tiles", "2x1"))
 
 
@@ -414,7 +414,7 @@ def dump_tells_the_calls(place):
 
 @case
 def dump_refuses_what_is_not_there(place):
-    """Frames and names of none; a call that there may be, and is not, is said."""
+    """Unknown frames and names are errors; a known call without occurrences is reported."""
     place.record("immediate", frames=2)
     file = place.path("a.mural")
     for words, arguments in (("the recording has 2 frames; give some of them, such as 1-2", ("--frames", "99")), ("the recording has 2 frames; give some of them, such as 1-2", ("--frames", "2-9")),
@@ -428,7 +428,7 @@ def dump_refuses_what_is_not_there(place):
     done = place.mural("dump", file, "--calls", "glDispatchCompute,glBegin")
     if wrong is None and (done.returncode != 0 or done.stderr.count("\n") != 1 or absent not in done.stderr or "glBegin(" not in done.stdout):
         wrong = "of two calls: status %d, %s" % (done.returncode, done.stderr)
-    behind = place.mural("dump", file, "--frames", "3") # what the program said behind its last picture
+    behind = place.mural("dump", file, "--frames", "3")  # the program's commands after its last picture
     if wrong is None and (behind.returncode != 0 or not behind.stdout.startswith("     3 ")):
         wrong = "behind the last frame: status %d, %s" % (behind.returncode, behind.stderr)
     return wrong
@@ -436,7 +436,7 @@ def dump_refuses_what_is_not_there(place):
 
 @case
 def dump_understands_all_programs(place):
-    """No record of these is malformed to the printer."""
+    """The printer finds no malformed record in these."""
     for program in ("client_arrays", "glsl_stages", "textures_modern", "buffers", "display_lists", "feedback_select", "egl_images", "compute_images", "arb_programs"):
         place.record(program, frames=2)
         done = place.mural("dump", place.path("a.mural"))

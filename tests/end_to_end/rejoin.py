@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Nodes that are killed during a run come back: picture files are compared with the native ones. What comes behind the
-return is exact, the other nodes' part always is, and nobody waits for long.
+"""Nodes that are killed during a run rejoin; saved pictures are compared with native ones. Frames after the rejoin are
+exact, the other nodes' parts always are, and no process waits for long.
 
   rejoin.py --build build/release [--cases one,several] [--list]
 """
@@ -19,26 +19,28 @@ import pictures
 import programs
 import session
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 case = failures.case
 WIDTH, HEIGHT = 252, 190
 BACK = "is back in the picture"
 PROGRAM = "long_scene"
-MOST = 6000 # frames of a run: on a busy machine a return takes seconds, and a run that does not end as it is told takes too long
-TAIL = 60 # frames that are drawn when a case has seen what it waits for
-EXACT = 20 # of them, the last ones: nothing may differ
+# limit of frames per run: on a busy machine a rejoin takes seconds, and a run without an end file takes too long
+MOST = 6000
+TAIL = 60  # frames drawn after the awaited event of a case
+EXACT = 20  # the last frames of these, which must not differ
 
 
-NATIVE = {} # pictures by environment: several cases draw the same
+NATIVE = {}  # pictures by environment, because several cases draw the same
 
 
 def native_pictures(context, folder, frames, environment):
-    """The first pictures as the program draws them alone, and without the pauses: they are the same however many follow."""
+    """Returns the first pictures as the program draws them alone and without pauses; they do not depend on the number
+    of later ones."""
     environment = {name: value for name, value in environment.items() if name.startswith("SCENE_")}
     environment["SCENE_PAUSE_US"] = "0"
     key = tuple(sorted(environment.items()))
     if len(NATIVE.get(key, ())) < frames:
-        drawn = frames + frames // 4 # the next case may need a few more
+        drawn = frames + frames // 4  # a reserve for the next case
         run = programs.run_program(context.build, PROGRAM, os.path.join(folder, "native"), context.display,
                                    "%dx%d" % (WIDTH, HEIGHT), drawn, more_environment=environment)
         if run.status != 0:
@@ -54,19 +56,20 @@ def saved_pictures(folder):
 
 
 class Watch:
-    """One run of the program with pictures into files, and what became of its nodes. It ends when enough was seen, or with the last of its frames."""
+    """One run of the program with pictures in files, and the states of its nodes. It ends when enough was seen, or with
+    its last frame."""
 
     def __init__(self, context, frames=MOST, options=(), environment=None, tiles="2x1", every=1, beside=False, display="none"):
         self.context, self.frames, self.tiles = context, frames, tiles
-        self.every = every # frames from one that there is a picture of to the next
-        self.beside = beside # the same program runs a second time, in a smaller window
+        self.every = every  # frames between two saved pictures
+        self.beside = beside  # the same program also runs a second time, in a smaller window
         self.environment = {"SCENE_PAUSE_US": "15000"}
         self.environment.update(environment or {})
         self.folder = tempfile.TemporaryDirectory(prefix="mural-rejoin.")
         self.out = os.path.join(self.folder.name, "out")
         self.report_file = os.path.join(self.folder.name, "report.json")
         self.end_file = os.path.join(self.folder.name, "end")
-        self.least, self.drawn = frames, None # frames that there have to be, and that there were
+        self.least, self.drawn = frames, None  # minimum number of frames, and the actual number
         self.options = divided(tiles) + ["--display", display, "--report", self.report_file] + list(options)
         if display == "none":
             self.options += ["--out", self.out]
@@ -80,12 +83,12 @@ class Watch:
         return self.context.run(command, self.options, dict(self.environment, END_FILE=self.end_file))
 
     def enough(self, run, tail=TAIL):
-        """What the case waits for was seen: the program draws so many frames more."""
+        """Reports that the awaited event was seen: the program draws a fixed number of further frames."""
         self.least = min(self.frames, latest_frame(run) + 1 + tail)
         session.end_after(self.end_file, tail)
 
     def end(self, run):
-        """What is wrong with the run's end; how many frames there were is known then."""
+        """Returns the error of the run's end; sets the number of frames."""
         wrong = failures.check_end(run, 0)
         self.drawn = len(frame_times(run))
         if wrong is None and self.drawn < self.least:
@@ -97,11 +100,11 @@ class Watch:
             return json.load(file)
 
     def native(self):
-        """Of each frame that was drawn."""
+        """Returns the native picture of each drawn frame."""
         return native_pictures(self.context, self.folder.name, self.drawn, self.environment)
 
     def differing(self, run):
-        """By picture: the columns that differ from the native one, or a text that says what is wrong."""
+        """Returns, by picture, the columns that differ from the native one, or an error text."""
         wrong = self.end(run)
         if wrong is not None:
             return wrong
@@ -118,7 +121,7 @@ def divided(tiles):
 
 
 def columns_that_differ(first, second):
-    different = 0 # bits, of all rows: cheaper by far than pixel by pixel
+    different = 0  # a bit mask of all rows: far cheaper than pixel by pixel
     for a, b in zip(first.rows, second.rows):
         if a != b:
             different |= int.from_bytes(a, "little") ^ int.from_bytes(b, "little")
@@ -127,7 +130,7 @@ def columns_that_differ(first, second):
 
 
 def nodes_of(run, count=2):
-    """The pids of the nodes by their number: the head starts them one after the other."""
+    """Returns the pids of the nodes by their number: the head starts them one after the other."""
     return sorted(run.wait_for_processes(failures.NODE, count))
 
 
@@ -136,8 +139,8 @@ def said(run, text):
 
 
 def judged(differing, spans, tail, every=1):
-    """spans: (first frame, columns that may differ), …: what may differ from there on, as long as it does. Behind the last
-    difference `tail` frames at least must be exact. `every`: as that of the run."""
+    """Compares the pictures. spans: (first frame, columns that may differ), …, each from its frame on for one run of
+    differences. At least `tail` frames after the last difference must be exact. `every`: as for the run."""
     allowed, behind = set(), every * len(differing)
     frames = range(every - 1, behind, every)
     for frame, columns in zip(frames, differing):
@@ -154,7 +157,7 @@ def judged(differing, spans, tail, every=1):
 
 
 def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1,), at=60, tiles="2x1", missing_columns=None, where="local", every=1, most=None):
-    """Kills the nodes one after the other, each when the one before is back."""
+    """Kills the nodes one after the other, each after the rejoin of the previous one."""
     watch = Watch(context, frames, options, environment, tiles, every)
     half = WIDTH // 2
     columns = {0: range(0, half), 1: range(half, WIDTH)}
@@ -170,7 +173,7 @@ def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1
             os.kill(victim, signal.SIGKILL)
             if not run.wait_for_line(BACK, 30):
                 return "node %d did not come back (of %s): %s" % (number, pids, " | ".join(run.standard_error[-4:]))
-            time.sleep(0.3) # a frame that was under way when it came is the other node's alone
+            time.sleep(0.3)  # a frame in progress at the rejoin contains only the other node's part
         watch.enough(run, max(TAIL, 4 * every))
         differing = watch.differing(run)
         if isinstance(differing, str):
@@ -195,7 +198,7 @@ def latest_frame(run):
 
 
 def node_pid(run, number, where="local"):
-    """Of the node with that number, as the head names it, or as they were started."""
+    """Returns the pid of the node with that number, as the head names it, or in the order of the starts."""
     back = [re.search(r"node %d \(%s, pid (\d+)\) " % (number, where) + BACK, line) for line in run.standard_error]
     pids = [int(match.group(1)) for match in back if match]
     return pids[-1] if pids else first_nodes(run)[number]
@@ -219,26 +222,26 @@ def several_one_after_the_other(context):
 
 @case
 def with_economy(context):
-    """What nodes have had begins anew with each that comes back."""
+    """The dictionary of delta coding starts again with each rejoin."""
     return kill_and_look(context, options=("--economy", "on"), victims=(1, 0))
 
 
 @case
 def by_tcp(context):
-    """As if the nodes ran elsewhere: started again by the same command, connected again by TCP."""
+    """Nodes as on other machines: started again with the same command, connected again by TCP."""
     return kill_and_look(context, options=("--nodes", "localhost,localhost", "--stream", "tcp"), where="localhost")
 
 
 @case
 def by_multicast(context):
-    """Who comes back gets the stream by its own connection, the other goes on with the group."""
+    """The returning node receives the stream over its own connection, the other one continues with the group."""
     return kill_and_look(context, options=("--nodes", "localhost,localhost", "--stream", "rsp://239.255.77.9:4299?interface=127.0.0.1"), where="localhost")
 
 
 @case
 def waiting_node(context):
-    """The head calls `mural node --wait` again; the secret and the port are as before."""
-    host = "127.0.0.2"  # an address of this machine that no daemon of its user listens at
+    """The head calls `mural node --wait` again; the secret and the port are unchanged."""
+    host = "127.0.0.2"  # an address of this machine without a daemon of its user
     with tempfile.TemporaryDirectory(prefix="mural-rejoin-key.") as folder:
         secret = os.path.join(folder, "key")
         with open(secret, "w", encoding="ascii") as file:
@@ -279,7 +282,7 @@ def children_of(parent):
 
 @case
 def wall_windows(context):
-    """Nodes that show their tiles themselves: the newcomer opens its window again, and nothing is left behind."""
+    """Nodes that show their tiles themselves: the returning node opens its window again, and leaves nothing behind."""
     watch = Watch(context, display="windows")
     with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
@@ -294,19 +297,19 @@ def wall_windows(context):
 
 @case
 def in_turns(context):
-    """Nodes that draw every second frame each: while one is away, its frames have no picture."""
+    """Two nodes that draw alternate frames: while one is lost, its frames have no picture."""
     return kill_and_compare_ends(context, ("--dplex", "2"), "1x1", (1,))
 
 
 @case
 def all_that_take_turns(context):
-    """Nobody is left that knows whose turn it is: it begins anew."""
+    """All time-multiplexed nodes are lost: the period starts again."""
     return kill_and_compare_ends(context, ("--dplex", "3"), "1x1", (0, 1, 2))
 
 
 @case
 def turns_over_earlier_frames(context):
-    """One node goes on drawing all frames: it comes back as that one, or as another."""
+    """One node continues to draw all frames; the lost one rejoins as that one, or as another."""
     for victim in (0, 1):
         wrong = kill_and_compare_ends(context, ("--dplex", "2"), "1x1", (victim,), environment={"SCENE_KEEPS": "1"})
         if wrong is not None:
@@ -316,25 +319,26 @@ def turns_over_earlier_frames(context):
 
 @case
 def tiles_of_a_queue(context):
-    """The other node takes them at its next full clear, long before the lost one is back."""
+    """The other node takes the tiles at its next full clear, long before the rejoin."""
     return kill_and_look(context, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0), most=24)
 
 
 @case
 def areas_at_random(context):
-    """They change with every frame: who comes back has to have those of the very frame."""
+    """Areas that change with every frame: a returning node must have the current frame's."""
     return kill_and_look(context, tiles="queue 16x16", missing_columns=range(WIDTH), victims=(1, 0, 1), environment={"MURAL_PLANT": "areas"})
 
 
 @case
 def areas_of_frames_over_earlier_frames(context):
-    """Windows that are never cleared keep their areas: the newcomer draws all from the start, and then has the same."""
+    """Windows that are never cleared keep their areas: the returning node draws everything from the start, and then has
+    the same."""
     return kill_and_look(context, tiles="queue 16x16", missing_columns=range(WIDTH), environment={"MURAL_PLANT": "areas", "SCENE_KEEPS": "1"})
 
 
 @case
 def areas_that_nobody_knows(context):
-    """All nodes are lost at once: areas begin anew."""
+    """All nodes are lost at once: areas start again."""
     return kill_and_compare_ends(context, (), "queue 32x32", (0, 1))
 
 
@@ -344,15 +348,16 @@ def two_eyes(context):
 
 
 STRATEGIES = ("serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming")
-UNDER_WAY = 12 # frames: of those that a program has sent when a node is lost, or is back, some are the others' alone
-LONGEST_MS = 8000 # of a frame: timeouts are 20 s and more
+UNDER_WAY = 12  # frames in progress when a node is lost or rejoins, which may contain only the others' parts
+LONGEST_MS = 8000  # time of one frame; timeouts are 20 s and more
 
 
 def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=None, where="local", frames=MOST, beside=False):
-    """Nodes that share draws. rounds: the nodes that are killed at once, each round when those of the one before are back. Each frame is exact
-    that all of them share, from a few behind each return on; nobody waits for a timeout. Frames have no picture while the collector is away."""
+    """Nodes that divide draws. rounds: the nodes that are killed at once, each round after the rejoin of the previous
+    round's nodes. Each frame that all of them divide is exact, from a few frames after each rejoin on. No process
+    waits for a timeout. Frames have no picture while the collector is lost."""
     watch = Watch(context, frames, options, dict(environment or {}, SCENE_SHARES="1"), tiles, beside=beside)
-    whole = []  # spans of frames that must be exact: first, behind the last
+    whole = []  # spans of frames that must be exact: first, end
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -399,7 +404,8 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
 
 
 def not_shared(report, serial, last):
-    """Behind the last return all of them send parts; but for `serial` the collector does, too, its word on each picture."""
+    """Checks that after the last rejoin all nodes send parts. The collector also sends its messages about each picture,
+    except with `serial`."""
     for node in report:
         if node["node"] in last and node["exchangeBytes"] == 0 and not (serial and node["node"] == 0):
             return "node %d shared nothing when it was back" % node["node"]
@@ -407,7 +413,7 @@ def not_shared(report, serial, last):
 
 
 def frame_times(run):
-    """Of each frame of the program, ms."""
+    """Returns the time of each frame of the program in ms."""
     return [float(line.split()[2]) for line in run.standard_output if line.startswith("frame ")]
 
 
@@ -429,20 +435,21 @@ for name in STRATEGIES:
 
 @case
 def ranges_several_at_once(context):
-    """Two of four, the collector among them, then all but it, then all: who comes back later connects to who came back before."""
+    """Two of four including the collector, then all but the collector, then all: nodes that rejoin later connect to
+    earlier ones."""
     return (ranges_come_back(context, ((0, 2), (1, 2, 3)), 4, by_ranges("direct-send", 4)) or
             ranges_come_back(context, ((1, 2), (0, 1, 2)), 3, by_ranges("serial", 3)))
 
 
 @case
 def ranges_of_tiles(context):
-    """Two pictures of two nodes each: what is lost of one leaves the other alone."""
+    """Two pictures of two nodes each: a loss in one does not affect the other."""
     return ranges_come_back(context, ((3,), (2,), (1, 2)), 4, by_ranges("binary-swap", 2) + ("--local-nodes", "4"), tiles="2x1")
 
 
 @case
 def ranges_in_turns(context):
-    """Two pictures that take turns, of two nodes each."""
+    """Two time-multiplexed pictures, of two nodes each."""
     return ranges_come_back(context, ((1,), (2,), (0,)), 4, by_ranges("streaming", 2) + ("--dplex", "2"))
 
 
@@ -464,19 +471,19 @@ def ranges_by_multicast(context):
 
 @case
 def ranges_of_two_programs(context):
-    """Their windows' pictures are put together one behind the other, in the order in which their packets come."""
+    """Pictures of two programs' windows are combined one after the other, in the order in which their packets arrive."""
     return ranges_come_back(context, ((1,), (0,)), 3, by_ranges("2-3-swap", 3), beside=True)
 
 
 @case
 def ranges_that_are_busy(context):
-    """No pause: the nodes are what everybody waits for."""
+    """Without pauses: all processes wait for the nodes."""
     return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=5 * MOST)
 
 
 @case
 def chunks_come_back(context):
-    """Nodes that take draws from a queue, and such that are given any, which change with each frame."""
+    """Nodes that take draws from a queue, and nodes that receive random ones, which change with each frame."""
     options = by_ranges("direct-send", 3) + ("--chunk-queue", "60")
     return (ranges_come_back(context, ((1,), (0,)), 3, options) or
             ranges_come_back(context, ((2,), (1, 2)), 3, options, environment={"MURAL_PLANT": "shares"}))
@@ -484,7 +491,7 @@ def chunks_come_back(context):
 
 @case
 def chunks_of_a_lost_node(context):
-    """It does not come back: the others take its chunks, and from then on nothing is missing."""
+    """A node that does not rejoin: the others take its chunks, and from then on nothing is missing."""
     watch = Watch(context, MOST, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
@@ -505,7 +512,7 @@ def chunks_of_a_lost_node(context):
 
 @case
 def ranges_over_earlier_frames(context):
-    """Nothing clears, so nothing is shared: the collector has all of it, and gets all of it again."""
+    """Without clears nothing is divided: the collector has everything, and receives everything again."""
     watch = Watch(context, MOST, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
@@ -523,19 +530,20 @@ def ranges_over_earlier_frames(context):
 
 @case
 def frames_over_earlier_frames(context):
-    """Nothing clears: what it left out would be missing. It finds that out before anybody sees it, and draws all."""
+    """Without clears, skipped draws would be missing. The node detects it before a picture is shown, and draws
+    everything."""
     return kill_and_look(context, environment={"SCENE_KEEPS": "1"})
 
 
 @case
 def nodes_that_are_busy(context):
-    """No pause: the nodes are what everybody waits for, and the newcomer is no faster."""
+    """Without pauses: all processes wait for the nodes, and the returning node is no faster."""
     return kill_and_look(context, frames=5 * MOST, environment={"SCENE_PAUSE_US": "0"}, at=100, every=50)
 
 
 @case
 def killed_while_it_catches_up(context):
-    """Twice on its way: tried again, and back in the end."""
+    """Killed twice during its resync: tried again, and finally back."""
     watch = Watch(context)
     half = WIDTH // 2
     with watch.start() as run:
@@ -574,8 +582,8 @@ def fresh_node(run, known, seconds=15):
 
 
 def kill_and_compare_ends(context, options, tiles, victims, against=None, environment=None):
-    """Frames that no node lived to show have no picture: the first and the last ones are compared. No other
-    ones than those of the time that nodes were away are missing."""
+    """Compares the first and the last frames. Frames that no node lived to show have no picture, and only frames of the
+    time without the nodes may be missing."""
     watch = Watch(context, MOST, options, environment, tiles)
     with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
@@ -607,7 +615,7 @@ def kill_and_compare_ends(context, options, tiles, victims, against=None, enviro
 
 
 def undisturbed(context, watch, options):
-    """The pictures of a run of the same kind in which nothing is killed."""
+    """Returns the pictures of a run of the same kind without losses."""
     other = Watch(context, watch.drawn, options, {"SCENE_PAUSE_US": "0"}, watch.tiles)
     with other.start() as run:
         run.status()
@@ -616,13 +624,13 @@ def undisturbed(context, watch, options):
 
 @case
 def all_nodes_at_once(context):
-    """The program waits for them; the frames behind their return are exact."""
+    """The program waits for the nodes; the frames after their rejoin are exact."""
     return kill_and_compare_ends(context, (), "2x1", (0, 1))
 
 
 @case
 def dies_again_and_again(context):
-    """It is tried as often as was asked for, then it is said, once, that it stays lost."""
+    """Rejoins are tried as often as configured, then one line reports that the node stays lost."""
     watch = Watch(context, options=("--restart-nodes", "2"))
     half = WIDTH // 2
     with watch.start() as run:
@@ -643,13 +651,13 @@ def dies_again_and_again(context):
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        if len(said(run, "tiles stay as they were")) != 2: # until it is back; after 2 tries
+        if len(said(run, "tiles stay as they were")) != 2:  # until the rejoin, after 2 tries
             return "it was not said that it stays lost: " + " | ".join(run.standard_error[-6:])
         return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
 
 
 def lost_for_good(context, options, words):
-    """As the node was lost, so it stays; the line of the loss has the words once."""
+    """Checks that the node stays lost; one line about the loss contains the words."""
     watch = Watch(context, options=options)
     half = WIDTH // 2
     with watch.start() as run:
@@ -677,7 +685,7 @@ def never(context):
 
 @case
 def more_than_is_kept(context):
-    """A program that has sent more than --store: said in the line of the loss, and not tried."""
+    """A program that has sent more than --store: the line about the loss says so, and no rejoin is tried."""
     return lost_for_good(context, ("--store", "4MiB"), "--store gives more")
 
 
@@ -685,7 +693,7 @@ LATE_HOST = "#!/bin/sh\n# HOST COMMAND...\nhost=$1; shift\n%s\nexec \"$@\"\n"
 
 
 def late_node(context, how, words):
-    """The second node does not come when the session begins, but later; the first begins without it."""
+    """The second node is not present at the start of the session, but joins later; the first starts without it."""
     with tempfile.TemporaryDirectory(prefix="mural-rejoin-late.") as folder:
         script, tried = os.path.join(folder, "launch"), os.path.join(folder, "tried")
         with open(script, "w", encoding="ascii") as file:
@@ -721,7 +729,7 @@ def late_node_that_is_slow(context):
 
 @case
 def late_nodes_too_many(context):
-    """Fewer came than are enough: one line, and no program."""
+    """Fewer nodes came than are required: one line, and no program."""
     watch = Watch(context, 10, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", "false", "--least-nodes", "1"))
     with watch.start() as run:
         return failures.check_end(run, 2) or (None if len(said(run, "fewer than --least-nodes 1 are left")) == 1 else "it was not said: " + " | ".join(run.standard_error[-3:]))
@@ -729,14 +737,14 @@ def late_nodes_too_many(context):
 
 @case
 def planted_fault_is_seen(context):
-    """One packet of what a node is given is lost: the pictures must show it."""
+    """One packet of a node's snapshot is lost: the pictures must reveal it."""
     wrong = kill_and_look(context, environment={"MURAL_PLANT": "rejoin"})
     return None if wrong is not None and "still differs" in wrong else "nobody saw it: %s" % wrong
 
 
 @case
 def large_store(context):
-    """256 MiB of textures: how long it takes, and what the other node's frames took meanwhile."""
+    """256 MiB of textures: the duration of the rejoin, and the time of the other node's frames meanwhile."""
     watch = Watch(context, environment={"SCENE_MIB": "256"})
     half = WIDTH // 2
     with watch.start() as run:

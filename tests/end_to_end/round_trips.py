@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How often a program has to wait for an answer of the nodes: never when it reads nothing back, and not for what it
+"""Counts how often a program waits for a reply of the nodes: never when it reads nothing, and not for results that it
 reads a frame later.
 
   round_trips.py --build build/release [--cases draws_only,queries_later] [--list]
@@ -12,7 +12,7 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 30
 
 
@@ -39,9 +39,9 @@ def round_trips(case_name, program, at_most, options=()):
 for name in ("immediate", "client_arrays", "core_arrays", "persistent_mapping", "glsl_uniforms", "glsl_blocks", "arb_programs",
              "attribute_stacks", "evaluators", "clipping", "fixed_lighting", "many_triangles", "shared_contexts"):
     round_trips("draws_only_" + name, name, 0)
-# The results of the first two frames, as long as nobody knows yet that they are read later: six each.
+# Results of the first two frames, before the library knows that they are read later: six each.
 round_trips("queries_later", "queries_later", 12)
-# Reads into pixel buffers that are mapped two frames later: on a busy machine some answers are late, all are not.
+# Reads into pixel buffers that are mapped two frames later. On a busy machine some replies are late, but not all.
 round_trips("reads_later", "reads_later", 20)
 
 if __name__ == "__main__":

@@ -5,9 +5,9 @@
   run_exact.py --build build/release --native      only twice natively: are the programs deterministic?
   run_exact.py --list
 
-One line per program and layout: frames, differing pixels, largest difference, place. The status is 1
-when a pixel differs, a picture is missing, or a program ends otherwise than natively; 77 when the driver has
-what none of the programs is about.
+Prints one line per program and layout: frames, differing pixels, largest difference, position. The status is 1 when a
+pixel differs, a picture is missing, or a program ends differently from its native run; 77 when the driver supports none
+of the programs.
 """
 
 import argparse
@@ -56,7 +56,7 @@ def list_programs():
 
 
 class Comparison:
-    """One program natively once, and then against any number of other runs."""
+    """Compares one native run of a program with any number of other runs."""
 
     def __init__(self, arguments, display_name, folder):
         self.arguments = arguments
@@ -68,10 +68,10 @@ class Comparison:
         self.healed = []
         self.taken = 0
         self.ended = False  # --until-differs
-        self.shared = {}  # nodes that are started once for all programs, by layout
+        self.shared = {}  # nodes that start once for all programs, by layout
 
     def finish(self):
-        """Whatever has to be looked at after all programs."""
+        """Makes the checks that follow all programs."""
         for label in list(self.shared):
             self.end_shared(label)
 
@@ -99,7 +99,7 @@ class Comparison:
         return os.path.join(self.folder, "report.%s.json" % label)
 
     def report_of(self, label):
-        """What the last run by this layout has reported; nothing when it did not."""
+        """Returns the report of the last run with this layout; empty if there is none."""
         try:
             with open(self.report_file(label), encoding="utf-8") as report:
                 return json.load(report)
@@ -111,11 +111,12 @@ class Comparison:
             os.remove(self.report_file(label))
 
     def captured(self, label):
-        """How many frames of the last run went through the nodes: a program that ran alone is exact, too."""
+        """Returns how many frames of the last run the nodes drew: a program that ran alone is exact, too."""
         return self.report_of(label).get("frames", 0)
 
     def moves(self, label):
-        """How often areas or shares of the nodes changed from one frame to the next, as the last report has it."""
+        """Returns how often areas or shares of the nodes changed from one frame to the next, according to the last
+        report."""
         if not self.arguments.tile_queue and "--chunk-queue" not in self.arguments.options:
             return ""
         taken = sum(queue["taken"] for queue in self.report_of(label).get("queues") or [])
@@ -123,7 +124,7 @@ class Comparison:
         return ", %s changed %d times" % ("areas" if self.arguments.tile_queue else "shares", taken)
 
     def run_alone(self, name, label, launcher):
-        # Natively for the second time, new memory isn't zero: it shows who reads what nobody wrote.
+        # In the second native run new memory is not zero, which reveals reads of uninitialised memory.
         environment = {"MALLOC_PERTURB_": "165"} if self.arguments.native else None
         self.forget_report(label)
         through = self.run(name, label, launcher, environment)
@@ -131,7 +132,8 @@ class Comparison:
         return through
 
     def run_shared(self, name, label, launcher, frames):
-        """By nodes that have drawn the programs before this one. Whether its frames, so many, went through them is known in the end."""
+        """Runs on nodes that have drawn the programs before this one. The number of frames that they drew is known at
+        the end."""
         arguments = self.arguments
         if label not in self.shared:
             self.forget_report(label)
@@ -139,7 +141,7 @@ class Comparison:
         nodes = self.shared[label]
         through = nodes.run_program(arguments.build, name, os.path.join(self.folder, name, label), arguments.size, arguments.frames, arguments.seconds)
         nodes.wanted_frames += frames
-        if through.status is None:  # the next program gets others
+        if through.status is None:  # the next program gets new nodes
             self.end_shared(label)
         return through
 
@@ -166,7 +168,7 @@ class Comparison:
             self.report(name, "reference", 0, "fails natively: status %s, %d pictures%s" % (
                 native.status, len(native.frames()), said(native)))
             return
-        frames = 0  # through the nodes of the first layout
+        frames = 0  # drawn by the nodes of the first layout
         for number, (label, launcher) in enumerate(self.launchers().items()):
             start = time.monotonic()
             if number > 0 and self.arguments.share_nodes:
@@ -195,7 +197,7 @@ class Comparison:
             flush=True)
 
     def compare(self, native, through):
-        """None when all is the same, else what is wrong."""
+        """Returns None if all frames are equal, otherwise an error."""
         if not programs.same_status(native.status, through.status):
             return "status %s instead of %s%s" % (
                 "none in time" if through.status is None else through.status, native.status, said(through))
@@ -233,12 +235,12 @@ class Comparison:
 
 
 def got_name(frames):
-    """The program's name and layout, from where its pictures lie."""
+    """Returns the program's name and layout from the path of its pictures."""
     return "/".join(next(iter(frames.values())).split(os.sep)[-4:-2])
 
 
 def said(run):
-    """The last lines that a failed run printed, on one line."""
+    """Returns the last lines that a failed run printed, on one line."""
     lines = [line for line in run.output.splitlines() if line.strip()]
     return "; it said: " + " | ".join(lines[-3:]) if lines else ""
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Test programs through a `mural` that was built with the address and undefined-behaviour sanitizers.
+"""Runs test programs through a `mural` that was built with the address and undefined-behaviour sanitizers.
 
   sanitized.py --build build/asan --programs client_arrays,es3_scene --layouts 2x2 --size 253x191 --frames 3
 
-As run_exact.py, and no process of a run may report anything: launcher, head, nodes, and the library in the
-program. The program itself is built without sanitizers, so their runtime is preloaded there. In the end a
-node reads beyond its memory on purpose (MURAL_PLANT=overflow): that must be reported, or nothing was proved.
+As run_exact.py; in addition no process of a run may report anything: launcher, head, nodes, and the library in the
+program. The program itself is built without sanitizers, so their runtime is preloaded there. At the end a node reads
+beyond its memory on purpose (MURAL_PLANT=overflow), which must be reported, or the test proves nothing.
 """
 
 import glob
@@ -23,7 +23,7 @@ PLANTED_IN = "client_arrays"
 
 
 def runtimes_of(library):
-    """The sanitizers' runtime libraries that a library needs."""
+    """Returns the sanitizers' runtime libraries that a library needs."""
     needed = subprocess.run(["ldd", library], stdout=subprocess.PIPE, text=True, timeout=60, check=True).stdout
     paths = [line.split("=>")[1].split()[0] for line in needed.splitlines() if line.strip().startswith(RUNTIMES)]
     if len(paths) != len(RUNTIMES):
@@ -39,7 +39,8 @@ class SanitizedComparison(run_exact.Comparison):
     def environment(self):
         reports = "log_path=" + self.report_prefix()
         return {"LD_PRELOAD": " ".join(self.runtimes),
-                # Drivers keep what they have until the end. The test's own library stands before the runtime.
+                # Leaks are not reported, because drivers keep memory until the end. The test's own library precedes the
+                # runtime.
                 "ASAN_OPTIONS": reports + ":detect_leaks=0:verify_asan_link_order=0",
                 "UBSAN_OPTIONS": reports + ":print_stacktrace=1"}
 
@@ -47,7 +48,7 @@ class SanitizedComparison(run_exact.Comparison):
         return os.path.join(self.folder, "sanitizer")
 
     def take_findings(self):
-        """One line per process that reported something since the last call."""
+        """Returns one line per process that reported something since the last call."""
         found = []
         for path in sorted(glob.glob(self.report_prefix() + ".*")):
             with open(path, encoding="utf-8", errors="replace") as report:
@@ -69,7 +70,7 @@ class SanitizedComparison(run_exact.Comparison):
         return super().compare(native, through)
 
     def planted(self):
-        """None when a fault on purpose is found, else what is wrong."""
+        """Returns None if the planted fault is detected, otherwise an error."""
         label, launcher = next(iter(self.launchers().items()))
         self.run(PLANTED_IN, "planted", launcher, {"MURAL_PLANT": "overflow"})
         found = self.take_findings()

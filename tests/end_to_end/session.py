@@ -1,4 +1,4 @@
-"""One `mural run` under test: started, watched, disturbed, and looked after for what it leaves behind."""
+"""One `mural run` under test: started, observed, disturbed, and checked for remains."""
 
 import os
 import queue
@@ -13,7 +13,7 @@ import uuid
 import processes
 import programs
 
-MARK = "MURAL_TEST_RUN"  # in the environment of every process that a run starts
+MARK = "MURAL_TEST_RUN"  # variable in the environment of every process that a run starts
 
 
 def processes_of(mark):
@@ -25,14 +25,14 @@ def shared_memory():
 
 
 def end_after(end_file, frames):
-    """The program whose END_FILE this is draws so many frames more."""
+    """Limits the program with this END_FILE to that number of further frames."""
     with open(end_file + ".new", "w", encoding="ascii") as file:
         file.write(str(frames))
-    os.rename(end_file + ".new", end_file) # the program looks before each frame, and finds all of it
+    os.rename(end_file + ".new", end_file)  # atomic, because the program reads the file before each frame
 
 
 class Session:
-    """Use as a context manager; everything that is still alive at the end is killed."""
+    """A context manager; it kills all processes that are alive at the end."""
 
     def __init__(self, command, display, environment=None):
         self.mark = uuid.uuid4().hex
@@ -75,7 +75,7 @@ class Session:
         self.folder.cleanup()
 
     def wait_for_line(self, text, seconds=60):
-        """True when a line that holds the text came in time."""
+        """Returns True when a line with the text arrived in time."""
         deadline = time.monotonic() + seconds
         while True:
             try:
@@ -85,7 +85,7 @@ class Session:
                 return False
 
     def processes(self, pattern):
-        """The pids of this run whose command line fits the pattern."""
+        """Returns the pids of this run whose command line matches the pattern."""
         return sorted(pid for pid, command in processes_of(self.mark).items()
                       if re.search(pattern, command))
 
@@ -99,7 +99,7 @@ class Session:
         return []
 
     def status(self, seconds=90):
-        """The status of `mural run`; None: not in time."""
+        """Returns the status of `mural run`; None after the timeout."""
         status = self.process.poll()
         if status is None:
             status = programs.ended_within(self.process, seconds)
@@ -110,7 +110,7 @@ class Session:
         return status
 
     def left_behind(self, seconds=10):
-        """What is still there some time after the end: processes, shared memory, files."""
+        """Returns the remains some time after the end: processes, shared memory, files."""
         deadline = time.monotonic() + seconds
         while True:
             left = ["process %d (%s)" % item for item in processes_of(self.mark).items()]

@@ -1,4 +1,6 @@
-"""One `mural run` that test programs are run by, one after another: nodes are started once, and have drawn others before."""
+"""One `mural run` for several test programs, one after another: the nodes start once, and have drawn other programs
+before.
+"""
 
 import os
 import select
@@ -7,7 +9,7 @@ import subprocess
 
 import programs
 
-# Lines are commands; what each has ended with goes into the pipe.
+# A shell that runs each line as a command, and writes its exit status into the pipe.
 READER = 'while IFS= read -r line; do eval "$line"; echo $? > "$1"; done'
 
 
@@ -22,7 +24,7 @@ class SharedNodes:
     def __init__(self, launcher, display, folder):
         os.makedirs(folder)
         self.log_path = os.path.join(folder, "log")
-        self.wanted_frames = 0  # that must have gone through the nodes in the end
+        self.wanted_frames = 0  # total that the nodes must have drawn at the end
         statuses = os.path.join(folder, "statuses")
         os.mkfifo(statuses)
         self.statuses = os.open(statuses, os.O_RDWR)
@@ -33,19 +35,20 @@ class SharedNodes:
         self.ended = os.pidfd_open(self.process.pid)
 
     def run_program(self, build, name, folder, size, frames, seconds=120):
-        """As programs.run_program does."""
+        """Runs a program, with the interface of programs.run_program."""
         os.makedirs(folder)
         settings, words = programs.command_of(build, name, folder, size, frames)
         return programs.Run(*self.run(settings, words, folder + ".log", seconds), folder)
 
     def run(self, settings, words, log_path, seconds):
-        """The status of a command, and what it has said; None: it did not end in time, or the run itself has ended, which says why."""
+        """Returns the status of a command, and its output. The status is None if it did not end in time, or if the run
+        itself has ended, with the reason as output."""
         line = "%s %s > %s 2>&1 < /dev/null\n" % (settings, shlex.join(words), shlex.quote(log_path))
         try:
             self.process.stdin.write(line.encode())
             self.process.stdin.flush()
         except BrokenPipeError:
-            pass  # there will be no status
+            pass  # there is no status
         status = self._status(seconds)
         return status, "\n".join(text_of(path) for path in ((log_path,) if status is not None else (self.log_path, log_path)))
 
@@ -57,7 +60,7 @@ class SharedNodes:
         return int(os.read(self.statuses, 16)) if self.statuses in ready else None
 
     def end(self, seconds):
-        """The status of the run; None: it did not end in time, and was killed."""
+        """Returns the status of the run; None: it did not end in time, and was killed."""
         try:
             self.process.stdin.close()
         except BrokenPipeError:

@@ -1,5 +1,6 @@
-"""One who is on the network and does not know the secret: sends to a group's port what it has heard there, again, changed and cut,
-and what was never sent. Run by network_faults.py; tells on one line how many datagrams of each it sent.
+"""A process on the network without the secret. It sends to a group's port the datagrams that it has received there,
+repeated, changed and truncated, and invented ones. Run by network_faults.py; prints on one line how many datagrams
+of each kind it sent.
 
   stranger.py GROUP PORT ADDRESS SECONDS    ADDRESS: of its own card
 """
@@ -26,7 +27,7 @@ def group_socket(group, port, address):
 
 
 def changed(datagram):
-    """One bit is another, or the counter is one that never was, or the end is missing."""
+    """Returns the datagram with one bit changed, with an unused counter, or truncated."""
     made = bytearray(datagram)
     kind = random.randrange(3)
     if kind == 0:

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Surfaces of programs: what new ones hold, which of them a swap shows, and what is shown while the program ends.
+"""Surfaces of programs: the contents of new ones, the surfaces that a swap shows, and drawing while the program ends.
 
-The programs (tests/programs/surfaces) print what they read of OpenGL and of the X server. Each runs natively and through
-Mural, with --verify and with --display app: the lines, the status and the count of compared frames must be right.
+The programs (tests/programs/surfaces) print the pixels that they read from OpenGL and from the X server. Each runs
+natively and through Mural, with --verify and with --display app: the lines, the status and the number of compared
+frames must be correct.
 
   surfaces.py --build build/release [--cases fresh_drawables] [--list]
 """
@@ -16,7 +17,7 @@ import tempfile
 import failures
 import programs
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 MODES = {"verify": ["--verify"], "app": ["--display", "app"]}
 SIZE = "253x191"
 # glibc fills new memory of nodes with a pattern, which makes missing clears visible. New memory of programs holds 0, because
@@ -28,9 +29,8 @@ OF_PROGRAMS = {"MALLOC_PERTURB_": "255"}
 def natively(context, program, wanted_status, environment):
     """Returns the printed lines, or None after a wrong exit status.
 
-    OpenGL behind the end of main() works natively only where Mesa compiles no shader then. Its cache on disk has them after
-    another try.
-    """
+    OpenGL after the end of main() works natively only if Mesa compiles no shader then. After another attempt its disk
+    cache contains the shaders."""
     for _ in range(4):
         run = subprocess.run([context.program(program), "--size", SIZE], env={**programs.clean_environment(context.display), **environment}, stdin=subprocess.DEVNULL,
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False)
@@ -40,7 +40,7 @@ def natively(context, program, wanted_status, environment):
 
 
 def difference(wanted, got):
-    """The first line that differs."""
+    """Returns the first line that differs."""
     for number, line in enumerate(wanted):
         if number >= len(got) or got[number] != line:
             return "it printed \"%s\" instead of \"%s\"" % (got[number] if number < len(got) else "nothing", line)
@@ -62,7 +62,7 @@ def through_mural(context, program, mode, status, wanted, report_is_wrong, layou
 
 
 def surfaces(program, frames, status=0, uncompared=None, layout="2x2", environment=None):
-    """uncompared: {reason: how many frames --verify can't compare}."""
+    """Checks one program. uncompared: {reason: number of frames that --verify cannot compare}."""
     def report_is_wrong(report, mode):
         if report["frames"] < frames:
             return "%d frames are on the wall instead of %d" % (report["frames"], frames)

@@ -13,7 +13,7 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 120
 FILE = """#Equalizer 1.2 ascii
 server { config {
@@ -32,7 +32,7 @@ server { config {
 
 
 def swapped_together(context, options, folder):
-    """(explain lines of barriers, the reported numbers or None, what is wrong)."""
+    """Returns (explain lines of barriers, the reported numbers or None, error)."""
     report_file = os.path.join(folder, "report.json")
     command = [context.program("long_run"), "--frames", str(FRAMES), "--size", "400x160"]
     with context.run(command, options + ["--display", "windows", "--explain", "--report", report_file]) as run:
@@ -55,7 +55,7 @@ def wrong_numbers(numbers, members):
 
 @failures.case
 def short_form(context):
-    """--tiles: windows of all nodes; the times are told."""
+    """--tiles: windows of all nodes; the report has the times."""
     for tiles, members in (("3x1", 3), ("2x2", 4)):
         with tempfile.TemporaryDirectory(prefix="mural-swap.") as folder:
             lines, numbers, wrong = swapped_together(context, ["--tiles", tiles], folder)
@@ -70,7 +70,7 @@ def short_form(context):
 
 @failures.case
 def over_tcp(context):
-    """Nodes that are reached by TCP."""
+    """Nodes connected by TCP."""
     with tempfile.TemporaryDirectory(prefix="mural-swap.") as folder:
         _, numbers, wrong = swapped_together(context, ["--tiles", "2x1", "--nodes", "localhost,localhost"], folder)
     return wrong or wrong_numbers(numbers, 2)
@@ -113,13 +113,13 @@ def lost(context, which, words):
 
 @failures.case
 def leader_lost(context):
-    """The node that leads is killed: the others show their frames by themselves."""
+    """The leading node is killed: the others show their frames on their own."""
     return lost(context, 0, "its leader is gone")
 
 
 @failures.case
 def member_lost(context):
-    """Another one is killed: the rest goes on together."""
+    """Another node is killed: the rest continues together."""
     return lost(context, 2, "the others swap without it")
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Nodes without ssh: mural node --wait, found and started by mural call, draw what local nodes draw.
+"""Nodes without ssh: mural call finds and starts daemons (mural node --wait), which draw the same as local nodes.
 
-  waiting_nodes.py --build BUILD
+waiting_nodes.py --build BUILD
 """
 import argparse
 import filecmp
@@ -12,7 +12,7 @@ import sys
 import tempfile
 import time
 
-HOST = '127.0.0.2'  # an address of this machine that no daemon of its user listens at
+HOST = '127.0.0.2'  # an address of this machine without a daemon of its user
 FRAMES = '3'
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What becomes a frame of the wall: the files of --out, one for each, in order, none written twice.
+"""Frames of the wall: the files of --out, one for each frame, in order, none written twice.
 
-  wall_frames.py --build build/release [--cases windows,front] [--list]
+wall_frames.py --build build/release [--cases windows,front] [--list]
 """
 
 import json
@@ -12,13 +12,13 @@ import tempfile
 
 import failures
 
-failures.CASES.clear()  # only those of this file
+failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 3
 WIDTH, HEIGHT = 252, 190
 
 
 def saved(context, program, options=(), environment=None):
-    """What is wrong, and the PNG files by their names' order: (width, height, bytes)."""
+    """Returns an error or None, and the PNG files in the order of their names: (width, height, bytes)."""
     with tempfile.TemporaryDirectory(prefix="mural-wall-frames.") as folder:
         report_file, out = os.path.join(folder, "report.json"), os.path.join(folder, "out")
         command = [context.program(program), "--frames", str(FRAMES), "--size", "%dx%d" % (WIDTH, HEIGHT)]
@@ -41,7 +41,7 @@ def saved(context, program, options=(), environment=None):
 
 @failures.case
 def windows_change(context):
-    """Splash screen, main window, and what is left when that is destroyed."""
+    """A splash screen, the main window, and the remaining window after the main window's end."""
     wrong, files = saved(context, "window_switch")
     if wrong is not None:
         return wrong
@@ -53,7 +53,7 @@ def windows_change(context):
 
 @failures.case
 def windows_end_unnamed(context):
-    """The X server ends the large window, by a request that names another one or none."""
+    """The X server destroys the large window, for a request that names another window or none."""
     wanted = [(WIDTH, HEIGHT)] * FRAMES + [(WIDTH // 2, HEIGHT // 2)] * FRAMES
     for way in ("parent", "subwindows", "kill", "close"):
         wrong, files = saved(context, "windows_end", environment={"WINDOWS_END": way})
@@ -65,7 +65,7 @@ def windows_end_unnamed(context):
 
 @failures.case
 def drawables_of_one_window(context):
-    """Two connections, each with a drawable of its own: all that they swap is in the window, and on the wall."""
+    """Two connections, each with its own drawable: all their swaps are in the window, and on the wall."""
     wrong, files = saved(context, "windows_end", environment={"WINDOWS_END": "shared"})
     if wrong is not None:
         return wrong
@@ -74,7 +74,7 @@ def drawables_of_one_window(context):
 
 @failures.case
 def front_buffer_is_shown(context):
-    """Each swap, and each glFlush after drawing in front: every picture is another one."""
+    """Each swap, and each glFlush after front-buffer drawing, is a new picture."""
     wrong, files = saved(context, "front_buffer")
     if wrong is not None:
         return wrong

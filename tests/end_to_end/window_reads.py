@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Under --display app a program that reads its own window right after a swap finds that frame there.
+"""With --display app a program that reads its own window right after a swap finds that frame there.
 
   window_reads.py --build build/release --programs immediate,resize --layouts 2x2 --size 250x190 --frames 4
   window_reads.py --build build/release --read copy    through a pixmap instead of XGetImage
 
-As run_exact.py, but the pictures are what the windows show (window_grab.c), not what GL reads.
+As run_exact.py, but the pictures are the windows' contents (window_grab.c), not the pixels that GL reads.
 """
 
 import os
@@ -13,7 +13,7 @@ import sys
 import programs
 import run_exact
 
-# Not threads_windows: its windows overlap, and a read finds whatever another thread has just shown there.
+# Without threads_windows: its windows overlap, so a read returns the pixels that another thread has just shown there.
 PROGRAMS = "immediate,single_buffered,several_windows,resize,window_churn,es2_scene,egl_desktop"
 
 

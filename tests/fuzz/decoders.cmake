@@ -1,6 +1,7 @@
-# Replay under malformed streams. With preset fuzz (clang, MURAL_FUZZ) libFuzzer searches; everywhere the
-# corpus and a few seconds of random changes to it run as a test.
-# The main of all of them.
+# Replay of malformed streams. With the preset fuzz (clang, MURAL_FUZZ) libFuzzer searches. Everywhere else the corpus
+# and a few seconds of random mutations run as a test.
+#
+# The main function of all fuzz targets.
 add_library(fuzz_regression OBJECT fuzz_regression.cpp)
 add_executable(replay_fuzz_regression $<TARGET_OBJECTS:fuzz_regression> replay_fuzz.cpp replay_harness.cpp fake_gl.cpp)
 target_link_libraries(replay_fuzz_regression PRIVATE mural_replay)
@@ -9,13 +10,13 @@ add_test(NAME replay_fuzz_regression COMMAND replay_fuzz_regression --seconds 3 
          WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/run)
 set_tests_properties(replay_fuzz_regression PROPERTIES LABELS "fuzz;sanitize" TIMEOUT 120)
 
-# The corpus is made by the encoder itself: bin/replay_fuzz_seeds tests/fuzz/corpus
+# The encoder makes the corpus: bin/replay_fuzz_seeds tests/fuzz/corpus
 add_executable(replay_fuzz_seeds replay_fuzz_seeds.cpp)
 target_link_libraries(replay_fuzz_seeds PRIVATE encoder_harness)
 
 if(MURAL_FUZZ)
-  # All that reads the stream is compiled anew with coverage. Function pointers of GL are called through
-  # one function that does nothing, which the `function` check does not like.
+  # All code that reads the stream is compiled again with coverage. GL function pointers are called through one function
+  # that does nothing, which the `function` check rejects.
   file(GLOB replaySources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/nodes/replay/*.cpp ${CMAKE_SOURCE_DIR}/streamcodec/sizes/*.cpp)
   add_executable(replay_fuzz fuzz_entry.cpp replay_fuzz.cpp replay_harness.cpp fake_gl.cpp ${replaySources} ${MURAL_GENERATED}/replay_dispatch.cpp
                  ${MURAL_GENERATED}/gl_functions.cpp ${MURAL_GENERATED}/opcode_names.cpp)

@@ -22,7 +22,7 @@ struct State {
     GLuint lastName = 0;
     GLint elementBuffer = 0, unpackBuffer = 0, packBuffer = 0;
     GLint maxSurface = 4096;
-    bool current = false; // a context is
+    bool current = false; // whether a context is current
     GLenum error = 0;
     GLDEBUGPROC callback = nullptr;
     const void* callbackUser = nullptr;
@@ -32,7 +32,7 @@ struct State {
 };
 State state;
 
-// Reads all bytes, so that a sanitizer checks them; the sum keeps the reads alive.
+// Reads all bytes, so that a sanitizer checks them. The sum prevents removal of the reads.
 volatile uint8_t sink;
 void touch(const void* p, size_t bytes) {
     uint8_t sum = 0;
@@ -132,7 +132,7 @@ GLuint createShaderProgram(GLenum, GLsizei n, const GLchar* const* texts) {
     return makeOne();
 }
 void uniform4fv(GLint, GLsizei n, const GLfloat* values) { touch(values, count(n, 16)); }
-// As Mesa does: after the error of a negative count it copies so many.
+// Reads like Mesa, which copies a negative count of values after reporting the error.
 void programParameters(GLuint, GLenum, GLuint, GLsizei n, const GLfloat* values) { touch(values, static_cast<size_t>(n) * 16); }
 void uniformMatrix4fv(GLint, GLsizei n, GLboolean, const GLfloat* values) { touch(values, count(n, 64)); }
 void uniformMatrix4dv(GLint, GLsizei n, GLboolean, const GLdouble* values) { touch(values, count(n, 128)); }
@@ -147,7 +147,7 @@ void invalidate(GLenum, GLsizei n, const GLenum* attachments) { touch(attachment
 void texParameterfv(GLenum, GLenum name, const GLfloat* values) { touch(values, name == GL_TEXTURE_BORDER_COLOR ? 16 : 4); }
 void lightfv(GLenum, GLenum name, const GLfloat* values) { touch(values, name >= GL_AMBIENT && name <= GL_POSITION ? 16 : 4); }
 
-// Without a context GL does nothing, but libepoxy ends the process.
+// Ends the process in calls without a context. GL ignores them, but libepoxy ends the process.
 template <auto function> struct InContext;
 template <class R, class... Arguments, R (*function)(Arguments...)> struct InContext<function> {
     static R call(Arguments... arguments) {
@@ -199,7 +199,7 @@ private:
     bool tellsReset_;
 };
 
-// Keeps count of what lives and what is current: a surface or context must not go while it is current.
+// Tracks live and current objects: a current surface or context must not be destroyed.
 class FakePlatform : public gl::Platform {
 public:
     explicit FakePlatform(const FakeGlOptions& options) : options_(options) {
@@ -216,7 +216,7 @@ public:
         return std::unique_ptr<gl::Context>(new FakeContext(c.tellsReset));
     }
     Result<void> makeCurrent(gl::Context* context, gl::Surface* draw, gl::Surface* read, gl::HeldBack) override {
-        // What was current is flushed, what becomes current is looked at: both must be alive.
+        // A change of context flushes the old surfaces and reads the new ones, so all must be alive.
         for (const gl::Surface* s : {draw_, read_, static_cast<const gl::Surface*>(draw), static_cast<const gl::Surface*>(read)}) {
             if (s) sink = static_cast<uint8_t>(s->width());
         }

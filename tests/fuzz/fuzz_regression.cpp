@@ -1,7 +1,8 @@
-// Gives a fuzz target the given inputs, then random mutations of them for some seconds: the fuzz test where there is
-// no libFuzzer. TARGET_regression [--seconds N] [--seed N] FILES…
-// The mutation that was being tried stands in the file last_input of the working directory when a sanitizer, or the
-// target itself, stops the program.
+// Passes the given inputs to a fuzz target, then random mutations of them for some seconds. It is the fuzz test without
+// libFuzzer. TARGET_regression [--seconds N] [--seed N] FILES…
+//
+// If a sanitizer or the target itself ends the process, the file last_input of the working directory holds the current
+// mutation.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -36,7 +37,8 @@ public:
     explicit Mutator(uint64_t seed) : random_(seed) {}
     size_t below(size_t n) { return n ? random_() % n : 0; }
 
-    // A few changes: bits, words that often go wrong, bytes cut out, a part of another input.
+    // Returns an input with a few changes: flipped bits, words with typical limits, removed bytes, a part of another
+    // input.
     Input mutate(const std::vector<Input>& seeds) {
         Input input = seeds[below(seeds.size())];
         for (size_t n = 1 + below(6); n > 0 && !input.empty(); --n) change(input, seeds[below(seeds.size())]);
@@ -50,7 +52,7 @@ private:
         switch (below(5)) {
         case 0: input[at] ^= static_cast<std::byte>(1u << below(8)); break;
         case 1:
-        case 2: { // the stream's records are made of words, which start behind the options byte; the network's are not
+        case 2: { // records of the stream consist of words after the options byte; network inputs do not
             const size_t word = below(2) ? at / 4 * 4 + 1 : at;
             if (word + 4 <= input.size()) std::memcpy(input.data() + word, &kWords[below(std::size(kWords))], 4);
             break;
@@ -65,7 +67,7 @@ private:
     std::mt19937_64 random_;
 };
 
-// Written before each run only when sanitizers may end the process at any byte of it.
+// Writes the input before each run. Only needed when a sanitizer may end the process at any byte.
 void keep(const Input& input) {
     std::ofstream("last_input", std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
 }
@@ -90,7 +92,7 @@ int main(int argc, char** argv) {
     }
     for (const Input& input : seeds) meant += fuzzOne(input);
     std::printf("%zu inputs, %llu things in them\n", seeds.size(), static_cast<unsigned long long>(meant));
-    if (meant == 0) return 1; // a corpus that does nothing tests nothing
+    if (meant == 0) return 1; // a corpus without effect tests nothing
     Mutator mutator(seed);
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     for (; std::chrono::steady_clock::now() < end; ++runs) {

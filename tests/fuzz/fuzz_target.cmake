@@ -1,6 +1,7 @@
-# NAME_fuzz.cpp as NAME_fuzz_regression, a test that runs the corpus and changes to it, everywhere; with preset fuzz as NAME_fuzz, libFuzzer's
-# (bin/NAME_fuzz CORPUS), for which SOURCES are compiled anew with coverage. NAME_fuzz_seeds.cpp, where it is there, writes the corpus.
-#   LIBRARIES: what it looks into. SOURCE_LIBRARIES: what the sources need beside (LIBRARIES). CORPUS: folders (corpus)
+# Adds the fuzz target NAME. NAME_fuzz.cpp becomes NAME_fuzz_regression, a test that runs the corpus and mutations of
+# it, everywhere. With the preset fuzz it also becomes NAME_fuzz, libFuzzer's (bin/NAME_fuzz CORPUS), for which SOURCES
+# are compiled again with coverage. NAME_fuzz_seeds.cpp, if present, writes the corpus.
+#   LIBRARIES: the tested libraries. SOURCE_LIBRARIES: further libraries of the sources. CORPUS: folders (corpus)
 function(mural_fuzz_target name)
   cmake_parse_arguments(PARSE_ARGV 1 of "" "" "LIBRARIES;SOURCES;SOURCE_LIBRARIES;CORPUS")
   if(NOT of_CORPUS)

@@ -1,5 +1,5 @@
-// What each fuzz target is: a function that takes one input, whatever it holds. fuzz_entry.cpp gives it to libFuzzer,
-// fuzz_regression.cpp runs the corpus and changes to it where there is no libFuzzer.
+// The interface of a fuzz target: a function that takes one arbitrary input. fuzz_entry.cpp passes it to libFuzzer.
+// fuzz_regression.cpp runs the corpus and mutations of it without libFuzzer.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 
 namespace mural::fuzz {
 
-// Returns how much of it meant something: a corpus of which nothing does tests nothing.
+// Returns the number of meaningful parts of the input: a corpus without any tests nothing.
 uint64_t fuzzOne(std::span<const std::byte> input);
 
-// What must hold whatever comes in. Unlike assert, also in builds for release.
+// Ends the process if a condition that every input must satisfy is false. Unlike assert, also in release builds.
 inline void must(bool holds, const char* what) {
     if (holds) return;
     std::fprintf(stderr, "fuzz: this does not hold: %s\n", what);

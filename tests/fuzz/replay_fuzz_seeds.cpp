@@ -1,4 +1,4 @@
-// Writes the corpus of replay_fuzz: streams as the encoder makes them. replay_fuzz_seeds FOLDER
+// Writes the corpus of replay_fuzz: streams made by the encoder. Usage: replay_fuzz_seeds FOLDER
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +16,7 @@ public:
     explicit Seed(uint8_t options) : bytes_{static_cast<char>(options)} {}
     ThreadState& t() { return harness_.thread(); }
 
-    // The packets of what was encoded since the last call, as stream `thread` of client 1.
+    // Appends the packets encoded since the last call, as stream `thread` of client 1.
     void cut(uint32_t thread = 1) {
         for (const auto& packet : harness_.takePackets()) add(wire::streamOf(1, thread), packet.data(), packet.size());
     }
@@ -169,7 +169,7 @@ void clientMemory(Seed& s) {
     records::requestFinish(s.t(), 4);
 }
 
-// Two threads, two contexts, windows that come, change and go under both.
+// Encodes two threads and two contexts, with windows that are created, changed and destroyed under both.
 void threads(Seed& s) {
     s.begin();
     s.cut(1);
@@ -197,7 +197,7 @@ void threads(Seed& s) {
     s.begin(1, 1);
 }
 
-// All that is not GL's own, while no context is current any more.
+// Encodes all control records while no context is current any more.
 void released(Seed& s) {
     s.begin();
     encode_glClear(s.t(), GL_COLOR_BUFFER_BIT);

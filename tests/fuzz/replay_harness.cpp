@@ -8,7 +8,7 @@ namespace mural::fuzz {
 
 namespace {
 
-// Limits small enough for many runs a second; the code that keeps them is the same.
+// Returns limits small enough for many runs per second; the code that enforces them is the same.
 ReplayConfig configOf(uint8_t options) {
     ReplayConfig c;
     if (options & kTiles) {
@@ -29,7 +29,7 @@ ReplayOutputs outputs() {
     ReplayOutputs out;
     out.answer = [](const wire::AnswerHeader&, std::span<const std::byte> bytes) { look(bytes); };
     out.frameDone = [](const ReplayOutputs::Frame& f) {
-        // The node reads its region; a part of it is as good here and takes no time.
+        // The node reads its region; a small part is sufficient here and saves time.
         const PixelViewport r = intersect(f.region, {f.region.x, f.region.y, 16, 16});
         if (f.pixels) look({f.pixels(r), static_cast<size_t>(r.area()) * 4});
     };
@@ -50,7 +50,7 @@ ReplayCounts replayBytes(std::span<const std::byte> input) {
         std::memcpy(&header, input.data(), sizeof header);
         input = input.subspan(sizeof header);
         const size_t bytes = std::min<size_t>(header.sizeBytes, input.size());
-        // A copy of exactly this size: a sanitizer sees the first byte read behind it.
+        // A copy of exactly this size: a sanitizer detects the first byte read beyond it.
         const auto payload = std::make_unique<std::byte[]>(bytes);
         std::memcpy(payload.get(), input.data(), bytes);
         input = input.subspan(bytes);

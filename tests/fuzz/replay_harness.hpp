@@ -1,6 +1,5 @@
-// Feeds bytes to class Replay as a head that has gone mad would. Input: one byte of options, then packets
-// (wire::PacketHeader, payload; the last may be short). A packet of the head's own stream with
-// HeadCommand::ClientGone ends a client.
+// Feeds bytes to class Replay, as a malicious head would. Input: one byte of options, then packets (wire::PacketHeader,
+// payload; the last may be short). A packet of the head's own stream with HeadCommand::ClientGone ends a client.
 #pragma once
 
 #include <cstddef>

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Random GL calls natively and through Mural: whose errors, answers and pictures are not the same?
+"""Makes random GL calls natively and through Mural, and compares errors, results and pictures.
 
   run_random_gl.py --build build/release --seconds 30                        seeds from 1 on, all profiles
-  run_random_gl.py --build build/release --seconds 600 --first-seed 5000     a long hunt
+  run_random_gl.py --build build/release --seconds 600 --first-seed 5000     a long run
   run_random_gl.py --build build/release --seconds 20 --today                other seeds every day
   run_random_gl.py --build build/release --profiles core --seeds 17:17 --steps 200
   run_random_gl.py --build build/release --profiles core --case "17 3,9,12"  these steps of a seed, calls shown
 
-Each difference is made small (steps are left out while it stays) and shown with its calls. The status is 1 when there
-is one. A node that is lost is one, too. Seeds that are not the same in two native runs, or end the native run, are counted and
-not held against Mural.
+Each difference is minimised (steps are removed while it persists) and printed with its calls. The status is 1 if there
+is one. A lost node is a difference, too. Seeds that differ between two native runs, or end the native run, are counted
+and are no failures of Mural.
 """
 
 import argparse
@@ -32,7 +32,7 @@ NODE_LOST = " was lost"
 
 
 class Transcript:
-    """{case: [lines]}, what the program printed, and how it ended."""
+    """{case: [lines]}, the program's output, and its end."""
 
     def __init__(self, path, status, output):
         self.status, self.output, self.cases = status, output, {}
@@ -48,7 +48,7 @@ class Transcript:
 
 
 def first_difference(one, other):
-    """(index, line of one, line of other); None: none."""
+    """Returns (index, line of one, line of other); None: no difference."""
     for i in range(max(len(one), len(other))):
         pair = (one[i] if i < len(one) else "ended", other[i] if i < len(other) else "ended")
         if pair[0] != pair[1]:
@@ -57,12 +57,12 @@ def first_difference(one, other):
 
 
 class Bench:
-    """Runs cases, a seed with the steps of it, natively and through Mural."""
+    """Runs cases (a seed with its steps) natively and through Mural."""
 
     def __init__(self, arguments, display_name, folder):
         self.arguments, self.folder = arguments, folder
         self.environment = programs.clean_environment(display_name)
-        self.environment["LP_NUM_THREADS"] = "0"  # the order of fragments is that of the draws
+        self.environment["LP_NUM_THREADS"] = "0"  # the order of fragments is the order of the draws
         mural = os.path.join(arguments.build, "bin", "mural")
         self.launcher = [mural, "run", "--quiet", "--tiles", arguments.tiles] + arguments.options.split() + ["--"]
         self.program = os.path.join(arguments.build, "tests", "fuzz", "random_gl")
@@ -92,7 +92,7 @@ class Bench:
         return self.extensions[profile]
 
     def run(self, profile, cases, native, trace=False):
-        """A Transcript with the cases numbered from 0; what follows a crash is run by itself."""
+        """Returns a Transcript with the cases numbered from 0; cases after a crash run separately."""
         merged, first = None, 0
         while first < len(cases):
             path = os.path.join(self.folder, "cases")
@@ -123,7 +123,7 @@ class Hunt:
         self.faults = []
 
     def run(self, profiles, started):
-        """All profiles by turns, until the seeds or the time are over."""
+        """Runs all profiles in turn, until the seeds or the time are exhausted."""
         first, last = self.arguments.first_seed, None
         if self.arguments.seeds:
             first, last = self.arguments.seeds
@@ -164,7 +164,7 @@ class Hunt:
             print("%s seed %d: two native runs are not the same" % (profile, seed), flush=True)
             return
         print("%s seed %d differs:\n  native  %s\n  Mural   %s" % ((profile, seed) + difference[1:]), flush=True)
-        # Steps after the first difference have no part in it.
+        # Steps after the first difference do not contribute to it.
         kept = steps[:difference[0]] if 0 < difference[0] <= len(steps) else steps
         if not self.arguments.no_shrink:
             kept = self.shrink(profile, seed, kept)
@@ -178,7 +178,7 @@ class Hunt:
                 for i in range(len(cases))]
 
     def shrink(self, profile, seed, steps):
-        """Leaves out parts, ever smaller ones, while the difference stays."""
+        """Removes parts of decreasing size while the difference persists."""
         parts = 4
         if not self.differing(profile, [(seed, steps)])[0]:
             return steps
@@ -187,7 +187,7 @@ class Hunt:
             cuts = [len(steps) * i // parts for i in range(parts + 1)]
             fewer = [steps[:a] + steps[b:] for a, b in zip(cuts, cuts[1:])]
             answers = self.differing(profile, [(seed, candidate) for candidate in fewer])
-            # All parts that can be left out by themselves, if they can be left out together.
+            # All parts that can be removed one by one, if they can be removed together.
             spare = {step for (a, b), yes in zip(zip(cuts, cuts[1:]), answers) if yes for step in steps[a:b]}
             together = [step for step in steps if step not in spare]
             if sum(answers) > 1 and together and self.differing(profile, [(seed, together)])[0]:
@@ -232,7 +232,7 @@ def parse_arguments():
 
 
 def span_of(text):
-    """"17:20", or "17" alone."""
+    """Parses "17:20", or "17" alone."""
     try:
         numbers = [int(number) for number in text.split(":")]
     except ValueError:

@@ -1,4 +1,4 @@
-// New surfaces hold zero, whatever memory the driver makes them of.
+// New surfaces hold zero, for any contents of the driver's memory.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -10,7 +10,7 @@
 namespace mural::test {
 namespace {
 
-// Leaves freed heap memory behind that is full of a pattern, in blocks of the sizes that pictures have.
+// Leaves freed heap memory filled with a pattern, in blocks of the sizes that pictures have.
 void fillHeapWithPattern(size_t pictureBytes) {
     constexpr int kBlocks = 24;
     std::vector<void*> blocks;
@@ -18,7 +18,7 @@ void fillHeapWithPattern(size_t pictureBytes) {
         const size_t bytes = pictureBytes + static_cast<size_t>(i) * 256;
         void* const block = std::malloc(bytes);
         if (block) std::memset(block, 0xA5, bytes);
-        asm volatile("" : : "r"(block) : "memory"); // the pattern is needed although nothing here reads it
+        asm volatile("" : : "r"(block) : "memory"); // keeps the pattern, although no code here reads it
         blocks.push_back(block);
     }
     for (void* block : blocks) std::free(block);
@@ -28,7 +28,7 @@ class NewSurfaces : public BackendTest, public testing::WithParamInterface<std::
 protected:
     void SetUp() override {
         mallopt(M_MMAP_THRESHOLD, 1 << 30); // freed blocks stay in the heap…
-        mallopt(M_TRIM_THRESHOLD, 1 << 30); // …and are handed out again
+        mallopt(M_TRIM_THRESHOLD, 1 << 30); // …and are reused
         open(GetParam());
     }
     void TearDown() override {
@@ -98,8 +98,8 @@ TEST_P(NewSurfaces, holdZeroWithSamples) {
     expectZero(c);
 }
 
-// A program's context goes on where it was, with what it has bound and drawn.
-TEST_P(NewSurfaces, leaveCurrentWhatIsCurrent) {
+// The program's context stays current, with its bindings and its drawing.
+TEST_P(NewSurfaces, keepTheCurrentContext) {
     gl::ContextConfig config;
     config.surface = bits(16, 16);
     const Drawable drawable(*platform_, config);

@@ -1,4 +1,4 @@
-// Who is woken, and who need not be: the reader of publications and a program that waits for frames.
+// Wake-ups through the capture memory: the reader of publications and a program that waits for frames.
 #include "nodes/head/capture_memory.hpp"
 
 #include <csignal>
@@ -31,7 +31,7 @@ protected:
     void TearDown() override { munmap(base_, sizeof(capture::CaptureHeader)); }
 
     [[nodiscard]] Reader reader() const { return static_cast<Reader>(program_->reader.load()); }
-    // A thread of the program that sleeps until `frames` are done, as Session::waitForCredit.
+    // Sleeps like Session::waitForCredit in a thread of the program, until `frames` are done.
     void sleepForFrames(uint32_t frames) {
         uint32_t done = 0;
         while (static_cast<int32_t>((done = program_->framesDone.load()) - frames) < 0) {
@@ -40,7 +40,7 @@ protected:
             ++wakes_;
         }
     }
-    // Until the other thread says what it wants; 10 s at most.
+    // Waits until the other thread requests `value`, at most 10 s.
     [[nodiscard]] bool wantedIs(uint64_t value) const {
         const Deadline deadline = Deadline::inMs(10'000);
         while (program_->framesWanted.load() != value && !deadline.passed()) std::this_thread::yield();
@@ -53,7 +53,7 @@ protected:
     int wakes_ = 0;
 };
 
-TEST(CaptureMemory, theProgramIsThereAsLongAsItHasADescriptorOrTheMapping) {
+TEST(CaptureMemory, reportsAProgramWhileItHasADescriptorOrTheMapping) {
     auto memory = CaptureMemory::create(16, 4096);
     ASSERT_TRUE(memory) << memory.error().message;
     FileDescriptor passed(dup((*memory)->fdToPass())); // as SCM_RIGHTS does
@@ -98,7 +98,7 @@ TEST_F(LifeMarkTest, isMarkedWhenItsProcessIsKilled) {
     EXPECT_NE(word_->load() & FUTEX_OWNER_DIED, 0U);
 }
 
-TEST_F(LifeMarkTest, isMarkedWhenItEndsInOrder) {
+TEST_F(LifeMarkTest, isMarkedWhenItsProcessEndsNormally) {
     std::thread([this] {
         const LifeMark mark(*word_);
         EXPECT_EQ(word_->load(), static_cast<uint32_t>(gettid()));
@@ -106,19 +106,19 @@ TEST_F(LifeMarkTest, isMarkedWhenItEndsInOrder) {
     EXPECT_EQ(word_->load(), FUTEX_OWNER_DIED);
 }
 
-TEST_F(CaptureMemoryTest, aNapEndsByItself) {
-    memory_->waitPublished(Reader::Naps, capture::kNapNs); // nobody wakes it
+TEST_F(CaptureMemoryTest, endsANapAfterItsTime) {
+    memory_->waitPublished(Reader::Naps, capture::kNapNs); // without a wake-up
     EXPECT_EQ(reader(), Reader::Reads);
 }
 
-TEST_F(CaptureMemoryTest, readsAtOnceWhatWasPublishedBeforeItSlept) {
-    program_->publishedTail = 1; // and nobody wakes it
+TEST_F(CaptureMemoryTest, readsEarlierPublicationsWithoutSleeping) {
+    program_->publishedTail = 1; // without a wake-up
     const int64_t sinceNs = monotonicNowNs();
     memory_->waitPublished(Reader::Sleeps, 60 * kNsPerS);
     EXPECT_LT(monotonicNowNs() - sinceNs, 30 * kNsPerS);
 }
 
-TEST_F(CaptureMemoryTest, saysThatItSleeps) {
+TEST_F(CaptureMemoryTest, announcesThatItSleeps) {
     std::thread sleeper([&] { memory_->waitPublished(Reader::Sleeps, 10 * kNsPerS); });
     const Deadline deadline = Deadline::inMs(10'000);
     while (reader() != Reader::Sleeps && !deadline.passed()) std::this_thread::yield();
@@ -129,19 +129,20 @@ TEST_F(CaptureMemoryTest, saysThatItSleeps) {
     EXPECT_EQ(reader(), Reader::Reads);
 }
 
-TEST_F(CaptureMemoryTest, wakesAProgramWhenSoManyFramesAreDoneAndNotBefore) {
+TEST_F(CaptureMemoryTest, wakesAProgramWhenItsFramesAreDoneAndNotBefore) {
     std::thread program([&] { sleepForFrames(5); });
     ASSERT_TRUE(wantedIs(capture::kFramesWanted | 5));
     for (uint32_t frame = 1; frame <= 5; ++frame) {
-        EXPECT_EQ(program_->framesWanted.load(), capture::kFramesWanted | 5) << frame; // nobody was woken to say it again
+        // no wake-up, so the request is not repeated
+        EXPECT_EQ(program_->framesWanted.load(), capture::kFramesWanted | 5) << frame;
         memory_->setFramesDone(frame);
     }
     program.join();
-    EXPECT_LE(wakes_, 5); // a word that changes just before it sleeps wakes it early
+    EXPECT_LE(wakes_, 5); // a change of the word just before it sleeps wakes it early
     EXPECT_EQ(program_->framesWanted.load(), 0u);
 }
 
-TEST_F(CaptureMemoryTest, framesAreCountedAroundTheEndOfTheirNumbers) {
+TEST_F(CaptureMemoryTest, countsFramesAcrossTheWrapOfTheirNumbers) {
     program_->framesDone = UINT32_MAX - 1;
     std::thread program([&] { sleepForFrames(1); });
     ASSERT_TRUE(wantedIs(capture::kFramesWanted | 1));
@@ -151,7 +152,7 @@ TEST_F(CaptureMemoryTest, framesAreCountedAroundTheEndOfTheirNumbers) {
     program.join();
 }
 
-TEST(ArrivalPace, napsOnlyAfterTwoThatCameQuickly) {
+TEST(ArrivalPace, napsOnlyAfterTwoQuickArrivals) {
     ArrivalPace pace;
     constexpr int64_t kQuickNs = ArrivalPace::kQuickNs;
     EXPECT_FALSE(pace.moreSoon(0));
@@ -161,7 +162,7 @@ TEST(ArrivalPace, napsOnlyAfterTwoThatCameQuickly) {
     EXPECT_FALSE(pace.moreSoon(kQuickNs + 1));
     pace.arrived(2 * kQuickNs - 1);
     EXPECT_TRUE(pace.moreSoon(2 * kQuickNs));
-    EXPECT_FALSE(pace.moreSoon(3 * kQuickNs)); // nothing came
+    EXPECT_FALSE(pace.moreSoon(3 * kQuickNs)); // without an arrival
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// A captured program without GL: it says Hello, maps the ring and publishes words that FakeNode reads.
+// A captured program without GL: it sends Hello, maps the ring and publishes words that FakeNode reads.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@
 
 namespace mural {
 
-// What the payloads of these tests are made of: u32 length in words, u32 verb, arguments.
+// Verbs of the test payloads: u32 length in words, u32 verb, arguments.
 enum FakeVerb : uint32_t {
-    kFakeSwap = 1,    // frame, window, width, height
-    kFakePixels = 2,  // request, x, y, w, h
-    kFakeBytes = 3,   // request
-    kFakeSum = 4,     // request
-    kFakeNote = 5,    // anything: only noted
+    kFakeSwap = 1,       // frame, window, width, height
+    kFakePixels = 2,     // request, x, y, w, h
+    kFakeBytes = 3,      // request
+    kFakeSum = 4,        // request
+    kFakeNote = 5,       // any arguments, which nodes only record
     kFakeWindowGone = 6, // window
 };
 
@@ -35,7 +35,7 @@ constexpr int64_t kTestPatienceMs = 20'000;
 
 class FakeProgram {
 public:
-    // False: the socket could not be had or the head said nothing sensible.
+    // Connects to the head. Returns false if the socket is not available or the head's reply is invalid.
     bool connect(const std::string& session, uint64_t digest = kTestDigest) {
         socket_ = FileDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
         sockaddr_un address{};
@@ -63,7 +63,7 @@ public:
     FakeProgram(const FakeProgram&) = delete;
     FakeProgram& operator=(const FakeProgram&) = delete;
     ~FakeProgram() { disconnect(); }
-    // As the end of a process does: it gives up the socket and the memory.
+    // Closes the socket and unmaps the memory, as the end of a process does.
     void disconnect() {
         closeSocket();
         if (header_ != nullptr) munmap(header_, sizeBytes_);
@@ -75,7 +75,7 @@ public:
     const capture::Welcome& welcome() const { return welcome_; }
     const std::string& text() const { return text_; }
 
-    // One record as one publication that ends its chunk.
+    // Publishes one record that ends its chunk.
     bool publish(uint32_t verb, const std::vector<uint32_t>& arguments, uint16_t stream = 0) {
         std::vector<uint32_t> words{static_cast<uint32_t>(arguments.size() + 2), verb};
         words.insert(words.end(), arguments.begin(), arguments.end());

@@ -1,4 +1,4 @@
-// The head as a whole, with fake nodes and fake programs.
+// The complete head, with fake nodes and fake programs.
 #include "tests/head/session_harness.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::vector<uint32_t> notesOf(FakeNode& node, uint32_t stream) {
     return notes;
 }
 
-TEST(HeadSession, announcesWhatAllNodesHave) {
+TEST(HeadSession, announcesCommonFeaturesOfAllNodes) {
     SessionHarness head(3);
     head.config.latency = 2;
     head.config.verifyEvery = 5;
@@ -44,7 +44,7 @@ TEST(HeadSession, announcesWhatAllNodesHave) {
     EXPECT_EQ(head.status(), 0);
 }
 
-TEST(HeadSession, aProgramHearsWhatTheNodesHaveToSayOnce) {
+TEST(HeadSession, reportsDriverEventsToTheProgramOnce) {
     SessionHarness head(3);
     for (auto& behaviour : head.behaviours) behaviour.news = "a slow draw" + std::string(600, '.');
     head.start();
@@ -58,9 +58,9 @@ TEST(HeadSession, aProgramHearsWhatTheNodesHaveToSayOnce) {
     const capture::NewsSlot& slot = capture::news(program.header())[1];
     std::memcpy(&news, slot.news, sizeof news);
     EXPECT_EQ(news.context, 7u);
-    EXPECT_EQ(news.textBytes, capture::kNewsTextBytes); // the rest of a long text is left out
+    EXPECT_EQ(news.textBytes, capture::kNewsTextBytes); // long texts are truncated
     EXPECT_EQ(std::string(slot.text, 11), "a slow draw");
-    // A program that never looks: news are lost, frames go on.
+    // A program that never reads events: they are lost, and frames continue.
     ASSERT_TRUE(swapFrames(program, 3, 100));
     ASSERT_TRUE(program.waitFramesDone(100));
     EXPECT_EQ(program.header()->newsTail.load(), capture::kNewsSlots);
@@ -68,7 +68,7 @@ TEST(HeadSession, aProgramHearsWhatTheNodesHaveToSayOnce) {
     EXPECT_EQ(head.status(), 0);
 }
 
-TEST(HeadSession, everyNodeGetsEveryPacketInOrder) {
+TEST(HeadSession, sendsEveryPacketToEveryNodeInOrder) {
     SessionHarness head(3);
     head.start();
     head.waitFor("ready");
@@ -89,7 +89,7 @@ TEST(HeadSession, everyNodeGetsEveryPacketInOrder) {
         EXPECT_EQ(notesOf(head.node(node), wire::streamOf(a.welcome().clientId, 0)), expected);
         EXPECT_EQ(notesOf(head.node(node), wire::streamOf(a.welcome().clientId, 3)), expected);
         EXPECT_EQ(notesOf(head.node(node), wire::streamOf(b.welcome().clientId, 0)), expected);
-        // Not only per stream: the whole order is the same.
+        // Not only within each stream: the total order is equal on all nodes.
         const auto first = head.node(0).packets();
         const auto mine = head.node(node).packets();
         ASSERT_EQ(first.size(), mine.size());
@@ -100,7 +100,7 @@ TEST(HeadSession, everyNodeGetsEveryPacketInOrder) {
     EXPECT_EQ(report["nodes"][2]["lost"], false);
 }
 
-TEST(HeadSession, creditComesOnlyWhenAllNodesAreDone) {
+TEST(HeadSession, givesCreditOnlyWhenAllNodesAreDone) {
     std::atomic<bool> hold{true};
     SessionHarness head(2);
     head.behaviours[1].hold = nullptr;
@@ -117,7 +117,7 @@ TEST(HeadSession, creditComesOnlyWhenAllNodesAreDone) {
     EXPECT_TRUE(program.waitHeadGone());
 }
 
-TEST(HeadSession, aSlowNodeHoldsTheProgramBack) {
+TEST(HeadSession, blocksTheProgramForASlowNode) {
     std::atomic<bool> hold{false};
     SessionHarness head(2);
     head.pipeBytes = 4096;
@@ -129,7 +129,7 @@ TEST(HeadSession, aSlowNodeHoldsTheProgramBack) {
     ASSERT_TRUE(swapFrames(program, 1, 1));
     ASSERT_TRUE(program.waitFramesDone(1));
     hold = true;
-    // More bytes than the pipe and all chunks hold: the publisher must block until the node reads on.
+    // More bytes than the pipe and all chunks hold: the publisher must block until the node reads again.
     std::atomic<bool> done{false};
     std::thread publisher([&] {
         std::vector<uint32_t> words(2000, 0);
@@ -152,12 +152,12 @@ TEST(HeadSession, aSlowNodeHoldsTheProgramBack) {
     head.finish();
 }
 
-// As after `kill -STOP`: nothing tells it but its silence.
-TEST(HeadSession, aNodeThatSaysNothingIsLostAndTheProgramGoesOn) {
+// As after `kill -STOP`: the node's silence is the only sign.
+TEST(HeadSession, dropsASilentNodeAndContinues) {
     std::atomic<bool> hold{false};
     SessionHarness head(2);
     head.options.silencePatienceMs = 1500;
-    head.behaviours[0].alive = true; // idle nodes say that they live
+    head.behaviours[0].alive = true; // idle nodes send a heartbeat
     head.behaviours[1].alive = true;
     head.behaviours[1].hold = &hold;
     head.start();
@@ -180,7 +180,7 @@ TEST(HeadSession, aNodeThatSaysNothingIsLostAndTheProgramGoesOn) {
     hold = false;
 }
 
-TEST(HeadSession, whyANodeRefusesIsTheOneLineOfTheEnd) {
+TEST(HeadSession, endsWithTheReasonOfANodesRefusal) {
     SessionHarness head(2);
     head.behaviours[1].refuses = true;
     head.start();
@@ -189,7 +189,7 @@ TEST(HeadSession, whyANodeRefusesIsTheOneLineOfTheEnd) {
     for (const auto& event : head.seen) EXPECT_NE(event["event"], "say") << event;
 }
 
-TEST(HeadSession, whatEveryNodeDrawsWholeIsSaidOnce) {
+TEST(HeadSession, reportsWindowsThatEveryNodeDrawsWholeOnce) {
     SessionHarness head(2);
     for (auto& behaviour : head.behaviours) behaviour.drawsWhole = true;
     head.start();
@@ -206,8 +206,8 @@ TEST(HeadSession, whatEveryNodeDrawsWholeIsSaidOnce) {
     EXPECT_EQ(said, 1);
 }
 
-// Who takes longer gets less, and all hear of it at the same place of the stream.
-TEST(HeadSession, tilesOfAQueueMoveForAllNodesAtOnce) {
+// Slower nodes receive less, and all nodes receive the change at the same place of the stream.
+TEST(HeadSession, movesQueuedTilesOnAllNodesAtOnce) {
     SessionHarness head(3);
     head.config.tileWidth = head.config.tileHeight = 4;
     head.behaviours[0].busyNs = 9'000'000;
@@ -228,7 +228,7 @@ TEST(HeadSession, tilesOfAQueueMoveForAllNodesAtOnce) {
     EXPECT_EQ(report["queues"][0]["rows"], 12);
     EXPECT_LT(report["queues"][0]["nodes"][0]["tiles"], report["queues"][0]["nodes"][1]["tiles"]);
     int announced = 0;
-    std::vector<std::pair<uint32_t, std::vector<uint32_t>>> first; // all but setups
+    std::vector<std::pair<uint32_t, std::vector<uint32_t>>> first; // all commands except setups
     for (int node = 0; node < 3; ++node) {
         std::vector<std::pair<uint32_t, std::vector<uint32_t>>> packets;
         for (const auto& packet : head.node(node).packets()) {
@@ -242,7 +242,7 @@ TEST(HeadSession, tilesOfAQueueMoveForAllNodesAtOnce) {
     EXPECT_GT(announced, 1);
 }
 
-TEST(HeadSession, areasThatStayAreSaidOnce) {
+TEST(HeadSession, sendsUnchangedAreasOnce) {
     SessionHarness head(2);
     head.config.tileWidth = head.config.tileHeight = 4;
     for (auto& behaviour : head.behaviours) behaviour.keepsAreas = true;
@@ -257,7 +257,7 @@ TEST(HeadSession, areasThatStayAreSaidOnce) {
     EXPECT_EQ(std::ranges::count_if(head.seen, [](const auto& e) { return e["event"] == "say" && e["text"].template get<std::string>().find("its tiles stay") != std::string::npos; }), 1);
 }
 
-TEST(HeadSession, answersAreAssembledFromOneToFiveNodes) {
+TEST(HeadSession, assemblesRepliesOfOneToFiveNodes) {
     for (int nodes = 1; nodes <= 5; ++nodes) {
         SessionHarness head(nodes);
         head.start();
@@ -299,7 +299,7 @@ TEST(HeadSession, answersAreAssembledFromOneToFiveNodes) {
     }
 }
 
-TEST(HeadSession, anAnswerLargerThanTheReplyRingIsStreamed) {
+TEST(HeadSession, streamsAReplyLargerThanTheReplyRing) {
     SessionHarness head(2);
     head.pipeBytes = size_t{16} << 20;
     head.start();
@@ -316,7 +316,7 @@ TEST(HeadSession, anAnswerLargerThanTheReplyRingIsStreamed) {
     head.finish();
 }
 
-TEST(HeadSession, otherBuildsAndLatecomersAreRefused) {
+TEST(HeadSession, rejectsOtherBuildsAndLatecomers) {
     SessionHarness head(1);
     head.start();
     head.waitFor("ready");
@@ -330,7 +330,7 @@ TEST(HeadSession, otherBuildsAndLatecomersAreRefused) {
     EXPECT_EQ(right.welcome().refused, 0u);
     head.finish();
     FakeProgram late;
-    EXPECT_FALSE(late.connect(head.config.session)); // the name is gone with the session
+    EXPECT_FALSE(late.connect(head.config.session)); // the name ended with the session
 }
 
 struct Forgery {
@@ -338,7 +338,7 @@ struct Forgery {
     std::function<void(FakeProgram&)> act;
 };
 
-TEST(HeadSession, forgedRingsDropTheProgramAndNothingElse) {
+TEST(HeadSession, dropsOnlyTheProgramWithAForgedRing) {
     const Forgery forgeries[] = {
         {"chunk", [](FakeProgram& p) { p.publishRaw({99999, 0, 64, 0, 0}); }},
         {"begin after end", [](FakeProgram& p) { p.publishRaw({0, 64, 32, 0, 0}); }},
@@ -372,7 +372,7 @@ TEST(HeadSession, forgedRingsDropTheProgramAndNothingElse) {
     EXPECT_EQ(head.finish()["frames"], 3);
 }
 
-TEST(HeadSession, aProgramThatEndsIsDrainedAndItsContextsFreed) {
+TEST(HeadSession, drainsAnEndedProgramAndFreesItsContexts) {
     SessionHarness head(2);
     head.start();
     head.waitFor("ready");
@@ -410,7 +410,7 @@ TEST(HeadSession, keepsAProgramThatClosesItsSocketUntilItsMemoryIsUnmapped) {
     program.closeSocket();
     ASSERT_TRUE(swapFrames(program, 1, 3));
     ASSERT_TRUE(program.waitFramesDone(3));
-    poll(nullptr, 0, 200); // several looks of the head
+    poll(nullptr, 0, 200); // several checks of the head
     ASSERT_TRUE(swapFrames(program, 4, 6));
     ASSERT_TRUE(program.waitFramesDone(6));
     EXPECT_EQ(program.header()->headLife & FUTEX_OWNER_DIED, 0U);
@@ -421,7 +421,7 @@ TEST(HeadSession, keepsAProgramThatClosesItsSocketUntilItsMemoryIsUnmapped) {
     EXPECT_EQ(head.finish()["frames"], 6);
 }
 
-TEST(HeadSession, whatAProgramPublishesJustBeforeItsEndIsNotLost) {
+TEST(HeadSession, readsPublicationsMadeJustBeforeAProgramsEnd) {
     SessionHarness head(1);
     head.start();
     head.waitFor("ready");
@@ -436,7 +436,7 @@ TEST(HeadSession, whatAProgramPublishesJustBeforeItsEndIsNotLost) {
     EXPECT_EQ(head.finish()["nodes"][0]["frames"], 2 * kPrograms);
 }
 
-TEST(HeadSession, aNodeLostInMidFrameLeavesTheOthersGoingOn) {
+TEST(HeadSession, continuesWhenANodeIsLostInMidFrame) {
     for (const bool garbage : {false, true}) {
         SessionHarness head(3);
         (garbage ? head.behaviours[1].garbageAtFrame : head.behaviours[1].dieAtFrame) = 5;
@@ -456,7 +456,7 @@ TEST(HeadSession, aNodeLostInMidFrameLeavesTheOthersGoingOn) {
     }
 }
 
-TEST(HeadSession, aNodeLostInMidRequestDoesNotLoseTheAnswer) {
+TEST(HeadSession, answersWhenANodeIsLostInMidRequest) {
     for (const bool half : {false, true}) {
         SessionHarness head(3);
         head.behaviours[2].dieAtRequest = 7;
@@ -473,8 +473,8 @@ TEST(HeadSession, aNodeLostInMidRequestDoesNotLoseTheAnswer) {
         const auto* words = reinterpret_cast<const uint32_t*>(answer.bytes.data());
         EXPECT_EQ(words[0], 1u);
         if (half) {
-            EXPECT_EQ(words[63], 64u);       // the row that it had sent
-            EXPECT_EQ(words[64 + 63], 0u);   // and one that it had not
+            EXPECT_EQ(words[63], 64u); // the row that the node had sent
+            EXPECT_EQ(words[64 + 63], 0u); // and one that it had not sent
             EXPECT_EQ(words[64 + 41], 1042u);
         }
         head.finish();
@@ -483,9 +483,9 @@ TEST(HeadSession, aNodeLostInMidRequestDoesNotLoseTheAnswer) {
 
 constexpr int64_t kLongPauseMs = 1200;
 
-// More than the ring of replies holds, several times over: the head keeps it, and goes on. The program takes none of it
+// Several times the size of the reply ring: the head stores the replies and continues. The program reads none of them
 // for a while.
-TEST(HeadSession, answersThatAreOwedWaitForTheProgram) {
+TEST(HeadSession, keepsDeferredRepliesForTheProgram) {
     SessionHarness head(2);
     head.start();
     head.waitFor("ready");
@@ -512,8 +512,8 @@ TEST(HeadSession, answersThatAreOwedWaitForTheProgram) {
     EXPECT_EQ(head.status(), 0);
 }
 
-// As a program that is stopped in the middle of a read.
-TEST(HeadSession, keepsTheRestOfAnAnswerWhileTheProgramReadsNothing) {
+// The program behaves like one that is stopped in the middle of a read.
+TEST(HeadSession, keepsTheRestOfAReplyForAProgramThatReadsNothing) {
     SessionHarness head(2);
     head.start();
     head.waitFor("ready");
@@ -523,7 +523,7 @@ TEST(HeadSession, keepsTheRestOfAnAnswerWhileTheProgramReadsNothing) {
     constexpr uint32_t kWords = capture::kReplyBytes / 4 + 100'000;
     ASSERT_TRUE(program.publish(kFakeBytes, {1, kWords}));
     std::this_thread::sleep_for(std::chrono::milliseconds(kLongPauseMs));
-    ASSERT_TRUE(swapFrames(other, 1, 20)); // nobody else is held up
+    ASSERT_TRUE(swapFrames(other, 1, 20)); // the other program continues
     ASSERT_TRUE(other.waitFramesDone(20));
     EXPECT_EQ(program.header()->headGone.load(), 0u);
     EXPECT_GT(program.header()->headBeat.load(), 3u);
@@ -535,7 +535,7 @@ TEST(HeadSession, keepsTheRestOfAnAnswerWhileTheProgramReadsNothing) {
     EXPECT_EQ(head.status(), 0);
 }
 
-TEST(HeadSession, withoutNodesProgramsGoOnAlone) {
+TEST(HeadSession, letsProgramsContinueWithoutNodes) {
     SessionHarness head(2);
     head.behaviours[0].dieAtFrame = 3;
     head.behaviours[1].dieAtFrame = 3;
@@ -552,7 +552,7 @@ TEST(HeadSession, withoutNodesProgramsGoOnAlone) {
     EXPECT_EQ(head.finish()["frames"], 2);
 }
 
-TEST(HeadSession, aNodeThatIsNeverReadyIsOneClearError) {
+TEST(HeadSession, reportsANodeThatIsNeverReady) {
     SessionHarness head(2);
     head.behaviours[1].silentStart = true;
     head.options.readyPatienceMs = 100;
@@ -561,7 +561,7 @@ TEST(HeadSession, aNodeThatIsNeverReadyIsOneClearError) {
     EXPECT_NE(error["text"].get<std::string>().find("node 1 (local) was not ready"), std::string::npos) << error;
 }
 
-TEST(HeadSession, aNodeThatDoesNotSayByeEndsTheSessionAllTheSame) {
+TEST(HeadSession, endsWithoutANodesFarewell) {
     SessionHarness head(2);
     head.behaviours[1].noBye = true;
     head.start();
@@ -571,7 +571,7 @@ TEST(HeadSession, aNodeThatDoesNotSayByeEndsTheSessionAllTheSame) {
     EXPECT_EQ(report["nodes"][0]["lost"], false);
 }
 
-TEST(HeadSession, aNodeThatTakesNothingDoesNotHangTheEnd) {
+TEST(HeadSession, endsWhenANodeReadsNothing) {
     std::atomic<bool> hold{false};
     SessionHarness head(2);
     head.pipeBytes = 4096;
@@ -591,8 +591,8 @@ TEST(HeadSession, aNodeThatTakesNothingDoesNotHangTheEnd) {
     hold = false;
 }
 
-TEST(HeadSession, aBrokenControlConnectionEndsTheSession) {
-    for (int round = 0; round < 20; ++round) { // against the moment in which the program is let in
+TEST(HeadSession, endsWhenTheControlConnectionBreaks) {
+    for (int round = 0; round < 20; ++round) { // to cover the moment of the program's admission
         SessionHarness head(2);
         head.start();
         head.waitFor("ready");
@@ -602,11 +602,11 @@ TEST(HeadSession, aBrokenControlConnectionEndsTheSession) {
         head.breakControl();
         EXPECT_EQ(head.status(), 0);
         EXPECT_TRUE(program.waitHeadGone());
-        EXPECT_EQ(program.header()->framesDone.load(), 4u); // drained all the same
+        EXPECT_EQ(program.header()->framesDone.load(), 4u); // drained nevertheless
     }
 }
 
-TEST(HeadSession, saysWhenAsManyFramesAsAskedForAreOnTheWall) {
+TEST(HeadSession, reportsWhenTheRequestedFramesAreOnTheWall) {
     SessionHarness head(2);
     head.config.frames = 5;
     head.start();

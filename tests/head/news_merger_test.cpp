@@ -14,7 +14,7 @@ TEST(NewsMerger, reportsAMessageOfAllNodesOnce) {
     EXPECT_TRUE(merger.isNew(0, message(1, 10), "slow"));
     EXPECT_FALSE(merger.isNew(1, message(1, 20), "slow")); // ids differ between nodes
     EXPECT_FALSE(merger.isNew(2, message(1, 30), "slow"));
-    EXPECT_TRUE(merger.isNew(1, message(1, 20), "slow")); // a second time, from whichever node is first
+    EXPECT_TRUE(merger.isNew(1, message(1, 20), "slow")); // a second time, from any node
     EXPECT_FALSE(merger.isNew(0, message(1, 10), "slow"));
 }
 

@@ -11,7 +11,7 @@ protected:
     PictureAssembler assembler{2, [this](WindowPicture picture) { pictures.push_back(std::move(picture)); }};
     std::vector<WindowPicture> pictures;
 
-    // Windows of 4 × 1 pixels; node 0 draws the left half, node 1 the right one.
+    // Delivers one part of a window of 4 × 1 pixels. Node 0 draws the left half, node 1 the right one.
     bool part(int node, uint32_t frame, uint32_t pixel, uint32_t window = 1, uint32_t width = 4, PictureFormat format = PictureFormat::Bgra8) {
         const int32_t x = node == 0 ? 0 : 2;
         const wire::PictureHeader header{1, window, frame, x, 0, 2, 1, width, 1, 0xabc, 0, static_cast<uint32_t>(format)};
@@ -30,7 +30,7 @@ protected:
 
 using Pixels = std::vector<uint32_t>;
 
-TEST_F(PictureAssemblerTest, partsMayComeOutOfOrder) {
+TEST_F(PictureAssemblerTest, acceptsPartsOutOfOrder) {
     part(0, 1, 10);
     part(0, 2, 20);
     part(0, 3, 30);
@@ -45,8 +45,8 @@ TEST_F(PictureAssemblerTest, partsMayComeOutOfOrder) {
     EXPECT_EQ(pictures[0].nativeWindow, 0xabcu);
 }
 
-// A node whose driver has no surfaces of 10 bits sends 8, which 10 bits hold without a loss.
-TEST_F(PictureAssemblerTest, partsOfBothFormatsMakeADeepPicture) {
+// A node whose driver has no surfaces of 10 bits sends 8, which 10 bits represent without loss.
+TEST_F(PictureAssemblerTest, combinesPartsOfBothFormats) {
     const uint32_t deep = 3U << 30 | 0x201U << 20 | 1U << 10 | 0x3ffU, plain = 0xff8000ffU;
     part(0, 1, deep, 1, 4, PictureFormat::Bgr10A2);
     part(1, 1, plain);
@@ -57,7 +57,7 @@ TEST_F(PictureAssemblerTest, partsOfBothFormatsMakeADeepPicture) {
     EXPECT_FALSE(part(0, 2, deep, 1, 4, static_cast<PictureFormat>(2)));
 }
 
-TEST_F(PictureAssemblerTest, aLostNodesTilesStayAsTheyWere) {
+TEST_F(PictureAssemblerTest, keepsOldTilesOfALostNode) {
     part(0, 1, 10);
     part(1, 1, 11);
     part(0, 2, 20);
@@ -68,24 +68,24 @@ TEST_F(PictureAssemblerTest, aLostNodesTilesStayAsTheyWere) {
     EXPECT_EQ(pixels(2), (Pixels{30, 30, 11, 11}));
     part(0, 4, 40);
     EXPECT_EQ(pixels(3), (Pixels{40, 40, 11, 11}));
-    part(0, 5, 50, 1, 6); // resized: nothing there to keep
+    part(0, 5, 50, 1, 6); // resized: there is no old tile
     EXPECT_EQ(pixels(4), (Pixels{50, 50, 0, 0, 0, 0}));
 }
 
-TEST_F(PictureAssemblerTest, aFinishedFrameNeedsNoPart) {
-    assembler.frameDone(1, 1, 1, 1); // before the other's part
+TEST_F(PictureAssemblerTest, completesFramesWithoutParts) {
+    assembler.frameDone(1, 1, 1, 1); // before the other node's part
     part(0, 1, 10);
     EXPECT_EQ(pictures.size(), 1u);
     part(0, 2, 20);
     assembler.frameDone(1, 1, 1, 2); // and after
     EXPECT_EQ(pictures.size(), 2u);
     assembler.frameDone(0, 1, 1, 3);
-    assembler.frameDone(1, 1, 1, 3); // of nobody: no picture
+    assembler.frameDone(1, 1, 1, 3); // no part of any node: no picture
     EXPECT_EQ(pictures.size(), 2u);
 }
 
-// By turns: one has a part, the other none; who had one finishes the frame behind it.
-TEST_F(PictureAssemblerTest, anyNumberOfFramesInTurns) {
+// Alternating frames: one node has a part, the other none. The node with the part reports the frame done after it.
+TEST_F(PictureAssemblerTest, assemblesAnyNumberOfAlternatingFrames) {
     constexpr uint32_t kFrames = 20'000;
     for (uint32_t frame = 1; frame <= kFrames; ++frame) {
         const int drawer = static_cast<int>(frame % 2);
@@ -97,7 +97,7 @@ TEST_F(PictureAssemblerTest, anyNumberOfFramesInTurns) {
     }
 }
 
-TEST_F(PictureAssemblerTest, nothingIsKeptOfAProgramThatHasGone) {
+TEST_F(PictureAssemblerTest, keepsNothingOfAnEndedProgram) {
     part(0, 1, 10);
     part(1, 1, 11);
     part(0, 2, 20);
@@ -108,7 +108,7 @@ TEST_F(PictureAssemblerTest, nothingIsKeptOfAProgramThatHasGone) {
     EXPECT_EQ(pixels(1), (Pixels{30, 30, 0, 0}));
 }
 
-TEST_F(PictureAssemblerTest, windowsAreApart) {
+TEST_F(PictureAssemblerTest, separatesWindows) {
     part(0, 1, 10, 1);
     part(1, 2, 21, 2);
     EXPECT_TRUE(pictures.empty());
@@ -117,7 +117,7 @@ TEST_F(PictureAssemblerTest, windowsAreApart) {
     EXPECT_EQ(pictures[0].window, 2u);
 }
 
-TEST_F(PictureAssemblerTest, memoryIsReusedOnlyWhenNobodyHoldsIt) {
+TEST_F(PictureAssemblerTest, reusesMemoryOnlyWithoutReferences) {
     for (uint32_t frame = 1; frame <= 20; ++frame) {
         part(0, frame, frame);
         part(1, frame, frame);
@@ -125,7 +125,7 @@ TEST_F(PictureAssemblerTest, memoryIsReusedOnlyWhenNobodyHoldsIt) {
     for (uint32_t frame = 1; frame <= 20; ++frame) EXPECT_EQ(pixels(frame - 1), Pixels(4, frame));
 }
 
-TEST_F(PictureAssemblerTest, partsOutsideOfTheirPictureAreErrors) {
+TEST_F(PictureAssemblerTest, rejectsPartsOutsideTheirPicture) {
     const wire::PictureHeader bad[] = {
         {1, 1, 1, 3, 0, 2, 1, 4, 1, 0, 0, 0},         {1, 1, 1, -1, 0, 2, 1, 4, 1, 0, 0, 0},
         {1, 1, 1, 0, 1, 2, 1, 4, 1, 0, 0, 0},         {1, 1, 1, 0, 0, 2, 1, 0, 0, 0, 0, 0},

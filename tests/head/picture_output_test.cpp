@@ -1,4 +1,4 @@
-// Which sinks get a frame's pictures, and of how many eyes.
+// Selection of the sinks for a frame's pictures, and the number of eyes.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -16,7 +16,7 @@ constexpr std::byte kLeft{200}, kRight{100};
 
 struct Shown {
     int width = 0, height = 0;
-    std::byte left{}, right{}; // of the first pixel; right 0: one picture came
+    std::byte left{}, right{}; // value of the first pixel; right 0: one picture arrived
 };
 
 class TellingSink final : public PictureSink {
@@ -51,8 +51,8 @@ std::shared_ptr<OwnedPicture> pairOfEyes() {
     return both;
 }
 
-// The first canvas and one beside it, either of which may be for two eyes.
-TEST(PictureOutput, EachCanvasHasItsOwnEyes) {
+// The first canvas and a second one, each for one or two eyes.
+TEST(PictureOutput, givesEachCanvasItsEyes) {
     for (const bool firstIsPair : {false, true})
         for (const bool otherIsPair : {false, true}) {
             std::vector<Shown> file, wall, otherFile, otherWall;
@@ -84,8 +84,8 @@ TEST(PictureOutput, EachCanvasHasItsOwnEyes) {
         }
 }
 
-// Files have 8 bits, which one line says; the program's window takes all.
-TEST(PictureOutput, DeepPicturesAreReducedForWhoTakesNone) {
+// Files have 8 bits, which one line reports; the program's window receives all bits.
+TEST(PictureOutput, reducesDeepPicturesForSinksWithoutDepth) {
     struct DeepSink final : PictureSink {
         explicit DeepSink(std::vector<PictureFormat>& formats) : formats_(formats) {}
         Result<void> show(int64_t, const Picture& p) override {
@@ -108,7 +108,7 @@ TEST(PictureOutput, DeepPicturesAreReducedForWhoTakesNone) {
     PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));
     auto deep = std::make_shared<OwnedPicture>();
     deep->resize(kWidth, kHeight, PictureFormat::Bgr10A2);
-    const uint32_t word = 805; // of 1023, blue: 200.7 of 255
+    const uint32_t word = 805; // blue of 1023: 200.7 of 255
     for (int i = 0; i < kWidth * kHeight; ++i) std::memcpy(deep->data() + 4 * i, &word, 4);
     for (uint32_t frame = 1; frame <= 2; ++frame) output.add({1, 1, frame, 7, deep, {}});
     ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
@@ -118,7 +118,7 @@ TEST(PictureOutput, DeepPicturesAreReducedForWhoTakesNone) {
     EXPECT_EQ(said, "the program's window has 10 bits per channel; --out saves its pictures with 8");
 }
 
-TEST(PictureOutput, AVideoThatIsNotCompleteIsNotSaved) {
+TEST(PictureOutput, savesOnlyACompleteVideo) {
     for (const bool complete : {true, false}) {
         std::vector<Shown> file;
         std::string said;

@@ -1,4 +1,4 @@
-// Pictures through the whole head: saved, shown, counted.
+// Pictures through the complete head: saved, shown, counted.
 #include "tests/head/session_harness.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 namespace mural {
 namespace {
 
-// What sinks were given; shared with the test.
+// Frames that sinks received; shared with the test.
 struct Shown {
     std::mutex mutex;
     std::condition_variable changed;
@@ -66,7 +66,7 @@ bool swapFrame(FakeProgram& program, uint32_t frame, uint32_t window = 1, uint32
     return program.publish(kFakeSwap, {frame, window, width, 48});
 }
 
-TEST(PictureSession, wallPicturesOfAllNodesAreSaved) {
+TEST(PictureSession, savesWallPicturesOfAllNodes) {
     Shown shown;
     SessionHarness head(4);
     addSinks(head, shown);
@@ -83,7 +83,7 @@ TEST(PictureSession, wallPicturesOfAllNodesAreSaved) {
     for (uint32_t x = 0; x < 64; ++x) EXPECT_EQ(shown.lastPixels[x], 10 << 8 | x / 16);
 }
 
-TEST(PictureSession, onlyTheAskedFramesOfTheMainWindowAreSaved) {
+TEST(PictureSession, savesOnlyRequestedFramesOfTheMainWindow) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
@@ -101,11 +101,11 @@ TEST(PictureSession, onlyTheAskedFramesOfTheMainWindowAreSaved) {
     }
     head.waitFor("frames-reached");
     const auto report = head.finish();
-    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{2, 4})); // of the wall: the splash screen's count, too
+    EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{2, 4})); // frames of the wall, including the splash screen's
     EXPECT_EQ(report["savedPictures"], 2);
 }
 
-TEST(PictureSession, whenTheMainWindowIsDestroyedTheNextLargestIsTheWall) {
+TEST(PictureSession, showsTheNextLargestWindowAfterTheMainWindow) {
     Shown shown;
     SessionHarness head(3);
     addSinks(head, shown);
@@ -125,8 +125,8 @@ TEST(PictureSession, whenTheMainWindowIsDestroyedTheNextLargestIsTheWall) {
     EXPECT_EQ(report["frames"], 9);
 }
 
-// Nodes may be frames behind when a program ends: what still comes is of the window that was the main one.
-TEST(PictureSession, aProgramIsForgottenAfterItsLastPicture) {
+// Nodes may be several frames late when a program ends: their pictures still belong to the last main window.
+TEST(PictureSession, forgetsAProgramAfterItsLastPicture) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
@@ -152,8 +152,8 @@ TEST(PictureSession, aProgramIsForgottenAfterItsLastPicture) {
     EXPECT_EQ(report["frames"], 1);
 }
 
-// The node that is lost would be waited for for ever.
-TEST(PictureSession, aLostNodeNeedNotSayThatAWindowIsGone) {
+// A wait for the lost node would never end.
+TEST(PictureSession, closesAWindowWithoutALostNode) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
@@ -173,7 +173,7 @@ TEST(PictureSession, aLostNodeNeedNotSayThatAWindowIsGone) {
     EXPECT_EQ(shown.frames["file"].back(), 3);
 }
 
-TEST(PictureSession, noFrameBehindTheLastOneIsSaved) {
+TEST(PictureSession, savesNoFrameAfterTheLastOne) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
@@ -188,7 +188,7 @@ TEST(PictureSession, noFrameBehindTheLastOneIsSaved) {
     EXPECT_EQ(report["savedPictures"], 3);
 }
 
-TEST(PictureSession, aSlowOutputHoldsNodesAndProgramBack) {
+TEST(PictureSession, blocksNodesAndProgramForASlowOutput) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
@@ -199,7 +199,7 @@ TEST(PictureSession, aSlowOutputHoldsNodesAndProgramBack) {
     shown.block(true);
     for (uint32_t frame = 1; frame <= 12; ++frame) ASSERT_TRUE(swapFrame(program, frame));
     ASSERT_TRUE(program.waitFramesDone(1));
-    // One being shown, three queued and one more per reader: the rest must wait.
+    // One shown, three queued and one more per reader: the rest must wait.
     EXPECT_LT(program.header()->framesDone.load(), 12u);
     shown.block(false);
     EXPECT_TRUE(program.waitFramesDone(12));
@@ -207,7 +207,7 @@ TEST(PictureSession, aSlowOutputHoldsNodesAndProgramBack) {
     EXPECT_EQ(shown.frames["file"].size(), 12u);
 }
 
-TEST(PictureSession, inTheAppsWindowFramesCountWhenTheyAreShown) {
+TEST(PictureSession, countsFramesInTheProgramsWindowWhenShown) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
@@ -227,12 +227,12 @@ TEST(PictureSession, inTheAppsWindowFramesCountWhenTheyAreShown) {
     shown.block(true);
     ASSERT_TRUE(swapFrame(program, 2, 5));
     ASSERT_TRUE(program.publish(kFakeSum, {77}));
-    FakeProgram::Answer answer; // the nodes are past the frame then
+    FakeProgram::Answer answer; // the nodes have passed the frame then
     ASSERT_TRUE(program.readAnswer(answer));
     EXPECT_EQ(program.header()->framesDone.load(), 1u);
     shown.block(false);
     EXPECT_TRUE(program.waitFramesDone(2));
-    // A frame of a window without native window is shown nowhere, and does not hold the program up.
+    // A frame of a window without a native window is not shown, and does not block the program.
     ASSERT_TRUE(swapFrame(program, 3, 0));
     EXPECT_TRUE(program.waitFramesDone(3));
     EXPECT_TRUE(program.waitFramesShown(3));
@@ -240,7 +240,7 @@ TEST(PictureSession, inTheAppsWindowFramesCountWhenTheyAreShown) {
     EXPECT_EQ(shown.frames["window 5"].size(), 2u);
 }
 
-TEST(PictureSession, withLatencyTheProgramRunsAheadOfTheScreen) {
+TEST(PictureSession, letsTheProgramRunAheadWithLatency) {
     Shown shown;
     SessionHarness head(1);
     addSinks(head, shown);
@@ -259,7 +259,7 @@ TEST(PictureSession, withLatencyTheProgramRunsAheadOfTheScreen) {
     head.finish();
 }
 
-TEST(PictureSession, aFailingFileIsOneLineAndTheSessionGoesOn) {
+TEST(PictureSession, reportsAFailingFileInOneLineAndContinues) {
     Shown shown;
     shown.failing = true;
     SessionHarness head(1);

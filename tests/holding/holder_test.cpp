@@ -1,4 +1,4 @@
-// Which commands the filter defers, until when, and which it drops.
+// The commands that the filter defers, for how long, and the commands that it drops.
 #include "holding/holder.hpp"
 
 #include <algorithm>

@@ -268,7 +268,7 @@ struct Won {
     size_t held = 0, leftOut = 0, alike = 0; // records
 };
 
-// What a node sees of the original packets, and of the filter's output.
+// The effect of the original packets on a node, and of the filter's output.
 class Both {
 public:
     Both(RandomProgram& program, uint64_t mostBytes, bool small, uint32_t toggles) : program_(program), mostBytes_(mostBytes), toggles_(toggles) { holder_.leaveOutSmall(small); }

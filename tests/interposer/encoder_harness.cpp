@@ -19,7 +19,7 @@ testing::EncoderHarness* harness = nullptr;
 // ---- the session, whose other end is the harness
 
 Session* Session::current() {
-    // Session has a private life of its own: memory that says "alive" and whose members are never read.
+    // Session's members are private; this memory says "alive" and its members are never read.
     alignas(Session) static std::byte memory[sizeof(Session)];
     static Session* session = new (memory) Session;
     if (!harness) return nullptr;
@@ -41,7 +41,7 @@ void say(const char*, ...) {}
 void beforeAwaitedDrawing(ThreadState&, uint32_t) {}
 void shipLastingMaps(ThreadState&) {}
 
-// Like thread_state.cpp, for one thread that never ends.
+// Replaces thread_state.cpp for one thread that never ends.
 ThreadState* firstThread() { return nullptr; }
 void* scratchMemory(ThreadState& t, size_t bytes) {
     if (bytes <= t.scratchBytes) return t.scratch;
@@ -71,7 +71,7 @@ void EncoderHarness::publish(ThreadState& t) {
     t.publishedBytes = static_cast<uint32_t>(t.cursor - chunk_.get());
 }
 
-// There is one chunk, used again and again: what stood in it has been copied.
+// There is one chunk, which is reused after its contents have been copied.
 bool EncoderHarness::takeChunk(ThreadState& t) {
     if (!alive_) return false;
     ++chunksTaken_;

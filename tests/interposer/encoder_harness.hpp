@@ -1,5 +1,5 @@
-// The interposer's encoder over a buffer of the test's own instead of a head's chunks: what it writes is
-// kept in the order of publication, as the head would forward it.
+// Runs the interposer's encoder on a buffer of the test instead of the head's chunks. The output is kept in the order
+// of publication, in which the head forwards it.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +19,13 @@ public:
     EncoderHarness& operator=(const EncoderHarness&) = delete;
 
     ThreadState& thread() { return thread_; }
-    // All that was encoded since the last call, one piece per chunk: the payloads of packets.
+    // Returns the payloads of packets encoded since the last call, one piece per chunk.
     std::vector<std::vector<std::byte>> takePackets();
-    // The same in one piece.
+    // Returns the same in one piece.
     std::vector<std::byte> takeBytes();
-    // As if the head had gone.
+    // Simulates the end of the head.
     void loseHead();
-    // The context that encodes has an unpack buffer bound.
+    // Sets whether the encoding context has an unpack buffer bound.
     void bindUnpackBuffer(bool bound);
     size_t chunksTaken() const { return chunksTaken_; }
 

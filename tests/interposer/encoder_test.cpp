@@ -1,4 +1,4 @@
-// What the generated encoders write, the decoder of the render nodes reads.
+// The render nodes' decoder reads the output of the generated encoders.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ std::vector<std::byte> copyOf(const Data& d) { return {d.span().begin(), d.span(
 
 class EncoderTest : public ::testing::Test {
 protected:
-    // The only record that was encoded; its arguments go to `read`, which must take all of them.
+    // Passes the arguments of the only encoded record to `read`, which must consume all of them.
     template <class F> void theRecord(uint16_t opcode, const F& read) {
         const auto bytes = harness_.takeBytes();
         ASSERT_EQ(bytes.size() % 4, 0u);
@@ -42,7 +42,7 @@ protected:
     ThreadState& t_ = harness_.thread();
 };
 
-TEST_F(EncoderTest, ScalarsOfAllWidths) {
+TEST_F(EncoderTest, encodesScalarsOfAllWidths) {
     encode_glNormal3b(t_, -128, 127, -1);
     theRecord(op::glNormal3b, [](Args& in) {
         EXPECT_EQ(in.narrow<GLbyte>(), -128);
@@ -74,7 +74,7 @@ TEST_F(EncoderTest, ScalarsOfAllWidths) {
     });
 }
 
-TEST_F(EncoderTest, FixedArraysArePaddedToWords) {
+TEST_F(EncoderTest, padsFixedArraysToWords) {
     const GLubyte colour[3] = {1, 2, 3};
     encode_glColor3ubv(t_, colour);
     theRecord(op::glColor3ubv, [&](Args& in) { EXPECT_EQ(std::memcmp(in.fixed<GLubyte>(3), colour, 3), 0); });
@@ -83,7 +83,7 @@ TEST_F(EncoderTest, FixedArraysArePaddedToWords) {
     theRecord(op::glRasterPos2dv, [&](Args& in) { EXPECT_EQ(std::memcmp(in.fixed<GLdouble>(16), position, 16), 0); });
 }
 
-TEST_F(EncoderTest, InlineDataOfEveryLengthModuloFour) {
+TEST_F(EncoderTest, encodesInlineDataOfEveryLengthModuloFour) {
     for (const size_t n : {1u, 2u, 3u, 4u, 5u, 1000u, record::kInlineBytes - 1, record::kInlineBytes}) {
         const auto bytes = counting(n);
         encode_glBufferData(t_, GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(n), DataArg::of(bytes.data(), n), GL_STATIC_DRAW);
@@ -96,7 +96,7 @@ TEST_F(EncoderTest, InlineDataOfEveryLengthModuloFour) {
     }
 }
 
-TEST_F(EncoderTest, NullAndOffset) {
+TEST_F(EncoderTest, encodesNullAndOffsets) {
     encode_glBufferData(t_, GL_ARRAY_BUFFER, 64, DataArg::of(nullptr, 64), GL_STATIC_DRAW);
     theRecord(op::glBufferData, [](Args& in) {
         in.get<GLenum>();
@@ -115,7 +115,7 @@ TEST_F(EncoderTest, NullAndOffset) {
     });
 }
 
-TEST_F(EncoderTest, AnOffsetWhereOnlyBytesMakeSenseIsRefused) {
+TEST_F(EncoderTest, rejectsAnOffsetWhereOnlyBytesAreValid) {
     encode_glDeleteTextures(t_, 1, DataArg::offset(reinterpret_cast<const void*>(uintptr_t{64})));
     const auto bytes = harness_.takeBytes();
     RecordReader reader(bytes);
@@ -127,7 +127,7 @@ TEST_F(EncoderTest, AnOffsetWhereOnlyBytesMakeSenseIsRefused) {
     EXPECT_FALSE(in.ok());
 }
 
-TEST_F(EncoderTest, LargeValuesGoAheadInPieces) {
+TEST_F(EncoderTest, sendsLargeValuesInAdvanceInPieces) {
     for (const size_t n : {size_t{record::kInlineBytes} + 1, size_t{record::kBlobPieceBytes}, size_t{3} * record::kBlobPieceBytes + 5, size_t{2} << 20}) {
         const auto bytes = counting(n);
         encode_glBufferData(t_, GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(n), DataArg::of(bytes.data(), n), GL_STATIC_DRAW);
@@ -140,7 +140,7 @@ TEST_F(EncoderTest, LargeValuesGoAheadInPieces) {
     }
 }
 
-TEST_F(EncoderTest, SeveralBlobsOfOneRecordKeepTheirOrder) {
+TEST_F(EncoderTest, keepsTheOrderOfBlobsOfOneRecord) {
     const auto first = counting(20000), second = counting(30001);
     encode_glMultiDrawElements(t_, GL_LINES, DataArg::of(first.data(), first.size()), GL_UNSIGNED_INT, DataArg::of(second.data(), second.size()), 5000);
     theRecord(op::glMultiDrawElements, [&](Args& in) {
@@ -152,7 +152,7 @@ TEST_F(EncoderTest, SeveralBlobsOfOneRecordKeepTheirOrder) {
     });
 }
 
-TEST_F(EncoderTest, Strings) {
+TEST_F(EncoderTest, encodesStrings) {
     encode_glBindAttribLocation(t_, 3, 1, DataArg::text("in_position"));
     theRecord(op::glBindAttribLocation, [](Args& in) {
         in.get<GLuint>();
@@ -176,8 +176,8 @@ TEST_F(EncoderTest, Strings) {
     });
 }
 
-TEST_F(EncoderTest, ImagesTravelTight) {
-    // Rows of 5 bytes lie 8 apart under the default alignment of 4.
+TEST_F(EncoderTest, packsImagesWithoutPadding) {
+    // Rows of 5 bytes have a stride of 8 under the default alignment of 4.
     const auto image = counting(8 * 3);
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_R8, 5, 3, 0, GL_RED, GL_UNSIGNED_BYTE, imageSource(t_, image.data(), GL_RED, GL_UNSIGNED_BYTE, 5, 3, 1, 2));
     theRecord(op::glTexImage2D, [&](Args& in) {
@@ -191,7 +191,7 @@ TEST_F(EncoderTest, ImagesTravelTight) {
     EXPECT_TRUE(packedSource(t_, image.data(), 24).isOffset);
 }
 
-TEST_F(EncoderTest, LongRecordsTakeTheLongForm) {
+TEST_F(EncoderTest, usesTheLongFormForLongRecords) {
     std::vector<std::vector<std::byte>> spans;
     std::vector<DataArg> data;
     for (size_t i = 0; i < 10; ++i) {
@@ -206,7 +206,7 @@ TEST_F(EncoderTest, LongRecordsTakeTheLongForm) {
         in.fixed<client_arrays::ArrayRecord>(sizeof array);
         for (const auto& span : spans) EXPECT_EQ(copyOf(in.data()), span);
     });
-    // By hand: the largest short record, and the smallest long one.
+    // Built by hand: the largest short record, and the smallest long one.
     for (const uint32_t words : {record::kLongForm - 1, uint32_t{record::kLongForm}}) {
         const uint32_t size = 4 * words;
         const bool isLong = words == record::kLongForm;
@@ -225,7 +225,7 @@ TEST_F(EncoderTest, LongRecordsTakeTheLongForm) {
     }
 }
 
-TEST_F(EncoderTest, ManySpansNeverOutgrowAChunk) {
+TEST_F(EncoderTest, neverExceedsAChunkWithManySpans) {
     std::vector<std::vector<std::byte>> spans;
     std::vector<DataArg> data;
     std::vector<client_arrays::ArrayRecord> arrays;
@@ -243,7 +243,7 @@ TEST_F(EncoderTest, ManySpansNeverOutgrowAChunk) {
     });
 }
 
-TEST_F(EncoderTest, OwnRecords) {
+TEST_F(EncoderTest, encodesControlRecords) {
     wire::WindowConfig config{};
     config.width = 640;
     config.nativeHigh = 3;
@@ -268,7 +268,7 @@ TEST_F(EncoderTest, OwnRecords) {
     });
 }
 
-TEST_F(EncoderTest, RecordsDoNotCrossChunks) {
+TEST_F(EncoderTest, keepsRecordsWithinChunks) {
     for (int i = 0; i < 100000; ++i) encode_glVertex3f(t_, static_cast<GLfloat>(i), 0, 0);
     const auto packets = harness_.takePackets();
     EXPECT_GT(packets.size(), 1u);
@@ -285,7 +285,7 @@ TEST_F(EncoderTest, RecordsDoNotCrossChunks) {
     EXPECT_EQ(next, 100000);
 }
 
-TEST_F(EncoderTest, NothingIsWrittenWhenTheHeadIsGone) {
+TEST_F(EncoderTest, writesNothingWithoutAHead) {
     encode_glVertex3f(t_, 1, 2, 3);
     harness_.loseHead();
     t_.limit = nullptr;

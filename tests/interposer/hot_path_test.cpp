@@ -1,4 +1,4 @@
-// A small call costs no allocation and no system call, as long as its chunk has room.
+// A small call makes no allocation and no system call while its chunk has room.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -12,7 +12,7 @@
 #include "encoders.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 
-#if !defined(__SANITIZE_ADDRESS__) // a sanitizer has a malloc of its own
+#if !defined(__SANITIZE_ADDRESS__) // sanitizers replace malloc
 namespace {
 std::atomic<uint64_t> allocations{0};
 }
@@ -31,7 +31,7 @@ namespace {
 
 constexpr int kCalls = 100000;
 
-// Calls of several shapes, in one chunk that is used again from its start.
+// Encodes calls of several shapes into one chunk, which is reused from its start.
 void encodeSmallCalls(ThreadState& t, std::byte* start) {
     const GLfloat values[4] = {1, 2, 3, 4};
     for (int i = 0; i < kCalls / 5; ++i) {
@@ -45,7 +45,7 @@ void encodeSmallCalls(ThreadState& t, std::byte* start) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__)
-TEST(HotPath, AllocatesNothing) {
+TEST(HotPath, allocatesNothing) {
     EncoderHarness harness;
     encode_glVertex3f(harness.thread(), 1, 2, 3); // takes the chunk
     std::byte* start = harness.thread().cursor;
@@ -57,7 +57,7 @@ TEST(HotPath, AllocatesNothing) {
 }
 #endif
 
-// In a child under strict seccomp: any system call but write and exit kills it.
+// Runs the calls in a child under strict seccomp: any system call except write and exit kills it.
 int childUnderSeccomp(bool alsoCalls) {
     EncoderHarness harness;
     encode_glVertex3f(harness.thread(), 1, 2, 3);
@@ -74,11 +74,11 @@ int childUnderSeccomp(bool alsoCalls) {
     return status;
 }
 
-TEST(HotPath, MakesNoSystemCall) {
+TEST(HotPath, makesNoSystemCall) {
     const int status = childUnderSeccomp(false);
     if (WIFEXITED(status) && WEXITSTATUS(status) == 77) GTEST_SKIP() << "no seccomp here";
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "killed at a system call: status " << status;
-    // The fence itself holds: one call too many is seen.
+    // Planted fault: one additional system call is detected.
     EXPECT_TRUE(WIFSIGNALED(childUnderSeccomp(true)));
 }
 

@@ -1,4 +1,4 @@
-// What the program hears of the nodes: neither what its own driver has told already, nor twice.
+// Driver events of the nodes reach the program once, and only if its own driver has not reported them.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -80,27 +80,27 @@ protected:
     ThreadState t_;
 };
 
-TEST_F(NewsTest, MessagesReachTheCallbackOnce) {
+TEST_F(NewsTest, deliversMessagesToTheCallbackOnce) {
     listen(context_, hear, &heard_);
     message("slow");
     EXPECT_EQ(heard_, std::vector<std::string>({"slow"}));
-    fromDriver("slow"); // the program hears its own driver always
+    fromDriver("slow"); // the program always receives messages of its own driver
     EXPECT_EQ(heard_.size(), 2u);
     fromDriver("wrong");
     message("wrong"); // the same call on the nodes
     EXPECT_EQ(heard_, std::vector<std::string>({"slow", "slow", "wrong"}));
-    message("wrong"); // found by drawing alone
+    message("wrong"); // found only when drawing
     EXPECT_EQ(heard_.size(), 4u);
     EXPECT_TRUE(inserted.empty());
 }
 
-TEST_F(NewsTest, WithoutACallbackTheDriverKeepsThem) {
+TEST_F(NewsTest, leavesMessagesToTheDriverWithoutACallback) {
     message("slow");
-    message("error", GL_DEBUG_TYPE_ERROR); // stands in its log already
+    message("error", GL_DEBUG_TYPE_ERROR); // already in its log
     EXPECT_EQ(inserted, std::vector<std::string>({"slow"}));
 }
 
-TEST_F(NewsTest, OtherContextsWaitForTheirThread) {
+TEST_F(NewsTest, defersMessagesOfOtherContextsToTheirThread) {
     listen(context_, hear, &heard_);
     message("for another", GL_DEBUG_TYPE_PERFORMANCE, 4);
     EXPECT_TRUE(heard_.empty());
@@ -113,22 +113,22 @@ TEST_F(NewsTest, OtherContextsWaitForTheirThread) {
     EXPECT_GE(heard_.size(), 2u);
 }
 
-TEST_F(NewsTest, NoMemoryIsAnErrorWhereTheDriverHasToldNone) {
+TEST_F(NewsTest, setsOutOfMemoryWhenTheDriverReportedNone) {
     comes(wire::NewsKind::OutOfMemory);
     takeNews(t_);
     EXPECT_TRUE(context_.outOfMemoryDue);
     EXPECT_EQ(context_.stashedError, GLenum{GL_NO_ERROR});
 }
 
-TEST_F(NewsTest, NoMemoryHidesBehindTheErrorThatStandsForIt) {
+TEST_F(NewsTest, hidesOutOfMemoryAfterAnEarlierError) {
     for (const GLenum own : {GL_OUT_OF_MEMORY, GL_INVALID_OPERATION}) {
-        pendingError = own; // the driver's, not fetched yet
+        pendingError = own; // error of the driver, not fetched yet
         comes(wire::NewsKind::OutOfMemory);
         takeNews(t_);
         EXPECT_EQ(std::exchange(context_.stashedError, 0), own);
         EXPECT_FALSE(context_.outOfMemoryDue);
     }
-    context_.errorsTold = 2; // the call came before the second
+    context_.errorsTold = 2; // the call precedes the second error
     comes(wire::NewsKind::OutOfMemory, "", 1);
     takeNews(t_);
     EXPECT_FALSE(context_.outOfMemoryDue);
@@ -137,7 +137,7 @@ TEST_F(NewsTest, NoMemoryHidesBehindTheErrorThatStandsForIt) {
     EXPECT_TRUE(context_.outOfMemoryDue);
 }
 
-TEST_F(NewsTest, AResetIsAStatusWhereTheProgramHasAskedForIt) {
+TEST_F(NewsTest, reportsAResetStatusWhenRequested) {
     comes(wire::NewsKind::ContextLost, "", GL_INNOCENT_CONTEXT_RESET);
     takeNews(t_);
     EXPECT_EQ(context_.resetStatus, GLenum{GL_NO_ERROR});

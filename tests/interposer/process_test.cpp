@@ -1,4 +1,4 @@
-// A forked child is recognised however it was made, and no lock of its parent holds it up.
+// A forked child is recognised with every way of forking, and is not blocked by a lock of its parent.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -18,7 +18,7 @@ namespace {
 
 int childBegins = 0;
 
-// Whether `check` is true in a child that no handler of pthread_atfork runs in.
+// Returns whether `check` is true in a child in which no pthread_atfork handler runs.
 bool trueInChild(const std::function<bool()>& check) {
     const auto pid = static_cast<pid_t>(syscall(SYS_fork));
     if (pid == 0) {
@@ -31,7 +31,7 @@ bool trueInChild(const std::function<bool()>& check) {
 
 } // namespace
 
-TEST(Process, aRawForkBeginsTheChildOnce) {
+TEST(Process, beginsTheChildOnceAfterARawFork) {
     const uint32_t mine = process::number();
     process::onChildBegins([] { ++childBegins; });
     EXPECT_TRUE(trueInChild([=] { return process::number() == mine + 1 && process::number() == mine + 1 && childBegins == 1; }));
@@ -39,7 +39,7 @@ TEST(Process, aRawForkBeginsTheChildOnce) {
     EXPECT_EQ(childBegins, 0);
 }
 
-TEST(Process, memoryIsZeroInTheChildAndStaysInTheParent) {
+TEST(Process, clearsMemoryInTheChildOnly) {
     (void)process::number();
     auto* const word = static_cast<uint32_t*>(process::memory(sizeof(uint32_t)));
     ASSERT_NE(word, nullptr);
@@ -49,7 +49,7 @@ TEST(Process, memoryIsZeroInTheChildAndStaysInTheParent) {
     EXPECT_EQ(*word, 7U);
 }
 
-TEST(Process, theSessionIsNotTheChilds) {
+TEST(Process, dropsTheSessionInTheChild) {
     (void)process::number();
     process::page.session = reinterpret_cast<Session*>(&childBegins);
     process::page.connectTried = true;
@@ -58,12 +58,12 @@ TEST(Process, theSessionIsNotTheChilds) {
     process::page.connectTried = false;
 }
 
-TEST(Lock, heldByTheParentIsFreeInTheChild) {
+TEST(Lock, isFreeInTheChildWhenHeldByTheParent) {
     Lock held, tried;
     held.lock();
     tried.lock();
     EXPECT_TRUE(trueInChild([&] {
-        held.lock(); // would wait for a thread that is not there
+        held.lock(); // would wait for a thread that does not exist in the child
         return tried.tryLock() && !tried.tryLock() && !held.tryLock();
     }));
     EXPECT_FALSE(held.tryLock());

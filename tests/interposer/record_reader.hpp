@@ -1,4 +1,4 @@
-// Takes a stream apart as the replay does: records one by one, blobs put together on the way.
+// Splits a stream as the replay does: reads records one by one and joins blobs.
 #pragma once
 
 #include <cstring>
@@ -21,7 +21,7 @@ class RecordReader : public BlobQueue {
 public:
     explicit RecordReader(std::span<const std::byte> bytes) : rest_(bytes) {}
 
-    // The next record that is no blob. False: the end, or (broken()) no record.
+    // Reads the next record that is not a blob. Returns false at the end or, if broken(), at an invalid record.
     bool next(ReadRecord& r) {
         while (cut(r)) {
             Args in(r.arguments, *this);

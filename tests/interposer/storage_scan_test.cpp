@@ -13,7 +13,7 @@ bool mayWrite(std::initializer_list<std::string_view> pieces) {
     return scan.mayWrite();
 }
 
-TEST(StorageScan, BlocksThatMayBeWritten) {
+TEST(StorageScan, findsBlocksThatMayBeWritten) {
     EXPECT_TRUE(mayWrite({"buffer V { uint v; };"}));
     EXPECT_TRUE(mayWrite({"layout(std430, binding = 2) coherent\nrestrict buffer V\n{ uint v[]; } b[2];"}));
     EXPECT_TRUE(mayWrite({"readonly buffer A { int a; }; buffer B { int b; };"}));
@@ -21,7 +21,7 @@ TEST(StorageScan, BlocksThatMayBeWritten) {
     EXPECT_TRUE(mayWrite({"readonly uniform image2D i; buffer V { uint v; };"}));
 }
 
-TEST(StorageScan, BlocksThatAreOnlyRead) {
+TEST(StorageScan, ignoresReadOnlyBlocks) {
     EXPECT_FALSE(mayWrite({"readonly buffer V { uint v; };"}));
     EXPECT_FALSE(mayWrite({"buffer layout(binding = 1) readonly V { uint v; };"}));
     EXPECT_FALSE(mayWrite({"layout(std430) buffer; uniform U { vec4 u; }; void main() { }"}));
@@ -29,7 +29,7 @@ TEST(StorageScan, BlocksThatAreOnlyRead) {
     EXPECT_FALSE(mayWrite({""}));
 }
 
-TEST(StorageScan, MacrosAndIncludesMayBeAnything) {
+TEST(StorageScan, assumesWritesInMacrosAndIncludes) {
     EXPECT_TRUE(mayWrite({"#define STORAGE buffer\nreadonly STORAGE V { uint v; };"}));
     EXPECT_TRUE(mayWrite({"#  include </blocks>\nvoid main() { }"}));
     EXPECT_TRUE(mayWrite({"#ifdef A\nreadonly\n#endif\nbuffer V { uint v; };"}));
@@ -37,7 +37,7 @@ TEST(StorageScan, MacrosAndIncludesMayBeAnything) {
     EXPECT_FALSE(mayWrite({"#define A readonly\nvoid f() { }"}));
 }
 
-TEST(StorageScan, CommentsSayNothing) {
+TEST(StorageScan, ignoresComments) {
     EXPECT_FALSE(mayWrite({"// buffer V {\n/* buffer V { */ /*/ buffer V { */ void f() { }"}));
     EXPECT_FALSE(mayWrite({"// goes on \\\nbuffer V {\nvoid f() { }"}));
     EXPECT_TRUE(mayWrite({"/* readonly */ buffer V { uint v; };"}));
@@ -45,7 +45,7 @@ TEST(StorageScan, CommentsSayNothing) {
     EXPECT_TRUE(mayWrite({"a = b / c; // readonly\nbuffer V { uint v; };"}));
 }
 
-TEST(StorageScan, TextsGoOnInTheNext) {
+TEST(StorageScan, joinsConsecutiveTexts) {
     EXPECT_TRUE(mayWrite({"layout(binding = 0) buf", "fer V", " { uint v; };"}));
     EXPECT_FALSE(mayWrite({"read", "only buffer V", " { uint v; };"}));
     EXPECT_FALSE(mayWrite({"/", "/ buffer V {"}));

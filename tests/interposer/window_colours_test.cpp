@@ -26,7 +26,7 @@ TEST(WindowColours, comparesBytesWithAlpha) {
     EXPECT_EQ(difference.squared, 29U);
 }
 
-// One bit of ten is less than a 255th, and counts all the same.
+// One unit of ten bits is less than 1/255, and must be detected.
 TEST(WindowColours, comparesTenBits) {
     const std::array<uint32_t, 3> a{0x3ff00000, 5, 1U << 30};
     const std::array<uint32_t, 3> b{0x3fe00000, 5, 2U << 30};

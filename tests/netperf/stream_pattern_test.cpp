@@ -1,4 +1,4 @@
-// What netperf's receivers see, and what they must not overlook.
+// The stream pattern of netperf: receivers detect every kind of error in it.
 #include <gtest/gtest.h>
 
 #include "tools/mural/stream_pattern.hpp"
@@ -19,7 +19,7 @@ std::string faultOf(std::span<const std::byte> bytes, size_t pieceBytes) {
     return check.fault();
 }
 
-TEST(StreamPattern, IsTheSameHoweverItIsCut) {
+TEST(StreamPattern, isIndependentOfPieces) {
     const auto whole = pattern(1000);
     for (const size_t place : {1, 7, 8, 9, 500, 993, 999}) {
         const auto rest = pattern(whole.size() - place, place);
@@ -28,7 +28,7 @@ TEST(StreamPattern, IsTheSameHoweverItIsCut) {
     EXPECT_TRUE(std::ranges::equal(pattern(3, 2), std::span(whole).subspan(2, 3)));
 }
 
-TEST(StreamPattern, TellsWhereAReaderBegan) {
+TEST(StreamPattern, revealsTheReadersFirstPosition) {
     for (const uint64_t place : {0ul, 1ul, 7ul, 8ul, 1430ul * 77, (1ul << 40) + 3}) {
         PatternCheck check;
         const auto bytes = pattern(100, place);
@@ -40,7 +40,7 @@ TEST(StreamPattern, TellsWhereAReaderBegan) {
     EXPECT_FALSE(findPattern(pattern(kFindBytes - 1)));
 }
 
-TEST(StreamPattern, SeesWhatIsLostTwiceOutOfOrderAndChanged) {
+TEST(StreamPattern, detectsLossDuplicatesReorderingAndChanges) {
     const auto right = pattern(20'000);
     for (const size_t pieceBytes : {1, 100, 4096, 20'000}) {
         EXPECT_EQ(faultOf(right, pieceBytes), "");

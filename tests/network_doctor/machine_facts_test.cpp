@@ -1,4 +1,4 @@
-// What is read of a machine's kernel, from a made-up /proc and /sys.
+// Reads a machine's network settings from a fake /proc and /sys.
 #include "tools/mural/network/machine_facts.hpp"
 
 #include <filesystem>
@@ -23,7 +23,7 @@ protected:
     rsp::NetworkInterface card_;
 };
 
-TEST_F(MadeUpMachine, LimitsBridgesAndFiltersAreRead) {
+TEST_F(MadeUpMachine, reportsLimitsBridgesAndFilters) {
     file("/proc/sys/net/core/rmem_max", "212992");
     file("/proc/sys/net/ipv4/conf/all/rp_filter", "0");
     file("/proc/sys/net/ipv4/conf/eth7/rp_filter", "1");
@@ -41,20 +41,20 @@ TEST_F(MadeUpMachine, LimitsBridgesAndFiltersAreRead) {
     EXPECT_EQ(toJson(again), toJson(f));
 }
 
-// The loosest setting that the kernel knows (2) is above the strict one.
-TEST_F(MadeUpMachine, TheLooseFilterIsNotStrict) {
+// The loosest setting of the kernel (2) is a larger number than the strict one.
+TEST_F(MadeUpMachine, reportsTheLooseFilterAsNotStrict) {
     file("/proc/sys/net/ipv4/conf/all/rp_filter", "1");
     file("/proc/sys/net/ipv4/conf/eth7/rp_filter", "2");
     EXPECT_FALSE(readMachineFacts(card_, 1000, root_).strictReturnPath);
 }
 
-TEST_F(MadeUpMachine, WhatQueuesDroppedIsTheirSum) {
+TEST_F(MadeUpMachine, addsTheDropsOfAllQueues) {
     file("/proc/net/softnet_stat", "0001d3a1 00000010 00000002\n0000ffff 0000000a 00000000");
     EXPECT_EQ(droppedByQueues(root_), 26u);
     EXPECT_EQ(droppedByQueues(root_ + "/gone"), 0u);
 }
 
-TEST_F(MadeUpMachine, AnswersOfAnotherFormDoNoHarm) {
+TEST_F(MadeUpMachine, toleratesAnswersOfAnotherFormat) {
     const MachineFacts f = machineFactsFrom({{"interface", 7}, {"mtu", "long"}, {"multicast", "yes"}, {"silentBridges", {1, "br0"}}, {"receiveLimitBytes", {}}});
     EXPECT_EQ(f.mtuBytes, 0u);
     EXPECT_EQ(f.silentBridges, std::vector<std::string>{"br0"});

@@ -1,4 +1,4 @@
-// Each fault has its line, and a network without faults has none.
+// Each fault causes one line of the verdict, and a network without faults causes none.
 #include "tools/mural/network/network_verdict.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ HostMeasured goodHost() {
 
 void breakWay(HostMeasured& h, ProbeWay way) { h.way(way) = {}; }
 
-// The one check that is not ok; none when there are more or less.
+// Returns the only check that is not ok; an empty check if there are more or none.
 Check fault(const HereMeasured& here, const HostMeasured& h) {
     std::vector<Check> bad = judgeHost(here, h);
     std::erase_if(bad, [](const Check& c) { return c.health == Health::Ok; });
@@ -49,12 +49,12 @@ Check fault(const HostMeasured& h) { return fault(here(), h); }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST(NetworkVerdict, AGoodNetworkHasNothingToMend) {
+TEST(NetworkVerdict, reportsNoFaultOfAGoodNetwork) {
     for (const Check& c : judgeHost(here(), goodHost())) EXPECT_EQ(c.health, Health::Ok) << c.name << ": " << c.found;
     for (const Check& c : judgeHere(here())) EXPECT_EQ(c.health, Health::Ok) << c.name << ": " << c.found;
 }
 
-TEST(NetworkVerdict, OnlyTheGroupIsMissing) {
+TEST(NetworkVerdict, reportsThatOnlyTheGroupIsMissing) {
     HostMeasured h = goodHost();
     breakWay(h, ProbeWay::Group);
     h.multicast = false;
@@ -66,7 +66,7 @@ TEST(NetworkVerdict, OnlyTheGroupIsMissing) {
     EXPECT_TRUE(has(fault(h).advice, "`ip link set dev br0 type bridge mcast_querier 1`"));
 }
 
-TEST(NetworkVerdict, NoMulticastAtAll) {
+TEST(NetworkVerdict, reportsMissingMulticast) {
     HostMeasured h = goodHost();
     breakWay(h, ProbeWay::Group);
     breakWay(h, ProbeWay::LinkLocal);
@@ -81,19 +81,19 @@ TEST(NetworkVerdict, NoMulticastAtAll) {
     EXPECT_EQ(fault(h).advice, "give --interface eth1");
 }
 
-TEST(NetworkVerdict, MulticastThatStops) {
+TEST(NetworkVerdict, reportsMulticastThatStops) {
     HostMeasured h = goodHost();
     h.way(ProbeWay::Group).toLater = false;
     EXPECT_TRUE(has(fault(h).found, "arrived at first")) << fault(h).found;
 }
 
-TEST(NetworkVerdict, OnlyOneWay) {
+TEST(NetworkVerdict, reportsAOneWayNetwork) {
     HostMeasured h = goodHost();
     h.way(ProbeWay::Group).from = false;
     EXPECT_EQ(fault(h).health, Health::Warn);
 }
 
-TEST(NetworkVerdict, NoUdp) {
+TEST(NetworkVerdict, reportsMissingUdp) {
     HostMeasured h = goodHost();
     for (const ProbeWay way : kProbeWays) breakWay(h, way);
     h.multicast = false;
@@ -101,7 +101,7 @@ TEST(NetworkVerdict, NoUdp) {
     EXPECT_TRUE(has(fault(h).found, "either way"));
 }
 
-TEST(NetworkVerdict, ShorterPackets) {
+TEST(NetworkVerdict, reportsShorterPackets) {
     HereMeasured long9000 = here();
     long9000.facts.mtuBytes = 9000;
     long9000.cardBytes = 8972;
@@ -114,7 +114,7 @@ TEST(NetworkVerdict, ShorterPackets) {
     EXPECT_TRUE(has(fault(long9000, h).advice, "mtu 1500")) << fault(long9000, h).advice;
 }
 
-TEST(NetworkVerdict, Losses) {
+TEST(NetworkVerdict, reportsLosses) {
     HostMeasured h = goodHost();
     h.lostShare = 0.0005;
     EXPECT_TRUE(has(fault(h).name, "0 faults"));
@@ -130,7 +130,7 @@ TEST(NetworkVerdict, Losses) {
     EXPECT_TRUE(has(fault(h).found, "own socket"));
 }
 
-TEST(NetworkVerdict, SmallBuffersAndSlowCards) {
+TEST(NetworkVerdict, reportsSmallBuffersAndSlowCards) {
     HostMeasured h = goodHost();
     h.facts.bufferBytes = 212'992;
     EXPECT_TRUE(has(fault(h).advice, "net.core.rmem_max=8388608")) << fault(h).advice;
@@ -142,7 +142,7 @@ TEST(NetworkVerdict, SmallBuffersAndSlowCards) {
     EXPECT_EQ(fault(h).health, Health::Bad);
 }
 
-TEST(NetworkVerdict, WhatCanNotBeLookedAt) {
+TEST(NetworkVerdict, reportsUnavailableFacts) {
     HostMeasured h = goodHost();
     h.failure = "it ended: exit status 255";
     EXPECT_EQ(fault(h).name, "wall1: start");
@@ -158,7 +158,7 @@ TEST(NetworkVerdict, WhatCanNotBeLookedAt) {
     EXPECT_EQ(fault(h).name, "wall1: stream");
 }
 
-TEST(NetworkVerdict, ABridgeThatSnoopsAndDoesNotAsk) {
+TEST(NetworkVerdict, reportsASnoopingBridgeWithoutQuerier) {
     HereMeasured h = here();
     h.facts.silentBridges = {"br0"};
     const auto checks = judgeHere(h);

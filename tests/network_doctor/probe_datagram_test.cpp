@@ -7,7 +7,7 @@
 namespace mural::cli {
 namespace {
 
-TEST(ProbeDatagram, IsReadAsItWasWritten) {
+TEST(ProbeDatagram, decodesItsOwnEncoding) {
     std::array<std::byte, 1472> bytes{};
     writeProbe({0x0123456789abcdef, ProbeWay::LinkLocal, true, 1472}, bytes);
     const auto probe = readProbe(bytes);
@@ -18,7 +18,7 @@ TEST(ProbeDatagram, IsReadAsItWasWritten) {
     EXPECT_EQ(probe->sizeBytes, 1472);
 }
 
-TEST(ProbeDatagram, WhatIsCutOrOfAnotherKindIsNone) {
+TEST(ProbeDatagram, rejectsTruncatedAndForeignDatagrams) {
     std::array<std::byte, 100> bytes{};
     writeProbe({1, ProbeWay::Group, false, 100}, bytes);
     EXPECT_FALSE(readProbe(std::span(bytes).first(99)));

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""mural doctor --network between two machines: network namespaces on one bridge, in a namespace of users of its own, so that
-no rights are needed. Each fault is made, and must be told.
+"""mural doctor --network between two machines: network namespaces on one bridge, in a user namespace, so that no
+privileges are needed. Each fault is planted, and must be reported.
 
-  two_machines.py --mural BIN/mural        exit status 77: this machine allows no namespaces, and why
+  two_machines.py --mural BIN/mural        exit status 77, with a reason: this machine permits no namespaces
 """
 import argparse
 import json

@@ -1,4 +1,4 @@
-// Who joins a group during its stream goes on where it is told to, whatever came before.
+// A member that joins a group during its stream continues at the assigned position, with any earlier data.
 #include "nodes/node/late_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -21,13 +21,13 @@ rsp::GroupOptions options(const std::string& control) {
     o.control = control;
     o.secret.fill(std::byte{42});
     o.seal = rsp::Seal::ChaCha;
-    // Busy machines are slow; what is asked here is not how fast they are.
+    // Generous timeouts: busy machines are slow, and this is no test of speed.
     o.silentMs = o.stalledMs = kPatienceMs;
     o.probeMs = 10'000;
     return o;
 }
 
-// What the late one says when it does not get in.
+// The errors of a late member that is not admitted.
 struct Complaints {
     std::function<void(const std::string&)> hear() {
         return [this](const std::string& why) {
@@ -44,7 +44,7 @@ struct Complaints {
 class Writer {
 public:
     explicit Writer(rsp::Group& group) : group_(group) {}
-    // Pieces that fill no datagram, so that places within datagrams are met.
+    // Writes pieces that fill no datagram, so that positions lie within datagrams.
     void write(size_t sizeBytes) {
         std::vector<std::byte> piece;
         while (sizeBytes > 0) {
@@ -62,7 +62,7 @@ private:
     uint64_t written_ = 0;
 };
 
-// The first byte that whoever comes next gets.
+// Returns the position of the first byte that the next member receives.
 std::optional<uint64_t> comesFrom(rsp::Group& host, Writer& writer) {
     const Deadline deadline = Deadline::inMs(kPatienceMs);
     while (!deadline.passed()) {
@@ -74,7 +74,8 @@ std::optional<uint64_t> comesFrom(rsp::Group& host, Writer& writer) {
     return std::nullopt;
 }
 
-// `meanwhileBytes` are written between its coming and the place where it goes on.
+// Joins a stream and checks its contents. `meanwhileBytes` are written between the join and the position at which the
+// member continues.
 void goesOn(size_t meanwhileBytes) {
     auto host = rsp::Group::host(options("127.0.0.1:0"));
     ASSERT_TRUE(host) << host.error().message;
@@ -98,11 +99,11 @@ void goesOn(size_t meanwhileBytes) {
     EXPECT_TRUE(complaints.all.empty());
 }
 
-TEST(LateStream, GoesOnWhereItCame) { goesOn(0); }
-// More than the window of datagrams holds: it is read while it is not yet known where to go on.
-TEST(LateStream, GoesOnFarBehindWhereItCame) { goesOn(20'000'000); }
+TEST(LateStream, continuesAtTheJoin) { goesOn(0); }
+// More than the datagram window holds: the member reads data before it receives the position at which it continues.
+TEST(LateStream, continuesFarAfterTheJoin) { goesOn(20'000'000); }
 
-TEST(LateStream, SaysThatItDoesNotGetIn) {
+TEST(LateStream, reportsAFailedJoin) {
     std::string nobody;
     {
         auto host = rsp::Group::host(options("127.0.0.1:0"));

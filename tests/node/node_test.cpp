@@ -1,4 +1,4 @@
-// The real node's main loop at a connection of the test's own.
+// The real node's main loop on a connection of the test.
 #include "nodes/node/node.hpp"
 
 #include <csignal>
@@ -20,7 +20,7 @@ constexpr int64_t kAnswerMs = 20'000;
 class NodeTest : public ::testing::Test {
 protected:
     void SetUp() override {
-        signal(SIGPIPE, SIG_DFL); // as a process begins
+        signal(SIGPIPE, SIG_DFL); // the default of a new process
         auto offer = offerSharedMemory(size_t{1} << 20);
         ASSERT_TRUE(offer.ok());
         head_ = std::move(offer->connection);
@@ -44,7 +44,7 @@ protected:
         ASSERT_TRUE(head_->write(std::as_bytes(std::span(json)), Deadline::inMs(kAnswerMs)));
         head_->flush();
     }
-    // The texts of that kind until the node ends; anything else fails.
+    // Returns the texts of messages of that kind until the node ends; fails on any other message.
     std::vector<std::string> texts(wire::NodeMessage type) {
         std::vector<std::string> all;
         wire::MessageHeader header{};
@@ -67,8 +67,8 @@ protected:
     int status_ = -1;
 };
 
-// What has been written to a display that is no more would end it.
-TEST_F(NodeTest, livesOnWhenNobodyReadsWhatItWrites) {
+// Data written to a closed display connection would otherwise end the process with SIGPIPE.
+TEST_F(NodeTest, survivesWritesToAClosedConnection) {
     head_->close();
     (void)status();
     struct sigaction now {};
@@ -78,7 +78,7 @@ TEST_F(NodeTest, livesOnWhenNobodyReadsWhatItWrites) {
 
 class ForeignBuild : public NodeTest, public ::testing::WithParamInterface<const char*> {};
 
-TEST_P(ForeignBuild, isRefusedWithOneLine) {
+TEST_P(ForeignBuild, isRejectedWithOneLine) {
     NodeSetup setup;
     setup.build = GetParam();
     ASSERT_NE(setup.build, streamBuild());
@@ -93,8 +93,8 @@ TEST_P(ForeignBuild, isRefusedWithOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(Builds, ForeignBuild, ::testing::Values("", "1.0000000000000000", "4294967295.0000000000000000"));
 
-// Nothing can be read behind it: what it refers to is not there.
-TEST_F(NodeTest, aBatchThatCantBeUnpackedEndsItWithOneLine) {
+// Records after the damaged batch are unreadable, because their references are missing.
+TEST_F(NodeTest, endsWithOneLineAfterADamagedBatch) {
     NodeSetup setup;
     setup.build = streamBuild();
     setup.economy = true;

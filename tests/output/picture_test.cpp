@@ -6,21 +6,21 @@
 
 namespace mural::test {
 
-TEST(Picture, copyIntoDropsWhatLiesOutside) {
+TEST(Picture, copiesOnlyPixelsInsideTheTarget) {
     const OwnedPicture whole = noisePicture(37, 23, 1);
     OwnedPicture built = plainPicture(37, 23, 0, 0, 0);
-    // Four overlapping parts, each standing out of the target on two sides.
+    // Four overlapping parts, each extending beyond the target on two sides.
     for (const PixelViewport part :
          {PixelViewport{-3, -5, 25, 20}, PixelViewport{20, -2, 30, 20},
           PixelViewport{-1, 11, 25, 30}, PixelViewport{19, 13, 18, 10}}) {
         const OwnedPicture piece = cutOut(whole.view(), part);
         copyInto(built, part.x, part.y, piece.view());
     }
-    // What was cut from outside of the picture was black and must not have been copied in.
+    // The parts are black outside the picture, which must not have been copied.
     EXPECT_TRUE(samePictures(whole.view(), built.view()));
 }
 
-TEST(Picture, copyIntoIgnoresEmptyAndFarPictures) {
+TEST(Picture, ignoresEmptyAndFarPicturesInCopies) {
     const OwnedPicture before = noisePicture(8, 8, 2);
     OwnedPicture target(before.view());
     copyInto(target, 0, 0, Picture{});
@@ -29,7 +29,7 @@ TEST(Picture, copyIntoIgnoresEmptyAndFarPictures) {
     EXPECT_TRUE(samePictures(before.view(), target.view()));
 }
 
-TEST(Picture, eightBitsComeBackFromTen) {
+TEST(Picture, restoresEightBitsFromTen) {
     for (uint32_t value = 0; value < 256; ++value) {
         const uint32_t pixel = 0x55000000U | value << 16 | (255 - value) << 8 | value;
         OwnedPicture source(1, 1), back(1, 1);
@@ -42,14 +42,14 @@ TEST(Picture, eightBitsComeBackFromTen) {
     }
 }
 
-TEST(Picture, cutOutAndCopiesKeepTheFormat) {
+TEST(Picture, keepsTheFormatInCutsAndCopies) {
     OwnedPicture deep;
     deep.resize(3, 2, PictureFormat::Bgr10A2);
     EXPECT_EQ(cutOut(deep.view(), {1, 0, 2, 2}).format(), PictureFormat::Bgr10A2);
     EXPECT_EQ(OwnedPicture(deep.view()).format(), PictureFormat::Bgr10A2);
 }
 
-TEST(Picture, flipRowsMovesTheLowestRowUp) {
+TEST(Picture, flipsRows) {
     for (const int height : {1, 2, 5}) {
         const OwnedPicture before = noisePicture(3, height, 3);
         OwnedPicture flipped(before.view());
@@ -60,7 +60,7 @@ TEST(Picture, flipRowsMovesTheLowestRowUp) {
     }
 }
 
-TEST(ComparePictures, countsAndFindsTheFirstPlace) {
+TEST(ComparePictures, countsDifferencesAndFindsTheFirst) {
     const OwnedPicture expected = plainPicture(10, 6, 100, 100, 100);
     OwnedPicture actual(expected.view());
     setPixel(actual, 7, 2, 100, 103, 100);
@@ -75,14 +75,14 @@ TEST(ComparePictures, countsAndFindsTheFirstPlace) {
               "2 of 60 pixels differ, by at most 7, first at x 7, y 2");
 }
 
-TEST(ComparePictures, alphaDoesNotCount) {
+TEST(ComparePictures, ignoresAlpha) {
     const OwnedPicture expected = plainPicture(5, 5, 1, 2, 3);
     OwnedPicture actual(expected.view());
     actual.row(3)[3] = std::byte{77};
     EXPECT_TRUE(comparePictures(expected.view(), actual.view()).same());
 }
 
-TEST(ComparePictures, sizesDiffer) {
+TEST(ComparePictures, reportsDifferentSizes) {
     const OwnedPicture a = plainPicture(5, 5, 0, 0, 0);
     const OwnedPicture b = plainPicture(5, 4, 0, 0, 0);
     const PictureDifference difference = comparePictures(a.view(), b.view());

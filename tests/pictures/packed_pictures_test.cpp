@@ -12,9 +12,9 @@ namespace {
 
 using Pixels = std::vector<std::byte>;
 
-constexpr int32_t kWidth = 531, kHeight = 143; // neither is a multiple of tiles
+constexpr int32_t kWidth = 531, kHeight = 143; // neither is a multiple of the tile size
 
-// A slope of colours, and some noise where `noisy`.
+// Returns a colour gradient, with noise if `noisy`.
 Pixels drawn(int32_t width, int32_t height, unsigned seed, bool noisy = true) {
     std::mt19937 random(seed);
     Pixels pixels(static_cast<size_t>(width) * static_cast<size_t>(height) * 4);
@@ -32,7 +32,7 @@ Pixels drawn(int32_t width, int32_t height, unsigned seed, bool noisy = true) {
 
 struct Ends {
     explicit Ends(const std::string& codec) : packer(codec), unpacker(codec) {}
-    // What comes out; its packed size is kept.
+    // Packs and unpacks a picture, and stores its packed size.
     Pixels through(uint32_t client, uint32_t window, int32_t width, int32_t height, const Pixels& pixels) {
         auto packed = packer.pack(client, window, width, height, pixels.data());
         EXPECT_TRUE(packed);
@@ -49,7 +49,7 @@ struct Ends {
 
 class EveryLosslessCodec : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(EveryLosslessCodec, PicturesComeAsTheyWere) {
+TEST_P(EveryLosslessCodec, restoresPictures) {
     Ends ends(GetParam());
     for (unsigned i = 0; i < 6; ++i) {
         const Pixels one = drawn(kWidth, kHeight, i), other = drawn(64, 700, i);
@@ -62,8 +62,8 @@ TEST_P(EveryLosslessCodec, PicturesComeAsTheyWere) {
 
 INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec, ::testing::Values("auto", "raw", "rle64", "bitplane", "bitplane-zstd", "lz4", "zstd"));
 
-// Words of 10 bits are nothing else to them.
-TEST_P(EveryLosslessCodec, DeepPixelsComeAsTheyWere) {
+// Codecs treat words of 10 bits per component like any other words.
+TEST_P(EveryLosslessCodec, restoresDeepPixels) {
     Ends ends(GetParam());
     Pixels pixels(static_cast<size_t>(kWidth) * kHeight * 4);
     for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
@@ -73,7 +73,7 @@ TEST_P(EveryLosslessCodec, DeepPixelsComeAsTheyWere) {
     EXPECT_EQ(ends.through(1, 1, kWidth, kHeight, pixels), pixels);
 }
 
-TEST(PackedPictures, WhatStaysIsNotSentAgain) {
+TEST(PackedPictures, skipUnchangedTiles) {
     Ends ends("auto");
     Pixels pixels = drawn(kWidth, kHeight, 1);
     (void)ends.through(1, 1, kWidth, kHeight, pixels);
@@ -86,7 +86,7 @@ TEST(PackedPictures, WhatStaysIsNotSentAgain) {
     EXPECT_EQ(ends.packer.rawBytes(), 3 * pixels.size());
 }
 
-// Largest difference of colours.
+// Returns the largest difference of a colour component.
 int farthest(const Pixels& a, const Pixels& b) {
     int most = 0;
     for (size_t i = 0; i < a.size(); ++i)
@@ -94,18 +94,18 @@ int farthest(const Pixels& a, const Pixels& b) {
     return most;
 }
 
-TEST(PackedPictures, LossyCodecsLoseLittleOfSmoothPictures) {
+TEST(PackedPictures, haveSmallErrorsForSmoothPicturesWithLossyCodecs) {
     for (const char* codec : {"yuv420", "jpeg-95", "jpeg-90", "lossy"}) {
         Ends ends(codec);
         const Pixels pixels = drawn(kWidth, kHeight, 3, false);
         const Pixels out = ends.through(1, 1, kWidth, kHeight, pixels);
-        EXPECT_LE(farthest(pixels, out), 12) << codec; // red taken for blue is 100 and more away
+        EXPECT_LE(farthest(pixels, out), 12) << codec; // red swapped with blue differs by 100 or more
     }
     Ends ends("jpeg-50");
     EXPECT_NE(ends.through(1, 1, kWidth, kHeight, drawn(kWidth, kHeight, 3)), drawn(kWidth, kHeight, 3)) << "noise does not come through";
 }
 
-TEST(PackedPictures, LossyCodecsKeepAlphaUnlessItIsDropped) {
+TEST(PackedPictures, keepAlphaWithLossyCodecsUnlessDropped) {
     Pixels pixels = drawn(kWidth, kHeight, 3, false);
     for (size_t i = 0; i < pixels.size(); i += 4) pixels[i + 3] = static_cast<std::byte>(i / 4 * 7);
     for (const char* codec : {"yuv420", "jpeg-95", "lossy"}) {
@@ -119,7 +119,7 @@ TEST(PackedPictures, LossyCodecsKeepAlphaUnlessItIsDropped) {
     }
 }
 
-TEST(PackedPictures, AWindowThatIsGoneBeginsAnew) {
+TEST(PackedPictures, restartAfterAWindowIsClosed) {
     Ends ends("zstd");
     const Pixels pixels = drawn(kWidth, kHeight, 1);
     (void)ends.through(1, 1, kWidth, kHeight, pixels);
@@ -131,7 +131,7 @@ TEST(PackedPictures, AWindowThatIsGoneBeginsAnew) {
     EXPECT_EQ(ends.through(1, 1, kWidth, kHeight, pixels), pixels);
 }
 
-TEST(PackedPictures, WhatIsDamagedIsAnError) {
+TEST(PackedPictures, rejectDamagedData) {
     PicturePacker packer("bitplane");
     const Pixels pixels = drawn(kWidth, kHeight, 1);
     auto packed = packer.pack(1, 1, kWidth, kHeight, pixels.data());
@@ -143,20 +143,20 @@ TEST(PackedPictures, WhatIsDamagedIsAnError) {
         EXPECT_FALSE(unpacker.unpack(1, 1, kWidth, kHeight, std::span(bytes).first(size), out)) << size;
     }
     std::mt19937 random(5);
-    for (int i = 0; i < 300; ++i) { // whatever it makes of it, it touches nothing else
+    for (int i = 0; i < 300; ++i) { // any result is accepted, but no other memory is written
         Pixels bad = bytes;
         for (int k = 0; k < 3; ++k) bad[random() % bad.size()] = static_cast<std::byte>(random());
         PictureUnpacker unpacker("bitplane");
         (void)unpacker.unpack(1, 1, kWidth, kHeight, bad, out);
     }
-    PictureUnpacker late("bitplane"); // it has not had the first
+    PictureUnpacker late("bitplane"); // lacks the first picture
     auto second = packer.pack(1, 1, kWidth, kHeight, pixels.data());
     ASSERT_TRUE(second);
     EXPECT_FALSE(late.unpack(1, 1, kWidth, kHeight, *second, out));
     EXPECT_FALSE(late.unpack(1, 1, 0, kHeight, *second, {}));
 }
 
-TEST(WantedCodec, NamesAreKnown) {
+TEST(WantedCodec, acceptsKnownNames) {
     ASSERT_TRUE(wantedCodec("auto"));
     EXPECT_TRUE(wantedCodec("auto")->chosen && wantedCodec("auto")->lossless);
     EXPECT_FALSE(wantedCodec("lossy")->lossless);

@@ -1,4 +1,4 @@
-// Pictures by a thread of their own: what goes out, in which order, and what is waited for.
+// The thread that sends pictures: messages sent, their order, and waits.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ using wire::NodeMessage;
 constexpr int32_t kWidth = 70, kHeight = 40;
 constexpr std::chrono::seconds kPatience{20};
 
-// Something that a test opens.
+// A gate that the test opens.
 class Gate {
 public:
     void open() {
@@ -37,7 +37,7 @@ private:
     bool open_ = false;
 };
 
-// What is given is taken when the gate is open, and not before.
+// Checks that `give` returns after the gate opens, and not earlier.
 template <class Give> void waitsFor(Gate& gate, Give&& give) {
     std::atomic<bool> taken{false};
     std::thread giver([&] {
@@ -120,11 +120,11 @@ protected:
     std::mutex mutex_;
     std::vector<Sent> sent_;
     std::string log_;
-    Gate gate_; // pictures wait at it, and their sender is there until all have passed
+    Gate gate_; // pictures wait here; the sender exists until all have passed
     std::unique_ptr<PictureSender> sender_;
 };
 
-TEST_F(PictureSenderTest, PicturesGoAsTheyAreWithTheirFramesBehindThem) {
+TEST_F(PictureSenderTest, sendsPicturesUnchangedFollowedByTheirFrames) {
     start();
     for (uint32_t i = 1; i <= 5; ++i) ASSERT_TRUE(frame(i));
     ASSERT_TRUE(sender_->finish());
@@ -144,25 +144,25 @@ TEST_F(PictureSenderTest, PicturesGoAsTheyAreWithTheirFramesBehindThem) {
     }
 }
 
-TEST_F(PictureSenderTest, WhatIsToldKeepsItsPlace) {
+TEST_F(PictureSenderTest, keepsTheOrderOfMessages) {
     start();
     ASSERT_TRUE(tell(1));
-    EXPECT_EQ(sent_.back().by, std::this_thread::get_id()); // nothing was under way: nobody was woken
+    EXPECT_EQ(sent_.back().by, std::this_thread::get_id()); // sent without waking the thread, because none was queued
     ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(tell(2));
     ASSERT_TRUE(frame(2));
     ASSERT_TRUE(tell(3));
-    EXPECT_EQ(types(), (std::vector{NodeMessage::Answer})); // all else waits for the first picture
+    EXPECT_EQ(types(), (std::vector{NodeMessage::Answer})); // everything else waits for the first picture
     gate_.open();
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types(), (std::vector{NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer}));
     EXPECT_EQ(sent_[3].as<uint32_t>(), 2u);
     EXPECT_EQ(sent_[6].as<uint32_t>(), 3u);
     ASSERT_TRUE(tell(4));
-    EXPECT_EQ(sent_.back().as<uint32_t>(), 4u); // at once again
+    EXPECT_EQ(sent_.back().as<uint32_t>(), 4u); // sent immediately again
 }
 
-TEST_F(PictureSenderTest, AThirdPictureWaitsForRoom) {
+TEST_F(PictureSenderTest, blocksAThirdPictureUntilThereIsRoom) {
     start();
     ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(frame(2));
@@ -171,27 +171,27 @@ TEST_F(PictureSenderTest, AThirdPictureWaitsForRoom) {
     EXPECT_EQ(types().size(), 6u);
 }
 
-TEST_F(PictureSenderTest, MessagesBehindAPictureAreBounded) {
+TEST_F(PictureSenderTest, limitsMessagesQueuedAfterAPicture) {
     PictureSenderConfig config;
     config.mostBytes = 6000;
     start(config);
     ASSERT_TRUE(frame(1, &gate_));
     const std::vector<std::byte> large(4000);
     ASSERT_TRUE(sender_->tell(NodeMessage::Answer, large));
-    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::Answer, large); }); // 8000 would wait
-    ASSERT_TRUE(sender_->tell(NodeMessage::Answer, std::vector<std::byte>(9000))); // more than ever waits: alone
+    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::Answer, large); }); // 8000 bytes would be queued
+    ASSERT_TRUE(sender_->tell(NodeMessage::Answer, std::vector<std::byte>(9000))); // above the limit: accepted alone
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 5u);
 }
 
-TEST_F(PictureSenderTest, NothingGoesOutWhenNoneGetsAway) {
+TEST_F(PictureSenderTest, sendsNothingAfterAFailedSend) {
     PictureSenderConfig config;
     config.roomMs = 50;
     start(config);
     ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(frame(2));
     EXPECT_FALSE(frame(3));
-    EXPECT_FALSE(frame(4)); // at once: nobody waits again
+    EXPECT_FALSE(frame(4)); // fails immediately, without another wait
     EXPECT_FALSE(tell(1));
     EXPECT_FALSE(sender_->finish());
     EXPECT_EQ(std::ranges::count(log_, '\n'), 1) << log_;
@@ -199,7 +199,7 @@ TEST_F(PictureSenderTest, NothingGoesOutWhenNoneGetsAway) {
     gate_.open();
 }
 
-TEST_F(PictureSenderTest, WhatWasGivenGoesOutAtTheEnd) {
+TEST_F(PictureSenderTest, sendsQueuedMessagesAtTheEnd) {
     start();
     ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(frame(2));
@@ -214,7 +214,7 @@ TEST_F(PictureSenderTest, WhatWasGivenGoesOutAtTheEnd) {
     EXPECT_EQ(sent_.back().as<uint32_t>(), 9u);
 }
 
-TEST_F(PictureSenderTest, ALostPictureIsBlackAndSaidOnce) {
+TEST_F(PictureSenderTest, sendsALostPictureAsBlackAndReportsItOnce) {
     start();
     ASSERT_TRUE(frame(1, nullptr, 1, true));
     ASSERT_TRUE(frame(2, nullptr, 1, true));
@@ -228,8 +228,8 @@ TEST_F(PictureSenderTest, ALostPictureIsBlackAndSaidOnce) {
     EXPECT_NE(log_.find("the card has gone"), std::string::npos) << log_;
 }
 
-// Windows that go are forgotten in their place: the other end does so by the message behind that.
-TEST_F(PictureSenderTest, PackedPicturesComeAsTheyWereOverWindowsThatGo) {
+// Closed windows are forgotten in message order: the receiver does so at the message that follows.
+TEST_F(PictureSenderTest, restoresPackedPicturesAcrossClosedWindows) {
     PictureSenderConfig config;
     config.codec = "bitplane";
     start(config);
@@ -265,7 +265,7 @@ TEST_F(PictureSenderTest, PackedPicturesComeAsTheyWereOverWindowsThatGo) {
     EXPECT_LT(sender_->packedBytes(), sender_->rawBytes());
 }
 
-TEST_F(PictureSenderTest, PicturesGoSmallerWhereTheWayIsNarrow) {
+TEST_F(PictureSenderTest, sendsSmallerPicturesOnANarrowLink) {
     PictureSenderConfig config;
     config.way = {0.5, 0.25};
     start(config);
@@ -276,10 +276,10 @@ TEST_F(PictureSenderTest, PicturesGoSmallerWhereTheWayIsNarrow) {
     resizePicture(rows(1).data(), kWidth, kHeight, wanted.data(), size.w, size.h);
     ASSERT_EQ(sent_[0].bytes.size(), sizeof(wire::PictureHeader) + wanted.size());
     EXPECT_EQ(std::memcmp(sent_[0].bytes.data() + sizeof(wire::PictureHeader), wanted.data(), wanted.size()), 0);
-    EXPECT_EQ(sent_[0].as<wire::PictureHeader>().w, kWidth); // as it is shown
+    EXPECT_EQ(sent_[0].as<wire::PictureHeader>().w, kWidth); // the size shown
 }
 
-TEST_F(PictureSenderTest, WorkIsAddedOrTheLongerOneCounts) {
+TEST_F(PictureSenderTest, addsWorkOrTakesTheLonger) {
     for (const bool adds : {true, false}) {
         PictureSenderConfig config;
         config.codec = "zstd";

@@ -15,7 +15,7 @@ std::vector<std::byte> noise(int32_t w, int32_t h) {
 
 int at(const std::vector<std::byte>& pixels, int32_t w, int32_t x, int32_t y, int c) { return std::to_integer<int>(pixels[static_cast<size_t>((y * w + x) * 4 + c)]); }
 
-TEST(PictureWay, sizesAreWholeAndNeverLarger) {
+TEST(PictureWay, computesWholeSizesThatAreNeverLarger) {
     EXPECT_EQ(sizeOnWay(101, 50, {.5, .5}).w, 51);
     EXPECT_EQ(sizeOnWay(101, 50, {.5, .5}).h, 25);
     EXPECT_EQ(sizeOnWay(3, 1, {.01, .01}).w, 1);
@@ -23,7 +23,7 @@ TEST(PictureWay, sizesAreWholeAndNeverLarger) {
     EXPECT_EQ(sizeOnWay(0, 0, {.5, .5}).bytes(), 0u);
 }
 
-TEST(PictureWay, halfTheSizeIsTheMeanOfFour) {
+TEST(PictureWay, averagesFourPixelsAtHalfTheSize) {
     const auto pixels = noise(8, 6);
     std::vector<std::byte> small(SizeOnWay{4, 3}.bytes());
     resizePicture(pixels.data(), 8, 6, small.data(), 4, 3);
@@ -35,14 +35,14 @@ TEST(PictureWay, halfTheSizeIsTheMeanOfFour) {
             }
 }
 
-TEST(PictureWay, whatIsOfOneColourStaysSo) {
+TEST(PictureWay, keepsASingleColour) {
     const std::vector<std::byte> pixels(SizeOnWay{13, 7}.bytes(), std::byte{201});
     std::vector<std::byte> other(SizeOnWay{29, 3}.bytes());
     resizePicture(pixels.data(), 13, 7, other.data(), 29, 3);
     for (const std::byte b : other) EXPECT_EQ(b, std::byte{201});
 }
 
-TEST(PictureWay, theSameSizeIsTheSamePicture) {
+TEST(PictureWay, keepsAPictureOfTheSameSize) {
     const auto pixels = noise(9, 5);
     std::vector<std::byte> other(pixels.size());
     resizePicture(pixels.data(), 9, 5, other.data(), 9, 5);

@@ -5,7 +5,7 @@
 namespace mural {
 namespace {
 
-// Two NUMA nodes of four cores; a management card's display and a GPU, three network interfaces.
+// Returns two NUMA nodes of four cores, a management card's display, a GPU, and three network interfaces.
 MachineView twoSockets() {
     MachineView m;
     m.numaNodes = 2;
@@ -33,13 +33,13 @@ TEST(ChoosePlacement, takesTheFastestInterfaceThatIsUp) {
     EXPECT_EQ(choosePlacement(m, DeviceKind::Network).description, "on cores 0-3, near eth0");
 }
 
-TEST(ChoosePlacement, ofEqualsTheFirst) {
+TEST(ChoosePlacement, takesTheFirstOfEquals) {
     MachineView m = twoSockets();
     m.devices[0].rank = 1;
     EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).cpus, (std::set<unsigned>{0, 1, 2, 3}));
 }
 
-TEST(ChoosePlacement, staysInsideOfWhatIsAllowed) {
+TEST(ChoosePlacement, staysWithinTheAllowedCores) {
     MachineView m = twoSockets();
     m.allowedCpus = {1, 4, 6, 7};
     const auto choice = choosePlacement(m, DeviceKind::Gpu);
@@ -47,7 +47,7 @@ TEST(ChoosePlacement, staysInsideOfWhatIsAllowed) {
     EXPECT_EQ(choice.description, "on cores 4,6-7, near PCI 0000:81:00.0 (of 2)");
 }
 
-TEST(ChoosePlacement, leavesAloneWhatCannotBeBetter) {
+TEST(ChoosePlacement, keepsPlacementsThatCannotImprove) {
     MachineView m = twoSockets();
     m.allowedCpus = {0, 1};
     EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).description, "not placed: no core near PCI 0000:81:00.0 (of 2) may be used");
@@ -57,7 +57,7 @@ TEST(ChoosePlacement, leavesAloneWhatCannotBeBetter) {
     EXPECT_EQ(near.description, "not placed: all cores that may be used are near PCI 0000:81:00.0 (of 2)");
 }
 
-TEST(ChoosePlacement, saysWhenThereIsNothingToChoose) {
+TEST(ChoosePlacement, reportsThatThereIsNothingToChoose) {
     MachineView m = twoSockets();
     m.devices.clear();
     EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).description, "not placed: no GPU was found");

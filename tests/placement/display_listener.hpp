@@ -1,4 +1,4 @@
-// Stands where an X server would, at the first free number of those that hwloc would try, and counts who comes.
+// Listens in place of an X server, at the first free display number that hwloc would try, and counts connections.
 #pragma once
 
 #include <atomic>
@@ -26,7 +26,7 @@ public:
         thread_.join();
         if (socket_ >= 0) close(socket_);
     }
-    [[nodiscard]] bool listens() const { return listens_; } // else all ten displays are there
+    [[nodiscard]] bool listens() const { return listens_; } // false if all ten displays exist
     [[nodiscard]] int callers() const { return callers_; }
 
 private:
@@ -35,12 +35,12 @@ private:
         socket_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
-        const std::string name = "/tmp/.X11-unix/X" + std::to_string(number); // of Linux' abstract ones: no file
+        const std::string name = "/tmp/.X11-unix/X" + std::to_string(number); // an abstract Linux socket: no file
         std::memcpy(address.sun_path + 1, name.data(), name.size());
         const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
         return bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) == 0 && listen(socket_, 16) == 0;
     }
-    // Nobody waits for an answer.
+    // Closes all connections, so no client waits for a reply.
     void hangUp() {
         while (!over_) {
             pollfd waiting{socket_, POLLIN, 0};

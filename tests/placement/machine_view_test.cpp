@@ -39,7 +39,7 @@ TEST(MachineView, findsDevicesAndTheCoresNearThem) {
     EXPECT_EQ(choosePlacement(machine, DeviceKind::Network).description, "on cores 2-3, near ib0 (of 2)");
 }
 
-TEST(MachineView, interfacesThatAreDownAreNotUsable) {
+TEST(MachineView, marksInterfacesThatAreDownAsUnusable) {
     const std::string xml = twoPackagesXml(2);
     const Topology topology = load([&](hwloc_topology_t t) { return hwloc_topology_set_xmlbuffer(t, xml.c_str(), static_cast<int>(xml.size()) + 1); });
     DeviceFacts facts = kFacts;
@@ -49,7 +49,7 @@ TEST(MachineView, interfacesThatAreDownAreNotUsable) {
     EXPECT_EQ(choosePlacement(machine, DeviceKind::Network).description, "on cores 0-1, near eth0");
 }
 
-TEST(MachineView, machinesWithoutDevices) {
+TEST(MachineView, supportsMachinesWithoutDevices) {
     const Topology topology = load([](hwloc_topology_t t) { return hwloc_topology_set_synthetic(t, "numa:4 core:2 pu:2"); });
     const MachineView machine = viewOf(topology.get(), kFacts);
     EXPECT_EQ(machine.numaNodes, 4);

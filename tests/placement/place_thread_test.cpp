@@ -21,9 +21,9 @@ cpu_set_t coresOfThisThread() {
     return cores;
 }
 
-// On this machine, whatever it is: a thread is moved exactly when that is said, never outwards, and
-// no other thread moves with it.
-TEST(PlaceThread, saysWhatItDoes) {
+// Runs on any machine: the thread moves exactly when the result says so, never outside its allowed cores, and no other
+// thread moves.
+TEST(PlaceThread, reportsItsChanges) {
     const cpu_set_t before = coresOfThisThread();
     for (const DeviceKind kind : {DeviceKind::Gpu, DeviceKind::Network}) {
         std::thread([&] {
@@ -40,16 +40,16 @@ TEST(PlaceThread, saysWhatItDoes) {
     EXPECT_TRUE(CPU_EQUAL(&before, &afterwards));
 }
 
-// Displays are other people's; and Xlib ends the process whose display ends.
-TEST(PlaceThread, asksNoDisplay) {
+// Displays belong to other users, and Xlib ends the process when its display ends.
+TEST(PlaceThread, connectsToNoDisplay) {
     const DisplayListener display;
     if (!display.listens()) GTEST_SKIP() << "the displays :0 to :9 are all in use here";
     for (const DeviceKind kind : {DeviceKind::Gpu, DeviceKind::Network}) std::thread([&] { placeThread(kind); }).join();
     EXPECT_EQ(display.callers(), 0);
 }
 
-// hwloc is told that core 0 and core 1 are two NUMA nodes; the better GPU cannot be told from the other
-// by its bus, so the first is taken: the one on core 0.
+// hwloc reads a topology in which core 0 and core 1 are two NUMA nodes. The GPUs cannot be distinguished by their bus,
+// so the first is chosen, on core 0.
 TEST(PlaceThread, bindsToTheCoresNearTheDevice) {
     const cpu_set_t before = coresOfThisThread();
     if (!CPU_ISSET(0, &before) || !CPU_ISSET(1, &before)) GTEST_SKIP() << "cores 0 and 1 may not be used here";

@@ -1,5 +1,5 @@
-// A machine as hwloc writes it down: two packages, each with a NUMA node and some cores. The second
-// has a GPU (3D controller) and a network card ib0, the first the display of a management card and eth0.
+// A machine in hwloc's XML format: two packages, each with a NUMA node and some cores. The second has a GPU (3D
+// controller) and the network card ib0. The first has the display of a management card and eth0.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// ARB_vertex_program and ARB_fragment_program: environment and local parameters, state bindings,
-// address register, KIL, fog and position options, textures, wrongs reported as they should be.
+// ARB_vertex_program and ARB_fragment_program: environment and local parameters, state bindings, address register, KIL,
+// fog and position options, textures, and correct reports of errors.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -120,7 +120,7 @@ void drawAll(int frame) {
     strip(130, 137);
 }
 
-// A wrong text: an error and a place, and the program goes on.
+// Loads an invalid text: an error and its position are reported, and drawing continues.
 void giveWrong() {
     const char* const wrong = "!!ARBvp1.0\nMOV result.position, nothing;\nEND\n";
     glBindProgramARB(GL_VERTEX_PROGRAM_ARB, names[5]);

@@ -1,4 +1,4 @@
-// glPushAttrib and glPushClientAttrib with each group: state is changed inside and must be back after.
+// glPushAttrib and glPushClientAttrib with each group: state is changed inside and must be restored afterwards.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -21,7 +21,7 @@ void shape(int cell) {
     glEnd();
 }
 
-// Changes much of the state of the group; nothing of it may remain after glPopAttrib.
+// Changes much of the state of the group. glPopAttrib must restore all of it.
 void change(GLbitfield group, Window& window, int frame) {
     const GLfloat color[] = {0.9F, 0.3F, 0.1F * float(frame), 1};
     switch (group) {
@@ -82,11 +82,11 @@ void pushEach(Window& window, int frame) {
     }
     for (int i = 0; i < 4; ++i) {
         glColor3f(0.9F, 0.9F, 0.2F * float(i));
-        shape(20 + i); // in the state of the beginning
+        shape(20 + i); // in the initial state
     }
 }
 
-// Deeply nested, all groups at once.
+// Pushes all groups at once, deeply nested.
 void pushNested(Window& window, int frame) {
     for (int depth = 0; depth < 6; ++depth) {
         glPushAttrib(GL_ALL_ATTRIB_BITS);
@@ -112,7 +112,7 @@ void pushNested(Window& window, int frame) {
     showBits(35, glIsEnabled(GL_COLOR_ARRAY) == GL_TRUE ? 1U : 2U);
 }
 
-// What a primitive leaves current is gone after the pop, also when a texture has changed in between.
+// Checks that the pop restores current values after a primitive, also when a texture changed in between.
 void popBehindAPrimitive() {
     glPushAttrib(GL_ALL_ATTRIB_BITS);
     glBegin(GL_POINTS);
@@ -130,7 +130,7 @@ void popBehindAPrimitive() {
     glDeleteTextures(1, &texture);
 }
 
-// EXT_direct_state_access: the client's state as in the beginning, on the stack or for good.
+// EXT_direct_state_access: resets the client state to its defaults, on the stack and permanently.
 void defaultClientState() {
     GLubyte texels[16 * 16 * 4];
     Sequence numbers(77);
@@ -152,7 +152,7 @@ void defaultClientState() {
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glPopClientAttrib();
     glWindowPos2i(25, 5);
-    glDrawPixels(8, 8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr); // the buffer again, and its rows
+    glDrawPixels(8, 8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr); // the buffer and its row length again
     glClientAttribDefaultEXT(GL_CLIENT_PIXEL_STORE_BIT);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
     glWindowPos2i(35, 5);

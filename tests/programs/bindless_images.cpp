@@ -1,5 +1,5 @@
-// Images without a binding: stores from fragment shaders of which other pixels see the result, atomics, of a level and of a
-// layer, into a buffer; the handles come from uniforms and out of memory. (No compute shaders: docs/measurements/exactness.md.)
+// Bindless images: stores from fragment shaders whose result other pixels read, atomics, a level, a layer, and a
+// buffer. The handles come from uniforms and from memory. There are no compute shaders (docs/measurements/exactness.md).
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/needs.hpp"
 #include "tests/programs/support/program.hpp"
@@ -26,7 +26,7 @@ void main() { imageAtomicAdd(counts, ivec2(int(corner.x * 3.99), 0), 1u); result
 }
 
 void makePrograms() {
-    // What each fragment writes lies elsewhere in the picture: other nodes' parts need it.
+    // Each fragment writes to another place of the picture, which other nodes' regions need.
     scatter = buildProgram({{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, R"(#version 430
 #extension GL_ARB_bindless_texture : require
 layout(std430, binding=0) readonly buffer Handles { uvec2 handles[4]; };
@@ -122,7 +122,7 @@ void drawFrame(Window&, int frame) {
     glUseProgram(scatter);
     glUniform1i(glGetUniformLocation(scatter, "frame"), frame);
     box(scatter, -0.95F, -0.95F, 0.9F, 1.4F);
-    if (frame > 0) { // until then only memory says that a shader writes
+    if (frame > 0) { // before this, only memory reveals that a shader writes
         if (tally == 0) {
             makeTally();
         }

@@ -1,6 +1,10 @@
-// Textures without a binding, their handles from everywhere: uniforms one by one and as arrays, of the current and of a
-// named program; uniform and storage blocks; attributes, current ones and arrays of them; two numbers of 32 bits. Residency
-// goes and comes, resident textures change, deleted ones give their handles to others. What the driver answers is shown.
+// Bindless textures with handles from all sources:
+//   - uniforms, single and in arrays, of the current and of a named program;
+//   - uniform and storage blocks;
+//   - attributes, current ones and arrays of them;
+//   - two numbers of 32 bits.
+// Residency changes, resident textures change, and deleted textures pass their handles on to others. The driver's
+// replies are shown.
 #include <string>
 #include <vector>
 
@@ -166,15 +170,15 @@ int main(int argc, char** argv) {
     return runInGlxWindow(argc, argv, {Profile::Core, 4, 5}, setUp, [](Window&, int frame) {
         glClearColor(0.1F, 0.12F, 0.1F, 1);
         glClear(GL_COLOR_BUFFER_BIT);
-        paint(1, frame); // resident, and no draw has it bound
-        if (frame == 1) { // out, and in again
+        paint(1, frame); // resident, but no draw has it bound
+        if (frame == 1) { // non-resident, and resident again
             glMakeTextureHandleNonResidentARB(handles[2]);
             glMakeTextureHandleNonResidentARB(handles[3]);
             showBits(20, GLuint(glIsTextureHandleResidentARB(handles[2])));
             glMakeTextureHandleResidentARB(handles[3]);
             glMakeTextureHandleResidentARB(handles[2]);
         }
-        if (frame >= 2) { // their handles go to others, which may get the same numbers
+        if (frame >= 2) { // other textures may receive the same handle numbers
             for (const int gone : {4, 1}) {
                 glMakeTextureHandleNonResidentARB(handles[gone]);
                 glDeleteTextures(1, &textures[gone]);

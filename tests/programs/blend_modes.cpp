@@ -1,5 +1,5 @@
-// Blending: all factors and equations, separate, constant colour, two sources, per draw buffer, with
-// alpha in the window, minimum and maximum, indexed colour masks, sRGB framebuffers.
+// Blending: all factors and equations, separate, constant colour, two sources, per draw buffer, with alpha in the
+// window, minimum and maximum, indexed colour masks, sRGB framebuffers.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -61,7 +61,7 @@ void box(GLuint program, float x, float y, float w, float h, Color tint) {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-// A backdrop without blending, over it one with the blending set by the caller.
+// Draws a backdrop without blending, and a shape with the caller's blending over it.
 void cell(GLuint program, int frame) {
     const float x = -0.98F + 0.165F * float(cellIndex % 12);
     const float y = -0.98F + 0.3F * float(cellIndex / 12);
@@ -132,7 +132,7 @@ void drawIndexed(Window& window, int frame) {
     }
 }
 
-// What the window's alpha has become, as brightness.
+// Shows the window's alpha as brightness.
 void showAlpha(Window& window) {
     GLubyte alpha[16] = {};
     glReadPixels(window.width() / 24, window.height() / 12, 4, 4, GL_ALPHA, GL_UNSIGNED_BYTE, alpha);

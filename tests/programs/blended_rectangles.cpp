@@ -1,6 +1,6 @@
-// A window without depth and stencil buffers, with blended rectangles of two triangles each and a few other triangles in
-// between. Mesa's software driver draws a block of 64x64 pixels by another code path when it holds nothing but rectangles,
-// and the two paths round colours differently. Some frames copy, read, and clear in between; one counts samples.
+// A window without depth and stencil buffers, with blended rectangles of two triangles each and a few other triangles.
+// Mesa's software driver draws a block of 64x64 pixels with another code path if it contains only rectangles. The two
+// paths round colours differently. Some frames copy, read, and clear in between; one counts samples.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -81,7 +81,7 @@ void drawAndCount(int frame) {
     showBits(1, samples);
 }
 
-// What ends a scene of the driver in the middle of a frame: a copy, a read, and clears and draws inside a scissor box.
+// Ends a scene of the driver in the middle of a frame: a copy, a read, and clears and draws inside a scissor box.
 void drawBetweenScenes(const Window& window, int frame) {
     glBindTexture(GL_TEXTURE_2D, texture);
     glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, window.width() / 2 - kCopied / 2, window.height() / 2 - kCopied / 2, kCopied, kCopied);

@@ -1,5 +1,5 @@
-// Buffer objects: data, sub-data, whole and partial maps, invalidated, unsynchronized and explicitly
-// flushed ranges, copies, clears, orphaning, read-back.
+// Buffer objects: data, sub-data, whole and partial maps, invalidated, unsynchronized and explicitly flushed ranges,
+// copies, clears, orphaning, reads.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -16,7 +16,7 @@ constexpr GLsizeiptr kSize = kBars * 6 * 8;
 GLuint program, vertexArray;
 GLuint buffers[10];
 
-// Two triangles per bar; the heights depend on `seed`.
+// Writes two triangles per bar; the heights depend on `seed`.
 void fillBars(GLfloat* out, unsigned seed, int first = 0, int count = kBars) {
     for (int bar = first; bar < first + count; ++bar) {
         Sequence numbers(seed * 100 + unsigned(bar));
@@ -41,7 +41,7 @@ void drawData(unsigned seed) {
     GLfloat bars[kBars * 12];
     fillBars(bars, seed);
     bind(0);
-    glBufferData(GL_ARRAY_BUFFER, kSize, bars, GL_STREAM_DRAW); // orphans the last frame's
+    glBufferData(GL_ARRAY_BUFFER, kSize, bars, GL_STREAM_DRAW); // orphans the data of the last frame
     fillBars(bars, seed + 50);
     draw(0);
     bind(1);
@@ -56,7 +56,7 @@ void drawMapped(unsigned seed) {
     fillBars(bars, seed + 1);
     glUnmapBuffer(GL_ARRAY_BUFFER);
     draw(2);
-    // Read and write: the new contents depend on the old ones.
+    // Reads and writes: the new contents depend on the old ones.
     bars = static_cast<GLfloat*>(glMapBuffer(GL_ARRAY_BUFFER, GL_READ_WRITE));
     for (int i = 1; i < kBars * 12; i += 4) {
         bars[i] *= 0.7F;
@@ -152,7 +152,7 @@ void setUp() {
     }
 }
 
-// Names that come and go between frames.
+// Creates and deletes names between frames.
 void churn(unsigned seed) {
     glDeleteBuffers(2, buffers + 8);
     glGenBuffers(2, buffers + 8);

@@ -1,5 +1,5 @@
-// Windows and contexts that come and go in no order: each step is taken by another thread, which opens a
-// window whose context may share with another's, draws into one that some thread has opened, or closes one.
+// Windows and contexts created and destroyed in arbitrary order. Another thread takes each step: it opens a window
+// whose context may share with another's, draws into a window of any thread, or closes one.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -16,7 +16,7 @@ constexpr std::size_t kMost = 5;
 struct Place {
     std::unique_ptr<Window> window;
     int group;      // windows with the same number share
-    GLuint texture; // that all of the group have
+    GLuint texture; // shared by the group
 };
 std::vector<Place> places;
 int lastGroup = 0;

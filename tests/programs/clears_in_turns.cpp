@@ -1,6 +1,6 @@
-// Frames that begin in turns by a whole clear, by several, by clears that only look whole, by partial ones and by none, in
-// one window: what is drawn there counts in the next frame or does not. Between them pixels, depths and samples
-// are read and copied. From frame 24 on the front is drawn into, from frame 30 on the picture accumulates.
+// Frames that begin with different clears in one window: a whole clear, several, clears that only appear whole, partial
+// ones, none. The drawn contents affect the next frame or not. Pixels, depths and samples are read and copied in
+// between. From frame 24 on the front buffer is drawn into; from frame 30 on the picture accumulates.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -13,10 +13,10 @@ using namespace programs;
 namespace {
 
 constexpr int kFrontFrom = 24, kAccumFrom = 30;
-constexpr int kCopied = 60; // pixels of a side
+constexpr int kCopied = 60; // pixels per side
 
 struct State {
-    GLuint texture = 0, query = 0, clears = 0, draws = 0; // the last two: lists
+    GLuint texture = 0, query = 0, clears = 0, draws = 0; // the last two are display lists
 };
 State state;
 
@@ -73,7 +73,7 @@ void masked(int) {
     glDepthMask(GL_TRUE);
     glStencilMask(~0U);
 }
-void refused(int) { // each of them clears nothing
+void refused(int) { // each of these clears nothing
     glClear(kAll | 1U);
     glBegin(GL_LINES);
     glClear(kAll);
@@ -91,7 +91,7 @@ void byBuffers(int frame) {
     glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.95F, 1);
     glClearBufferfv(GL_COLOR, 0, colour);
 }
-void byOtherBuffers(int) { // colours of a draw buffer that there is not
+void byOtherBuffers(int) { // colours of a missing draw buffer
     const GLfloat colour[] = {1, 1, 0, 1};
     glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.95F, 1);
     glClearBufferfv(GL_COLOR, 1, colour);
@@ -124,7 +124,7 @@ void scene(int frame) {
         glStencilOp(GL_KEEP, GL_INVERT, GL_REPLACE);
     }
     triangles(frame, 6);
-    if (frame % 5 == 2) { // where the stencil is what an earlier frame may have left
+    if (frame % 5 == 2) { // where the stencil may be left over from an earlier frame
         glEnable(GL_STENCIL_TEST);
         glStencilFunc(GL_EQUAL, frame % 3, 255);
         glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
@@ -182,10 +182,11 @@ void setUp(Window&) {
 
 void draw(Window& window, int frame) {
     const int x = (13 * frame) % (window.width() - kCopied), y = (29 * frame) % (window.height() - kCopied);
-    // What a front holds that is only swapped, drivers do not agree about: with CLEARS_FRONT it is read, too.
+    // Drivers differ in the front buffer's contents after a swap: it is read only with CLEARS_FRONT.
     static const bool readsFront = std::getenv("CLEARS_FRONT") != nullptr;
     const GLenum shown = readsFront && frame > 0 && frame < kFrontFrom ? GL_FRONT : GL_BACK;
-    const std::vector<GLubyte> before = pixelsOf(shown, x, y); // of a back that was swapped: as the frame before has left it
+    // the back buffer after a swap: contents of the previous frame
+    const std::vector<GLubyte> before = pixelsOf(shown, x, y);
     const bool counts = frame % 3 == 0;
     values(frame);
     if (counts) glBeginQuery(GL_SAMPLES_PASSED, state.query);

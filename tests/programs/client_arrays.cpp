@@ -1,5 +1,5 @@
-// Client arrays of the fixed function: all pointers and types, strides, glInterleavedArrays, client
-// memory that changes between draws, client arrays with element buffers and the reverse.
+// Client arrays of the fixed function: all pointers and types, strides, glInterleavedArrays, client memory that changes
+// between draws, client arrays with element buffers and the reverse.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -21,7 +21,7 @@ void enterCell() {
     ++cellIndex;
 }
 
-// Twelve vertices of a zigzag band, as any type, with `stride` bytes from one to the next.
+// Returns twelve vertices of a zigzag band in any type, `stride` bytes apart.
 template <class T> std::vector<std::uint8_t> band(int components, std::size_t stride, int frame) {
     std::vector<std::uint8_t> bytes(stride * 12 + 64, 0xcd);
     for (int i = 0; i < 12; ++i) {
@@ -61,7 +61,7 @@ void drawVertexTypes(int frame) {
     drawVertexType<GLint>(GL_INT, frame);
     drawVertexType<GLfloat>(GL_FLOAT, frame);
     drawVertexType<GLdouble>(GL_DOUBLE, frame);
-    // Half floats and signed packed places.
+    // Half floats and signed packed positions.
     const GLushort one = 0x3c00;
     const GLushort halves[6] = {0, 0, GLushort(one + 0x1000), 0, one, GLushort(one + 0x0c00)};
     enterCell();
@@ -228,7 +228,7 @@ void drawInterleaved(int frame) {
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 
-// The same pointer, with other contents at each draw.
+// Draws from the same pointer, with other contents in each draw.
 void drawAnimated(int frame) {
     static GLfloat places[6];
     glEnableClientState(GL_VERTEX_ARRAY);
@@ -240,7 +240,7 @@ void drawAnimated(int frame) {
         enterCell();
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
-    // One of the draws is by glArrayElement, with memory changed between the vertices.
+    // One of the draws uses glArrayElement, with memory changed between the vertices.
     enterCell();
     glBegin(GL_TRIANGLES);
     glArrayElement(0);
@@ -306,14 +306,14 @@ void drawMixedWithBuffers(int frame) {
     glDeleteBuffers(2, buffers);
 }
 
-// The same memory, read in another format from then on: its vertices stay where they were.
+// Reads the same memory in another format from then on. Its vertices keep their positions.
 void drawReformatted(int frame) {
     const auto places = band<GLfloat>(4, 16, frame);
     glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, places.data());
     glEnableVertexAttribArray(0);
     glColor3f(0.9F, 0.4F, 0.7F);
     for (const GLuint relative : {0U, 16U}) {
-        glVertexAttribFormat(0, 1, GL_FLOAT, GL_FALSE, relative); // x alone
+        glVertexAttribFormat(0, 1, GL_FLOAT, GL_FALSE, relative); // only x
         enterCell();
         glDrawArrays(GL_LINE_STRIP, 0, 11);
         glVertexArrayAttribFormat(0, 0, 2, GL_FLOAT, GL_FALSE, relative);
@@ -322,7 +322,7 @@ void drawReformatted(int frame) {
     glDisableVertexAttribArray(0);
 }
 
-// A binding that names no buffer leaves the array where it is, and says how far its vertices are apart.
+// Moves an array to a binding without a buffer: it keeps its address, and takes the stride of the binding.
 void drawRebound(int frame) {
     const auto places = band<GLfloat>(4, 16, frame);
     glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 16, places.data());
@@ -359,7 +359,7 @@ void drawAfterPoppedClientState(int frame) {
     showBits(37, std::uint32_t(alignment));
 }
 
-// Draws that begin before their array read what stands there.
+// Draws with a negative first vertex, so that memory before the array is read.
 void drawFromBefore(int frame) {
     const auto places = band<GLfloat>(2, 8, frame);
     const auto palette = colors(frame);
@@ -381,7 +381,7 @@ void drawFromBefore(int frame) {
     glDisableClientState(GL_VERTEX_ARRAY);
 }
 
-// Arrays switched by the name of their object, 0: the one that may stand in the program's memory.
+// Switches arrays through the name of their object. 0 is the object whose arrays may lie in the program's memory.
 void drawSwitchedByName(int frame) {
     const auto places = band<GLfloat>(4, 16, frame);
     const auto palette = colors(frame);
@@ -417,7 +417,7 @@ void makeTextures() {
     }
 }
 
-// Arrays of object 0 that move from memory to a buffer, or get a divisor, by their name. What is refused moves none.
+// Moves arrays of object 0 from memory to a buffer, or gives them a divisor, by name. Rejected calls move none.
 void drawMovedByName(int frame) {
     const auto y = static_cast<GLfloat>(frame);
     const GLfloat before[] = {0, 0, 12, 0, 6, 9}, after[] = {14, y, 26, y, 20, 9};
@@ -449,8 +449,8 @@ void drawMovedByName(int frame) {
     glDisableVertexAttribArray(0);
 }
 
-// Attribute 0 is the vertex, and then it is not: a shader makes the raster position behind the draws. While Mesa has seen few
-// changes of arrays, draws of nothing leave it in a state in which that never ends.
+// Uses attribute 0 as the vertex, then not: a shader computes the raster position after the draws. While Mesa has seen
+// few changes of arrays, empty draws bring it into a state in which this never ends.
 void setRasterPosition() {
     const GLuint program = buildProgram({{GL_VERTEX_SHADER, "#version 110\nattribute vec4 place, second, third;\nvoid main() { gl_Position = place + second + third; }\n"}},
                                         [](unsigned its) {

@@ -1,5 +1,5 @@
-// What cuts geometry: clip planes of the fixed function, gl_ClipVertex, gl_ClipDistance,
-// gl_CullDistance, near and far planes, depth clamp, several viewports and scissors, glClipControl.
+// Clipping: clip planes of the fixed function, gl_ClipVertex, gl_ClipDistance, gl_CullDistance, near and far planes,
+// depth clamp, several viewports and scissors, glClipControl.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -42,7 +42,7 @@ void setUp() {
          {GL_FRAGMENT_SHADER, newFragment}});
 }
 
-// Within 60×45 units, some reaching through the near and far planes.
+// Draws triangles within 60×45 units, some through the near and far planes.
 void drawTriangles(int frame) {
     Sequence numbers(unsigned(frame) + 3);
     glBegin(GL_TRIANGLES);
@@ -53,7 +53,7 @@ void drawTriangles(int frame) {
     glEnd();
 }
 
-// Triangles, a line and points.
+// Draws triangles, a line and points.
 void drawShapes(int frame) {
     drawTriangles(frame);
     glLineWidth(3);

@@ -1,6 +1,6 @@
-// Compressed images read back whose texels come from rendering: copied out of the window, copied between textures,
-// taken from a buffer that was read into; by target, by name and by unit, whole and in part, with blocks that lie
-// apart, into memory and into a buffer.
+// Reads of compressed images whose texels come from rendering: copied from the window, copied between textures, or
+// taken from a buffer that received a read. By target, by name and by unit, whole and in part, with separated blocks,
+// into memory and into a buffer.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -13,7 +13,7 @@ using namespace programs;
 namespace {
 
 constexpr int kSize = 32, kBlocks = kSize / 4;
-constexpr GLsizei kBytes = kBlocks * kBlocks * 8, kBuffer = 4 * kBytes; // of RGTC1
+constexpr GLsizei kBytes = kBlocks * kBlocks * 8, kBuffer = 4 * kBytes; // bytes of RGTC1
 GLuint flat, copied, filled, cube, wide, source, packed;
 int row;
 
@@ -55,7 +55,7 @@ void makeImages(const Window& window) {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, source);
     glTextureImage2DEXT(filled, GL_TEXTURE_2D, 0, GL_COMPRESSED_RED_RGTC1, kSize, kSize, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
-    // What was read is taken for blocks: any bytes are.
+    // Uses the bytes of a read as blocks; any bytes are valid.
     glCompressedTextureSubImage2DEXT(cube, GL_TEXTURE_CUBE_MAP_POSITIVE_X, 0, 0, 0, kSize, kSize, GL_COMPRESSED_RED_RGTC1, kBytes, nullptr);
     glTextureSubImage2DEXT(wide, GL_TEXTURE_2D, 0, 0, 0, kBlocks, kBlocks, GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
@@ -77,7 +77,7 @@ void readWhole() {
     show("name", [](void* to) { glGetCompressedTextureImage(copied, 0, kBytes, to); });
     show("faces", [](void* to) { glGetCompressedTextureImage(cube, 0, 6 * kBytes, to); });
     show("EXT name", [](void* to) { glGetCompressedTextureImageEXT(filled, GL_TEXTURE_2D, 0, to); });
-    glBindTexture(GL_TEXTURE_CUBE_MAP, cube); // by name Mesa gives all faces where one is asked for
+    glBindTexture(GL_TEXTURE_CUBE_MAP, cube); // by name Mesa returns all faces instead of one
     show("face", [](void* to) { glGetCompressedTexImage(GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, 0, to); });
     glBindTexture(GL_TEXTURE_CUBE_MAP, 0);
     show("unit", [](void* to) { glGetCompressedMultiTexImageEXT(GL_TEXTURE0, GL_TEXTURE_2D, 0, to); });
@@ -98,7 +98,7 @@ void readParts() {
                               GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS}) glPixelStorei(name, 0);
 }
 
-// Parts go into a buffer that is looked at when all are asked for, one of them with blocks that lie apart.
+// Reads parts into a buffer, which is mapped after all reads. One part has separated blocks.
 void readPartsIntoBuffer() {
     const auto at = [](std::uintptr_t offset) { return reinterpret_cast<void*>(offset); }; // NOLINT(performance-no-int-to-ptr): an offset
     GLuint parts = 0;
@@ -124,7 +124,7 @@ void readIntoBuffer() {
     glGetCompressedTexImage(GL_TEXTURE_2D, 0, reinterpret_cast<void*>(std::uintptr_t(16))); // NOLINT(performance-no-int-to-ptr): an offset
     show("buffer", [](void* to) { glGetBufferSubData(GL_PIXEL_PACK_BUFFER, 16, kBytes, to); });
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    // The nodes have these bytes, too: they draw from them.
+    // The nodes have these bytes, too, because they draw from them.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, packed);
     glWindowPos2i(150, 20);
     glDrawPixels(16, kBytes / 64, GL_RGBA, GL_UNSIGNED_BYTE, reinterpret_cast<const void*>(std::uintptr_t(16))); // NOLINT(performance-no-int-to-ptr)

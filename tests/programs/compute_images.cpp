@@ -1,5 +1,5 @@
-// Compute shaders with shared memory, indirect dispatch, images of several formats loaded, stored and
-// counted in, results used as textures, vertices and draw commands.
+// Compute shaders: shared memory, indirect dispatch, images of several formats with loads, stores and counters, and
+// results used as textures, vertices and draw commands.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -113,7 +113,7 @@ void showPicture(GLuint program, GLuint texture, float x, float y) {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-// What a shader has written is in a mapping by name, too.
+// Shader writes are also visible in a mapping by name.
 void showMapped(int row) {
     const auto* whole = static_cast<const GLuint*>(glMapNamedBuffer(commandBuffer, GL_READ_ONLY));
     const GLuint count = whole ? whole[0] : ~0U;

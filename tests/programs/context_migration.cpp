@@ -1,5 +1,5 @@
-// One window and one context that move from thread to thread: each frame is drawn by another one, the
-// state stays with the context.
+// One window and one context that move between threads: another thread draws each frame, and the state stays with the
+// context.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -20,7 +20,7 @@ void drawFrame(Window& window, int frame) {
         glLineWidth(3);
         glShadeModel(GL_FLAT);
     }
-    glRotatef(8, 0, 0, 1); // on top of what the last thread left
+    glRotatef(8, 0, 0, 1); // added to the matrix of the last thread
     glColor3f(0.2F * float(frame % 5), 0.8F, 0.4F);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glBegin(GL_TRIANGLE_STRIP);

@@ -1,5 +1,5 @@
-// glCopyPixels in a window with samples: from place to place, onto itself, zoomed and blended, into a framebuffer object
-// and back. What was copied is read, drawn over in part, and copied again: its samples matter.
+// glCopyPixels in a multisampled window: to other places, onto itself, zoomed and blended, into a framebuffer object
+// and back. The copy is read, partly overdrawn, and copied again, so its samples matter.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -13,7 +13,7 @@ namespace {
 constexpr int kSize = 40;
 GLuint framebuffer;
 
-// Slanted edges: few pixels have all samples of one colour.
+// Draws slanted edges, so that few pixels have all samples of one colour.
 void fan(float x, float y, float size, int frame) {
     glBegin(GL_TRIANGLES);
     for (int i = 0; i < 24; ++i) {
@@ -28,7 +28,7 @@ void fan(float x, float y, float size, int frame) {
 
 void setUp(Window&) {
     glClear(GL_COLOR_BUFFER_BIT);
-    glCopyPixels(0, 0, 1, 1, GL_COLOR); // what nodes had drawn before the first one others have without its samples
+    glCopyPixels(0, 0, 1, 1, GL_COLOR); // a node's pixels from before the first copy reach the others without samples
     GLuint color = 0;
     glGenRenderbuffers(1, &color);
     glBindRenderbuffer(GL_RENDERBUFFER, color);
@@ -62,7 +62,7 @@ void copyAbout(const Window& window, int frame) {
     glWindowPos2i(w - 70, h - 70);
     glCopyPixels(x, y, kSize, kSize, GL_COLOR);
     glDisable(GL_BLEND);
-    fan(12, float(h - 56), 30, frame + 3); // covers some samples of what was copied
+    fan(12, float(h - 56), 30, frame + 3); // covers some samples of the copy
     glWindowPos2i(70, 20);
     glCopyPixels(8, h - 60, kSize, kSize, GL_COLOR);
     showBits(1, sumOf(8, h - 60));

@@ -1,5 +1,5 @@
-// Vertex formats of the core profile: separate formats and bindings, integer and double attributes,
-// packed types, BGRA, half floats, fixed point, several divisors, a buffer bound to many attributes.
+// Vertex formats of the core profile: separate formats and bindings, integer and double attributes, packed types, BGRA.
+// Also half floats, fixed point, several divisors, and a buffer bound to many attributes.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -19,7 +19,7 @@ struct Format {
     GLenum type;
     GLboolean normalized;
     GLuint elementBytes;
-    float scale; // brings the values into 0…1
+    float scale; // maps the values to 0…1
 };
 
 const Format kFormats[] = {
@@ -73,7 +73,7 @@ void useCell(GLuint program, float scale) {
     ++cellIndex;
 }
 
-// Bytes that are sane as integers of any size and as half and packed floats.
+// Returns bytes that are valid as integers of any size and as half and packed floats.
 std::vector<GLubyte> valueBytes(int frame) {
     std::vector<GLubyte> bytes(1024);
     Sequence numbers(unsigned(frame) * 3 + 1);
@@ -124,7 +124,7 @@ void drawHalvesAndDoubles(int frame) {
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 6, 1);
 }
 
-// One buffer for all three attributes; the value advances once per two instances.
+// Draws all three attributes from one buffer. The value advances once per two instances.
 void drawInterleaved(int frame) {
     struct Vertex {
         GLfloat place[2];
@@ -157,7 +157,8 @@ void drawInterleaved(int frame) {
     glBindVertexBuffers(kValueBinding, 1, names + 1, offsets + 1, strides + 1);
 }
 
-// Indices in the program's memory, which Mesa takes in core contexts too; each of several draws has its number.
+// Draws with indices in the program's memory, which Mesa also accepts in core contexts. Each of several draws has its
+// number.
 void drawUnboundIndices() {
     static const GLushort kFirst[] = {0, 1, 2}, kSecond[] = {3, 4, 5};
     const void* const lists[] = {kFirst, kSecond, kSecond};

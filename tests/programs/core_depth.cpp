@@ -1,5 +1,5 @@
-// Depth and stencil in a core context: read from the window and from a framebuffer object, copied out of
-// the window into a texture and by a blit. What comes out is drawn as colours.
+// Depth and stencil in a core context, read from the window and from a framebuffer object. They are also copied from
+// the window into a texture, with a copy and with a blit. The results are drawn as colours.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -28,7 +28,7 @@ void drawScene(int frame) {
     glDisable(GL_STENCIL_TEST);
 }
 
-// A sum that tells one wrong value anywhere.
+// Returns a sum that reveals one wrong value anywhere.
 template <class T> std::uint32_t digest(const std::vector<T>& values) {
     std::uint32_t sum = 17;
     for (const T value : values) {
@@ -105,11 +105,11 @@ int main(int argc, char** argv) {
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
             drawScene(frame);
             showRead(37, window.width(), window.height());
-            // Out of the window by a copy …
+            // From the window with a copy.
             glBindTexture(GL_TEXTURE_2D, copied);
             glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, window.width(), window.height());
             readBack(copied, 33, window);
-            // … and by a blit.
+            // From the window with a blit.
             glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
             glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, target, 0);
             glDrawBuffer(GL_NONE);

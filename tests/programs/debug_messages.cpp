@@ -1,5 +1,5 @@
-// Debug output: errors, groups, messages and filters of the program's own, labels; by a callback and by the
-// log. What was heard is shown as numbers, so a message too many or too few is a wrong pixel.
+// Debug output: errors, groups, messages and filters of the program, labels; through a callback and through the log.
+// The received messages are shown as numbers, so one too many or too few is a wrong pixel.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -77,7 +77,7 @@ void labels() {
     glDeleteTextures(1, &texture);
 }
 
-// By the callback, with groups and filters.
+// Receives messages with the callback, with groups and filters.
 void listen() {
     glDebugMessageCallback(hear, &heard);
     void* function = nullptr;

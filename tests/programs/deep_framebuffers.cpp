@@ -1,5 +1,5 @@
-// Framebuffers of more than 8 bits per channel: framebuffer objects, pbuffers of GLX, and pbuffers of half floats by EGL without a window
-// system. Prints sums of what GL reads from them.
+// Framebuffers with more than 8 bits per channel: framebuffer objects, pbuffers of GLX, and pbuffers of half floats
+// through EGL without a window system. Prints sums of the pixels that GL reads from them.
 #define EGL_EGLEXT_PROTOTYPES 1
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
@@ -25,7 +25,7 @@ void require(bool ok, const char* what) {
     }
 }
 
-// Values above 1, too, which half floats keep.
+// Draws values including some above 1, which half floats keep.
 void draw(int seed) {
     Sequence numbers(unsigned(seed) * 5 + 3);
     glViewport(0, 0, kWidth, kHeight);
@@ -58,7 +58,7 @@ void readAll() {
     readAs("floats", GL_FLOAT, 16);
 }
 
-// A copy of what several nodes have drawn.
+// Copies a picture that several nodes drew.
 void copyOut() {
     GLuint texture = 0;
     glGenTextures(1, &texture);

@@ -1,5 +1,5 @@
-// OpenGL 4.5 without binding: buffers, vertex arrays, textures, framebuffers, samplers, pipelines and
-// queries made and used by name; multi-bind; EXT_direct_state_access matrices and uniforms besides.
+// OpenGL 4.5 without binding: buffers, vertex arrays, textures, framebuffers, samplers, pipelines and queries created
+// and used by name; multi-bind; EXT_direct_state_access matrices and uniforms.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -108,7 +108,7 @@ void drawWindow(Window& window, int frame) {
     }
     glEndQuery(GL_SAMPLES_PASSED);
     glBlitNamedFramebuffer(framebuffers[1], 0, 0, 0, kSize, kSize, 10, window.height() - 60, 90, window.height() - 10, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    // Out of the window by its name, while an object is bound for reading.
+    // Copies from the window by its name, while an object is bound for reading.
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[0]);
     glBlitNamedFramebuffer(0, framebuffers[1], 0, 0, window.width(), window.height(), 0, 0, kSize, kSize, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[1]);

@@ -1,5 +1,5 @@
-// Display lists: nested, compile-and-execute, called by glCallLists with names of every type, and
-// holding state (scissor, viewport, draw buffer, matrices, attribute stack, textures, arrays).
+// Display lists: nested, compile-and-execute, called through glCallLists with names of every type, and containing state
+// (scissor, viewport, draw buffer, matrices, attribute stack, textures, arrays).
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -11,7 +11,7 @@ using namespace programs;
 
 namespace {
 
-GLuint glyphs;  // 100 lists, each draws one small glyph and moves on
+GLuint glyphs; // 100 lists; each draws one small glyph and advances
 GLuint scene, stateList, arrayList, pixelList, materialList;
 GLuint textureList, conditionList, condition;
 
@@ -37,7 +37,7 @@ void makeGlyphs() {
     }
 }
 
-// Client memory is read while the list is compiled: the array changes afterwards.
+// Compiles a list from client memory, which is read during compilation. The array changes afterwards.
 void makeArrayList() {
     GLfloat places[8] = {0, 0, 30, 0, 30, 20, 0, 20};
     GLubyte colors[16] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 0, 255};
@@ -116,7 +116,7 @@ void makeTextureList() {
     glEndList();
 }
 
-// State inside of lists, some of it popped again there.
+// Compiles a list that sets state and pops a part of it.
 void makeStateList() {
     stateList = glGenLists(1);
     glNewList(stateList, GL_COMPILE);
@@ -171,7 +171,7 @@ void makeMaterialList() {
     glEndList();
 }
 
-// What the list asks is known only when it is called.
+// Compiles a list with conditional rendering, whose result is known only when it is called.
 void makeConditionList() {
     glGenQueries(1, &condition);
     conditionList = glGenLists(1);
@@ -183,7 +183,7 @@ void makeConditionList() {
     glEndList();
 }
 
-// Counted in a small place, seen in a large one: the two need not be on one node.
+// Counts samples in a small place and draws in a large one. The two may be on different nodes.
 void drawConditionally(int frame) {
     glBeginQuery(GL_SAMPLES_PASSED, condition);
     if (frame % 2 == 0) {
@@ -207,7 +207,7 @@ void makeScene() {
     glEndList();
 }
 
-// Names as bytes, shorts, ints, floats and as 2, 3, 4 bytes, relative to glListBase.
+// Calls lists with names as bytes, shorts, ints, floats and as 2, 3, 4 bytes, relative to glListBase.
 void callByAllTypes(int frame) {
     const GLbyte bytes[] = {1, 5, 9};
     const GLubyte unsignedBytes[] = {2, 6, static_cast<GLubyte>(10 + frame)};
@@ -240,7 +240,7 @@ void callByAllTypes(int frame) {
     glPopAttrib();
 }
 
-// A list is replaced while it is called by another one, and one is compiled and executed at once.
+// Replaces a list while another one calls it, and compiles and executes one at once.
 void replaceAndExecute(int frame) {
     glNewList(glyphs + 42, GL_COMPILE);
     drawGlyph(unsigned(frame) * 7 + 1);
@@ -260,7 +260,7 @@ void replaceAndExecute(int frame) {
     showBits(37, glIsList(scene) == GL_TRUE ? 1U : 0U);
 }
 
-// Attributes given before a list are seen in it, and those it leaves behind after it.
+// Checks that a list uses attributes set before it, and that its own last attributes remain after it.
 void drawThroughCurrentState(int frame) {
     const GLuint open = glGenLists(1);
     glNewList(open, GL_COMPILE);
@@ -279,7 +279,7 @@ void drawThroughCurrentState(int frame) {
     glDeleteLists(open, 1);
 }
 
-// A list has the vertices, one for each element: it knows no instances.
+// Compiles instanced draws. The list holds the vertices, one for each element, without instances.
 void compileInstanced(int frame) {
     const auto x = static_cast<GLfloat>(10 + frame);
     const GLfloat places[8] = {x, 120, x + 20, 122, x + 22, 134, x + 3, 130};
@@ -302,8 +302,8 @@ GLuint errorDigit() {
     return error == GL_NO_ERROR ? 15 : error & 7U;
 }
 
-// Between glBegin and glEnd GL refuses what isn't a vertex and goes on with the primitive, while it compiles and when the
-// list is called. A glBegin that is refused begins nothing: the scissor behind it counts.
+// Compiles invalid calls between glBegin and glEnd. GL rejects everything except vertices and continues the primitive,
+// while it compiles and when the list is called. A rejected glBegin begins nothing: the scissor after it takes effect.
 void compileErrors(int frame, GLenum mode) {
     const GLenum none = GL_NONE;
     const std::vector<GLubyte> gray(98 * 42 * 4, 90), light(98 * 42 * 4, 210);
@@ -325,7 +325,7 @@ void compileErrors(int frame, GLenum mode) {
     glPopAttrib();
     glVertex2f(220, 95);
     glUseProgram(77);
-    glDrawPixels(98, 42, GL_RGBA, GL_UNSIGNED_BYTE, gray.data()); // large: travels ahead of its command
+    glDrawPixels(98, 42, GL_RGBA, GL_UNSIGNED_BYTE, gray.data()); // large: sent before its command
     glVertex2f(178, 100);
     glEnd();
     glEndList();

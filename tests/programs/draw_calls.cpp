@@ -1,5 +1,5 @@
-// Every draw command, with client arrays and with buffers: ranges, multi draws, instances, divisors,
-// base vertices and instances, primitive restart, indirect draws, vertex array objects.
+// Every draw command, with client arrays and with buffers: ranges, multi draws, instances, divisors, base vertices and
+// instances, primitive restart, indirect draws, vertex array objects.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -14,7 +14,7 @@ namespace {
 constexpr GLuint kPlace = 0, kColor = 1, kShift = 2;
 constexpr int kVertices = 24;
 GLuint program, vertexArray, emptyArray;
-GLuint buffers[4]; // places, indices, indirect commands, shifts
+GLuint buffers[4]; // positions, indices, indirect commands, shifts
 GLint offsetUniform;
 int cellIndex;
 
@@ -50,7 +50,7 @@ const GLuint kInts[] = {0, 1, 2, 0xffffffffU, 5, 6, 7, 8};
 
 const void* at(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
 
-// `base` is null for a bound element buffer that holds kOrder, kBytes, kInts at 0, 64, 96.
+// Draws with indices. `base` is null for a bound element buffer that holds kOrder, kBytes, kInts at 0, 64, 96.
 void drawIndexed(bool fromBuffer) {
     const void* order = fromBuffer ? at(0) : kOrder;
     const void* bytes = fromBuffer ? at(64) : kBytes;
@@ -178,10 +178,10 @@ void makeBuffers() {
     glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
     glBufferData(GL_ARRAY_BUFFER, kVertices * 12, nullptr, GL_DYNAMIC_DRAW);
     const GLuint commands[] = {
-        9, 3, 2, 0, 0, 0, 0, 0,      // arrays: count, instances, first, base instance
-        7, 2, 64, 5, 1, 0, 0, 0,     // elements as bytes: count, instances, first index, base vertex
-        6, 1, 0, 0, 6, 2, 10, 1,     // two array commands
-        3, 1, 0, 0, 0, 0, 0, 0,      // two element commands, 32 bytes apart
+        9, 3, 2, 0, 0, 0, 0, 0,  // arrays: count, instances, first, base instance
+        7, 2, 64, 5, 1, 0, 0, 0, // elements as bytes: count, instances, first index, base vertex
+        6, 1, 0, 0, 6, 2, 10, 1, // two array commands
+        3, 1, 0, 0, 0, 0, 0, 0,  // two element commands, 32 bytes apart
         6, 2, 6, 3, 0, 0, 0, 0};
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers[2]);
     glBufferData(GL_DRAW_INDIRECT_BUFFER, sizeof commands, commands, GL_STATIC_DRAW);

@@ -1,5 +1,5 @@
-// Drawing into one drawable and reading from another (glXMakeContextCurrent): windows, pbuffers and pixmaps
-// in all pairs, by glReadPixels, glCopyPixels, glCopyTexImage2D and glBlitFramebuffer.
+// Draws into one drawable and reads from another (glXMakeContextCurrent): windows, pbuffers and pixmaps in all pairs,
+// with glReadPixels, glCopyPixels, glCopyTexImage2D and glBlitFramebuffer.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
@@ -36,7 +36,7 @@ void drawShapes(unsigned seed, int width, int height) {
     glEnd();
 }
 
-// Something of what `read` holds goes into `draw`, in four ways.
+// Copies part of `read` into `draw`, in four ways.
 void mix(GLXDrawable draw, GLXDrawable read, int x, int y) {
     use(draw, read);
     GLubyte pixels[20 * 15 * 4];

@@ -1,6 +1,6 @@
-// Binds contexts of several configurations to plain X windows, so that GLX makes the windows' drawables again. A helper
-// context without depth comes first, and contexts let go of their windows. A display is closed with all its objects, and
-// the next connection gets the same numbers. Depth tests make a wrong configuration visible.
+// Binds contexts of several configurations to plain X windows, so that GLX creates the windows' drawables again. A
+// helper context without depth comes first, and contexts release their windows. A display is closed with all its
+// objects, and the next connection receives the same numbers. Depth tests make a wrong configuration visible.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -23,7 +23,7 @@ int attribute(Display* display, GLXFBConfig config, int name) {
     return value;
 }
 
-// With that visual, or any (0).
+// Chooses a configuration with that visual, or with any (0).
 Choice choose(Display* display, bool depth, VisualID wanted = 0) {
     int count = 0;
     GLXFBConfig* all = glXGetFBConfigs(display, DefaultScreen(display), &count);
@@ -67,7 +67,7 @@ struct Connection {
     }
 };
 
-// Near shapes first: without a depth test the far ones cover them.
+// Draws near shapes first: without a depth test the far ones cover them.
 void drawFrame(int frame, int which) {
     glEnable(GL_DEPTH_TEST);
     glClearColor(0.1F * float(which), 0.2F, 0.3F, 1);
@@ -108,22 +108,23 @@ int main(int argc, char** argv) {
         const ::Window window = first = on.window(options.width, options.height);
         const GLXContext helper = on.context(on.flat), real = on.context(on.deep);
         showFrames(on, window, helper, 1, 1);
-        showFrames(on, window, real, frames, 2); // the helper holds the window: no depth
+        showFrames(on, window, real, frames, 2); // the helper keeps the window bound: no depth
         on.bind(None, nullptr);
         glXDestroyContext(on.display, helper);
-        showFrames(on, window, real, 1, 3); // the real one does now
+        showFrames(on, window, real, 1, 3); // now the real context keeps it bound
         const ::Window other = on.window(options.width / 2, options.height / 2);
         showFrames(on, other, real, 1, 4);
-        showFrames(on, window, real, frames, 5); // it had let go: with depth from now on
+        showFrames(on, window, real, frames, 5); // it was released: with depth from now on
         const GLXContext late = on.context(on.flat);
-        showFrames(on, window, late, 1, 6); // held with depth
-        XCloseDisplay(on.display);          // with all that there is
+        showFrames(on, window, late, 1, 6); // kept bound with depth
+        XCloseDisplay(on.display); // with all its objects
         if (glXGetCurrentContext()) fail("a context of a closed display is current");
     }
     const Connection again;
     const ::Window window = again.window(options.width, options.height);
     if (window != first) fail("the server gives other numbers than to the first connection");
-    showFrames(again, window, again.context(again.flat), frames, 7); // no depth: nothing is left of the first one
+    // no depth: nothing of the first connection remains
+    showFrames(again, window, again.context(again.flat), frames, 7);
     XDestroyWindow(again.display, window);
     showFrames(again, again.window(options.width, options.height), again.context(again.deep), 1, 8);
     return 0;

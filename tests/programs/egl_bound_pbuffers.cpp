@@ -1,4 +1,4 @@
-// Pbuffers that are drawn to while they are textures (eglBindTexImage): the textures show what was drawn.
+// Pbuffers that are drawn to while they are bound as textures (eglBindTexImage): the textures show the new contents.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/pbuffer_source.hpp"
 #include "tests/programs/support/program.hpp"
@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
         bindPbufferSource(sources[i]);
     }
     for (int frame = 0; frame < options.frames; ++frame) {
-        for (unsigned i = 0; i < 2; ++i) { // the second stays as it is in every other frame
+        for (unsigned i = 0; i < 2; ++i) { // the second changes only in every other frame
             if (i == 0 || frame % 2 == 0) {
                 drawPbufferSource(sources[i], unsigned(frame) * 2 + i);
             }

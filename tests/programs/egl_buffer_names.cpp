@@ -1,4 +1,5 @@
-// Saves, sets and restores the buffers for reading and drawing, as libraries do, on all kinds of EGL surfaces. Pbuffers and pixmaps have one buffer, windows two, whatever EGL_RENDER_BUFFER says.
+// Saves, sets and restores the buffers for reading and drawing, as libraries do, on all kinds of EGL surfaces. Pbuffers
+// and pixmaps have one buffer and windows have two, for any EGL_RENDER_BUFFER.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
@@ -63,7 +64,7 @@ GLint value(GLenum name) {
     return found;
 }
 
-// The colour there as the buffer `name` has it, and the buffer that was chosen before.
+// Shows the colour of a pixel in the buffer `name`, which stays selected for reading.
 void showRead(int row, GLint name) {
     GLubyte pixel[4] = {};
     glReadBuffer(GLenum(name));
@@ -80,7 +81,7 @@ void drawFrame(const Surface& d, bool one, int frame) {
     showRead(3, reads);   // the saved buffer
     showRead(4, GL_BACK); // the drawn buffer
     if (d.desktop && one) showRead(5, GL_FRONT);
-    if (d.desktop && one) { // drawn into by its other name, and both
+    if (d.desktop && one) { // drawn through its other name, and through both
         glDrawBuffer(GL_FRONT);
         fillRectangle(0, 60, 40, 20, {1, 0, 0});
         glDrawBuffer(GL_BACK);
@@ -96,9 +97,9 @@ void showAll(EGLDisplay display, const Surface& d, bool one, int frames) {
     if (eglMakeCurrent(display, d.surface, d.surface, d.context) != EGL_TRUE) fail("eglMakeCurrent failed (EGL error 0x%04x)", eglGetError());
     for (int frame = 0; frame < frames; ++frame) {
         drawFrame(d, one, frame);
-        glFlush(); // shows nothing
+        glFlush(); // has no visible effect
         eglSwapBuffers(display, d.surface);
-        if (one) showRead(6, value(GL_READ_BUFFER)); // a swap leaves it as it is
+        if (one) showRead(6, value(GL_READ_BUFFER)); // a swap does not change it
     }
 }
 
@@ -111,7 +112,7 @@ int main(int argc, char** argv) {
     for (const bool desktop : {true, false})
         for (const Kind kind : {Kind::Window, Kind::SingleWindow, Kind::Pbuffer, Kind::Pixmap})
             showAll(display, make(display, kind, desktop, options), kind == Kind::Pbuffer || kind == Kind::Pixmap, options.frames);
-    // Surfaces that end while they are current, with their display: the next ones are others.
+    // Ends surfaces while they are current, together with their display. Later surfaces are new ones.
     eglTerminate(display);
     eglReleaseThread();
     eglInitialize(display, nullptr, nullptr);

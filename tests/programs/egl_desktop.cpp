@@ -1,5 +1,5 @@
-// Desktop OpenGL with EGL, linked to libOpenGL and libEGL: a core profile and, in a second window,
-// the compatibility profile.
+// Desktop OpenGL with EGL, linked to libOpenGL and libEGL: a core profile and, in a second window, the compatibility
+// profile.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/matrix.hpp"
 #include "tests/programs/support/program.hpp"

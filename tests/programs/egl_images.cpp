@@ -1,6 +1,6 @@
-// Images that contexts of different share groups have in common: made of a texture's level, a face of a
-// cube, a slice of a 3D texture and a renderbuffer; drawn into on one side, read on the other. An ES
-// context takes part, with external textures, and one image is made while no context is current.
+// EGL images shared by contexts of different share groups: made from a texture's level, a cube face, a slice of a 3D
+// texture and a renderbuffer; drawn into on one side, read on the other. An ES context takes part, with external
+// textures. One image is made while no context is current.
 #define EGL_EGLEXT_PROTOTYPES 1
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -17,7 +17,7 @@ using namespace programs;
 namespace {
 
 constexpr int kSize = 32;
-constexpr GLenum kExternal = 0x8D65; // GL_TEXTURE_EXTERNAL_OES: the headers of ES have it
+constexpr GLenum kExternal = 0x8D65; // GL_TEXTURE_EXTERNAL_OES, defined in the headers of ES
 
 template <class F> F entry(const char* name) {
     auto* found = reinterpret_cast<F>(eglGetProcAddress(name));
@@ -31,7 +31,7 @@ using TextureTarget = void (*)(GLenum, GLeglImageOES);
 using StorageTarget = void (*)(GLenum, GLeglImageOES, const GLint*);
 
 EGLDisplay display;
-EGLContext maker, embedded; // each a share group of its own
+EGLContext maker, embedded; // each in its own share group
 GLuint level, cube, volume, renderbuffer;
 TextureTarget intoTexture, intoRenderbuffer;
 
@@ -102,7 +102,7 @@ void makeSources() {
     checkNoError("making the sources");
 }
 
-// What the picture shows, drawn where it was made.
+// Draws the contents of an image in the context that made it.
 void drawSource(int which, int frame) {
     use(EGL_OPENGL_API, maker);
     switch (which) {
@@ -119,7 +119,7 @@ void drawSource(int which, int frame) {
     checkNoError("drawing a source");
 }
 
-// A framebuffer of this context over an image.
+// A framebuffer of this context with an image as its attachment.
 class Over {
 public:
     explicit Over(EGLImage image) {
@@ -142,7 +142,7 @@ private:
     GLuint renderbuffer_ = 0, framebuffer_ = 0;
 };
 
-// Through an external texture, in ES: from the texture's level into the cube's face.
+// Draws through an external texture, in ES: from the texture's level into the cube's face.
 void drawEmbedded(EGLImage from, EGLImage to, int frame) {
     use(EGL_OPENGL_ES_API, embedded);
     static const GLuint program = buildProgram(
@@ -171,7 +171,7 @@ void drawEmbedded(EGLImage from, EGLImage to, int frame) {
     checkNoError("in the ES context");
 }
 
-// Reads what an image holds, draws a little into it for its maker, and shows what was read.
+// Reads an image, draws a little into it for its maker, and shows the pixels that were read.
 void showAndChange(EGLImage image, int x, int y, int frame) {
     GLubyte pixels[kSize * kSize * 4];
     {

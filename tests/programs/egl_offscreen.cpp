@@ -1,5 +1,5 @@
-// EGL without windows: a pbuffer, and a second EGL display that is surfaceless and renders into a
-// framebuffer object; both pictures are read and shown in a window.
+// EGL without windows: a pbuffer, and a second, surfaceless EGL display that renders into a framebuffer object. Both
+// pictures are read and shown in a window.
 #define EGL_EGLEXT_PROTOTYPES 1
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

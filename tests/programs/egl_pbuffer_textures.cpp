@@ -1,4 +1,4 @@
-// Pbuffers that become textures (eglBindTexImage): drawn by a context of their own, bound in the window's.
+// Pbuffers that become textures (eglBindTexImage): drawn with a context of their own, bound in the window's context.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/pbuffer_source.hpp"
 #include "tests/programs/support/program.hpp"
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
         for (int i = 0; i < 2; ++i) {
             glBindTexture(GL_TEXTURE_2D, textures[i]);
             glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-            if (i == 1) { // a framebuffer of the program's is none of the pbuffer's business
+            if (i == 1) { // a bound framebuffer object must not affect the pbuffer
                 glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
             }
             bindPbufferSource(sources[i]);

@@ -1,4 +1,4 @@
-// GL into X pixmaps by EGL surfaces of both kinds; what GL reads from them is shown in a window.
+// Draws into X pixmaps through EGL surfaces of both kinds. The pixels that GL reads from them are shown in a window.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -20,7 +20,7 @@ void require(bool ok, const char* what) {
     }
 }
 
-// The pixels of a drawing, as a number.
+// Draws, and returns a sum of the pixels.
 std::uint32_t drawAndRead(unsigned seed) {
     Sequence numbers(seed);
     glClearColor(numbers.unit(), numbers.unit(), numbers.unit(), 1);

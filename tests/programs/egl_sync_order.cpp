@@ -1,5 +1,5 @@
-// Two threads whose contexts share nothing but an image: syncs of EGL keep them in step, fences one way,
-// reusable ones the other.
+// Two threads whose contexts share only an image. EGL syncs keep them in step: fences in one direction, reusable syncs
+// in the other.
 #define EGL_EGLEXT_PROTOTYPES 1
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -76,7 +76,7 @@ EGLSync takePainted() {
     return sync;
 }
 
-// The painter's context, with a texture to paint into, and an image of that.
+// Creates the painter's context, a texture to paint into, and an image of the texture.
 void makePainter() {
     const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_NONE};
     EGLConfig config = nullptr;

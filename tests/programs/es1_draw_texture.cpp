@@ -1,5 +1,5 @@
-// glDrawTex{s,i,x,f}[v]OES of OpenGL ES 1.1: textured rectangles in window coordinates. Crop rectangles, depth, blending, two
-// texture units, viewports that must not matter, framebuffer objects, rectangles beyond the window, and errors.
+// glDrawTex{s,i,x,f}[v]OES of OpenGL ES 1.1: textured rectangles in window coordinates. Crop rectangles, depth,
+// blending, two texture units, viewports without effect, framebuffer objects, rectangles beyond the window, and errors.
 #include <EGL/egl.h>
 #include <GLES/gl.h>
 #include <GLES/glext.h>
@@ -72,7 +72,7 @@ void setUp() {
 
 void bindFramebuffer(GLuint framebuffer) { find<PFNGLBINDFRAMEBUFFEROESPROC>("glBindFramebufferOES")(GL_FRAMEBUFFER_OES, framebuffer); }
 
-// One rectangle by each of the eight commands, in a row.
+// Draws one rectangle with each of the eight commands, in a row.
 void drawVariants(int frame) {
     const DrawTexture& draw = drawTexture();
     glBindTexture(GL_TEXTURE_2D, textures[0]);
@@ -91,7 +91,7 @@ void drawVariants(int frame) {
     draw.fv(floats);
 }
 
-// Parts of a texture, turned over by negative sizes, one of them larger than the texture.
+// Draws parts of a texture, mirrored with negative sizes, one of them larger than the texture.
 void drawCrops(int frame) {
     glBindTexture(GL_TEXTURE_2D, textures[1]);
     const std::array<GLint, 4> crops[] = {{2, 3, 9, 7}, {kSide, 0, -kSide, kSide}, {0, kSide, kSide, -kSide}, {-4, -4, 24, 24}, {frame, frame, 4, 4}};
@@ -107,7 +107,7 @@ void drawCrops(int frame) {
     crop({0, 0, kSide, kSide});
 }
 
-// Depth 0 and less is the near plane, 1 and more the far plane.
+// Draws at depths: 0 and less is the near plane, 1 and more the far plane.
 void drawDepths() {
     glEnable(GL_DEPTH_TEST);
     glBindTexture(GL_TEXTURE_2D, textures[2]);
@@ -139,7 +139,7 @@ void drawBlended(int frame) {
     glColor4ub(255, 255, 255, 255);
 }
 
-// Neither the viewport nor matrices move a rectangle; the scissor cuts it.
+// Checks that neither the viewport nor matrices move a rectangle, and that the scissor cuts it.
 void drawCut(int width, int height) {
     glViewport(30, 20, 50, 40);
     glLoadIdentity();
@@ -170,7 +170,7 @@ void drawToFramebuffer(int width, int height) {
     drawTexture().f(200, 100, 0, 48, 48);
 }
 
-// Errors of empty rectangles, and of a framebuffer that is not complete, become a colour.
+// Shows errors of empty rectangles, and of an incomplete framebuffer, as a colour.
 void showErrors() {
     drawTexture().i(0, 0, 0, 0, 4);
     const GLenum empty = glGetError();

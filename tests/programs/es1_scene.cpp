@@ -44,7 +44,7 @@ template <class Function> Function find(const char* name) {
     return found;
 }
 
-// The same commands by the names of OES_fixed_point.
+// Calls the same commands through the names of OES_fixed_point.
 void drawInFog(int frame) {
     const auto* extensions = reinterpret_cast<const char*>(glGetString(GL_EXTENSIONS));
     if (!extensions || !std::strstr(extensions, "GL_OES_fixed_point")) fail("GL_OES_fixed_point is not there");
@@ -66,7 +66,7 @@ void drawInFog(int frame) {
     glDisable(GL_FOG);
 }
 
-// The middle of the window, where tiles meet, drawn again in a corner.
+// Draws the middle of the window, where tiles meet, again in a corner.
 void drawCopyOfWindow() {
     const GLfloat corners[] = {190, 130, 240, 130, 190, 180, 240, 180};
     const GLfloat coordinates[] = {0, 0, 1, 0, 0, 1, 1, 1};
@@ -90,7 +90,7 @@ void drawCopyOfWindow() {
     glBindTexture(GL_TEXTURE_2D, texture);
 }
 
-// No context of OpenGL ES has these, but their names are known.
+// Calls evaluators, which no context of OpenGL ES has, although their names are known.
 void refuseEvaluators() {
     const auto evaluate = reinterpret_cast<void (*)(GLfixed)>(eglGetProcAddress("glEvalCoord1xOES"));
     const auto vertex = reinterpret_cast<void (*)(GLfixed, GLfixed)>(eglGetProcAddress("glVertex2xOES"));

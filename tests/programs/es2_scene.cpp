@@ -1,4 +1,4 @@
-// OpenGL ES 2 through EGL: client arrays, textures of all its formats, cube maps, framebuffers,
+// OpenGL ES 2 through EGL: client arrays, textures of all its formats, cube maps, framebuffers, and the result of
 // glReadPixels shown again.
 #include <EGL/egl.h>
 #include <GLES2/gl2.h>
@@ -123,7 +123,8 @@ void drawColored(int frame, GLenum mode) {
 
 template <class F> F entry(const char* name) { return reinterpret_cast<F>(eglGetProcAddress(name)); }
 
-// EXT_occlusion_query_boolean, answered by the nodes: a box is green where something was drawn, red where not.
+// EXT_occlusion_query_boolean, which the nodes answer: draws a green box where a query counted samples, a red one
+// elsewhere.
 void drawCounted(int frame, int x, bool nothing) {
     static const auto gen = entry<PFNGLGENQUERIESEXTPROC>("glGenQueriesEXT");
     static const auto begin = entry<PFNGLBEGINQUERYEXTPROC>("glBeginQueryEXT");

@@ -1,5 +1,5 @@
-// OpenGL ES 3.1 through EGL: vertex arrays, uniform blocks, instances, several targets, integer and 3D
-// textures, transform feedback, mapped buffers, fences, compute.
+// OpenGL ES 3.1 through EGL: vertex arrays, uniform blocks, instances, several targets, integer and 3D textures,
+// transform feedback, mapped buffers, fences, compute.
 #include <GLES3/gl31.h>
 
 #include "tests/programs/support/program.hpp"
@@ -106,7 +106,7 @@ void drawBlocks(int frame) {
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, 12);
         glEndQuery(GL_ANY_SAMPLES_PASSED);
         if (buffer == instanceBuffer) {
-            // Moved by transform feedback, drawn from there next.
+            // Transform feedback moves the vertices, which are drawn from there next.
             glVertexAttribDivisor(0, 0);
             glUseProgram(feedbackProgram);
             glUniform1f(glGetUniformLocation(feedbackProgram, "turn"), float(frame));
@@ -133,7 +133,7 @@ void box(GLuint program, float x, float y) {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-// A part of the window, through a buffer, as a texture.
+// Draws a part of the window, read through a buffer, as a texture.
 void drawRead() {
     static GLuint buffer = 0;
     static GLuint texture = 0;
@@ -195,7 +195,7 @@ void drawTextures(Window& window, int frame) {
     glDeleteSync(fence);
 }
 
-// Copies out of no buffer are errors; the frame is shown all the same.
+// Copies from no buffer, which is an error. The frame is shown nevertheless.
 void readNothing() {
     glReadBuffer(GL_BACK);
     showBits(38, std::uint32_t{glGetError()});
@@ -205,7 +205,7 @@ void readNothing() {
     showBits(39, std::uint32_t{glGetError()});
 }
 
-// Samples are resolved in their place only.
+// Samples can be resolved only at their own position.
 void resolveElsewhere() {
     GLuint renderbuffer = 0;
     GLuint samples = 0;
@@ -222,7 +222,7 @@ void resolveElsewhere() {
     showBits(40, std::uint32_t{error});
 }
 
-// A divisor for a binding of array 0 is refused, and the array stays as it was: one value for each vertex.
+// Sets a divisor for a binding of array 0, which is rejected. The array keeps one value for each vertex.
 void drawFromMemory() {
     static const GLfloat corners[4][4] = {{0.5F, 0.5F, 0.9F, 0.3F}, {0.6F, 0.45F, 0.2F, 0.8F}, {0.55F, 0.7F, 0.4F, 0.6F}, {0.8F, 0.75F, 0.7F, 0.9F}};
     glBindBuffer(GL_ARRAY_BUFFER, 0);

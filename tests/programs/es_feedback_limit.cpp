@@ -1,5 +1,5 @@
-// OpenGL ES 3.1 without geometry shaders: a draw that overruns the buffers of transform feedback is an error, and
-// draws nothing.
+// OpenGL ES 3.1 without geometry shaders: a draw that overruns the transform feedback buffers is an error and draws
+// nothing.
 #include <GLES3/gl31.h>
 #include <cstdlib>
 
@@ -11,7 +11,7 @@ using namespace programs;
 
 namespace {
 
-constexpr int kTriangles = 5; // that the buffer has room for
+constexpr int kTriangles = 5; // capacity of the buffer
 GLuint program, buffer, vertexArray;
 GLint fromUniform;
 
@@ -50,7 +50,7 @@ void draw(int frame) {
     }
     glDrawArraysInstanced(GL_TRIANGLES, 0, 3, 2); // one too many
     next();
-    glDrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_SHORT, nullptr); // never allowed there
+    glDrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_SHORT, nullptr); // never permitted during transform feedback
     next();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     next();

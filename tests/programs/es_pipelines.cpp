@@ -1,4 +1,4 @@
-// EXT_separate_shader_objects in OpenGL ES: the names that programs find by eglGetProcAddress.
+// EXT_separate_shader_objects in OpenGL ES, with function names from eglGetProcAddress.
 #include <EGL/egl.h>
 #include <GLES2/gl2.h>
 #include <GLES2/gl2ext.h>
@@ -54,7 +54,7 @@ void draw(int frame) {
     find<PFNGLACTIVESHADERPROGRAMEXTPROC>("glActiveShaderProgramEXT")(pipelines[0], programs[1]);
     find<PFNGLGETPROGRAMPIPELINEIVEXTPROC>("glGetProgramPipelineivEXT")(pipelines[0], GL_ACTIVE_PROGRAM_EXT, &active);
     showBits(0, active == static_cast<GLint>(programs[1]) ? 1U : 0U);
-    glUniform3f(base, 0, 0.5F, 0.5F); // of the active one
+    glUniform3f(base, 0, 0.5F, 0.5F); // uniform of the active program
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

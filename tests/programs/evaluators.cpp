@@ -1,5 +1,5 @@
-// Evaluators: one- and two-dimensional maps of vertices, colours, normals and texture coordinates,
-// meshes, points, automatic normals, maps changed and freed after they were given.
+// Evaluators: one- and two-dimensional maps of vertices, colours, normals and texture coordinates, meshes, points,
+// automatic normals, and maps changed and freed after the call.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -11,7 +11,7 @@ using namespace programs;
 namespace {
 
 void drawCurves(int frame) {
-    // Control points with a stride of 5 floats; the memory is gone before it is evaluated.
+    // Control points with a stride of 5 floats. The memory is freed before evaluation.
     {
         std::vector<GLfloat> points(5 * 5, -1);
         Sequence numbers(unsigned(frame) + 1);
@@ -124,7 +124,7 @@ void setUp() {
     }
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels); // the nameless texture
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels); // texture 0
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Feedback and selection; their results are drawn, so a wrong hit or coordinate is a wrong pixel.
+// Feedback and selection. Their results are drawn, so a wrong hit or coordinate is a wrong pixel.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -38,7 +38,7 @@ void setProjection(double left, double right, double bottom, double top) {
     glLoadIdentity();
 }
 
-// Everything within a small box, as picking does it.
+// Selects everything within a small box, as picking does.
 void select(int frame) {
     GLuint hits[256] = {};
     glSelectBuffer(256, hits);
@@ -66,7 +66,7 @@ void feedBack(int frame) {
     glEnd();
     const GLint count = glRenderMode(GL_RENDER);
     showBits(31, std::uint32_t(count));
-    // The fed-back places again, as points in window coordinates.
+    // Draws the feedback positions again, as points in window coordinates.
     GLint viewport[4];
     glGetIntegerv(GL_VIEWPORT, viewport);
     setProjection(0, viewport[2], 0, viewport[3]);
@@ -91,7 +91,7 @@ void feedBack(int frame) {
     setProjection(0, 250, 0, 190);
 }
 
-// A buffer that is too small: the count says so.
+// Uses a buffer that is too small, which the returned count reports.
 void overflow(int frame) {
     GLfloat few[4];
     glFeedbackBuffer(4, GL_2D, few);

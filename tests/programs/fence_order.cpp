@@ -1,6 +1,6 @@
-// Two threads, two contexts that share: one loads a texture and a buffer anew for each of many small cells,
-// the other draws with them, and fences keep the two in step in both directions. A cell that is drawn with
-// what was there before, or with what comes next, is a wrong pixel.
+// Two threads with contexts that share: one uploads a texture and a buffer for each of many small cells, the other
+// draws with them. Fences keep them in step in both directions. A cell drawn with the previous or the next contents is
+// a wrong pixel.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -18,7 +18,7 @@ namespace {
 constexpr int kCells = 60; // per frame
 constexpr GLuint64 kPatienceNs = 20'000'000'000ULL;
 
-// A place for one fence that one thread puts there and the other takes.
+// A slot for one fence, from one thread to the other.
 class Handover {
 public:
     void put(GLsync fence) {

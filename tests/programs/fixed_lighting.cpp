@@ -1,5 +1,5 @@
-// The fixed-function pipeline: lights of all kinds, materials, colour material, two sides, fog, texture
-// environments and combiners, texture coordinate generation, matrix stacks, normal rescaling.
+// The fixed-function pipeline: lights of all kinds, materials, colour material, two sides, fog, texture environments
+// and combiners, texture coordinate generation, matrix stacks, normal rescaling.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 GLuint textures[3];
 
-// A bumpy patch of 8×8 quads around the origin.
+// Draws a bumpy patch of 8×8 quads around the origin.
 void patch(int frame, bool colored = false) {
     const auto height = [&](int x, int y) { return std::sin(float(x) * 0.9F + float(frame)) * std::cos(float(y) * 0.7F) * 0.3F; };
     for (int y = -4; y < 4; ++y) {

@@ -1,6 +1,9 @@
-// What a second thread sees of a context that has drawn and not flushed: while it is current, when its thread has given
-// it up (KHR_context_flush_control: flushed then, or not), and when it has flushed. The threads go in step; what was seen
-// is shown as numbers. A texture is drawn to, for framebuffer objects are not shared.
+// Drawing of an unflushed context as a second thread sees it:
+//   - while the context is current;
+//   - after its thread has released it (KHR_context_flush_control: flushed then, or not);
+//   - after a flush.
+// The threads run in step, and the observed colours are shown as numbers. The target is a texture, because framebuffer
+// objects are not shared.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
@@ -45,7 +48,7 @@ void use(GLXDrawable drawable, GLXContext context) {
     }
 }
 
-// Does what it is given, in a thread of its own, while the giver waits.
+// A thread that executes a function while the caller waits.
 class Worker {
 public:
     Worker() : thread_([this] { run(); }) {}
@@ -85,7 +88,7 @@ private:
     std::thread thread_;
 };
 
-// For the context that is current.
+// Makes the texture the target of the current context.
 void drawTo(GLuint texture) {
     GLuint target = 0;
     glGenFramebuffers(1, &target);
@@ -104,7 +107,7 @@ std::uint32_t seen() {
     return pixel;
 }
 
-// What the other thread sees, step by step.
+// Observations of the other thread, step by step.
 struct Looks {
     std::uint32_t held = 0, givenUp = 0, taken = 0, flushed = 0;
     GLint behavior = 0;
@@ -122,7 +125,7 @@ Looks look(GLXDrawable window, GLXContext drawer, GLXContext other, GLXDrawable 
     drawTo(texture);
     clearWith(0, 1);
     glFinish();
-    clearWith(1, 0); // held back
+    clearWith(1, 0); // not flushed
     Worker worker;
     worker([&] {
         use(aside, watcher);

@@ -1,6 +1,6 @@
-// What a fragment shader may know of its place: gl_FragCoord in both origins and pixel centres,
-// derivatives, gl_FrontFacing, gl_PointCoord, gl_FragDepth, early tests, interpolation qualifiers,
-// gl_PrimitiveID, screen doors, a ray caster that uses nothing else.
+// Positions in a fragment shader: gl_FragCoord with both origins and pixel centres, derivatives, gl_FrontFacing,
+// gl_PointCoord, gl_FragDepth. Also early tests, interpolation qualifiers, gl_PrimitiveID, screen doors, and a ray
+// caster that uses only its position.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
                     draw(i, window, frame, -0.97F + 0.245F * float(i), 0.15F + shift, 0.22F, 0.8F);
                 }
             }
-            // Drawn behind and before what gl_FragDepth left.
+            // Draws after and in front of the depths that gl_FragDepth wrote.
             draw(0, window, frame, -0.1F, 0.3F, 0.5F, 0.2F);
             glDisable(GL_DEPTH_TEST);
         });

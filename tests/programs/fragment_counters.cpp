@@ -1,5 +1,5 @@
-// Fragment shaders with effects besides their pixel: atomic counters, and sums and maxima in a storage
-// block, each independent of the order of the fragments. Read back and drawn as bits.
+// Fragment shaders with side effects: atomic counters, and sums and maxima in a storage block, each independent of the
+// order of the fragments. The results are read and drawn as bits.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 GLuint vertexArray, plain, counting, counterBuffer;
 
-// Sums that do not depend on the order of fragments.
+// Draws with sums that do not depend on the order of fragments.
 void drawCounted(int frame) {
     const GLuint zero[80] = {};
     glBindBuffer(GL_ATOMIC_COUNTER_BUFFER, counterBuffer);
@@ -22,7 +22,7 @@ void drawCounted(int frame) {
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, sums);
     glBufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, zero, GL_DYNAMIC_COPY);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, sums);
-    glEnable(GL_DEPTH_TEST); // what the depth of other draws hides is not counted
+    glEnable(GL_DEPTH_TEST); // fragments hidden by the depth of other draws are not counted
     glUseProgram(plain);
     glUniform1f(0, 0.3F);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
                 fillRectangle(window.width() * i / 9, window.height() * i / 9, 25, 15, {0.9F, float(i) / 9, 0.2F});
             }
             if (frame == 1) {
-                makeCounting(); // in the middle of a picture: what is drawn stays
+                makeCounting(); // in the middle of a picture: earlier drawing remains
             }
             if (frame > 0) {
                 drawCounted(frame);

@@ -1,5 +1,5 @@
-// Fragments that are counted in a storage block, at a place known only when they are drawn, and which depth and stencil
-// choose that other draws have left before the counting program was linked, in the middle of a picture.
+// Fragments counted in a storage block, at a position that is known only during the draw. Depth and stencil of draws
+// before the link of the counting program select them, in the middle of a picture.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -32,7 +32,7 @@ void box(GLuint program, float x0, float y0, float x1, float y1, float depth) {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-// Depth and stencil that hide a part of what is counted.
+// Draws depth and stencil that hide part of the counted fragments.
 void drawBefore() {
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_STENCIL_TEST);

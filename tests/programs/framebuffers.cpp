@@ -1,5 +1,5 @@
-// Framebuffer objects: render to texture and renderbuffer, several targets, blits from and to the
-// window (scaled, flipped, depth), resolve, cleared one by one, invalidated, read by glCopyTexSubImage.
+// Framebuffer objects: rendering to textures and renderbuffers, several targets, blits from and to the window (scaled,
+// flipped, depth), resolve, separate clears, invalidation, reads with glCopyTexSubImage.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

@@ -1,6 +1,6 @@
-// A multisampled window, layered framebuffers filled by a geometry shader, cube map faces and 3D slices
-// as targets, sample masks, alpha to coverage, sample shading, blits of depth and stencil; the number of samples
-// of a framebuffer without attachments before and after it is drawn to.
+// A multisampled window, layered framebuffers filled by a geometry shader, cube map faces and 3D slices as targets.
+// Sample masks, alpha to coverage, sample shading, blits of depth and stencil. The number of samples of a framebuffer
+// without attachments, before and after drawing to it.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -176,7 +176,7 @@ void drawMultisampledShapes(int frame) {
     glEnable(GL_MULTISAMPLE);
 }
 
-// The window's samples are resolved into a renderbuffer, and that is shown in another corner.
+// Resolves the window's samples into a renderbuffer, and shows it in another corner.
 void blitWindow(Window& window) {
     const int w = window.width();
     const int h = window.height();
@@ -197,7 +197,7 @@ void blitWindow(Window& window) {
     glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
     add();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    // Once more as a texture, and the window itself: its samples are still there.
+    // Reads the window, whose samples are still present, directly and through a texture.
     glReadPixels(w / 8, h * 5 / 8, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
     add();
     glBindTexture(GL_TEXTURE_2D, copied);

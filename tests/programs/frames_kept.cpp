@@ -1,6 +1,8 @@
-// Windows whose frames need the frame before, each in another way: not cleared, cleared at first and then no longer, a
-// depth buffer that stays, a partial clear, a copy of the window, conditional rendering, pixels read ahead of drawing,
-// frames without any drawing; and two that clear everything, by old and by new commands.
+// Windows whose frames depend on the previous frame, each in another way:
+//   - without clears, with clears only at first, with a partial clear;
+//   - a depth buffer that stays, a copy of the window, conditional rendering;
+//   - reads before drawing, frames without drawing.
+// Two windows clear everything, with old and with new commands.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -11,12 +13,12 @@ using namespace programs;
 
 namespace {
 
-constexpr int kCopied = 48; // pixels of a side
+constexpr int kCopied = 48; // pixels per side
 
 struct Place {
     const Window& window;
     int frame;
-    GLuint object; // of this window's context
+    GLuint object; // object of this window's context
 };
 
 void clearAll(int frame) {
@@ -24,7 +26,7 @@ void clearAll(int frame) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 }
 
-// A triangle in another place, tone and depth each time.
+// Draws a triangle with another place, tone and depth each time.
 void addTriangle(int frame) {
     Sequence numbers(unsigned(frame) + 40);
     const float x = numbers.unit() * 1.4F - 0.7F, y = numbers.unit() * 1.4F - 0.7F, z = numbers.unit() * 1.6F - 0.8F;
@@ -63,7 +65,7 @@ void depthStays(const Place& p) {
 
 void clearsParts(const Place& p) {
     if (p.frame == 0) clearAll(0);
-    if (p.frame % 5 == 3) { // all of it, but not all colours
+    if (p.frame % 5 == 3) { // clears the whole window, but not all colours
         glColorMask(GL_TRUE, GL_FALSE, GL_FALSE, GL_FALSE);
         glClearColor(0.6F, 0, 0, 1);
         glClear(GL_COLOR_BUFFER_BIT);
@@ -92,7 +94,7 @@ void copies(const Place& p) {
     glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, p.window.width() / 2 - kCopied, p.window.height() / 2 - kCopied, 2 * kCopied, 2 * kCopied, 0);
 }
 
-// Whether the frame before has drawn anything within its scissor box decides about this one.
+// Draws under the condition that the previous frame drew something within its scissor box.
 void conditional(const Place& p) {
     clearAll(p.frame);
     if (p.frame > 0) glBeginConditionalRender(p.object, GL_QUERY_WAIT);
@@ -106,7 +108,7 @@ void conditional(const Place& p) {
     glDisable(GL_SCISSOR_TEST);
 }
 
-// What is there before this frame draws becomes part of it.
+// Makes the contents before this frame's drawing part of the frame.
 void readsAhead(const Place& p) {
     std::vector<GLubyte> pixels(kCopied * kCopied * 4);
     if (p.frame > 0) glReadPixels(p.window.width() / 3, p.window.height() / 3, kCopied, kCopied, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
@@ -152,7 +154,7 @@ int main(int argc, char** argv) {
         way == conditional ? glGenQueries(1, &object) : glGenTextures(1, &object);
         objects.push_back(object);
     }
-    // More than the turns of any test; each window is swapped as often.
+    // More frames than any test has turns; each window swaps equally often.
     for (int frame = 0; frame < 3 * options.frames; ++frame) {
         for (size_t i = 0; i < windows.size(); ++i) {
             windows[i]->makeCurrent();

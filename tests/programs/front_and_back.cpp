@@ -1,5 +1,5 @@
-// Front and back of one window used in turns: what is drawn into one is not in the other, depth and stencil are
-// one for both, and copies go from one to the other. What was read is shown in the next frame.
+// Front and back buffer of one window in turns: their colours are separate, depth and stencil are common, and copies go
+// from one to the other. The pixels read are shown in the next frame.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -35,7 +35,7 @@ Pixels readFrom(GLenum buffer, int x, int y, GLenum format = GL_RGBA) {
     return pixels;
 }
 
-// Through a texture, of the buffer that is read from.
+// Returns pixels of the read buffer, copied through a texture.
 Pixels copied(GLenum buffer, int x, int y) {
     Pixels pixels(kWidth * kHeight * 4);
     GLuint texture = 0;
@@ -55,7 +55,7 @@ std::vector<Pixels> useBoth(const Window& window, int frame) {
     glClear(GL_DEPTH_BUFFER_BIT);
     clearColour(0, 0.5F, 0.1F * float(frame % 5));
     drawTriangles(unsigned(frame) + 10);
-    glDrawBuffer(GL_FRONT); // its fragments are hidden by those of the back
+    glDrawBuffer(GL_FRONT); // fragments of the back hide its fragments
     clearColour(0.4F, 0, 0.1F * float(frame % 7));
     drawTriangles(unsigned(frame) + 40);
     glDrawBuffer(GL_BACK);
@@ -84,8 +84,8 @@ std::vector<Pixels> useBoth(const Window& window, int frame) {
     glDrawBuffer(GL_FRONT);
     drawTriangles(unsigned(frame) + 15);
     glPopAttrib();
-    read.push_back(readFrom(GL_FRONT, x, y)); // drawn anew since both were drawn
-    read.push_back(readFrom(GL_LEFT, x, y));  // of several buffers the front is read
+    read.push_back(readFrom(GL_FRONT, x, y)); // drawn again since both were drawn
+    read.push_back(readFrom(GL_LEFT, x, y)); // of several buffers, reads use the front
     return read;
 }
 

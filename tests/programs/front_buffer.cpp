@@ -1,6 +1,6 @@
-// Drawing into and reading from the front buffer of a window with two buffers; what was read is shown
-// in the next frame. Only what was drawn into the front buffer is read: Mesa 22's software drivers
-// do not bring swapped pictures into it.
+// Draws into and reads from the front buffer of a window with two buffers. The pixels read are shown in the next frame.
+// Only pixels drawn into the front buffer are read, because Mesa 22's software drivers do not copy swapped pictures
+// into it.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -23,7 +23,7 @@ void drawTriangles(unsigned seed) {
     glEnd();
 }
 
-// A part of the front buffer, all of it drawn anew.
+// Draws a part of the front buffer completely, and reads it.
 std::vector<GLubyte> overlay(Window& window, int frame, GLenum buffer) {
     const int x = window.width() / 4 + frame * 3;
     const int y = window.height() / 4;

@@ -1,4 +1,4 @@
-// glVertexAttrib in all its forms, outside and inside glBegin, as floats, integers and doubles.
+// glVertexAttrib in all its forms, outside and inside glBegin, with floats, integers and doubles.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -38,7 +38,7 @@ void setUp() {
 
 int cellIndex;
 
-// A quad in the next cell of a 10×9 grid. The value changes at the second corner when `inside`.
+// Draws a quad in the next cell of a 10×9 grid. The value changes at the second corner when `inside`.
 template <class Attribute> void quad(const Attribute& attribute) {
     const float x = -0.98F + 0.195F * float(cellIndex % 10);
     const float y = -0.98F + 0.21F * float(cellIndex / 10);
@@ -135,7 +135,7 @@ void drawDoubles(int frame) {
     VECTOR_FORM(GLdouble, glVertexAttribL4dv, 1.0);
 }
 
-// What was set last must be what is told.
+// Shows the current value, which must be the one set last.
 void showCurrentValue() {
     GLfloat current[4] = {};
     glGetVertexAttribfv(3, GL_CURRENT_VERTEX_ATTRIB, current);

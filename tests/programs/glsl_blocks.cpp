@@ -1,5 +1,5 @@
-// Uniform blocks (all layouts, arrays, ranges), storage blocks read by vertex shaders,
-// subroutines, separable programs in pipelines, program interface queries.
+// Uniform blocks (all layouts, arrays, ranges), storage blocks read by vertex shaders, subroutines, separable programs
+// in pipelines, program interface queries.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

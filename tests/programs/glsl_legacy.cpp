@@ -1,6 +1,8 @@
-// GLSL 1.10 to 1.50 as older programs use it: built-in attributes, varyings and state, the ARB entry
-// points (handles instead of names), generic attributes bound before the link, two-sided colours,
-// point sprites, mixtures of a shader and a fixed-function stage, several shaders of one stage.
+// GLSL 1.10 to 1.50 in the style of older programs:
+//   - built-in attributes, varyings and state;
+//   - the ARB entry points (handles instead of names), generic attributes bound before the link;
+//   - two-sided colours, point sprites;
+//   - mixtures of a shader and a fixed-function stage, several shaders of one stage.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -75,7 +77,7 @@ void makePrograms() {
                               "gl_Position = ftransform(); }\n"},
                              {GL_FRAGMENT_SHADER,
                               "#version 120\nvoid main() { gl_FragColor = gl_FrontFacing ? gl_Color : gl_Color * 0.6; }\n"}});
-    // A function that lives in a second shader of the same stage.
+    // A function in a second shader of the same stage.
     linked = buildProgram({{GL_VERTEX_SHADER,
                             "#version 130\nvec4 place(vec4 v); out vec3 tint; void main() { tint = gl_Color.rgb;\n"
                             "gl_Position = gl_ModelViewProjectionMatrix * place(gl_Vertex); }\n"},

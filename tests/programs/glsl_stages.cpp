@@ -1,5 +1,5 @@
-// Tessellation, geometry shaders with all kinds of input, transform feedback (separate, interleaved,
-// paused, several streams) drawn again by glDrawTransformFeedback.
+// Tessellation, geometry shaders with all kinds of input, and transform feedback (separate, interleaved, paused,
+// several streams) drawn again with glDrawTransformFeedback.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -150,7 +150,7 @@ void capture(int frame) {
     glDrawArrays(GL_TRIANGLES, 0, 9);
     glPauseTransformFeedback();
     glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, secondFeedback);
-    glBeginTransformFeedback(GL_TRIANGLES); // Mesa 22 checks a resumed one against the mode begun last
+    glBeginTransformFeedback(GL_TRIANGLES); // Mesa 22 compares a resumed one with the mode that began last
     glDrawArrays(GL_TRIANGLES, 3, 9 + 3 * (frame % 2));
     glEndTransformFeedback();
     glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, feedback);

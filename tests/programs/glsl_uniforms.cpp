@@ -1,5 +1,5 @@
-// Uniforms of all types, arrays and structures, by glUniform and glProgramUniform, with locations of
-// one program's own; values carry over frames; each value is one coloured cell.
+// Uniforms of all types, arrays and structures, through glUniform and glProgramUniform, with locations of one program;
+// values persist over frames. Each value is one coloured cell.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -135,11 +135,11 @@ void setArrays(int frame) {
     glUniform1iv(at("images"), 3, units);
     glUniform3f(77, 0.1F * float(frame), 0.9F, 0.4F);
     if (frame == 2) {
-        glUniform1f(at("preset"), 0.1F); // the value of the source until then
+        glUniform1f(at("preset"), 0.1F); // has the initial value of the source before this
     }
 }
 
-// The second program is set without being in use.
+// Sets uniforms of the second program, which is not in use.
 void setOther(int frame) {
     setScalars(frame);
     const GLint saved = at("f3");

@@ -1,5 +1,5 @@
-// GLX pbuffers and pixmaps: drawn into, read back and shown in the window, read from while drawing into
-// the window, kept over frames, made and destroyed in between.
+// GLX pbuffers and pixmaps: drawn into, read and shown in the window, read while drawing into the window, kept over
+// frames, created and destroyed in between.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
         drawShapes(unsigned(frame) + 5, true);
         glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
         require(glXMakeContextCurrent(display, kept, kept, context), "the kept pbuffer");
-        drawShapes(unsigned(frame) + 90, frame == 0); // on top of the earlier frames
+        drawShapes(unsigned(frame) + 90, frame == 0); // over the earlier frames
         require(glXMakeContextCurrent(display, glxPixmap, glxPixmap, context), "the pixmap");
         std::vector<GLubyte> others(kSize * kSize * 4);
         drawShapes(unsigned(frame) + 40, true);

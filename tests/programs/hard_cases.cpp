@@ -1,6 +1,6 @@
-// Pictures in which rounding decides much: each frame is one of the hard cases that tests/end_to_end/hard_cases.py names, in its
-// order. Near and far planes, ties, borders of tiles across lines and points, places on screen that shaders and the raster
-// position see, matrices with nothing to spare.
+// Pictures in which rounding decides much. Each frame is one of the hard cases of tests/end_to_end/hard_cases.py, in
+// its order. Near and far planes, ties, tile borders across lines and points, screen positions seen by shaders and the
+// raster position, matrices without reserve of precision.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -21,7 +21,7 @@ GLuint screenDoor, steps, rays, sprites, texture;
 void colour(Sequence& s) { glColor4f(s.unit(), s.unit(), s.unit(), 1); }
 float wide(Sequence& s) { return 2 * s.unit() - 1; }
 
-// farPlane 0: infinitely far.
+// Loads a projection. farPlane 0: infinite.
 void loadProjection(double nearPlane, double farPlane, bool reversed = false) {
     Matrix16 m = {};
     m[0] = m[5] = 1;
@@ -39,7 +39,7 @@ void loadProjection(double nearPlane, double farPlane, bool reversed = false) {
     glLoadIdentity();
 }
 
-// From near to far, many beside each other in one of few depths: there the last bit of depth decides.
+// Draws planes from near to far, many side by side at one of few depths, where the last bit of depth decides.
 void planes(double nearest, double farthest, int count) {
     Sequence s(7);
     for (int i = 0; i < count; ++i) {
@@ -53,7 +53,7 @@ void planes(double nearest, double farthest, int count) {
     }
 }
 
-// Two tessellations of one plane: which one is in front, the last bit of each pixel's depth decides.
+// Draws two tessellations of one plane: the last bit of each pixel's depth decides which is in front.
 void coplanar(GLenum function) {
     glDepthFunc(function);
     loadProjection(1, 100);
@@ -74,7 +74,7 @@ void coplanar(GLenum function) {
     }
 }
 
-// The world is 10^6 units from its origin, and the program multiplies matrices by itself, in floats.
+// Draws a world 10^6 units from its origin; the program multiplies matrices itself, in floats.
 void farWorld() {
     constexpr double kFar = 1e6;
     loadProjection(1, 100);
@@ -93,7 +93,7 @@ void farWorld() {
     glEnd();
 }
 
-// A wall of 6 m, seen from 1 cm.
+// Draws a wall of 6 m, seen from 1 cm.
 void wallFromACentimetre() {
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();
@@ -114,7 +114,7 @@ void wallFromACentimetre() {
 
 void throughTheNearPlane() {
     loadProjection(0.1, 1000);
-    glBegin(GL_QUADS); // ground of 10^5
+    glBegin(GL_QUADS); // ground of size 10^5
     for (const auto& [x, z] : {std::pair(-1e5, 1e5), {1e5, 1e5}, {1e5, -1e5}, {-1e5, -1e5}}) {
         glColor3d(x > 0, 0.5, z > 0);
         glVertex3d(x, -0.3, z);
@@ -178,7 +178,7 @@ void quad() {
     glEnd();
 }
 
-// Mipmaps to the horizon, and a shader of derivatives above them.
+// Draws mipmaps up to the horizon, and a shader with derivatives above them.
 void derivatives(Window& window) {
     glEnable(GL_TEXTURE_2D);
     glBindTexture(GL_TEXTURE_2D, texture);
@@ -201,7 +201,7 @@ void derivatives(Window& window) {
     glUseProgram(0);
 }
 
-// Places on the screen: what shaders read, stipples, the raster position.
+// Draws with screen positions: shader inputs, stipples, the raster position.
 void places(Window& window) {
     glDisable(GL_DEPTH_TEST);
     glUseProgram(screenDoor);
@@ -266,7 +266,7 @@ void fourViews(Window& window) {
     glViewport(0, 0, window.width(), window.height());
 }
 
-// Into depths of 32 bits floating point, and from there onto the whole window.
+// Draws into depths of 32-bit floating point, and from there onto the whole window.
 void throughATexture(Window& window) {
     GLuint names[2], frame;
     glGenTextures(2, names);
@@ -371,7 +371,7 @@ void frame(Window& window, int number) {
     case 2: return loadProjection(1e-3, 1e7), planes(1e-2, 1e6, 400);
     case 3: return loadProjection(1e-4, 1e6), planes(2e-4, 9e5, 400);
     case 4: return loadProjection(1e-3, 0), planes(1e-2, 1e6, 400);
-    case 5: return loadProjection(1e-3, 1e9), planes(1e-2, 1e8, 400); // in floats the far plane is lost
+    case 5: return loadProjection(1e-3, 1e9), planes(1e-2, 1e8, 400); // floats cannot represent the far plane
     case 6: return loadProjection(1e-3, 1e7, true), planes(1e-2, 1e6, 400);
     case 7: return farWorld();
     case 8: return wallFromACentimetre();

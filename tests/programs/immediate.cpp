@@ -1,4 +1,4 @@
-// Immediate mode: every way to hand an attribute to the vertex being built.
+// Immediate mode: every way to set an attribute of the current vertex.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -12,14 +12,14 @@ namespace {
 
 constexpr int kColumns = 10;
 
-// The lower left corner of cell `index` of a grid of 10 columns and cells of 24×18 units.
+// The lower left corner of cell `index` in a grid of 10 columns and cells of 24×18 units.
 struct Cell {
     int x, y;
 };
 
 Cell cellOf(int index) { return {2 + (index % kColumns) * 24, 2 + (index / kColumns) * 18}; }
 
-// A quad in the cell; `attribute` is called before each corner with the corner's number.
+// Draws a quad in the cell; calls `attribute` before each corner with the corner's number.
 template <class Attribute> void quad(int index, const Attribute& attribute) {
     const Cell cell = cellOf(index);
     glBegin(GL_QUADS);
@@ -31,7 +31,7 @@ template <class Attribute> void quad(int index, const Attribute& attribute) {
     glEnd();
 }
 
-// Each glVertex entry point draws one triangle.
+// Draws one triangle with each glVertex entry point.
 void drawVertices(int frame) {
     const auto triangle = [&](int index, auto vertex) {
         const Cell cell = cellOf(index);
@@ -128,7 +128,7 @@ void drawSecondaryColors(int frame) {
     glDisable(GL_COLOR_SUM);
 }
 
-// Normals: lit by one directional light, so that each normal is a brightness.
+// Draws normals lit by one directional light, so that each normal is a brightness.
 void drawNormals(int frame) {
     const GLfloat direction[] = {0.3F, 0.2F, 1, 0};
     glLightfv(GL_LIGHT0, GL_POSITION, direction);
@@ -221,7 +221,7 @@ void drawFogCoordinates(int frame) {
     glDisable(GL_FOG);
 }
 
-// Rectangles, edge flags, and packed attributes of OpenGL 3.3.
+// Draws rectangles, edge flags, and packed attributes of OpenGL 3.3.
 void drawOthers(int frame) {
     glColor3f(0.7F, 0.7F, 0.2F);
     Cell c = cellOf(68);
@@ -263,7 +263,7 @@ void drawOthers(int frame) {
     glEnd();
 }
 
-// All primitive types with more than the smallest number of vertices.
+// Draws all primitive types with more than the smallest number of vertices.
 void drawPrimitives(int frame) {
     const GLenum kinds[] = {GL_POINTS, GL_LINES, GL_LINE_LOOP, GL_LINE_STRIP, GL_TRIANGLES,
                             GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_QUADS, GL_QUAD_STRIP, GL_POLYGON};

@@ -1,5 +1,5 @@
-// Some 200 MiB of objects that stay: textures with and without mipmaps, buffers, a long display list. Whoever keeps a
-// second copy of what it passes on, or forgets to free it after sending, weighs more.
+// Some 200 MiB of permanent objects: textures with and without mipmaps, buffers, a long display list. A process that
+// keeps a second copy of forwarded data, or does not free it after sending, uses more memory.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kTextures = 4, kTextureSize = 2048; // 16 MiB each, one of them with mipmaps
 constexpr int kBuffers = 4;
-constexpr int kPoints = 2'000'000; // of 8 bytes: 16 MiB a buffer
+constexpr int kPoints = 2'000'000; // 8 bytes each: 16 MiB per buffer
 constexpr int kListVertices = 300'000;
 
 GLuint textures[kTextures], buffers[kBuffers], list;

@@ -1,5 +1,5 @@
-// Lit display lists whose material follows the colour, with materials of their own in between: what Mesa makes of both
-// depends on what else is called, so a node must not call more than the program.
+// Lit display lists whose material follows the colour, with other materials in between. Mesa's result for both depends
+// on further calls, so a node must not call more than the program.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

@@ -1,6 +1,7 @@
-// What depends on pixels of the whole picture in the middle of something: display lists that count samples and draw on
-// that condition, that copy out of the window and draw with the copy; copies within conditional rendering and within
-// queries. And questions in the middle of a list and of a selection, about what was drawn before.
+// Operations that need the whole picture at an inner point:
+//   - display lists that count samples and draw on that condition, or that copy from the window and draw with the copy;
+//   - copies within conditional rendering and within queries;
+//   - queries in the middle of a list and of a selection, about earlier drawing.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -28,7 +29,7 @@ void texturedBox(int x, int y, int w, int h) {
     glDisable(GL_TEXTURE_2D);
 }
 
-// Counted in one corner, seen in the others.
+// Compiles a list that counts in one corner and draws in the others.
 void compileCondition(GLenum mode) {
     glNewList(conditionList, mode);
     glColor3f(0, 0.6F, 0.2F);
@@ -78,7 +79,7 @@ void pattern(int frame) {
     glEnd();
 }
 
-// Nothing is drawn under this condition, but copied.
+// Copies under a condition, without drawing.
 void copyConditionally() {
     glBeginQuery(GL_SAMPLES_PASSED, queries[2]);
     glEndQuery(GL_SAMPLES_PASSED);
@@ -92,7 +93,7 @@ void copyConditionally() {
     texturedBox(80, 10, 90, 40);
 }
 
-// Only what the program copies counts, not what comes from other tiles.
+// Counts only samples of the program's own copy, not of transfers from other tiles.
 void copyWhileCounting(int row) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
@@ -118,7 +119,8 @@ GLuint written() {
     return result;
 }
 
-// Transform feedback of a point, and of a box the samples, while something else begins. Nothing is drawn before the answers.
+// Requests transform feedback of a point, and samples of a box, while something else begins. Nothing is drawn before
+// the replies.
 void ask(int frame, GLenum listMode, bool selects, int row) {
     const GLfloat nothing[4] = {};
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, feedbackBuffer);
@@ -147,7 +149,8 @@ void ask(int frame, GLenum listMode, bool selects, int row) {
     showBits(row / 4 + 1, answers[1]);
 }
 
-// Between glBegin and glEnd of a list, which holds no reads: they are answered at once, and the primitive stays whole.
+// Reads between glBegin and glEnd of a list. Lists contain no reads: they are executed at once, and the primitive stays
+// whole.
 void readInPrimitive(GLenum mode, GLenum listMode, int row) {
     GLuint pixels[2 * 2] = {};
     glNewList(askingList, listMode);

@@ -1,5 +1,5 @@
-// A thread with a shared context and no window of its own to speak of loads textures, buffers and
-// programs while the main thread draws; fences hand them over.
+// A thread with a shared context and an unused window uploads textures, buffers and programs while the main thread
+// draws. Fences pass them on.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

@@ -1,7 +1,6 @@
-// Much geometry in small pieces, from every stage that can be the last before the rasteriser: where
-// dropping what lies outside of a tile pays, and must not change a pixel. Triangle soup that overlaps
-// itself at equal depth, strips, fans, lines and points wider than the pixel that they stand on, a
-// geometry and a tessellation stage.
+// Much geometry in small pieces, from every stage that can be the last before the rasteriser. Dropping geometry outside
+// a tile saves much time here and must not change a pixel. Triangle soup that overlaps itself at equal depth, strips,
+// fans, lines and points wider than their pixel, a geometry and a tessellation stage.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -86,7 +85,7 @@ void setUp() {
          {GL_FRAGMENT_SHADER, kFragment}});
 }
 
-// The last column leads w through zero: some vertices lie behind the eye.
+// Uses a program. The last column moves w through zero: some vertices lie behind the eye.
 void use(GLuint program, int frame, float behind) {
     const float a = 0.02F * float(frame), c = std::cos(a), s = std::sin(a);
     const float turn[16] = {c, s, 0, 0.1F, -s, c, 0, -0.1F, 0, 0, 1, behind, 0, 0, 0, 1};

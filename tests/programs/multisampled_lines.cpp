@@ -1,5 +1,5 @@
-// Many short lines of three widths in a window with 4 samples: where a scissor edge cuts a block of 64x64 pixels, Mesa's software
-// driver covers other samples of a line.
+// Many short lines of three widths in a window with 4 samples. Where a scissor edge cuts a block of 64x64 pixels,
+// Mesa's software driver covers other samples of a line.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

@@ -1,5 +1,5 @@
-// A window and a framebuffer object without depth buffers, with strips and fans that are rectangles: Mesa's
-// software driver has another rasteriser for those, which not every path to it takes.
+// A window and a framebuffer object without depth buffers, with strips and fans that are rectangles. Mesa's software
+// driver has another rasteriser for those, which not all of its paths use.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -36,7 +36,7 @@ void setUp() {
 
 void box(GLuint program, float x, float y, float w, float h) { glUniform4f(glGetUniformLocation(program, "box"), x, y, w, h); }
 
-// What was drawn so far goes to the rasteriser now, and what follows in another scene.
+// Sends the drawing so far to the rasteriser, so that later drawing is another scene.
 void endScene() {
     GLubyte pixel[4];
     glReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);

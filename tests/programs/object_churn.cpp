@@ -1,5 +1,5 @@
-// Every kind of object is made, used and deleted in each frame: whoever forgets one grows. The picture
-// shows that each was there.
+// Creates, uses and deletes every kind of object in each frame: a process that forgets to free one grows. The picture
+// shows that each existed.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -54,7 +54,7 @@ void compiledList(int frame) {
     glDeleteLists(list, 2);
 }
 
-// Buffer, vertex array, shaders, program, query and fence of one draw.
+// Creates buffer, vertex array, shaders, program, query and fence for one draw.
 void shadedTriangle(int frame) {
     const GLuint program = buildProgram({{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, kFragment}},
                                         [](unsigned made) { glBindAttribLocation(made, 0, "at"); });
@@ -116,7 +116,7 @@ void drawObjects(int frame, const Options& options) {
     framebufferBlit(frame, options.width, options.height);
 }
 
-// Another context with objects of its own that nobody deletes: they go with it.
+// Creates another context with objects that are not deleted: they end with it.
 void passingContext() {
     WindowSpec spec;
     const auto passing = openGlxWindow(spec, 64, 64);

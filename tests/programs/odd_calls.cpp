@@ -1,6 +1,9 @@
-// Calls that few programs make and drivers take all the same: client arrays by glEnable, display lists inside of and
-// across glBegin and glEnd, counts and pointers behind which nothing is, buffers too small for a picture, and the
-// picture read pixel by pixel. Errors and values that were read are shown as bits.
+// Calls that few programs make, but drivers accept:
+//   - client arrays enabled with glEnable;
+//   - display lists inside and across glBegin and glEnd;
+//   - counts and pointers without memory after them, buffers too small for a picture;
+//   - the picture read pixel by pixel.
+// Errors and values read are shown as bits.
 #include "tests/programs/support/gl.hpp"
 
 #include "tests/programs/draw_errors/record.hpp"
@@ -20,7 +23,7 @@ std::uint32_t errors = 0;
 
 void noteError() { errors = foldErrors(errors, glGetError); }
 
-// Mesa takes the client's arrays there, other drivers say that it is an error.
+// Enables client arrays with glEnable: Mesa accepts it, other drivers report an error.
 void arraysByEnable(int frame) {
     const GLfloat x = 0.1F * float(frame % 5);
     const GLfloat vertices[] = {-0.9F + x, -0.9F, -0.4F + x, -0.9F, -0.6F + x, -0.4F};
@@ -92,7 +95,7 @@ void listsInPrimitives(int frame) {
     glCallList(ends);
     noteError();
     glCallList(both);
-    glCallList(ends); // there is nothing to end
+    glCallList(ends); // there is no primitive to end
     noteError();
     glBegin(GL_QUADS);
     glGetString(GL_EXTENSIONS);
@@ -103,7 +106,7 @@ void listsInPrimitives(int frame) {
     for (const GLuint list : {vertices, illegal, begins, ends, moved, both}) glDeleteLists(list, 1);
 }
 
-// A page of memory with nothing behind it.
+// Returns a page of memory without any mapped memory after it.
 const GLfloat* lastPage() {
     static GLfloat* page = nullptr;
     constexpr size_t kBytes = 4096;
@@ -119,9 +122,9 @@ const GLfloat* lastPage() {
 void countsBeyondMemory(GLuint program) {
     glUseProgram(program);
     const GLint one = glGetUniformLocation(program, "one"), many = glGetUniformLocation(program, "many");
-    glUniform4fv(one, 1000000, lastPage()); // it is no array: an error
+    glUniform4fv(one, 1000000, lastPage()); // not an array: an error
     noteError();
-    glUniform4fv(many, 1000000, lastPage()); // cut to the array
+    glUniform4fv(many, 1000000, lastPage()); // limited to the array
     noteError();
     glRectf(0.5F, -0.9F, 0.9F, -0.5F);
     glUseProgram(0);
@@ -149,7 +152,7 @@ void buffersTooSmall() {
     glDeleteBuffers(1, &buffer);
 }
 
-// One by one, with drawing in between: what was read before it counts no more.
+// Reads pixels one by one, with drawing in between, so that pixels read earlier are stale.
 std::uint32_t pixelByPixel(const Window& window) {
     std::uint32_t sum = 0;
     for (int step = 0; step < 3; ++step) {

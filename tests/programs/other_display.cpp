@@ -1,7 +1,8 @@
-// Draws in a window on the display OTHER_DISPLAY. A window of DISPLAY has the same number and must stay as it is, as the
-// window of another program. Prints checksums of both windows.
+// Draws in a window on the display OTHER_DISPLAY. A window of DISPLAY has the same number and belongs to another
+// program, so it must not change. Prints checksums of both windows.
 //
-//   other_display glx|both|egl|xcb|default    both: also in a window of DISPLAY; xcb: EGL has a connection of its own; default: EGL_DEFAULT_DISPLAY, DISPLAY changed
+//   other_display glx|both|egl|xcb|default
+//   both: also in a window of DISPLAY; xcb: EGL has a connection of its own; default: EGL_DEFAULT_DISPLAY, DISPLAY changed
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/glx.h>
@@ -48,7 +49,7 @@ XVisualInfo* visualOf(Display* display) {
     return window;
 }
 
-// A window of that number on DISPLAY, made by a connection that stands for another program.
+// Creates a window with that number on DISPLAY, on a connection that represents another program.
 void makeStranger(::Window number) {
     Display* connections[kMaxTries];
     for (Display*& display : connections) {
@@ -112,7 +113,7 @@ Shown openEgl(Display* display, ::Window window, const char* way) {
 
 void showFrames(const Shown& shown, float red);
 
-// By turns with the window of the other display.
+// Shows frames alternately in this window and in the window of the other display.
 void showOnBoth(const Shown& shown, Display* display) {
     XVisualInfo* visual = visualOf(display);
     const ::Window window = makeWindow(display, *visual, 0xffffff);
@@ -134,7 +135,7 @@ void showFrames(const Shown& shown, float red) {
         glClearColor(red, 0.5F, 0.25F, 1);
         glClear(GL_COLOR_BUFFER_BIT);
         showBits(2, std::uint32_t{77});
-        swap(shown); // another connection may not see it before the next one
+        swap(shown); // another connection may see it only before the next swap
     }
 }
 

@@ -1,6 +1,7 @@
-// Thousands of small frames, each drawn into a cell of its own from memory that stays mapped: rings with and
-// without fences, flushed ranges, maps without coherence, writes of another thread and of system calls, writes
-// between two draws; and what shaders and reads of pixels leave in mappings, seen after a fence.
+// Thousands of small frames, each drawn into its own cell from memory that stays mapped:
+//   - rings with and without fences, flushed ranges, maps without coherence;
+//   - writes of another thread and of system calls, and writes between two draws;
+//   - results of shaders and reads of pixels in mappings, read after a fence.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -38,7 +39,7 @@ struct Map {
             fail("no persistent mapping");
         }
     }
-    // The next bytes that no draw reads yet.
+    // Returns the next bytes that no draw reads yet.
     GLsizeiptr take(GLsizeiptr bytes) {
         if (next + bytes > size) {
             glFinish();
@@ -49,7 +50,7 @@ struct Map {
     }
 };
 
-// One thread that writes where it is told to, and says when it has.
+// A thread that writes to a given address, and reports when it is done.
 class OtherThread {
 public:
     OtherThread() : thread_([this] { run(); }) {}
@@ -137,7 +138,7 @@ void ringWithFences(const Cell& cell, int round) {
     fences[region] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
 }
 
-// Two draws with a write between them, and no call to GL.
+// Makes two draws with a write between them, and no call to GL.
 void streamWithout(int round, int frame) {
     bind(stream, Colors);
     const GLsizeiptr at = stream.take(2 * sizeof(Cell));
@@ -195,7 +196,7 @@ void textureFromMap(const Cell& cell) {
     drawAt(at);
 }
 
-// A shader's result, a copy of it and the pixel of the cell before become colours.
+// Draws a shader's result, a copy of it and a window pixel of the earlier drawing as colours.
 void resultsOfTheGl(Cell cell, int round) {
     glUseProgram(compute);
     glUniform1ui(0, GLuint(round));
@@ -222,7 +223,7 @@ void resultsOfTheGl(Cell cell, int round) {
     drawAt(at);
 }
 
-// The compute shader counts up from what the program writes, which is the same every time.
+// Lets the compute shader count up from the program's value, which is the same every time.
 void counterFromZero(const Cell& cell, int round) {
     glFinish();
     std::memset(counter.memory, 0, 4);

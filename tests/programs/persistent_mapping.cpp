@@ -1,6 +1,5 @@
-// Buffers that stay mapped while they are drawn from: coherent ones written between two draws of one
-// frame, flushed ones, one ring of three regions with fences, and a mapping that only a texture buffer
-// and a uniform block read.
+// Buffers that stay mapped while they are drawn from: coherent ones written between two draws of one frame, and flushed
+// ones. Also one ring of three regions with fences, and a mapping that only a texture buffer and a uniform block read.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -33,7 +32,7 @@ GLfloat* mapPersistently(GLuint buffer, GLsizeiptr size, GLbitfield extra) {
     return memory;
 }
 
-// A fan of eight triangles' corners around (x, y).
+// Writes the corners of a fan of eight triangles around (x, y).
 void writeShape(GLfloat* out, unsigned seed, float x, float y) {
     Sequence numbers(seed);
     for (int i = 0; i < 24; ++i) {
@@ -50,7 +49,7 @@ void drawFrom(GLuint buffer, GLintptr offset) {
 
 void drawCoherent(int frame) {
     for (int step = 0; step < 3; ++step) {
-        // Behind what was drawn: a region of its own per step, so no draw reads while we write.
+        // After the region drawn last: each step has its own region, so no draw reads during the write.
         GLfloat* place = coherent + (frame % 2) * 512 + step * 64;
         if (step == 0) {
             glFinish();
@@ -58,7 +57,7 @@ void drawCoherent(int frame) {
         writeShape(place, unsigned(frame * 10 + step), -0.7F + float(step) * 0.35F, 0.7F);
         drawFrom(coherentBuffer, (place - coherent) * 4);
     }
-    // The same place again, after the draws that read it are done.
+    // Writes to the same region again, after its draws have finished.
     glFinish();
     writeShape(coherent, unsigned(frame) + 77, 0.6F, 0.7F);
     drawFrom(coherentBuffer, 0);

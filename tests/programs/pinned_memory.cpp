@@ -1,5 +1,5 @@
-// The program's own memory as a buffer (AMD_pinned_memory): written between draws, mapped, filled by a compute
-// shader and by reads of pixels. Where the driver lacks the extension only a background is drawn.
+// The program's own memory as a buffer (AMD_pinned_memory): written between draws, mapped, filled by a compute shader
+// and by reads of pixels. Without the extension only a background is drawn.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -13,7 +13,7 @@ using namespace programs;
 namespace {
 
 constexpr GLsizeiptr kBytes = 1 << 18;
-constexpr GLsizeiptr kResults = 4096, kPixels = 8192; // places in it
+constexpr GLsizeiptr kResults = 4096, kPixels = 8192; // offsets in it
 GLubyte* memory;
 GLuint buffer, program, compute, vertexArray;
 

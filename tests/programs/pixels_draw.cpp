@@ -1,5 +1,5 @@
-// The pixel paths into the window: glDrawPixels, glBitmap, glCopyPixels with zoom, maps, scale and
-// bias, glRasterPos in all forms, glWindowPos, stencil and depth pixels.
+// The pixel paths into the window: glDrawPixels, glBitmap, glCopyPixels with zoom, maps, scale and bias, glRasterPos in
+// all forms, glWindowPos, stencil and depth pixels.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -41,7 +41,7 @@ void drawFormats(unsigned frame) {
     glDrawPixels(4, 3, GL_RGB, GL_FLOAT, floats);
 }
 
-// A part of a larger picture, with odd rows, first bits and swapped bytes.
+// Draws a part of a larger picture, with odd rows, first bits and swapped bytes.
 void drawWithPixelStore(unsigned frame) {
     glPushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -65,7 +65,7 @@ void drawWithPixelStore(unsigned frame) {
     glBitmap(11, 15, 0, 0, 0, 0, noise(64, 93 + frame).data());
 }
 
-// All ways to give a raster position; each shows where it is by a bitmap.
+// Sets raster positions in all ways; a bitmap shows each position.
 void drawRasterPositions(unsigned frame) {
     const GLubyte cross[] = {0x18, 0x18, 0x18, 0xff, 0xff, 0x18, 0x18, 0x18};
     const auto mark = [&] { glBitmap(8, 8, 4, 4, 12, 0, cross); };
@@ -86,14 +86,14 @@ void drawRasterPositions(unsigned frame) {
     glRasterPos2fv(place), mark();
     const GLint place4[] = {220, 40, 0, 1};
     glRasterPos4iv(place4), mark();
-    // Outside of the window at the left: invalid, so nothing may appear.
+    // Outside the window on the left: invalid, so nothing may appear.
     glRasterPos2i(-1, 40), mark();
     glWindowPos2d(10, 50.6), mark();
     glWindowPos3f(30, 50, 0.5F), mark();
     glWindowPos2s(50, 50), mark();
     const GLint window[] = {70, 50, 0};
     glWindowPos3iv(window), mark();
-    // Moved by an empty bitmap to before the left edge, which stays valid.
+    // Moved beyond the left edge by an empty bitmap: the position stays valid.
     glWindowPos2i(2, 60);
     glBitmap(0, 0, 0, 0, -6, 0, nullptr);
     mark();
@@ -139,7 +139,7 @@ void drawTransferred(unsigned frame) {
     glPixelMapfv(GL_PIXEL_MAP_R_TO_R, 16, map);
     glPixelMapusv(GL_PIXEL_MAP_G_TO_G, 8, shorts);
     glPixelMapuiv(GL_PIXEL_MAP_B_TO_B, 4, ints);
-    GLuint buffer = 0; // the last but one anew, out of a buffer
+    GLuint buffer = 0; // the last but one again, from a buffer
     glGenBuffers(1, &buffer);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
     glBufferData(GL_PIXEL_UNPACK_BUFFER, sizeof shorts, shorts, GL_STATIC_DRAW);
@@ -150,7 +150,7 @@ void drawTransferred(unsigned frame) {
     glWindowPos2i(35, 95);
     glDrawPixels(16, 12, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
     glPixelTransferi(GL_MAP_COLOR, GL_FALSE);
-    // Colour indices become colours by maps.
+    // Maps turn colour indices into colours.
     for (const GLenum name : {GL_PIXEL_MAP_I_TO_R, GL_PIXEL_MAP_I_TO_G, GL_PIXEL_MAP_I_TO_B}) {
         map[frame % 16] = 0.5F;
         glPixelMapfv(name, 16, map);
@@ -177,12 +177,12 @@ void copyPixels(Window& window, unsigned frame) {
     glWindowPos2i(5, h * 2 / 3);
     glCopyPixels(w / 2, 30, 50, 20, GL_COLOR);
     glPixelTransferf(GL_GREEN_SCALE, 1);
-    // Overlapping itself.
+    // A copy that overlaps itself.
     glWindowPos2i(8, 8);
     glCopyPixels(3, 3, 40, 22, GL_COLOR);
 }
 
-// Stencil and depth pixels, made visible by drawing through the tests.
+// Draws stencil and depth pixels, and makes them visible by drawing through the tests.
 void drawStencilAndDepth(unsigned frame) {
     glEnable(GL_STENCIL_TEST);
     glWindowPos2i(90, 95);
@@ -213,7 +213,7 @@ void drawStencilAndDepth(unsigned frame) {
     glDisable(GL_DEPTH_TEST);
 }
 
-// Stencils that a draw has left get into other tiles whole, whatever the mask and the transfer are.
+// Blits stencil values of a draw. They must reach other tiles completely, for any mask and transfer.
 void blitStencil(int width, int height) {
     const int left = width / 2 - 20;
     glEnable(GL_STENCIL_TEST);
@@ -235,8 +235,8 @@ void blitStencil(int width, int height) {
     glDisable(GL_STENCIL_TEST);
 }
 
-// Mesa gathers bitmaps and draws them where a texture is read. Before that it must have looked at the sampler that the program
-// uses by then: the question for samples makes it look.
+// Reads a texture after bitmaps. Mesa collects bitmaps and draws them when a texture is read. Before that it must have
+// read the current program's sampler, which the query for samples causes.
 void readBehindBitmaps(GLuint program) {
     const std::vector<GLubyte> bits(16, 0xd7);
     std::vector<GLubyte> seen(16 * 16 * 4);
@@ -268,7 +268,8 @@ void readBehindBitmaps(GLuint program) {
     glDeleteTextures(1, &texture);
 }
 
-// They are drawn with the uniforms that the program has by then. A question for what a shader has written is not that moment.
+// Reads a shader's results after bitmaps. Bitmaps are drawn with the program's uniforms of that time, and the read does
+// not cause the draw.
 void askBehindBitmaps(GLuint tinting, GLuint writing, GLuint buffer) {
     const std::vector<GLubyte> bits(16, 0xe9);
     GLfloat written[4] = {};

@@ -1,6 +1,5 @@
-// glReadPixels in many formats, types and pack states, into memory and pixel buffers, of colour, depth
-// and stencil, inside and across the window's edge; what was read is drawn again, so that a wrong byte
-// is a wrong pixel.
+// glReadPixels in many formats, types and pack states, into memory and pixel buffers, of colour, depth and stencil,
+// inside and across the window's edge. The pixels read are drawn again, so that a wrong byte is a wrong pixel.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -32,7 +31,7 @@ void drawScene(Window& window, unsigned frame) {
     glDisable(GL_DEPTH_TEST);
 }
 
-// Where the next read-back is shown: rows of cells in the upper half.
+// Moves to the cell for the next result: rows of cells in the upper half.
 void enterCell(Window& window) {
     glWindowPos2i(2 + (cellIndex % 8) * 31, window.height() / 2 + 2 + (cellIndex / 8) * 17);
     ++cellIndex;
@@ -71,7 +70,7 @@ void readWithPackState(Window& window, unsigned frame) {
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 37);
     enterCell(window);
     glDrawPixels(kWidth, kHeight, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
-    // Swapped bytes show as other colours.
+    // Swapped bytes appear as other colours.
     glPixelStorei(GL_PACK_SWAP_BYTES, GL_TRUE);
     std::vector<GLubyte> wide(40 * 6 * 20, 0);
     glReadPixels(20, 30, 22, 9, GL_RGB, GL_UNSIGNED_SHORT, wide.data());
@@ -80,7 +79,7 @@ void readWithPackState(Window& window, unsigned frame) {
     glPopClientAttrib();
 }
 
-// Across the window's edges: what lies outside is left as it was.
+// Reads across the window's edges: the memory of pixels outside is unchanged.
 void readAcrossEdges(Window& window, unsigned frame) {
     std::vector<GLubyte> pixels(kWidth * kHeight * 4, 0x80);
     glReadPixels(-8, -4, kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
@@ -98,7 +97,7 @@ void readIntoBuffer(Window& window, unsigned frame) {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffers[0]);
     glBufferData(GL_PIXEL_PACK_BUFFER, kWidth * kHeight * 4 + 64, nullptr, GL_STREAM_READ);
     glReadPixels(40 + int(frame), 6, kWidth, kHeight, GL_BGRA, GL_UNSIGNED_BYTE, reinterpret_cast<void*>(64));
-    // Drawn straight from the buffer, and mapped and drawn from memory.
+    // Drawn directly from the buffer, and mapped and drawn from memory.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffers[0]);
     enterCell(window);
     glDrawPixels(kWidth, kHeight, GL_BGRA, GL_UNSIGNED_BYTE, reinterpret_cast<void*>(64));
@@ -156,7 +155,7 @@ void readTransferred(Window& window) {
     glDrawPixels(kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
 }
 
-// State that is packed as images are; the nodes draw with what came into the buffer.
+// Reads state that is packed like images. The nodes draw from the buffer that received it.
 void readState(Window& window, unsigned frame) {
     const auto* mapAt = reinterpret_cast<const void*>(256);
     GLubyte pattern[128], solid[128];

@@ -1,5 +1,5 @@
 // Program binaries: programs that were saved and loaded again draw, with their attributes, outputs, uniforms and
-// transform feedback; what is cut off or of an unknown format does not load.
+// transform feedback. Truncated binaries and unknown formats are rejected.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

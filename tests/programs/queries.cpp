@@ -1,5 +1,5 @@
-// Queries: occlusion, boolean occlusion, primitives (of streams, too), timers, pipeline statistics, results into a buffer,
-// conditional rendering, none that began. What can be repeated is drawn: counts as bits and bars.
+// Queries: occlusion, boolean occlusion, primitives (also of streams), timers, pipeline statistics, results in a
+// buffer, conditional rendering, and queries that never began. Repeatable results are drawn: counts as bits and bars.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -23,7 +23,7 @@ GLuint waitFor(GLuint query) {
     return result;
 }
 
-// A box partly behind another one.
+// Counts samples of a box partly hidden by another one.
 void countSamples(int frame) {
     box(-0.9F, -0.9F, 0.5F, 0.6F, 0.2F);
     glBeginQuery(GL_SAMPLES_PASSED, names[0]);
@@ -46,14 +46,14 @@ void countPrimitives(int frame) {
     glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, names[4]);
     glBeginTransformFeedback(GL_TRIANGLES);
     glUniform4f(0, 0.3F, -0.9F, 0.5F, 0.4F);
-    glDrawArraysInstanced(GL_TRIANGLES, 0, 3, 2 + frame * 2); // more than the buffer holds, at last
+    glDrawArraysInstanced(GL_TRIANGLES, 0, 3, 2 + frame * 2); // in the last frames more than the buffer holds
     glEndTransformFeedback();
     glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
     glEndQuery(GL_PRIMITIVES_GENERATED);
     showBits(34, waitFor(names[3]) * 256 + waitFor(names[4]));
 }
 
-// What a geometry shader emits to each of two streams: one query after the other by one name, then both at once.
+// Counts primitives of a geometry shader's two streams: one query after the other with one name, then both at once.
 void countStreams(int frame) {
     glUseProgram(streamsProgram);
     glUniform1i(0, 2 + frame);
@@ -61,7 +61,8 @@ void countStreams(int frame) {
     GLuint told[4] = {};
     for (GLuint stream = 0; stream < 2; ++stream) {
         glBeginQueryIndexed(GL_PRIMITIVES_GENERATED, stream, names[13]);
-        glDrawArrays(GL_POINTS, 0, stream == 0 ? 1 : 3); // Mesa 22.3 counts the first stream again: other points tell
+        // Mesa 22.3 counts the first stream again: different numbers of points reveal it
+        glDrawArrays(GL_POINTS, 0, stream == 0 ? 1 : 3);
         glEndQueryIndexed(GL_PRIMITIVES_GENERATED, stream);
         told[stream] = waitFor(names[13]);
     }
@@ -74,7 +75,7 @@ void countStreams(int frame) {
     showBits(24, told[0] | told[1] << 8 | told[2] << 16 | told[3] << 24);
 }
 
-// Times differ from run to run: only that there are any is shown.
+// Shows only that there are times, because they differ between runs.
 void measureTime() {
     glBeginQuery(GL_TIME_ELAPSED, names[5]);
     box(0.5F, -0.3F, 0.3F, 0.3F, 0.4F);
@@ -92,7 +93,7 @@ void measureTime() {
 }
 
 void renderConditionally(int frame) {
-    // Hidden and visible in turns.
+    // Hidden and visible in alternation.
     glBeginQuery(GL_SAMPLES_PASSED, names[7]);
     box(-0.85F, -0.85F, 0.2F, 0.2F, frame % 2 == 0 ? 0.9F : 0.1F);
     glEndQuery(GL_SAMPLES_PASSED);
@@ -108,7 +109,7 @@ void renderConditionally(int frame) {
     glEndConditionalRender();
 }
 
-// A result that never leaves GL: written into a buffer, which is then read.
+// Writes a result into a buffer without leaving GL, and reads the buffer.
 void resultIntoBuffer(int frame) {
     glBindBuffer(GL_QUERY_BUFFER, resultBuffer);
     glBeginQuery(GL_SAMPLES_PASSED, names[8]);
@@ -123,7 +124,7 @@ void resultIntoBuffer(int frame) {
     showBits(32, told[0]);
 }
 
-// The same into memory that only GL may write, where the next draw finds how often it is drawn.
+// Writes a result into memory that only GL may write. The next draw reads its instance count from it.
 void resultIntoImmutableBuffer(int frame) {
     glGenBuffers(1, &indirectBuffer);
     glBindBuffer(GL_QUERY_BUFFER, indirectBuffer);
@@ -144,8 +145,8 @@ void resultIntoImmutableBuffer(int frame) {
     checkNoError("with a result in an immutable buffer");
 }
 
-// Queries that are made and never begin: drivers differ in what they write, and in what such a condition leaves out.
-// The name is that of one that has counted.
+// Uses queries that are created and never begin. Drivers differ in the values they write, and in the effect of such a
+// condition. The name is one that has counted before.
 void neverBegun() {
     GLuint query = 0;
     glGenQueries(1, &query);

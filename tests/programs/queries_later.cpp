@@ -1,5 +1,5 @@
-// Query results that are read one and two frames later, as programs do that do not want to wait: visible samples,
-// yes or no, primitives; by polling and not; of queries begun anew, deleted in between and never ended. Shown as bits.
+// Query results read one and two frames later, as programs do that avoid waiting: visible samples, boolean occlusion,
+// primitives; with and without polling; of queries begun again, deleted in between and never ended. Shown as bits.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -22,7 +22,7 @@ void box(float x, float y, float side, float depth) {
     glEnd();
 }
 
-// Boxes of which the wall in front hides some, whole or in part.
+// Counts boxes that the wall in front hides completely or in part.
 void countBoxes(int frame) {
     glColor3f(0.3F, 0.3F, 0.5F);
     box(-0.3F + 0.02F * float(frame), -0.6F, 0.7F, 0);
@@ -32,7 +32,7 @@ void countBoxes(int frame) {
         box(-0.9F + 0.25F * float(i), -0.5F + 0.1F * float(i), 0.3F, 0.5F);
         glEndQuery(kTargets[i]);
     }
-    // The last one is begun anew in the same frame: only this counts.
+    // The last query begins again in the same frame; only this one counts.
     glBeginQuery(GL_SAMPLES_PASSED, names[frame % kSets][0]);
     box(-0.95F, 0.7F, 0.1F, 0.5F);
     glEndQuery(GL_SAMPLES_PASSED);
@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
         showResults(frame, 1);
         showResults(frame, 2);
         glEnable(GL_DEPTH_TEST);
-        if (frame % 5 == 4) { // names that come back
+        if (frame % 5 == 4) { // names that are used again
             GLuint* const set = names[(frame + 1) % kSets];
             glDeleteQueries(kBoxes, set);
             glGenQueries(kBoxes, set);

@@ -1,5 +1,5 @@
-// Sort-last: depths that tie between draws of different nodes, under each function that nodes share draws by; a sky at the
-// clear depth; what comes after opaque draws; draws cut into pieces; a picture read in the middle.
+// Sort-last: equal depths of draws of different nodes, with each depth function for which nodes divide draws; a sky at
+// the clear depth; drawing after opaque draws; draws cut into pieces; a picture read in the middle.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -16,7 +16,7 @@ struct Vertex {
     unsigned char r, g, b, a;
 };
 
-// Strips that lie on each other with equal depths: which colour is seen, the draw order decides.
+// Returns strips at equal depths on top of each other: the draw order decides which colour is visible.
 std::vector<Vertex> strips(int frame, float z) {
     std::vector<Vertex> all;
     for (int i = 0; i < 60; ++i) {
@@ -72,14 +72,14 @@ void frame(int number) {
         glColor3ub(pixel[0], pixel[1], pixel[2]);
         glRectf(-0.95F, -0.95F, -0.9F, -0.9F);
     }
-    glEnable(GL_BLEND); // and what lies over it
+    glEnable(GL_BLEND); // and an overlay
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDisable(GL_DEPTH_TEST);
     glColor4f(1, 1, 0, 0.3F);
     glRectf(-0.5F, -0.5F, 0.6F, 0.4F);
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
-    draw(strips(3, 0.2F), true); // opaque again: of one node
+    draw(strips(3, 0.2F), true); // opaque again: on one node
     glDisableClientState(GL_VERTEX_ARRAY);
     glDisableClientState(GL_COLOR_ARRAY);
 }

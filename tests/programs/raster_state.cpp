@@ -1,5 +1,5 @@
-// Rasterisation state: stipples, point and line sizes, smoothing, polygon modes and offsets, culling,
-// scissor, logic operations, colour masks, dithering, alpha test, stencil operations, depth functions.
+// Rasterisation state: stipples, point and line sizes, smoothing, polygon modes and offsets, culling, scissor, logic
+// operations, colour masks, dithering, alpha test, stencil operations, depth functions.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -71,7 +71,7 @@ void drawPointsAndLines(int frame) {
         glDisable(GL_BLEND);
     }
     glLineWidth(1);
-    // Sizes by distance.
+    // Point sizes that depend on distance.
     const GLfloat attenuation[] = {1, 2, 5};
     glPointParameterfv(GL_POINT_DISTANCE_ATTENUATION, attenuation);
     glPointParameterf(GL_POINT_SIZE_MIN, 2);
@@ -108,7 +108,7 @@ void drawPolygonModes(int frame) {
     glDisable(GL_POLYGON_OFFSET_FILL);
     glDisable(GL_DEPTH_TEST);
     glPointSize(1);
-    // Different modes for the two sides, culled.
+    // Different polygon modes for the two sides, culled.
     glPolygonMode(GL_BACK, GL_LINE);
     glFrontFace(frame % 2 == 0 ? GL_CW : GL_CCW);
     fan(20, 110, 16, 7);

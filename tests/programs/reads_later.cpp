@@ -1,6 +1,6 @@
-// Records what it shows as programs do that do not want to wait: each frame is read into one of three, then two pixel
-// buffers, and the one of two frames before, or one, is mapped. Its bytes are shown as a sum and drawn again. Parts of
-// textures go into other buffers and are looked at as late.
+// Records its frames as programs do that avoid waiting. Each frame is read into one of three, later two, pixel buffers,
+// and the buffer of two frames before, or one, is mapped. Its bytes are shown as a sum and drawn again. Parts of
+// textures are read into other buffers and mapped equally late.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -11,7 +11,7 @@ using namespace programs;
 
 namespace {
 
-constexpr int kMost = 3, kTurn = 40; // frames with three buffers, then as many with two
+constexpr int kMost = 3, kTurn = 40; // frames with three buffers, then the same number with two
 constexpr int kSize = 32, kBlocks = kSize / 4, kBlockBytes = 8;
 constexpr GLsizei kImageBytes = 20 * 12 * 4, kPartBytes = 5 * 4 * kBlockBytes, kAllBytes = kBlocks * kBlocks * kBlockBytes;
 GLuint buffers[kMost], images[kMost], blocks[kMost], allBlocks[kMost];
@@ -39,7 +39,7 @@ void makeTextures() {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-// Textures that only the nodes have.
+// Draws textures that only the nodes have.
 void drawTextures(int frame) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glClearColor(0.4F, 0.1F, 0.03F * float(frame % 30), 1);

@@ -1,5 +1,6 @@
-// What programs do with a pixel buffer between a read into it and the moment its bytes are there: look in every way, write,
-// copy, clear, draw from it, upload from it, give it new storage, delete it, ask something else, use another context.
+// Uses of a pixel buffer between a read into it and the arrival of its bytes. It is read in every way, written, copied,
+// cleared, drawn and uploaded from, deleted, or given new storage. The program makes other round trips, and uses
+// another context.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -39,7 +40,7 @@ void show(const void* bytes, GLsizeiptr count) {
     showBits(row++, hash);
 }
 
-// A buffer of known bytes, bound, into which the window was read.
+// Returns a bound buffer of known bytes, into which the window was read.
 GLuint readAt(GLintptr offset, int dx = 0) {
     GLuint buffer = 0;
     glGenBuffers(1, &buffer);
@@ -132,11 +133,11 @@ void drawUploaded(GLuint buffer, GLintptr offset) {
 void upload() {
     GLuint buffer = readAt(32, 7);
     drawUploaded(buffer, 32);
-    // Now that it is used for both.
+    // The buffer is used for both now.
     glReadPixels(kX + 8, kY + 1, kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, at(32));
     drawUploaded(buffer, 32);
     done(buffer);
-    // Looked at before, and in a mapping when it is first bound elsewhere.
+    // Mapped before, and still mapped when it is first bound elsewhere.
     buffer = readAt(0, 9);
     show(glMapBuffer(GL_PIXEL_PACK_BUFFER, GL_READ_ONLY), kBytes);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
@@ -161,7 +162,7 @@ void drawFrom() {
     glDisableClientState(GL_VERTEX_ARRAY);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
     glDeleteBuffers(1, &buffer);
-    // By name, from a vertex array.
+    // Read by name, and from a vertex array.
     glGenBuffers(1, &buffer);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
     glBufferData(GL_PIXEL_PACK_BUFFER, 24 * 16, nullptr, GL_STREAM_COPY);
@@ -195,7 +196,7 @@ void writeOver() {
     glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
     drawUploaded(buffer, 0);
     done(buffer);
-    buffer = readAt(0, 14); // new storage, half of it read anew
+    buffer = readAt(0, 14); // new storage, half of it read again
     const std::vector<GLubyte> all(kRoom, 0x21);
     glBufferData(GL_PIXEL_PACK_BUFFER, kRoom, all.data(), GL_STREAM_READ);
     glReadPixels(kX, kY, kWidth, kHeight / 2, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -237,7 +238,7 @@ void askBetween() {
     done(buffer);
 }
 
-// Textures, framebuffer objects and what knows how much room there is.
+// Reads textures, framebuffer objects, and with functions that take the buffer size.
 void readOthers() {
     GLuint buffer = readAt(0, 20);
     glBindTexture(GL_TEXTURE_2D, image);
@@ -254,7 +255,7 @@ void readOthers() {
     glClear(GL_COLOR_BUFFER_BIT);
     glRectf(-0.5F, -0.3F, 0.2F, 0.6F);
     buffer = readAt(0, -kX - 10);
-    glReadPixels(4, 4, 150, 12, GL_RGBA, GL_UNSIGNED_BYTE, at(16)); // wider than it
+    glReadPixels(4, 4, 150, 12, GL_RGBA, GL_UNSIGNED_BYTE, at(16)); // wider than the object
     glClear(GL_COLOR_BUFFER_BIT); // after the read
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     done(buffer);
@@ -264,7 +265,7 @@ void readOthers() {
     done(buffer);
 }
 
-// Into one buffer, partly over one another: what was read last is there.
+// Makes overlapping reads into one buffer: the last read wins.
 void readOverOthers() {
     const GLuint buffer = readAt(0, 28);
     glBindTexture(GL_TEXTURE_2D, image);
@@ -299,7 +300,7 @@ void mistakes() {
     done(buffer);
 }
 
-// It stays mapped, and shows what was read once the GL has finished.
+// Keeps the buffer mapped: it shows the pixels once GL has finished.
 void mapForGood() {
     GLuint buffer = 0;
     glGenBuffers(1, &buffer);
@@ -317,7 +318,7 @@ void mapForGood() {
     done(buffer);
 }
 
-// More than may be owed at once, and pixel by pixel.
+// Makes more reads than may be outstanding at once, and reads pixel by pixel.
 void many() {
     GLuint buffers[80];
     glGenBuffers(80, buffers);
@@ -336,7 +337,7 @@ void many() {
     done(buffer);
 }
 
-// The other context of the share group looks at it, reads into it, and deletes it.
+// Lets the other context of the share group map the buffer, read into it, and delete it.
 void share() {
     if (!other) { // alone in the first frame
         other = openGlxWindow({}, 32, 32, window.get());
@@ -351,7 +352,7 @@ void share() {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
     glGetBufferSubData(GL_PIXEL_PACK_BUFFER, 0, kBytes, bytes.data());
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    glDeleteBuffers(1, &second); // bound in the first context still
+    glDeleteBuffers(1, &second); // still bound in the first context
     window->makeCurrent();
     show(bytes.data(), kBytes);
     done(buffer);
@@ -393,7 +394,7 @@ int main(int argc, char** argv) {
     for (int frame = 0; frame < options.frames; ++frame) {
         scene(frame);
         row = column = 0;
-        // From now on any buffer may hold what only shaders have written.
+        // From now on any buffer may hold data that only shaders have written.
         if (frame == 2) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, storage);
         for (const auto part : kParts) {
             part();

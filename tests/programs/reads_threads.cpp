@@ -1,6 +1,6 @@
-// A second thread with a context of the same share group records what the first one draws: each frame is read into the next
-// of three pixel buffers, a fence tells when; the recorder maps them by turns, one frame behind, and reads other things
-// meanwhile. Sums of what it found are shown.
+// A second thread with a context of the same share group records the first one's drawing. Each frame is read into the
+// next of three pixel buffers, followed by a fence. The recorder maps them in turn, one frame later, and makes other
+// reads meanwhile. Sums of the pixels are shown.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -19,7 +19,7 @@ constexpr int kBuffers = 3;
 GLuint buffers[kBuffers], target, framebuffer;
 std::mutex mutex;
 std::condition_variable changed;
-int framesRead = 0, framesRecorded = 0; // what follows is guarded, as these
+int framesRead = 0, framesRecorded = 0; // the following members are guarded too
 bool ends = false;
 GLsync fences[kBuffers];
 std::uint32_t sums[kBuffers];
@@ -41,7 +41,7 @@ std::uint32_t recordOne(GLuint buffer, GLsync fence, std::size_t bytes) {
     GLubyte pixel[4] = {};
     glClearColor(float(told % 251) / 255, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    glReadPixels(3, 3, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel); // a question of its own
+    glReadPixels(3, 3, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel); // a round trip of its own
     return told + pixel[0];
 }
 
@@ -81,7 +81,7 @@ void draw(int frame) {
 void readFrame(const Window& window, int frame) {
     const int turn = frame % kBuffers;
     std::unique_lock lock(mutex);
-    changed.wait(lock, [&] { return framesRecorded + 2 > frame; }); // one behind at most
+    changed.wait(lock, [&] { return framesRecorded + 2 > frame; }); // at most one frame late
     if (frame >= 2) showBits(1, sums[(frame - 2) % kBuffers]);
     if (frame >= kBuffers) glDeleteSync(fences[turn]);
     lock.unlock();

@@ -1,5 +1,5 @@
-// Calls that the GL refuses leave no trace: what comes after them draws, counts and reads as if they had not been.
-// Answers are shown as bits.
+// Calls that GL rejects have no further effect: later calls draw, count and read as if they had not been made. Replies
+// are shown as bits.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -20,7 +20,7 @@ unsigned errors() {
     return count;
 }
 
-// An array in client memory after pointers, units and vertex arrays that there are not.
+// Draws an array in client memory after calls with invalid pointers, units and vertex arrays.
 void drawArrays(int frame) {
     static const float corners[] = {-0.9F, -0.9F, 0, -0.1F, -0.9F, 0, -0.9F, -0.1F, 0, -0.1F, -0.1F, 0};
     static const float colors[] = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 0, 1};
@@ -50,7 +50,7 @@ void drawArrays(int frame) {
     glDisable(GL_TEXTURE_2D);
 }
 
-// A query that did not begin counts nothing, and a condition that fails is one error.
+// Checks that a query that did not begin counts nothing, and that a failed condition is one error.
 void count() {
     GLuint query = 0;
     glGenQueries(1, &query);
@@ -69,7 +69,7 @@ void count() {
     glDeleteQueries(1, &query);
 }
 
-// An answer that goes into a buffer takes no name of the program's.
+// Checks that a reply into a buffer uses none of the program's names.
 void answerIntoBuffer() {
     GLuint query = 0;
     GLuint buffers[2] = {};
@@ -91,7 +91,7 @@ void answerIntoBuffer() {
     glDeleteQueries(1, &query);
 }
 
-// Packed vertices of a type that there is not, between the others.
+// Draws packed vertices of an invalid type among the others.
 void packed() {
     const GLenum types[] = {GL_INT_2_10_10_10_REV, GL_FLOAT, GL_UNSIGNED_INT_2_10_10_10_REV, GL_UNSIGNED_INT_10F_11F_11F_REV, 7};
     unsigned failed[5] = {};
@@ -110,7 +110,7 @@ void packed() {
 
 std::uint32_t sumOf(const std::vector<GLubyte>& bytes) { return std::accumulate(bytes.begin(), bytes.end(), 0U); }
 
-// Memory beside a framebuffer object is left as it is; a buffer that is too small is an error.
+// Checks that memory outside a framebuffer object is unchanged, and that a buffer that is too small is an error.
 void read() {
     GLuint framebuffer = 0;
     GLuint renderbuffer = 0;
@@ -145,7 +145,7 @@ void read() {
     glDeleteFramebuffers(1, &framebuffer);
 }
 
-// A buffer that a call of EXT_direct_state_access names is there from then on, also when the call is refused.
+// Checks that a call of EXT_direct_state_access creates the buffer that it names, also when the call is rejected.
 void nameBuffers() {
     const GLuint words[] = {11, 22};
     GLuint buffers[2] = {};
@@ -162,7 +162,8 @@ void nameBuffers() {
     glDeleteBuffers(2, buffers);
 }
 
-// The other direct calls refuse a name that has no buffer yet, and make none, also while nodes may write into buffers.
+// Checks that the other direct calls reject a name without a buffer and create none, also while nodes may write into
+// buffers.
 void nameWithoutBuffer() {
     glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
     GLuint buffer = 0;
@@ -175,7 +176,8 @@ void nameWithoutBuffer() {
     glDeleteBuffers(1, &buffer);
 }
 
-// Meshes are lines and strips; the geometry shader takes triangles. Empty ones have no rows or rows of nothing.
+// Draws meshes, which are lines and strips, with a geometry shader for triangles. Empty meshes have no rows or empty
+// rows.
 void mesh(GLuint triangles) {
     const GLfloat places[] = {-0.9F, 0.5F, 0, -0.5F, 0.5F, 0, -0.9F, 0.9F, 0, -0.5F, 0.9F, 0};
     glMap2f(GL_MAP2_VERTEX_3, 0, 1, 3, 2, 0, 1, 6, 2, places);
@@ -195,8 +197,8 @@ void mesh(GLuint triangles) {
     showBits(24, failed);
 }
 
-// Between glBegin and glEnd nothing is taken but vertices: neither the state nor memory changes. A glBegin that is refused
-// begins nothing.
+// Checks that only vertices are accepted between glBegin and glEnd: neither the state nor memory changes. A rejected
+// glBegin begins nothing.
 void inPrimitive() {
     const GLubyte rows[3][8] = {{90, 200, 40, 9, 9, 9, 9, 9}, {10, 250, 120, 9, 9, 9, 9, 9}, {255, 30, 180, 9, 9, 9, 9, 9}};
     std::vector<GLubyte> pixels(64, 0x37);
@@ -235,8 +237,8 @@ void inPrimitive() {
     showBar(27, errors());
 }
 
-// Mesa executes what is compiled when it is gathered, and a primitive that gets another attribute in its middle in two parts:
-// behind glEnd it still takes itself to be in between.
+// Compiles and executes a primitive that receives another attribute in its middle. Mesa executes it when it has been
+// collected, in two parts, and still treats the time after glEnd as inside the primitive.
 void inExecutedList() {
     const GLuint list = glGenLists(1);
     std::uint32_t told[4] = {};
@@ -261,7 +263,7 @@ void inExecutedList() {
     glDeleteLists(list, 1);
 }
 
-// Copies, and conditions, between glBegin and glEnd of a list: it takes none, and nobody asks what the picture is by then.
+// Makes copies and conditions between glBegin and glEnd of a list. The list contains none, and no picture is requested.
 void copyInListPrimitive() {
     const GLuint list = glGenLists(1);
     GLuint query = 0;
@@ -281,7 +283,7 @@ void copyInListPrimitive() {
     glDeleteLists(list, 1);
 }
 
-// A program that is not there does not take the place of the current one.
+// Checks that an invalid program does not replace the current one.
 void useNoProgram(GLuint shifted) {
     const GLuint unlinked = glCreateProgram();
     glUseProgram(shifted);
@@ -310,7 +312,7 @@ GLuint triangleProgram() {
                          {GL_FRAGMENT_SHADER, "#version 150 compatibility\nvoid main() { gl_FragColor = vec4(0.9, 0.6, 0.1, 1); }"}});
 }
 
-// Several viewports or boxes at once, one of which is an error: none of them changes.
+// Sets several viewports or boxes at once, one of them invalid: none changes.
 void boxes(int frame) {
     const float viewports[] = {10, 10, 30, 30, 5, 5, -1, 5};
     const int scissors[] = {3, 3, 9, 9, 1, 1, 4, -4};

@@ -1,6 +1,6 @@
-// What the GL refuses in a core context leaves its error and no other trace: calls of the compatibility profile, names
-// that were not made, draw buffers that there are not, memory behind another error. What shaders wrote takes no names,
-// and what fills a buffer is found.
+// Calls that GL rejects in a core context leave their error and have no other effect. These are calls of the
+// compatibility profile, unused names, missing draw buffers, and missing memory after another error. Shader writes use
+// no names, and the source of a buffer clear is found.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -42,7 +42,7 @@ void callOldCommands() {
     showBits(8, error());
 }
 
-// The window stays bound, and what is drawn to of it.
+// Makes rejected binds: the window and its draw buffer stay bound.
 void bindNothing() {
     GLuint framebuffer = 0;
     glGenFramebuffers(1, &framebuffer);
@@ -58,7 +58,7 @@ void bindNothing() {
     glDrawBuffer(GL_COLOR_ATTACHMENT0);
     showBits(13, error());
     fillRectangle(140, 20, 60, 30, {0.9F, 0.5F, 0.1F});
-    // To none of its buffers, this is not refused.
+    // GL accepts an empty list of draw buffers.
     glNamedFramebufferDrawBuffers(0, 0, nullptr);
     fillRectangle(150, 25, 10, 10, {0.1F, 0.5F, 0.9F});
     glDrawBuffer(GL_BACK);
@@ -67,7 +67,7 @@ void bindNothing() {
     glDrawBuffer(GL_BACK);
 }
 
-// The shader's words go to the buffer that was bound before.
+// Checks that the shader writes to the buffer that was bound before.
 void writeWords(GLbitfield flags, int row) {
     GLuint buffers[3] = {};
     glGenBuffers(2, buffers);
@@ -83,7 +83,7 @@ void writeWords(GLbitfield flags, int row) {
     glUseProgram(writing);
     glDispatchCompute(8, 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    GLubyte bytes[22] = {}; // from anywhere to anywhere
+    GLubyte bytes[22] = {}; // from any offset to any offset
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 5, sizeof bytes, bytes);
     showBits(row + 2, std::uint32_t{bytes[3]} << 24U | std::uint32_t{bytes[7]} << 16U | std::uint32_t{bytes[19]} << 8U | bytes[21]);
     GLuint told[8] = {};
@@ -99,7 +99,7 @@ void writeWords(GLbitfield flags, int row) {
     glDeleteBuffers(1, &buffers[2]);
 }
 
-// The word that fills a buffer lies where the unpack state says.
+// Clears a buffer with a word whose position the unpack state selects.
 void clearWithSkippedWords() {
     const GLuint words[] = {11, 22, 33, 44};
     GLuint buffer = 0;
@@ -117,7 +117,8 @@ void clearWithSkippedWords() {
     glDeleteBuffers(1, &buffer);
 }
 
-// Mesa has no memory for mipmaps of this format, and here an error comes before: nobody hears of the memory.
+// Makes mipmaps, for whose format Mesa has no memory, after another error. The earlier error hides the one about
+// memory.
 void makeMipmapBehindAnError() {
     const GLubyte blocks[16] = {};
     GLuint textures[2] = {};
@@ -129,7 +130,7 @@ void makeMipmapBehindAnError() {
     glGenerateMipmap(GL_TEXTURE_2D);
     showBits(32, error());
     GLubyte pixel[4] = {};
-    glReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel); // the nodes have said by then what they lack
+    glReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel); // by then the nodes have reported the failure
     showBits(33, error());
     glGenerateMipmap(GL_TEXTURE_2D);
     showBits(34, error());

@@ -14,7 +14,7 @@ void draw(Window& window, int frame) {
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();
     glOrtho(0, window.width(), 0, window.height(), -1, 1);
-    // A frame around the very edge, and a grid: both show a wrong size.
+    // A frame at the outermost pixels, and a grid: both reveal a wrong size.
     const float w = float(window.width());
     const float h = float(window.height());
     glColor3f(1, 1, 1);

@@ -1,7 +1,7 @@
-// When does a new window size reach the GL's buffers? A driver decides that at its own moments (the
-// first binding, the first drawing after a swap), and programs that resize between two calls show it.
-// Each case resizes a window of its own at another moment and tries whether a pixel outside the old
-// size exists; the answers are bits of the picture.
+// Finds the time at which a new window size reaches GL's buffers. A driver decides it at its own times: the first
+// binding, or the first drawing after a swap. Programs that resize between two calls make it visible. Each case resizes
+// its own window at another time and tests whether a pixel outside the old size exists. The results are bits of the
+// picture.
 #include <functional>
 #include <memory>
 #include <vector>
@@ -55,7 +55,7 @@ bool hasNewSize() {
     return pixel[0] != 9;
 }
 
-// The windows stay: one that is made where another was would be taken for it.
+// The windows stay: a new one at the same place could be confused with its predecessor.
 std::vector<std::unique_ptr<Window>> opened;
 
 Window& keep(std::unique_ptr<Window> window) {

@@ -1,5 +1,5 @@
-// One thread draws, the other resizes the window in the middle of its frames; and goes to the size of the whole
-// screen and back, as programs do that toggle full screen.
+// One thread draws, the other resizes the window in the middle of its frames. It also changes to the size of the screen
+// and back, as programs do that toggle full screen.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -13,7 +13,7 @@ using namespace programs;
 
 namespace {
 
-// Steps that two threads take by turns.
+// Steps that two threads take in turn.
 class Turns {
 public:
     void reach(int step) {
@@ -46,7 +46,7 @@ void drawHalf(int frame, bool second) {
 void runDrawing(programs::Window& window, int frames) {
     window.makeCurrent();
     for (int frame = 0; frame < frames; ++frame) {
-        glViewport(0, 0, window.width(), window.height()); // as the last frame's resize left it
+        glViewport(0, 0, window.width(), window.height()); // size after the last frame's resize
         glClearColor(0.1F, 0.2F, 0.1F * float(frame % 6), 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         drawHalf(frame, false);

@@ -1,5 +1,5 @@
-// Three windows of different sizes and depths with a context each, drawn by turns, one only in every
-// second frame; pixels copied from one window into another; two contexts that share objects.
+// Three windows of different sizes and depths with a context each, drawn in turn, one only in every second frame.
+// Pixels are copied from one window into another, and two contexts share objects.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 GLuint list, texture;
 
-// Made in the first window's context; the second one shares them.
+// Makes objects in the first window's context, which the second one shares.
 void makeShared() {
     list = glGenLists(1);
     glNewList(list, GL_COMPILE);
@@ -79,9 +79,9 @@ int main(int argc, char** argv) {
         first->makeCurrent();
         changeTexture(frame);
         drawShared(frame, 0.2F);
-        glFinish(); // the other context sees the texture only then
+        glFinish(); // only then does the other context see the texture
         checkNoError("in the first window");
-        // A part of the first window's back buffer goes into the second window.
+        // Copies a part of the first window's back buffer into the second window.
         second->makeCurrentReading(*first);
         drawShared(frame + 1, 0.4F);
         glReadBuffer(GL_BACK);

@@ -1,5 +1,5 @@
-// Shaders that include named strings (ARB_shading_language_include): by full path, by search path, one within another,
-// replaced and deleted, shared by contexts.
+// Shaders that include named strings (ARB_shading_language_include): by full path, by search path, nested, replaced and
+// deleted, shared between contexts.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"

@@ -1,5 +1,5 @@
-// Two contexts by turns in one window: buffers, textures, programs, samplers, renderbuffers and syncs
-// are shared, vertex arrays, framebuffers and all state are not.
+// Two contexts in turn in one window: buffers, textures, programs, samplers, renderbuffers and syncs are shared; vertex
+// arrays, framebuffers and all state are not.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
@@ -35,7 +35,7 @@ void makeShared() {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
-// Each context's own containers, under equal names, with different contents.
+// Makes each context's own container objects, with equal names and different contents.
 void makeOwn(int index) {
     glGenVertexArrays(1, &vertexArrays[index]);
     glBindVertexArray(vertexArrays[index]);
@@ -55,7 +55,7 @@ void useContext(const XWindow& window, int index) {
     }
 }
 
-// The first context writes the shared objects.
+// Lets the first context write the shared objects.
 GLsync update(int frame) {
     const GLfloat places[] = {0, 0, 0.5F, 0.05F * float(frame), 0.1F, 0.6F, 0.6F, 0.5F, -0.3F, 0.3F, 0.2F, -0.3F, 0, 0, 0.1F, 0.1F};
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
@@ -109,9 +109,9 @@ int main(int argc, char** argv) {
         useContext(window, 1);
         glWaitSync(sync, 0, GL_TIMEOUT_IGNORED);
         glDeleteSync(sync);
-        draw(options, 1, frame); // the window's picture goes on in the second context
+        draw(options, 1, frame); // the second context continues the window's picture
         if (frame % 2 == 1) {
-            glEnable(GL_SCISSOR_TEST); // stays on in this context only
+            glEnable(GL_SCISSOR_TEST); // stays enabled in this context only
             glScissor(options.width - 30, 5, 20, 20 + frame);
             glClear(GL_COLOR_BUFFER_BIT);
             glDisable(GL_SCISSOR_TEST);

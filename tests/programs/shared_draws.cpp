@@ -1,5 +1,4 @@
-// A draw that is one piece, and behind it one of which each node that shares draws has a part: what is left out of the first must not be
-// left out of the second.
+// An undivided draw, followed by a draw that the nodes divide. Skipping the first must not skip the second.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -17,7 +16,7 @@ constexpr int kTriangles = 400;
 void setUp() {
     program = buildProgram({{GL_VERTEX_SHADER, "#version 120\nuniform float turn; varying vec4 paint; void main() { paint = fract(gl_Vertex * 3.7 + turn); gl_Position = gl_Vertex; }"},
                             {GL_FRAGMENT_SHADER, "#version 120\nvarying vec4 paint; void main() { gl_FragColor = vec4(paint.xyz, 1); }"}});
-    std::vector<float> places{-1, -1, 0.9F, 1, -1, 0.9F, -1, 1, 0.9F, 1, 1, 0.9F}; // the strip, behind all
+    std::vector<float> places{-1, -1, 0.9F, 1, -1, 0.9F, -1, 1, 0.9F, 1, 1, 0.9F}; // the strip, farthest away
     Sequence s(3);
     for (int i = 0; i < kTriangles; ++i) {
         const float x = 2 * s.unit() - 1, y = 2 * s.unit() - 1, z = s.unit() - 0.5F;

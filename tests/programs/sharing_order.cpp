@@ -1,6 +1,6 @@
-// Contexts that share, made current in another order than they were made in: the second of a pair uses
-// the objects first, the first joins later, and a third joins after the one that made the objects has gone.
-// Toolkits do so: the window's context names another that is bound only when its picture is needed.
+// Contexts that share, made current in another order than they were created. The second of a pair uses the objects
+// first, the first joins later, and a third joins after the creator of the objects has ended. Toolkits do so: the
+// window's context shares with another one that is bound only when its picture is needed.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
     const GLXFBConfig config = chooseGlxConfig(display, GLX_WINDOW_BIT);
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow window(*visual, 0, 0, options.width, options.height);
-    const GLXContext named = makeCoreGlxContext(display, config, nullptr); // never current before the others
+    const GLXContext named = makeCoreGlxContext(display, config, nullptr); // not current before the others
     const GLXContext maker = makeCoreGlxContext(display, config, named);
     const GLXContext last = makeCoreGlxContext(display, config, maker);
     use(window, maker);
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
             checkNoError("in the first context");
         }
         glXSwapBuffers(display, window.id());
-        if (frame == 0) { // the one that holds the objects goes before the other two have been current
+        if (frame == 0) { // the context that holds the objects ends before the other two have been current
             glXMakeCurrent(display, None, nullptr);
             glXDestroyContext(display, maker);
         }

@@ -1,5 +1,5 @@
-// Reads that are told how much room there is: enough, just enough, and one byte too little, which is an error that
-// leaves the memory alone; under pack state, into memory and into a buffer. What is read was drawn.
+// Reads with a buffer size: sufficient, exact, and one byte too small, which is an error that leaves the memory
+// unchanged. With pack state, into memory and into a buffer. The results are drawn.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -12,7 +12,7 @@ using namespace programs;
 namespace {
 
 constexpr int kSize = 32;
-constexpr int kX = 100, kY = 80, kWidth = 21, kHeight = 9; // of what is read of the window: odd rows
+constexpr int kX = 100, kY = 80, kWidth = 21, kHeight = 9; // rectangle of the window that is read: odd rows
 constexpr GLsizei kBuffer = 4 * kSize * kSize + 256;
 GLuint texture, packed;
 int row;
@@ -51,7 +51,7 @@ void expect(GLenum wanted, const char* what) {
     if (error != wanted) fail("%s: error %#x instead of %#x", what, error, wanted);
 }
 
-// read(room, where) reads what takes `bytes` bytes.
+// read(room, where) reads a picture that needs `bytes` bytes.
 using Read = std::function<void(GLsizei, void*)>;
 
 void intoMemory(const char* what, GLsizei bytes, const Read& read) {
@@ -70,7 +70,7 @@ void intoMemory(const char* what, GLsizei bytes, const Read& read) {
     showBits(row++, sum(memory));
 }
 
-// The room is the buffer's then, for all but glReadnPixels and its kin, which look at both.
+// Reads into a buffer. Its size is the limit then, except for glReadnPixels and similar functions, which respect both.
 void intoBuffer(const char* what, GLsizei bytes, const Read& read) {
     std::vector<GLubyte> memory(kBuffer, 0x33);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, packed);
@@ -82,7 +82,7 @@ void intoBuffer(const char* what, GLsizei bytes, const Read& read) {
     glGetBufferSubData(GL_PIXEL_PACK_BUFFER, 0, kBuffer, memory.data());
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     showBits(row++, sum(memory));
-    // The nodes have these bytes, too: they draw from them.
+    // The nodes have these bytes, too, because they draw from them.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, packed);
     glWindowPos2i(2 + row * 16, 150);
     glDrawPixels(14, 20, GL_RGBA, GL_UNSIGNED_BYTE, reinterpret_cast<const void*>(std::uintptr_t(64))); // NOLINT(performance-no-int-to-ptr)

@@ -1,5 +1,6 @@
-// Buffers of which only some pages exist: vertices, uniform blocks and storage in pages that are committed, written by the
-// program, by copies and by shaders, given back and committed again. Looked at is what is committed: the rest is undefined.
+// Buffers with only some pages: vertices, uniform blocks and storage in committed pages. The program, copies and
+// shaders write them. Pages are released and committed again. Only committed pages are read, because the rest is
+// undefined.
 #include <cstdint>
 
 #include "tests/programs/support/gl.hpp"
@@ -70,7 +71,7 @@ void drawFrame(Window&, int frame) {
         points[i] = i % 4 < 2 ? numbers.unit() * 0.4F : numbers.unit();
     }
     glBufferSubData(GL_ARRAY_BUFFER, 0, sizeof points, points);
-    const int moving = 1 + frame % 3; // pages come and go
+    const int moving = 1 + frame % 3; // pages are committed and released
     if (frame > 0) {
         commit(1 + (frame + 2) % 3, 1, false);
     }
@@ -84,7 +85,7 @@ void drawFrame(Window&, int frame) {
     draw(0, -0.9F, -0.6F);
     draw(moving, -0.2F, -0.6F);
     draw(5, 0.4F, -0.6F);
-    commit(0, 2, true); // the first is already
+    commit(0, 2, true); // the first is committed already
     draw(0, -0.5F, 0.2F);
     showBits(0, GLuint(pageBytes));
     GLfloat first = 0;

@@ -1,5 +1,5 @@
-// Textures of which only some pages exist: committed, filled, drawn into, given back and committed again; the sizes of the
-// pages, which are the driver's, become part of the picture. Looked at is what is committed: the rest is undefined.
+// Textures with only some pages: committed, filled, drawn into, released and committed again. The driver's page sizes
+// become part of the picture. Only committed pages are read, because the rest is undefined.
 #include <algorithm>
 #include <vector>
 
@@ -91,7 +91,7 @@ void drawFrame(Window& window, int frame) {
     commit(kept, 2, true);
     glFinish();
     fill(GL_TEXTURE_2D, kept * pageWidth, 0, 0, pageWidth, pageHeight, unsigned(frame) + 1);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer); // and one that is drawn
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer); // and one written by drawing
     glEnable(GL_SCISSOR_TEST);
     for (int i = 0; i < 8; ++i) {
         glScissor(kept * pageWidth + i * pageWidth / 8, 2 * pageHeight, pageWidth / 8, pageHeight - i * pageHeight / 16);
@@ -116,9 +116,9 @@ void drawFrame(Window& window, int frame) {
     GLint size = 0;
     glGetIntegerv(GL_MAX_SPARSE_TEXTURE_SIZE_ARB, &size);
     showBits(2, GLuint(size));
-    glTexPageCommitmentARB(GL_TEXTURE_2D, 0, 1, 0, 0, pageWidth, pageHeight, 1, GL_TRUE); // not where a page begins
+    glTexPageCommitmentARB(GL_TEXTURE_2D, 0, 1, 0, 0, pageWidth, pageHeight, 1, GL_TRUE); // not at the start of a page
     showBits(3, glGetError());
-    if (frame > 0) { // two stay
+    if (frame > 0) { // two stay committed
         glFinish();
         commit(gone, 0, false);
         commit(gone, 2, false);

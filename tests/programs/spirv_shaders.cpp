@@ -1,5 +1,5 @@
-// Programs of SPIR-V modules: specialised twice from one module, with uniforms, blocks, samplers and
-// gl_FragCoord; a compute module that writes the places of points; a fragment module that counts.
+// Programs from SPIR-V modules: specialised twice from one module, with uniforms, blocks, samplers and gl_FragCoord; a
+// compute module that writes point positions; a fragment module that counts.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -16,7 +16,7 @@ struct Module {
     GLenum type;
     const std::uint32_t* words;
     std::size_t bytes;
-    GLuint index = 0, value = 0; // of a specialisation constant
+    GLuint index = 0, value = 0; // index and value of a specialisation constant
     bool specialized = false;
 };
 

@@ -1,6 +1,7 @@
-// Stippled line strips through the near plane, by arrays, glBegin and display lists. Mesa starts the pattern anew with a
-// strip's first segment only where that one is not clipped away; else it goes on where the last stippled line has ended, be
-// that in an earlier draw or frame. So each draw's picture depends on all stippled draws before it.
+// Stippled line strips through the near plane, with arrays, glBegin and display lists. Mesa restarts the pattern with a
+// strip's first segment only if that segment is not clipped away. Otherwise the pattern continues where the last
+// stippled line ended, possibly in an earlier draw or frame. Each draw's picture therefore depends on all earlier
+// stippled draws.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -14,7 +15,7 @@ namespace {
 constexpr int kStrips = 40, kVertices = 30;
 GLuint list;
 
-// The first two vertices lie behind the eye.
+// Returns a strip whose first two vertices lie behind the eye.
 std::vector<float> strip(Sequence& s) {
     std::vector<float> v;
     for (int i = 0; i < kVertices; ++i) {

@@ -1,5 +1,5 @@
-// Contexts without a window that share with a window's: one without any drawable (GL 3 and GLX_ARB_create_context
-// allow it), one on a pbuffer only, each in a thread of its own; and a thread that ends with its context current.
+// Contexts without a window that share with a window's context, each in its own thread. One has no drawable (permitted
+// by GL 3 and GLX_ARB_create_context), one has only a pbuffer. One thread ends with its context current.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/glx_choice.hpp"
 #include "tests/programs/support/program.hpp"
@@ -34,8 +34,8 @@ GLuint makeTexture() {
     return texture;
 }
 
-// Colours that 8 bits hold exactly: how a driver rounds others may depend on when it was flushed last, and so on
-// what the other thread does.
+// Draws with colours that 8 bits represent exactly. The rounding of other colours may depend on a driver's last flush,
+// and so on the other thread.
 void shapes(unsigned seed) {
     Sequence numbers(seed);
     const auto exact = [&] { return float(numbers.byte()) / 255; };
@@ -45,11 +45,11 @@ void shapes(unsigned seed) {
     }
 }
 
-// Draws into the texture; where there is no drawable nothing else can be drawn to. The context stays current
-// when the thread ends, if it is told so.
+// Draws into the texture; without a drawable there is no other target. Without `release` the context stays current when
+// the thread ends.
 void paint(GLXDrawable drawable, GLXContext context, GLuint texture, unsigned seed, bool releases) {
     use(drawable, context);
-    if (drawable != None) { // by a copy out of the pbuffer
+    if (drawable != None) { // with a copy from the pbuffer
         shapes(seed);
         glBindTexture(GL_TEXTURE_2D, texture);
         glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, kSize, kSize);

@@ -1,5 +1,5 @@
-// X pixmaps as textures (GLX_EXT_texture_from_pixmap), as compositing window managers use them: drawn by X,
-// bound, drawn again, bound again.
+// X pixmaps as textures (GLX_EXT_texture_from_pixmap), as compositing window managers use them: drawn by X, bound,
+// drawn again, bound again.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/x_window.hpp"
@@ -19,10 +19,10 @@ PFNGLXRELEASETEXIMAGEEXTPROC releaseTexImage;
 
 struct Config {
     GLXFBConfig handle;
-    int depth; // of its visual
+    int depth; // depth of its visual
 };
 
-// Pixmaps as deep as the picture needs: 32 bits with alpha.
+// Chooses pixmaps with the depth that the picture needs: 32 bits with alpha.
 Config chooseConfig(int attribute, int depth) {
     const int attributes[] = {GLX_DRAWABLE_TYPE, GLX_PIXMAP_BIT | GLX_WINDOW_BIT, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, attribute, True, None};
     int count = 0;
@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
             const Source& s = sources[i];
             drawByX(s, frame);
             glBindTexture(s.target, s.texture);
-            glPixelStorei(GL_PACK_ROW_LENGTH, 3 + i); // matters to no pixmap
+            glPixelStorei(GL_PACK_ROW_LENGTH, 3 + i); // must not affect pixmaps
             bindTexImage(display, s.drawable, GLX_FRONT_LEFT_EXT, nullptr);
             drawTextured(s, -0.95F + 0.5F * float(i), -0.9F + 0.45F * float(i));
             releaseTexImage(display, s.drawable, GLX_FRONT_LEFT_EXT);

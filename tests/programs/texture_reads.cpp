@@ -1,5 +1,5 @@
-// Parts of textures read back: cube faces, layers, boxes, by name, by target and by unit, into memory and into a
-// buffer. Their texels are copies of the window, made in every way that EXT_direct_state_access has, too.
+// Reads of parts of textures: cube faces, layers, boxes, by name, by target and by unit, into memory and into a buffer.
+// Their texels are copies of the window, made in every way, also with EXT_direct_state_access.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -48,7 +48,7 @@ void setUp(Window&) {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 
-// Something else at every pixel, in colour and depth.
+// Draws a different colour and depth at every pixel.
 void pattern(int frame) {
     glClearColor(0.1F, 0.2F, 0.2F * float(frame), 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -77,7 +77,7 @@ void copyOut(const Window& window) {
     glBindTexture(GL_TEXTURE_2D, flat);
     glCopyMultiTexSubImage2DEXT(GL_TEXTURE0, GL_TEXTURE_2D, 0, 0, 0, x, y - 5, kSize, kSize);
     glBindTexture(GL_TEXTURE_2D, 0);
-    glEnable(GL_RASTERIZER_DISCARD); // of draws only
+    glEnable(GL_RASTERIZER_DISCARD); // affects only draws
     glCopyTextureImage2DEXT(depth, GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, x, y, kSize, kSize, 0);
     glDisable(GL_RASTERIZER_DISCARD);
 }
@@ -118,7 +118,7 @@ void showReads() {
     show();
 }
 
-// The target is not the texture's: an error, and the memory is not looked at.
+// Reads with a target that is not the texture's: an error, and the memory is not accessed.
 void mistake() {
     const auto* nowhere = reinterpret_cast<const void*>(16); // NOLINT(performance-no-int-to-ptr): GL must not read it
     glTextureImage2DEXT(cube, GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nowhere);

@@ -1,5 +1,5 @@
-// Textures as OpenGL 1 and 2 programs use them: 1D, 2D, 3D, cube, rectangle; odd pixel store; pixel
-// buffer uploads; sub-images; generated and given mipmaps; copies from the window; read-back; residency.
+// Textures in the style of OpenGL 1 and 2 programs: 1D, 2D, 3D, cube, rectangle; odd pixel store; pixel buffer uploads;
+// sub-images; generated and uploaded mipmaps; copies from the window; reads; residency.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -28,7 +28,7 @@ void use(GLenum target, int name, GLint filter) {
     glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
-// A quad of 36×28 units in the next cell; `far` is the largest texture coordinate.
+// Draws a quad of 36×28 units in the next cell; `far` is the largest texture coordinate.
 void drawQuad(GLenum target, float far, float depth = 0.3F) {
     const float x = 4.0F + float(cellIndex % 6) * 41;
     const float y = 4.0F + float(cellIndex / 6) * 31;
@@ -66,7 +66,7 @@ void drawOneAndTwoDimensions(unsigned frame) {
     drawQuad(GL_TEXTURE_2D, 1.5F);
 }
 
-// One small sub-image in each client format and type, one after the other in a row of texels.
+// Uploads one small sub-image in each client format and type, one after the other in a row of texels.
 void drawFormats(unsigned frame) {
     const GLenum kinds[][2] = {
         {GL_RGBA, GL_UNSIGNED_BYTE}, {GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV}, {GL_BGR, GL_UNSIGNED_BYTE},
@@ -126,7 +126,7 @@ void drawMipmaps(unsigned frame) {
     glTexEnvf(GL_TEXTURE_FILTER_CONTROL, GL_TEXTURE_LOD_BIAS, 0.5F * float(frame % 4));
     drawQuad(GL_TEXTURE_2D, 3);
     glTexEnvf(GL_TEXTURE_FILTER_CONTROL, GL_TEXTURE_LOD_BIAS, 0);
-    // Each level given, only levels 1 to 3 used.
+    // All levels uploaded, only levels 1 to 3 used.
     use(GL_TEXTURE_2D, 8, GL_NEAREST_MIPMAP_LINEAR);
     for (int level = 0; level < 5; ++level) {
         const int size = 16 >> level;
@@ -159,7 +159,7 @@ void drawFromPixelBuffer(unsigned frame) {
     drawQuad(GL_TEXTURE_2D, 1);
 }
 
-// The lower part of the window, which is drawn by now, becomes textures.
+// Copies the lower part of the window, which is drawn by now, into textures.
 void drawCopies(Window& window, unsigned frame) {
     const int w = window.width();
     const int h = window.height();
@@ -175,7 +175,7 @@ void drawCopies(Window& window, unsigned frame) {
     glBindTexture(GL_TEXTURE_3D, names[3]);
     glCopyTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 1, w / 4, h / 5, 4, 4);
     drawQuad(GL_TEXTURE_3D, 1, 0.4F);
-    // Depth of the window as a texture that is compared.
+    // Depth of the window as a texture with comparison.
     use(GL_TEXTURE_2D, 12, GL_NEAREST);
     glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT, w / 10, h / 10, 32, 32, 0);
     drawQuad(GL_TEXTURE_2D, 1);

@@ -16,7 +16,7 @@ GLuint vertexArray;
 GLuint names[24];
 int cellIndex;
 
-// One program per sampler type: samples at `at` (2D coordinates and a layer or depth).
+// A program per sampler type, which samples at `at` (2D coordinates and a layer or depth).
 struct SamplerProgram {
     const char* sampler;
     const char* expression;
@@ -99,7 +99,7 @@ void drawArrays(unsigned frame) {
     drawCell(Volume, 0.4F);
 }
 
-// Immutable storage, seen through views of another format, level and layer.
+// Draws immutable storage through views of another format, level and layer.
 void drawStorageAndViews(unsigned frame) {
     glBindTexture(GL_TEXTURE_2D, names[4]);
     glTexStorage2D(GL_TEXTURE_2D, 4, GL_RGBA8, 16, 16);
@@ -206,7 +206,7 @@ void drawCompressed(unsigned frame) {
         glCompressedTexSubImage2D(GL_TEXTURE_2D, 0, 4, 4, 4, 4, formats[i], blockBytes[i], data.data());
         drawCell(Plain);
     }
-    // Compressed by GL, then read back as blocks and given again.
+    // Compressed by GL, then read as blocks and uploaded again.
     GLubyte blocks[128];
     glBindTexture(GL_TEXTURE_2D, names[22]);
     nearest(GL_TEXTURE_2D);

@@ -18,7 +18,7 @@ std::mutex turnLock;
 std::condition_variable turnChanged;
 int turn = 0;
 
-// Only the first frames come in order, so that the windows are known by it.
+// Orders only the first frames, by which tests identify the windows.
 void takeTurn(int thread) {
     std::unique_lock<std::mutex> lock(turnLock);
     turnChanged.wait(lock, [&] { return turn == thread; });
@@ -43,7 +43,7 @@ void drawFixed(int thread, int frame) {
     glEnd();
 }
 
-// Objects with equal names in unrelated contexts.
+// Draws with objects that have equal names in unrelated contexts.
 void drawBuffered(int thread, int frame, GLuint program, GLuint buffer) {
     GLfloat places[24];
     Sequence numbers(unsigned(thread * 31 + frame));

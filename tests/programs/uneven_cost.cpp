@@ -1,5 +1,5 @@
-// Nearly all that a frame costs lies in one corner of the picture: many layers over each other. Every UNEVEN_STAY frames
-// (20) it is another corner; UNEVEN_LAYERS (150) says how much it costs. With UNEVEN_EVENLY the layers cover the whole picture.
+// Frames whose cost lies mostly in one corner of the picture: many layers over each other. After UNEVEN_STAY frames
+// (20) it is another corner. UNEVEN_LAYERS (150) sets the cost. With UNEVEN_EVENLY the layers cover the whole picture.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

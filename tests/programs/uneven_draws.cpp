@@ -1,5 +1,6 @@
-// Opaque draws of as many vertices each, of which the first tenth costs nearly all of a frame: large layers, each before the one drawn last, and
-// then thousands of small triangles. UNEVEN_LAYERS (60) says how much that is; with UNEVEN_EVENLY all layers are of one size.
+// Opaque draws with equal numbers of vertices, whose first tenth has nearly all cost of a frame. These are large
+// layers, each in front of the previous one; thousands of small triangles follow. UNEVEN_LAYERS (60) sets the cost.
+// With UNEVEN_EVENLY all layers have one size.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -10,14 +11,14 @@ using namespace programs;
 
 namespace {
 
-constexpr int kDraws = 600, kTriangles = 4; // of each
+constexpr int kDraws = 600, kTriangles = 4; // triangles of each draw
 
 void setUp(Window&) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
 }
 
-// From back to front: nothing of them is hidden when it is drawn.
+// Draws from back to front, so nothing is hidden when it is drawn.
 void draw(int index, float size, Sequence& numbers) {
     const float depth = 0.9F - 1.8F * static_cast<float>(index) / kDraws;
     glColor3f(numbers.unit(), numbers.unit(), numbers.unit());

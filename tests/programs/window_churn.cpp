@@ -1,5 +1,5 @@
-// Windows and contexts come and go in each frame, some destroyed in the order other programs use:
-// the window before its context, the context while it is current.
+// Windows and contexts created and destroyed in each frame, some in the order of other programs: the window before its
+// context, or the context while it is current.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -11,7 +11,7 @@ namespace {
 void draw(int frame, int which) {
     glClearColor(0.1F * float(which), 0.2F, 0.1F * float(frame % 6), 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    GLuint texture = 0; // the first name of a new context, over and over
+    GLuint texture = 0; // the first name of a new context, repeatedly
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
     GLubyte texels[4 * 4 * 3];

@@ -1,5 +1,5 @@
-// Windows of each kind that the display has: alpha, 5, 8 and 10 bits per channel, samples, GLX and EGL. Prints sums of what GL reads and
-// copies from them by types that lose no bits, and of what the X server shows.
+// Windows of each kind that the display has: alpha, 5, 8 and 10 bits per channel, samples, GLX and EGL. Prints sums of
+// the pixels that GL reads and copies from them with lossless types, and of the pixels that the X server shows.
 #define EGL_EGLEXT_PROTOTYPES 1
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
@@ -21,7 +21,7 @@ using namespace programs;
 
 namespace {
 
-constexpr int kWidth = 150, kHeight = 110; // several tiles, none of whole blocks
+constexpr int kWidth = 150, kHeight = 110; // several tiles, none of complete blocks
 constexpr int kFrames = 3;
 
 using Bytes = std::vector<unsigned char>;
@@ -39,14 +39,14 @@ struct Kind {
     XVisualInfo visual;
     int alphaBits, samples;
     bool desktop = true, es3 = false;
-    bool readsFront = true; // EGL's hold unwritten memory of the process with Mesa's software driver
+    bool readsFront = true; // with Mesa's software driver, front buffers of EGL hold uninitialised memory
     std::function<void(::Window)> open;
     std::function<void()> swap, close;
 };
 
 // ---- drawing
 
-// By scissored clears, which every API has: neighbouring values of 10 bits, and any alpha.
+// Draws with scissored clears, which every API has: neighbouring values of 10 bits, and any alpha.
 void drawBoxes(int frame) {
     Sequence numbers(unsigned(frame) * 7 + 1);
     glViewport(0, 0, kWidth, kHeight);
@@ -61,7 +61,7 @@ void drawBoxes(int frame) {
     glDisable(GL_SCISSOR_TEST);
 }
 
-// Slopes of all channels, and what blending makes of the window's own alpha.
+// Draws gradients of all channels, and blends with the window's own alpha.
 void drawSlopes(int frame) {
     glMatrixMode(GL_MODELVIEW);
     glLoadIdentity();
@@ -106,7 +106,8 @@ void readAll(const Kind& kind) {
     }
 }
 
-// A copy of the whole window, which no node has alone. Samples are averaged to the window's bits, so the copy has no more.
+// Copies the whole window, which no single node has. Samples are averaged to the window's bits, so the copy has no
+// more.
 void copyOut(const Kind& kind) {
     const GLenum samplesFormat = kind.visual.depth == 30 ? GL_RGB10_A2 : GL_RGBA8;
     GLuint texture = 0;
@@ -120,7 +121,7 @@ void copyOut(const Kind& kind) {
     checkNoError("copying the window");
 }
 
-// The bits of the window's channels; those that drivers leave undefined do not count.
+// Returns the bits of the window's channels, without bits that drivers leave undefined.
 std::uint32_t channelBits(const Kind& kind) {
     const auto colours = std::uint32_t(kind.visual.red_mask | kind.visual.green_mask | kind.visual.blue_mask);
     return kind.visual.depth == 32 && kind.alphaBits > 0 ? ~0U : colours;
@@ -177,7 +178,7 @@ std::string nameOf(const char* system, int red, int alpha, int samples, int dept
     return name;
 }
 
-// The first configuration of each kind: drivers show others with red and blue exchanged.
+// Tests the first configuration of each kind: drivers show others with red and blue exchanged.
 void tryGlx() {
     Display* display = openDisplayOnce();
     int count = 0;

@@ -1,5 +1,5 @@
-// A small window, a large one that is destroyed after some frames, and the small one again: as a splash
-// screen, a program and its last message. The large one's context is still current when its window ends.
+// A small window, a large one that is destroyed after some frames, and the small one again: like a splash screen, a
+// program and its last message. The large one's context is still current when its window ends.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
     {
         const auto large = openGlxWindow({}, options.width, options.height);
         showFrames(*large, options.frames, 2);
-        showFrames(*small, 1, 3); // behind the large one: not on the wall
+        showFrames(*small, 1, 3); // smaller than the large one: not on the wall
         large->makeCurrent();
     }
     showFrames(*small, options.frames, 4);

@@ -1,8 +1,11 @@
-// A large window ends without a request that names it, then a small one shows as many frames.
+// A large window ends without a request that names it, then a small one shows equally many frames.
 //
-//   windows_end … WINDOWS_END=parent|subwindows|kill|close|shared in the environment: its parent is destroyed, all children of
-//   its parent are, the connection that has made it is killed, or is closed; shared: it stays, and another connection
-//   draws in it, too
+// WINDOWS_END in the environment selects the way:
+//   parent      its parent is destroyed.
+//   subwindows  all children of its parent are destroyed.
+//   kill        the connection that created it is killed.
+//   close       the connection that created it is closed.
+//   shared      it stays, and another connection draws in it, too.
 #include <GL/glx.h>
 #include <cstdlib>
 #include <string>

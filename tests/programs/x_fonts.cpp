@@ -1,5 +1,5 @@
-// Text by glXUseXFont: the driver's own display lists of bitmaps. Inked, empty and missing characters of
-// two server fonts, placed one behind the other; raster positions, errors and pixel storage are shown.
+// Text with glXUseXFont: the driver's own display lists of bitmaps. Inked, empty and missing characters of two server
+// fonts, placed one after the other; raster positions, errors and pixel storage are shown.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

@@ -1,5 +1,4 @@
-// GL into X pixmaps, made as GLX 1.2 programs make them: what GL and what X reads from them is shown in the
-// window.
+// Draws into X pixmaps created as in GLX 1.2 programs. The pixels that GL and X read from them are shown in the window.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

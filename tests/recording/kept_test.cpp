@@ -1,4 +1,4 @@
-// What is kept of a stream for nodes that come late, command by command.
+// The commands of a stream that are kept for late nodes, command by command.
 #include <gtest/gtest.h>
 
 #include "gl_opcodes.hpp"
@@ -22,7 +22,7 @@ protected:
         give(p);
     }
     void give(const PacketBuilder& packet) { stream_.append(kStream, packet.bytes()); }
-    // How many of these commands are left.
+    // Returns the number of remaining commands with this opcode.
     size_t left(uint16_t opcode) {
         size_t n = 0;
         for (const KeptPacket& packet : stream_.snapshot()) {
@@ -48,7 +48,7 @@ TEST_F(Kept, staysAsLargeAsOneFrame) {
     EXPECT_TRUE(said_.empty());
 }
 
-TEST_F(Kept, swapsAreSeenByNobody) {
+TEST_F(Kept, dropsSwaps) {
     frame();
     for (const KeptPacket& packet : stream_.snapshot()) {
         RecordWalk walk(packet.payload);
@@ -57,7 +57,7 @@ TEST_F(Kept, swapsAreSeenByNobody) {
     }
 }
 
-TEST_F(Kept, whatIsMadeAndDeletedGoesWithItsNames) {
+TEST_F(Kept, dropsObjectsWhenTheirNamesAreDeleted) {
     for (int i = 0; i < 5; ++i) {
         give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9}).record(op::glBufferData, {GL_ARRAY_BUFFER, 4, 0, 4, 1, GL_STATIC_DRAW}));
         give(PacketBuilder().record(op::glBindBuffer, {GL_ARRAY_BUFFER, 0}).record(op::glDeleteBuffers, {1, 4, 9}));
@@ -67,8 +67,8 @@ TEST_F(Kept, whatIsMadeAndDeletedGoesWithItsNames) {
     EXPECT_EQ(left(op::glDeleteBuffers), 0u);
 }
 
-// Nodes that share draws ask whether shaders may ever have written to memory (nodes/replay/replay_range.cpp).
-TEST_F(Kept, thatMemoryWasBoundStaysKnownWhenItIsGone) {
+// Nodes that divide draws check whether shaders may ever have written to memory (nodes/replay/replay_range.cpp).
+TEST_F(Kept, remembersThatDeletedMemoryWasBound) {
     give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBufferBase, {GL_SHADER_STORAGE_BUFFER, 2, 9}).record(op::glDeleteBuffers, {1, 4, 9}));
     EXPECT_EQ(left(op::glBindBufferBase), 1u);
     give(PacketBuilder().record(op::glGenTextures, {1, 4, 9}).record(op::glBindImageTexture, {0, 9, 0, 0, 0, GL_READ_WRITE, GL_RGBA8}).record(op::glBindImageTexture, {0, 0, 0, 0, 0, GL_READ_WRITE, GL_RGBA8}));
@@ -76,15 +76,15 @@ TEST_F(Kept, thatMemoryWasBoundStaysKnownWhenItIsGone) {
     EXPECT_EQ(left(op::glBindImageTexture), 1u);
 }
 
-// The driver has made the drawable again: its buffers are new.
-TEST_F(Kept, nothingOfAWindowsPictureWhenItIsMadeAgain) {
+// The driver has created the drawable again, with new buffers.
+TEST_F(Kept, dropsAWindowsPictureWhenItIsMadeAgain) {
     give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(left(op::glDrawArrays), 1u);
     give(PacketBuilder().window(1, 20, 10));
     EXPECT_EQ(left(op::glDrawArrays), 0u);
 }
 
-TEST_F(Kept, proxiesOnlyAsk) {
+TEST_F(Kept, dropsProxies) {
     const auto image = [](uint32_t target) { return PacketBuilder().record(op::glTexImage2D, {target, 0, GL_RGBA, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4, 7}); };
     give(PacketBuilder().record(op::glGenTextures, {1, 4, 9}).record(op::glBindTexture, {GL_TEXTURE_2D, 9}));
     give(image(GL_TEXTURE_2D));
@@ -92,19 +92,19 @@ TEST_F(Kept, proxiesOnlyAsk) {
     EXPECT_EQ(left(op::glTexImage2D), 1u);
 }
 
-TEST_F(Kept, aValueThatTravelsAheadStaysWithItsCommand) {
+TEST_F(Kept, keepsABlobWithItsCommand) {
     give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9}));
     for (uint32_t i = 0; i < 3; ++i) {
         give(PacketBuilder().record(wire::kOpBlobBegin, {4, 0}).record(wire::kOpBlobData, {4, i}));
         give(PacketBuilder().record(op::glBufferData, {GL_ARRAY_BUFFER, 4, 0, record::kTagBlob, GL_STATIC_DRAW}));
     }
-    give(PacketBuilder().record(wire::kOpBlobBegin, {4, 0})); // of a command that has not come
+    give(PacketBuilder().record(wire::kOpBlobBegin, {4, 0})); // for a command that has not arrived
     EXPECT_EQ(left(op::glBufferData), 1u);
     EXPECT_EQ(left(wire::kOpBlobData), 1u);
     EXPECT_EQ(left(wire::kOpBlobBegin), 2u);
 }
 
-TEST_F(Kept, ofShadersThatWereDeletedTheProgramLivesOn) {
+TEST_F(Kept, keepsDeletedShadersOfALivingProgram) {
     give(PacketBuilder().record(op::glCreateProgram, {1}).record(op::glCreateShader, {GL_VERTEX_SHADER, 2}).record(op::glCompileShader, {2}));
     give(PacketBuilder().record(op::glAttachShader, {1, 2}).record(op::glDeleteShader, {2}).record(op::glLinkProgram, {1}));
     EXPECT_EQ(left(op::glCompileShader), 1u);
@@ -114,8 +114,8 @@ TEST_F(Kept, ofShadersThatWereDeletedTheProgramLivesOn) {
     EXPECT_EQ(left(op::glCompileShader), 0u);
 }
 
-// What the driver has gathered is drawn where a question comes, with the state of that moment.
-TEST_F(Kept, questionsBehindBitmapsStayWithThem) {
+// A request makes the driver draw its collected bitmaps, with the state of that moment.
+TEST_F(Kept, keepsRequestsAfterBitmaps) {
     const auto ask = [&] { give(PacketBuilder().record(wire::kOpRequestTexImage, {1, 0, GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4})); };
     ask();
     EXPECT_EQ(left(wire::kOpRequestTexImage), 0u);
@@ -126,14 +126,15 @@ TEST_F(Kept, questionsBehindBitmapsStayWithThem) {
     EXPECT_EQ(left(wire::kOpRequestTexImage), 1u);
 }
 
-TEST_F(Kept, nothingOfAProgramThatHasGone) {
+TEST_F(Kept, keepsNothingOfAnEndedProgram) {
     frame();
     stream_.event({Event::ClientGone, 1, 0, ""});
     EXPECT_TRUE(stream_.snapshot().empty());
 }
 
-TEST_F(Kept, saysOnceThatItHasGrownTooLarge) {
-    for (uint32_t i = 0; i < 40'000; ++i) give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, i, 3})); // nothing clears
+TEST_F(Kept, reportsOnceThatItIsTooLarge) {
+    // without clears
+    for (uint32_t i = 0; i < 40'000; ++i) give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, i, 3}));
     EXPECT_FALSE(stream_.serves());
     ASSERT_EQ(said_.size(), 1u);
     EXPECT_NE(said_[0].find("give more by --store"), std::string::npos);
@@ -148,13 +149,14 @@ PacketBuilder sparseTexture(uint32_t name) {
 }
 PacketBuilder uploadTo(uint32_t x) { return PacketBuilder().record(op::glTexSubImage2D, {GL_TEXTURE_2D, 0, x, 0, 128, 256, GL_RGBA, GL_UNSIGNED_BYTE, 4, x}); }
 
-// Drivers number them in their order: those of deleted textures count as well, but not what was in these.
-TEST_F(Kept, handlesAreDealtInTheSameOrder) {
+// Drivers number handles in order of creation. Handles of deleted textures count too, but not the contents of these
+// textures.
+TEST_F(Kept, createsHandlesInTheSameOrder) {
     for (uint32_t i = 0; i < 3; ++i) {
         give(sparseTexture(9));
         give(uploadTo(0));
         give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}).record(op::glMakeTextureHandleResidentARB, {5, 0}));
-        give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0})); // once more: nothing new
+        give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0})); // again: creates no handle
         give(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 0}).record(op::glDeleteTextures, {1, 4, 9}));
     }
     EXPECT_EQ(left(op::glGetTextureHandleARB), 3u);
@@ -163,7 +165,7 @@ TEST_F(Kept, handlesAreDealtInTheSameOrder) {
     EXPECT_EQ(left(op::glTexSubImage2D), 0u);
 }
 
-TEST_F(Kept, ofResidencyTheLastWordCounts) {
+TEST_F(Kept, keepsTheLastResidency) {
     give(sparseTexture(9));
     give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}));
     for (int i = 0; i < 4; ++i) give(PacketBuilder().record(op::glMakeTextureHandleResidentARB, {5, 0}).record(op::glMakeTextureHandleNonResidentARB, {5, 0}));
@@ -172,7 +174,8 @@ TEST_F(Kept, ofResidencyTheLastWordCounts) {
     EXPECT_EQ(left(op::glMakeTextureHandleNonResidentARB), 0u);
 }
 
-// What a framebuffer object holds was drawn with the resident texture as it was then, though it was never bound.
+// A framebuffer object was drawn with the former contents of the resident texture, although that texture was never
+// bound.
 TEST_F(Kept, drawsDependOnResidentTextures) {
     give(sparseTexture(7)); // the target
     give(PacketBuilder().record(op::glGenFramebuffers, {1, 4, 3}).record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 3}).record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 7, 0}));
@@ -185,7 +188,7 @@ TEST_F(Kept, drawsDependOnResidentTextures) {
     EXPECT_EQ(left(op::glTexSubImage2D), 2u);
 }
 
-TEST_F(Kept, whatIsUploadedNeedsThePagesThatThereWere) {
+TEST_F(Kept, keepsThePagesThatUploadsNeed) {
     const auto commit = [](uint32_t x, uint32_t committed) { return PacketBuilder().record(op::glTexPageCommitmentARB, {GL_TEXTURE_2D, 0, x, 0, 0, 128, 256, 1, committed}); };
     give(sparseTexture(9));
     for (int i = 0; i < 5; ++i) {
@@ -195,14 +198,14 @@ TEST_F(Kept, whatIsUploadedNeedsThePagesThatThereWere) {
         give(commit(0, 0));
     }
     give(commit(0, 1));
-    give(commit(128, 1)); // no news, and yet the upload before it stays
+    give(commit(128, 1)); // changes nothing, but the upload before it stays
     EXPECT_EQ(left(op::glTexSubImage2D), 1u);
     const size_t pages = left(op::glTexPageCommitmentARB);
     EXPECT_GE(pages, 3u);
     EXPECT_LE(pages, 5u);
 }
 
-TEST_F(Kept, pagesOfBuffersToo) {
+TEST_F(Kept, keepsPagesOfBuffers) {
     give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9}).record(op::glBufferStorage, {GL_ARRAY_BUFFER, 0x20000, 0, 0, 0x400}));
     for (uint32_t i = 0; i < 4; ++i) {
         give(PacketBuilder().record(op::glBufferPageCommitmentARB, {GL_ARRAY_BUFFER, 0, 0, 0x10000, 0, 1}));

@@ -1,4 +1,4 @@
-// Which draws `mural trim` drops, and which it must keep.
+// The draws that `mural trim` drops, and the draws that it must keep.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -159,7 +159,7 @@ TEST_F(Trim, keepsQueriesAndFeedback) {
     begin().record(op::glEndList, {});
     frame();
     frame();
-    EXPECT_EQ(dropped(2, 2), 2u); // not those of the query and of the list; the transform feedback has no buffer
+    EXPECT_EQ(dropped(2, 2), 2u); // draws of the query and of the list stay; the transform feedback has no buffer
 }
 
 TEST_F(Trim, keepsEverythingBeforeAnUnknownCommand) {

@@ -1,4 +1,4 @@
-// Moving areas: when a window adopts them, and what is drawn where before.
+// Moving areas: the time at which a window adopts them, and its area before.
 #include <gtest/gtest.h>
 
 #include <array>

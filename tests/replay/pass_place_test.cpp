@@ -21,7 +21,7 @@ TEST(PassPlace, isTheIdentityForPlainPasses) {
     EXPECT_EQ(moveInViewport({}, {10, 20, 300, 200}), (std::array<float, 4>{}));
 }
 
-// The centre of pixel i of a pass equals that of its window pixel.
+// The centre of pixel i of a pass equals the centre of its window pixel.
 TEST(PassPlace, alignsCentresOfKernelPixels) {
     for (int width = 1; width <= 5; ++width)
         for (int k = 0; k < width; ++k)

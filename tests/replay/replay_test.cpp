@@ -1,4 +1,4 @@
-// Streams that no encoder writes: class Replay refuses them, and keeps what it has.
+// Streams that no encoder writes: class Replay rejects them and keeps its state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ protected:
         replay_ = std::make_unique<Replay>(fuzz::makeFakePlatform(options), config, out);
     }
 
-    // What was encoded goes to the replay as packets of that thread of client 1.
+    // Sends the encoded records to the replay, as packets of that thread of client 1.
     bool send(uint32_t thread = 1) {
         bool ok = true;
         for (const auto& packet : encoder_.takePackets()) ok = replay_->packet(wire::streamOf(1, thread), packet) && ok;
@@ -77,7 +77,7 @@ protected:
     std::string newsText_;
 };
 
-TEST_F(ReplayTest, AFrameComesOut) {
+TEST_F(ReplayTest, deliversAFrame) {
     begin();
     encode_glClear(t_, GL_COLOR_BUFFER_BIT);
     records::swap(t_, 1, 7);
@@ -87,8 +87,8 @@ TEST_F(ReplayTest, AFrameComesOut) {
     EXPECT_EQ(replay_->counts().malformed, 0u);
 }
 
-// A node that can't make the program's context shows black, and its frames count: nobody waits for them.
-TEST_F(ReplayTest, AFrameWithoutAContextIsBlack) {
+// A node that cannot create the program's context shows black. Its frames count, so the program does not wait for them.
+TEST_F(ReplayTest, showsBlackWithoutAContext) {
     wire::WindowConfig c{};
     c.width = 64;
     c.height = 32;
@@ -99,8 +99,8 @@ TEST_F(ReplayTest, AFrameWithoutAContextIsBlack) {
     EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
 }
 
-// What GL would refuse is never asked of it: an error would reach the program, and GL_NONE would stay.
-TEST_F(ReplayTest, OnlyTheNameThatASurfaceHasIsGivenToGl) {
+// GL never receives a name that it would reject: an error would reach the program, and GL_NONE would stay.
+TEST_F(ReplayTest, passesOnlyBufferNamesOfTheSurface) {
     for (const auto& [buffers, only] : {std::pair{gl::ColorBuffers::OneNamedFront, GL_FRONT_LEFT}, {gl::ColorBuffers::OneNamedBack, GL_BACK}}) {
         std::vector<GLenum> named;
         fuzz::FakeGlOptions options;
@@ -121,21 +121,21 @@ TEST_F(ReplayTest, OnlyTheNameThatASurfaceHasIsGivenToGl) {
     }
 }
 
-TEST_F(ReplayTest, BrokenHeadersEndThePacket) {
+TEST_F(ReplayTest, endsThePacketAtABrokenHeader) {
     begin();
     EXPECT_FALSE(sendWords({head(op::glEnd, 0)}));
     EXPECT_FALSE(sendWords({head(op::glEnd, 2)}));
     EXPECT_FALSE(sendWords({head(op::glEnd, record::kLongForm)}));
     for (const uint32_t words : {0u, 1u, 3u, 0x40000000u, 0xffffffffu}) EXPECT_FALSE(sendWords({head(op::glEnd, record::kLongForm), words})) << words;
     EXPECT_TRUE(sendWords({head(op::glEnd, record::kLongForm), 2}));
-    EXPECT_FALSE(sendWords({head(60, 1)}));     // an own opcode that does not exist
+    EXPECT_FALSE(sendWords({head(60, 1)})); // a control opcode that does not exist
     EXPECT_FALSE(sendWords({head(0xfff0, 1)})); // beyond all GL opcodes
     EXPECT_TRUE(sendWords({head(op::glEnd, 1)}));
     const std::byte odd[3] = {};
     EXPECT_FALSE(replay_->packet(wire::streamOf(1, 1), odd));
 }
 
-TEST_F(ReplayTest, ShortArgumentsAreRefusedAndNamed) {
+TEST_F(ReplayTest, rejectsShortArgumentsWithTheCommandsName) {
     begin();
     EXPECT_FALSE(sendWords({head(op::glVertex3f, 3), 0, 0}));
     EXPECT_NE(log_.find("glVertex3f"), std::string::npos) << log_;
@@ -143,14 +143,14 @@ TEST_F(ReplayTest, ShortArgumentsAreRefusedAndNamed) {
     EXPECT_TRUE(sendWords({head(op::glVertex3f, 4), 0, 0, 0}));
 }
 
-TEST_F(ReplayTest, CountsThatOverflowAreRefused) {
+TEST_F(ReplayTest, rejectsCountsThatOverflow) {
     begin();
     // 0x10000001 matrices of 64 bytes: 16 bytes in 32-bit arithmetic.
     EXPECT_FALSE(sendWords({head(op::glUniformMatrix4fv, 9), 0, 0x10000001, 0, 16, 0, 0, 0, 0}));
     EXPECT_FALSE(sendWords({head(op::glUniform4fv, 8), 0, 0x40000001, 16, 0, 0, 0, 0}));
 }
 
-TEST_F(ReplayTest, NegativeCountsDoNotReachTheDriver) {
+TEST_F(ReplayTest, keepsNegativeCountsFromTheDriver) {
     begin();
     const GLfloat values[8] = {};
     for (const GLsizei count : {2, 0, -1, -5, INT32_MIN}) {
@@ -161,13 +161,13 @@ TEST_F(ReplayTest, NegativeCountsDoNotReachTheDriver) {
     EXPECT_EQ(replay_->counts().malformed, 0u);
 }
 
-TEST_F(ReplayTest, OffsetsWhereOnlyBytesMakeSenseAreRefused) {
+TEST_F(ReplayTest, rejectsOffsetsWhereOnlyBytesAreValid) {
     begin();
     EXPECT_FALSE(sendWords({head(op::glDeleteTextures, 5), 1, record::kTagOffset, 64, 0}));
     EXPECT_FALSE(sendWords({head(op::glCallLists, 6), 1, GL_UNSIGNED_BYTE, record::kTagOffset, 64, 0}));
 }
 
-TEST_F(ReplayTest, AContextIsNeverReplaced) {
+TEST_F(ReplayTest, neverReplacesAContext) {
     begin();
     wire::WindowConfig c{};
     records::createContext(t_, {1, 0, 0, 4, 5, 0, 0, c});
@@ -178,8 +178,8 @@ TEST_F(ReplayTest, AContextIsNeverReplaced) {
     EXPECT_TRUE(send());
 }
 
-// That it is freed shows in its number: it may be given again.
-TEST_F(ReplayTest, ADestroyedContextLivesUntilItIsReleased) {
+// The number proves that it was freed: it can be used again.
+TEST_F(ReplayTest, keepsADestroyedContextUntilItIsReleased) {
     begin();
     wire::WindowConfig c{};
     records::destroyContext(t_, 1);
@@ -194,20 +194,20 @@ TEST_F(ReplayTest, ADestroyedContextLivesUntilItIsReleased) {
     EXPECT_TRUE(send());
 }
 
-TEST_F(ReplayTest, ADestroyedContextKeepsItsShareGroup) {
+TEST_F(ReplayTest, keepsTheShareGroupOfADestroyedContext) {
     begin(1, 1);
     wire::WindowConfig c{};
     records::createContext(t_, {2, 1, 0, 4, 5, 0, 0, c});
     records::destroyContext(t_, 1);
     records::makeCurrent(t_, 2, 1, 1);
-    records::createContext(t_, {1, 2, 0, 4, 5, 0, 0, c}); // the first is gone
+    records::createContext(t_, {1, 2, 0, 4, 5, 0, 0, c}); // the first context no longer exists
     encode_glClear(t_, GL_COLOR_BUFFER_BIT);
     records::swap(t_, 1, 1);
     EXPECT_TRUE(send());
     EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
 }
 
-TEST_F(ReplayTest, ADestroyedWindowLivesUntilItIsReleased) {
+TEST_F(ReplayTest, keepsADestroyedWindowUntilItIsReleased) {
     begin();
     records::destroyWindow(t_, 1);
     encode_glClear(t_, GL_COLOR_BUFFER_BIT);
@@ -217,10 +217,10 @@ TEST_F(ReplayTest, ADestroyedWindowLivesUntilItIsReleased) {
     records::makeCurrent(t_, 1, 0, 0);
     records::swap(t_, 1, 2);
     EXPECT_TRUE(send());
-    EXPECT_EQ(pictureBytes_, -1); // no such window any more
+    EXPECT_EQ(pictureBytes_, -1); // the window no longer exists
 }
 
-TEST_F(ReplayTest, AWindowMayChangeUnderAnotherThreadsContext) {
+TEST_F(ReplayTest, changesAWindowUnderAnotherThreadsContext) {
     begin(1);
     wire::WindowConfig c{};
     c.width = 128;
@@ -233,7 +233,7 @@ TEST_F(ReplayTest, AWindowMayChangeUnderAnotherThreadsContext) {
     records::swap(t_, 1, 2);
     EXPECT_TRUE(send(1));
     EXPECT_EQ(pictureBytes_, 128 * 32 * 4);
-    records::swap(t_, 1, 3); // GLX lets any thread swap any window
+    records::swap(t_, 1, 3); // GLX permits any thread to swap any window
     EXPECT_TRUE(send(2));
     EXPECT_EQ(pictureBytes_, 128 * 32 * 4);
     replay_->clientGone(1);
@@ -264,8 +264,8 @@ TEST_F(ReplayTest, showsAWindowThatIsNotCurrent) {
     EXPECT_EQ(log_, "");
 }
 
-// The context that drew there may be gone, and the swap come from a thread that never had one.
-TEST_F(ReplayTest, showsAWindowWhoseContextIsGone) {
+// The context that drew may be destroyed, and the swap may come from a thread that never had one.
+TEST_F(ReplayTest, showsAWindowWithoutItsContext) {
     begin();
     encode_glClear(t_, GL_COLOR_BUFFER_BIT);
     wire::WindowConfig c{};
@@ -285,7 +285,7 @@ TEST_F(ReplayTest, showsAWindowWhoseContextIsGone) {
     EXPECT_EQ(pictureBytes_, 16 * 8 * 4);
 }
 
-TEST_F(ReplayTest, BlobsAreBounded) {
+TEST_F(ReplayTest, limitsBlobs) {
     start({.blobBytes = 1000});
     begin();
     records::blobBegin(t_, 1001);
@@ -308,14 +308,14 @@ TEST_F(ReplayTest, BlobsAreBounded) {
     EXPECT_LT(taken, 1000) << "empty blobs must not pile up";
 }
 
-TEST_F(ReplayTest, AnIncompleteBlobIsNotTaken) {
+TEST_F(ReplayTest, rejectsAnIncompleteBlob) {
     begin();
     records::blobBegin(t_, 8);
     EXPECT_TRUE(send());
     EXPECT_FALSE(sendWords({head(op::glBufferData, 6), GL_ARRAY_BUFFER, 8, 0, record::kTagBlob, GL_STATIC_DRAW}));
 }
 
-TEST_F(ReplayTest, ListsThatCallThemselvesEnd) {
+TEST_F(ReplayTest, endsListsThatCallThemselves) {
     start({.listCommands = 1000});
     begin();
     encode_glNewList(t_, 1, GL_COMPILE);
@@ -326,7 +326,7 @@ TEST_F(ReplayTest, ListsThatCallThemselvesEnd) {
     EXPECT_TRUE(send());
 }
 
-TEST_F(ReplayTest, ListsKeepTheirLargeValues) {
+TEST_F(ReplayTest, keepsLargeValuesOfLists) {
     begin();
     const std::vector<std::byte> pixels(100 * 50 * 4, std::byte{1});
     encode_glNewList(t_, 1, GL_COMPILE);
@@ -334,14 +334,14 @@ TEST_F(ReplayTest, ListsKeepTheirLargeValues) {
     encode_glEndList(t_);
     encode_glCallList(t_, 1);
     encode_glCallList(t_, 1);
-    // The blob went into the list: the next value takes its own.
+    // The list has consumed the blob: the next value uses its own.
     const std::vector<std::byte> data(20000);
     encode_glBufferData(t_, GL_ARRAY_BUFFER, 20000, DataArg::of(data.data(), data.size()), GL_STATIC_DRAW);
     EXPECT_TRUE(send());
     EXPECT_FALSE(sendWords({head(op::glBufferData, 6), GL_ARRAY_BUFFER, 8, 0, record::kTagBlob, GL_STATIC_DRAW})) << "no blob is left over";
 }
 
-TEST_F(ReplayTest, RequestsAreBoundedAndAnswered) {
+TEST_F(ReplayTest, limitsAndAnswersRequests) {
     start({.answerBytes = 1 << 16});
     begin();
     records::requestPixels(t_, 1, 2147483647, 2147483647, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, 4);
@@ -358,7 +358,7 @@ TEST_F(ReplayTest, RequestsAreBoundedAndAnswered) {
     EXPECT_EQ(answers_, 2);
 }
 
-TEST_F(ReplayTest, ClientArraysStayWithinTheirSpans) {
+TEST_F(ReplayTest, keepsClientArraysWithinTheirSpans) {
     begin();
     const std::vector<std::byte> span(120);
     const DataArg data = DataArg::of(span.data(), span.size());
@@ -376,7 +376,7 @@ TEST_F(ReplayTest, ClientArraysStayWithinTheirSpans) {
     }
 }
 
-TEST_F(ReplayTest, MemoryThatIsNotThereIsTold) {
+TEST_F(ReplayTest, reportsExhaustedMemory) {
     start({}, {.largestTexture = 100});
     begin();
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 10, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
@@ -385,17 +385,17 @@ TEST_F(ReplayTest, MemoryThatIsNotThereIsTold) {
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 11, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
     records::swap(t_, 1, 1);
     EXPECT_TRUE(send());
-    ASSERT_EQ(news_.size(), 1u); // the swap finds nothing more
+    ASSERT_EQ(news_.size(), 1u); // the swap reports nothing further
     EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::OutOfMemory));
     EXPECT_EQ(news_[0].type, 0u);
     records::errorTold(t_);
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 11, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
     EXPECT_TRUE(send());
     ASSERT_EQ(news_.size(), 2u);
-    EXPECT_EQ(news_[1].type, 1u); // the program has been told an error before
+    EXPECT_EQ(news_[1].type, 1u); // the program has received an error before
 }
 
-TEST_F(ReplayTest, ALostContextIsToldOnce) {
+TEST_F(ReplayTest, reportsALostContextOnce) {
     start({}, {.resetStatus = GL_GUILTY_CONTEXT_RESET});
     begin();
     for (uint32_t frame = 1; frame < 4; ++frame) records::swap(t_, 1, frame);
@@ -406,7 +406,7 @@ TEST_F(ReplayTest, ALostContextIsToldOnce) {
     EXPECT_NE(log_.find("lost"), std::string::npos);
 }
 
-TEST_F(ReplayTest, MessagesOfTheDriverAreToldWhereTheProgramListens) {
+TEST_F(ReplayTest, reportsDriverMessagesWithDebugOutput) {
     start({}, {.talks = true});
     begin();
     encode_glDrawArrays(t_, GL_POINTS, 0, 1);
@@ -415,25 +415,25 @@ TEST_F(ReplayTest, MessagesOfTheDriverAreToldWhereTheProgramListens) {
     encode_glEnable(t_, GL_DEBUG_OUTPUT);
     encode_glDrawArrays(t_, GL_POINTS, 0, 1);
     EXPECT_TRUE(send());
-    ASSERT_EQ(news_.size(), 1u); // what comes from the program itself it knows
+    ASSERT_EQ(news_.size(), 1u); // the program already has its own messages
     EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::DebugMessage));
     EXPECT_EQ(news_[0].source, GLenum{GL_DEBUG_SOURCE_API});
     EXPECT_EQ(newsText_, "a slow draw");
 }
 
-TEST_F(ReplayTest, LabelsStayWithinTheirRecord) {
+TEST_F(ReplayTest, keepsLabelsWithinTheirRecord) {
     begin();
     const std::string text(30, 'x');
     encode_glObjectLabel(t_, GL_TEXTURE, 1, 30, DataArg::of(text.data(), 30));
     encode_glObjectLabel(t_, GL_TEXTURE, 1, -1, DataArg::text(text.c_str()));
     encode_glObjectLabel(t_, GL_TEXTURE, 1, 0, {});
-    encode_glPushDebugGroup(t_, GL_DEBUG_SOURCE_APPLICATION, 1, -1, DataArg::of(text.data(), 30)); // without an end
+    encode_glPushDebugGroup(t_, GL_DEBUG_SOURCE_APPLICATION, 1, -1, DataArg::of(text.data(), 30)); // not terminated
     EXPECT_TRUE(send());
     encode_glObjectLabel(t_, GL_TEXTURE, 1, 31, DataArg::of(text.data(), 30));
     EXPECT_FALSE(send());
 }
 
-TEST_F(ReplayTest, GlWithoutAContextDoesNothing) {
+TEST_F(ReplayTest, ignoresGlWithoutAContext) {
     encode_glClear(t_, GL_COLOR_BUFFER_BIT);
     records::swap(t_, 1, 1);
     EXPECT_TRUE(send());
@@ -471,9 +471,9 @@ protected:
     }
 };
 
-TEST_F(HandlesTest, AreMappedWhereverACommandNamesThem) {
-    encode_glGetTextureHandleARB(t_, 1, 7);            // 100
-    encode_glGetTextureSamplerHandleARB(t_, 1, 2, 8);  // 101
+TEST_F(HandlesTest, mapsHandlesInEveryCommand) {
+    encode_glGetTextureHandleARB(t_, 1, 7);                         // 100
+    encode_glGetTextureSamplerHandleARB(t_, 1, 2, 8);               // 101
     encode_glGetImageHandleARB(t_, 1, 0, GL_FALSE, 0, GL_RGBA8, 9); // 102
     encode_glMakeTextureHandleResidentARB(t_, 8);
     encode_glMakeImageHandleResidentARB(t_, 9, GL_READ_WRITE);
@@ -497,7 +497,7 @@ TEST_F(HandlesTest, AreMappedWhereverACommandNamesThem) {
     EXPECT_EQ(other.attribute, 100u);
 }
 
-TEST_F(HandlesTest, OneLineSaysThatMemoryIsNotMapped) {
+TEST_F(HandlesTest, reportsUnmappedMemoryInOneLine) {
     other.next = 7;
     encode_glGetTextureHandleARB(t_, 1, 7);
     EXPECT_TRUE(send());
@@ -509,14 +509,14 @@ TEST_F(HandlesTest, OneLineSaysThatMemoryIsNotMapped) {
     EXPECT_NE(log_.find("0x8 for 0x9"), std::string::npos) << log_;
 }
 
-TEST_F(HandlesTest, OneThatNobodyHasDealtIsNotMadeResident) {
+TEST_F(HandlesTest, makesNoUnknownHandleResident) {
     encode_glMakeTextureHandleResidentARB(t_, 100);
     encode_glMakeImageHandleResidentARB(t_, 100, GL_READ_ONLY);
     EXPECT_TRUE(send());
     EXPECT_TRUE(other.resident.empty());
 }
 
-TEST_F(HandlesTest, CountsThatAreTooLargeAreRefused) {
+TEST_F(HandlesTest, rejectsCountsThatAreTooLarge) {
     EXPECT_FALSE(sendWords({head(op::glUniformHandleui64vARB, 6), 0, 0x20000001, 8, 0, 0}));
     EXPECT_TRUE(other.uniforms.empty());
 }
@@ -557,13 +557,13 @@ protected:
     }
 };
 
-TEST_F(PagesTest, ThoseThatFitAreTheSame) {
+TEST_F(PagesTest, keepsCommitmentsOnPageBorders) {
     commit(64, 128, 36, 64, GL_TRUE);
     commit(64, 128, 36, 64, GL_FALSE);
     EXPECT_EQ(pages.commits, (std::vector<std::array<GLint, 7>>{{64, 128, 2, 36, 64, 1, 1}, {64, 128, 2, 36, 64, 1, 0}}));
 }
 
-TEST_F(PagesTest, ThoseAroundAreCommittedAndNoneIsGivenBack) {
+TEST_F(PagesTest, extendsCommitmentsToPagesAndReleasesNone) {
     commit(32, 96, 32, 32, GL_TRUE);
     commit(80, 0, 16, 16, GL_TRUE);
     commit(32, 96, 32, 32, GL_FALSE);
@@ -571,7 +571,7 @@ TEST_F(PagesTest, ThoseAroundAreCommittedAndNoneIsGivenBack) {
     EXPECT_EQ(log_, "");
 }
 
-TEST_F(PagesTest, OneLineSaysThatThereAreNone) {
+TEST_F(PagesTest, reportsMissingPagesInOneLine) {
     replay_->gl.glGetInternalformativ = [](GLenum, GLenum, GLenum, GLsizei, GLint*) {};
     commit(32, 96, 32, 32, GL_TRUE);
     commit(32, 96, 32, 32, GL_TRUE);
@@ -579,7 +579,7 @@ TEST_F(PagesTest, OneLineSaysThatThereAreNone) {
     EXPECT_EQ(std::count(log_.begin(), log_.end(), '\n'), 1) << log_;
 }
 
-TEST_F(PagesTest, OfBuffersToo) {
+TEST_F(PagesTest, supportsBuffers) {
     const auto commitBuffer = [&](GLintptr offset, GLsizeiptr size, GLboolean committed) {
         encode_glBufferPageCommitmentARB(t_, GL_ARRAY_BUFFER, offset, size, committed);
         EXPECT_TRUE(send());

@@ -1,4 +1,4 @@
-// Transformed clip coordinates compared with those of the intended matrices.
+// Transformed clip coordinates compared with the coordinates of the intended matrices.
 #include "nodes/replay/view_move.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Where a node draws that ends its region on the driver's bins, against a GL that records scissor boxes.
+// The drawing area of a node that ends its region on the driver's bins, with a GL that records scissor boxes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -70,7 +70,7 @@ wire::WindowConfig buffers(uint8_t depth, uint8_t stencil, uint8_t samples) {
 TEST_F(WholeBins, areDrawnInWindowsWithoutDepthAndStencil) {
     open(true, buffers(0, 0, 0));
     EXPECT_EQ(draw(), kBins);
-    EXPECT_EQ(swap(), kRegion); // what is shown stays the region
+    EXPECT_EQ(swap(), kRegion); // the shown part is still the region
 }
 
 TEST_F(WholeBins, areNotDrawnInWindowsWithDepthOrStencil) {

@@ -9,13 +9,13 @@ namespace {
 
 PassCounts counted(StereoMode stereo, int kernelWidth, int kernelHeight, int samples, int period) { return {stereo, kernelWidth, kernelHeight, samples, period}; }
 
-TEST(RenderPass, withoutWishesThereIsOnePlainPass) {
+TEST(RenderPass, isOnePlainPassByDefault) {
     EXPECT_EQ(passesOf({}), std::vector<RenderPass>{RenderPass{}});
     EXPECT_EQ(picturesOf({}), 1);
     EXPECT_EQ(describe({}), "");
 }
 
-TEST(RenderPass, everyCombinationIsDrawnOnce) {
+TEST(RenderPass, coversEveryCombinationOnce) {
     const PassCounts counts = counted(StereoMode::Anaglyph, 3, 2, 5, 4);
     const std::vector<RenderPass> passes = passesOf(counts);
     EXPECT_EQ(passes.size(), 2u * 3 * 2 * 5 * 4);
@@ -25,7 +25,7 @@ TEST(RenderPass, everyCombinationIsDrawnOnce) {
     EXPECT_EQ(names.size(), passes.size());
 }
 
-TEST(RenderPass, orderIsEyeRowColumnSampleTurn) {
+TEST(RenderPass, ordersByEyeRowColumnSampleTurn) {
     const std::vector<RenderPass> passes = passesOf(counted(StereoMode::SideBySide, 2, 2, 2, 2));
     EXPECT_EQ(passes[1].phase, 1);
     EXPECT_EQ(passes[2].sample, 1);
@@ -35,13 +35,13 @@ TEST(RenderPass, orderIsEyeRowColumnSampleTurn) {
     EXPECT_EQ(passes[16].eye, Eye::Right);
 }
 
-TEST(RenderPass, turnsMakeOnePicture) {
+TEST(RenderPass, combinesTurnsIntoOnePicture) {
     const PassCounts counts = counted(StereoMode::TopBottom, 2, 3, 2, 3);
     const std::vector<RenderPass> passes = passesOf(counts);
     for (size_t i = 0; i < passes.size(); ++i) EXPECT_EQ(pictureOf(counts, passes[i]), static_cast<int>(i) / 3);
 }
 
-TEST(RenderPass, oneEyeAloneIsTheFirstPicture) {
+TEST(RenderPass, makesASingleEyeTheFirstPicture) {
     for (const StereoMode mode : {StereoMode::Left, StereoMode::Right}) {
         const PassCounts counts = counted(mode, 1, 1, 2, 1);
         EXPECT_EQ(picturesOf(counts), 2);
@@ -52,7 +52,7 @@ TEST(RenderPass, oneEyeAloneIsTheFirstPicture) {
     }
 }
 
-TEST(RenderPass, samplesLieInTheirPixelAroundItsCentre) {
+TEST(RenderPass, placesSamplesAroundThePixelCentre) {
     EXPECT_EQ(jitterOf(0, 1), (std::array<double, 2>{0, 0}));
     for (int n = 2; n <= 256; ++n) {
         double x = 0, y = 0;
@@ -71,8 +71,8 @@ TEST(RenderPass, samplesLieInTheirPixelAroundItsCentre) {
     }
 }
 
-TEST(RenderPass, samplesAreSpreadEvenly) {
-    for (const int n : {2, 3, 5, 16, 61}) { // each row and column of a raster of n has one
+TEST(RenderPass, spreadsSamplesEvenly) {
+    for (const int n : {2, 3, 5, 16, 61}) { // each row and column of an n x n grid has one sample
         std::set<int> columns, rows;
         for (int i = 0; i < n; ++i) {
             const auto at = jitterOf(i, n);

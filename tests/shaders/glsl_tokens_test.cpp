@@ -5,7 +5,7 @@
 namespace mural::shaders {
 namespace {
 
-TEST(GlslTokens, CommentsHoldNoNames) {
+TEST(GlslTokens, ignoresNamesInComments) {
     const GlslText t = scanGlsl("// gl_FragCoord\n/* gl_FragCoord\n*/ float a/**/b; // \\\ngl_FragCoord\nint c;", false);
     EXPECT_FALSE(t.uses("gl_FragCoord"));
     EXPECT_TRUE(t.uses("a"));
@@ -13,7 +13,7 @@ TEST(GlslTokens, CommentsHoldNoNames) {
     EXPECT_TRUE(t.uses("c"));
 }
 
-TEST(GlslTokens, NamesAreWhole) {
+TEST(GlslTokens, matchesWholeNames) {
     const GlslText t = scanGlsl("my_gl_FragCoord gl_FragCoord2 mainly 1e5f 0x1F", false);
     EXPECT_FALSE(t.uses("gl_FragCoord"));
     EXPECT_FALSE(t.uses("main"));
@@ -21,7 +21,7 @@ TEST(GlslTokens, NamesAreWhole) {
     EXPECT_TRUE(t.uses("0x1F"));
 }
 
-TEST(GlslTokens, VersionsAndProfiles) {
+TEST(GlslTokens, readsVersionsAndProfiles) {
     EXPECT_EQ(scanGlsl("void main(){}", false).version, 110);
     EXPECT_FALSE(scanGlsl("void main(){}", false).es);
     EXPECT_EQ(scanGlsl("void main(){}", true).version, 100);
@@ -32,7 +32,7 @@ TEST(GlslTokens, VersionsAndProfiles) {
     EXPECT_TRUE(scanGlsl("#version 100\n", false).es);
 }
 
-TEST(GlslTokens, DirectivesEndWithTheirLine) {
+TEST(GlslTokens, endsDirectivesWithTheirLine) {
     const std::string source = "#version 330\n#define A \\\n main\nint b;\n";
     const GlslText t = scanGlsl(source, false);
     ASSERT_EQ(t.directives.size(), 2u);
@@ -42,7 +42,7 @@ TEST(GlslTokens, DirectivesEndWithTheirLine) {
 
 std::string behind(const std::string& source) { return source.substr(scanGlsl(source, false).declarationsAt()); }
 
-TEST(GlslTokens, DeclarationsComeBehindAllExtensions) {
+TEST(GlslTokens, placesDeclarationsAfterAllExtensions) {
     EXPECT_EQ(behind("int a;"), "int a;");
     EXPECT_EQ(behind("#version 330\nint a;"), "int a;");
     EXPECT_EQ(behind("#version 330\n#extension X : enable\nint a;"), "int a;");
@@ -51,7 +51,7 @@ TEST(GlslTokens, DeclarationsComeBehindAllExtensions) {
     EXPECT_EQ(behind("#if A\n#extension X : enable\n#else\n#extension Y : enable\n#endif\nint a;"), "int a;");
 }
 
-TEST(GlslTokens, EditsApplyInTheOrderOfTheirPlaces) {
+TEST(GlslTokens, appliesEditsInOrderOfPosition) {
     TextEdits edits;
     edits.insert(3, "x");
     edits.replace(0, 1, "AA");
@@ -59,7 +59,7 @@ TEST(GlslTokens, EditsApplyInTheOrderOfTheirPlaces) {
     EXPECT_EQ(edits.apply("abc"), "AAbcxy");
 }
 
-TEST(GlslTokens, AnyBytesAreRead) {
+TEST(GlslTokens, acceptsAnyBytes) {
     for (const char* text : {"/*", "#", "#if", "\\", "\"", "//", "#endif\n#endif\n", "\xff\xfe", "#version", "#version x", "#version 99999999999"}) {
         const GlslText t = scanGlsl(text, false);
         EXPECT_LE(t.declarationsAt(), std::string_view(text).size()) << text;

@@ -14,14 +14,14 @@ template <size_t N> bool reads(const uint32_t (&words)[N], size_t used = N) {
     return moduleReadsFragCoord(std::as_bytes(std::span(words, used)));
 }
 
-TEST(SpirvModule, KnowsWhoReadsFragCoord) {
+TEST(SpirvModule, detectsReadsOfFragCoord) {
     EXPECT_TRUE(reads(modules::kFragment));
     EXPECT_FALSE(reads(modules::kVertex));
     EXPECT_FALSE(reads(modules::kCompute));
     EXPECT_FALSE(reads(modules::kCounting));
 }
 
-TEST(SpirvModule, WhatCannotBeReadMayReadAnything) {
+TEST(SpirvModule, assumesReadsInUnreadableModules) {
     EXPECT_TRUE(moduleReadsFragCoord({}));
     EXPECT_TRUE(reads(modules::kVertex, 4));
     EXPECT_TRUE(reads(modules::kVertex, 6)); // within an instruction

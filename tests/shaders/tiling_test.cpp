@@ -16,14 +16,14 @@ TilePlace place() {
     return p;
 }
 
-TEST(Tiling, EdgesInNormalisedDeviceCoordinates) {
+TEST(Tiling, computesEdgesInNormalisedDeviceCoordinates) {
     const TileValues v = tileValues(place());
     const std::array<GLfloat, 8> wanted{-0.1f, 1.1f, -0.2f, 1.2f, 1, 10, 0.01f, 0.02f};
     for (size_t i = 0; i < 8; ++i) EXPECT_FLOAT_EQ(v.cull[i], wanted[i]) << i;
     EXPECT_EQ(v.place, (std::array<GLfloat, 8>{}));
 }
 
-TEST(Tiling, ViewportsMoveTheEdges) {
+TEST(Tiling, movesEdgesWithViewports) {
     TilePlace p = place();
     p.viewport = {100, 0, 50, 100};
     const TileValues v = tileValues(p);
@@ -31,7 +31,7 @@ TEST(Tiling, ViewportsMoveTheEdges) {
     EXPECT_FLOAT_EQ(v.cull[1], 2 * (210.f - 100) / 50 - 1);
 }
 
-TEST(Tiling, NothingIsDroppedWhereThatIsNotKnownToBeRight) {
+TEST(Tiling, dropsNothingWhenUnsafe) {
     const auto off = [](auto change) {
         TilePlace p = place();
         change(p);
@@ -45,15 +45,16 @@ TEST(Tiling, NothingIsDroppedWhereThatIsNotKnownToBeRight) {
     EXPECT_TRUE(off([](TilePlace& p) { p.viewport = {0, std::numeric_limits<float>::quiet_NaN(), 100, 100}; }));
 }
 
-TEST(Tiling, OffsetsOfATranslatedFramebuffer) {
+TEST(Tiling, computesOffsetsOfATranslatedFramebuffer) {
     TilePlace p = place();
     p.translated = true;
     p.tile = {100, 0, 100, 50};
     EXPECT_EQ(tileValues(p).place, (std::array<GLfloat, 8>{100, 0, 50, 0, 0, 0, 0, 0}));
 }
 
-// Pixel i of column 1 of 3 is the window's 3 i + 1, and its centre half a pixel more; rows from above count from the window's top.
-TEST(Tiling, PlacesOfAKernel) {
+// Pixel i of column 1 of 3 is the window's pixel 3 i + 1, and its centre lies half a pixel further. Rows with an upper
+// origin count from the top of the window.
+TEST(Tiling, computesPositionsOfAKernel) {
     TilePlace p = place();
     p.window = {0, 0, 200, 100};
     p.pass.kernelX = 1, p.pass.kernelWidth = 3, p.pass.kernelY = 1, p.pass.kernelHeight = 2;
@@ -68,7 +69,7 @@ TEST(Tiling, PlacesOfAKernel) {
     EXPECT_EQ(fromAbove(7), 100 - 15.5);
 }
 
-TEST(Tiling, PlacesOfASmallerPicture) {
+TEST(Tiling, computesPositionsOfASmallerPicture) {
     TilePlace p = place();
     p.pass.zoom = {0.5, 0.25};
     const auto v = tileValues(p).place;

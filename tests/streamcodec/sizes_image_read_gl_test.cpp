@@ -1,5 +1,5 @@
-// GL's writes to client memory, compared with layoutOf, spanBytes and unpackTight: nothing outside the pixels changes,
-// and the bytes are those of the tight image laid out under the pack state.
+// GL's writes to client memory, compared with layoutOf, spanBytes and unpackTight. Nothing outside the pixels changes,
+// and the bytes are the tight image laid out under the pack state.
 #include "tests/streamcodec/sizes_gl_context.hpp"
 
 #include <cstring>
@@ -273,8 +273,8 @@ TEST(SizesImageReadGl, matchesGetPolygonStipple) {
                       [](void* bits) { glGetPolygonStipple(static_cast<GLubyte*>(bits)); });
 }
 
-// Mesa counts rows downwards from the highest row of the image, skipped rows first: into the memory below the highest
-// row, and below the pointer if more rows are skipped than exist.
+// Mesa counts rows downwards from the highest row of the image, skipped rows first. The first row lies below the
+// highest row, and below the pointer if more rows are skipped than exist.
 TEST(SizesImageReadGl, placesInvertedRowsAboveTheSkippedOnes) {
     const TestContext context(TestApi::Compatibility);
     if (!context.valid())

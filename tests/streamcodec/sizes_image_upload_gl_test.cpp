@@ -1,6 +1,6 @@
 // GL's reads of images in client memory, compared with layoutOf, spanBytes and packTight: for all pairs of format and
-// type that this GL accepts, with odd sizes and random pixel store states. A byte too many or too few hits a guard
-// page, a misplaced byte changes the picture.
+// type that this GL accepts, with odd sizes and random pixel store states. A byte too many or too few reaches a guard
+// page; a misplaced byte changes the picture.
 #include "tests/streamcodec/sizes_gl_context.hpp"
 
 #include <cstring>

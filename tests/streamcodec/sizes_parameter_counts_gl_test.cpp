@@ -1,4 +1,4 @@
-// The number of values that GL reads for each of the 65536 possible pnames, measured with a guard page: the array
+// The number of values that GL reads for each of the 65536 possible pnames, measured with a guard page. The array
 // starts so close to the guard that only `count` values precede it.
 #include "tests/streamcodec/sizes_gl_context.hpp"
 

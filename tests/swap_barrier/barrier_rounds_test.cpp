@@ -1,4 +1,4 @@
-// Who goes on at a swap barrier: whole rounds, swaps left out, late and lost members, and random schedules.
+// The decisions of a swap barrier: complete rounds, skipped swaps, late and lost members, and random schedules.
 #include "nodes/swap_barrier/barrier_rounds.hpp"
 
 #include <algorithm>
@@ -13,13 +13,13 @@ constexpr int64_t kPatienceNs = 1000;
 
 SwapKey frame(uint32_t number) { return {1, 2, number}; }
 
-// The members of the one release of a step.
+// Returns the members of the only release of a step.
 std::vector<int> released(const BarrierRounds::Step& step, const SwapKey& key) {
     if (step.releases.size() != 1 || step.releases[0].key != key) return {-1};
     return step.releases[0].members;
 }
 
-TEST(BarrierRounds, goTogetherWhenTheLastHasCome) {
+TEST(BarrierRounds, releasesAllWhenTheLastArrives) {
     BarrierRounds rounds(3, kPatienceNs);
     EXPECT_TRUE(rounds.arrive(1, frame(1), 1).releases.empty());
     EXPECT_TRUE(rounds.arrive(0, frame(1), 2).releases.empty());
@@ -27,14 +27,14 @@ TEST(BarrierRounds, goTogetherWhenTheLastHasCome) {
     EXPECT_TRUE(rounds.arrive(2, frame(2), 4).releases.empty()); // the next round waits again
 }
 
-TEST(BarrierRounds, oneThatLeavesASwapOutHoldsNobodyUp) {
+TEST(BarrierRounds, doesNotWaitForASkippedSwap) {
     BarrierRounds rounds(2, kPatienceNs);
     EXPECT_TRUE(rounds.arrive(0, frame(1), 1).releases.empty());
-    EXPECT_EQ(released(rounds.arrive(1, frame(2), 2), frame(1)), std::vector{0}); // member 1 is past it
+    EXPECT_EQ(released(rounds.arrive(1, frame(2), 2), frame(1)), std::vector{0}); // member 1 has passed it
     EXPECT_EQ(released(rounds.arrive(0, frame(2), 3), frame(2)), (std::vector{0, 1}));
 }
 
-TEST(BarrierRounds, aLateOneIsNotWaitedForUntilItComesAgain) {
+TEST(BarrierRounds, doesNotWaitForALateMemberUntilItReturns) {
     BarrierRounds rounds(3, kPatienceNs);
     (void)rounds.arrive(0, frame(1), 0);
     (void)rounds.arrive(1, frame(1), 10);
@@ -43,15 +43,15 @@ TEST(BarrierRounds, aLateOneIsNotWaitedForUntilItComesAgain) {
     EXPECT_EQ(step.late, std::vector{2});
     EXPECT_EQ(released(step, frame(1)), (std::vector{0, 1}));
     (void)rounds.arrive(0, frame(2), 1020);
-    EXPECT_EQ(released(rounds.arrive(1, frame(2), 1021), frame(2)), (std::vector{0, 1})); // nobody waits for it
-    EXPECT_EQ(released(rounds.arrive(2, frame(1), 1030), frame(1)), std::vector{2});      // the others have shown that
+    EXPECT_EQ(released(rounds.arrive(1, frame(2), 1021), frame(2)), (std::vector{0, 1})); // no member waits for it
+    EXPECT_EQ(released(rounds.arrive(2, frame(1), 1030), frame(1)), std::vector{2}); // the others have shown this frame
     (void)rounds.arrive(0, frame(3), 1031);
-    EXPECT_TRUE(rounds.arrive(1, frame(3), 1032).releases.empty()); // now it counts again
+    EXPECT_TRUE(rounds.arrive(1, frame(3), 1032).releases.empty()); // counted again from here
     EXPECT_EQ(released(rounds.arrive(2, frame(2), 1033), frame(2)), std::vector{2});
     EXPECT_EQ(released(rounds.arrive(2, frame(3), 1034), frame(3)), (std::vector{0, 1, 2}));
 }
 
-TEST(BarrierRounds, oneThatIsGoneIsNeverWaitedFor) {
+TEST(BarrierRounds, neverWaitsForALostMember) {
     BarrierRounds rounds(2, kPatienceNs);
     (void)rounds.arrive(0, frame(1), 1);
     EXPECT_EQ(released(rounds.gone(1, 2), frame(1)), std::vector{0});
@@ -60,7 +60,7 @@ TEST(BarrierRounds, oneThatIsGoneIsNeverWaitedFor) {
     EXPECT_TRUE(rounds.tick(100'000).late.empty());
 }
 
-TEST(BarrierRounds, framesCountOn) {
+TEST(BarrierRounds, continuesWhenFrameNumbersWrap) {
     BarrierRounds rounds(2, kPatienceNs);
     for (const uint32_t number : {0xffffffffU, 0U, 1U}) {
         (void)rounds.arrive(0, frame(number), 1);
@@ -68,15 +68,16 @@ TEST(BarrierRounds, framesCountOn) {
     }
 }
 
-// Members come in any order, leave swaps out, are late or die: nobody is released twice or ahead of its word, all who live get
-// through, and a round has all members that wait for that swap.
-TEST(BarrierRounds, randomSchedules) {
+// Members arrive in random order, skip swaps, are late or die. No member is released twice or before its arrival, all
+// live members finish, and a round has all members that wait for its swap.
+TEST(BarrierRounds, survivesRandomSchedules) {
     for (unsigned seed = 1; seed <= 300; ++seed) {
         std::mt19937 random(seed);
         const int members = 2 + static_cast<int>(random() % 5);
         constexpr uint32_t kFrames = 30;
         BarrierRounds rounds(members, kPatienceNs);
-        std::vector<uint32_t> at(static_cast<size_t>(members), 0); // the swap that it has come to, or shown
+        // swap at which the member has arrived, or which it has shown
+        std::vector<uint32_t> at(static_cast<size_t>(members), 0);
         std::set<int> waiting, dead;
         int64_t nowNs = 0;
         const auto apply = [&](const BarrierRounds::Step& step) {
@@ -92,7 +93,7 @@ TEST(BarrierRounds, randomSchedules) {
             for (int m = 0; m < members; ++m)
                 if (!waiting.contains(m) && !dead.contains(m) && at[static_cast<size_t>(m)] < kFrames) free.push_back(m);
             if (free.empty() || random() % 50 == 0) {
-                nowNs += kPatienceNs; // who is not there is late
+                nowNs += kPatienceNs; // absent members are late
                 apply(rounds.tick(nowNs));
             } else if (random() % 400 == 0 && static_cast<int>(dead.size()) + 1 < members) {
                 const int m = free[random() % free.size()];
@@ -107,7 +108,8 @@ TEST(BarrierRounds, randomSchedules) {
             }
             if (testing::Test::HasFatalFailure()) return;
         }
-        for (int i = 0; i < 100; ++i) apply(rounds.tick(nowNs += kPatienceNs)); // who has shown all comes no more
+        // members that have shown all frames do not return
+        for (int i = 0; i < 100; ++i) apply(rounds.tick(nowNs += kPatienceNs));
         EXPECT_TRUE(waiting.empty()) << "seed " << seed;
         for (int m = 0; m < members; ++m) EXPECT_TRUE(dead.contains(m) || at[static_cast<size_t>(m)] == kFrames) << "seed " << seed;
     }

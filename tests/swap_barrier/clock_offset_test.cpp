@@ -1,4 +1,4 @@
-// Clocks that stand apart and ways of different lengths: the offset is known as well as the shortest way allows.
+// Clocks with an offset and paths with different delays: the offset is as accurate as the shortest path permits.
 #include "nodes/swap_barrier/clock_offset.hpp"
 
 #include <cstdlib>
@@ -8,12 +8,13 @@
 namespace mural {
 namespace {
 
-// The other clock shows `offset` more; the ways take so long, and in between it holds the answer back.
+// Returns a sample in which the other clock is ahead by `offset`. The paths take `thereNs` and `backNs`, and the other
+// end delays its reply by `heldNs`.
 ClockSample sampleOf(int64_t nowNs, int64_t offset, int64_t thereNs, int64_t heldNs, int64_t backNs) {
     return {nowNs, nowNs + thereNs + offset, nowNs + thereNs + heldNs + offset, nowNs + thereNs + heldNs + backNs};
 }
 
-TEST(ClockOffset, exactWhereBothWaysAreAlike) {
+TEST(ClockOffset, isExactForSymmetricPaths) {
     ClockOffset clock;
     EXPECT_EQ(clock.errorNs(), INT64_MAX);
     clock.add(sampleOf(1'000'000, -5'000'000'000, 100, 77'000'000, 100));
@@ -21,7 +22,7 @@ TEST(ClockOffset, exactWhereBothWaysAreAlike) {
     EXPECT_EQ(clock.errorNs(), 100);
 }
 
-TEST(ClockOffset, neverFurtherOffThanItSays) {
+TEST(ClockOffset, staysWithinItsReportedError) {
     std::mt19937_64 random(3);
     for (int round = 0; round < 200; ++round) {
         ClockOffset clock;
@@ -37,13 +38,13 @@ TEST(ClockOffset, neverFurtherOffThanItSays) {
     }
 }
 
-TEST(ClockOffset, answersFromBeforeTheQuestionAreNone) {
+TEST(ClockOffset, rejectsRepliesFromBeforeTheRequest) {
     ClockOffset clock;
-    clock.add({1000, 5000, 9000, 1500}); // held for longer than the whole took
+    clock.add({1000, 5000, 9000, 1500}); // delay longer than the whole round trip
     EXPECT_EQ(clock.errorNs(), INT64_MAX);
 }
 
-TEST(ClockOffset, followsAClockThatDrifts) {
+TEST(ClockOffset, followsADriftingClock) {
     ClockOffset clock;
     for (int i = 0; i < 1000; ++i) clock.add(sampleOf(i * 16'000'000LL, i * 1600LL, 50'000, 1'000'000, 50'000)); // 100 us per s
     EXPECT_NEAR(static_cast<double>(clock.offsetNs()), 999 * 1600.0, 64 * 1600.0);

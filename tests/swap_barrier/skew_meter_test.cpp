@@ -12,7 +12,7 @@ TEST(SkewMeter, measuresFromTheFirstWindowToTheLast) {
         meter.released(key, 3);
         meter.shown(key, 1000 * f + 10);
         meter.shown(key, 1000 * f);
-        EXPECT_EQ(meter.numbers().swaps, f - 1); // one has not said yet
+        EXPECT_EQ(meter.numbers().swaps, f - 1); // one window has not reported yet
         meter.shown(key, 1000 * f + f);
     }
     const SkewNumbers n = meter.numbers();
@@ -22,15 +22,15 @@ TEST(SkewMeter, measuresFromTheFirstWindowToTheLast) {
     EXPECT_EQ(n.mostNs, 100);
 }
 
-TEST(SkewMeter, oneWindowAloneIsNoSwapOfSeveral) {
+TEST(SkewMeter, ignoresSwapsOfASingleWindow) {
     SkewMeter meter;
     meter.released({1, 1, 1}, 1);
     meter.shown({1, 1, 1}, 5);
-    meter.shown({1, 1, 7}, 5); // nobody has been released for that
+    meter.shown({1, 1, 7}, 5); // no window was released for this swap
     EXPECT_EQ(meter.numbers().swaps, 0);
 }
 
-TEST(SkewMeter, thoseWhoNeverSayAreForgotten) {
+TEST(SkewMeter, forgetsWindowsThatNeverReport) {
     SkewMeter meter;
     for (uint32_t f = 1; f <= 1000; ++f) {
         meter.released({1, 1, f}, 2);

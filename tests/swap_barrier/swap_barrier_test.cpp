@@ -1,4 +1,5 @@
-// Leader and followers by real connections: they go together, at one time, and no one is held up by a dead one for long.
+// Leader and followers with real connections: they show frames together, and a dead member delays the others only
+// briefly.
 #include <algorithm>
 #include <atomic>
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ std::unique_ptr<SwapBarrier> followerOf(const BarrierLeader& leader, int rank, L
     return follower ? std::move(*follower) : nullptr;
 }
 
-TEST(SwapBarrier, allShowAFrameTogether) {
+TEST(SwapBarrier, showsAFrameOnAllMembersTogether) {
     constexpr int kMembers = 4;
     constexpr uint32_t kFrames = 50;
     Lines lines;
@@ -54,7 +55,8 @@ TEST(SwapBarrier, allShowAFrameTogether) {
     std::atomic<int> early{0};
     const auto run = [&](SwapBarrier& barrier, int rank) {
         for (uint32_t f = 1; f <= kFrames; ++f) {
-            if ((f + static_cast<uint32_t>(rank)) % 9 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(3)); // one draws for longer
+            // one member draws longer
+            if ((f + static_cast<uint32_t>(rank)) % 9 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(3));
             ++drawn[f];
             const int64_t showNs = barrier.await({1, 1, f});
             early += drawn[f] != kMembers ? 1 : 0;
@@ -70,14 +72,14 @@ TEST(SwapBarrier, allShowAFrameTogether) {
     EXPECT_EQ(early, 0);
     EXPECT_TRUE(lines.all().empty());
     const SwapBarrierNumbers n = *leader.numbers();
-    EXPECT_EQ(n.skew.swaps, kFrames - 1); // of the last one only the next would tell
+    EXPECT_EQ(n.skew.swaps, kFrames - 1); // the last swap would be reported with the next one
     EXPECT_GT(n.clockErrorNs, 0);
     EXPECT_LE(n.skew.medianNs, n.skew.p99Ns);
     EXPECT_LE(n.skew.p99Ns, n.skew.mostNs);
 }
 
-// When a run ends its members go one by one, and the leader is asked when it goes itself.
-TEST(SwapBarrier, numbersHoldTheClocksOfThoseThatWent) {
+// At the end of a run members leave one by one, and the leader's numbers are read when it ends itself.
+TEST(SwapBarrier, keepsClocksOfMembersThatLeft) {
     Lines lines;
     BarrierLeader leader(2, secretOf(1), lines.log());
     ASSERT_TRUE(leader.listen(true).ok());
@@ -86,12 +88,13 @@ TEST(SwapBarrier, numbersHoldTheClocksOfThoseThatWent) {
         for (uint32_t f = 1; f <= 3; ++f) (void)follower->await({1, 1, f});
         follower.reset();
     });
-    for (uint32_t f = 1; f <= 4; ++f) leader.await({1, 1, f}); // the fourth goes on when the other is known to be gone
+    // the fourth is released when the other member's end is known
+    for (uint32_t f = 1; f <= 4; ++f) leader.await({1, 1, f});
     other.join();
     EXPECT_GT(leader.numbers()->clockErrorNs, 0);
 }
 
-TEST(SwapBarrier, aLostMemberIsToldAndNotWaitedFor) {
+TEST(SwapBarrier, reportsALostMemberAndContinues) {
     Lines lines;
     BarrierLeader leader(3, secretOf(1), lines.log());
     ASSERT_TRUE(leader.listen(true).ok());
@@ -104,13 +107,13 @@ TEST(SwapBarrier, aLostMemberIsToldAndNotWaitedFor) {
     });
     const int64_t beganNs = monotonicNowNs();
     (void)leader.await({1, 1, 1});
-    EXPECT_LT(monotonicNowNs() - beganNs, 2 * kNsPerS); // far below the patience
+    EXPECT_LT(monotonicNowNs() - beganNs, 2 * kNsPerS); // far below the timeout
     other.join(), dies.join();
     ASSERT_EQ(lines.all().size(), 1U);
     EXPECT_NE(lines.all()[0].find("member 3"), std::string::npos) << lines.all()[0];
 }
 
-TEST(SwapBarrier, oneThatNeverComesIsWaitedForOnce) {
+TEST(SwapBarrier, waitsOnceForAMemberThatNeverArrives) {
     Lines lines;
     BarrierLeader leader(2, secretOf(1), lines.log(), 300);
     ASSERT_TRUE(leader.listen(true).ok());
@@ -122,7 +125,7 @@ TEST(SwapBarrier, oneThatNeverComesIsWaitedForOnce) {
     EXPECT_NE(lines.all()[0].find("300 ms"), std::string::npos) << lines.all()[0];
 }
 
-TEST(SwapBarrier, withoutItsLeaderAFollowerShowsByItself) {
+TEST(SwapBarrier, letsAFollowerShowFramesWithoutItsLeader) {
     Lines lines;
     auto leader = std::make_unique<BarrierLeader>(2, secretOf(1), lines.log());
     ASSERT_TRUE(leader->listen(true).ok());
@@ -138,12 +141,13 @@ TEST(SwapBarrier, withoutItsLeaderAFollowerShowsByItself) {
     EXPECT_NE(lines.all()[0].find("leader is gone"), std::string::npos) << lines.all()[0];
 }
 
-TEST(SwapBarrier, strangersAreNotLetIn) {
+TEST(SwapBarrier, rejectsForeignConnections) {
     Lines lines;
     BarrierLeader leader(2, secretOf(1), lines.log());
     ASSERT_TRUE(leader.listen(true).ok());
     EXPECT_FALSE(BarrierFollower::connect(1, secretOf(2), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
-    EXPECT_FALSE(BarrierFollower::connect(2, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok()); // there is no such rank
+    // an invalid rank
+    EXPECT_FALSE(BarrierFollower::connect(2, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
 }
 
 } // namespace

@@ -126,7 +126,7 @@ TEST(SecureChannel, detectsAnyChangedBit) {
     std::mt19937 random(7);
     for (int i = 0; i < 3000; ++i) {
         Pair p;
-        size_t turn = random() % 4; // which piece is modified
+        size_t turn = random() % 4; // index of the modified piece
         const auto spoil = [&](Bytes& bytes) {
             if (turn-- != 0) return;
             bytes[random() % bytes.size()] ^= static_cast<std::byte>(1u << random() % 8);

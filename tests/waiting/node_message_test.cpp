@@ -9,14 +9,14 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-TEST(NodeMessage, OrdersAreReadAsTheyWereWritten) {
+TEST(NodeMessage, decodesItsOwnEncoding) {
     const Arguments arguments{"node", "", "--connect", "wall0:4711"};
     const auto message = decodeNodeMessage(encode(orderMessage(arguments)));
     ASSERT_TRUE(message);
     EXPECT_EQ(orderArguments(*message), arguments);
 }
 
-TEST(NodeMessage, WhatIsOutOfBoundsIsNone) {
+TEST(NodeMessage, rejectsLengthsOutOfBounds) {
     EXPECT_FALSE(decodeNodeMessage({}));
     const std::vector<std::byte> unknown{std::byte{7}};
     EXPECT_FALSE(decodeNodeMessage(unknown));
@@ -30,7 +30,7 @@ TEST(NodeMessage, WhatIsOutOfBoundsIsNone) {
     EXPECT_FALSE(orderArguments(textMessage(NodeMessageKind::Input, std::string("node\0", 5))));
 }
 
-TEST(NodeMessage, OnlyNodesMayBeOrdered) {
+TEST(NodeMessage, permitsOnlyNodesInOrders) {
     EXPECT_TRUE(mayBeOrdered({"node", "--as", "node3", "--connect", "wall0:4711"}));
     EXPECT_TRUE(mayBeOrdered({"network-member"}));
     for (const Arguments& a : {Arguments{"run", "--", "sh"}, {"node"}, {"node", "--wait"}, {"node", "--connect", "wall0:4711"}, {"node", "--as", "x", "--connect", "--wait"}, {"node", "--as", "--wait", "--connect", "a:1"}, {"node", "--connect-fd", "3"}, {"node", "--as", "x", "--connect", "a:1", "x"},

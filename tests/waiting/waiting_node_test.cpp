@@ -1,4 +1,4 @@
-// A waiting node with a script in place of mural, and heads that are what they should be, or are not.
+// A daemon with a script in place of mural, and valid and invalid heads.
 #include "nodes/waiting/waiting_node.hpp"
 
 #include <array>
@@ -22,7 +22,7 @@ namespace {
 constexpr int64_t kMs = 10'000;
 const std::vector<std::string> kNode{"node", "--as", "node3", "--connect", "wall0:4711"};
 
-// Says what it is called with and its number, then each line that it hears; "end" ends it.
+// Prints its arguments and its process number, then each line of its input; the line "end" ends it.
 constexpr const char* kScript = R"(#!/bin/sh
 echo "$*"
 echo "chat" >&2
@@ -55,7 +55,7 @@ protected:
         eventfd_write(stop_.get(), 1);
         thread_.join();
     }
-    // From 127.0.0.`host`.
+    // Connects from 127.0.0.`host`.
     [[nodiscard]] FileDescriptor connect(int host) const {
         FileDescriptor fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
         auto from = numericAddress("127.0.0." + std::to_string(host), 0), to = numericAddress("127.0.0.1", node_->port());
@@ -70,7 +70,7 @@ protected:
         return channel;
     }
     [[nodiscard]] std::unique_ptr<ChannelSocket> head(int host = 1) const { return head(host, secret_, kNode); }
-    // The texts of one kind until one holds `last`, or the channel ends.
+    // Returns the texts of one kind until one contains `last`, or the channel ends.
     static std::string hear(ChannelSocket& channel, NodeMessageKind kind, const std::string& last) {
         std::string text;
         while (text.find(last) == std::string::npos) {
@@ -98,7 +98,7 @@ protected:
     std::thread thread_;
 };
 
-TEST_F(Waiting, RunsWhatIsOrderedAndTellsHowItEnded) {
+TEST_F(Waiting, runsOrdersAndReportsTheirEnd) {
     const auto channel = head();
     ASSERT_TRUE(channel);
     EXPECT_EQ(hear(*channel, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
@@ -108,8 +108,8 @@ TEST_F(Waiting, RunsWhatIsOrderedAndTellsHowItEnded) {
     EXPECT_EQ(hear(*channel, NodeMessageKind::Ended, "7").substr(1), "exit status 7");
 }
 
-// Order and input in one piece: nothing of it may be lost.
-TEST_F(Waiting, InputThatComesWithTheOrderIsHeard) {
+// The order and its input arrive in one piece; no byte may be lost.
+TEST_F(Waiting, passesOnInputThatArrivesWithTheOrder) {
     FileDescriptor fd = connect(1);
     SecureChannel secure = SecureChannel::connecting("head", secret_);
     const auto write = [&] {
@@ -134,7 +134,7 @@ TEST_F(Waiting, InputThatComesWithTheOrderIsHeard) {
     EXPECT_EQ(hear(channel, NodeMessageKind::Ended, "3").substr(1), "exit status 3");
 }
 
-TEST_F(Waiting, WhoDoesNotKnowTheSecretGetsNothing) {
+TEST_F(Waiting, sendsNothingToHeadsWithoutTheSecret) {
     ChannelSecret other = secret_;
     other[3] = std::byte{8};
     EXPECT_FALSE(head(1, other, kNode));
@@ -142,14 +142,14 @@ TEST_F(Waiting, WhoDoesNotKnowTheSecretGetsNothing) {
     EXPECT_TRUE(head()) << "and others are served";
 }
 
-TEST_F(Waiting, OnlyNodesAreRun) {
+TEST_F(Waiting, runsOnlyNodes) {
     const auto channel = head(1, secret_, {"run", "--", "sh"});
     ASSERT_TRUE(channel);
     EXPECT_NE(hear(*channel, NodeMessageKind::Refused, "only").find("only render nodes"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/pid"));
 }
 
-TEST_F(Waiting, TakesOneHeadAtATimeWithAllItsNodes) {
+TEST_F(Waiting, acceptsOneHeadAtATimeWithAllItsNodes) {
     auto first = head(1);
     ASSERT_TRUE(first);
     hear(*first, NodeMessageKind::Output, "\n");
@@ -163,7 +163,7 @@ TEST_F(Waiting, TakesOneHeadAtATimeWithAllItsNodes) {
     ASSERT_TRUE(second->send({NodeMessageKind::InputEnd, {}}, Deadline::inMs(kMs)));
     hear(*first, NodeMessageKind::Ended, "3");
     hear(*second, NodeMessageKind::Ended, "3");
-    // The word of the end goes out a moment before the place is free.
+    // The message about the end is sent a moment before the slot is free.
     std::string output;
     for (const Deadline soon = Deadline::inMs(kMs); !soon.passed() && output.empty();) {
         const auto next = head(2);
@@ -174,7 +174,7 @@ TEST_F(Waiting, TakesOneHeadAtATimeWithAllItsNodes) {
     EXPECT_EQ(output, "served");
 }
 
-TEST_F(Waiting, WhatAHeadHasStartedEndsWithIt) {
+TEST_F(Waiting, endsProcessesWithTheirHead) {
     auto channel = head();
     ASSERT_TRUE(channel);
     hear(*channel, NodeMessageKind::Output, "\n");
@@ -185,7 +185,7 @@ TEST_F(Waiting, WhatAHeadHasStartedEndsWithIt) {
     EXPECT_TRUE(goneSoon(started));
 }
 
-TEST_F(Waiting, WhatRunsEndsWithTheNode) {
+TEST_F(Waiting, endsProcessesWithTheNode) {
     const auto channel = head();
     ASSERT_TRUE(channel);
     hear(*channel, NodeMessageKind::Output, "\n");

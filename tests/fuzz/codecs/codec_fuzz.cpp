@@ -1,5 +1,5 @@
-// A decoder of pictures (MURAL_FUZZ_CODEC) under whatever may come. What it takes for a plane, a lossless codec must be able
-// to write and read again.
+// Feeds arbitrary bytes to a picture decoder (MURAL_FUZZ_CODEC). A lossless codec must encode and restore each plane
+// that it accepted.
 #include <algorithm>
 #include <cstdlib>
 
@@ -14,11 +14,12 @@ using namespace compositor;
 uint64_t fuzzOne(std::span<const std::byte> input) {
     static CodecRegistry registry;
     static const bool lossless = registry.find(MURAL_FUZZ_CODEC).value().lossless;
-    static const std::unique_ptr<Codec> codec = std::move(registry.make(MURAL_FUZZ_CODEC).value()); // keeps its scratch, as in use
+    // keeps its scratch memory, as in the product
+    static const std::unique_ptr<Codec> codec = std::move(registry.make(MURAL_FUZZ_CODEC).value());
     InputReader in(input);
     const PlaneShape shape = readShape(in);
     if (input.size() < kInputHeadBytes) return 0;
-    const std::vector<std::byte> bytes(input.begin() + kInputHeadBytes, input.end()); // of exactly its size
+    const std::vector<std::byte> bytes(input.begin() + kInputHeadBytes, input.end()); // a copy of exactly this size
     Plane plane(shape.format, shape.width, shape.height);
     const auto decoded = codec->decode(bytes, plane.view());
     if (!decoded) {

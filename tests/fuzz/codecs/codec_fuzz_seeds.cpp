@@ -1,4 +1,4 @@
-// Writes the corpus of the codecs' fuzz targets, a folder for each. codec_fuzz_seeds FOLDER
+// Writes the corpus of the codecs' fuzz targets, one folder each. Usage: codec_fuzz_seeds FOLDER
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -32,11 +32,11 @@ void codec(const std::filesystem::path& folder, CodecRegistry& registry, const s
     auto made = registry.make(name);
     const CodecInfo info = registry.find(name).value();
     std::mt19937 random(1);
-    const bool ownFormats = name == "bitplane" || name == "slope"; // the others don't care what a word means
+    const bool ownFormats = name == "bitplane" || name == "slope"; // the others ignore the meaning of a word
     for (const PlaneFormat format : kEveryFormat) {
         if (!info.takes(format) || (!ownFormats && format != PlaneFormat::Rgba8 && format != PlaneFormat::D24S8)) continue;
         for (const Content content : kEveryContent) {
-            // Small ones of everything; of RGBA8 and depth one with several tiles, where that is not much.
+            // Small planes of every kind. For RGBA8 and depth, also one with several tiles, where it stays small.
             const bool large = content == Content::Uniform && (format == PlaneFormat::Rgba8 || format == PlaneFormat::D24S8);
             Plane plane = makePlane(random, format, content, large ? 300 : 21, large ? 70 : 6);
             if (large) plane.view().row(40)[4 * 270] ^= std::byte{7};

@@ -6,7 +6,7 @@
 
 namespace mural::fuzz {
 
-constexpr int32_t kMostColumns = 520; // of more than two tiles
+constexpr int32_t kMostColumns = 520; // more than two tiles
 constexpr int32_t kMostRows = 140;
 constexpr size_t kInputHeadBytes = 4;
 

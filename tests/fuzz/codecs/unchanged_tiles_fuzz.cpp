@@ -1,4 +1,4 @@
-// Planes of which only changed tiles are sent. Input: a shape, then pieces: one plane after the other.
+// Sequences of planes with only their changed tiles. Input: a shape, then pieces, one plane after the other.
 #include "compositor/codecs/registry.hpp"
 #include "compositor/codecs/unchanged_tiles.hpp"
 #include "tests/fuzz/codecs/codec_input.hpp"

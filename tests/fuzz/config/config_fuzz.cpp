@@ -1,5 +1,5 @@
-// The reader of configuration files under whatever text: it says what is wrong or gives a configuration, which can then
-// be written and read again as the same, resolved, checked, and planned.
+// Feeds arbitrary text to the reader of configuration files. It reports an error or returns a configuration. The
+// configuration can be written and read again unchanged, resolved, checked, and planned.
 #include <string_view>
 
 #include "balancer/compound/check_config.hpp"

@@ -1,5 +1,8 @@
-// Input: batches with their heads, each behind its size (u16). The first byte says whether they are batches as they are sent (0), or the sections
-// of one as they are (1): fuzzers do not find their way through compressed bytes. 2: parts of pages that were split, as they are.
+// Feeds arbitrary batches to the delta decoder. Input: batches with their headers, each after its size (u16). The first
+// byte is the kind of input:
+//   0  batches as sent
+//   1  the sections of one batch, uncompressed, because fuzzers do not pass through compression
+//   2  parts of pages that were split, uncompressed
 #include <algorithm>
 #include <cstring>
 #include <memory>
@@ -40,7 +43,7 @@ uint64_t joinPieces(std::span<const std::byte> input) {
     economy::PixelJoiner joiner;
     if (!joiner.begin(front, pagesBytes, pieces)) return 0;
     must(joiner.planeBytes() <= pieces * economy::kPageBytes && joiner.restBytes() <= pagesBytes, "parts are no larger than the pages");
-    // What is missing is 0, as if it had come.
+    // Missing bytes are read as 0.
     std::vector<std::byte> planes(joiner.planeBytes()), rest(joiner.restBytes()), pages(pagesBytes);
     std::ranges::copy(take(input, planes.size()), planes.begin());
     std::ranges::copy(take(input, rest.size()), rest.begin());

@@ -1,4 +1,4 @@
-// Writes the corpus of economy_fuzz: what a packer makes of frames that resemble each other.
+// Writes the corpus of economy_fuzz: the packer's output for frames that resemble each other.
 //   economy_fuzz_seeds FOLDER
 #include <cstdio>
 #include <cstring>
@@ -38,13 +38,13 @@ Bytes frame(uint32_t seed, uint32_t number, bool pages) {
         if (pages && random() % 5 == 0) words = 200 + static_cast<uint32_t>(random() % 1500);
         addWord(bytes, 64 + static_cast<uint32_t>(random() % 5) + (words << 16));
         for (uint32_t w = 1; w < words; ++w) addWord(bytes, static_cast<uint32_t>(random() % 3) + (w == words / 2 && i % 4 == 0 ? number : 0));
-        if (number % 3 == 2 && i == 10) i += 3; // some are missing
+        if (number % 3 == 2 && i == 10) i += 3; // some records are missing
     }
     if (number == 4) bytes.resize(bytes.size() - 2);
     return bytes;
 }
 
-// As many bytes in each frame, of which a few change: kept, and sent as what has changed.
+// Returns a frame of constant size in which a few bytes change: it is kept, and sent as differences.
 Bytes plainFrame(uint32_t seed, uint32_t number) {
     std::mt19937 random(seed);
     Bytes bytes;
@@ -75,7 +75,7 @@ Bytes seedOf(uint32_t seed, bool coded, bool pages, bool plain = false) {
     return input;
 }
 
-// A picture beside what is none.
+// Returns a picture next to other data.
 Bytes splitSeed(uint32_t seed) {
     std::mt19937 random(seed);
     Bytes pages;
@@ -92,11 +92,12 @@ Bytes splitSeed(uint32_t seed) {
     return input;
 }
 
-// A picture in which little repeats, in a batch as it is sent.
+// Returns a picture with little repetition, in a batch as sent.
 Bytes photographSeed(uint32_t seed) {
     std::mt19937 random(seed);
     Bytes record;
-    addWord(record, 64 + static_cast<uint32_t>((2 + economy::kPageBytes) << 16)); // its words: head, one more, and four pages
+    // length in words: header, one more, and four pages
+    addWord(record, 64 + static_cast<uint32_t>((2 + economy::kPageBytes) << 16));
     addWord(record, seed);
     for (size_t i = 0; i < 4 * economy::kPageBytes; ++i) record.push_back(static_cast<std::byte>(i < 4 ? 128 : static_cast<uint32_t>(record[record.size() - 4]) + random() % 7 - 3));
     economy::Packer packer(fuzz::fuzzLimits());

@@ -1,4 +1,5 @@
-// Of the fuzzed unpacker and the packer that makes its corpus: so small that all of it is overwritten soon.
+// Limits of the fuzzed unpacker and of the packer that makes its corpus. They are so small that all memory is soon
+// overwritten.
 #pragma once
 
 #include "economy/limits.hpp"

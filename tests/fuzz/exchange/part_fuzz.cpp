@@ -1,5 +1,5 @@
-// Parts of pictures under whatever another node may send. What is told lies in the rows that were waited for and is no more than
-// they hold; what was taken can be folded, and sent on without a loss.
+// Feeds arbitrary bytes to the reader of parts of pictures. Reported rows lie within the expected rows and fit their
+// contents. An accepted part can be composited, and sent on without loss.
 #include <algorithm>
 
 #include "common/little_endian.hpp"
@@ -28,9 +28,9 @@ PicturePart clearedPart(const ExpectedPart& e) {
     return part;
 }
 
-// Into the part, as nodes do it; nothing when it was refused.
+// Unpacks into the part, as nodes do. Returns nothing if it was rejected.
 std::optional<PartState> unpackInto(PicturePart& part, const std::vector<std::byte>& message, const ExpectedPart& e) {
-    static PlaneDecoder decoder; // keeps its scratch, as in use
+    static PlaneDecoder decoder; // keeps its scratch memory, as in the product
     int64_t told = 0;
     const PixelViewport band{0, e.rows.first, e.id.box.w, e.rows.count()};
     auto state = unpackPart(message, e.id, e.rows, e.rule, decoder, [&](const ArrivedPiece& piece) {
@@ -53,7 +53,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     if (input.size() < kPartHeadBytes) return 0;
     InputReader in(input);
     const ExpectedPart expected = readExpectedPart(in);
-    std::vector<std::byte> message(input.begin() + kPartHeadBytes, input.end()); // of exactly its size
+    std::vector<std::byte> message(input.begin() + kPartHeadBytes, input.end()); // a copy of exactly this size
     if (expected.named) giveName(message, expected);
     PicturePart part = clearedPart(expected);
     const auto state = unpackInto(part, message, expected);

@@ -1,5 +1,5 @@
-// Writes the corpus of the fuzz target of parts: part_fuzz_seeds FOLDER. A part of each kind of depth test, sparse, dense and empty, by
-// every codec that the encoder comes to try.
+// Writes the corpus of part_fuzz. Usage: part_fuzz_seeds FOLDER. It has a part of each kind of depth test, sparse,
+// dense and empty, with every codec that the encoder tries.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -14,9 +14,9 @@ namespace {
 enum class Content { Empty, Sparse, Slope, Noise };
 constexpr const char* kNames[] = {"empty", "sparse", "slope", "noise"};
 
-constexpr size_t kPartHead = 44; // of a message: then its pieces
+constexpr size_t kPartHead = 44; // bytes of a message before its pieces
 
-// The head that readExpectedPart reads, of a picture of 150 x 70 of which rows 3 to 69 are sent.
+// Returns the header for readExpectedPart: rows 3 to 69 of a picture of 150 x 70.
 std::vector<std::byte> headOf(unsigned how, int32_t width, int32_t height) {
     return {static_cast<std::byte>(how), static_cast<std::byte>((width - 1) & 0xff), static_cast<std::byte>((width - 1) >> 8), static_cast<std::byte>(height - 1), std::byte{3}, static_cast<std::byte>(height - 4)};
 }
@@ -39,7 +39,7 @@ void saveOf(const std::filesystem::path& folder, unsigned how, Content content) 
     const ExpectedPart e = readExpectedPart(in);
     PlaneEncoder encoder;
     std::set<std::pair<int, int>> seen; // codecs of colour and depth
-    for (int i = 0; i < 400; ++i) { // the encoder measures the other codecs on the way, and a slow link makes it take them
+    for (int i = 0; i < 400; ++i) { // the encoder measures other codecs meanwhile, and a slow link makes it choose them
         PicturePart part;
         part.id = e.id;
         part.colour.assign(static_cast<size_t>(e.id.box.area()), e.rule.clearedColour);
@@ -57,7 +57,8 @@ void saveOf(const std::filesystem::path& folder, unsigned how, Content content) 
     }
 }
 
-// A picture with a single piece, and the same piece a hundred times: made to keep a node busy, and to be refused.
+// Saves a picture with a single piece, and the same piece a hundred times. The second would keep a node busy and must
+// be rejected.
 void saveRepeated(const std::filesystem::path& folder) {
     const std::vector<std::byte> head = headOf(8, 60, 50);
     InputReader in(head);

@@ -1,5 +1,5 @@
-// Input of the fuzz target of parts of pictures: how the nodes fold (1 byte), width (2), height, first row and rows (1 each), then
-// the message that came.
+// Input of part_fuzz: the composition of the nodes (1 byte), width (2), height, first row and rows (1 each), then the
+// received message.
 #pragma once
 
 #include "nodes/exchange/part_message.hpp"
@@ -7,7 +7,7 @@
 
 namespace mural::fuzz {
 
-constexpr int32_t kMostPartColumns = 300; // of more than four tiles
+constexpr int32_t kMostPartColumns = 300; // more than four tiles
 constexpr int32_t kMostPartRows = 140;
 constexpr size_t kPartHeadBytes = 6;
 
@@ -15,7 +15,7 @@ struct ExpectedPart {
     PictureId id;
     compositor::RowRange rows;
     FoldRule rule;
-    bool named = false; // the message is given the name of the picture that is waited for, so that what is behind it is looked at
+    bool named = false; // the message receives the name of the expected picture, so that the rest of it is parsed
 };
 
 inline ExpectedPart readExpectedPart(InputReader& in) {

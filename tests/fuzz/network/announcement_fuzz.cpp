@@ -1,4 +1,4 @@
-// What nodes announce of themselves.
+// Feeds arbitrary bytes to the decoder of node announcements.
 #include <algorithm>
 
 #include "tests/fuzz/fuzz_target.hpp"

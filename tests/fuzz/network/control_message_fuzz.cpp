@@ -1,4 +1,4 @@
-// Control messages of a group: what is taken is what encode() writes, byte by byte, and nothing else is.
+// Control messages of a group: an accepted message is exactly the output of encode(), byte by byte.
 #include <algorithm>
 
 #include "tests/fuzz/fuzz_target.hpp"

@@ -1,4 +1,5 @@
-// Datagrams of RSP and their seal. Input: a byte with the seal, then steps: a byte of what to do, and its bytes.
+// Datagrams of RSP and their cipher. Input: a byte that selects the cipher, then steps: a byte for the action, and its
+// bytes.
 #include <algorithm>
 
 #include "tests/fuzz/fuzz_target.hpp"
@@ -31,7 +32,7 @@ bool same(const Feedback& a, const Feedback& b) {
            std::equal(a.entries.begin(), a.entries.begin() + a.entryCount, b.entries.begin(), sameEntry);
 }
 
-// What is read can be written, and is read as the same.
+// Parses a datagram. A valid one must be unchanged after writing and reading it again.
 uint64_t parse(std::span<const std::byte> datagram) {
     uint64_t meant = 0;
     if (const auto d = readStream(datagram)) {
@@ -52,7 +53,7 @@ uint64_t parse(std::span<const std::byte> datagram) {
     return meant;
 }
 
-// A genuine one, changed on the way if `bits` say so.
+// Sends a genuine datagram, changed in transit by `bits`.
 void sealAndOpen(Ends& e, Seal seal, const std::vector<std::byte>& payload, uint16_t at, uint8_t bits) {
     std::vector<std::byte> sealed(kStreamHeadBytes + payload.size() + tagBytes(seal));
     StreamDatagram head;
@@ -64,7 +65,7 @@ void sealAndOpen(Ends& e, Seal seal, const std::vector<std::byte>& payload, uint
     std::vector<std::byte> first = sealed, second = sealed, strange = sealed;
     const auto opened = e.right.open(first);
     const bool taken = !opened.empty();
-    // Without a seal nothing can be told: counters that are made up shut the genuine ones out.
+    // Without a cipher forgeries cannot be detected: invented counters reject the genuine datagrams.
     if (seal == Seal::None) return;
     must(taken == !changed, "what is genuine is taken, and nothing else");
     must(e.wrong.open(strange).empty(), "nothing is taken with another key");

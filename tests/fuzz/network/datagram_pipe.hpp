@@ -1,4 +1,4 @@
-// Where a fuzzed end's datagrams go: a short queue, from which the input has them delivered, changed or lost.
+// A short queue for the datagrams of a fuzzed end. The input delivers, changes or drops them.
 #pragma once
 
 #include <deque>

@@ -1,4 +1,4 @@
-// Random numbers that are the same in each run, for libsodium: an input does the same each time.
+// Replaces libsodium's random numbers with a fixed sequence, so that an input has the same effect each time.
 #pragma once
 
 #include <random>
@@ -12,7 +12,7 @@ inline std::mt19937& fixedRandomState() {
     return state;
 }
 
-// Before the first use of libsodium, and again at the beginning of each input.
+// Restarts the sequence. Called before the first use of libsodium, and at the beginning of each input.
 inline void fixRandom() {
     static randombytes_implementation fixed = [] {
         randombytes_implementation r{};

@@ -1,5 +1,5 @@
-// A host and a member of a group whose control messages and datagrams are changed, made up, lost and out of order; other
-// members are made up whole. All of it behind the seals: what a member, or a host, that has gone mad could send.
+// A host and a member of a group whose control messages and datagrams are changed, invented, lost and reordered. Other
+// members are invented completely. All bytes are valid for the cipher: they simulate a malicious member or host.
 #include <deque>
 #include <utility>
 
@@ -25,7 +25,7 @@ struct Message {
     std::vector<std::byte> bytes;
 };
 
-// What a core wants done: messages to the genuine peer are kept, all others end here.
+// Executes the requests of a group core: messages to the genuine peer are kept, all others are dropped.
 class End : public GroupOutput {
 public:
     explicit End(const GroupSettings& settings) : core(settings, *this) {}
@@ -147,7 +147,7 @@ private:
 
     int64_t nowNs_ = 1'000'000'000;
     End host_, member_;
-    std::vector<MemberId> open_; // control connections
+    std::vector<MemberId> open_; // open control connections
     uint64_t meant_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Takes a fuzzer's bytes apart: numbers and pieces; what is not there is zero or empty.
+// Splits a fuzzer's bytes into numbers and pieces. Missing bytes are zero, or an empty piece.
 #pragma once
 
 #include <algorithm>
@@ -27,10 +27,10 @@ public:
         const uint32_t low = half();
         return low | static_cast<uint32_t>(half()) << 16;
     }
-    // A length of two bytes and what stands behind it: a copy of exactly this size, so that a sanitizer sees the first
-    // byte read behind it.
+    // Reads a length of two bytes and the bytes after it. Returns a copy of exactly this size, so that a sanitizer
+    // detects the first byte read beyond it.
     std::vector<std::byte> piece() {
-        const size_t told = half(); // before the size is asked for
+        const size_t told = half(); // read before size() is evaluated
         const size_t count = std::min(told, left_.size());
         const auto taken = left_.first(count);
         left_ = left_.subspan(count);
@@ -41,7 +41,7 @@ private:
     std::span<const std::byte> left_;
 };
 
-// A byte of it is another, unless there is none at that place or nothing is changed in it. Returns whether it is.
+// Changes the byte at `at`, if there is one and `bits` is not 0. Returns whether it changed.
 inline bool change(std::span<std::byte> bytes, size_t at, uint8_t bits) {
     if (at >= bytes.size() || bits == 0) return false;
     bytes[at] ^= static_cast<std::byte>(bits);

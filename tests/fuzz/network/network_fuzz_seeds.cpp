@@ -1,4 +1,4 @@
-// Writes the corpus of the network's fuzz targets, a folder for each. network_fuzz_seeds FOLDER
+// Writes the corpus of the network's fuzz targets, one folder each. Usage: network_fuzz_seeds FOLDER
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -32,7 +32,7 @@ public:
         return *this;
     }
     Seed& piece(const Bytes& b) { return half(static_cast<unsigned>(b.size())).raw(b); }
-    // For steps with a place and bits: nothing is changed.
+    // Appends a position and bits that change nothing.
     Seed& unchanged() { return half(0).byte(0); }
     void save(const std::filesystem::path& folder, const std::string& target, const std::string& name) const {
         std::filesystem::create_directories(folder / target);

@@ -1,4 +1,4 @@
-// The probes of mural doctor --network.
+// Feeds arbitrary bytes to the decoder of the probes of mural doctor --network.
 #include <algorithm>
 #include <vector>
 

@@ -1,5 +1,5 @@
-// Both ends of a secure channel, with bytes between them that are changed, cut, added and held back. Whatever happens,
-// an end takes nothing but what the other has sent, in its order.
+// Both ends of a secure channel, with bytes between them that are changed, truncated, added and delayed. In every case
+// an end accepts only messages of the other end, in their order.
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/network/fixed_random.hpp"
 #include "tests/fuzz/network/input_reader.hpp"
@@ -14,7 +14,7 @@ using Bytes = std::vector<std::byte>;
 
 struct End {
     SecureChannel channel;
-    Bytes onTheWay{};           // to the other end
+    Bytes onTheWay{}; // in transit to the other end
     std::vector<Bytes> sent{};
     std::vector<Bytes> taken{};
 };
@@ -51,7 +51,8 @@ uint64_t step(InputReader& in, End& from, End& to, ChannelStep what) {
 
 } // namespace
 
-// Input: a byte with whether the ends know the same secret, then steps; their upper bit says whose they are.
+// Runs one input: a byte that says whether the ends have the same secret, then steps. The upper bit of a step selects
+// the end.
 uint64_t fuzzOne(std::span<const std::byte> input) {
     fixRandom();
     InputReader in(input);

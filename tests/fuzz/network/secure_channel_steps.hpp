@@ -1,4 +1,5 @@
-// The steps that an input of secure_channel_fuzz is made of; the upper bit of their byte: the host's, else the member's.
+// The steps of an input of secure_channel_fuzz. The upper bit of the byte selects the end: host if set, otherwise
+// member.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +7,9 @@
 namespace mural::fuzz {
 
 enum class ChannelStep : uint8_t {
-    Pass,   // u16 count, u16 place, u8 bits: so much of what it has sent arrives, changed there
-    Add,    // piece: arrives as if it had sent it
-    Send,   // piece: a message
+    Pass, // u16 count, u16 position, u8 bits: `count` bytes that it sent arrive, changed at the position
+    Add, // piece: arrives in the name of this end
+    Send, // piece: a message
     Finish,
     Count
 };

@@ -1,5 +1,5 @@
-// One stream's both ends: datagrams that come in any order, changed or made up, between what the ends do themselves.
-// (Behind the seal: what a member that has gone mad could send.)
+// Both ends of one stream: datagrams arrive in any order, changed or invented, between calls of the ends. The datagrams
+// are valid for the cipher: they simulate a malicious member.
 #include <utility>
 
 #include "tests/fuzz/fuzz_target.hpp"
@@ -93,12 +93,12 @@ private:
     Receiver receiver_;
     DatagramPipe sent_, told_;
     uint64_t meant_ = 0;
-    volatile uint8_t sum_ = 0; // what can be read is touched
+    volatile uint8_t sum_ = 0; // touches all readable bytes
 };
 
 } // namespace
 
-// Input: the number of the first datagram (4 bytes), then steps.
+// Runs one input: the number of the first datagram (4 bytes), then steps.
 uint64_t fuzzOne(std::span<const std::byte> input) {
     InputReader in(input);
     Stream stream{Sequence(in.word())};

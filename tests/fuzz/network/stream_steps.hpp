@@ -1,4 +1,4 @@
-// The steps that an input of stream_fuzz is made of: a byte each, and what they need behind it.
+// The steps of an input of stream_fuzz: a byte each, followed by their arguments.
 #pragma once
 
 #include <cstdint>
@@ -6,15 +6,15 @@
 namespace mural::fuzz {
 
 enum class StreamStep : uint8_t {
-    Wait,         // u32 µs
-    ToReader,     // piece: a datagram, whatever it holds
-    ToWriter,     // piece
-    Write,        // u16 bytes
+    Wait,     // u32 µs
+    ToReader, // piece: an arbitrary datagram
+    ToWriter, // piece
+    Write,    // u16 bytes
     Flush,
     Read,         // u16 bytes
-    PassOn,       // u16 place, u8 bits: the writer's next datagram arrives, changed there
-    Answer,       // u16 place, u8 bits: the reader's next one
-    Lose,         // the writer's next one
+    PassOn,       // u16 position, u8 bits: the writer's next datagram arrives, changed at the position
+    Answer,       // u16 position, u8 bits: the same for the reader's next datagram
+    Lose,         // drops the writer's next datagram
     AddMember,    // u8
     RemoveMember, // u8
     Count

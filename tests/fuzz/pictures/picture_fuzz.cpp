@@ -1,4 +1,4 @@
-// Packed pictures under whatever a node may send, one behind the other. What was taken can be packed and comes out again.
+// Feeds arbitrary sequences of packed pictures to the unpacker. An accepted picture can be packed and restored.
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
-// Writes the corpus of the fuzz target of packed pictures: picture_fuzz_seeds FOLDER. Of each codec: pictures that stay, change in part, and become of another size.
+// Writes the corpus of the fuzz target of packed pictures: picture_fuzz_seeds FOLDER. It has, for each codec, pictures
+// that stay, change in part, and change their size.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

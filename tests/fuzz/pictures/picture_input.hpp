@@ -1,4 +1,5 @@
-// Input of the fuzz target of packed pictures: which codec both ends want (1 byte), then messages: window (1 byte), width, height and bytes (2 each), the bytes.
+// Input of the fuzz target of packed pictures: the codec of both ends (1 byte), then messages. A message is the window
+// (1 byte), width, height and size in bytes (2 each), and the bytes.
 #pragma once
 
 #include "tests/fuzz/network/input_reader.hpp"
@@ -6,7 +7,7 @@
 namespace mural::fuzz {
 
 inline constexpr const char* kWanted[] = {"auto", "lossy", "zstd", "jpeg-70"};
-constexpr int32_t kMostColumns = 600; // of three tiles
+constexpr int32_t kMostColumns = 600; // three tiles
 constexpr int32_t kMostRows = 150;
 constexpr int kMostWindows = 3;
 

@@ -1,4 +1,4 @@
-// Any command of the registry with arguments that its groups allow, and now and then with wrong ones.
+// Calls any command of the registry with arguments that its groups permit, and sometimes with invalid ones.
 #include "tests/programs/support/gl.hpp"
 
 #include <GL/glx.h>
@@ -12,7 +12,7 @@ namespace fuzz {
 namespace {
 
 constexpr std::size_t kMaxParams = 24;
-constexpr std::size_t kOutputStep = 1 << 14; // for each pointer that something is written to
+constexpr std::size_t kOutputStep = 1 << 14; // bytes for each pointer that is written to
 
 bool bound(const World& w, GLenum query) {
     GLint name = 0;
@@ -26,7 +26,7 @@ void* offset(World& w, std::uint32_t step) {
     return reinterpret_cast<void*>(std::uintptr_t{w.random.below(16)} * step); // NOLINT: an offset
 }
 
-// How many components the command gives an attribute; 0: none.
+// Returns the number of components that the command gives an attribute; 0: none.
 int attributeSize(std::string_view name) {
     for (const std::string_view attribute : {"glTexCoord", "glMultiTexCoord", "glVertexAttrib", "glColor"}) {
         const std::size_t digit = name.find_first_of("1234", attribute.size());
@@ -49,7 +49,8 @@ public:
         }
     }
 
-    // Vertices outside of glBegin and glEnd, and attributes with which Mesa 22.3.6 does what nobody can tell (docs/measurements/exactness.md).
+    // Returns false for vertices outside glBegin and glEnd, and for attributes whose result is undefined in Mesa 22.3.6
+    // (docs/measurements/exactness.md).
     bool isDefined() {
         const std::string_view name = command_.name;
         const bool vertex = name.starts_with("glVertex2") || name.starts_with("glVertex3") || name.starts_with("glVertex4") ||
@@ -65,10 +66,10 @@ public:
         }
         const bool attribute0 = name.starts_with("glVertexAttrib") && find("index") != nullptr && find("index")->whole == 0;
         if (w_.insideBegin && attribute0 && name.starts_with("glVertexAttribI")) {
-            return false; // a position of whole numbers
+            return false; // an integer position
         }
         w_.behindVertex = w_.behindVertex || (w_.insideBegin && (attribute0 || vertex || name.starts_with("glEval")));
-        // These of NV_vertex_program give colours and texture coordinates, too.
+        // These attributes of NV_vertex_program also set colours and texture coordinates.
         const bool aliases = name.starts_with("glVertexAttrib") && name.ends_with("NV");
         return size == 0 || (name.starts_with("glColor") ? (size == 4) == (w_.attributeSize == 4) : size == w_.attributeSize && (!aliases || size == 4));
     }
@@ -84,7 +85,7 @@ public:
         }
         w_.keep(command_.made, static_cast<GLuint>(result));
         keepMade();
-        // What a call leaves in memory when it fails is anybody's guess.
+        // The output memory of a failed call is undefined.
         const std::size_t errors = w_.errors.size();
         w_.traceError();
         if (outputBytes_ > 0 && !w_.insideBegin && !w_.failed() && w_.errors.size() == errors) {
@@ -121,7 +122,7 @@ private:
         return bits;
     }
 
-    // What is not a pointer.
+    // Draws a value for an argument that is not a pointer.
     void draw(std::size_t i) {
         const Param& p = param(i);
         Value& value = values_[i];
@@ -156,7 +157,7 @@ private:
         }
     }
 
-    // Formats and types that belong together, most of the time.
+    // Replaces formats and types with matching pairs, most of the time.
     void adjust() {
         Value* const format = find("format");
         Value* const type = find("type");
@@ -173,14 +174,14 @@ private:
                "propCount", "mapsize", "uorder", "vorder", "order", "ustride", "vstride", "stride", "imageSize", "basevertex",
                "baseinstance", "first", "start", "un", "vn", "i", "numAttachments"}, 1000);
         limit({"width", "height", "depth", "levels", "num_groups_x", "num_groups_y", "num_groups_z"}, 40);
-        // Mesa lets pixels go to buffers in OpenGL ES 1, too, which has no way to ask for the binding.
+        // Mesa also writes pixels to buffers in OpenGL ES 1, which has no query for the binding.
         if (w_.profile == Profile::Es1 && std::strcmp(command_.name, "glBindBuffer") == 0) {
             set(find("target"), w_.random.chance(50) ? GL_ARRAY_BUFFER : GL_ELEMENT_ARRAY_BUFFER);
         }
         if (std::strncmp(command_.name, "glPixelStore", 12) == 0) {
             limit({"param"}, 48);
         }
-        // Mesa 22.3.6 adds the count to -1, finds nothing wrong and goes to what stands before the first.
+        // Mesa 22.3.6 adds the count to -1, accepts the result and accesses memory before the first element.
         const bool overflows = std::strstr(command_.name, "ProgramLocalParameter") != nullptr || std::strcmp(command_.name, "glScissorArrayv") == 0;
         for (Value* const value : {find("index"), find("first")}) {
             if (overflows && value != nullptr && value->whole == ~0U) {
@@ -192,7 +193,7 @@ private:
         }
     }
 
-    // Nothing draws or allocates for minutes.
+    // Limits numbers, so that no call draws or allocates for minutes.
     void limit(std::initializer_list<const char*> names, std::int32_t highest) {
         for (const char* const name : names) {
             Value* const value = find(name);
@@ -252,7 +253,7 @@ private:
         return const_cast<void*>(vertexMemory(w_.random));
     }
 
-    // Elements of a buffer may be anything: with vertices in client memory it is filled first.
+    // Returns indices. Buffers may contain any elements, so with vertices in client memory the buffer is filled first.
     void* indices() {
         const Value* const type = find("type");
         const auto typeEnum = static_cast<std::uint32_t>(type != nullptr ? type->whole : GL_UNSIGNED_BYTE);
@@ -266,7 +267,7 @@ private:
                 glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer = 0);
             }
         }
-        if (!w_.clientArrays() && buffer == 0) { // Mesa takes the offset as a pointer
+        if (!w_.clientArrays() && buffer == 0) { // Mesa uses the offset as a pointer
             GLuint made = 0;
             glGenBuffers(1, &made);
             w_.keep(Kind::Buffer, made);

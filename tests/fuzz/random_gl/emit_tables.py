@@ -24,7 +24,7 @@ KINDS = {'shader': 'Shader', 'program': 'Program', 'display list': 'List', 'arb 
 PACKED = re.compile(r'gl(ReadPixels|ReadnPixels|Getn?(Compressed)?Tex(ture)?(Sub)?Image|Getn?PixelMap|Getn?PolygonStipple|'
                     r'GetMultiTexImage|GetCompressedMultiTexImage)')
 UNPACKED = re.compile(r'gl((Compressed)?(Multi)?Tex(ture)?(Sub)?Image|DrawPixels|Bitmap|PolygonStipple|PixelMap)')
-# What numbers are called, and between what they lie.
+# Ranges of numbers by parameter name.
 RANGES = {
     'x': (-8, 70), 'y': (-8, 50), 'z': (-2, 4), 'w': (0, 90), 'width': (0, 36), 'height': (0, 28), 'depth': (0, 5),
     'h': (0, 70), 'xoffset': (-1, 12), 'yoffset': (-1, 12), 'zoffset': (-1, 4), 'level': (0, 4), 'levels': (0, 4),
@@ -61,7 +61,7 @@ class Excluded:
 
 
 class Groups:
-    """Values of the enum groups, group 0 all values: those that a version or a common extension has."""
+    """Values of the enum groups; group 0 is all values of any version or common extension."""
 
     def __init__(self, root, excluded):
         values, members = {}, {}
@@ -140,7 +140,7 @@ def value_source(p, groups):
 
 
 def param_row(command, p, groups):
-    """The initializer of a Param; None when nothing can be passed."""
+    """Returns the initializer of a Param; None if no value can be passed."""
     if p.pointers:
         source, type_name = pointer_source(command, p, groups), pointed_type(p.base)
         if p.base in registry.FOREIGN_TYPES:

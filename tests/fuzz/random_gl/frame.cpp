@@ -1,4 +1,4 @@
-// The picture: cleared, made visible, read.
+// Clears the picture, makes it visible, and reads it.
 #include "tests/fuzz/random_gl/recipes.hpp"
 
 namespace fuzz {

@@ -45,7 +45,7 @@ constexpr ImageFormat kFormats[] = {
     {GL_LUMINANCE16, GL_LUMINANCE, GL_SHORT, false, false, false, false},
 };
 
-// What a window's GL draws textures of without shaders for integers.
+// Formats from which a window's GL draws textures without integer shaders.
 constexpr CompressedFormat kCompressed[] = {
     {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 4, 4, 8, "GL_EXT_texture_compression_s3tc"},
     {GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 4, 4, 16, "GL_EXT_texture_compression_s3tc"},

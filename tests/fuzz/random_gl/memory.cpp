@@ -32,7 +32,7 @@ std::byte* mapAt(std::uintptr_t address, std::size_t bytes) {
     return static_cast<std::byte*>(got);
 }
 
-// Sections: floats, doubles, ints, shorts, bytes, fixed point, small numbers for elements of each size.
+// Returns a section: floats, doubles, ints, shorts, bytes, fixed point, or small numbers for elements of each size.
 std::byte* input(std::size_t section) {
     static std::byte* const memory = [] {
         std::byte* const all = mapAt(kInput, 9 * kSectionBytes);

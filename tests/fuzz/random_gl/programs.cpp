@@ -199,7 +199,7 @@ const std::vector<PoolProgram>& programPool() {
         {"3", {{GL_VERTEX_SHADER, kEs2Vertex}, {GL_FRAGMENT_SHADER, kEs2Fragment}}},
         {"3", {{GL_VERTEX_SHADER, kEs3Vertex}, {GL_FRAGMENT_SHADER, kEs3Fragment}}, "captured"},
         {"3", {{GL_COMPUTE_SHADER, kEs31Compute}}},
-        // Neither compiles nor links.
+        // A program that neither compiles nor links.
         {"ck3", {{GL_VERTEX_SHADER, "void main() { gl_Position = nothing; }"}, {GL_FRAGMENT_SHADER, "void main() {"}}},
     };
     return pool;

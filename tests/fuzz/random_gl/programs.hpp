@@ -1,4 +1,4 @@
-// Valid programs of all ages for the random calls.
+// Valid programs of all GL versions for the random calls.
 #pragma once
 
 #include <vector>
@@ -13,11 +13,11 @@ struct Source {
 };
 
 struct PoolProgram {
-    const char* profiles; // as Recipe's
+    const char* profiles; // as in Recipe
     std::vector<Source> sources;
-    const char* captured = nullptr; // by transform feedback
+    const char* captured = nullptr; // varying of the transform feedback
     bool tessellates = false;
-    bool counts = false; // its fragments, in storage block 0
+    bool counts = false; // counts its fragments in storage block 0
 };
 
 const std::vector<PoolProgram>& programPool();

@@ -1,8 +1,8 @@
-// Random OpenGL calls: each seed is a fresh context with its own. The transcript says after each step what errors there
-// were and what the GL gave back, as a digest; run_random_gl.py compares the transcripts of two runs.
+// Makes random OpenGL calls: each seed has a new context. After each step the transcript records the errors and a
+// digest of the GL's output. run_random_gl.py compares the transcripts of two runs.
 //
 //   random_gl --profile compat|core|es1|es3 --out FILE [--extensions FILE] [--trace] --seeds 1:40 --steps 200
-//   random_gl … --cases FILE       each line a seed and the steps of it to take, for instance "12 3,17,25"
+//   random_gl … --cases FILE       each line is a seed and its steps, for example "12 3,17,25"
 //   random_gl … --print-extensions
 #include "tests/programs/support/gl.hpp"
 
@@ -24,9 +24,9 @@ struct Settings {
     Profile profile = Profile::Compat;
     std::string seeds = "1";
     std::uint64_t steps = 200;
-    std::string cases; // the file
+    std::string cases; // file name
     std::string out = "/dev/stdout";
-    std::string extensions; // the file; none: those of the context
+    std::string extensions; // file name; empty: the extensions of the context
     bool trace = false;
     bool printExtensions = false;
 };
@@ -184,7 +184,7 @@ public:
     Transcript& operator=(const Transcript&) = delete;
     ~Transcript() { std::fclose(file_); }
 
-    // One line, which is there even when the next call ends the process.
+    // Writes one line, flushed so that it survives when the next call ends the process.
     void write(std::uint64_t id, const char* step, const char* what, World& w) {
         (void)w.failed();
         std::string errors;

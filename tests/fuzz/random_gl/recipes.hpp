@@ -1,4 +1,4 @@
-// Several calls that make sense together: what random single calls hardly ever get right.
+// Recipes: sequences of calls that belong together, which single random calls rarely form.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@ namespace fuzz {
 struct Recipe {
     const char* name;
     void (*cook)(World&);
-    const char* profiles; // of c(ompat), k (core), 1 (ES 1), 3 (ES 3)
+    const char* profiles; // subset of c(ompat), k (core), 1 (ES 1), 3 (ES 3)
     int weight;
 };
 
@@ -20,19 +20,21 @@ std::span<const Recipe> imageRecipes();
 std::span<const Recipe> objectRecipes();
 std::span<const Recipe> programRecipes();
 
-void calm(World& w);                 // state in which a draw shows something
-void begin(World& w);                // of a context: arrays that point somewhere, a picture without chance in it
+void calm(World& w); // sets state in which a draw is visible
+void begin(World& w); // prepares a context: arrays with valid pointers, and a defined picture
 void clearAll(World& w);
-void pointAll(World& w, bool buffered); // every vertex array of what is bound: none that is enabled lacks memory
-void useAnyProgram(World& w);        // one of the pool's, with random uniforms
-void useNoGeometryShader(World& w);  // before lists: Mesa draws line loops and strips of theirs that it does not take
-void barrier(World& w);              // what shaders have written is there for all that reads: without it nothing is sure
-bool drawsAnything(World& w);        // false: no vertex shader, where there is no other way. Undefined, and Mesa draws otherwise after it
-void drawBuffered(World& w);         // with the current program, from arrays in a buffer
-GLuint makeTexture(World& w, GLenum target); // with all its levels' contents; stays bound
+void pointAll(World& w, bool buffered); // gives memory to every enabled vertex array
+void useAnyProgram(World& w); // uses a program of the pool, with random uniforms
+// before lists: Mesa draws line loops and strips in them that geometry shaders do not accept
+void useNoGeometryShader(World& w);
+void barrier(World& w); // makes shader writes visible to all reads; otherwise results are undefined
+// false: no vertex shader where one is required; undefined, and affects Mesa's later draws
+bool drawsAnything(World& w);
+void drawBuffered(World& w); // draws with the current program from arrays in a buffer
+GLuint makeTexture(World& w, GLenum target); // fills all levels; stays bound
 GLenum anyTarget(World& w);
 void observePixels(World& w, int x, int y, int width, int height, GLenum format, GLenum type);
-void observeTargets(World& w);       // the picture: colour, and depth and stencil where they can be read
-void dumpState(World& w);            // all that glGet* says, all objects' contents
+void observeTargets(World& w); // reads colour, and depth and stencil where readable
+void dumpState(World& w); // reads all state of glGet* and all objects' contents
 
 } // namespace fuzz

@@ -1,4 +1,4 @@
-// State in which something is seen, vertex arrays, draws of all kinds, frames.
+// Recipes for visible state, vertex arrays, draws of all kinds, and frames.
 #include <cstring>
 
 #include "tests/fuzz/random_gl/recipes.hpp"
@@ -18,7 +18,7 @@ GLenum anyPrimitive(World& w) {
         return w.random.chance(50) ? GL_PATCHES : GL_TRIANGLES_ADJACENCY;
     }
     const GLenum primitive = w.random.of(kPrimitives);
-    // Mesa's software driver draws points that are sprites a row beyond the scissor: in two tiles, counted twice.
+    // Mesa's software driver draws point sprites one row beyond the scissor: two tiles count them twice.
     return w.countsSamples && primitive == GL_POINTS ? GLenum{GL_LINES} : primitive;
 }
 
@@ -26,8 +26,8 @@ const void* offsetOf(std::size_t bytes) {
     return reinterpret_cast<const void*>(bytes); // NOLINT: an offset into a buffer
 }
 
-// Floats in a buffer that is bound then: enough for all elements. Vertices behind its end are 0, 0, 0, 0 in Mesa, without a
-// place in the window.
+// Binds a buffer of floats with enough vertices for all elements. Mesa reads vertices beyond its end as 0, 0, 0, 0,
+// which have no position in the window.
 void vertexBuffer(World& w) {
     GLuint buffer = w.living(Kind::Buffer);
     if (buffer == 0 || w.random.chance(30)) {
@@ -53,7 +53,8 @@ void genericArrays(World& w) {
     constexpr GLenum types[] = {GL_FLOAT, GL_FLOAT, GL_FLOAT, GL_FLOAT, GL_BYTE, GL_UNSIGNED_BYTE, GL_SHORT, GL_UNSIGNED_SHORT};
     for (GLuint i = 0; i < 3; ++i) {
         const int size = w.random.between(2, 4);
-        // What a float input reads from integers is undefined: as colours the same everywhere, as positions nearly 0 by nearly 0.
+        // A float input that reads integers is undefined: equal everywhere as a colour, nearly 0 divided by nearly 0 as
+        // a position.
         if (w.random.chance(6) && i != 0) {
             GL(glVertexAttribIPointer, i, size, w.random.chance(50) ? GL_INT : GL_UNSIGNED_BYTE, 16, vertexPlace(w, buffered));
         } else {
@@ -94,7 +95,7 @@ void classicArrays(World& w) {
     }
 }
 
-// Elements that are below 48: in memory or in a buffer of their own.
+// Returns elements below 48, in memory or in a buffer of their own.
 const void* elements(World& w, GLenum type) {
     if (w.clientArrays() && w.random.chance(50)) {
         GL(glBindBuffer, GL_ELEMENT_ARRAY_BUFFER, 0);
@@ -240,7 +241,7 @@ void drawIndirect(World& w) {
     }
     const GLenum mode = anyPrimitive(w);
     if (!drawsAnything(w)) {
-        // Nothing, then.
+        // Draws nothing in this case.
     } else if (indexed && (w.es() || w.random.chance(50))) {
         GL(glDrawElementsIndirect, mode, type, offsetOf(0));
     } else if (indexed) {

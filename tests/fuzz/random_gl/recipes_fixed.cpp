@@ -1,4 +1,4 @@
-// What only the fixed function has: Begin and End, display lists, feedback, evaluators, pixels at a raster position.
+// Recipes for the fixed function: Begin and End, display lists, feedback, evaluators, pixels at a raster position.
 #include <iterator>
 #include <vector>
 
@@ -11,9 +11,9 @@ namespace {
 constexpr GLenum kModes[] = {GL_POINTS,         GL_LINES,        GL_LINE_LOOP, GL_LINE_STRIP, GL_TRIANGLES,
                              GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_QUADS,     GL_QUAD_STRIP, GL_POLYGON};
 
-// Families of calls that go between glBegin and glEnd.
+// Returns the families of calls that are valid between glBegin and glEnd.
 const std::vector<const Command*>& vertexCommands(const World& w) {
-    static std::vector<const Command*> found; // one profile only has them
+    static std::vector<const Command*> found; // only one profile has them
     if (found.empty()) {
         constexpr std::string_view starts[] = {"glVertex2", "glVertex3", "glVertex4",  "glColor3",  "glColor4",         "glNormal3", "glTexCoord",
                                                "glMaterial", "glEdgeFlag", "glFogCoord", "glIndex", "glSecondaryColor", "glMultiTexCoord",
@@ -25,8 +25,8 @@ const std::vector<const Command*>& vertexCommands(const World& w) {
                                      name.find("Binding") != std::string_view::npos || name.find("Divisor") != std::string_view::npos ||
                                      name.find("Array") < name.size() - 12 || name == "glIndexMask";
                 for (const std::string_view start : starts) {
-                    // Vertices of whole numbers are far outside: Mesa's software driver draws other parts of such polygons with a
-                    // scissor than without.
+                    // Integer vertices are far outside: Mesa's software driver draws other parts of such polygons with
+                    // a scissor than without.
                     const bool far = name.starts_with("glVertex") && !name.starts_with("glVertexAttrib") && name.find_first_of("is", 8) != std::string_view::npos;
                     if (name.starts_with(start) && !far && (!pointer || name.starts_with("glArrayElement"))) {
                         found.push_back(command);
@@ -41,7 +41,7 @@ const std::vector<const Command*>& vertexCommands(const World& w) {
 void vertices(World& w) {
     const auto& commands = vertexCommands(w);
     const GLenum mode = w.random.of(kModes);
-    if (!w.compilesList) { // vertices after a glBegin that was refused are undefined
+    if (!w.compilesList) { // vertices after a rejected glBegin are undefined
         (void)w.failed();
         w.insideBegin = true;
         GL(glBegin, mode);
@@ -84,7 +84,7 @@ GLuint listName(World& w) {
     return list;
 }
 
-// A list calls only lists with smaller names: no circles.
+// Compiles a list. It calls only lists with smaller names, so there are no cycles.
 void compileList(World& w) {
     const GLuint list = listName(w);
     useNoGeometryShader(w);
@@ -127,7 +127,7 @@ void feedback(World& w) {
     const std::size_t bytes = 8192;
     void* const memory = lateMemory(bytes);
     const bool selects = w.random.chance(50);
-    GL(glShadeModel, GL_SMOOTH); // flat, Mesa 22.3.6 gives clipped vertices colours of memory that nobody has written
+    GL(glShadeModel, GL_SMOOTH); // with flat shading Mesa 22.3.6 gives clipped vertices colours of uninitialised memory
     if (selects) {
         GL(glSelectBuffer, w.random.chance(80) ? 1000 : 9, static_cast<GLuint*>(memory));
     } else {
@@ -215,7 +215,7 @@ void lights(World& w) {
 void stacks(World& w) {
     switch (w.random.below(4)) {
     case 0: GL(glPushAttrib, w.random.chance(60) ? GL_ALL_ATTRIB_BITS : w.random.next() & 0xfffffU); break;
-    case 1: // a primitive settles current values: Mesa gives those set before a pop once more at the next flush otherwise
+    case 1: // a primitive applies current values: otherwise Mesa repeats values set before a pop at the next flush
         GL(glBegin, GL_POINTS), GL(glEnd);
         GL(glPopAttrib);
         break;

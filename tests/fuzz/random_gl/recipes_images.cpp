@@ -1,4 +1,4 @@
-// Textures of all targets, shown; framebuffer objects; reads, copies and blits.
+// Recipes for textures of all targets, framebuffer objects, reads, copies and blits.
 #include <algorithm>
 
 #include "tests/fuzz/random_gl/image_formats.hpp"
@@ -18,23 +18,23 @@ void plainUnpack(World& w) {
     }
     if (w.profile != Profile::Es1 && w.random.chance(70)) {
         GL(glPixelStorei, GL_UNPACK_ROW_LENGTH, w.random.chance(80) ? 0 : 40);
-        // Scaled on their way into textures (glPixelTransfer), Mesa 22.3.6 skips no pixels.
+        // Mesa 22.3.6 ignores skipped pixels when glPixelTransfer scales texture uploads.
         const int skipped = w.random.between(0, 3);
         GL(glPixelStorei, GL_UNPACK_SKIP_PIXELS, w.profile == Profile::Compat ? 0 : skipped);
-        if (skipped != 0 && !w.es()) { // Mesa swaps as many pixels of each row as if none were skipped: the last ones are anything
+        if (skipped != 0 && !w.es()) { // Mesa swaps each row's pixels without the skip, so the last ones are undefined
             GL(glPixelStorei, GL_UNPACK_SWAP_BYTES, 0);
         }
     }
 }
 
-// Mesa 22.3.6 takes some depths on their way into textures as if they were not swapped.
+// Disables swapped bytes for depths: Mesa 22.3.6 uploads some depth formats unswapped.
 void swapNoDepths(World& w, const ImageFormat& f) {
     if (!w.es() && (f.format == GL_DEPTH_COMPONENT || f.format == GL_DEPTH_STENCIL)) {
         GL(glPixelStorei, GL_UNPACK_SWAP_BYTES, 0);
     }
 }
 
-// One level, with contents.
+// Uploads one level with contents.
 void image(World& w, GLenum target, int level, int size, const ImageFormat& f) {
     const int side = std::max(1, size >> level);
     const auto internal = static_cast<GLint>(f.internal);
@@ -103,7 +103,7 @@ void storage(World& w) {
     }
 }
 
-// A textured square by the fixed function.
+// Draws a textured square with the fixed function.
 void showTexture(World& w) {
     const GLuint name = w.living(Kind::Texture);
     calm(w);
@@ -131,7 +131,7 @@ void bindTextures(World& w) {
     GL(glActiveTexture, GL_TEXTURE0 + w.random.below(4));
     GL(glBindTexture, anyTarget(w), w.living(Kind::Texture));
     if (w.random.chance(20)) {
-        if (w.shaders()) { // a texture that gets levels moves; Mesa tells framebuffers when they are bound
+        if (w.shaders()) { // new levels move a texture; Mesa updates framebuffers when they are bound
             GL(glBindFramebuffer, GL_FRAMEBUFFER, 0);
         }
         GL(glGenerateMipmap, GL_TEXTURE_2D);
@@ -144,7 +144,8 @@ void renderbuffer(World& w, GLenum attachment, GLenum format) {
     GL(glGenRenderbuffers, 1, &buffer);
     w.keep(Kind::Renderbuffer, buffer);
     GL(glBindRenderbuffer, GL_RENDERBUFFER, buffer);
-    GL(glRenderbufferStorage, GL_RENDERBUFFER, format, 40, 40); // as large as textures: Mesa reads behind the end of a smaller one
+    // as large as textures: Mesa reads beyond the end of a smaller one
+    GL(glRenderbufferStorage, GL_RENDERBUFFER, format, 40, 40);
     GL(glFramebufferRenderbuffer, GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
 }
 
@@ -204,7 +205,8 @@ void blit(World& w) {
        mask == GL_COLOR_BUFFER_BIT && w.random.chance(40) ? GL_LINEAR : GL_NEAREST);
 }
 
-// Scaled or mapped on their way from a window into a texture, Mesa 22.3.6 takes all rows but the first from before its memory.
+// Disables pixel transfer. With scaling or mapping, Mesa 22.3.6 copies all rows but the first from before its memory
+// when it copies a window into a texture.
 void plainTransfer(World& w) {
     for (const GLenum scale : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE}) {
         GL(glPixelTransferf, scale, 1.0F);

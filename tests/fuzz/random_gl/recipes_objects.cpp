@@ -1,4 +1,4 @@
-// Buffers and mappings, queries, conditional rendering, transform feedback, syncs.
+// Recipes for buffers and mappings, queries, conditional rendering, transform feedback, syncs.
 #include <cstring>
 
 #include "tests/fuzz/random_gl/recipes.hpp"
@@ -44,7 +44,7 @@ void immutableBuffer(World& w) {
        w.random.chance(70) ? GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT | GL_MAP_READ_BIT : 0);
 }
 
-// Written through a mapping, and what was there before is read.
+// Writes through a mapping, and reads the previous contents.
 void mapping(World& w) {
     const GLenum target = GL_COPY_WRITE_BUFFER;
     GL(glBindBuffer, target, w.living(Kind::Buffer));

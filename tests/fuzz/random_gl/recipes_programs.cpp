@@ -1,4 +1,4 @@
-// Programs of the pool: made, bound to attributes, fed with uniforms; pipelines; ARB programs; compute.
+// Recipes for programs of the pool: creation, attributes, uniforms, pipelines, ARB programs, compute.
 #include <cstring>
 
 #include "tests/fuzz/random_gl/programs.hpp"
@@ -123,7 +123,7 @@ void dispatch(World& w) {
     }
 }
 
-// Draws of a program whose fragments are counted.
+// Draws with a program that counts its fragments.
 void count(World& w) {
     GLuint buffer = 0;
     GL(glGenBuffers, 1, &buffer);

@@ -1,4 +1,4 @@
-// All that the GL tells of its state, and the contents of all objects.
+// Reads all state of the GL, and the contents of all objects.
 #include "tests/fuzz/random_gl/recipes.hpp"
 
 namespace fuzz {
@@ -50,7 +50,7 @@ void dumpTextures(World& w) {
             }
             glBindTexture(target, texture);
             if (glGetError() != GL_NO_ERROR) {
-                continue; // of another target
+                continue; // a name of another target
             }
             GLint depth = 0;
             GLint integer = 0;

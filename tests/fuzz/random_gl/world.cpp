@@ -47,7 +47,7 @@ GLuint World::name(Kind kind) {
     if (dice < 8) {
         return 0;
     }
-    // Elsewhere than in the core profile a name that nobody has made is made by its binding.
+    // Outside the core profile, binding an unused name creates it.
     return dice < 11 ? random.below(12) : living(kind);
 }
 

@@ -1,4 +1,4 @@
-// One context with all that the random calls have made in it, and what they have seen.
+// One context with all objects that the random calls made in it, and the digest of its output.
 #pragma once
 
 #include <cstdio>
@@ -17,7 +17,7 @@ enum class Profile { Compat, Core, Es1, Es3 };
 
 constexpr int kWidth = 66;
 constexpr int kHeight = 50;
-constexpr std::size_t kSlots = 6; // of objects of each kind
+constexpr std::size_t kSlots = 6; // objects of each kind
 
 class World {
 public:
@@ -32,14 +32,14 @@ public:
     [[nodiscard]] bool shaders() const { return profile != Profile::Es1; }
     [[nodiscard]] bool clientArrays() const { return profile != Profile::Core; }
 
-    // Names: one that lives, now and then 0 or a wrong one.
+    // Returns a live name, sometimes 0 or an invalid one.
     GLuint name(Kind kind);
     GLuint living(Kind kind); // 0: none
     GLuint& slot(Kind kind, std::size_t index) { return names_[static_cast<std::size_t>(kind)][index]; }
-    void keep(Kind kind, GLuint name); // in any slot
+    void keep(Kind kind, GLuint name); // stores it in any slot
     std::vector<GLsync> syncs;
 
-    // What the transcript says of this step.
+    // Adds bytes to the transcript's digest of this step.
     void observe(const void* bytes, std::size_t count) { seen_ = digest(bytes, count, seen_); }
     void observe(std::uint64_t value) { observe(&value, sizeof value); }
     std::uint64_t takeSeen();
@@ -48,23 +48,23 @@ public:
     [[nodiscard]] const std::vector<std::vector<const Command*>>& families() const { return families_; }
     [[nodiscard]] bool has(std::string_view extension) const;
 
-    GLuint programVertexArray = 0; // of the core profile, which has none by itself
+    GLuint programVertexArray = 0; // for the core profile, which has no default one
     std::size_t programs = 0;      // made so far
 
-    // Errors that were asked for within a step: behind calls that answer, and behind each when calls are traced.
-    bool failed(); // since it was asked last
+    // Errors fetched within a step: after calls that return a value, and after each call when tracing.
+    bool failed(); // since the last call of failed()
     void traceError();
     bool insideBegin = false;
-    bool behindVertex = false; // the first of a primitive
+    bool behindVertex = false; // after the first vertex of a primitive
     bool compilesList = false;
-    int attributeSize = 4; // components that attributes of vertices are given
-    bool countsSamples = false; // a query does
+    int attributeSize = 4; // components of vertex attributes
+    bool countsSamples = false; // whether a query counts samples
     std::vector<GLenum> errors;
 
 private:
     [[nodiscard]] bool offers(const Command& command) const;
 
-    std::string extensions_; // between blanks
+    std::string extensions_; // separated by blanks
     GLuint names_[static_cast<std::size_t>(Kind::Count)][kSlots] = {};
     std::uint64_t seen_ = 0;
     std::vector<std::vector<const Command*>> families_;
@@ -75,7 +75,7 @@ void traceText(const char* name, const std::string& arguments);
 template <class T>
 std::string shown(T value) {
     if constexpr (std::is_pointer_v<T>) {
-        // The program's own memory is elsewhere in each run.
+        // Addresses of the program's own memory differ between runs.
         const auto address = reinterpret_cast<std::uintptr_t>(value);
         return address > 0x540000000000 ? "..." : shown(address);
     } else if constexpr (std::is_floating_point_v<T>) {
@@ -87,7 +87,7 @@ std::string shown(T value) {
     }
 }
 
-// A call of a recipe, shown when calls are traced.
+// Makes a call of a recipe, and prints it when tracing.
 template <class Function, class... Arguments>
 auto call(World& world, const char* name, Function* function, Arguments... arguments) {
     if (world.trace) {
@@ -106,7 +106,7 @@ auto call(World& world, const char* name, Function* function, Arguments... argum
 }
 #define GL(name, ...) call(w, #name, name __VA_OPT__(, ) __VA_ARGS__)
 
-void callAny(World& w); // any command of the registry, with arguments that fit more or less
+void callAny(World& w); // calls any command of the registry, with more or less valid arguments
 void callCommand(World& w, const Command& command);
 
 } // namespace fuzz

@@ -1,5 +1,5 @@
-// Recordings under damage. The input stands twice for a file: as all that is behind its header, and as the entries of one sound
-// block; both are read, printed and cut. Nothing may crash, and what is read must be within the block.
+// Damaged traces. The input is used twice: as the rest of a file after its header, and as the entries of one valid
+// block. Both are read, printed and trimmed. Nothing may crash, and all reads must stay within the block.
 #include <sys/mman.h>
 #include <unistd.h>
 

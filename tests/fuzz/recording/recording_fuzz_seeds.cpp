@@ -1,5 +1,5 @@
-// Makes the corpus: bin/recording_fuzz_seeds RECORDING OUT NAME writes OUT/NAME_entries (of its first block, as far as they are
-// small) and OUT/NAME_file (all behind the header).
+// Makes the corpus: bin/recording_fuzz_seeds RECORDING OUT NAME. It writes OUT/NAME_entries (small entries of the first
+// block) and OUT/NAME_file (the rest of the file after the header).
 #include <cstdio>
 #include <fstream>
 #include <string>

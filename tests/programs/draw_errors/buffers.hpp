@@ -1,4 +1,4 @@
-// What the draws of these programs read, the same in every API. Include the API's header first.
+// Buffers that the draws of these programs read, equal in every API. Include the API's header first.
 #pragma once
 
 namespace programs {
@@ -7,7 +7,7 @@ struct DrawBuffers {
     GLuint vertexArray = 0, vertices = 0, indices = 0, indirect = 0;
 };
 
-// All bound; `indirect` holds 256 bytes, two commands first, and is the dispatches' as well.
+// Creates and binds the buffers. `indirect` holds 256 bytes with two commands first, and also serves dispatches.
 inline DrawBuffers makeDrawBuffers() {
     const GLfloat corners[12] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, 0};
     const GLushort order[4] = {0, 1, 2, 0};

@@ -1,6 +1,6 @@
-// What drawing commands say when something is wrong: the command's arguments, or the state it meets
-// (an incomplete framebuffer, mapped buffers, programs that don't fit). MURAL_CORE: in a core context.
-// Each row of the picture is the errors of one group of calls in one situation.
+// Errors of drawing commands, from their arguments or from the state: an incomplete framebuffer, mapped buffers,
+// unsuitable programs. MURAL_CORE: in a core context. Each row of the picture shows the errors of one group of calls in
+// one situation.
 #include "tests/programs/support/gl.hpp"
 
 #include "tests/programs/draw_errors/buffers.hpp"
@@ -154,7 +154,7 @@ Calls oldPixels() {
     return calls;
 }
 
-// Between glBegin and glEnd only few commands are allowed.
+// Makes calls between glBegin and glEnd, where only few commands are permitted.
 void inside(GLenum mode, const std::function<void()>& calls) {
     glBegin(mode);
     glVertex2f(0, 0);
@@ -276,7 +276,7 @@ std::vector<Situation> situations() {
         {[] { glBindVertexArray(0); }, [] { glBindVertexArray(buffers.vertexArray); }},
     };
     if (!kCore) {
-        all.pop_back(); // client arrays would be read from nowhere
+        all.pop_back(); // client arrays would have invalid addresses
         all.push_back({[] { glEnable(GL_VERTEX_PROGRAM_ARB); }, [] { glDisable(GL_VERTEX_PROGRAM_ARB); }});
         all.push_back({[] { glRasterPos2f(9, 9); }, [] {}});
     } else {

@@ -1,4 +1,4 @@
-// The same in OpenGL ES 3.1: indirect draws need buffers and a vertex array there.
+// Errors of drawing commands in OpenGL ES 3.1, where indirect draws need buffers and a vertex array.
 #include <GLES3/gl31.h>
 
 #include "tests/programs/draw_errors/buffers.hpp"

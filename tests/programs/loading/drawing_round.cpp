@@ -33,10 +33,10 @@ public:
 private:
     void* handle_;
 };
-// Only the type is taken from the headers: the program is linked with no GL library.
+// Finds a function by name. Only the type comes from the headers: the program links no GL library.
 #define FUNCTION(library, name) (library).function<decltype(&::name)>(#name)
 
-// Draws by scissored clears; all sizes are of the window.
+// Draws with scissored clears; all sizes are the window's.
 struct Painter {
     decltype(&::glClearColor) clearColor;
     decltype(&::glClear) clear;
@@ -66,7 +66,7 @@ uint64_t sumOf(const void* bytes, size_t count) {
     return sum;
 }
 
-// A window in a connection of its own, closed at the end.
+// A window on a connection of its own, closed at the end.
 class OwnWindow {
 public:
     OwnWindow(Display* display, const XVisualInfo& visual, int width, int height) : display_(display), width_(width), height_(height) {

@@ -1,5 +1,5 @@
-// One life of a GL library in a process. The program opens the library by name, draws some frames in a new window on a new
-// display connection, prints checksums of the pixels, and closes all of it.
+// One load of a GL library in a process. The program opens the library by name, draws some frames in a new window on a
+// new display connection, prints checksums of the pixels, and closes all of it.
 #pragma once
 
 #include <X11/Xlib.h>
@@ -11,12 +11,12 @@ enum class WindowSystem { Glx, Egl };
 
 struct Round {
     WindowSystem system = WindowSystem::Glx;
-    int number = 0;          // chooses the colours and the size
+    int number = 0; // selects the colours and the size
     int frames = 3;
-    std::string display;     // name; not from the environment, which may be empty
+    std::string display; // display name; not from the environment, which may be empty
 };
 
-// Prints a line for each frame, and one for the window as the X server has it.
+// Draws, and prints a line for each frame and one for the window's contents on the X server.
 void drawRound(const Round& round);
 
 } // namespace programs

@@ -1,5 +1,5 @@
-// Draws, then becomes itself or starts itself again by one of the ways to do that, without what Mural has put into its
-// environment; two lives.
+// Draws, then executes or starts itself again in one of several ways, without Mural's additions to its environment.
+// There are two rounds.
 //   exec_rounds WAY [STAGE DISPLAY]
 #include <cstdlib>
 #include <dlfcn.h>
@@ -59,6 +59,6 @@ int main(int argc, char** argv) {
     const int stage = argc == 4 ? 1 : 0;
     programs::drawRound({programs::WindowSystem::Glx, stage, 3, display});
     if (stage == 0) goOn(way, display);
-    if (way == "system" && dlopen("libGL.so.1", RTLD_LAZY) != nullptr) sleep(3); // long enough to be seen
+    if (way == "system" && dlopen("libGL.so.1", RTLD_LAZY) != nullptr) sleep(3); // long enough to be observed
     return 6;
 }

@@ -1,5 +1,5 @@
-// Loads, uses and unloads GL libraries several times, as toolkits do that end and begin again. The second argument changes
-// the environment before:
+// Loads, uses and unloads GL libraries several times, as toolkits do that end and begin again. The second argument
+// changes the environment before:
 //   gl_reloaded glx|egl|both untouched|cleared|unset|put|other
 #include <cstdio>
 #include <cstdlib>
@@ -17,7 +17,7 @@ void changeEnvironment(const std::string& how, int round) {
     static char put[] = "__GLX_VENDOR_LIBRARY_NAME=mesa";
     if (how == "cleared") {
         clearenv();
-    } else if (how == "unset" && round == 1) { // between two lives
+    } else if (how == "unset" && round == 1) { // between two rounds
         for (const char* name : kNames) unsetenv(name);
     } else if (how == "put") {
         putenv(put);

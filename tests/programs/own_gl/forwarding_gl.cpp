@@ -1,5 +1,5 @@
-// A libGL.so.1 that is no GL of its own: it hands every call to the system's libGL, which is GLVND's, as
-// some switching and measuring layers do. Its calls would reach an encoder on two ways.
+// A libGL.so.1 without a GL of its own: it forwards every call to the system's libGL, which is GLVND's, like some
+// switching and measuring layers. Its calls could reach an encoder in two ways.
 #include <cstdlib>
 #include <dlfcn.h>
 

@@ -1,4 +1,4 @@
-// Mesa's dispatch of GL names, as its own libGL used it before GLVND.
+// Mesa's dispatch of GL names, as Mesa's own libGL used it before GLVND.
 #pragma once
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ inline GlLookup* findGl() {
     return lookup;
 }
 
-// What a name leads to that nobody has.
+// Target of names without an implementation.
 inline void nothing() {}
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// A libEGL.so.1 with libGLESv2's names, as it was before GLVND: EGL by Mesa's driver, GL through libglapi.
+// A libEGL.so.1 with libGLESv2's names, as it was before GLVND: EGL from Mesa's driver, GL through libglapi.
 #include <EGL/egl.h>
 #include <cstdlib>
 #include <cstring>

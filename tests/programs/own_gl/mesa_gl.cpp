@@ -1,5 +1,5 @@
-// A libGL.so.1 as it was before GLVND: exports all names, and goes to Mesa's driver itself. GL names
-// through libglapi, as Mesa's own libGL did; GLX names to the functions of libGLX_mesa.so.0, past GLVND.
+// A libGL.so.1 as it was before GLVND: it exports all names, and calls Mesa's driver itself. GL names pass through
+// libglapi, as in Mesa's own libGL. GLX names call the functions of libGLX_mesa.so.0, around GLVND.
 #include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
@@ -15,7 +15,8 @@ namespace {
 
 using GlxLookup = void*(const unsigned char*);
 
-// What libGLX would hand to the vendor; Mesa uses it only in its dispatch functions, which nobody asks for.
+// The exports that libGLX would pass to the vendor. Mesa uses them only in its dispatch functions, which are never
+// called here.
 __GLXapiExports exports;
 __GLXapiImports imports;
 

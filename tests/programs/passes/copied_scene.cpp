@@ -1,4 +1,5 @@
-// A scene whose last picture is drawn behind the next, a little larger and darker: it is copied from the window into a texture.
+// A scene with its previous picture in the background, a little larger and darker, copied from the window into a
+// texture.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

@@ -1,5 +1,6 @@
-// The whole window by fragments that know nothing but their place: from the lower left and the upper left, with centres at halves and at whole
-// numbers, by GLSL (in two texts) and by assembly. Each bit of a place shows, and which level of a texture their distance chooses.
+// Fills the window with fragments that use only their position. Origins are at the lower left and the upper left,
+// centres at halves and at integers, in GLSL (in two texts) and in assembly. Each bit of a position is visible, and
+// also the texture level that the distance of positions selects.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -25,7 +26,7 @@ const char* const kDeclared[kPlaced] = {
 };
 const char* const kOptions[kAssembled] = {"", "OPTION ARB_fragment_coord_origin_upper_left;\n", "OPTION ARB_fragment_coord_pixel_center_integer;\n"};
 
-// Each level of another colour, some texels darker.
+// Makes a texture with a colour per level, some texels darker.
 void makeLevels() {
     GLuint texture = 0;
     glGenTextures(1, &texture);
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
             glUseProgram(shaders[frame % kShaders]);
             everything();
             glUseProgram(0);
-            // The assembly's adds its own to a third of each.
+            // The assembly program adds its own colour to a third of each.
             glEnable(GL_FRAGMENT_PROGRAM_ARB);
             glBindProgramARB(GL_FRAGMENT_PROGRAM_ARB, assembled[frame % kAssembled]);
             glEnable(GL_BLEND);

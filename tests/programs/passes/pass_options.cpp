@@ -45,7 +45,8 @@ Matrix projectionOf(const PassOptions& options, int width, int height) {
     }
     const float halfWidth = kHalfHeight * float(width) / float(height);
     Matrix m = perspective(halfWidth, kHalfHeight, kNear, kFar);
-    const float shift = -options.eye * kNear / options.focus; // of the frustum's left and right, at the near plane
+    // shift of the frustum's left and right edges at the near plane
+    const float shift = -options.eye * kNear / options.focus;
     m[8] = shift / halfWidth;
     return multiply(m, translation(-options.eye, 0, 0));
 }

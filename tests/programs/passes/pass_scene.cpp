@@ -1,4 +1,4 @@
-// One scene in perspective and an overlay without, by every way of telling OpenGL where to look from (--draw).
+// One scene in perspective and an overlay without, with every way to set the projection in OpenGL (--draw).
 #include "tests/programs/passes/pass_options.hpp"
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
@@ -76,7 +76,7 @@ GLuint makeFramebuffer(int width, int height, GLuint& colour) {
 
 bool byFixedFunction() { return options.draw == "fixed" || options.draw == "textured"; }
 
-// A texture whose levels have colours of their own.
+// Makes a texture with a colour per level.
 void makeLevels() {
     constexpr int kLevels = 8;
     GLuint texture = 0;
@@ -183,7 +183,7 @@ void drawQuad(float x0, float y0, float x1, float y1, GLuint texture) {
     glUseProgram(0);
 }
 
-// The lower left quarter of the window. Nothing of it is seen in perspective.
+// Draws the lower left quarter of the window, without perspective.
 void drawOverlay() {
     if (!byFixedFunction()) return drawQuad(-1, -1, 0, 0, 0);
     glDisable(GL_DEPTH_TEST);
@@ -205,7 +205,7 @@ void clearAll() {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-// What is seen from a light: whatever eye looks at the scene, this is the same.
+// Draws the scene as seen from a light: the same for every eye.
 void drawShadow(const Window& window, int frame) {
     const PassOptions seen = options;
     options.eye = 0;

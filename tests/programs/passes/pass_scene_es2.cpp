@@ -1,5 +1,5 @@
-// The scene of pass_scene by OpenGL ES 2, which has no viewports in fractions: shaders move the picture. --draw textured: its colours are
-// looked up in a texture whose levels have colours of their own.
+// The scene of pass_scene with OpenGL ES 2, which has no fractional viewports: shaders move the picture. --draw
+// textured: its colours come from a texture with a colour per level.
 #include <EGL/egl.h>
 #include <GLES2/gl2.h>
 #include <vector>

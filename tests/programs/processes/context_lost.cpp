@@ -1,5 +1,5 @@
-// Asks after each frame whether its context is lost, and says so with the error that stands behind it; draws on then. Says "frame N"
-// after each frame. With --unasked as the last argument its context does not want to be told.
+// Queries after each frame whether its context is lost, prints the status with the error that follows, and draws on.
+// Prints "frame N" after each frame. With --unasked as the last argument its context has no reset notification.
 #include "tests/programs/support/gl.hpp"
 
 #include <GL/glx.h>

@@ -1,5 +1,5 @@
-// Ends in the way its name asks for: exit_dirty (exit, nothing destroyed), exit_quick (_exit),
-// exit_three (status 3), exit_abort (abort after the frames), exit_segv, exit_term (SIGTERM to itself).
+// Ends in the way that its name selects: exit_dirty (exit, nothing destroyed), exit_quick (_exit), exit_three (status
+// 3), exit_abort (abort after the frames), exit_segv, exit_term (SIGTERM to itself).
 #include <csignal>
 #include <cstdlib>
 #include <string>

@@ -1,5 +1,5 @@
-// Forks children in the middle of drawing: one ends by _exit at once, one execs another program, one
-// lives for a while with the parent's GL untouched; the parent goes on drawing.
+// Forks children in the middle of drawing: one ends at once with _exit, one executes another program, one lives for a
+// while without using the parent's GL. The parent continues to draw.
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-// A launcher: forks before any GL; the child execs this program again, which draws; the parent waits
-// and passes the status on.
+// A launcher that forks before any GL call: the child executes this program again, which draws; the parent waits and
+// returns its status.
 #include <cstring>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// Children in every way, of a parent that has drawn, draws, or will draw. A word names the way. All that is read is told
-// in an order that the program makes sure of.
+// Forks children in every way, from a parent that has drawn, draws, or will draw. A word selects the way. All results
+// are printed in an order that the program enforces.
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -28,7 +28,7 @@ pid_t startChild(const std::function<void()>& run, bool raw = false) {
     alarm(kPatienceS);
     run();
     std::fflush(stdout);
-    _exit(7); // natively, Mesa's destructors wait for the parent's threads
+    _exit(7); // without Mural, Mesa's destructors wait for the parent's threads
 }
 
 void awaitChild(pid_t pid) {
@@ -38,7 +38,7 @@ void awaitChild(pid_t pid) {
     std::fflush(stdout);
 }
 
-// What Mesa answers without its threads. Deleting and binding are for the child's copy alone.
+// Makes calls that Mesa answers without its threads. Deleting and binding affect only the child's copy.
 void callMuch() {
     GLint value = 0;
     GLuint name = 0;
@@ -75,7 +75,7 @@ void calls(bool raw) {
     tellFrame("parent", own, 3);
 }
 
-// Both draw at the same time; the child tells first.
+// Draws in both processes at the same time; the child prints first.
 void together(bool raw, const std::function<Plain()>& open) {
     const Plain own = open();
     drawFrames(own, 0, 3);
@@ -139,7 +139,7 @@ void executed() {
     }
 }
 
-// Locks may be held by the drawing thread at the fork. The driver's would hold up more calls than these.
+// The drawing thread may hold locks at the fork. The driver's locks would block more calls than these.
 bool drawsOn = true;
 void* drawAside(void* plain) {
     auto& own = *static_cast<Plain*>(plain);
@@ -165,8 +165,8 @@ void threads() {
     tellFrame("parent", own, 50);
 }
 
-// The program must be run with LP_NUM_THREADS=0: then llvmpipe draws in a child, too. After the child has used its X
-// connection the parent must not, so it ends.
+// Draws in a child with the parent's connection. Run the program with LP_NUM_THREADS=0, with which llvmpipe draws in a
+// child, too. After the child has used its X connection the parent must not, so the parent ends.
 void inherited() {
     const Plain own = openGlx();
     tellFrame("parent", own, 0);
@@ -178,7 +178,7 @@ void inherited() {
     _exit(0);
 }
 
-// As daemon(3): the parent ends, the child goes on with a context of its own.
+// Behaves like daemon(3): the parent ends, the child continues with a context of its own.
 void daemonised() {
     const Plain own = openGlx();
     tellFrame("parent", own, 0);
@@ -188,7 +188,7 @@ void daemonised() {
     if (fork() == 0) {
         close(whole[1]);
         char byte = 0;
-        if (read(whole[0], &byte, 1) != 0) fail("the parent wrote"); // end of file: it is gone
+        if (read(whole[0], &byte, 1) != 0) fail("the parent wrote"); // end of file: the parent has ended
         setsid();
         const Plain childs = openGlx();
         drawFrames(childs, 1, 4);

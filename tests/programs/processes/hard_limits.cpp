@@ -1,4 +1,5 @@
-// Programs that interrupt, close, replace, limit or forbid what a library in them may need. A word names the way.
+// Programs that interrupt, close, replace, limit or prohibit resources that a library in them may need. A word selects
+// the way.
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
@@ -38,7 +39,7 @@ void interruptAlways(bool restart) {
 void interrupted(bool restart) {
     Display* const display = XOpenDisplay(nullptr);
     if (display == nullptr) fail("no X display");
-    XFree(plainVisual(display)); // loads the driver, which takes long when it is interrupted
+    XFree(plainVisual(display)); // loads the driver, which takes long under interruption
     interruptAlways(restart);
     const Plain own = makeGlx(display);
     glXMakeCurrent(own.display, own.window, own.context);
@@ -56,7 +57,7 @@ void closeAllBut(int kept) {
         if (fd != kept) close(fd);
 }
 
-// Their numbers get another meaning: a pipe that has hung up, one with bytes in it, files.
+// Gives the descriptor numbers another meaning: a closed pipe, a pipe with bytes in it, files.
 void reuseNumbers() {
     int hungUp[2], full[2];
     if (pipe(hungUp) != 0 || pipe(full) != 0 || write(full[1], "bytes", 5) != 5) fail("no pipes");
@@ -71,12 +72,12 @@ void closed(bool reuse) {
     drawFrames(own, 0, 3);
     closeAllBut(ConnectionNumber(own.display));
     if (reuse) reuseNumbers();
-    usleep(200'000); // in which another process may notice
+    usleep(200'000); // time for another process to notice
     drawFrames(own, 3, 20);
     tellFrame("frame", own, 23);
 }
 
-// Descriptor 2 becomes a file of the program's own, which nobody else writes to.
+// Makes descriptor 2 a file of the program, to which no other code may write.
 void daemonFiles() {
     char path[] = "/tmp/hard_limits.XXXXXX";
     const int file = mkstemp(path);
@@ -84,7 +85,8 @@ void daemonFiles() {
     const Plain own = openGlx();
     drawFrames(own, 0, 3);
     dup2(file, 2);
-    glSeparableFilter2D(GL_SEPARABLE_2D, GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, nullptr, nullptr); // something to complain of
+    // an unsupported call that causes a warning
+    glSeparableFilter2D(GL_SEPARABLE_2D, GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, nullptr, nullptr);
     tellFrame("frame", own, 3);
     struct stat facts {};
     fstat(file, &facts);
@@ -142,7 +144,7 @@ void* drawShared(void* plain) {
     return nullptr;
 }
 
-// A uniform array that is told longer than it is, whose end lies at the end of mapped memory.
+// Sets a uniform array with a count above its length. The memory ends at the end of mapped memory.
 void longUniforms() {
     const char* text = "uniform vec4 u[300]; void main() { gl_FragColor = u[int(mod(gl_FragCoord.x, 300.0))]; }";
     const GLuint program = glCreateProgram(), shader = glCreateShader(GL_FRAGMENT_SHADER);

@@ -1,5 +1,5 @@
-// Draws many frames unless --frames says otherwise, a short pause after each: something to kill other
-// processes under. Says "frame N" on standard output after each, so that a test knows where it is.
+// Draws many frames, or the number given with --frames, with a short pause after each, while tests kill other
+// processes. Prints "frame N" after each frame, so that a test can follow the progress.
 #include <cstdio>
 #include <unistd.h>
 

@@ -1,9 +1,13 @@
-// Many frames that show what earlier ones have made: textures of the start, of which a part is changed with every frame, a
-// buffer and a framebuffer object that are written to bit by bit, a display list, a query. A node that was started again in
-// the middle shows any of it that it was not given. SCENE_MIB in the environment: so many MiB of textures (8), SCENE_PAUSE_US
-// a pause in each frame (5000). Says "frame N T" on standard output before each: T are the milliseconds since the one before.
-// SCENE_KEEPS=1: only the first frame clears, the others draw over what was there. SCENE_SHARES=1: behind a depth test and with many
-// small triangles all over it, so that --db shares it, each of up to 4 nodes something that is seen; and something over it that is not shared.
+// Many frames that show the results of earlier ones, so a restarted node reveals missing data. Textures of the start, a
+// part of which changes in each frame, a buffer and a framebuffer object that are filled gradually, a display list, a
+// query. Prints "frame N T" on standard output before each frame, where T is the time in ms since the previous one.
+//
+// Environment:
+//   SCENE_MIB       MiB of textures (8).
+//   SCENE_PAUSE_US  pause in each frame in us (5000).
+//   SCENE_KEEPS=1   only the first frame clears, the others draw over the old contents.
+//   SCENE_SHARES=1  depth test and many small triangles everywhere, so that --db divides the draws.
+//                   Each of up to 4 nodes draws visible ones; an overlay is not divided.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -21,8 +25,8 @@ using namespace programs;
 
 namespace {
 
-constexpr int kSide = 1024; // of a texture, 4 MiB
-constexpr int kChanged = 16; // texels of it that a frame changes, each way
+constexpr int kSide = 1024; // side of a texture, 4 MiB
+constexpr int kChanged = 16; // texels that a frame changes, in each direction
 constexpr int kPoints = 4096;
 constexpr int kSceneSide = 128;
 
@@ -45,7 +49,7 @@ struct Corner {
     GLubyte colour[4];
 };
 
-// Small triangles at few depths, that of the rest among them: of equal ones the later one is seen.
+// Makes small triangles at few depths, including the depth of the rest. Of equal depths the later triangle is visible.
 void makeChips() {
     Sequence numbers(77);
     std::vector<Corner> corners;
@@ -66,7 +70,7 @@ void drawChips(int frame) {
     glEnableClientState(GL_COLOR_ARRAY);
     glVertexPointer(3, GL_FLOAT, sizeof(Corner), nullptr);
     glColorPointer(4, GL_UNSIGNED_BYTE, sizeof(Corner), reinterpret_cast<const void*>(offsetof(Corner, colour)));
-    glDrawArrays(GL_TRIANGLES, 0, 3 * (kChips - frame % 50)); // not what the frame before has cost
+    glDrawArrays(GL_TRIANGLES, 0, 3 * (kChips - frame % 50)); // a cost different from the previous frame's
     glDisableClientState(GL_COLOR_ARRAY);
     glDisableClientState(GL_VERTEX_ARRAY);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
@@ -125,7 +129,7 @@ void quad(float left, float bottom, float right, float top) {
     glEnd();
 }
 
-// A little more of everything that lasts.
+// Adds a little to every permanent object.
 void grow(int frame) {
     Sequence numbers(unsigned(frame) + 1);
     std::vector<GLubyte> texels(size_t{kChanged} * kChanged * 4);
@@ -145,7 +149,7 @@ void grow(int frame) {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-// The time from the last one's beginning to this one's.
+// Prints the time from the previous frame's beginning to this one's.
 void sayFrame(int frame) {
     static auto before = std::chrono::steady_clock::now();
     const auto now = std::chrono::steady_clock::now();
@@ -188,7 +192,7 @@ void draw(Window& window, int frame) {
     glDrawArrays(GL_POINTS, 0, shares() ? frame % kPoints : kPoints);
     glDisableClientState(GL_VERTEX_ARRAY);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
-    if (shares()) { // seen through
+    if (shares()) { // transparent
         glDisable(GL_DEPTH_TEST);
         glEnable(GL_BLEND);
         glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);

@@ -1,5 +1,5 @@
-// Takes more and more memory for textures until GL_OUT_OF_MEMORY is told; the calls of a few frames more may
-// have failed by then, later ones raise no error. Says "frame N" after each frame, and "no memory" when it is told.
+// Allocates textures until GL_OUT_OF_MEMORY is reported. Calls of a few more frames may have failed by then; later ones
+// raise no error. Prints "frame N" after each frame, and "no memory" at the report.
 #include <cstdio>
 #include <unistd.h>
 
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     const auto window = openGlxWindow({}, options.width, options.height);
     window->makeCurrent();
-    int told = -1; // in this frame
+    int told = -1; // frame of the report
     for (int frame = 0; frame < options.frames; ++frame) {
         drawSimple(*window, frame);
         if (told < 0) {

@@ -1,5 +1,5 @@
-// One X window or EGL pbuffer with a connection and a context of its own, for programs about processes: each process
-// may have several, made before or after a fork. What is read is told as a sum, so that two runs can be compared.
+// One X window or EGL pbuffer with its own connection and context, for programs about processes. Each process may have
+// several, made before or after a fork. Pixels are printed as a sum, so that two runs can be compared.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES 1
@@ -48,7 +48,7 @@ inline ::Window plainWindow(Display* display, const XVisualInfo& visual) {
     return window;
 }
 
-// Not current yet.
+// Creates the drawable; it is not current yet.
 inline Plain makeGlx(Display* on = nullptr, GLXContext share = nullptr) {
     Plain made;
     made.display = on != nullptr ? on : XOpenDisplay(nullptr);
@@ -67,7 +67,7 @@ inline Plain openGlx() {
     return made;
 }
 
-// A pbuffer on an X connection of its own, with desktop GL.
+// Creates a pbuffer on an X connection of its own, with desktop GL.
 inline Plain openEgl() {
     Plain made;
     made.display = XOpenDisplay(nullptr);
@@ -85,7 +85,7 @@ inline Plain openEgl() {
     return made;
 }
 
-// A picture that depends on the frame's number.
+// Draws a picture that depends on the frame number.
 inline void drawPlain(int frame) {
     glViewport(0, 0, kPlainSide, kPlainSide);
     glClearColor(0.1F, 0.1F, 0.05F * float(frame % 12), 1);
@@ -116,7 +116,7 @@ inline void drawFrames(const Plain& plain, int first, int count) {
     }
 }
 
-// One frame that is read before it is shown, and the error.
+// Draws one frame, reads it before it is shown, and prints the sum and the error.
 inline void tellFrame(const char* who, const Plain& plain, int frame) {
     drawPlain(frame);
     const uint64_t sum = readPlain();

@@ -1,4 +1,4 @@
-// The scene in a window by EGL, with the functions that `find` gives.
+// Draws the scene in a window through EGL, with the functions that `find` returns.
 #pragma once
 
 #include "tests/programs/routes/scene.hpp"
@@ -6,7 +6,7 @@
 
 namespace programs {
 
-// atEnd is called while the window is still there.
+// Runs the scene; calls atEnd while the window still exists.
 template <class Find, class AtEnd> int runSceneByEgl(const Options& options, Find find, AtEnd atEnd) {
     const auto window = openEglWindow({}, options.width, options.height);
     window->makeCurrent();

@@ -1,5 +1,5 @@
-// Asks for the window systems' extensions in every way there is, and counts the lists that name what
-// only exists on one machine, or what a wall does not do.
+// Queries the window systems' extensions in every way, and counts the lists that name extensions for a single machine,
+// or extensions that a wall does not support.
 #include <EGL/egl.h>
 #include <GL/glx.h>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Prints GL_EXTENSIONS, as one text and name by name, in the order in which they are told.
+// Prints GL_EXTENSIONS, as one text and name by name, in the reported order.
 #include <cstdio>
 
 #include "tests/programs/support/gl.hpp"

@@ -1,4 +1,4 @@
-// A window by GLX whose functions are found by name: for programs that do not link them.
+// Opens a window with GLX functions found by name, for programs that do not link them.
 #pragma once
 
 #include <GL/glx.h>
@@ -9,8 +9,8 @@
 
 namespace programs {
 
-// Runs the scene in a window; `findGlx` finds glX names and `findGl` gl names. `atEnd` may look at the
-// window after the last frame.
+// Runs the scene in a window. `findGlx` finds glX names and `findGl` finds gl names. `atEnd` may inspect the window
+// after the last frame.
 inline int runSceneByGlx(const Options& options, FindFunction findGlx, FindFunction findGl,
                          void (*atEnd)(Display*, ::Window, int width) = nullptr) {
     const auto chooseVisual = reinterpret_cast<decltype(&::glXChooseVisual)>(findGlx("glXChooseVisual"));

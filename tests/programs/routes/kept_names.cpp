@@ -1,5 +1,5 @@
-// Keeps the names that glGetStringi gave beyond the end of EGL, which unloads Mesa's driver with its last display: says
-// how many of them can still be read.
+// Keeps the names returned by glGetStringi beyond the end of EGL, which unloads Mesa's driver with its last display.
+// Prints how many can still be read.
 #include <EGL/egl.h>
 
 #include <GLES3/gl3.h>

@@ -1,4 +1,4 @@
-// Memory objects (EXT_memory_object): no memory comes in, and what the program can ask says so beforehand.
+// Memory objects (EXT_memory_object): no memory can be imported, and the queries report this in advance.
 #include <algorithm>
 #include <cstdio>
 #include <sys/mman.h>

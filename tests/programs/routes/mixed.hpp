@@ -1,6 +1,6 @@
-// For programs that draw into one context by two ways: what is new they find as they should, immediate mode
-// elsewhere, in a library that shares the driver's dispatch (MIXED_LIBRARY; not defined: whatever comes first
-// in the program's own order). They say at the end whether their window shows the whole picture.
+// For programs that draw into one context in two ways. New functions are found normally. Immediate mode comes from
+// another library that shares the driver's dispatch (MIXED_LIBRARY; not defined: the first in the program's own order).
+// At the end the programs print whether their window shows the whole picture.
 #pragma once
 
 #include <cstdio>
@@ -34,7 +34,8 @@ inline GlFunction findElsewhere(const char* name) {
     return reinterpret_cast<GlFunction>(dlsym(library, name));
 }
 
-// For the size 253x191: immediate mode draws above, buffers and shaders below.
+// Prints whether the window shows the whole picture, for the size 253x191: immediate mode draws above, buffers and
+// shaders below.
 inline void sayWhetherWhole(Display* display, ::Window window, int width) {
     XSync(display, False);
     const bool above = changesInRow(display, window, 60, width) > 5, below = changesInRow(display, window, 140, width) > 5;

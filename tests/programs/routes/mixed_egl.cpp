@@ -1,4 +1,4 @@
-// Two ways into one context (mixed.hpp), with a window by EGL.
+// Two ways into one context (mixed.hpp), with a window through EGL.
 #include <EGL/egl.h>
 
 #include "tests/programs/routes/egl_scene.hpp"
@@ -11,7 +11,7 @@ programs::GlFunction find(const char* name) {
     return programs::isImmediate(name) ? programs::findElsewhere(name) : eglGetProcAddress(name);
 }
 
-// The program's only one, the last that the display has got.
+// Returns the program's only window, the last one created on the display.
 ::Window ownWindow(Display* display) {
     ::Window root = 0, parent = 0, *children = nullptr;
     unsigned count = 0;

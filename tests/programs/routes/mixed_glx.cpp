@@ -1,4 +1,4 @@
-// Two ways into one context (mixed.hpp), with a window by GLX.
+// Two ways into one context (mixed.hpp), with a window through GLX.
 #include "tests/programs/routes/glx_functions.hpp"
 #include "tests/programs/routes/mixed.hpp"
 

@@ -1,4 +1,4 @@
-// Draws by OSMesa into its own memory and puts the picture into its window by X11: no GLX, no EGL.
+// Draws with OSMesa into its own memory and copies the picture into its window through X11: no GLX, no EGL.
 #include <GL/osmesa.h>
 #include <X11/Xutil.h>
 #include <vector>

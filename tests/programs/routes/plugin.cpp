@@ -1,4 +1,4 @@
-// A plug-in that links OpenGL itself and draws when its host says so.
+// A plug-in that links OpenGL itself and draws when its host calls it.
 #include "tests/programs/support/gl.hpp"
 
 extern "C" __attribute__((visibility("default"))) void drawByPlugin(int frame, int width, int height) {

@@ -1,4 +1,4 @@
-// dlopen with RTLD_DEEPBIND: the library's own names win over preloaded ones.
+// dlopen with RTLD_DEEPBIND: the library's own names take precedence over preloaded ones.
 #include <dlfcn.h>
 
 #include "tests/programs/routes/glx_functions.hpp"

@@ -1,5 +1,5 @@
-// Reaches OpenGL as many toolkits do: dlopen("libGL.so.1") without making its names global, then dlsym
-// for every function, GLX included.
+// Reaches OpenGL as many toolkits do: dlopen("libGL.so.1") without making its names global, then dlsym for every
+// function, including GLX.
 #include <dlfcn.h>
 
 #include "tests/programs/routes/glx_functions.hpp"

@@ -1,4 +1,4 @@
-// A window by EGL with desktop OpenGL, all of whose functions come from eglGetProcAddress.
+// A window through EGL with desktop OpenGL, all of whose functions come from eglGetProcAddress.
 #include <EGL/egl.h>
 
 #include "tests/programs/routes/egl_scene.hpp"

@@ -1,5 +1,5 @@
-// A window by GLX, drawn into by another way: Mesa's inner dispatch, which the libGL of before GLVND
-// used. Says at the end whether the window shows the picture.
+// A window through GLX, drawn into in another way: through Mesa's inner dispatch, which libGL used before GLVND. At the
+// end it prints whether the window shows the picture.
 #include <cstdio>
 #include <dlfcn.h>
 

@@ -1,4 +1,4 @@
-// Links nothing of OpenGL but glXGetProcAddressARB, and finds everything through it.
+// Links only glXGetProcAddressARB of OpenGL, and finds everything through it.
 #include "tests/programs/routes/glx_functions.hpp"
 
 extern "C" programs::GlFunction glXGetProcAddressARB(const GLubyte* name);

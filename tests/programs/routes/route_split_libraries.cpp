@@ -1,11 +1,11 @@
-// Windows from libGLX, drawing from libOpenGL, both linked: no libGL at all.
+// Windows from libGLX, drawing from libOpenGL, both linked, without libGL.
 #include <dlfcn.h>
 
 #include "tests/programs/routes/glx_functions.hpp"
 
 namespace {
 
-// The names of libraries that are linked, as the dynamic linker finds them for the program itself.
+// Returns functions of linked libraries, as the dynamic linker finds them for the program itself.
 programs::GlFunction find(const char* name) {
     return reinterpret_cast<programs::GlFunction>(dlsym(RTLD_DEFAULT, name));
 }

@@ -1,11 +1,11 @@
-// What a window shows, told roughly: the scene's pictures have many colours along a row, an empty window one.
+// A rough measure of a window's contents: the scene's pictures have many colours along a row, an empty window has one.
 #pragma once
 
 #include <X11/Xutil.h>
 
 namespace programs {
 
-// Changes of colour along a row of the window.
+// Returns the number of colour changes along a row of the window.
 inline int changesInRow(Display* display, ::Window window, int y, int width) {
     XImage* image = XGetImage(display, window, 0, y, static_cast<unsigned>(width), 1, AllPlanes, ZPixmap);
     int changes = 0;

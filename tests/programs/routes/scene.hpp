@@ -1,5 +1,5 @@
-// One small scene, drawn through functions that each program finds in its own way: no GL library is
-// linked for it. Old and new commands, so that a route that catches only some of them shows.
+// One small scene, drawn through functions that each program finds in its own way, without a linked GL library. It uses
+// old and new commands, which reveals a route that captures only some of them.
 #pragma once
 
 namespace programs {
@@ -9,11 +9,11 @@ using FindFunction = GlFunction (*)(const char* name);
 
 class Scene {
 public:
-    explicit Scene(FindFunction find); // with a current context
+    explicit Scene(FindFunction find); // requires a current context
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
     ~Scene();
-    void draw(int frame, int width, int height); // fails loudly when GL reports an error
+    void draw(int frame, int width, int height); // ends the program when GL reports an error
 
 private:
     struct Functions;

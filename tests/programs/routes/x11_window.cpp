@@ -1,4 +1,4 @@
-// A window that shows pictures without any GL: what X11 itself can draw.
+// A window that shows pictures without GL, drawn by X11 itself.
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/x_window.hpp"
 

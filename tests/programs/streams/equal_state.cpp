@@ -1,6 +1,7 @@
-// State that changes nothing, in another order each time, as from a program that sets all that an object needs and knows of no other:
-// most of it is so already, some is set back before anybody draws, and two programs get uniforms of which one is drawn with seldom.
-// What a draw needs has to be there all the same: it shows in blending, masks, culling, scissors and colours.
+// Redundant state changes, in another order each time, as from a program that sets all state of an object without
+// regard to others. Most state is set already, some is restored before the next draw, and two programs receive
+// uniforms, one of which draws rarely. The state that a draw needs must be set nevertheless: it is visible in blending,
+// masks, culling, scissors and colours.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/shaders.hpp"
@@ -14,7 +15,7 @@ using namespace programs;
 
 namespace {
 
-constexpr int kObjects = 48, kColumns = 8, kSeldom = 20; // frames
+constexpr int kObjects = 48, kColumns = 8, kSeldom = 20; // period of a rare draw, in frames
 GLuint often = 0, seldom = 0;
 
 struct Uniforms {
@@ -39,7 +40,7 @@ void setUp(Window&) {
     ofSeldom = uniformsOf(seldom);
 }
 
-// All that an object needs, in an order of its own. Of few kinds, so most is as it was.
+// Sets all state of an object, in a random order. There are few kinds of objects, so most state does not change.
 void setAll(unsigned kind, Sequence& numbers, int width, int height) {
     const bool third = kind % 3 == 0;
     std::vector<std::function<void()>> sets{
@@ -78,7 +79,7 @@ void draw(Window& window, int frame) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     for (int i = 0; i < kObjects; ++i) {
         const unsigned kind = numbers.next() % 6;
-        setAll(numbers.next() % 6, numbers, window.width(), window.height()); // of one that turns out not to be seen
+        setAll(numbers.next() % 6, numbers, window.width(), window.height()); // state of an invisible object
         setAll(kind, numbers, window.width(), window.height());
         for (const bool isOften : {false, true}) {
             const Uniforms& u = isOften ? ofOften : ofSeldom;

@@ -1,5 +1,5 @@
-// Uploads that nobody needs when they come: some are replaced before they are drawn, one texture and one buffer are drawn with a
-// hundred frames later, some never. What a draw takes has to be there all the same.
+// Uploads that are not needed at once: some are replaced before they are drawn, one texture and one buffer are drawn a
+// hundred frames later, some never. The data that a draw uses must be present nevertheless.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -10,7 +10,7 @@ using namespace programs;
 
 namespace {
 
-constexpr int kSide = 64, kLate = 100; // frames
+constexpr int kSide = 64, kLate = 100; // delay in frames
 enum : unsigned { kLateTexture, kReplaced, kParts, kUnused, kKept, kTextures };
 enum : unsigned { kLateBuffer, kReplacedBuffer, kBuffers };
 GLuint textures[kTextures], buffers[kBuffers];
@@ -22,7 +22,7 @@ std::vector<GLubyte> texels(unsigned seed, int side = kSide) {
     return bytes;
 }
 
-std::vector<GLfloat> quad(unsigned seed) { // of many vertices, in the right half
+std::vector<GLfloat> quad(unsigned seed) { // many vertices, in the right half
     Sequence numbers(seed);
     std::vector<GLfloat> points;
     for (int i = 0; i < 300; ++i) points.push_back(numbers.unit()), points.push_back(2 * numbers.unit() - 1);
@@ -51,7 +51,7 @@ void setUp(Window&) {
     for (unsigned i = 0; i < kTextures; ++i) giveTexture(i, i + 1);
     giveBuffer(kLateBuffer, 50);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
-    // Behind the upload, and of it: levels, and how they are taken.
+    // State that follows the upload and belongs to it: levels and filters.
     glBindTexture(GL_TEXTURE_2D, textures[kLateTexture]);
     glGenerateMipmap(GL_TEXTURE_2D);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
@@ -81,20 +81,20 @@ void draw(Window&, int frame) {
     const unsigned seed = 1000 + 10 * unsigned(frame);
     glClear(GL_COLOR_BUFFER_BIT);
     glColor3f(1, 1, 1);
-    // Replaced, whole and in parts, every frame; drawn with every second.
+    // Replaced, whole and in parts, in every frame; drawn in every second one.
     for (unsigned i = 0; i < 3; ++i) giveTexture(kReplaced, seed + i), giveBuffer(kReplacedBuffer, seed + i);
     glBindTexture(GL_TEXTURE_2D, textures[kParts]);
     for (unsigned i = 0; i < 4; ++i)
         glTexSubImage2D(GL_TEXTURE_2D, 0, i < 3 ? 0 : 16, 8, 32, 32, GL_RGBA, GL_UNSIGNED_BYTE, texels(seed + 5 + i, 32).data());
     giveTexture(kUnused, seed + 9);
-    giveTexture(kKept, kKept + 1); // as it was
+    giveTexture(kKept, kKept + 1); // with unchanged contents
     drawTextured(kKept, -1, -1, 0.5F);
     if (frame % 2 == 1) {
         drawTextured(kReplaced, -1, 0, 0.6F);
         drawTextured(kParts, -0.4F, 0, 0.4F);
         drawPoints(kReplacedBuffer);
     }
-    // One that goes before anybody has drawn with it, and another of its name.
+    // A texture that is deleted before any draw, and another of its name.
     GLuint gone = 0;
     glGenTextures(1, &gone);
     glBindTexture(GL_TEXTURE_2D, gone);

@@ -1,5 +1,5 @@
-// What many programs do from frame to frame: geometry in a display list and in a buffer that stay as they are, only the
-// camera moves.
+// Typical repetition from frame to frame: geometry in a display list and in a buffer stays unchanged, only the camera
+// moves.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -11,7 +11,7 @@ using namespace programs;
 namespace {
 
 constexpr int kVertices = 3000;
-constexpr float kTriangle = 0.1F; // small ones: this is about calls and bytes, not about pixels
+constexpr float kTriangle = 0.1F; // small, because calls and bytes are measured, not pixels
 GLuint list, buffer;
 
 void setUp(Window&) {

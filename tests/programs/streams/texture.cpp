@@ -1,5 +1,5 @@
-// A texture of 64 MiB that is given whole for every frame: as it was, or with a patch of MURAL_PATCH × MURAL_PATCH pixels
-// changed, each time another.
+// A texture of 64 MiB that is uploaded whole for every frame: unchanged, or with a different patch of MURAL_PATCH ×
+// MURAL_PATCH pixels changed each time.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"

@@ -1,5 +1,7 @@
-// A large value that goes with a call, one of a few in each frame, in no order: MURAL_VALUE 0: the source of a shader that is made anew,
-// 1: vertices in the program's memory, 2: an image for glDrawPixels.
+// Passes a large value with a call, a random one of a few in each frame. MURAL_VALUE selects it:
+//   0  the source of a shader that is created again
+//   1  vertices in the program's memory
+//   2  an image for glDrawPixels
 #define GL_GLEXT_PROTOTYPES 1
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"

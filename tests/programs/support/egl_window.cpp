@@ -45,7 +45,7 @@ EGLConfig chooseConfig(EGLDisplay display, const WindowSpec& spec) {
     if (eglChooseConfig(display, attributes, configs, 128, &count) != EGL_TRUE || count == 0) {
         fail("no EGL configuration fits; see eglinfo");
     }
-    // EGL sorts deeper alpha first: take the alpha that was asked for.
+    // EGL sorts deeper alpha first: choose exactly the requested alpha.
     for (int i = 0; i < count; ++i) {
         EGLint alpha = 0;
         eglGetConfigAttrib(display, configs[i], EGL_ALPHA_SIZE, &alpha);

@@ -1,4 +1,4 @@
-// The part of the frame loop that calls GL: apart, so that a program may link no GL library at all.
+// The part of the frame loop that calls GL, separate so that a program can link no GL library at all.
 #include <GL/gl.h>
 #include <algorithm>
 #include <cstdio>
@@ -25,7 +25,7 @@ void runFrame(Window& window, int frame, const Draw& draw) {
     window.swap();
 }
 
-// How many frames there will be, as it stands before this one.
+// Returns the total number of frames, as known before this one.
 int framesInAll(int frame, int most) {
     static const char* path = std::getenv("END_FILE");
     static int inAll = most;

@@ -15,7 +15,7 @@ GLXFBConfig chooseGlxConfig(Display* display, int drawableBits, int depthBits) {
         fail("no GLX configuration for drawables 0x%x with %d bits of depth", unsigned(drawableBits), depthBits);
     }
     GLXFBConfig config = found[0];
-    for (int i = count; i-- > 0;) { // the deepest come first; windows have 8 bits
+    for (int i = count; i-- > 0;) { // the deepest come first, but windows have 8 bits
         int bits = 0;
         glXGetFBConfigAttrib(display, found[i], GLX_RED_SIZE, &bits);
         if (bits == 8) {

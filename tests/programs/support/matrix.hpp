@@ -1,4 +1,4 @@
-// Column-major 4×4 matrices, as OpenGL wants them.
+// Column-major 4×4 matrices, as OpenGL requires them.
 #pragma once
 
 #include <array>

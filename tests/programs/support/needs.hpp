@@ -1,9 +1,9 @@
-// Programs of what few drivers have.
+// Skips programs whose extensions few drivers have.
 #pragma once
 
 namespace programs {
 
-// Where the current context lacks the extension: one line that says so, and the end with status 77, which tests take for
+// Prints one line and ends with status 77 if the current context lacks the extension. Tests interpret the status as
 // "skipped".
 void needExtension(const char* name);
 

@@ -13,7 +13,7 @@ struct PbufferSource {
 
 PbufferSource makePbufferSource(EGLDisplay display, bool alpha);
 
-// Makes it current and draws into it.
+// Makes the pbuffer current and draws into it.
 void drawPbufferSource(const PbufferSource& s, unsigned seed);
 
 void bindPbufferSource(const PbufferSource& s);

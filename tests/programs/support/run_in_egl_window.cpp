@@ -1,4 +1,4 @@
-// Apart from the other main loop, so that a program links only the window system that it uses.
+// The main loop for EGL, in a file of its own so that a program links only the window system that it uses.
 #include "tests/programs/support/program.hpp"
 
 namespace programs {

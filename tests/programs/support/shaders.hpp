@@ -1,4 +1,4 @@
-// Compiles and links, with the info log as the error message.
+// Compiles and links programs; the info log is the error message.
 #pragma once
 
 #include <functional>

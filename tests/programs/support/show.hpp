@@ -1,5 +1,5 @@
-// Makes numbers visible: what GL answers becomes part of the picture, so that a wrong answer is a
-// wrong pixel. Drawn by scissored clears: works in every profile and version.
+// Makes numbers visible: GL's replies become part of the picture, so that a wrong reply is a wrong pixel. Drawn with
+// scissored clears, which work in every profile and version.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ struct Color {
 
 void fillRectangle(int x, int y, int width, int height, Color color);
 
-// The 32 bits of `value` as 32 cells of 4×4 pixels in row `row` from the lower left corner on.
+// Shows the 32 bits of `value` as 32 cells of 4×4 pixels in row `row`, from the lower left corner on.
 void showBits(int row, std::uint32_t value);
 void showBits(int row, float value);
 
-// A bar of `value` pixels (cut at 250) in row `row`.
+// Shows a bar of `value` pixels (at most 250) in row `row`.
 void showBar(int row, std::int64_t value);
 
-// Numbers that look random and are the same in every run.
+// Pseudo-random numbers that are equal in every run.
 class Sequence {
 public:
     explicit Sequence(std::uint32_t seed) : state_(seed * 2654435761U + 12345U) {}

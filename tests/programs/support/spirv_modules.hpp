@@ -1,4 +1,4 @@
-// SPIR-V modules for OpenGL of the programs in their comments, made by `glslangValidator -G -g0`.
+// SPIR-V modules for OpenGL, compiled from the sources in their comments with `glslangValidator -G -g0`.
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,11 @@
-// The bound texture of the fixed pipeline on a quad that is a little askew, so that no filter hides.
+// Draws the bound texture of the fixed pipeline on a slightly skewed quad, which makes every filter visible.
 #pragma once
 
 #include "tests/programs/support/gl.hpp"
 
 namespace programs {
 
-// Corners in clip coordinates; the right side stands 0.1 higher.
+// Draws the quad with corners in clip coordinates; the right side is 0.1 higher.
 inline void drawTexturedQuad(float x, float y, float width, float height) {
     glEnable(GL_TEXTURE_2D);
     glBegin(GL_QUADS);

@@ -1,4 +1,4 @@
-// Windows with one GL context each, opened with raw Xlib and GLX or EGL, as old and new programs do.
+// Windows with one GL context each, opened with raw Xlib and GLX or EGL, as in old and new programs.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@ enum class Profile { Compatibility, Core, Es };
 
 struct WindowSpec {
     Profile profile = Profile::Compatibility;
-    int major = 0, minor = 0; // 0: a context without a wanted version (glXCreateNewContext)
+    int major = 0, minor = 0; // 0: a context without a requested version (glXCreateNewContext)
     int alpha = 0, depth = 24, stencil = 8, samples = 0, accum = 0;
     bool doubleBuffered = true;
     int x = 0, y = 0;
@@ -23,11 +23,11 @@ public:
     virtual ~Window() = default;
 
     virtual void makeCurrent() = 0;
-    // Draws here, reads from the other window, which is of the same kind.
+    // Makes this window current for drawing and `from`, a window of the same kind, current for reading.
     virtual void makeCurrentReading(Window& from) = 0;
-    virtual void release() = 0; // no context is current in this thread afterwards
+    virtual void release() = 0; // leaves this thread without a current context
     virtual void swap() = 0;
-    virtual void resize(int width, int height) = 0; // returns when the server has done it
+    virtual void resize(int width, int height) = 0; // returns after the server has done it
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
@@ -36,7 +36,7 @@ protected:
     int width_, height_;
 };
 
-// The context shares its objects with the one of `share`, when given. Fail loudly, never return null.
+// Opens a window. If given, `share`'s context shares objects with it. Ends the program on failure, never returns null.
 std::unique_ptr<Window>
 openGlxWindow(const WindowSpec& spec, int width, int height, Window* share = nullptr);
 std::unique_ptr<Window>

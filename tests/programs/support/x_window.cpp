@@ -78,7 +78,7 @@ XWindow::~XWindow() {
 void XWindow::resize(int width, int height) {
     XWindowAttributes now{};
     XGetWindowAttributes(display_, id_, &now);
-    if (now.width == width && now.height == height) return; // the server would send no event
+    if (now.width == width && now.height == height) return; // the server sends no event in this case
     XResizeWindow(display_, id_, static_cast<unsigned>(width), static_cast<unsigned>(height));
     waitFor(display_, {id_, ConfigureNotify, width, height});
 }

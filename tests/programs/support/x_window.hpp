@@ -10,7 +10,7 @@ Display* openDisplayOnce(); // thread-safe connection, opened on first use, neve
 
 class XWindow {
 public:
-    // Creates and maps the window, and waits until it is there.
+    // Creates and maps the window, and waits until it is visible.
     XWindow(const XVisualInfo& visual, int x, int y, int width, int height);
     XWindow(const XWindow&) = delete;
     XWindow& operator=(const XWindow&) = delete;

@@ -1,5 +1,5 @@
-// OpenGL after main() has returned: in a handler of atexit and in a destructor of the program. Nothing is read: Mesa frees
-// memory that reads need at exit, so that natively some of them crash.
+// OpenGL after main() has returned: in an atexit handler and in a destructor of the program. Nothing is read, because
+// Mesa frees memory that reads need at exit, so that some of them crash natively.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -12,7 +12,7 @@ using namespace programs;
 
 namespace {
 
-Window* window; // its owner ends last
+Window* window; // destroyed last
 
 void draw(int frame) {
     glViewport(0, 0, window->width(), window->height());
@@ -43,7 +43,7 @@ __attribute__((destructor)) void inDestructor() {
 
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
-    std::atexit(atExit); // before the driver has registered handlers of its own
+    std::atexit(atExit); // registered before the driver's own handlers
     window = MURAL_OPEN(MURAL_SPEC, options.width, options.height).release();
     window->makeCurrent();
     showFrames("in main", 0, 3);

@@ -65,7 +65,7 @@ void test(int alpha, int width, int height) {
     const EGLint size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
     EGLSurface pbuffer = eglCreatePbufferSurface(egl, config, size);
     const EGLSurface shown = eglCreateWindowSurface(egl, config, window.id(), nullptr);
-    for (int i = 0; i < 3; ++i) { // leaves memory behind that is full of this colour
+    for (int i = 0; i < 3; ++i) { // leaves free memory filled with this colour
         eglMakeCurrent(egl, pbuffer, pbuffer, context);
         fill(0.6F, 0.7F, 0.8F);
         glFinish();

@@ -1,4 +1,5 @@
-// Prints how many values of new drawables are not 0: windows of several visuals before and after they grew, and pbuffers.
+// Prints how many values of new drawables are not 0: windows of several visuals before and after they grow, and
+// pbuffers.
 #include <GL/glx.h>
 #include <cstdio>
 #include <unistd.h>
@@ -38,7 +39,7 @@ void printBuffers(const char* what, GLenum buffer, int width, int height) {
                 notZero(colours, 3, 4, 1), notZero(depths, 0, 4, 4), notZero(stencils, 0, 1, 1));
 }
 
-// Memory of the process that draws is full of a pattern, and free.
+// Fills memory of the drawing process with a pattern, and frees it.
 void fillAndFree(GLXFBConfig config, GLXContext context, int width, int height) {
     const int attributes[] = {GLX_PBUFFER_WIDTH, width, GLX_PBUFFER_HEIGHT, height, None};
     std::vector<GLXPbuffer> pbuffers;
@@ -97,7 +98,7 @@ void testWindow(const Kind& kind, GLXFBConfig config, GLXContext context, int wi
     glXSwapBuffers(display, window.id());
     glFlush();
     printShown(kind.name, window.id(), width, height);
-    glEnable(GL_SCISSOR_TEST); // a part alone, across the tiles of several nodes
+    glEnable(GL_SCISSOR_TEST); // only a part, across the tiles of several nodes
     glScissor(width / 4, height / 4, width / 2, height / 2);
     glClearColor(1, 0.5F, 0.25F, 1);
     glClear(GL_COLOR_BUFFER_BIT);
@@ -107,7 +108,7 @@ void testWindow(const Kind& kind, GLXFBConfig config, GLXContext context, int wi
     printShown("a part", window.id(), width, height);
     window.resize(width + 40, height + 24);
     glXSwapBuffers(display, window.id());
-    if (kind.doubled != 0) { // natively one buffer alone takes the new size later
+    if (kind.doubled != 0) { // natively a single buffer takes the new size later
         printBuffers("grown", back, width + 40, height + 24);
         glXSwapBuffers(display, window.id());
         printShown("grown", window.id(), width + 40, height + 24);

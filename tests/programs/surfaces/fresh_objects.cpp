@@ -1,5 +1,5 @@
-// Prints how many bytes of objects without data are not 0: new textures, renderbuffers and buffers, and invalidated ones. A
-// texture that is made from a buffer shows the bytes that the nodes hold.
+// Prints how many bytes of objects without data are not 0: new textures, renderbuffers and buffers, and invalidated
+// ones. A texture made from a buffer shows the bytes that the nodes hold.
 #include <cstdio>
 #include <vector>
 
@@ -22,7 +22,7 @@ void print(const char* what, const std::vector<GLubyte>& bytes) {
     std::printf("%s: %d of %zu bytes are not 0\n", what, found, bytes.size());
 }
 
-// Memory of the process that draws is full of a pattern, and free.
+// Fills memory of the drawing process with a pattern, and frees it.
 void fillAndFree() {
     const std::vector<GLubyte> pattern(kBytes * 4, 0xa5);
     GLuint textures[6] = {}, buffers[6] = {};
@@ -89,7 +89,7 @@ void testFramebuffer(const char* what, GLsizei samples) {
     fillAndFree();
     glGenFramebuffers(2, framebuffers);
     glGenRenderbuffers(4, buffers);
-    for (int i = 0; i < 2; ++i) { // the second is what is read
+    for (int i = 0; i < 2; ++i) { // only the second is read
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[i]);
         glBindRenderbuffer(GL_RENDERBUFFER, buffers[2 * i]);
         glRenderbufferStorageMultisample(GL_RENDERBUFFER, i == 0 ? samples : 0, GL_RGBA8, kWidth, kHeight);
@@ -117,7 +117,7 @@ void testFramebuffer(const char* what, GLsizei samples) {
     glDeleteRenderbuffers(4, buffers);
 }
 
-// Through a texture, as the nodes hold it.
+// Prints the buffer as the nodes hold it, through a texture.
 void printBuffer(const char* what, GLuint buffer) {
     GLuint texture = 0;
     glGenTextures(1, &texture);

@@ -8,9 +8,9 @@
 
 namespace programs {
 
-// Colours alone: bits of a pixel that belong to no channel are undefined.
+// Sum of colours; bits of a pixel outside all channels are undefined and excluded.
 struct Shown {
-    std::uint64_t sum = 0; // of places and colours
+    std::uint64_t sum = 0; // includes positions and colours
     int lit = 0;           // pixels that are not black
 };
 

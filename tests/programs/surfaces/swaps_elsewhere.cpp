@@ -1,5 +1,5 @@
-// Prints the pixels of windows that are swapped while another window is current, by a thread with another context, or while
-// they are bound for reading alone. A window with one buffer is shown when its context is released.
+// Prints the pixels of windows that are swapped while another window is current, by a thread with another context, or
+// while they are bound only for reading. A window with one buffer is shown when its context is released.
 #include <GL/glx.h>
 #include <cstdio>
 #include <thread>
@@ -25,7 +25,7 @@ GLXFBConfig choose(int doubled) {
     return found[0];
 }
 
-// A window with a GLX window on it, whose buffers stay when no context is bound to it.
+// A window with a GLX window, whose buffers remain while no context is bound to it.
 struct Drawn {
     Drawn(GLXFBConfig config, int x, int w, int h)
         : visual(glXGetVisualFromFBConfig(display, config)), window(*visual, x, 0, w, h), id(glXCreateWindow(display, config, window.id(), nullptr)),

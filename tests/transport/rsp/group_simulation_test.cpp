@@ -186,7 +186,7 @@ TEST(GroupSimulation, usesMulticastForAMemberWithALateWelcome) {
     for (const auto& p : group.processes) EXPECT_TRUE(p.gone.empty());
 }
 
-// The host numbers its probes from probeSeed. Those of the join were sent before multicast failed.
+// The host numbers its probes from probeSeed. The join's probes were sent before multicast failed.
 TEST(GroupSimulation, ignoresRepliesToEarlierProbes) {
     SimulatedGroup group(14, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
     for (int i = 0; i < 3; ++i) group.join();

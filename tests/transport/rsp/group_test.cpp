@@ -177,7 +177,7 @@ Result<void> writeWord(Group& group, Deadline deadline) {
     return {};
 }
 
-// All ends wait for each other: three threads at the host, one of which serves the sockets.
+// All ends wait for each other: the host has three threads, and one of the three serves the sockets.
 TEST(Group, exchangesWordsWhicheverThreadLeads) {
     HOSTED(hosted, Seal::Tag);
     auto& [host, join] = hosted;

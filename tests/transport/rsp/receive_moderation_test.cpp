@@ -1,4 +1,4 @@
-// When a reader polls its sockets: how much accumulates, and that the delay is limited.
+// The times at which a reader polls its sockets: the amount that accumulates, and the limit of the delay.
 #include <gtest/gtest.h>
 
 #include "transport/rsp/receive_moderation.hpp"
@@ -41,7 +41,7 @@ TEST(ReceiveModeration, pollsASmallSocketBeforeItIsFull) {
     (void)looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
     EXPECT_LE(longestNs, 12 * kUs * kFew / 3);
     EXPECT_GE(longestNs, 12 * kUs * kFew / 5);
-    // Datagrams left by one poll count together with those of the next.
+    // Datagrams left by one poll count together with the next poll's.
     const int64_t endNs = kBeginNs + 100'000 * kUs;
     m.looked({.datagrams = 1}, endNs);
     m.looked({.datagrams = 32, .mayBeMore = true}, endNs);

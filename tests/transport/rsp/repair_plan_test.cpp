@@ -1,4 +1,4 @@
-// Which repairs a writer sends in which order, without sending data in flight twice.
+// The repairs that a writer sends and their order, without a second copy of data in flight.
 #include <gtest/gtest.h>
 
 #include "transport/rsp/repair_plan.hpp"
