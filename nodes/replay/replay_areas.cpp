@@ -149,7 +149,7 @@ void Replay::noteTests(GLenum cap) {
     if (cap == GL_STENCIL_TEST) c_->shared->testsStencil = true;
 }
 
-// ---- nodes that come back: what they are given has no areas in it. Until they know them they draw all of every window.
+// ---- returned nodes: their snapshot contains no areas. Until they receive them, they draw every window whole.
 
 std::vector<std::byte> Replay::tellAreas() const {
     std::vector<std::shared_ptr<const Areas>> named{areas_};

@@ -74,7 +74,7 @@ bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     return ok;
 }
 
-// ---- what programs write for tools, and what they want to hear
+// ---- debug labels, groups and messages of the program
 
 namespace {
 std::string textOf(const Data& d, GLsizei length) {

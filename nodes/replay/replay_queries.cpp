@@ -167,7 +167,7 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
     answerBytes(request, added ? wire::AnswerKind::Sum : wire::AnswerKind::Bytes, std::as_bytes(std::span(&value, 1)));
 }
 
-// ---- conditional rendering, with a result that is known: draws are left out by a query that counts nothing
+// ---- conditional rendering with a known result: a query that counts nothing makes GL skip the draws
 
 namespace {
 bool isInverted(GLenum mode) {

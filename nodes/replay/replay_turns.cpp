@@ -175,7 +175,7 @@ void Replay::turnDrawn(Window& w, bool shownInFront) {
     w.keepsPicture = w.keepsPicture || shownInFront; // it is drawn into while it is seen
 }
 
-// ---- nodes that come back: what they are given leaves out frames, so they can't count
+// ---- returned nodes: their snapshot leaves out frames, so they cannot count
 
 std::vector<wire::WindowTurn> Replay::turns() const {
     std::vector<wire::WindowTurn> turns;
