@@ -237,7 +237,7 @@ private:
         wire::WindowConfig config{}; // with the channel bits of `surface`
         uint8_t wishedRed = 0;       // red bits of the program's window; equal on all nodes
         ContextState* drawer = nullptr; // the context that was last current with it for drawing; null: destroyed
-        bool isFlat = false;    // the program's window has neither depth nor stencil buffer, whatever this node's surface has
+        bool isFlat = false; // the program's window has no depth and no stencil buffer; this node's surface may
         std::unique_ptr<gl::Surface> surface;
         // the front buffer, created on first use where surfaces have one colour buffer
         std::unique_ptr<gl::Surface> front;

@@ -121,7 +121,7 @@ void Replay::noteArea(uint16_t opcode, std::span<const std::byte> arguments) {
         if (c_->compileMode == GL_COMPILE_AND_EXECUTE) noteNativeList(); // the driver draws it during compilation
         return;
     }
-    // the commands of lists are noted one by one
+    // the items of lists are noted one by one
     if (!drawsWindow() || !c_->draw || opcode == op::glCallList || opcode == op::glCallLists) return;
     Window& w = *c_->draw;
     MovingPart& m = w.moving;

@@ -1,8 +1,8 @@
 // Copies from the window and into the window.
 //
-// Pixels of other tiles arrive first (kOpFillWindow). exact: they are written into the window itself. lean: the
-// window's framebuffer has no room for them, so they go into a framebuffer object of the copied rectangle, and the copy
-// reads from there. A multisampled window must keep its samples, and uses such an object too.
+// Pixels of other tiles arrive before the copy (kOpFillWindow). In exact tiling they are written into the window
+// itself. In lean tiling the window's framebuffer has no room for them: they go into a framebuffer object of the copied
+// rectangle, and the copy reads from there. A multisampled window must keep its samples, and uses such an object too.
 #include <algorithm>
 
 #include "nodes/replay/replay.hpp"

@@ -2,9 +2,9 @@
 // transformed in clip coordinates (view_move.hpp).
 //
 // Shaders receive the transformation as uniforms (nodes/shaders/moved_position). The program's view of its scene is
-// derived from the matrices that it passes to its shaders (seen_projection.hpp). Shaders without matrices are assumed
-// to use those of the fixed function. Fixed function draws with a projection that the replay sets meanwhile. Source:
-// thesis, "Stereo Rendering"; design 4.
+// derived from the matrices that it passes to its shaders (seen_projection.hpp). For shaders without matrices the fixed
+// function's are assumed. Fixed function draws with a projection that the replay sets meanwhile.
+// Source: thesis, "Stereo Rendering"; design 4.
 #include <algorithm>
 #include <string_view>
 #include <utility>

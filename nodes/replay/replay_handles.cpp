@@ -215,7 +215,7 @@ void Replay::glProgramUniformHandleui64vARB(GLuint program, GLint location, GLsi
     const GLint at = uniformLocation(program, location);
     gl.glProgramUniformHandleui64vARB(ours, at, count, handleValues(ours, at, values.as<GLuint64>(), count).data());
 }
-// Only the shader knows the kind of handle in an attribute. Most are textures.
+// Only the shader determines the kind of handle in an attribute. Most are textures.
 void Replay::glVertexAttribL1ui64ARB(GLuint index, GLuint64EXT x) {
     if (!gl.glVertexAttribL1ui64ARB) return (void)lacking(op::glVertexAttribL1ui64ARB);
     gl.glVertexAttribL1ui64ARB(index, c_->shared ? c_->shared->handles.value(HandleTable::Of::Texture, x) : x);

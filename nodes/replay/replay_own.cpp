@@ -28,7 +28,7 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
     s.samples = c.samples;
     s.accum = platform_->accumulates() ? c.accum : 0; // otherwise the replay has its own accumulation buffer
     s.srgb = c.srgb != 0;
-    s.stereo = false; // a node has one eye's (bufferOfEye)
+    s.stereo = false; // a node has the buffers of one eye (bufferOfEye)
     return s;
 }
 

@@ -1,10 +1,11 @@
 // Sort-last: the nodes of one picture share its opaque draws. Each node draws a contiguous range of them, in order. The
 // collector then composites the pictures by depth, and draws the rest alone.
 //
-//   Fresh    clears of the frame: all nodes
-//   Split    depth-tested, opaque draws: each node draws its range; for others it closes the scissor, or draws no vertices
-//   Whole    begins with a read of the picture, or with the first draw that depends on earlier pixels (blending, stencil,
-//            no depth test, …): the collector has the whole picture and draws the rest of the frame
+//   Fresh    All nodes execute the clears of the frame.
+//   Split    Each node draws its range of the depth-tested, opaque draws. For other ranges it closes the scissor, or
+//            draws no vertices.
+//   Whole    The collector has the whole picture and draws the rest of the frame. This phase begins with a read of the
+//            picture, or with the first draw that depends on earlier pixels (blending, stencil, no depth test, …).
 //
 // The stream and the state alone determine the shared draws, and the previous frame's cost determines the ranges. All
 // nodes therefore agree without messages. A returned node has no costs, so all nodes begin anew with it, at one
@@ -383,7 +384,7 @@ void Replay::moveShares(const Shares& shares) {
     sharesNumber_ = shares.number;
 }
 
-// The newcomer may have received only a part of the current frame's draws, and of their cost. The current frame is
+// The returned node may have received only a part of the current frame's draws, and of their cost. The current frame is
 // therefore composited without it. All nodes treat the next frame of each window as its first, and count its cost. A
 // frame whose sharing has begun ends with the same nodes and shares.
 void Replay::shareAnew(bool itself, std::function<void()> returned) {

@@ -52,7 +52,8 @@ void Replay::withPlainTransfer(const std::function<void()>& call) {
     gl.glPopAttrib();
 }
 
-// Calls without the clamp of reads to 1. A copy of a half-float window needs all values, although drivers clamp its reads.
+// Calls without the clamp of reads to 1. A copy of a half-float window needs all values, although drivers clamp its
+// reads.
 void Replay::withoutReadClamp(const std::function<void()>& call) {
     if (c_->api != wire::Api::Desktop || !gl.glClampColor) return call();
     GLint before = 0;

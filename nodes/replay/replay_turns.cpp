@@ -8,8 +8,8 @@
 //
 // Accumulation and front buffers keep the content of earlier frames, regardless of clears. From their first use, one
 // node draws the window permanently. The same applies if a frame needs an older depth or stencil buffer after its
-// decision. All nodes draw the first frames, so that such programs are detected before that matters. Source: thesis,
-// "Time-Multiplex (DPlex)".
+// decision. All nodes draw the first frames, so that such programs are detected before that matters.
+// Source: thesis, "Time-Multiplex (DPlex)".
 #include <cstring>
 #include <utility>
 
