@@ -18,7 +18,7 @@ enum class WholeUse : uint8_t {
     None,
     Copies,
     Level,     // defines the level that the second argument names
-    Levels,    // defines as many levels as the second argument says
+    Levels,    // the second argument is the number of defined levels
     Parameter, // sets a texture parameter, such as GL_GENERATE_MIPMAP
     AllLevels,
     Draw,

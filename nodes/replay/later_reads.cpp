@@ -9,11 +9,11 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kSliceNs = kNsPerS; // of waits for a fence
+constexpr int64_t kSliceNs = kNsPerS; // longest single wait for a fence
 
 } // namespace
 
-// One picture. bytes() and the end of it are one thread's.
+// One picture. bytes() and the destructor must run on the same thread.
 class LaterPicture final : public PictureRead {
 public:
     LaterPicture(std::shared_ptr<LaterReads> of, LaterReads::Buffer buffer, GLsync drawn, bool redFirst, PictureFormat format) : of_(std::move(of)), buffer_(buffer), drawn_(drawn), redFirst_(redFirst), format_(format) {}
@@ -81,7 +81,7 @@ void LaterReads::bindBuffer(size_t bytes) {
     bound_.bytes = bytes;
 }
 
-// The flush lets the other thread's wait end, whatever comes next.
+// The flush lets the other thread's wait end, even if no command follows.
 std::unique_ptr<PictureRead> LaterReads::take(bool redFirst, PictureFormat format) {
     const Buffer buffer = std::exchange(bound_, {});
     const GLsync drawn = gl_.fenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -91,7 +91,7 @@ std::unique_ptr<PictureRead> LaterReads::take(bool redFirst, PictureFormat forma
     return nullptr;
 }
 
-// No more than are on their way at once; they go with the share group.
+// The list holds at most as many buffers as were in use at the same time. The share group's end frees them.
 void LaterReads::giveBack(Buffer buffer) {
     const std::lock_guard lock(mutex_);
     free_.push_back(buffer);

@@ -1,4 +1,5 @@
-// Pictures that GL writes into buffers while the replay goes on. Another thread waits for them, and looks at them there, by a context of the same share group.
+// Asynchronous readback: GL writes pictures into buffers while the replay continues. Another thread waits for them and
+// maps them, with a second context of the same share group.
 #pragma once
 
 #include <memory>
@@ -13,14 +14,16 @@
 
 namespace mural {
 
-// Of one share group. Lives as long as pictures of it are on their way, which may be longer than the program's contexts do.
+// Readback of one share group. Lives until its last picture has been read, possibly longer than the program's contexts.
 class LaterReads : public std::enable_shared_from_this<LaterReads> {
 public:
     LaterReads(std::unique_ptr<gl::SharedReader> reader, const GlFunctions& gl);
 
-    // By the replay's thread, with a context of the group current. The buffer of `bytes` is bound to GL_PIXEL_PACK_BUFFER, and then the picture is read into it.
+    // Binds a buffer of `bytes` to GL_PIXEL_PACK_BUFFER, as destination of the following read. Must be called on the
+    // replay thread with a context of the group current.
     void bindBuffer(size_t bytes);
-    // What was read; it is drawn when the fence says so. redFirst: R G B A. Null: GL makes no fence.
+    // Returns the picture that was read; a fence signals its completion. redFirst: byte order R G B A. Returns null if
+    // GL creates no fence.
     std::unique_ptr<PictureRead> take(bool redFirst, PictureFormat format);
 
 private:
@@ -44,7 +47,7 @@ private:
         decltype(GlFunctions::glFlush) flush;
     };
     const Functions gl_;
-    Buffer bound_; // the replay's thread alone
+    Buffer bound_; // replay thread only
     std::mutex mutex_;
     std::vector<Buffer> free_;
 };

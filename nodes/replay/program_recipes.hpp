@@ -46,7 +46,7 @@ public:
     void linked(const GlFunctions& gl, GLuint program);
     void linkedFrom(GLuint program, ProgramRecipe recipe);
     void deleted(const GlFunctions& gl, GLuint shaderOrProgram);
-    // Of the last successful link; empty: none, or unsupported.
+    // Returns the recipe of the last successful link; empty: none, or unsupported.
     [[nodiscard]] std::vector<std::byte> of(GLuint program) const;
 
 private:

@@ -1,8 +1,8 @@
 // Regions that end on the bins of a software rasteriser.
 //
-// llvmpipe sorts the commands of a scene into bins of 64x64 pixels. In framebuffers without depth and stencil buffers it
-// draws a bin that holds nothing but rectangles by another code path, whose colours differ by 1 to 3. A scissor edge inside a bin
-// keeps commands out of it and so changes the path of its other pixels. Multisampled lines also round differently at
+// llvmpipe sorts the commands of a scene into bins of 64x64 pixels. Framebuffers without depth and stencil buffers have
+// another code path for bins that contain only rectangles. Its colours differ by 1 to 3. A scissor edge inside a bin
+// keeps commands out of it, and so changes the path of its other pixels. Multisampled lines also round differently at
 // scissor edges inside a bin. A region of whole bins has the same commands in each of them as the whole picture.
 #pragma once
 

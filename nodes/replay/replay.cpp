@@ -18,13 +18,13 @@ Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, Repl
 }
 
 Replay::~Replay() {
-    // Contexts first, then the surfaces that they may be current with.
+    // Frees contexts before the surfaces that they may be current with.
     (void)platform_->makeCurrent(nullptr, nullptr, nullptr);
     for (auto& [id, client] : clients_) client.contexts.clear();
 }
 
 bool Replay::packet(uint32_t stream, std::span<const std::byte> payload) {
-    if (!makeStreamCurrent(stream)) return true; // said once; the other streams go on
+    if (!makeStreamCurrent(stream)) return true; // logged once; the other streams continue
     counts_.bytes += payload.size();
     size_t at = 0;
     while (at < payload.size()) {
@@ -37,7 +37,7 @@ bool Replay::packet(uint32_t stream, std::span<const std::byte> payload) {
             if (payload.size() - at < 8) return false;
             std::memcpy(&length, payload.data() + at + 4, 4);
             words = length;
-            if (words < 2) return false; // the long header alone takes two
+            if (words < 2) return false; // the long header alone has two
         }
         if (words == 0 || words * 4 > payload.size() - at) return false;
         if (!record(payload.subspan(at, words * 4))) return false;
@@ -74,7 +74,8 @@ bool Replay::record(std::span<const std::byte> bytes) {
 bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
     Args in(arguments, blobs);
     const bool drawing = opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow || opcode == wire::kOpDrawAll;
-    // A read is in no list itself, and between glBegin and glEnd ending the native one would cut the primitive in two.
+    // A read is never part of a list. Between glBegin and glEnd, ending the native list for it would split the
+    // primitive.
     const bool readsInPrimitive = opcode == wire::kOpRequestPixels && c_->compilesPrimitive;
     if (drawing && c_->compiling && !readsInPrimitive) {
         bool ok = true;
@@ -92,8 +93,9 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (hasSkipped_) noteSkipped(opcode, arguments);
     if (movesView() || config_.pass.samples > 1) noteEye(opcode, arguments);
     if (drawsOtherPixels()) noteWholeWindow(opcode, arguments);
-    if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // a piece of it, or nothing
-    const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && leavesOut(opcode); // behind noteRange, which decides whether this draw is the node's
+    if (takesRanges()) in = Args(noteRange(opcode, arguments), blobs); // reduced to this node's piece, or empty
+    // after noteRange(), which decides whether this node draws the command
+    const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && leavesOut(opcode);
     if (moves()) noteArea(opcode, arguments);
     if (leftOut) exchangeDraws();
     const bool done = hasTrait(opcode, Trait::Allocates) ? executeAllocating(function, in) : function(*this, in);
@@ -104,7 +106,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
 
 #ifdef __SANITIZE_ADDRESS__
 namespace {
-// The first byte behind a block of memory: what the sanitized build must report.
+// Reads the first byte after a block of memory, which the sanitizer build must report.
 void readPastEnd(size_t sizeBytes) {
     const std::vector<char> block(sizeBytes);
     [[maybe_unused]] const char beyond = *static_cast<const volatile char*>(block.data() + sizeBytes);
@@ -112,8 +114,8 @@ void readPastEnd(size_t sizeBytes) {
 } // namespace
 #endif
 
-// No fault, but what makes one seen (MURAL_PLANT=names): this node's names are others than the program's, which they else are by
-// chance wherever the driver counts them alike. Once for each context.
+// Makes faults visible (MURAL_PLANT=names): this node's names differ from the program's. Otherwise they are often
+// equal, because drivers number objects alike. Called once per context.
 void Replay::spendNames() {
     constexpr GLsizei kNames = 40;
     GLuint names[kNames];
@@ -121,10 +123,10 @@ void Replay::spendNames() {
                                 gl.glGenProgramPipelines, gl.glGenTransformFeedbacks, gl.glGenProgramsARB})
         if (generate) generate(kNames, names);
     for (GLsizei i = 0; i < kNames && gl.glCreateProgram; ++i) gl.glCreateProgram();
-    while (gl.glGetError() != GL_NO_ERROR) {} // not all of them are in all kinds of contexts
+    while (gl.glGetError() != GL_NO_ERROR) {} // some contexts lack some of these objects
 }
 
-// A fault on purpose (MURAL_PLANT): tests of the tests. True: the command is left out.
+// Plants a fault (MURAL_PLANT), which tests must detect. Returns true if the command must be skipped.
 bool Replay::planted(uint16_t opcode) {
     const bool draws = opcode == op::glBegin || opcode == op::glDrawArrays || opcode == op::glDrawElements || opcode == op::glCallList;
 #ifdef __SANITIZE_ADDRESS__
@@ -133,7 +135,7 @@ bool Replay::planted(uint16_t opcode) {
     if (config_.plant == "leak") return opcode == op::glDeleteTextures;
     if (config_.plant == "drop") return draws && counts_.frames == 1;
     if (config_.plant != "opcode" || !draws || counts_.frames == 0) return false;
-    if (gl.glDepthFunc) gl.glDepthFunc(GL_NEVER); // as if one argument of the program's had been another
+    if (gl.glDepthFunc) gl.glDepthFunc(GL_NEVER); // as if the program had passed another argument
     if (gl.glEnable) gl.glEnable(GL_DEPTH_TEST);
     return false;
 }
@@ -157,7 +159,8 @@ bool Replay::bindStream(Stream& s) {
     s.context->draw = s.draw;
     s.context->read = s.read;
     if (s.draw) s.draw->drawer = s.context;
-    // Another thread's context: it is still current there, as the one before is in its own.
+    // The context belongs to another thread of the program: it is still current there, like the previous one in its
+    // thread.
     if (!bindSurfaces(gl::HeldBack::Kept)) {
         c_ = none_.get();
         return true;
@@ -200,7 +203,7 @@ NameTable& Replay::table(Kind kind) {
     return isShared(kind) && c_->shared ? c_->shared->tables[static_cast<int>(kind)] : c_->own[static_cast<int>(kind)];
 }
 
-// Compatibility contexts let programs bind names that they made up.
+// Compatibility contexts let programs bind names that no glGen… call created.
 GLuint Replay::generate(Kind kind) {
     GLuint made = 0;
     const auto call = [&](void (*function)(GLsizei, GLuint*)) {
@@ -223,7 +226,7 @@ GLuint Replay::generate(Kind kind) {
 }
 
 namespace {
-constexpr GLuint kNoObject = UINT32_MAX; // an error to the GL
+constexpr GLuint kNoObject = UINT32_MAX; // an invalid name for GL
 } // namespace
 
 GLuint Replay::name(Kind kind, GLuint app) {
@@ -232,7 +235,7 @@ GLuint Replay::name(Kind kind, GLuint app) {
     if (ours) return ours;
     if (kind == Kind::Framebuffer && c_->shared) ours = c_->shared->framebuffersOfAll.find(app); // Mesa shares them
     if (ours) return ours;
-    if (c_->core) return kNoObject; // only names that were made before are any
+    if (c_->core) return kNoObject; // only created names are valid
     ours = generate(kind);
     if (!ours) return app; // an error there is an error here
     bindName(kind, app, ours);

@@ -1,7 +1,7 @@
-// Replays capture streams on this node's GL. One thread; all contexts of all programs.
+// Replays capture streams on this node's GL: all contexts of all programs, on one thread.
 //
-// The generated replay calls GL for most commands; what the tiling changes, or what names this
-// node's objects in another way, is written by hand (replay_*.cpp).
+// The generated replay calls GL for most commands. Commands that tiling changes, or that name this node's objects
+// differently, are written by hand (replay_*.cpp).
 #pragma once
 
 #include <array>
@@ -51,68 +51,70 @@ namespace mural {
 
 class LaterReads;
 
-// What a stream may make the node hold or do at once; far above what programs need.
+// Limits on a stream's memory and work on the node; far above the needs of programs.
 struct ReplayLimits {
-    uint64_t blobBytes = uint64_t{4} << 30;    // waiting in one stream
-    uint64_t answerBytes = uint64_t{2} << 30;  // one answer
-    uint32_t listCommands = 1u << 24;          // run by one call of a display list: nesting multiplies
+    uint64_t blobBytes = uint64_t{4} << 30; // queued in one stream
+    uint64_t answerBytes = uint64_t{2} << 30; // of one answer
+    uint32_t listCommands = 1u << 24; // executed by one call of a display list; nesting multiplies them
 };
 
-// What a node is told about its part of every picture.
+// This node's part of every picture.
 struct ReplayConfig {
     int node = 0;
     TileGrid grid;
     TileRegion region;
-    std::optional<Viewport> area; // instead of tiles
-    std::optional<Areas> areas;   // instead of that: others follow, by moveAreas()
+    std::optional<Viewport> area; // replaces grid and region
+    std::optional<Areas> areas; // replaces `area`; moveAreas() sets the following ones
     RenderPass pass;
-    bool answers = true;   // questions about pictures; false: nodes of another pass do
+    bool answers = true; // answers requests for pixels; false: nodes of another pass answer them
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
-    std::optional<ScreenView> screen;         // then the eye is in it
-    bool skips = false;    // frames are not drawn until drawAgain()
-    bool catchesUp = false; // whose turn it is, others know: until takeTurns() or beginTurns() all frames are drawn and none is its own;
-                            // draws are not shared before shareAnew()
-    bool cull = false;     // whole primitives outside of the region are dropped by rewritten shaders
+    std::optional<ScreenView> screen; // includes the position of the eye
+    bool skips = false; // draws no frames until drawAgain()
+    // The node is in resync, and only other nodes have the turns. Until takeTurns() or beginTurns() it draws all
+    // frames, and none is its own turn. It shares no draws before shareAnew().
+    bool catchesUp = false;
+    bool cull = false; // rewritten shaders drop whole primitives outside the region
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
-    bool rastersInBins = false; // the driver draws in software, so a region has to end on its bins (raster_bins.hpp)
+    bool rastersInBins = false; // the driver draws in software, so a region must end on its bins (raster_bins.hpp)
     Readback readback = Readback::Direct; // of Frame::read
     bool deepPictures = false; // allows Bgr10A2 in Frame::format
-    std::string plant;     // MURAL_PLANT: a fault on purpose, for tests of the tests
+    std::string plant; // MURAL_PLANT: a planted fault, which tests must detect
     ReplayLimits limits;
 };
 
-// What the replay hands out; called on the replay thread.
+// Outputs of the replay; called on the replay thread.
 struct ReplayOutputs {
     // Part of an answer; `last` closes this node's part.
     std::function<void(const wire::AnswerHeader&, std::span<const std::byte>)> answer;
-    // A frame of the window is complete. `pixels` reads the given rectangle (window coordinates),
-    // rows bottom first, tightly packed; only valid during the call.
+    // A frame of the window is complete. `pixels` reads the given rectangle in window coordinates. Rows are bottom
+    // first and tightly packed. `pixels` is only valid during the call.
     struct Frame {
         uint32_t client, window, frame;
         wire::WindowConfig config;
         PixelViewport region; // this node's part of the picture
         PictureFormat format; // of `pixels` and `read`
-        PixelViewport picture; // all of it: the window's size, or every nth pixel of it
-        bool drawnWhole;      // nothing is cut to the part (Shared::allDrawn)
-        bool keepsPicture;    // frames build on the one before: one node goes on drawing them
-        bool sound;           // it does not depend on what was not drawn (ReplayConfig::skips)
-        bool notSplit;        // nothing was shared between ranges, though there are several
-        uint32_t areas;       // number of those by which the picture is divided
-        uint32_t shares;      // number of those by which its draws were shared; 0: those of the start, or nothing was
-        bool keepsAreas;      // other ones wait for a clear that does not come
+        PixelViewport picture; // the complete picture: the window's size, or every nth pixel of it
+        bool drawnWhole; // every node drew the whole window (Shared::allDrawn)
+        bool keepsPicture; // each frame builds on its predecessor, so one node draws all of them
+        bool sound; // does not depend on skipped draws (ReplayConfig::skips)
+        bool notSplit; // several ranges exist, but no draws were shared
+        uint32_t areas; // number of the Areas that divide the picture
+        uint32_t shares; // number of the Shares that divided the draws; 0: the initial ones, or no shared draws
+        bool keepsAreas; // newer areas have waited too long for a full clear
         std::function<const std::byte*(const PixelViewport&)> pixels;
-        // The same of `region`, once, to be taken by another thread, which may have to wait until it is drawn. Set where `pixels` is. Null: nothing to be had.
+        // Reads `region` once, for another thread, which may have to wait for its drawing. Set where `pixels` is.
+        // Returns null if no picture is available.
         std::function<std::unique_ptr<PictureRead>()> read;
     };
     std::function<void(const Frame&)> frameDone;
-    // What is asked of a window depends on what was not drawn.
+    // Called when an answer about a window depends on skipped draws.
     std::function<void()> unsound;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     std::function<void(const std::string&)> log;
-    // Nodes that draw ranges of one picture (replay_range.cpp): puts together what all have drawn. Afterwards the collector's
-    // part is the whole picture; returns the area of it that may have changed.
+    // Sort-last (replay_range.cpp): composites the parts of all nodes of the picture. Afterwards the collector's part
+    // is the whole picture. Returns the area of it that may have changed.
     std::function<PixelViewport(PicturePart&, const FoldRule&)> composeParts;
-    // What this node's GL tells of a program's context.
+    // Driver events of a program's context.
     std::function<void(const wire::News&, const std::string& text)> news;
 };
 
@@ -125,35 +127,38 @@ public:
     Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs);
     ~Replay() override;
 
-    // The payload of one packet. False: the stream is broken beyond this packet (the reason is logged).
+    // Replays the payload of one packet. Returns false if the stream is broken beyond this packet; the log has the
+    // reason.
     bool packet(uint32_t stream, std::span<const std::byte> payload);
     void clientGone(uint32_t client);
-    // Windows are drawn from their next frames on.
+    // Ends the skipping of frames: each window is drawn from its next frame on.
     void drawAgain();
-    // Of nodes that take turns: what decides whose it is, of all windows.
+    // Time-multiplex: returns the state of all windows that determines their turns.
     [[nodiscard]] std::vector<wire::WindowTurn> turns() const;
-    // It is as another node has said of this place of the stream.
+    // Sets the turns that another node reported for this position of the stream.
     void takeTurns(std::span<const wire::WindowTurn> turns);
-    // Nobody knows: the frames in hand stay with those whose turn is first, and all nodes count anew.
+    // Called if no node has the turns. Frames in progress stay with the node of the first turn, and all nodes count
+    // anew.
     void beginTurns();
-    // Of nodes that draw ranges of one picture, at one place of the stream for all of them: a node has come back, `itself`: this one. `returned`
-    // is called behind the last picture that is put together without it, when there is a first with it.
+    // Sort-last: a node has returned; `itself`: this one. All nodes of the picture call it at the same position of the
+    // stream. `returned` is called after the last composition without that node, before the first one with it.
     void shareAnew(bool itself, std::function<void()> returned);
-    // From the next draws of each window on that are the first to be shared in their frame.
+    // Applies new shares. They are valid for each window from the next draws that are the first shared ones of their
+    // frame.
     void moveShares(const Shares& shares);
-    // From the next full clear of each window on its part is the one of these areas (replay_areas.cpp). Where the config has areas.
+    // Requires ReplayConfig::areas. Applies new areas to each window at its next full clear (replay_areas.cpp).
     void moveAreas(Areas areas);
-    // The payload of a Turns message, by which areas windows are divided here…
+    // Returns the payload of a Turns message: the areas that divide this node's windows.
     [[nodiscard]] std::vector<std::byte> tellAreas() const;
-    // …and were where another node has told it. False: it is none.
+    // Sets the areas from such a payload of another node. Returns false if malformed.
     bool takeToldAreas(std::span<const std::byte> bytes);
-    // Nobody knows: windows are divided by the latest.
+    // Called if no node has the areas. Divides all windows by the latest ones.
     void beginAreas();
-    // Whether what is shown next depends on what was not drawn before that.
+    // Reports whether the next shown frames depend on skipped draws.
     [[nodiscard]] wire::Soundness soundness() const;
     [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
 
-    // ---- what the generated code uses
+    // ---- interface of the generated code
     GlFunctions gl{};
     GLuint name(Kind kind, GLuint app);
     const GLuint* names(Kind kind, const GLuint* app, int64_t count);
@@ -162,21 +167,22 @@ public:
     void forget(Kind kind, const GLuint* app, int64_t count);
     GLint uniformLocation(GLint location);
     GLint uniformLocation(GLuint program, GLint location);
-    // Sets the unpack state that fits where the image is. False: an offset, and no buffer bound.
     void clientStatePushed(GLbitfield mask);
     void clientStateDefault(GLbitfield mask);
+    // Sets the unpack state for the location of the image. Returns false for an offset while no buffer is bound.
     bool unpackFor(const Data& data);
-    // False: nothing there, or an offset while no buffer is bound at `binding`: GL would read wild memory.
+    // Returns false if the data is absent, or is an offset while no buffer is bound at `binding`: GL would read invalid
+    // memory.
     bool readable(const Data& data, GLenum binding);
     bool indicesFit(const Data& indices);
     bool lacking(uint16_t opcode);
-    // Runs `call` with the program's own scissor alone.
+    // Runs `call` with only the program's own scissor.
     void withoutTile(const std::function<void()>& call);
-    // Runs a copy out of the read framebuffer; the call gets where to read.
+    // Runs a copy from the read framebuffer. `call` receives the position to read from.
     void copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::function<void(GLint, GLint)>& call);
     template <class T> T windowX(T x) const { return moved(x, origin().x); }
     template <class T> T windowY(T y) const { return moved(y, origin().y); }
-    // v: `count` values, 2 to 4, as they lie in the record (doubles at multiples of 4 bytes).
+    // v: `count` values, 2 to 4, in the layout of the record (doubles at multiples of 4 bytes).
     template <class T> std::array<T, 4> windowPosition(const T* v, int count) const {
         std::array<T, 4> position{};
         std::memcpy(position.data(), v, static_cast<size_t>(count) * sizeof(T));
@@ -184,7 +190,7 @@ public:
         position[1] = windowY(position[1]);
         return position;
     }
-    // Coordinates may be any number: the difference wraps around instead of being undefined.
+    // Coordinates may be any number, so the difference wraps around instead of being undefined.
     template <class T> static T moved(T value, int32_t by) {
         if constexpr (std::is_integral_v<T>) return static_cast<T>(int64_t{value} - by);
         else return static_cast<T>(value - static_cast<T>(by));
@@ -194,124 +200,132 @@ public:
 
 private:
     struct ContextState;
-    // How far a frame of a window is that nodes share by ranges.
+    // State of a window's frame in sort-last rendering.
     struct RangeFrame {
         enum class Phase : uint8_t {
             Fresh, // nothing is drawn
             Split, // each node has drawn its range
-            Whole  // put together: the collector draws the rest
+            Whole // composited: the collector draws the rest
         } phase = Phase::Fresh;
-        GLbitfield cleared = 0; // whole buffers, since the frame began
-        uint64_t cost = 0;      // of all draws so far, vertices…
-        uint64_t lastTotal = 0; // …and in the frame before; 0: nothing is known
-        uint64_t serial = 0;    // exchanges of this window
-        GLenum function = 0;    // of all draws that were shared
-        bool muted = false;     // another node draws this
+        GLbitfield cleared = 0; // buffers that were cleared whole since the frame began
+        uint64_t cost = 0; // of all draws so far, in vertices
+        uint64_t lastTotal = 0; // cost of the previous frame; 0: unknown
+        uint64_t serial = 0; // number of compositions of this window
+        GLenum function = 0; // depth function of all shared draws
+        bool muted = false; // another node draws the current commands
         bool wasSplit = false;
-        Range share;            // of lastTotal: this node's…
-        uint32_t shares = 0;    // …by the Shares of this number
-        uint32_t drawnBy = 0;   // and those of the frame before
-        uint64_t returns = 0;   // of nodes of its picture, before the frame began: it is put together with these
-        FoldRule rule;          // how the nodes' pictures are laid over each other
+        Range share; // this node's part of lastTotal
+        uint32_t shares = 0; // number of the Shares with that part
+        uint32_t drawnBy = 0; // number of the Shares of the previous frame
+        // returns of nodes of its picture before the frame began; its composition includes these nodes
+        uint64_t returns = 0;
+        FoldRule rule; // how the nodes' pictures are composited
     };
-    // Which part of a window this node draws, where that may change.
+    // This node's part of a window, where it may change (replay_areas.cpp).
     struct MovingPart {
-        std::shared_ptr<const Areas> areas;  // that are drawn
-        std::shared_ptr<const Areas> wanted; // that shall be
-        GLbitfield drawn = 0; // buffers of which this node has its part alone; the others are on all nodes as on a single machine
-        bool fixed = false;   // for good
-        int64_t waits = 0;    // frames since others were wanted
-        std::shared_ptr<const Areas> front; // of the front, where that is a surface of its own
+        std::shared_ptr<const Areas> areas; // the current ones
+        std::shared_ptr<const Areas> wanted; // the ones to apply at the next full clear
+        GLbitfield drawn = 0; // buffers with only this node's part; all other buffers are complete on all nodes
+        bool fixed = false; // the areas never change again
+        int64_t waits = 0; // frames since other areas were announced
+        std::shared_ptr<const Areas> front; // of the front, where it has its own surface
     };
     struct Window {
-        bool destroyed = false; // freed when it is current nowhere
+        bool destroyed = false; // freed when no stream has it current
         bool lean = false;      // the framebuffer has the region's size
-        bool widens = true;     // to the window's size, when that is needed; not when that has failed
-        wire::WindowConfig config{}; // channel bits are those of `surface`
+        bool widens = true; // to the window's size on demand; false after a failure
+        wire::WindowConfig config{}; // with the channel bits of `surface`
         uint8_t wishedRed = 0;       // red bits of the program's window; equal on all nodes
         ContextState* drawer = nullptr; // the context that was last current with it for drawing; null: destroyed
-        bool isFlat = false;    // the program's window has neither depth nor stencil buffer, whatever this node's surface has
+        bool isFlat = false; // the program's window has no depth and no stencil buffer; this node's surface may
         std::unique_ptr<gl::Surface> surface;
-        std::unique_ptr<gl::Surface> front;  // where surfaces have one colour buffer: the front, once it is used
-        bool frontStale = false;             // its colours have to come from `surface`
-        gl::Surface* deep = nullptr;         // the one of both whose depth and stencil count
-        std::unique_ptr<gl::Context> filler; // draws depth and stencil where the program's context can't
+        // the front buffer, created on first use where surfaces have one colour buffer
+        std::unique_ptr<gl::Surface> front;
+        bool frontStale = false; // its colours must be copied from `surface`
+        gl::Surface* deep = nullptr; // the surface with the valid depth and stencil; null: `surface`
+        std::unique_ptr<gl::Context> filler; // draws depth and stencil if the program's context cannot
         PixelViewport whole;  // 0, 0, width, height
-        PixelViewport part;   // this node's, by the grid
-        PixelViewport region; // the same, or nothing while it is another node's turn
-        PixelViewport drawn;  // what the scissor lets through: the region, or the driver's bins that hold it (raster_bins.hpp)
-        int64_t frames = 0;        // that have begun, and turns that have (replay_turns.cpp)
+        PixelViewport part; // this node's, by the areas or the grid
+        PixelViewport region; // `part` as it is drawn; empty while another node has the turn
+        // pixels inside the scissor: the region, or the driver's bins that contain it (raster_bins.hpp)
+        PixelViewport drawn;
+        int64_t frames = 0; // number of frames begun, and below of turns begun (replay_turns.cpp)
         int64_t turn = 0;
-        bool turnOver = false;     // the frame is complete: the next command that draws begins another
-        bool undecided = false;    // it has only cleared: the next node's turn may begin…
-        bool fresh = false;        // …and has, with this frame
-        int64_t kept = 0;          // frames in a row that have built on the one before
-        GLbitfield cleared = 0;    // whole buffers, since the frame began
-        bool plain = true;         // drawn without the kernel of this pass: its pixels are picked at the end…
-        bool copied = true;        // …because the frame before read or copied pixels there, or chose levels of textures by them
-        int askedOfLevels = 0;     // draws of this frame that were (replay_whole_windows.cpp)
-        bool asked = false;        // for pixels, in this frame
-        bool drawsAll = true;      // tiles or not: a copy shall find this pass's own pixels; those that are brought are another's
-        bool filled = true;        // …because the frame before had copies
+        bool turnOver = false; // the frame is complete; the next drawing command begins another
+        bool undecided = false; // the frame has only cleared, and may begin the next node's turn
+        bool fresh = false; // the frame has begun the next node's turn
+        int64_t kept = 0; // consecutive frames that built on their predecessor
+        GLbitfield cleared = 0; // buffers that were cleared whole since the frame began
+        bool plain = true; // drawn without the kernel of this pass; its pixels are selected at the end
+        bool copied = true; // pixels were read or copied, or selected texture levels: the next frame is plain
+        int askedOfLevels = 0; // draws of this frame that were checked for texture levels (replay_whole_windows.cpp)
+        bool asked = false; // pixels or bytes were requested in this frame
+        // draws the whole window: a copy must find this pass's own pixels, and other tiles deliver another pass's
+        bool drawsAll = true;
+        bool filled = true; // the frame had copies: the next one draws the whole window
         RangeFrame range;
         MovingPart moving;
-        bool keepsPicture = false; // the turn never ends
-        bool sceneElsewhere = false;    // in this frame a scene is drawn into a framebuffer object (replay_scenes.cpp)
-        bool sceneWasElsewhere = false; // …in the frame before
+        bool keepsPicture = false; // one node has the turn permanently
+        bool sceneElsewhere = false; // this frame draws a scene into a framebuffer object (replay_scenes.cpp)
+        bool sceneWasElsewhere = false; // the previous frame did
         bool begun = false;        // something was drawn since the last swap
         ReadbackChoice readback;
-        bool skipped = false;      // its frames are not drawn (replay_catch_up.cpp), and so…
-        GLbitfield stale = 0;      // …these buffers do not hold what they should…
-        bool frontStaled = false;  // …nor does its front…
-        bool unsound = false;      // …and this frame depends on that
-        std::vector<int16_t> accumulated; // of `drawn`, rows bottom first; empty: nothing yet
+        bool skipped = false; // its frames are not drawn (replay_catch_up.cpp)
+        GLbitfield stale = 0; // buffers with wrong content after skipped frames
+        bool frontStaled = false; // the same for its front
+        bool unsound = false; // this frame depends on stale buffers
+        std::vector<int16_t> accumulated; // values of `drawn`, rows bottom first; empty: none yet
     };
     struct ProgramInfo {
-        std::unordered_map<GLint, GLint> locations; // the program's → ours, only where they differ
+        std::unordered_map<GLint, GLint> locations; // from the program's to this node's, only where they differ
     };
     struct ListItem {
         GLuint native = 0;
-        uint32_t vertices = 0; // that the native list draws, about
-        bool plain = true;     // it changes nothing that decides whether draws may be shared
-        std::vector<std::byte> record; // of a command that the node executes itself; empty: native
-        std::vector<std::vector<std::byte>> blobs; // that the record takes
+        uint32_t vertices = 0; // approximate number that the native list draws
+        bool plain = true; // changes no state that decides whether draws may be shared
+        std::vector<std::byte> record; // a command that the node executes itself; empty: native
+        std::vector<std::vector<std::byte>> blobs; // blobs of the record
     };
     struct List {
         std::vector<ListItem> items;
     };
-    struct DealtHandle { // our names
+    struct DealtHandle { // names of this node
         GLuint texture, sampler; // sampler: the program's, or 0
-        GLuint made;             // one like it, by which the handle was asked for, or 0
+        GLuint made; // an equal sampler that was created to obtain the handle, or 0
     };
-    struct Shared { // what contexts share
+    struct Shared { // state that contexts share
         NameTable tables[static_cast<int>(Kind::Count)];
         std::unordered_map<uint64_t, GLsync> syncs;
         std::unordered_map<GLuint, ProgramInfo> programs; // by the program's name
         std::unordered_map<GLuint, List> lists;
         NameTable framebuffersOfAll;
-        std::unordered_map<GLuint, bool> placedModules; // by our shader's name: it holds a module that reads gl_FragCoord
-        bool listsHoldBitmaps = false; // one of them at least
-        bool texturesHaveLevels = false; // some of them (replay_whole_windows.cpp)
-        bool testsDepth = false, testsStencil = false; // some command or list has switched that on
-        bool allDrawn = false; // by every node: the program's side has asked for it, or a module reads gl_FragCoord
+        // by this node's shader name: contains a module that reads gl_FragCoord
+        std::unordered_map<GLuint, bool> placedModules;
+        bool listsHoldBitmaps = false; // at least one list contains a bitmap
+        bool texturesHaveLevels = false; // at least one texture has (replay_whole_windows.cpp)
+        bool testsDepth = false, testsStencil = false; // some command or list has enabled the test
+        // every node draws everything: the program's side requested it, or a module reads gl_FragCoord
+        bool allDrawn = false;
         TiledPrograms tiled;
         ProgramRecipes recipes;
         HandleTable handles;
-        std::unordered_map<uint64_t, DealtHandle> dealt; // by the program's handle of a texture
+        std::unordered_map<uint64_t, DealtHandle> dealt; // by the program's texture handle
         bool handlesFreed = false; // some texture with a handle was deleted
         std::unordered_map<GLuint, SeenProjection> projections; // by the program's name (replay_eyes.cpp)
-        std::unordered_map<GLuint, bool> primitiveIds;  // our programs that number primitives: not cut into pieces
-        std::unordered_map<GLuint, bool> memoryWriters; // by the program's name, once it was used (replay_left_out.cpp)
-        SeenProjection projection;                      // the last one in any buffer
-        std::shared_ptr<LaterReads> later; // null: there are none, or…
-        bool laterAsked = false;           // …it was not asked for them
+        // by this node's program name: numbers primitives, so draws are not cut into pieces
+        std::unordered_map<GLuint, bool> primitiveIds;
+        // by the program's name, after its first use (replay_left_out.cpp)
+        std::unordered_map<GLuint, bool> memoryWriters;
+        SeenProjection projection; // the last one found in any buffer
+        std::shared_ptr<LaterReads> later; // null: unavailable, or not requested yet
+        bool laterAsked = false; // creation was tried once
     };
     struct Scissor {
         bool enabled = false;
         PixelViewport box;
     };
     static constexpr int kViewports = 16;
-    // Of the program; alpha of a window that hides its own is never written.
+    // The program's masks. Alpha of a window that hides its own is never written.
     struct ColorMasks {
         std::array<std::array<GLboolean, 4>, 8> buffers;
         bool differ = false; // indexed commands were used
@@ -327,8 +341,8 @@ private:
         ColorMasks colorMasks;
     };
     struct PixelUnpack {
-        std::array<GLint, 8> values{}; // in the order of kUnpackNames; alignment is made 4
-        bool tight = false;            // what GL has now
+        std::array<GLint, 8> values{}; // in the order of kUnpackNames; alignment is initialised to 4
+        bool tight = false; // the driver currently has tight packing set
     };
     struct ClientState {
         GLbitfield mask;
@@ -336,7 +350,7 @@ private:
         std::array<GLint, 8> pack;
         GLuint arrayBuffer, packBuffer, unpackBuffer;
     };
-    // A query is counted in pieces: what every node draws whole is counted once, the rest tile by tile.
+    // A piece of a query. Fragments that every node draws count once; the others are summed over the tiles.
     struct QueryPiece {
         GLuint ours;
         bool whole;
@@ -344,20 +358,20 @@ private:
     struct QueryInfo {
         GLenum target = 0;
         std::vector<QueryPiece> pieces; // the first is the program's own query
-        bool skipped = false;           // a frame was not drawn while it counted
-        bool passed = true;             // as the program has told: of the whole picture
+        bool skipped = false; // a frame was skipped while it counted
+        bool passed = true; // result for the whole picture, reported by the program's side
     };
-    // Pixels of the window that a copy will read, put together from all nodes (lean, and windows with samples).
+    // Window pixels for the next copy, collected from all nodes (lean tiling and multisampled windows).
     struct Gathered {
-        PixelViewport box; // empty: nothing waits
+        PixelViewport box; // empty: none
         GLuint framebuffer = 0, color = 0, depthStencil = 0;
-        std::vector<uint32_t> depth; // until the stencil has come
+        std::vector<uint32_t> depth; // kept until the stencil arrives
     };
-    struct AskedAhead { // answered at the next swap
+    struct AskedAhead { // a query whose result is answered at the next swap
         uint32_t request;
         GLuint query;
     };
-    // Messages of the driver, which may come from threads of its own.
+    // Messages of the driver, which may arrive on the driver's own threads.
     struct DebugInbox {
         struct Message {
             uint32_t source, type, id, severity;
@@ -369,25 +383,25 @@ private:
     };
     struct ContextState {
         DebugInbox debug;    // outlives the context
-        bool debugs = false;  // the program has asked for a debug context
-        bool listens = false; // the driver's messages go there
+        bool debugs = false; // the program requested a debug context
+        bool listens = false; // the driver sends its messages to `debug`
         bool lost = false;    // the driver has reset it
-        bool heldBack = false; // not flushed when the program gives it up
-        uint32_t errorsTold = 0; // to the program, by its own GL
+        bool heldBack = false; // not flushed when the program releases it
+        uint32_t errorsTold = 0; // number of errors that the program's own GL has reported to it
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
         std::vector<AskedAhead> askedAhead;
-        std::map<GLenum, GLuint> counting;             // fragments now: the program's query by its target
-        bool countsWhole = false;                      // what drawsWhole() was when the last piece began
-        bool countedWhole = false;                     // a query that only whole pictures answer is active
+        std::map<GLenum, GLuint> counting; // active fragment queries: target to the program's query
+        bool countsWhole = false; // value of drawsWhole() at the start of the last piece
+        bool countedWhole = false; // an active query requires the whole picture on every node
         bool conditional = false, conditionMet = false;
-        GLuint condition = 0;                          // our name of the query that decides, and how
+        GLuint condition = 0; // this node's name of the deciding query, and its mode
         GLenum conditionMode = 0;
-        GLuint queryBuffer = 0;                        // our name: results would go there
+        GLuint queryBuffer = 0; // this node's name of the buffer for results
         GLuint nothingCounted = 0;                     // a query whose result is 0
         uint32_t client = 0, id = 0;
-        bool destroyed = false; // freed when it is current nowhere
+        bool destroyed = false; // freed when no stream has it current
         std::unique_ptr<gl::Context> context;
-        gl::ContextConfig wish; // by which it was made
+        gl::ContextConfig wish; // configuration of its creation
         std::shared_ptr<Shared> shared;
         NameTable own[static_cast<int>(Kind::Count)];
         wire::Api api = wire::Api::Desktop;
@@ -397,18 +411,18 @@ private:
         Window* read = nullptr;
         bool everCurrent = false;
         GLuint drawFramebuffer = 0, readFramebuffer = 0; // the program's names
-        GLuint arrayBuffer = 0, packBuffer = 0, unpackBuffer = 0; // our names
+        GLuint arrayBuffer = 0, packBuffer = 0, unpackBuffer = 0; // this node's names
         GLuint program = 0;                              // the program's name
         std::array<Scissor, kViewports> scissors;
         bool scissorsDiffer = false;                     // indexed commands were used
         std::array<std::array<GLfloat, 4>, kViewports> viewports{};
         bool viewportsDiffer = false;
         ColorMasks colorMasks;
-        GLenum drawBuffer0 = 0, readBuffer0 = 0;         // of the default framebuffer, the program's names
+        GLenum drawBuffer0 = 0, readBuffer0 = 0; // of the default framebuffer, as the program named them
         PixelUnpack unpack;
         std::array<GLint, 8> pack{};
-        bool gathersBitmaps = false;                     // the driver may hold some back (replay_bitmaps.cpp)
-        bool packsBlocks = false;                        // the program has said what compressed blocks are when packed
+        bool gathersBitmaps = false; // the driver may have batched some (replay_bitmaps.cpp)
+        bool packsBlocks = false; // the program has set pack parameters of compressed blocks
         GLuint listBase = 0;
         GLuint compiling = 0;                            // name of the list, 0: none
         GLenum compileMode = 0;
@@ -419,24 +433,24 @@ private:
         std::vector<std::vector<std::byte>> arrayMemory; // spans of client arrays
         GLuint fillFramebuffer = 0;
         Gathered gathered;
-        GLfloat cullMargin = 16;   // pixels; only grows: lists and stacks may bring wide lines back
-        bool lineStippled = false; // ever: a dropped piece of a strip would shift the pattern
-        bool clippingCounted = false; // a query counts what clipping gets or gives
+        GLfloat cullMargin = 16; // in pixels; only grows, because lists and stacks may restore wide lines
+        bool lineStippled = false; // at any time so far: a dropped piece of a strip would shift the pattern
+        bool clippingCounted = false; // a query counts primitives before or after clipping
         bool arbPositions = false; // an ARB program reads the window's offset
         bool pipelineBound = false;
-        std::set<GLenum> openQueries; // that count anything
+        std::set<GLenum> openQueries; // active queries of other counts than samples
         bool feedsBack = false;       // transform feedback may be active
-        // Of what is drawn into now, as the last draw has found it (replay_scenes.cpp).
+        // The current draw target, as determined at the last draw (replay_scenes.cpp).
         bool attachmentsKnown = false, depthAttached = false, sceneSized = false, depthTested = false;
-        // Fixed function, seen by another eye: GL's projection is not the program's (replay_eyes.cpp).
+        // Fixed function for another eye: GL's projection differs from the program's (replay_eyes.cpp).
         bool projectionShifted = false;
-        // Ranges: whether draws may be shared, as long as no state changes (replay_range.cpp).
+        // Sort-last: whether draws may be shared, valid until state changes (replay_range.cpp).
         bool rangeKnown = false, mayShare = false;
-        bool writesMemory = false; // storage or images were bound: vertex shaders may write there
-        bool rangeFeedsBack = false; // transform feedback
+        bool writesMemory = false; // storage or images were bound; vertex shaders may write to them
+        bool rangeFeedsBack = false; // transform feedback is active
         int activeQueries = 0;
         bool inPrimitive = false;
-        bool projectionKnown = false; // as it is, for shaders that may read it
+        bool projectionKnown = false; // fixedProjection is current, for shaders that may read it
         SeenProjection fixedProjection;
         std::array<GLfloat, 16> ownProjection{}, shiftedProjection{};
     };
@@ -445,8 +459,8 @@ private:
         Window* draw = nullptr;
         Window* read = nullptr;
         std::deque<std::vector<std::byte>> blobs;
-        uint64_t blobMissing = 0; // bytes of the last blob that have not come
-        uint64_t blobBytes = 0;   // of all blobs, when complete
+        uint64_t blobMissing = 0; // bytes of the last blob that have not arrived
+        uint64_t blobBytes = 0; // size of all blobs when complete
     };
     struct Client {
         std::map<uint32_t, std::unique_ptr<ContextState>> contexts;
@@ -505,13 +519,13 @@ private:
     bool ownRequestBuffer(Args& in);
     void readBuffer(GLuint ours, uint64_t offset);
     void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
-    enum class Beyond : uint8_t { Black, Nothing }; // what may lie there that is read
+    enum class Beyond : uint8_t { Black, Nothing }; // pixels outside the framebuffer: returned as black, or impossible
     [[nodiscard]] bool isAnswering();
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond = Beyond::Black);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] bool resolves(const Window& w) const;
     const std::byte* readResolved(const PixelViewport& r, GLenum format, const ColourWords& words);
-    [[nodiscard]] PictureFormat pictureFormatOf(const Window& w) const; // of readShown()
+    [[nodiscard]] PictureFormat pictureFormatOf(const Window& w) const; // the format of readShown()
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
     void withoutReadClamp(const std::function<void()>& call);
@@ -522,7 +536,7 @@ private:
     [[nodiscard]] bool readsLater(const Window& w, const PixelViewport& region);
     std::unique_ptr<PictureRead> readAtOnce(const ReplayOutputs::Frame& f, const PixelViewport& r);
     std::unique_ptr<PictureRead> readLater(Window& w, const PixelViewport& r, bool front);
-    LaterReads* into_ = nullptr; // readRegion goes there
+    LaterReads* into_ = nullptr; // destination of readRegion(); null: pixels_
     std::shared_ptr<PictureMemory> memory_ = std::make_shared<PictureMemory>();
     // replay_fill.cpp
     const GLfloat* depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels);
@@ -632,8 +646,9 @@ private:
     [[nodiscard]] bool mayRead(const Window& w, bool deep) const;
     // replay_passes.cpp
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
-    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none() || !config_.pass.shown.none(); } // than its part of the window has
-    // Pixels that are brought from other tiles, for copies, are those of the pass that answers.
+    // True if the pass does not draw exactly the pixels of this node's part of the window.
+    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none() || !config_.pass.shown.none(); }
+    // True if the pixels that other tiles deliver for copies belong to another pass: the answering one.
     [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsOtherPixels() && !takesRanges(); }
     [[nodiscard]] bool interleaves(const Window* w) const { return drawsOtherPixels() && w && !w->plain; }
     [[nodiscard]] PixelViewport partDrawn(const Window& w) const;
@@ -693,7 +708,7 @@ private:
     int depthBitsOfWindow();
     void readPart(Window& w, const PixelViewport& box, PicturePart& part);
     void writePart(const PicturePart& part, const PixelViewport& area);
-    std::vector<std::byte> sliced_; // arguments of a draw of which this node draws a piece
+    std::vector<std::byte> sliced_; // arguments of a draw, reduced to this node's piece
     // replay_front.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
     gl::Surface* surfaceOf(Window* w, GLenum buffer);
@@ -716,8 +731,8 @@ private:
     [[nodiscard]] bool hidesAlpha() const;
     void applyColorMasks();
     void makeOpaque();
-    bool alphaHides_ = false; // in any window
-    std::string toldBits_;    // what windows here have instead of what was asked for
+    bool alphaHides_ = false; // some window hides its alpha
+    std::string toldBits_; // last logged difference between a window here and the program's
     // replay_accum.cpp
     // x, y, z, width and height, in window coordinates.
     void drawTexture(const std::array<GLfloat, 5>& rectangle);
@@ -748,7 +763,7 @@ private:
     [[nodiscard]] bool drawsLean() const { return c_->draw ? c_->draw->lean : config_.lean; }
     [[nodiscard]] bool readsLean() const { return c_->read && c_->read->lean; }
     void applyScissors();
-    bool tileOff_ = false; // withoutTile is running
+    bool tileOff_ = false; // withoutTile() is running
     void applyScissor(int index, bool all);
     void applyViewports();
     void restoreWindowState();
@@ -772,11 +787,11 @@ private:
     ReplayCounts counts_;
     std::map<uint32_t, Client> clients_;
     bool loaded_ = false;
-    // what is current now
+    // The current stream and its context.
     uint32_t stream_ = 0;
     Stream* s_ = nullptr;
     ContextState* c_ = nullptr;
-    ContextState* bound_ = nullptr; // what the platform has current
+    ContextState* bound_ = nullptr; // the context that is current on the platform
     Window* boundDraw_ = nullptr;
     Window* boundRead_ = nullptr;
     gl::Surface* drawSurface_ = nullptr; // of boundDraw_ and boundRead_, while bound_ is set
@@ -786,23 +801,24 @@ private:
     size_t scratchUsed_ = 0;
     std::vector<std::byte> pixels_;
     std::vector<bool> saidLacking_;
-    int listDepth_ = 0;         // display lists that are being run
-    uint32_t listCommands_ = 0; // run since the outermost one began
-    bool hasSkipped_ = false; // frames, at the beginning…
-    bool skips_ = false;      // …and does so still
+    int listDepth_ = 0; // nested display lists in execution
+    uint32_t listCommands_ = 0; // executed since the outermost list began
+    bool hasSkipped_ = false; // began by skipping frames
+    bool skips_ = false; // still skips frames
     bool knowsTurns_ = true;
-    Range share_;              // of a frame's draws: this node's…
-    uint32_t sharesNumber_ = 0; // …by the Shares of this number
-    Range plantedShare_;        // of a fault on purpose
-    bool knowsCosts_ = true; // of the frames before, as the other nodes of its picture do
-    std::deque<std::function<void()>> returns_; // of nodes of its picture, that no frame was put together with yet…
-    uint64_t returnsTaken_ = 0;                 // …and how many came before those
+    Range share_; // this node's part of a frame's draws
+    uint32_t sharesNumber_ = 0; // number of the Shares with that part
+    Range plantedShare_; // for a planted fault
+    bool knowsCosts_ = true; // has the costs of earlier frames, as the other nodes of its picture have
+    // callbacks of returned nodes of its picture that no composition includes yet
+    std::deque<std::function<void()>> returns_;
+    uint64_t returnsTaken_ = 0; // number of returns before those
     [[nodiscard]] uint64_t returnsTold() const { return returnsTaken_ + returns_.size(); }
-    std::shared_ptr<const Areas> areas_; // of new windows, and wanted of the others; null: they do not move
+    std::shared_ptr<const Areas> areas_; // current for new windows, wanted by the others; null: areas never change
     bool knowsAreas_ = true;
-    bool showedUnsound_ = false; // a frame that was drawn from its beginning, and needed more than that
-    std::unique_ptr<GlFunctions> leftOut_; // for draws that are left out; null: none was yet
-    std::unique_ptr<ContextState> none_; // stands in where a stream has no context
+    bool showedUnsound_ = false; // a frame was drawn from its beginning, and still depended on skipped ones
+    std::unique_ptr<GlFunctions> leftOut_; // functions without effect, for skipped draws; null: not created yet
+    std::unique_ptr<ContextState> none_; // context of streams without one
 };
 
 } // namespace mural

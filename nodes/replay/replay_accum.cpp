@@ -1,4 +1,4 @@
-// Accumulation buffers of windows whose framebuffer on this node has none.
+// Accumulation buffers of windows, for framebuffers of this node without one.
 #include <cstring>
 #include <utility>
 

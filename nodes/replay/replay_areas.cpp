@@ -1,13 +1,14 @@
-// Areas that move: this node's part of windows is another one from some frame on.
+// Moving areas: this node's part of a window changes with some frame.
 //
-// A framebuffer has the whole window's size, so another part needs another scissor only. But what was drawn into that part
-// before, others have drawn: it is not here. So new areas are taken where nothing of it counts any more: when each buffer of
-// the window has been cleared whole and nothing was drawn there since. Clears are done by all nodes in all of the
-// window. Buffers that nothing is ever drawn into are alike on all nodes and need no clear. Every node sees the same
-// commands, and so decides the same; a window that is never cleared whole keeps the areas that it has.
+// A framebuffer has the whole window's size, so another part needs only another scissor. But other nodes have drawn the
+// earlier content of that part, and this node lacks it. New areas are therefore applied when that content no longer
+// matters: each buffer of the window has been cleared whole, with no draws since.
 //
-// The front, where it is a surface of its own, has the areas of the frame that was swapped. What is drawn into it stays, so the
-// areas of a window whose front is drawn into, or that accumulates, stay, too.
+// All nodes clear the whole window. Buffers without any draws are equal on all nodes, and need no clear. Every node
+// receives the same commands, and so takes the same decision. A window without full clears keeps its areas.
+//
+// A front buffer with a surface of its own has the areas of the frame that was swapped. Its drawn content persists.
+// Windows that draw into the front, or accumulate, therefore keep their areas.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -25,7 +26,7 @@ bool isFrontBuffer(GLenum buffer) {
     return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
 }
 
-// Not an error, and not of another buffer than the first.
+// Returns whether the command is a valid clear that addresses only the first colour buffer.
 bool clears(uint16_t opcode, GLuint first, GLuint second) {
     switch (opcode) {
     case op::glClear: return (first & ~kWindowBuffers) == 0;
@@ -58,12 +59,13 @@ void Replay::moveAreas(Areas areas) {
             if (w->moving.fixed) continue;
             if (w->moving.wanted == w->moving.areas) w->moving.waits = 0;
             w->moving.wanted = areas_;
-            if (config_.plant == "early" && config_.node == 1) w->moving.areas = areas_; // before its clear
+            // planted fault: before the window's clear
+            if (config_.plant == "early" && config_.node == 1) w->moving.areas = areas_;
         }
     if (config_.plant == "early" && config_.node == 1) areasChanged();
 }
 
-// Its buffers are new, and hold on all nodes what new ones do.
+// The window has new buffers, with equal content on all nodes.
 void Replay::divideAnew(Window& w) {
     w.moving = {};
     w.moving.areas = w.moving.wanted = w.moving.front = areas_;
@@ -89,36 +91,38 @@ void Replay::areasChanged() {
     c_ = own;
 }
 
-// Which of the window's buffers the command, as the state is now, gives one value everywhere.
+// Returns the window's buffers that the command, in the current state, sets to one value everywhere.
 GLbitfield Replay::clearedBy(uint16_t opcode, std::span<const std::byte> arguments) const {
     GLuint words[2] = {};
     std::memcpy(words, arguments.data(), std::min(arguments.size(), sizeof words));
     if (!clears(opcode, words[0], words[1]) || c_->inPrimitive) return 0;
-    GLint mode = GL_RENDER; // selection and feedback clear nothing
+    GLint mode = GL_RENDER; // GL clears nothing in selection and feedback mode
     if (c_->api == wire::Api::Desktop && !c_->core) gl.glGetIntegerv(GL_RENDER_MODE, &mode);
     return mode == GL_RENDER ? clearsWhole(clearsOf(opcode, arguments)) : 0;
 }
 
-// Which of them a draw may change.
+// Returns the window's buffers that a draw may change.
 GLbitfield Replay::drawnBy(uint16_t opcode) const {
     if (hasTrait(opcode, Trait::AllPlanes)) return kWindowBuffers;
     const Shared& shared = *c_->shared;
-    const GLbitfield known = c_->draw->moving.drawn; // no need to ask the driver
+    const GLbitfield known = c_->draw->moving.drawn; // avoids queries to the driver
     const auto tests = [&](GLbitfield buffer, bool ever, GLenum cap) { return !(known & buffer) && ever && gl.glIsEnabled(cap) ? buffer : 0; };
     return GLbitfield{GL_COLOR_BUFFER_BIT} | tests(GL_DEPTH_BUFFER_BIT, shared.testsDepth, GL_DEPTH_TEST) | tests(GL_STENCIL_BUFFER_BIT, shared.testsStencil, GL_STENCIL_TEST);
 }
 
-// Before any command that may change pixels of the window.
+// Called before any command that may change pixels of the window.
 void Replay::noteArea(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
     if ((opcode == op::glBegin || opcode == op::glEnd) && !c_->compiling) c_->inPrimitive = opcode == op::glBegin;
     if ((use != WindowUse::Clears && use != WindowUse::Draws) || !c_->shared) return;
     if (c_->compiling) {
-        if (use == WindowUse::Clears || hasTrait(opcode, Trait::AllPlanes)) c_->shared->testsDepth = c_->shared->testsStencil = true; // what lists change
-        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) noteNativeList(); // it is drawn by the driver, as it is compiled
+        // lists may change depth and stencil
+        if (use == WindowUse::Clears || hasTrait(opcode, Trait::AllPlanes)) c_->shared->testsDepth = c_->shared->testsStencil = true;
+        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) noteNativeList(); // the driver draws it during compilation
         return;
     }
-    if (!drawsWindow() || !c_->draw || opcode == op::glCallList || opcode == op::glCallLists) return; // what is in lists comes by here
+    // the items of lists are noted one by one
+    if (!drawsWindow() || !c_->draw || opcode == op::glCallList || opcode == op::glCallLists) return;
     Window& w = *c_->draw;
     MovingPart& m = w.moving;
     const GLbitfield cleared = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
@@ -127,13 +131,14 @@ void Replay::noteArea(uint16_t opcode, std::span<const std::byte> arguments) {
         m.fixed = true;
         m.wanted = m.areas;
     }
-    // Clears are all done without the tile (withoutTile), those of a part as well: what is alike on all nodes stays so.
+    // All clears, including partial ones, run without the tile (withoutTile), so buffers that are equal on all nodes
+    // stay so.
     if (use == WindowUse::Clears && (m.drawn & cleared)) m.drawn &= ~clearedBy(opcode, arguments);
     if (m.wanted != m.areas && (m.drawn == 0 || config_.plant == "uncleared")) takeAreas(w);
     if (use == WindowUse::Draws) m.drawn |= drawnBy(opcode) & buffersOf(w.config);
 }
 
-// What it switches on and draws is not known.
+// The draws and enables of a native list are unknown.
 void Replay::noteNativeList() {
     if (!drawsWindow() || !c_->draw || !c_->shared) return;
     Window& w = *c_->draw;
@@ -149,7 +154,7 @@ void Replay::noteTests(GLenum cap) {
     if (cap == GL_STENCIL_TEST) c_->shared->testsStencil = true;
 }
 
-// ---- nodes that come back: what they are given has no areas in it. Until they know them they draw all of every window.
+// ---- returned nodes: their snapshot contains no areas. Until they receive them, they draw every window whole.
 
 std::vector<std::byte> Replay::tellAreas() const {
     std::vector<std::shared_ptr<const Areas>> named{areas_};

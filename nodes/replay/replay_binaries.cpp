@@ -1,10 +1,10 @@
-// Program binaries. A driver's binary is useless to other drivers, so the program's side requests the recipe of the
-// program, stores it with the binary, and sends it back when the binary is loaded.
+// Program binaries. A driver's binary is useless to other drivers. The program's side therefore requests the recipe of
+// the program and stores it with the binary. It sends the recipe back when the binary is loaded.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
 
-// ---- what a link depends on, noted on its way to GL
+// ---- inputs of a link, recorded before they reach GL
 
 void Replay::glShaderSource(GLuint shader, GLsizei count, const Data& string) {
     StringList texts;
@@ -52,7 +52,7 @@ void Replay::glDeleteObjectARB(GLuint obj) {
     c_->shared->primitiveIds.erase(ours);
 }
 
-// ---- questions and answers
+// ---- requests and answers
 
 bool Replay::ownRequestProgram(Args& in) {
     const auto request = in.get<uint32_t>(), program = in.get<uint32_t>();

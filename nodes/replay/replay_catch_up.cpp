@@ -1,6 +1,6 @@
-// Resync of a restarted node, which replays quickly what took the others long. It does not draw frames that nobody
-// waits for: its region is empty, as in frames of another phase, and draw calls without other effects are skipped. When
-// it has nearly caught up it draws again, each window from its next frame on.
+// Resync of a restarted node, which quickly replays what took the others long. It does not draw frames without an
+// observer: its region is empty, as in frames of another phase. Draw calls without other effects are skipped. When it
+// has nearly caught up it draws again, each window from its next frame on.
 //
 // A window's buffers are stale until a full clear. Drawing over stale buffers, reading or showing them would differ
 // from the other nodes. The code here detects that beforehand and ends the node; the next incarnation draws all frames.

@@ -34,7 +34,7 @@ void Replay::glColorMaski(GLuint index, GLboolean r, GLboolean g, GLboolean b, G
     gl.glColorMaski(index, r, g, b, a && !(index == 0 && hidesAlpha()));
 }
 
-// After a blit into the window, which ignores masks.
+// Called after a blit into the window, which ignores masks.
 void Replay::makeOpaque() {
     if (!gl.glColorMask || !gl.glClearBufferfv) return;
     const GLfloat opaque[4] = {0, 0, 0, 1};

@@ -1,15 +1,15 @@
-// Copies out of and into the window.
+// Copies from the window and into the window.
 //
-// What other tiles hold comes first (kOpFillWindow). exact: it is put into the window itself. lean: the
-// window's framebuffer has no room for it; and a window with samples shall keep them: it goes into a framebuffer
-// object of the copied rectangle, and the copy reads from there.
+// Pixels of other tiles arrive before the copy (kOpFillWindow). In exact tiling they are written into the window
+// itself. In lean tiling the window's framebuffer has no room for them: they go into a framebuffer object of the copied
+// rectangle, and the copy reads from there. A multisampled window must keep its samples, and uses such an object too.
 #include <algorithm>
 
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
 
-// ---- lean: pixels put together
+// ---- gathered pixels (lean)
 
 void Replay::forgetGathered() {
     Gathered& g = c_->gathered;
@@ -35,7 +35,7 @@ void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void*
     gl.glBindTexture(GL_TEXTURE_2D, texture);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     setUnpack(true);
-    // As the window: its values count as sRGB only where the program has asked for that.
+    // As in the window: values count as sRGB only if the program has enabled that.
     const bool srgb = c_->read->config.srgb && c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     const auto srgbOrNot = static_cast<GLint>(srgb ? GL_SRGB8_ALPHA8 : words.storage);
     withPlainTransfer([&] {
@@ -52,7 +52,7 @@ void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void*
     gl.glBindFramebuffer(target, name(Kind::Framebuffer, separate ? c_->readFramebuffer : c_->drawFramebuffer));
 }
 
-// Depth comes as 32 bits that hold the window's 24, stencil after it.
+// Depth arrives as 32 bits that contain the window's 24; stencil follows.
 void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixels) {
     const auto count = static_cast<size_t>(g.box.area());
     g.depth.resize(count, 0);
@@ -65,7 +65,7 @@ void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixel
     gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, g.box.w, g.box.h, 0, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, g.depth.data());
 }
 
-// Runs a copy that reads `source` of the read framebuffer; the call gets what to add to its coordinates.
+// Runs a copy that reads `source` of the read framebuffer. `call` receives the offset to add to its coordinates.
 void Replay::fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call) {
     if (c_->readFramebuffer == 0) depthForReading();
     if (c_->readFramebuffer == 0 && c_->read) c_->read->copied = true;
@@ -83,7 +83,7 @@ void Replay::fromWindow(const PixelViewport& source, const std::function<void(GL
     forgetGathered();
 }
 
-// Into a level of a texture: the call gets where to read.
+// Copies into a level of a texture. `call` receives the position to read from.
 void Replay::copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::function<void(GLint, GLint)>& call) {
     fromWindow({x, y, w, h}, [&](GLint dx, GLint dy) { call(moved(x, -dx), moved(y, -dy)); });
 }
@@ -110,7 +110,8 @@ void Replay::glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY
     if ((mask & GL_COLOR_BUFFER_BIT) && hidesAlpha()) makeOpaque();
 }
 
-// By names: the same as with both bound, which is how it is done.
+// Equivalent to a blit with both framebuffers bound. Implemented that way in lean tiling, and after pixels were
+// gathered.
 void Replay::glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
     if (!gl.glBlitNamedFramebuffer) return;
     if (readFramebuffer == 0) depthForReading();
@@ -127,7 +128,7 @@ void Replay::glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuff
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, drawBefore);
 }
 
-// The raster position, where the copy goes, has been moved with the viewport already.
+// The raster position, the destination of the copy, has already moved with the viewport.
 void Replay::glCopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum type) {
     if (!gl.glCopyPixels) return;
     fromWindow({x, y, width, height}, [&](GLint dx, GLint dy) {

@@ -1,6 +1,6 @@
-// Textured rectangles in window coordinates: glDrawTex*OES and glDrawTextureNV bypass the vertex pipeline and the viewport.
-// The fixed-point, integer and short variants are replayed as floats. Drivers convert their arguments in the same way.
-// Source: OES_draw_texture, NV_draw_texture.
+// Textured rectangles in window coordinates: glDrawTex*OES and glDrawTextureNV bypass the vertex pipeline and the
+// viewport. The fixed-point, integer and short variants are replayed as floats. Drivers convert their arguments in the
+// same way. Source: OES_draw_texture, NV_draw_texture.
 #include <algorithm>
 
 #include "gl_opcodes.hpp"

@@ -1,9 +1,9 @@
-// The picture of another eye than the program's, or on a screen that stands elsewhere in the room: positions are moved in
-// clip coordinates (view_move.hpp).
+// Draws the picture for another eye than the program's, or for a screen at another place in the room. Positions are
+// transformed in clip coordinates (view_move.hpp).
 //
-// Shaders get that by uniforms (nodes/shaders/moved_position); how the program looks at its scene is told by the matrices
-// that it hands to them (seen_projection.hpp). Shaders that get none are taken to use the fixed function's. Fixed function
-// gets a projection of its own while it draws.
+// Shaders receive the transformation as uniforms (nodes/shaders/moved_position). The program's view of its scene is
+// derived from the matrices that it passes to its shaders (seen_projection.hpp). For shaders without matrices the fixed
+// function's are assumed. Fixed function draws with a projection that the replay sets meanwhile.
 // Source: thesis, "Stereo Rendering"; design 4.
 #include <algorithm>
 #include <string_view>
@@ -30,21 +30,21 @@ class NoBlobs : public BlobQueue {
 bool Replay::hasFixedMatrices() const { return c_->api != wire::Api::Es2 && !c_->core && gl.glLoadMatrixf && gl.glMatrixMode; }
 bool Replay::drawsFixed() const { return c_->program == 0 && !c_->pipelineBound && hasFixedMatrices(); }
 
-// What a program's shaders look at the scene with.
+// Returns the projection that a program's shaders use.
 SeenProjection Replay::projectionOf(GLuint program) const {
     const auto own = c_->shared->projections.find(program);
     if (own != c_->shared->projections.end()) return own->second;
     if (c_->fixedProjection.perspective()) return c_->fixedProjection;
     if (c_->shared->projection.perspective()) return c_->shared->projection;
-    // Without any matrix to go by: a field of view of 60 degrees from bottom to top.
+    // Without any known matrix: a vertical field of view of 60 degrees.
     const auto& v = c_->viewports[0];
     constexpr double kScale = 1.7320508;
     return {kScale * static_cast<double>(std::max(1.0F, v[3]) / std::max(1.0F, v[2])), kScale, 0, 0, 1, 1};
 }
 
-// Screens of a room show what goes to the whole picture; a part of it that has a viewport of its own stays where it is.
+// Screens of a room show draws that cover the whole picture. A part with a viewport of its own keeps its place.
 ViewMove Replay::viewMove(const SeenProjection& seen) const {
-    if (!config_.screen && c_->draw->config.stereo) return {}; // the program looks with both eyes itself
+    if (!config_.screen && c_->draw->config.stereo) return {}; // the program draws both eyes itself
     if (!config_.screen) return eyeMove(seen, eyeOffset(), config_.focusDistance);
     const auto& v = c_->viewports[0];
     const PixelViewport& whole = c_->draw->whole;
@@ -59,7 +59,7 @@ void Replay::shiftProjection() {
     double m[16];
     for (size_t i = 0; i < 16; ++i) m[i] = static_cast<double>(p[i]);
     const SeenProjection seen = seenProjection(m);
-    if (!seen.perspective()) return; // from everywhere the same
+    if (!seen.perspective()) return; // identical from every position
     viewMove(seen).apply(m, seen.unit);
     for (size_t i = 0; i < 16; ++i) c_->shiftedProjection[i] = static_cast<GLfloat>(m[i]);
     GLint mode = 0;
@@ -80,7 +80,7 @@ void Replay::unshiftProjection() {
     gl.glMatrixMode(static_cast<GLenum>(mode));
 }
 
-// Before shaders draw that may read the fixed function's matrices.
+// Called before draws with shaders that may read the fixed function's matrices.
 void Replay::noteFixedProjection() {
     if (c_->projectionKnown || !hasFixedMatrices()) return;
     c_->projectionKnown = true;
@@ -106,7 +106,7 @@ void Replay::noteMatrices(GLuint program, const Data& values, GLsizei count, boo
     }
 }
 
-// Blocks of uniforms: small buffers are looked through for a projection.
+// Searches small buffers, which may be uniform blocks, for a projection.
 void Replay::noteProjections(std::span<const std::byte> bytes) {
     constexpr size_t kMostBytes = 4096;
     if (!c_->shared || bytes.size() > kMostBytes) return;
@@ -147,7 +147,7 @@ void Replay::noteEye(uint16_t opcode, std::span<const std::byte> arguments) {
     if (in.ok() && count > 0) noteMatrices(program, values, count, transposed, doubles);
 }
 
-// A list may have brought a projection of its own.
+// A list may have set a projection of its own.
 void Replay::noteEyeAfter(uint16_t opcode) {
     if (eyeUseOf(opcode) != EyeUse::List || !bound_) return;
     c_->projectionKnown = false;

@@ -1,12 +1,13 @@
-// Depth and stencil of other tiles, put into windows: by glDrawPixels, which core and ES contexts lack, and which in the
-// program's own takes part in all that is bound there (programs, pipelines, discarding). So a context of the node's draws
-// into the same window. ES 1 has no blits for colours either.
+// Writes depth and stencil of other tiles into windows. This needs glDrawPixels, which core and ES contexts lack. In
+// the program's own context, it would also depend on bound programs, pipelines and discarding. The node therefore draws
+// into the same window with a context of its own. ES 1 contexts need it for colours too, because they lack blits.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
 
-// Depth comes as 32 bits that hold the window's, and goes back through a float in any case: the nearest one
-// gives all bits back (measured with Mesa, all of 2^19 values), while Mesa's own way from 32 bits cuts some off.
+// Depth arrives as 32 bits that contain the window's bits, and in any case passes through a float on its way back. The
+// nearest float restores all bits (measured with Mesa, all of 2^19 values). Mesa's own conversion from 32 bits
+// truncates some.
 const GLfloat* Replay::depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels) {
     const int bits = w.config.depth == 0 || w.config.depth > 32 ? 32 : w.config.depth;
     const double largest = static_cast<double>((uint64_t{1} << bits) - 1);

@@ -31,8 +31,8 @@ void Replay::deleteFramebuffers(GLsizei n, const Data& framebuffers, void (*remo
     restoreWindowState();
 }
 
-// Of a stereo window a node has one eye: that of its pass, or the left one. Draws to the other eye alone have no effect
-// here (GL 4.6 17.4.1; design 4: stereo programs keep their eyes).
+// A node has one eye of a stereo window: the eye of its pass, or the left one. Draws to the other eye alone have no
+// effect here (GL 4.6 17.4.1; design 4: stereo programs keep their eyes).
 GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
     if (!w || !w->config.stereo || c_->api != wire::Api::Desktop) return buffer;
     const bool right = config_.pass.eye == Eye::Right;
@@ -46,7 +46,7 @@ GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
     default: return buffer;
     }
 }
-// Reads of the other eye return this one: it is the only one here, and not an error.
+// Reads of the other eye return this one: it is the only one here, and the read is no error.
 GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
     const GLenum here = bufferOfEye(buffer, w);
     if (here != GL_NONE || buffer == GL_NONE) return here;
@@ -55,7 +55,7 @@ GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
 
 // Valid for glDrawBuffers as well, which accepts GL_BACK as the only name for several buffers.
 GLenum Replay::onlyBuffer(const gl::Surface& surface) { return surface.colorBuffers() == gl::ColorBuffers::OneNamedBack ? GL_BACK : GL_FRONT_LEFT; }
-// The only colour buffer of the surface that stands for the window's buffer (replay_front.cpp).
+// Returns the only colour buffer of the surface that contains the window's buffer (replay_front.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
     switch (buffer) {
@@ -87,7 +87,7 @@ void Replay::drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::
     std::vector<GLenum> list(bufs.as<GLenum>(), bufs.as<GLenum>() + n); // no buffers: draws have no effect
     if (!ofWindow) return call(list.data());
     for (GLenum& b : list) b = bufferOfEye(b, c_->draw);
-    // The first buffer selects the surface; in stereo, the first buffer of the eye that is here.
+    // The first buffer selects the surface; in stereo, the first buffer of this node's eye.
     const auto chosen = c_->draw && c_->draw->config.stereo ? std::ranges::find_if(list, [](GLenum b) { return b != GL_NONE; }) : list.begin();
     const GLenum first = chosen == list.end() ? GLenum{GL_NONE} : *chosen;
     for (GLenum& b : list) b = windowBuffer(b, c_->draw);
@@ -136,7 +136,7 @@ void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
     gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
     if (framebuffer == 0) readBufferOfWindow(mode);
 }
-// Only a hint, which could discard the pixels of another tile: ignored for windows.
+// Invalidation is only a hint, and could discard the pixels of another tile: ignored for windows.
 void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
     if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer) gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());
 }

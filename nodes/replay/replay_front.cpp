@@ -83,7 +83,8 @@ void Replay::beginFront(Window& w) {
     applyScissors();
 }
 
-// Clears colours and alpha of the current surface. Keeps all program state except the scissors: the caller applies them again.
+// Clears colours and alpha of the current surface. Keeps all program state except the scissors: the caller applies them
+// again.
 void Replay::clearToBlack(gl::Surface& current) {
     GLfloat colour[4] = {};
     GLboolean mask[4] = {};
@@ -162,7 +163,7 @@ PixelViewport Replay::regionOf(const Window& w, bool front) const {
     return partOf(w, w.moving.front.get());
 }
 
-// For a window that gets another surface.
+// Called when the window receives another surface.
 void Replay::dropFront(Window& w) {
     w.front.reset();
     w.deep = nullptr;

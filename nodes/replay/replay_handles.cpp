@@ -18,7 +18,7 @@ bool isImageType(GLint type) { return type >= GL_IMAGE_1D && type <= GL_UNSIGNED
 
 } // namespace
 
-// ---- what is dealt
+// ---- created handles
 
 void Replay::dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours) {
     if (!c_->shared || c_->shared->handles.set(of, theirs, ours)) return;
@@ -30,9 +30,9 @@ void Replay::dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours) {
     out_.log(text);
 }
 
-// ---- numbers that a driver frees when it has come to an end with what used them: later here, or earlier, than in the
-// program's process. A texture may have any number of handles, by samplers like its own: one of them has the wanted number where
-// drivers deal the lowest that is free.
+// ---- reuse of handle numbers. A driver frees a number after the last command that used it. On this node that may be
+// earlier or later than in the program's process. A texture has one handle per sampler, and the samplers may be equal.
+// Where drivers use the lowest free number, one of these handles has the wanted one.
 
 // Lets the driver free deleted objects: zink does so when it reuses the memory of completed commands.
 void Replay::settleDriver() {
@@ -141,7 +141,7 @@ void Replay::glGetImageHandleARB(GLuint texture, GLint level, GLboolean layered,
     dealtHandle(HandleTable::Of::Image, result, gl.glGetImageHandleARB(name(Kind::Texture, texture), level, layered, layer, format));
 }
 
-// ---- residency: of a handle that nobody has dealt it is an error, which the program has been told
+// ---- residency. An unknown handle is an error, which the program's own GL has reported.
 
 void Replay::glMakeTextureHandleResidentARB(GLuint64 handle) {
     const uint64_t ours = c_->shared ? c_->shared->handles.find(HandleTable::Of::Texture, handle) : 0;
@@ -215,7 +215,7 @@ void Replay::glProgramUniformHandleui64vARB(GLuint program, GLint location, GLsi
     const GLint at = uniformLocation(program, location);
     gl.glProgramUniformHandleui64vARB(ours, at, count, handleValues(ours, at, values.as<GLuint64>(), count).data());
 }
-// Only the shader knows the kind of handle in an attribute. Most are textures.
+// Only the shader determines the kind of handle in an attribute. Most are textures.
 void Replay::glVertexAttribL1ui64ARB(GLuint index, GLuint64EXT x) {
     if (!gl.glVertexAttribL1ui64ARB) return (void)lacking(op::glVertexAttribL1ui64ARB);
     gl.glVertexAttribL1ui64ARB(index, c_->shared ? c_->shared->handles.value(HandleTable::Of::Texture, x) : x);

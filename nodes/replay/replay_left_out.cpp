@@ -1,5 +1,5 @@
-// Draw calls of frames that are another node's turn: they change no pixel here, and are left out where they change
-// nothing else either. What follows of them in the stream is taken as ever: only GL's own functions do nothing.
+// Skips draw calls of frames that another node draws. They change no pixel here, and are skipped if they change nothing
+// else either. The replay still decodes them and updates its own state; only the GL functions have no effect.
 #include <tuple>
 #include <utility>
 
@@ -25,7 +25,7 @@ template <class Call> void forEachDraw(Call&& call) {
 
 } // namespace
 
-// Any stage of it: storage blocks, counters or images. Pipelines are not looked at.
+// Whether any stage has storage blocks, counters or images. Pipelines are not inspected.
 bool Replay::mayWriteMemory(GLuint program) {
     const bool can = c_->version >= (c_->api == wire::Api::Desktop ? 42 : 31);
     if (!can || program == 0) return c_->pipelineBound;
@@ -55,11 +55,11 @@ bool Replay::leavesOut(uint16_t opcode) {
     return !drawsHere && c_->openQueries.empty() && !c_->feedsBack && !stipplesLines() && !mayWriteMemory(c_->program);
 }
 
-// Mesa carries the phase of a line stipple from draw to draw: a strip whose first segment is clipped away goes on where the
-// last stippled line has ended. So every node makes all stippled draws, whole and in order.
+// Mesa carries the phase of a line stipple from draw to draw. A strip whose first segment is clipped away continues at
+// the end of the last stippled line. Every node therefore executes all stippled draws, whole and in order.
 bool Replay::stipplesLines() const { return c_->lineStippled && c_->api == wire::Api::Desktop && !c_->core && gl.glIsEnabled(GL_LINE_STIPPLE) != GL_FALSE; }
 
-// Twice: as it was.
+// Exchanges GL's draw functions with functions that have no effect. A second call restores them.
 void Replay::exchangeDraws() {
     if (!leftOut_) {
         leftOut_ = std::make_unique<GlFunctions>(gl);

@@ -16,7 +16,7 @@ void Replay::listenToDriver() {
     gl.glDebugMessageCallback(reinterpret_cast<void*>(&Replay::hearDriver), &c_->debug);
 }
 
-// The program knows the messages that it has inserted itself.
+// Messages that the program has inserted itself are not reported to it.
 void APIENTRY Replay::hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* inbox) {
     if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_THIRD_PARTY || !text) return;
     auto& box = *static_cast<DebugInbox*>(const_cast<void*>(inbox));
@@ -74,7 +74,7 @@ bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     return ok;
 }
 
-// ---- what programs write for tools, and what they want to hear
+// ---- debug labels, groups and messages of the program
 
 namespace {
 std::string textOf(const Data& d, GLsizei length) {

@@ -188,8 +188,8 @@ private:
 };
 } // namespace
 
-// ---- display lists. A list of the program is one of ours, or several with commands between them
-// that the node executes itself because they depend on its tile or on the program's names.
+// ---- display lists. A list of the program is one native list, or several with commands between them. The node
+// executes these commands itself, because they depend on its tile or on the program's names.
 
 bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const {
     switch (opcode) {
@@ -241,7 +241,7 @@ bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) 
     }
 }
 
-// During list compilation. An invalid glBegin starts no primitive.
+// Called during list compilation. An invalid glBegin starts no primitive.
 void Replay::notePrimitive(uint16_t opcode, std::span<const std::byte> arguments) {
     if (opcode == op::glEnd) c_->compilesPrimitive = false;
     uint32_t mode = GL_PATCHES + 1;

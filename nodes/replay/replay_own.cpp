@@ -1,4 +1,4 @@
-// Mural's own records: contexts, windows, client memory. Frames: replay_swaps.cpp.
+// Mural's own records: contexts, windows, client memory. replay_swaps.cpp has those for frames.
 #include <cstring>
 #include <utility>
 
@@ -11,7 +11,7 @@
 namespace mural {
 
 namespace {
-// More than any record takes (72 spans of client arrays): empty blobs must not pile up either.
+// More than any record needs (72 spans of client arrays): the queue must not grow by empty blobs either.
 constexpr size_t kMaxBlobs = 256;
 } // namespace
 
@@ -26,14 +26,14 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
     s.depth = c.depth;
     s.stencil = c.stencil;
     s.samples = c.samples;
-    s.accum = platform_->accumulates() ? c.accum : 0; // the replay keeps one itself
+    s.accum = platform_->accumulates() ? c.accum : 0; // otherwise the replay has its own accumulation buffer
     s.srgb = c.srgb != 0;
-    s.stereo = false; // a node has one eye's (bufferOfEye)
+    s.stereo = false; // a node has the buffers of one eye (bufferOfEye)
     return s;
 }
 
 bool Replay::own(uint16_t opcode, Args& in) {
-    tellMessages(); // before an answer that the program waits for
+    tellMessages(); // before a reply that the program waits for
     if (!leavesBitmaps(opcode)) settleBitmaps();
     if (opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestTexImage || opcode == wire::kOpRequestBuffer || opcode == wire::kOpFillWindow) {
         for (Window* const w : {c_->draw, c_->read}) {
@@ -92,7 +92,7 @@ bool Replay::ownBlobBegin(Args& in) {
     if (!in.ok() || s_->blobMissing || s_->blobs.size() >= kMaxBlobs || s_->blobBytes > config_.limits.blobBytes ||
         bytes > config_.limits.blobBytes - s_->blobBytes)
         return false;
-    s_->blobs.emplace_back(); // grows with what really comes
+    s_->blobs.emplace_back(); // grows with the bytes that actually arrive
     s_->blobMissing = bytes;
     s_->blobBytes += bytes;
     return true;
@@ -104,7 +104,7 @@ bool Replay::ownCreateContext(Args& in) {
     const auto* config = in.fixed<wire::WindowConfig>(sizeof(wire::WindowConfig));
     if (!in.ok() || api > 2) return false;
     Client& client = clients_[wire::clientOf(stream_)];
-    // Streams point at contexts: one that exists is never replaced.
+    // Streams point to contexts, so an existing one is never replaced.
     if (id == 0 || client.contexts.count(id)) return false;
     const auto sharer = client.contexts.find(share);
     ContextState* with = sharer == client.contexts.end() ? nullptr : sharer->second.get();
@@ -118,7 +118,7 @@ bool Replay::ownCreateContext(Args& in) {
     wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
     c->heldBack = flags & wire::kKeepsUnflushed;
     wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
-    wish.tellsReset = true; // a node wants to know, whatever the program asked for
+    wish.tellsReset = true; // the node needs the notification, even if the program does not request it
     wish.surface = surfaceConfig(*config, 1, 1);
     auto made = platform_->createContext(wish, with ? with->context.get() : nullptr);
     if (!made) {
@@ -149,7 +149,7 @@ bool Replay::ownMakeCurrent(Args& in) {
         return it == client.windows.end() ? nullptr : it->second.get();
     };
     const auto it = client.contexts.find(context);
-    // What the thread gives up is flushed, unless the program wants it not to be (KHR_context_flush_control).
+    // Flushes the context that the thread releases, unless the program has disabled that (KHR_context_flush_control).
     if (s_->context && s_->context == bound_ && !s_->context->heldBack && gl.glFlush) gl.glFlush();
     s_->context = it == client.contexts.end() ? nullptr : it->second.get();
     s_->draw = windowOf(draw);
@@ -183,7 +183,7 @@ bool Replay::ownWindow(Args& in) {
     }
     Window& w = *slot;
     w.destroyed = false; // the program has bound it again
-    // The same size once more: the program's driver has destroyed the drawable and made it again.
+    // An equal size means that the program's driver has destroyed the drawable and created it again.
     const bool renewed = w.surface && config->width == w.config.width && config->height == w.config.height;
     if (config->stereo && !w.config.stereo && config_.pass.eye == Eye::Cyclop && config_.answers && config_.node == 0)
         out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side or anaglyph shows both");
@@ -219,13 +219,14 @@ bool Replay::ownWindow(Args& in) {
         boundDraw_ = boundRead_ = nullptr;
         bound_ = nullptr;
         (void)bindStream(*s_);
-        // Another stream's context had it: that one binds the new surface with its next packet.
+        // Another stream's context had the old surface. It binds the new one with its next packet.
         if (!bound_) (void)platform_->makeCurrent(nullptr, nullptr, nullptr);
     }
     return true;
 }
 
-// The window is from now on what it could be made: other surfaces of it, and what is copied between them, have the same bits.
+// Sets the window's configuration to the bits of the created surface. Further surfaces of the window, and copies
+// between them, use the same bits.
 void Replay::takeBitsOfSurface(Window& w) {
     const gl::SurfaceConfig& there = w.surface->config();
     const std::string differs = gl::whatDiffers(there, surfaceConfig(w.config, there.width, there.height));
@@ -251,7 +252,7 @@ bool Replay::ownClientArrays(Args& in) {
     for (uint32_t i = 0; i < spanCount; ++i) {
         const Data d = in.data();
         if (!in.ok()) return false;
-        // The draw may stand in another packet: its arrays must outlive this one.
+        // The draw may follow in another packet, so its arrays must outlive this one.
         c_->arrayMemory[i].assign(d.span().begin(), d.span().end());
     }
     for (uint32_t i = 0; i < arrayCount; ++i) {
@@ -338,7 +339,7 @@ bool Replay::ownBufferBytes(Args& in) {
     if (!in.ok()) return false;
     if (c_ == none_.get() || bytes.size() == 0) return true;
     const GLuint ours = name(Kind::Buffer, buffer);
-    // A target that no draw reads, so that the program's bindings stay as they are.
+    // Uses a target that no draw reads, so that the program's bindings do not change.
     const bool copyTarget = c_->version >= 31 || (c_->api != wire::Api::Desktop && c_->version >= 30);
     const GLenum target = copyTarget ? GL_COPY_WRITE_BUFFER : GL_ARRAY_BUFFER;
     GLint before = 0;
@@ -350,7 +351,7 @@ bool Replay::ownBufferBytes(Args& in) {
     return true;
 }
 
-// Immutable storage that the program may not write: GL itself may, as by a query's result.
+// Detects immutable storage that the program may not write. GL itself may still write there, for example query results.
 bool Replay::onlyCopiesWrite(GLenum target) {
     if (!gl.glBufferStorage || !gl.glGetBufferParameteriv || !gl.glCopyBufferSubData || c_->api != wire::Api::Desktop || c_->version < 44) return false;
     GLint immutable = 0, flags = 0;

@@ -1,8 +1,9 @@
-// A frame's picture on its way out: read at once, or written by GL into a buffer that the thread that packs it waits for.
+// Readback of a frame's picture: synchronous, or into a buffer that the packing thread waits for.
 //
-// The second does not wait for GL here: the next frame's commands are given to it meanwhile. It needs fences, buffers for pixels, and a
-// second context for the other thread. Which one the drawing thread loses less by is measured (readback_choice.hpp): llvmpipe draws and
-// copies when it is asked to read, in this thread, and so gains nothing by it.
+// The buffer needs no wait for GL on this thread, which continues with the next frame's commands. It requires fences,
+// pixel buffers, and a second context for the other thread. A measurement selects the way that costs the drawing thread
+// less time (readback_choice.hpp). llvmpipe gains nothing from the buffer: it draws and copies within the read call, on
+// this thread.
 #include <cstring>
 #include <utility>
 
@@ -15,7 +16,7 @@ bool Replay::hasFences(const ContextState& c) const {
     return c.version >= (c.api == wire::Api::Desktop ? 32 : 30) && gl.glFenceSync && gl.glClientWaitSync && gl.glDeleteSync;
 }
 
-// Made with the first frame that wants it; a share group that has none is not asked again.
+// Creates the object for the first frame that wants it. A share group without support is not tried again.
 std::shared_ptr<LaterReads> Replay::laterReads() {
     Shared& shared = *bound_->shared;
     if (!std::exchange(shared.laterAsked, true)) {
@@ -26,7 +27,7 @@ std::shared_ptr<LaterReads> Replay::laterReads() {
     return shared.later;
 }
 
-// What is put together from other pixels than those that are shown is read at once.
+// Pictures that are assembled from other pixels than the shown ones are read synchronously.
 bool Replay::readsLater(const Window& w, const PixelViewport& region) {
     if (config_.readback == Readback::Direct || skips_ || region.empty() || !bound_ || !bound_->shared) return false;
     if (config_.readback == Readback::Auto && !w.readback.later()) return false;
@@ -46,7 +47,7 @@ std::unique_ptr<PictureRead> Replay::readAtOnce(const ReplayOutputs::Frame& f, c
     return std::make_unique<ReadPicture>(std::move(own), memory_);
 }
 
-// Null: GL made no fence.
+// Returns null if GL creates no fence.
 std::unique_ptr<PictureRead> Replay::readLater(Window& w, const PixelViewport& r, bool front) {
     ContextState* const own = std::exchange(c_, bound_);
     const std::shared_ptr<LaterReads> reads = c_->shared->later;

@@ -1,5 +1,5 @@
-// Pixel store state. Images from client memory arrive tightly packed; images in buffers follow the program's state.
-// Also the client attribute stack, most of which is that state.
+// Pixel store state. Images from client memory arrive tightly packed; images in buffers follow the program's state. The
+// client attribute stack is here too, because it consists mostly of that state.
 #include "nodes/replay/replay.hpp"
 #include "nodes/replay/to_int.hpp"
 
@@ -69,7 +69,7 @@ void Replay::packTightly(bool tight) {
     }
 }
 
-// ---- the stack
+// ---- client attribute stack
 
 void Replay::glPushClientAttrib(GLbitfield mask) {
     gl.glPushClientAttrib(mask);

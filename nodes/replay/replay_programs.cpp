@@ -162,7 +162,7 @@ void Replay::glProgramStringARB(GLenum target, GLenum format, GLsizei len, const
     load(len, string.pointer());
 }
 
-// ---- how far a primitive's picture reaches beyond its vertices
+// ---- extent of a primitive's picture beyond its vertices
 
 void Replay::widen(GLfloat pixels) {
     const GLfloat margin = pixels / 2 + 2;

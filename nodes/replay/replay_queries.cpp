@@ -1,6 +1,6 @@
-// Queries over tiles. What a node draws of its tile alone is added to the other nodes' counts; what
-// every node draws whole (framebuffer objects, drawn pixels, memory-writing shaders) counts once: a query
-// is cut into pieces where that changes.
+// Queries over tiles. Fragments that a node draws only in its tile are added to the other nodes' counts. Fragments that
+// every node draws (framebuffer objects, drawn pixels, memory-writing shaders) count once. A change between the two
+// cuts a query into pieces.
 #include <algorithm>
 #include <utility>
 
@@ -14,17 +14,17 @@ namespace {
 bool countsSamples(GLenum target) {
     return target == GL_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE;
 }
-// What the culling of primitives outside of the tile would change.
+// Whether culling of primitives outside the tile would change the count.
 bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIVES || target == GL_CLIPPING_OUTPUT_PRIMITIVES; }
 
 } // namespace
 
-// True: every node draws the same pixels now, not only its own.
+// Returns true if every node currently draws the same pixels, not only its own.
 bool Replay::drawsWhole() const {
     return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || drawsOldFront() || (c_->draw && (learnsTurns(*c_->draw) || learnsAreas(*c_->draw)))));
 }
 
-// Whoever changes what drawsWhole() says comes by here before anything is drawn.
+// Must be called after any change of drawsWhole(), before the next draw.
 void Replay::cutQueries() {
     const bool whole = drawsWhole();
     if (whole == std::exchange(c_->countsWhole, whole) || c_->compiling) return;
@@ -41,7 +41,7 @@ void Replay::beginPiece(GLenum target, GLuint query) {
     c_->queries[query].pieces.push_back({ours, drawsWhole()});
 }
 
-// For what is not the program's: nothing leaves it out, and nothing counts it.
+// Runs draws of the replay itself: no condition skips them, and no query counts them.
 void Replay::aside(const std::function<void()>& call) {
     if (c_->conditional) gl.glEndConditionalRender();
     for (const auto& [target, id] : c_->counting) gl.glEndQuery(target);
@@ -51,18 +51,20 @@ void Replay::aside(const std::function<void()>& call) {
 }
 
 void Replay::dropPieces(QueryInfo& query) {
-    for (size_t i = 1; i < query.pieces.size(); ++i) gl.glDeleteQueries(1, &query.pieces[i].ours); // the first is the program's
+    // the first is the program's query
+    for (size_t i = 1; i < query.pieces.size(); ++i) gl.glDeleteQueries(1, &query.pieces[i].ours);
     query.pieces.clear();
 }
 
 void Replay::glBeginQuery(GLenum target, GLuint id) {
     const GLuint ours = name(Kind::Query, id);
     QueryInfo& query = c_->queries[id];
-    std::erase_if(c_->askedAhead, [&](const AskedAhead& asked) { return asked.query == id; }); // nobody wants the old one
+    // their results are obsolete
+    std::erase_if(c_->askedAhead, [&](const AskedAhead& asked) { return asked.query == id; });
     dropPieces(query);
     query.target = target;
     query.skipped = c_->draw && c_->draw->skipped;
-    // Regions of whole bins overlap. Nodes with and without a GPU have to decide alike, so the window's buffers decide.
+    // Regions of whole bins overlap. Nodes with and without a GPU must decide equally, so the window's buffers decide.
     const bool overlap = countsSamples(target) && drawsWindow() && c_->draw && (c_->draw->config.samples > 0 || c_->draw->isFlat);
     if (overlap || target == GL_FRAGMENT_SHADER_INVOCATIONS) {
         c_->countedWhole = true;
@@ -142,7 +144,7 @@ bool Replay::ownRequestQuery(Args& in) {
     return true;
 }
 
-// When a frame is complete: now no answer holds the drawing up.
+// Called when a frame is complete: answers no longer delay its drawing.
 void Replay::answerAskedAhead() {
     if (!bound_ || bound_->askedAhead.empty()) return;
     ContextState* const own = std::exchange(c_, bound_);
@@ -167,7 +169,7 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
     answerBytes(request, added ? wire::AnswerKind::Sum : wire::AnswerKind::Bytes, std::as_bytes(std::span(&value, 1)));
 }
 
-// ---- conditional rendering, with a result that is known: draws are left out by a query that counts nothing
+// ---- conditional rendering with a known result: a query that counts nothing makes GL skip the draws
 
 namespace {
 bool isInverted(GLenum mode) {
@@ -184,10 +186,11 @@ bool Replay::ownQueryKnown(Args& in) {
     return true;
 }
 
-// Out of a display list: the program has told the result ahead of the call, or this node draws all and knows it.
+// From a display list. The program's side has sent the result before the call, or this node draws everything and has
+// it.
 void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const auto info = c_->queries.find(id);
-    if (info == c_->queries.end()) return askDriver(name(Kind::Query, id), mode); // never begun: it knows what that means
+    if (info == c_->queries.end()) return askDriver(name(Kind::Query, id), mode); // never begun: GL handles that case
     const std::vector<QueryPiece>& pieces = info->second.pieces;
     bool passed = info->second.passed;
     if (alone() || std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
@@ -212,7 +215,7 @@ void Replay::beginConditional(bool draws) {
         c_->conditionMet = true;
         return;
     }
-    const bool counting = c_->counting.count(GL_SAMPLES_PASSED) > 0; // one of its kind at a time
+    const bool counting = c_->counting.count(GL_SAMPLES_PASSED) > 0; // GL allows one active query per target
     if (!c_->nothingCounted) {
         if (counting) gl.glEndQuery(GL_SAMPLES_PASSED);
         gl.glGenQueries(1, &c_->nothingCounted);

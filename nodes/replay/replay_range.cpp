@@ -1,15 +1,18 @@
-// Sort-last: the nodes of one picture share its opaque draws, each a contiguous range of them in their order; then the
-// collector puts the pictures together by depth, and draws what is left alone.
+// Sort-last: the nodes of one picture share its opaque draws. Each node draws a contiguous range of them, in order. The
+// collector then composites the pictures by depth, and draws the rest alone.
 //
-//   Fresh    the frame's clears: all nodes
-//   Split    depth-tested, opaque draws: each node its range; the others' are cut off by the scissor, or drawn of no vertices
-//   Whole    from the first draw on that depends on what lies under it (blending, stencil, no depth test, …), or when
-//            the picture is read: the collector has the whole picture and draws the rest of the frame
+//   Fresh    All nodes execute the clears of the frame.
+//   Split    Each node draws its range of the depth-tested, opaque draws. For other ranges it closes the scissor, or
+//            draws no vertices.
+//   Whole    The collector has the whole picture and draws the rest of the frame. This phase begins with a read of the
+//            picture, or with the first draw that depends on earlier pixels (blending, stencil, no depth test, …).
 //
-// Which draws are shared follows from the stream and the state alone, and ranges from what the frame before has cost, so
-// all nodes agree without a word. A node that has come back has not counted: all begin anew with it, at one place of the stream.
-// Draws are folded in their order by the depth test itself, so the picture is the one of a single machine, bit for bit
-// (accuracy 4). Framebuffer objects are drawn by all. How the pictures become one: nodes/exchange.
+// The stream and the state alone determine the shared draws, and the previous frame's cost determines the ranges. All
+// nodes therefore agree without messages. A returned node has no costs, so all nodes begin anew with it, at one
+// position of the stream.
+//
+// The depth test itself folds the draws in their order, so the picture equals a single machine's, bit for bit (accuracy
+// 4). All nodes draw framebuffer objects. nodes/exchange composites the pictures.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -23,8 +26,8 @@ namespace mural {
 
 namespace {
 
-// Draws whose vertices can be cut into pieces: where their count and their first vertex stand among the arguments,
-// all of four bytes.
+// Draws whose vertices can be cut into pieces. The members are the positions of count, first vertex, … among the
+// arguments; all arguments have four bytes.
 struct Cuttable {
     int count = -1, first = -1, type = -1, indices = -1, instances = -1;
 };
@@ -47,7 +50,7 @@ uint32_t wordAt(std::span<const std::byte> bytes, int index) {
 }
 void setWord(std::vector<std::byte>& bytes, int index, uint32_t word) { std::memcpy(bytes.data() + 4 * static_cast<size_t>(index), &word, 4); }
 
-// Vertices of a primitive that stands for itself; 0: they hang together.
+// Vertices of an independent primitive; 0: primitives share vertices.
 uint32_t verticesOf(uint32_t mode) {
     switch (mode) {
     case GL_POINTS: return 1;
@@ -60,7 +63,7 @@ uint32_t verticesOf(uint32_t mode) {
 
 uint32_t indexBytes(uint32_t type) { return type == GL_UNSIGNED_INT ? 4 : type == GL_UNSIGNED_SHORT ? 2 : 1; }
 
-constexpr uint64_t kUnknownCost = 64; // of draws whose vertices are not counted
+constexpr uint64_t kUnknownCost = 64; // of draws with an unknown number of vertices
 
 } // namespace
 
@@ -118,7 +121,7 @@ void Replay::notePrimitiveIds(GLuint ours) {
     if (c_->shared) c_->shared->primitiveIds[ours] = numbers;
 }
 
-// What a native list holds is told while it is compiled.
+// Records the content of a native list during its compilation.
 void Replay::noteCompiled(uint16_t opcode, std::span<const std::byte> arguments) {
     if (c_->building.items.empty()) return;
     ListItem& item = c_->building.items.back();
@@ -153,15 +156,15 @@ void Replay::beginSplit(Window& w) {
     r.share = share_;
     r.shares = sharesNumber_;
     if (drawn.empty()) return;
-    PicturePart pixel; // as the clears have left it
+    PicturePart pixel; // with the values of the clears
     readPart(w, {drawn.x, drawn.y, 1, 1}, pixel);
     r.rule.clearedColour = pixel.colour[0];
     r.rule.clearedDepth = pixel.depth[0];
-    r.rule.function = static_cast<compositor::DepthFunction>(r.function - GL_NEVER); // numbered as GL's
+    r.rule.function = static_cast<compositor::DepthFunction>(r.function - GL_NEVER); // in GL's numbering
     r.rule.deep = depthBitsOfWindow() > 24;
 }
 
-// Of the bound window's depth buffer; it may have more than the program has asked for.
+// Returns the depth bits of the bound window, possibly more than the program requested.
 int Replay::depthBitsOfWindow() {
     GLint bits = 0;
     if (!c_->core) gl.glGetIntegerv(GL_DEPTH_BITS, &bits);
@@ -169,7 +172,7 @@ int Replay::depthBitsOfWindow() {
     return bits > 0 ? bits : 32;
 }
 
-// Whether the window's next draws, of `cost`, are shared; then this node's are those from `first` up to `last`.
+// Returns whether the window's next draws, of `cost`, are shared. This node's part of them then is [first, last).
 bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
     RangeFrame& r = w.range;
     if (r.phase == RangeFrame::Phase::Whole) return false;
@@ -182,7 +185,8 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
         return false;
     }
     if (r.phase == RangeFrame::Phase::Fresh) beginSplit(w);
-    // In the first frame nothing is known: the collector draws it. What is more than in the frame before is the last one's.
+    // In the first frame no cost is known: the collector draws it. The last node draws any excess over the previous
+    // frame.
     const auto costAt = [&](double share) { return share >= 1 ? UINT64_MAX : countBefore(share, r.lastTotal); };
     const uint64_t from = r.lastTotal ? costAt(r.share.start) : collects() ? 0 : UINT64_MAX;
     const uint64_t to = r.lastTotal ? costAt(r.share.end) : UINT64_MAX;
@@ -193,7 +197,7 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
     return true;
 }
 
-// The picture is put together, and the rest of the frame is the collector's.
+// Composites the picture. The collector draws the rest of the frame.
 void Replay::drawRest(Window& w) {
     if (w.range.phase == RangeFrame::Phase::Whole) return;
     composeRanges(w);
@@ -211,7 +215,7 @@ std::span<const std::byte> Replay::noteRangeDraw(Window& w, uint16_t opcode, std
     const auto numbers = c_->shared->primitiveIds.find(name(Kind::Program, c_->program));
     bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound && !stipplesLines() && (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
     if (cuts && c.indices >= 0) cuts = wordAt(arguments, c.indices) == record::kTagOffset && !gl.glIsEnabled(GL_PRIMITIVE_RESTART) && (c_->version < 43 || !gl.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX));
-    if (!cuts) { // whole: of the node in whose range it begins
+    if (!cuts) { // drawn whole by the node whose range contains its beginning
         mute(w, first != 0 || last == 0);
         return arguments;
     }
@@ -231,7 +235,7 @@ std::span<const std::byte> Replay::noteRangeDraw(Window& w, uint16_t opcode, std
     return sliced_;
 }
 
-// Before any command; the arguments with which it is to be called.
+// Called before any command. Returns the arguments for its execution.
 std::span<const std::byte> Replay::noteRange(uint16_t opcode, std::span<const std::byte> arguments) {
     const RangeUse use = rangeUseOf(opcode);
     if (use == RangeUse::None || !bound_ || c_->compiling) return arguments;
@@ -239,7 +243,7 @@ std::span<const std::byte> Replay::noteRange(uint16_t opcode, std::span<const st
         noteRangeState(opcode, arguments);
         if (use != RangeUse::Feedback) return arguments;
     }
-    // The window may be what is read, too.
+    // The command may read the window too.
     if (use == RangeUse::Read && c_->readFramebuffer == 0 && c_->read && c_->read == c_->draw) drawRest(*c_->read);
     if (!drawsWindow() || !c_->draw) return arguments;
     Window& w = *c_->draw;
@@ -266,7 +270,7 @@ std::span<const std::byte> Replay::noteRange(uint16_t opcode, std::span<const st
     }
 }
 
-// A native list is one piece. False: what it changes decides about later draws.
+// A native list is one piece. Returns false if the list changes state that decides about later draws.
 bool Replay::noteRangeList(const ListItem& item) {
     if (!bound_ || !drawsWindow() || !c_->draw || c_->inPrimitive) return item.plain;
     Window& w = *c_->draw;
@@ -302,7 +306,7 @@ void Replay::readPart(Window& w, const PixelViewport& box, PicturePart& part) {
     if (bound && gl.glBindFramebuffer) gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, name(Kind::Framebuffer, bound));
 }
 
-// `area` of the part, in its own pixels, into the bound window.
+// Writes `area` of the part, in its own pixels, into the bound window.
 void Replay::writePart(const PicturePart& part, const PixelViewport& area) {
     std::vector<uint32_t> colour, depth;
     for (int32_t y = 0; y < area.h; ++y) {
@@ -326,12 +330,12 @@ void Replay::composeRanges(Window& w) {
     r.phase = RangeFrame::Phase::Whole;
     mute(w, false);
     const PixelViewport drawn = partDrawn(w);
-    if (r.lastTotal == 0 || drawn.empty() || !hasTurn(w.turn)) return; // all of it was the collector's, or others'
+    if (r.lastTotal == 0 || drawn.empty() || !hasTurn(w.turn)) return; // the collector or another node drew everything
     for (; returnsTaken_ < r.returns; ++returnsTaken_) {
         returns_.front()();
         returns_.pop_front();
     }
-    if (returnsTaken_ > r.returns) return; // the others have gone on to later pictures
+    if (returnsTaken_ > r.returns) return; // the other nodes have continued with later pictures
     PicturePart part;
     ++r.serial;
     readPart(w, drawn, part);
@@ -340,7 +344,7 @@ void Replay::composeRanges(Window& w) {
     if (collects() && !changed.empty()) writePart(part, changed);
 }
 
-// The bound window is about to be read, or to be left.
+// Called before the bound window is read or unbound.
 void Replay::composeBound() {
     if (!bound_ || !boundDraw_) return;
     ContextState* const own = std::exchange(c_, bound_);
@@ -366,12 +370,12 @@ void Replay::rangeDrawn(Window& w) {
     r.wasSplit = split;
     r.drawnBy = drawnBy;
     r.returns = returnsTold();
-    if (!knows) return; // as the first frame
+    if (!knows) return; // as after the first frame
     r.lastTotal = total;
     r.serial = serial;
 }
 
-// plant: "lateshare" takes what was announced before.
+// The planted fault "lateshare" applies the previously announced shares.
 void Replay::moveShares(const Shares& shares) {
     const auto node = static_cast<size_t>(config_.node);
     if (!takesRanges() || node >= shares.ofNodes.size()) return;
@@ -380,12 +384,12 @@ void Replay::moveShares(const Shares& shares) {
     sharesNumber_ = shares.number;
 }
 
-// What a frame in hand has drawn, and cost, the newcomer may have been given a part of. So nothing of it is put together with the
-// newcomer, nor what comes next of a window: that one is counted by all, as the first frame is. A frame that the others have begun to
-// share, they end as they have begun it.
+// The returned node may have received only a part of the current frame's draws, and of their cost. The current frame is
+// therefore composited without it. All nodes treat the next frame of each window as its first, and count its cost. A
+// frame whose sharing has begun ends with the same nodes and shares.
 void Replay::shareAnew(bool itself, std::function<void()> returned) {
     if (!takesRanges()) return;
-    share_ = config_.pass.share; // others follow
+    share_ = config_.pass.share; // new shares follow
     sharesNumber_ = 0;
     knowsCosts_ = knowsCosts_ || itself;
     for (auto& [client, its] : clients_)

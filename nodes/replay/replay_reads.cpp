@@ -1,4 +1,4 @@
-// What the program or the wall wants to see of what this node drew.
+// Reads of this node's drawings, for the program and for the wall.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -10,14 +10,15 @@
 
 namespace mural {
 
-// Between glBegin and glEnd, and in a lost context, GL answers nothing and a read leaves memory as it is.
+// Returns false between glBegin and glEnd, and in a lost context: GL answers no queries, and a read leaves the memory
+// unchanged.
 bool Replay::isAnswering() {
     GLint alignment = 0;
     gl.glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
     return alignment != 0;
 }
 
-// The read framebuffer is the program's; pack state and pack buffer are set aside.
+// Reads `r` of the program's read framebuffer, without the program's pack state and pack buffer.
 const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond) {
     const size_t room = into_ ? 1 : std::max<size_t>(bytes, 1);
     if (beyond == Beyond::Black) pixels_.assign(room, std::byte{0});
@@ -29,7 +30,8 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     const bool window = readsLean() && c_->readFramebuffer == 0;
     const PixelViewport o = window ? c_->read->region : PixelViewport{};
     const int32_t planted = config_.plant == "shift" && c_->readFramebuffer == 0 && r.x > 0 ? 1 : 0;
-    const bool fresh = beyond == Beyond::Nothing && !into_; // the memory still holds an earlier picture, of any program
+    // the memory still contains an earlier picture, of any program
+    const bool fresh = beyond == Beyond::Nothing && !into_;
     const bool answering = !fresh || isAnswering();
     gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, into_ ? nullptr : pixels_.data());
     if (fresh && (!answering || gl.glGetError() != GL_NO_ERROR)) std::ranges::fill(pixels_, std::byte{0});
@@ -38,7 +40,7 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     return pixels_.data();
 }
 
-// Pixel transfer (scale, bias, maps) belongs to the program's own reads and draws, not to ours.
+// Calls without pixel transfer (scale, bias, maps), which applies only to the program's own reads and draws.
 void Replay::withPlainTransfer(const std::function<void()>& call) {
     const bool has = c_->api == wire::Api::Desktop && !c_->core && gl.glPixelTransferf && gl.glPushAttrib;
     if (!has) return call();
@@ -50,7 +52,8 @@ void Replay::withPlainTransfer(const std::function<void()>& call) {
     gl.glPopAttrib();
 }
 
-// Calls without the clamp of reads to 1. A copy of a half-float window needs all values, although drivers clamp its reads.
+// Calls without the clamp of reads to 1. A copy of a half-float window needs all values, although drivers clamp its
+// reads.
 void Replay::withoutReadClamp(const std::function<void()>& call) {
     if (c_->api != wire::Api::Desktop || !gl.glClampColor) return call();
     GLint before = 0;
@@ -73,7 +76,7 @@ bool Replay::ownRequestPixels(Args& in) {
         answerBytes(request, wire::AnswerKind::Bytes, {});
         return true;
     }
-    if (c_->readFramebuffer != 0) { // every node has the whole of it
+    if (c_->readFramebuffer != 0) { // every node has all of it
         const size_t bytes = size_t(w) * size_t(h) * group;
         answerBytes(request, wire::AnswerKind::Bytes, {readRegion(asked, format, type, bytes), bytes});
         return true;
@@ -86,7 +89,8 @@ bool Replay::ownRequestPixels(Args& in) {
     if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.unsound();
     const size_t bytes = static_cast<size_t>(part.area()) * group;
     const std::byte* pixels = nullptr;
-    // Colours of no buffer are asked for by copies that are errors; Mesa reads through a null pointer there in OpenGL ES.
+    // Erroneous copies request colours while no buffer is selected. In OpenGL ES, Mesa would read through a null
+    // pointer.
     const bool nothing = !deep && c_->readBuffer0 == GL_NONE;
     const auto read = [&] { pixels = repeats && !nothing && !part.empty() ? readRepeated(part, format, type, group) : readRegion(nothing ? PixelViewport{} : part, format, type, bytes); };
     if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read)) aside([&] { pixels = readResolved(part, format, *words); });
@@ -102,15 +106,15 @@ bool Replay::ownRequestPixels(Args& in) {
     header.y = part.y;
     header.w = part.w;
     header.h = part.h;
-    header.first = !repeats && !part.empty() && part == asked; // the others have nothing of it
+    header.first = !repeats && !part.empty() && part == asked; // no other node has pixels of it
     header.last = 1;
     out_.answer(header, {pixels, bytes});
     return true;
 }
 
-// What was cleared with a scissor since the driver was asked for pixels or bytes, zink (Mesa 25.0) leaves out of the pixels that are
-// read next, unless it is told to flush in between. A swap would. A flush draws bitmaps that Mesa gathers: too early for those
-// that this question leaves with it (leavesBitmaps).
+// Works around zink (Mesa 25.0). The next read lacks scissored clears since the last request of pixels or bytes, unless
+// the driver is flushed in between. A swap would flush. A flush also draws bitmaps that Mesa has batched. That would be
+// too early for those that the request leaves in the batch (leavesBitmaps).
 void Replay::flushIfAsked(Window& w) {
     if (bound_ && bound_->gathersBitmaps) return;
     if (std::exchange(w.asked, false) && gl.glFlush) gl.glFlush();
@@ -126,7 +130,7 @@ void Replay::answerBytes(uint32_t request, wire::AnswerKind kind, std::span<cons
     out_.answer(header, bytes);
 }
 
-// Into pixels_: glGetn… and glGetTextureImage stay within the given size, whatever the level really is.
+// Reads into pixels_. glGetn… and glGetTextureImage stay within the given size, whatever size the level has.
 void Replay::readTexels(bool byName, GLuint which, GLint level, GLenum format, GLenum type) {
     const auto room = static_cast<GLsizei>(std::min<size_t>(pixels_.size(), INT32_MAX));
     if (byName && gl.glGetTextureImage) gl.glGetTextureImage(which, level, format, type, room, pixels_.data());
@@ -134,7 +138,7 @@ void Replay::readTexels(bool byName, GLuint which, GLint level, GLenum format, G
     else if (!byName && gl.glGetnTexImage) gl.glGetnTexImage(which, level, format, type, room, pixels_.data());
 }
 
-// The same of a compressed image, as it is. Mesa's glGetnCompressedTexImageARB does not look at the given size.
+// The same for a compressed image, without conversion. Mesa's glGetnCompressedTexImageARB ignores the given size.
 void Replay::readBlocks(bool byName, GLuint which, GLint level) {
     const auto room = static_cast<GLsizei>(std::min<size_t>(pixels_.size(), INT32_MAX));
     constexpr GLenum kBlockNames[] = {GL_PACK_COMPRESSED_BLOCK_WIDTH, GL_PACK_COMPRESSED_BLOCK_HEIGHT, GL_PACK_COMPRESSED_BLOCK_DEPTH, GL_PACK_COMPRESSED_BLOCK_SIZE};
@@ -169,7 +173,7 @@ bool Replay::ownRequestTexImage(Args& in) {
     return true;
 }
 
-// What transform feedback or shaders have written; the same on every node that runs all vertices.
+// Returns results of transform feedback or shaders, which are equal on every node that runs all vertices.
 bool Replay::ownRequestBuffer(Args& in) {
     const auto request = in.get<uint32_t>(), buffer = in.get<uint32_t>();
     const auto offset = in.get<uint64_t>(), bytes = in.get<uint64_t>();
@@ -180,7 +184,7 @@ bool Replay::ownRequestBuffer(Args& in) {
     return true;
 }
 
-// Into pixels_. Storage that may not be mapped for reading (immutable, of ES) is copied first.
+// Reads into pixels_. Copies storage first that cannot be mapped for reading (immutable, of ES).
 void Replay::readBuffer(GLuint ours, uint64_t offset) {
     const auto bytes = static_cast<GLsizeiptr>(pixels_.size());
     const bool desktop = c_->api == wire::Api::Desktop && gl.glGetBufferSubData;
@@ -214,7 +218,7 @@ PictureFormat Replay::pictureFormatOf(const Window& w) const {
     return config_.deepPictures && reads && w.config.red == 10 ? PictureFormat::Bgr10A2 : PictureFormat::Bgra8;
 }
 
-// The window's picture, whatever the program has bound; called at a swap.
+// Reads the window's picture, regardless of the program's bindings. Called at a swap.
 const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front) {
     const GLuint bound = c_->readFramebuffer;
     const bool separate = c_->version >= 30;
@@ -248,8 +252,8 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
 
 bool Replay::resolves(const Window& w) const { return w.config.samples > 0 && c_->version >= 30 && gl.glBlitFramebuffer && gl.glRenderbufferStorage; }
 
-// A swap shows the resolved picture; glReadPixels of a multisampled window gives one sample (Mesa).
-// The window is bound for reading when this is called, and again afterwards.
+// A swap shows the resolved picture, but glReadPixels of a multisampled window returns one sample (Mesa). The window is
+// bound for reading before and after the call.
 const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, const ColourWords& words) {
     GLint renderbuffer = 0;
     gl.glGetIntegerv(GL_RENDERBUFFER_BINDING, &renderbuffer);
@@ -269,7 +273,7 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, con
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     const std::byte* pixels = nullptr;
-    Window* const window = std::exchange(c_->read, nullptr); // what is read now lies at 0, 0
+    Window* const window = std::exchange(c_->read, nullptr); // the pixels now begin at 0, 0
     const size_t bytes = static_cast<size_t>(r.area()) * words.sizeBytes;
     withPlainTransfer([&] { pixels = readRegion({0, 0, r.w, r.h}, format, words.type, bytes, Beyond::Nothing); });
     c_->read = window;
@@ -277,12 +281,12 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, con
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
     gl.glDeleteFramebuffers(1, &framebuffer);
     gl.glDeleteRenderbuffers(1, &buffer);
-    c_->scissorsDiffer = c_->scissorsDiffer || gl.glScissorIndexed; // every viewport's enable was touched
+    c_->scissorsDiffer = c_->scissorsDiffer || gl.glScissorIndexed; // the enables of all viewports have changed
     applyScissors();
     return pixels;
 }
 
-// Pixels of other tiles, put where a copy will read them. A blit from a texture: no other state counts.
+// Stores pixels of other tiles for a following copy. Uses a blit from a texture, which ignores all other state.
 bool Replay::ownFillWindow(Args& in) {
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
     const auto planeAndFlag = in.get<uint32_t>(), plane = planeAndFlag & ~(wire::kForCopy | wire::kTenBits | wire::kFloats);
@@ -292,7 +296,8 @@ bool Replay::ownFillWindow(Args& in) {
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
     if (plane == GL_COLOR_BUFFER_BIT && c_->readBuffer0 == GL_NONE) return true; // the copy is an error
     if (c_->read) c_->read->filled = true;
-    if (bound_ && c_->read && !config_.answers && !readsLean() && (c_->read->region == c_->read->whole || c_->read->drawn == c_->read->whole)) { // another pass's pixels; all of this one's are here
+    // they belong to another pass, and this node has all pixels of its own
+    if (bound_ && c_->read && !config_.answers && !readsLean() && (c_->read->region == c_->read->whole || c_->read->drawn == c_->read->whole)) {
         forgetGathered();
         return true;
     }
@@ -302,8 +307,8 @@ bool Replay::ownFillWindow(Args& in) {
     }
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
     c_->read->copied = true;
-    if (interleaves(c_->read)) return true; // as a kernel has it, there is no room for them
-    forgetGathered(); // of another window
+    if (interleaves(c_->read)) return true; // a window with a kernel has no room for them
+    forgetGathered(); // from another window
     aside([&] {
         if (plane != GL_COLOR_BUFFER_BIT) fillByOtherContext({x, y, w, h}, plane, data.pointer());
         else fillColor({x, y, w, h}, data.pointer(), words);
@@ -312,7 +317,7 @@ bool Replay::ownFillWindow(Args& in) {
 }
 
 namespace {
-// What of r lies around the hole.
+// Returns the parts of `r` around the hole.
 std::array<PixelViewport, 4> around(const PixelViewport& r, const PixelViewport& hole) {
     if (hole.empty()) return {r};
     const auto box = [&](int32_t x0, int32_t y0, int32_t x1, int32_t y1) { return intersect(r, {x0, y0, x1 - x0, y1 - y0}); };
@@ -321,10 +326,11 @@ std::array<PixelViewport, 4> around(const PixelViewport& r, const PixelViewport&
 }
 } // namespace
 
-// Colours into the window that is read, whatever the program has set. Its own part of a window with samples keeps them.
+// Writes colours into the read window, regardless of the program's state. The node's own part of a multisampled window
+// keeps its samples.
 void Replay::fillColor(const PixelViewport& r, const void* rgba, const ColourWords& words) {
     if (c_->api == wire::Api::Es1) return fillByOtherContext(r, GL_COLOR_BUFFER_BIT, rgba, words.type);
-    // That window becomes the one that is drawn to, as long as this takes.
+    // The read window is the draw window during the blit.
     const bool otherDraw = drawSurface_ != readSurface_;
     if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), readSurface_, readSurface_);
     GLint texture2d = 0, unit = 0;
@@ -359,7 +365,7 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba, const ColourWor
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, name(Kind::Framebuffer, c_->readFramebuffer));
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(Kind::Framebuffer, c_->drawFramebuffer));
     if (otherDraw) (void)platform_->makeCurrent(c_->context.get(), drawSurface_, readSurface_);
-    c_->scissorsDiffer = true; // all viewports' enables were touched
+    c_->scissorsDiffer = true; // the enables of all viewports have changed
     applyScissors();
 }
 

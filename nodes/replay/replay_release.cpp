@@ -1,5 +1,5 @@
-// Contexts and windows that the program has given up. As in GLX: what is still current lives until it is
-// released; a share group keeps its objects as long as one of its contexts lives.
+// Contexts and windows that the program has destroyed. As in GLX, a current one lives until it is released. A share
+// group keeps its objects as long as one of its contexts lives.
 #include <algorithm>
 #include <vector>
 
@@ -32,7 +32,7 @@ bool Replay::ownDestroyWindow(Args& in) {
     return true;
 }
 
-// The platform may hold what no stream has current any more: streams are bound when their packets come.
+// The platform may have an object current that no stream has: streams are bound only when their packets arrive.
 void Replay::unbindPlatform() {
     (void)platform_->makeCurrent(nullptr, nullptr, nullptr);
     bound_ = nullptr;
@@ -79,12 +79,12 @@ void Replay::freeDestroyed(Client& client) {
             if (s.read == w) s.read = nullptr;
         }
         it = client.windows.erase(it);
-        // Mesa's contexts keep the buffers of a surface that is gone until they are bound once more.
+        // Mesa's contexts keep the buffers of a destroyed surface until their next binding.
         for (gl::Context* const c : users) (void)platform_->makeCurrent(c, nullptr, nullptr);
         if (!users.empty()) unbindPlatform();
     }
     client.anyDestroyed = left;
-    // What was unbound comes back for the stream that is being replayed.
+    // Restores the binding of the stream that is being replayed.
     if (!bound_ && s_ && s_->context) bindStream(*s_);
 }
 

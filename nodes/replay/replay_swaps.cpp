@@ -1,7 +1,8 @@
 // Ends frames and reads the picture of the window.
 //
-// A thread may swap a window that is not current, even without any context (GLX 1.4, 3.3.10). The replay then binds the window for
-// the read, with the context that drew there last: the driver orders the read after the draws of that context.
+// A thread may swap a window that is not current, even without any context (GLX 1.4, 3.3.10). The replay then binds the
+// window for the read, with the context that drew there last: the driver orders the read after the draws of that
+// context.
 #include <utility>
 
 #include "common/clock.hpp"
@@ -11,11 +12,11 @@
 namespace mural {
 
 namespace {
-constexpr int64_t kPatientFrames = 60; // for a full clear
+constexpr int64_t kPatientFrames = 60; // longest wait for a full clear
 } // namespace
 
-// Waits for a fence where the driver has fences. For a framebuffer with one colour buffer glFinish of Mesa copies the whole
-// picture to a window that does not exist (measured: a quarter of this thread's time at 800x600).
+// Waits for a fence where the driver has fences. For a framebuffer with one colour buffer, glFinish of Mesa copies the
+// whole picture to a window that does not exist (measured: a quarter of this thread's time at 800x600).
 void Replay::waitUntilDrawn() {
     constexpr GLuint64 kPatienceNs = 60'000'000'000;
     if (!bound_) return;
@@ -112,7 +113,8 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         };
     }
     if (window && bound_) flushIfAsked(*window);
-    // A frame counts after its draws: pacing and frame rates depend on that. A later read counts the frame with its picture.
+    // A frame counts after its draws: pacing and frame rates depend on that. A later read counts the frame with its
+    // picture.
     const bool shown = frame != wire::kUnseenFrame;
     const bool later = shown && ours && readsLater(*ours, f.region);
     const int64_t beganNs = monotonicNowNs();

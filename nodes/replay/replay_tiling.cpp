@@ -1,9 +1,12 @@
-// Drawing only this node's part of a window.
+// Draws only this node's part of a window.
 //
-// exact: the framebuffer has the window's size, and the scissor, intersected with the program's scissor box, closes
-// everything outside the node's region. The specification requires fragments to be independent of the scissor, so the
-// region is bit-identical to the whole picture's. lean: the framebuffer has the region's size, and window coordinates
-// are translated. Framebuffer objects are always drawn whole. Source: design §4, accuracy M4 and M1.
+// exact: the framebuffer has the window's size. The scissor, intersected with the program's scissor box, closes
+// everything outside the node's region. The specification requires fragments to be independent of the scissor. The
+// region is therefore bit-identical to the same part of the whole picture.
+//
+// lean: the framebuffer has the region's size, and window coordinates are translated.
+//
+// Framebuffer objects are always drawn whole. Source: design §4, accuracy M4 and M1.
 #include <cstdint>
 
 #include "nodes/replay/pass_place.hpp"
@@ -176,7 +179,7 @@ void Replay::glDisablei(GLenum target, GLuint index) {
     applyScissors();
 }
 
-// ---- attribute stack: what the replay keeps for itself goes onto a stack of its own
+// ---- attribute stack: the replay saves its own copies of state on a stack of its own
 
 void Replay::glPushAttrib(GLbitfield mask) {
     gl.glPushAttrib(mask);

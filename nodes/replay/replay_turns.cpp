@@ -1,14 +1,14 @@
-// Time-multiplex: this node draws the frames whose turn is its own, and of all others nothing in windows. Its region is
-// empty then, so that scissors, answers, counts and pictures need no rule of their own. Framebuffer objects are drawn by
-// all: their contents outlive frames.
+// Time-multiplex: this node draws the frames of its turns. In all other frames it draws nothing into windows. Its
+// region is empty then, so scissors, answers, counts and pictures need no special cases. All nodes draw framebuffer
+// objects, whose contents outlive frames.
 //
-// A frame that clears its window before it draws there begins the next node's turn. One that builds on the picture
-// before it stays with the node that has that picture. Which of both it is shows when it first does more than clear; clears
-// are done by all nodes. Every node sees the same commands, and so decides the same.
+// A frame that clears its window before it draws there begins the next node's turn. A frame that builds on the previous
+// picture stays with the node that has that picture. The first command that is not a clear decides between the two; all
+// nodes execute the clears. Every node receives the same commands, and so takes the same decision.
 //
-// Accumulation and front buffers hold what earlier frames left there, whoever has cleared: from then on one node goes on
-// drawing the window. So it does where a frame turns out too late to want an older depth or stencil buffer; the first
-// frames are drawn by all nodes, that such programs are found before it matters.
+// Accumulation and front buffers keep the content of earlier frames, regardless of clears. From their first use, one
+// node draws the window permanently. The same applies if a frame needs an older depth or stencil buffer after its
+// decision. All nodes draw the first frames, so that such programs are detected before that matters.
 // Source: thesis, "Time-Multiplex (DPlex)".
 #include <cstring>
 #include <utility>
@@ -24,11 +24,11 @@ namespace mural {
 namespace {
 
 constexpr int64_t kLearnedFrames = 2;
-constexpr int64_t kKeptFrames = 8; // in a row: then it is said that turns do not help
+constexpr int64_t kKeptFrames = 8; // consecutive frames, after which the node reports that turns do not help
 
 } // namespace
 
-// Which buffers of the window a command that clears is about.
+// Returns the window's buffers that a clear command addresses.
 GLbitfield Replay::clearsOf(uint16_t opcode, std::span<const std::byte> arguments) const {
     GLuint words[2] = {};
     std::memcpy(words, arguments.data(), std::min(arguments.size(), sizeof words));
@@ -46,7 +46,7 @@ bool Replay::learnsTurns(const Window& w) const { return takesTurns() && (w.fram
 
 bool Replay::hasTurn(int64_t turn) const { return !takesTurns() || (knowsTurns_ && turn % config_.pass.period == config_.pass.phase); }
 
-// After its size or the turn has changed.
+// Recomputes the window's regions. Called after a change of its size or turn.
 void Replay::placePart(Window& w) {
     if (w.skipped) {
         w.region = w.drawn = {};
@@ -56,18 +56,18 @@ void Replay::placePart(Window& w) {
     w.region = hasTurn(w.turn) ? part : PixelViewport{};
     w.drawn = copiesOthers() && w.drawsAll && !w.lean && hasTurn(w.turn) ? w.whole : w.region;
     if (w.range.muted) w.drawn = {};
-    if (takesRanges() && !collects()) w.region = {}; // the collector's
+    if (takesRanges() && !collects()) w.region = {}; // the collector has it
     if (!drawsWholeBins(w) || w.drawn.empty()) return;
     w.drawn = intersect(widenToBins(w.drawn, surfaceOf(w, false)), interleaves(&w) ? inPass(config_.pass, w.whole) : w.whole);
 }
 
-// Whether pixels of the window may depend on where the scissor cuts a bin of the driver.
+// Returns whether pixels of the window may depend on the position of scissor edges inside a bin of the driver.
 bool Replay::drawsWholeBins(const Window& w) const {
     if (config_.plant == "edges") return false;
     return w.config.samples > 0 || (config_.rastersInBins && w.isFlat);
 }
 
-// Which of the buffers a clear, as the state is now, gives one value everywhere.
+// Returns the buffers of `mask` that a clear, in the current state, sets to one value everywhere.
 GLbitfield Replay::clearsWhole(GLbitfield mask) const {
     const bool discards = c_->version >= 30 && gl.glIsEnabled(GL_RASTERIZER_DISCARD);
     if (c_->scissors[0].enabled || c_->conditional || discards) return 0;
@@ -85,7 +85,7 @@ GLbitfield Replay::clearsWhole(GLbitfield mask) const {
     return cleared;
 }
 
-// What a draw, as the state is now, would find there of an earlier frame.
+// Returns the buffers whose earlier content a draw, in the current state, would use.
 GLbitfield Replay::needsCleared() const {
     const wire::WindowConfig& w = c_->draw->config;
     GLbitfield needed = GL_COLOR_BUFFER_BIT;
@@ -94,7 +94,7 @@ GLbitfield Replay::needsCleared() const {
     return needed;
 }
 
-// Before any command that may change pixels of the window.
+// Called before any command that may change pixels of the window.
 void Replay::noteTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
     if (use == WindowUse::FeedbackBegins || use == WindowUse::FeedbackEnds) c_->feedsBack = use == WindowUse::FeedbackBegins;
@@ -109,11 +109,11 @@ void Replay::noteTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     if (use == WindowUse::Clears && (clears & kWindowBuffers & ~whole) == 0) return;
     const bool builds = ((use == WindowUse::Clears ? clears & kWindowBuffers : needsCleared()) & ~w.cleared) != 0;
     if (w.undecided) return decideTurn(w, builds);
-    if (builds && w.fresh) keepTurn(w); // too late to find out
+    if (builds && w.fresh) keepTurn(w); // detected too late for this frame
 }
 
-// What a list draws while it is compiled, the driver draws at once, by state that the list may change: whose turn it is must be known before, and
-// what all nodes hold alike are buffers that were cleared.
+// Compile-and-execute: the driver draws a list's commands at once, with state that the list may change. The turn must
+// therefore be decided before. Only buffers that were cleared are equal on all nodes.
 void Replay::noteTurnOfList() {
     if (!takesTurns() || c_->compileMode != GL_COMPILE_AND_EXECUTE || !drawsWindow() || !c_->draw) return;
     Window& w = *c_->draw;
@@ -125,14 +125,14 @@ void Replay::noteTurnOfList() {
     if (builds && w.fresh) keepTurn(w);
 }
 
-// The window's part is last frame's until somebody draws: what is read before that is last frame's, too.
+// Called at the first command that draws. Until then the window's part belongs to the previous frame, and so do reads.
 void Replay::beginTurn(Window& w) {
     w.turnOver = false;
     w.cleared = 0;
     w.fresh = false;
     ++w.frames;
     w.undecided = !w.keepsPicture;
-    restoreWindowState(); // the frames that all draw may be over
+    restoreWindowState(); // the frames that all nodes draw may have ended
 }
 
 void Replay::decideTurn(Window& w, bool builds) {
@@ -144,7 +144,7 @@ void Replay::decideTurn(Window& w, bool builds) {
     restoreWindowState();
 }
 
-// From now on it is the turn of the node whose turn it is.
+// Gives the turn permanently to the node that has it.
 void Replay::keepTurn(Window& w) {
     w.keepsPicture = true;
     if (w.undecided) decideTurn(w, true);
@@ -163,7 +163,8 @@ void Replay::partChanged(Window& w) {
 void Replay::turnDrawn(Window& w, bool shownInFront) {
     w.sceneWasElsewhere = std::exchange(w.sceneElsewhere, false);
     if (drawsOtherPixels()) {
-        const bool needsAll = bound_ && bound_->shared && bound_->shared->allDrawn; // modules that ask for places, fragments that are counted
+        // modules that read gl_FragCoord, or counted fragments
+        const bool needsAll = bound_ && bound_->shared && bound_->shared->allDrawn;
         const bool plain = std::exchange(w.plain, std::exchange(w.copied, false) || needsAll);
         w.askedOfLevels = 0;
         if (plain != w.plain) partChanged(w);
@@ -172,10 +173,10 @@ void Replay::turnDrawn(Window& w, bool shownInFront) {
     w.begun = false;
     if (!takesTurns()) return;
     w.turnOver = true;
-    w.keepsPicture = w.keepsPicture || shownInFront; // it is drawn into while it is seen
+    w.keepsPicture = w.keepsPicture || shownInFront; // the program draws into a visible buffer
 }
 
-// ---- nodes that come back: what they are given leaves out frames, so they can't count
+// ---- returned nodes: their snapshot leaves out frames, so they cannot count
 
 std::vector<wire::WindowTurn> Replay::turns() const {
     std::vector<wire::WindowTurn> turns;

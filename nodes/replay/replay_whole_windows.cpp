@@ -1,9 +1,10 @@
-// Windows of which a node draws all pixels, though its pass has every nth one only: from the frame behind the one in which that was seen.
+// Windows that a node draws whole although its pass has only every nth pixel. This starts with the frame after the one
+// that needed it.
 //
-// What puts pixels into a window one by one, or copies them, needs all of them to be there. And what looks textures up chooses their level
-// by the distance to the next pixel that is drawn, which is n times as far: desktop GLSL is given the window's (texture_gradients.hpp), but
-// the lookups of fixed function, ARB programs and OpenGL ES are not ours to change. A zoom's levels are those of its own pixels.
-// Source: OpenGL 4.6, 8.14.1 (scale factor and level-of-detail).
+// Copies, and commands that write single pixels into a window, need all of its pixels. Texture lookups select a level
+// by the distance to the next drawn pixel, which is n times too large. Rewritten desktop GLSL uses the window's
+// distance (texture_gradients.hpp). Lookups of fixed function, ARB programs and OpenGL ES cannot be rewritten. In a
+// zoomed picture, levels follow the zoomed pixels. Source: OpenGL 4.6, 8.14.1 (scale factor and level-of-detail).
 #include <cstring>
 
 #include "gl_opcodes.hpp"
@@ -14,8 +15,9 @@ namespace mural {
 
 namespace {
 
-constexpr GLuint kFixedUnits = 4; // that are asked for; who textures by others only, does not by these
-constexpr int kMostAsked = 256;   // draws of a frame: of more, one that does is among them
+constexpr GLuint kFixedUnits = 4; // texture units that are queried; textures of other units alone are not detected
+// draws checked per frame; if any draw of a longer frame uses levels, one of these is assumed to
+constexpr int kMostAsked = 256;
 
 uint32_t secondOf(std::span<const std::byte> arguments) {
     uint32_t words[2] = {};
@@ -25,7 +27,7 @@ uint32_t secondOf(std::span<const std::byte> arguments) {
 
 } // namespace
 
-// Whether the next draw looks textures up that have levels, by something that chooses them by the pixels that are drawn here.
+// Returns whether the next draw looks up textures with several levels, and selects these by the pixels drawn here.
 bool Replay::choosesOwnLevels() const {
     const bool shaders = c_->program != 0 || c_->pipelineBound;
     if (!hasKernel() || !c_->shared || !c_->shared->texturesHaveLevels || (shaders && c_->api == wire::Api::Desktop)) return false;

@@ -18,8 +18,8 @@ struct ViewMove {
     void apply(double (&matrix)[16], double unit) const;
 };
 
-// Off-axis stereo: this eye is `offset` to the right of the centre, and points at `focusDistance` stay fixed (both in
-// the program's units). x_clip + K (w / focusDistance - 1), K = offset times the projection's scale of x.
+// Off-axis stereo: this eye is `offset` to the right of the centre, and points at `focusDistance` stay fixed. Both are
+// in the program's units. The result is x_clip + K (w / focusDistance - 1), with K = offset * scaleX of the projection.
 [[nodiscard]] ViewMove eyeMove(const SeenProjection& seen, double offset, double focusDistance);
 
 // A screen of a room. Source: thesis, "Virtual Reality"; Kooima, "Generalized Perspective Projection".

@@ -16,9 +16,9 @@ namespace mural::shaders {
 //   [1] = x: 0 disables culling; y: margin around the tile in pixels; z, w: size of a pixel
 inline constexpr const char* kCullUniform = "muralCullPlanes";
 
-// es: in an ES context. `sources`: all texts of the stage, one of which contains main(). Returns as many texts, patched
-// where necessary. Returns nothing if the stage must not change (gl_ClipVertex, own cull distances, several viewports
-// or streams, names from macros, ES 1.00).
+// es: in an ES context. `sources`: all texts of the stage; one contains main(). Returns as many texts, patched where
+// necessary. Returns nothing if the stage must not change (gl_ClipVertex, own cull distances, several viewports or
+// streams, names from macros, ES 1.00).
 std::optional<std::vector<std::string>> withCullDistances(const std::vector<std::string>& sources, LastStage stage, bool es);
 
 } // namespace mural::shaders

@@ -8,9 +8,10 @@
 
 namespace mural::shaders {
 
-// vec4[2]. [0].xy: window position of the framebuffer's lower left corner; [0].z: its height from the upper left
-// corners; [0].w: 0. [1].xy: window pixels per framebuffer pixel, minus 1; [1].zw: the reciprocal, minus 1. Zeros
-// change nothing, not even by rounding.
+// Two vec4 in the rewritten shader. Zeros change nothing, not even by rounding.
+//   Vector 0, xy: window position of the framebuffer's lower left corner.
+//   Vector 0, z: distance from the window's upper edge to the framebuffer's, for upper left origins; w: 0.
+//   Vector 1, xy: window pixels per framebuffer pixel, minus 1; zw: the reciprocal, minus 1.
 inline constexpr const char* kPlaceUniform = "muralPlace";
 
 struct FragmentReads {

@@ -21,8 +21,8 @@ struct VertexCode {
     std::function<bool(const GlslText&)> allowed; // false: do not change the stage
 };
 
-// es: in an ES context. `sources`: all texts of the stage, one of which contains main(). Returns as many texts, or
-// nothing if the stage must not change (not allowed, several streams, names from macros).
+// es: in an ES context. `sources`: all texts of the stage; one contains main(). Returns as many texts, or nothing if
+// the stage must not change (not allowed, several streams, names from macros).
 std::optional<std::vector<std::string>> withVertexCode(const std::vector<std::string>& sources, LastStage stage, bool es, const VertexCode& code);
 
 } // namespace mural::shaders

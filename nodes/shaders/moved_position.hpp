@@ -11,9 +11,9 @@
 namespace mural::shaders {
 
 // Five vec4 in the patched program; zeros have no effect.
-//   [0] = scale - 1 in x, y and offset in x, y of normalised device coordinates
-//   [1], [2], [3] = added to x, y and w of clip coordinates: coefficients of x, y, w and 1
-//   [4].x = added to z: multiple of the addition to w
+//   Vector 0: scale - 1 in x, y and offset in x, y of normalised device coordinates.
+//   Vectors 1, 2, 3: additions to x, y and w of clip coordinates, as coefficients of x, y, w and 1.
+//   Vector 4, x: addition to z, as a multiple of the addition to w.
 // Positions with w = 1 have no perspective and are not transformed for an eye.
 inline constexpr const char* kMoveUniform = "muralMove";
 

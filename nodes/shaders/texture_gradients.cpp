@@ -79,7 +79,8 @@ TextureLookups withWindowGradients(const GlslText& text, const std::string& endi
         const std::string name = "muralTexture" + ending;
         for (const Sampler& s : kSamplers)
             if (text.uses(s.name)) done.declarations += function(s.result, name, s.name, s.coordinates, s.of, "texture", "textureGrad", s.biased);
-        // Other samplers (rectangles and buffers have no levels) use the original function; then no call is rewritten.
+        // Other samplers (rectangles and buffers have no levels) use the original function. In texts with these, no
+        // call is rewritten.
         const bool others = std::ranges::any_of(text.tokens, [](const GlslToken& t) {
             return t.text.find("sampler") != std::string_view::npos && t.text.find("sampler") < 2 && std::ranges::none_of(kSamplers, [&](const Sampler& s) { return s.name == t.text; });
         });
