@@ -16,8 +16,10 @@ void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLb
 // The same for a command that names the window, independent of the read binding. Not available in display lists.
 void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// From now on every node draws the whole window. For fragment shaders that write to memory, for display lists that copy
-// from a window or contain conditional rendering, which cannot be interrupted for a request, and for copies of samples.
+// Makes every node draw the whole window from now on. The reasons are:
+// - fragment shaders that write to memory,
+// - display lists that copy from a window or contain conditional rendering, because no request can interrupt them,
+// - copies of samples.
 void drawAll(ThreadState& t, const char* by = __builtin_FUNCTION());
 
 // The planes that a copy reads into an image: of this format, or of a level of the bound or named texture.
