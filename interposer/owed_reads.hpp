@@ -1,6 +1,6 @@
 // Deferred replies: reads into pixel pack buffers whose pixels the program has not used yet. The call sends a request
-// and returns. The reply is written into the program's own copy of the buffer when the program first uses it. The nodes
-// receive the bytes only when the buffer gets another use.
+// and returns. The reply is written into the program's own copy of the buffer when the program first reads, writes or
+// otherwise uses it. The nodes do not need the bytes, and receive them only before a use for other purposes.
 #pragma once
 
 #include <GL/gl.h>

@@ -1,5 +1,5 @@
-// Tells the head where a window is, and proves that it is the program's: by the number of its X display, and by a
-// property of the window (common/window_mark.hpp).
+// Reports the location of a window to the head, by the number of its X display. A property of the window
+// (common/window_mark.hpp) proves that the window belongs to the program.
 #pragma once
 
 namespace mural {
