@@ -113,8 +113,8 @@ struct NewsSlot {
 };
 static_assert(sizeof(NewsSlot) == 512);
 
-// A window into which the program puts pictures itself while it holds a grab of the X server, because the server does
-// not serve the head's connection then. The program writes the entry and stores `window` last.
+// A window into which the program puts pictures itself while it holds a grab of the X server. The server does not serve
+// the head's connection then. The program writes the entry and stores `window` last.
 struct OwnWindow {
     std::atomic<uint32_t> window; // X id; 0: a free slot
     std::atomic<uint32_t> frame;  // the latest frame that the program puts

@@ -22,7 +22,8 @@ public:
     [[nodiscard]] bool watched() const { return watch_.active(); }
 
     // Calls changed(self, fromByte, bytes, sizeBytes) for differences since the last call. `bytes` stays stable while
-    // the program writes. `exact` excludes unchanged words of 4 bytes, because other threads write to them.
+    // the program writes. `exact` excludes unchanged words of 4 bytes, because other writers (the nodes) may change
+    // them.
     using Changed = void (*)(void* self, size_t fromByte, const std::byte* bytes, size_t sizeBytes);
     void collect(bool exact, Changed changed, void* self);
     // Accepts bytes that others have written into the memory. Calls `changed` for words of `bytes` that differ from the

@@ -44,7 +44,7 @@ struct ShareGroup {
     ThreadState* lastWriter = nullptr;
     int threads = 0; // number of threads with a current context of the group
     int unsettledThreads = 0; // number of threads with ThreadState::mayBeWriting
-    bool inherited = false; // a forked child's parent's: its objects are in the parent's stream
+    bool inherited = false; // it belongs to a forked child's parent, whose stream has its objects
     MappedBuffer* maps = nullptr; // active mappings of buffers
     std::atomic<int> lastingMaps{0}; // number of persistent mappings
     Lock mapsLock;                // guards the list; records are written under it
@@ -98,7 +98,7 @@ struct Context {
     VertexArrayMirror arrays;
     GLenum stashedError = 0;   // an error found during our own queries, for the program's next glGetError
     DebugListener* debug = nullptr; // the program's debug callback and the messages that it has received
-    uint32_t errorsTold = 0; // errors that the program has received; the nodes count as well (wire::kOpErrorTold)
+    uint32_t errorsTold = 0;        // errors that the program has received; nodes count along (wire::kOpErrorTold)
     bool outOfMemoryDue = false;    // reported by a node, not yet by glGetError
     bool keepsUnflushed = false;    // KHR_context_flush_control: releasing it flushes nothing
     bool losesOnReset = false;      // the program has requested reset notification
@@ -139,7 +139,7 @@ struct Window {
     bool inherited = false;    // a context of this forked child's parent draws into it, outside the wall
     int holders = 0;           // number of contexts that were last bound to it
     uint64_t native = 0;       // X window
-    uint64_t server = 0; // X server of the window (interposer/windows/x_server.hpp); known from its introduction on
+    uint64_t server = 0;       // X server of `native` (interposer/windows/x_server.hpp), from its introduction on
     bool introduced = false;   // interposer/windows/introduction.hpp
     bool nativeGone = false;   // the X window was destroyed
     wire::WindowConfig config{};

@@ -1,5 +1,5 @@
-// A lock on one word that sleeps by futex. std::mutex would need more than the libc that a preloaded library can rely
-// on, and must not run destructors.
+// A lock on one word that sleeps by futex. A preloaded library can rely on libc only, and std::mutex would need more.
+// The lock must not run destructors.
 #pragma once
 
 #include <atomic>

@@ -29,8 +29,8 @@ void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t leng
 void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access, const char* by = __builtin_FUNCTION());
 // Call after the program has waited for the GL. Updates persistent mappings with data written by the nodes.
 void refreshMaps(ThreadState& t, const char* by = __builtin_FUNCTION());
-// From now on only the nodes know the content of buffers. This buffer (0: any) is bound for writes by shaders or
-// transform feedback.
+// From now on only the nodes have the current content of buffers. This buffer (0: any) is bound for writes by shaders
+// or transform feedback.
 void nodesMayWrite(ThreadState& t, GLuint buffer);
 void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers);
 // The program's own context has copied into the buffer. If the source is known to the nodes only, the copy is outdated.

@@ -1,6 +1,6 @@
 // Replaces the C library's calls that execute or start a program. Each call continues with an environment that keeps
-// the new program captured. system() and popen() are not covered, because they start their shell inside the C library.
-// Raw system calls are not covered either.
+// the new program captured. Calls of system() and popen() are not covered, because they start their shell inside the C
+// library. Raw system calls are not covered either.
 //
 // The functions run after fork and vfork, so they allocate nothing and take no lock.
 #include <cerrno>

@@ -29,7 +29,7 @@ bool maybeGl(const char* name) {
 
 extern "C" __attribute__((visibility("default"))) void* dlsym(void* handle, const char* name) noexcept {
     using namespace mural;
-    // A tail call (this file is always built with -foptimize-sibling-calls). libc must see our caller, because
+    // This is a tail call, because this file is always built with -foptimize-sibling-calls. libc must see our caller:
     // RTLD_NEXT and RTLD_DEFAULT depend on the caller's place in the load order.
     if (!maybeGl(name) || handle == RTLD_NEXT) {
         Dlsym* next = findDlsym();

@@ -6,8 +6,8 @@ namespace mural {
 
 struct Window;
 
-// Call it before the window's first record and before the question for the window's size: the answer to that question
-// proves that the server has the property. The thread must be allowed to use the window's X connection. Idempotent.
+// Call it before the window's first record and before the query of the window's size. The answer to that query proves
+// that the server has the property. The thread must be allowed to use the window's X connection. Idempotent.
 void introduceWindow(Window& w);
 
 } // namespace mural

@@ -1,5 +1,5 @@
 // Replaces the X requests by which a program reads its windows, or copies between them and its pixmaps. They wait for
-// pending pictures and then continue unchanged. They do not examine the drawable: a read of a parent or of the root
+// pending pictures and then continue unchanged. They do not examine the drawable. A read of a parent or of the root
 // window contains our windows as well, and an X id does not reveal its kind.
 #include <X11/Xlib.h>
 #include <xcb/shm.h>
