@@ -10,9 +10,9 @@ struct Jitter {
     double y = 0;
 };
 
-// Returns the position of one sample. Each coordinate takes each of n evenly spaced values once, so the mean of the
-// samples is the pixel's centre, and n samples have n different distances from every edge. Columns are in order, rows
-// in the order of their radical inverses (0, 1/2, 1/4, 3/4, ...): a Hammersley set.
+// Returns the position of one sample. Each coordinate takes each of n evenly spaced values once. The mean of the
+// samples is therefore the pixel's centre, and n samples have n different distances from every edge. Columns are in
+// order, rows in the order of their radical inverses (0, 1/2, 1/4, 3/4, ...): a Hammersley set.
 [[nodiscard]] inline Jitter jitterOf(const SubPixel& s) {
     if (s.size <= 1) return {};
     const auto radicalInverse = [](int32_t i) {

@@ -14,19 +14,20 @@ namespace mural {
 class MapChanges {
 public:
     ~MapChanges() { end(); }
-    // Starts. Returns false if there is no memory for the copy. mayWatch: the memory has no other mapping with write
-    // access.
+    // Starts change detection. Returns false if there is no memory for the copy. mayWatch: the memory has no other
+    // mapping with write access.
     bool begin(void* memory, size_t sizeBytes, bool mayWatch = true);
     void end();
     [[nodiscard]] bool active() const { return memory_ != nullptr; }
     [[nodiscard]] bool watched() const { return watch_.active(); }
 
     // Calls changed(self, fromByte, bytes, sizeBytes) for differences since the last call. `bytes` stays stable while
-    // the program writes. `exact` excludes unchanged words of 4 bytes, because others write to them.
+    // the program writes. `exact` excludes unchanged words of 4 bytes, because other writers (the nodes) may change
+    // them.
     using Changed = void (*)(void* self, size_t fromByte, const std::byte* bytes, size_t sizeBytes);
     void collect(bool exact, Changed changed, void* self);
-    // Others have written these bytes into the memory. Calls `changed` for words of `bytes` that differ from the copy;
-    // they do not count as changes afterwards.
+    // Accepts bytes that others have written into the memory. Calls `changed` for words of `bytes` that differ from the
+    // copy. They do not count as changes afterwards.
     void accept(size_t fromByte, const std::byte* bytes, size_t sizeBytes, Changed changed, void* self);
 
 private:

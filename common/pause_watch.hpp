@@ -1,4 +1,4 @@
-// The thread that measures for how long this process is stopped (common/pauses.hpp). One per process, from the start of
+// Thread that measures how long this process is stopped (common/pauses.hpp). Each process has one, from the start of
 // its work to the end.
 #pragma once
 
@@ -33,7 +33,7 @@ public:
     }
 
 private:
-    // A child has no such thread; the fork may have come in the middle of a tick.
+    // A forked child has no such thread. The fork may have happened in the middle of a tick.
     static void endInChild() {
         pauses::lastTickNs.store(0);
         if (pauses::sequence.load() % 2 != 0) pauses::sequence.fetch_add(1);

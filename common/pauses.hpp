@@ -1,7 +1,8 @@
-// How long this process was stopped as a whole: by a signal, a debugger or a frozen cgroup. Deadlines do not count that
-// time: what other processes did not do meanwhile, or did and could not be seen, is no failure of theirs.
+// Measures how long this process was stopped as a whole: by a signal, a debugger or a frozen cgroup. Deadlines do not
+// count that time. The process cannot see what other processes do meanwhile, so their silence is no failure.
 //
-// PauseWatch (common/pause_watch.hpp) measures it; without one no pause is known. Any thread.
+// PauseWatch (common/pause_watch.hpp) calls tick(). Without a PauseWatch no pause is known. Any thread may call
+// totalNs().
 #pragma once
 
 #include <atomic>
@@ -10,13 +11,13 @@
 namespace mural::pauses {
 
 constexpr int64_t kTickNs = 250'000'000;
-constexpr int64_t kMinPauseNs = 1'000'000'000; // a shorter gap between two ticks is the scheduler's
+constexpr int64_t kMinPauseNs = 1'000'000'000; // shorter gaps between two ticks are scheduling delays
 
-inline std::atomic<uint32_t> sequence{0}; // odd while the other two change
-inline std::atomic<int64_t> lastTickNs{0}; // of monotonicNowNs(); 0: nobody watches
-inline std::atomic<int64_t> finishedNs{0}; // all pauses that ended before the last tick
+inline std::atomic<uint32_t> sequence{0}; // odd while the next two words change
+inline std::atomic<int64_t> lastTickNs{0}; // time of monotonicNowNs(); 0: no watch
+inline std::atomic<int64_t> finishedNs{0}; // sum of the pauses that ended before the last tick
 
-// By one thread, every kTickNs.
+// One thread calls it every kTickNs.
 inline void tick(int64_t nowNs) {
     const int64_t lastNs = lastTickNs.load(std::memory_order_relaxed);
     const int64_t gapNs = lastNs == 0 ? 0 : nowNs - lastNs;
@@ -32,7 +33,8 @@ inline void endWatch() {
     sequence.fetch_add(1, std::memory_order_release);
 }
 
-// All pauses until now. A thread that runs again before the watch does sees the latest pause, too.
+// Returns the sum of all pauses until now. Includes the latest pause even if the calling thread resumes before the
+// watch thread.
 inline int64_t totalNs(int64_t nowNs) {
     while (true) {
         const uint32_t before = sequence.load(std::memory_order_acquire);

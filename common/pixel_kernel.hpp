@@ -18,7 +18,7 @@ struct PixelKernel {
     friend constexpr bool operator==(const PixelKernel&, const PixelKernel&) = default;
 };
 
-// Returns the kernel of `inner` applied to the pixels of `outer`: pixel i of the result is pixel inner.x + inner.w * i
+// Returns the kernel of `inner` applied to the pixels of `outer`. Pixel i of the result is pixel inner.x + inner.w * i
 // of `outer`, so pictures can be assembled at each level. (Equalizer multiplies in the other order; its pictures are
 // right only when assembled at the root.)
 [[nodiscard]] constexpr PixelKernel compose(const PixelKernel& outer, const PixelKernel& inner) {

@@ -1,7 +1,8 @@
-// The time of monotonicNowNs() without a system call, which takes ten times as long; for code that runs per datagram.
+// The time of monotonicNowNs() without a system call, which takes ten times as long. It is for code that runs per
+// datagram.
 //
 // The function comes from the kernel's vDSO, because a captured program may replace clock_gettime (virtual clocks).
-// Without a vDSO the system call is made.
+// Without a vDSO it makes the system call.
 #pragma once
 
 #include <dlfcn.h>

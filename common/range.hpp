@@ -17,7 +17,7 @@ struct Range {
 };
 
 // Returns `inner`, which is relative to `outer`, relative to the whole. An end equal to `outer`'s end keeps the same
-// number: 0.3 + (0.9 - 0.3) is not 0.9, and a range that begins at 0.9 would leave a gap.
+// number. Otherwise 0.3 + (0.9 - 0.3) would differ from 0.9, and a range that begins at 0.9 would leave a gap.
 [[nodiscard]] constexpr Range compose(const Range& outer, const Range& inner) {
     const double size = outer.end - outer.start;
     const auto at = [&](double place) { return place == 1 ? outer.end : outer.start + place * size; };

@@ -1,5 +1,5 @@
-// A value or an error that a user can read. std::expected exists only from C++23 on.
-// An error is one line: what went wrong, with what, and what to do next.
+// A value or an error that a user can read. std::expected exists only from C++23 on. An error is one line: the problem,
+// the object, and the next step.
 #pragma once
 
 #include <string>

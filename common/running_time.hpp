@@ -1,5 +1,5 @@
-// The duration of a wait, without the time during which one of the two processes involved did not run: stopped by a
-// signal, a debugger or a frozen cgroup. A limit on such a duration never ends a process that was merely stopped.
+// The duration of a wait, without the time during which one of the two processes involved did not run. A signal, a
+// debugger or a frozen cgroup stops a process. A limit on such a duration never ends a process that was merely stopped.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@ namespace mural {
 
 class RunningTime {
 public:
-    // A longer gap between two calls of countNs() counts as this much: the caller did not run in between.
+    // A longer gap between two calls of countNs() counts as this much, because the caller did not run in between.
     static constexpr int64_t kMaxGapNs = kNsPerS;
 
-    // beat: a counter that the other process increments while it runs. One thread.
+    // beat: a counter that the other process increments while it runs. For use by one thread.
     explicit RunningTime(int64_t nowNs, uint32_t beat = 0) : countedAtNs_(nowNs), beat_(beat) {}
 
-    // The time so far in ns. The gap since the last call counts only if the beat has changed.
+    // Returns the time so far in ns. The gap since the last call counts only if the beat has changed.
     int64_t countNs(int64_t nowNs, uint32_t beat) {
         if (beat == beat_) return countedNs_;
         const int64_t gapNs = nowNs - countedAtNs_;

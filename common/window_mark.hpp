@@ -1,8 +1,9 @@
 // The property by which the head recognizes a window that a captured program draws in. An X window number alone proves
-// nothing: every X server has the same numbers, and a server gives them to another program when one ends.
+// nothing. Every X server uses the same numbers, and a server reuses them when a program ends.
 //
 // The program writes the property through its own connection, before its first picture of the window. The head reads it
-// before each picture that it paints. Each program of a session has a property of its own, for two may draw in one window.
+// before each picture that it paints. Each program of a session has its own property, because two programs may draw in
+// one window.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace mural::window_mark {
 
-// Type CARDINAL, format 32: the words of sessionKey(), low one first, then the programs' numbers of the window's drawables.
+// Type CARDINAL, format 32. The value is the words of sessionKey(), low word first, then the program's numbers of the
+// window's drawables.
 constexpr uint32_t kKeyWords = 2;
 constexpr uint32_t kMaxDrawables = 30; // GLX windows and EGL surfaces of one X window
 constexpr uint32_t kMaxWords = kKeyWords + kMaxDrawables;
@@ -21,7 +23,7 @@ struct PropertyName {
     uint16_t length;
 };
 
-// FNV-1a of the session's name, as MURAL_SESSION has it.
+// FNV-1a hash of the session's name, as in MURAL_SESSION.
 inline uint64_t sessionKey(const char* session) {
     uint64_t key = 0xcbf29ce484222325;
     for (; session && *session; ++session) key = (key ^ static_cast<unsigned char>(*session)) * 0x100000001b3;

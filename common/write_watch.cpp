@@ -32,7 +32,8 @@ struct PageScan {
 };
 
 constexpr uint64_t kUffdApi = 0xAA;
-constexpr int kUserModeOnly = 1; // unprivileged processes may request only this; asynchronous faults need no more
+// the only kind that unprivileged processes may request; asynchronous faults need no other
+constexpr int kUserModeOnly = 1;
 constexpr uint64_t kFeatureUnpopulated = 1 << 13, kFeatureAsync = 1 << 15;
 constexpr uint64_t kRegisterWriteProtect = 2;
 constexpr unsigned long kIoctlApi = _IOC(_IOC_READ | _IOC_WRITE, 0xAA, 0x3F, sizeof(UffdApi));

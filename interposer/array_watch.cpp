@@ -11,7 +11,7 @@ ArrayWatch::ArrayWatch(const ThreadState& t, GLuint array, uint32_t slot, uint32
     end_ = count < kSlots - slot ? slot + count : kSlots;
     if (!t.context->arrays.anyInMemory(array, first_, end_)) return;
     context_ = t.context;
-    stashError(*context_, driverError()); // an error of the program that it has not queried yet
+    stashError(*context_, driverError()); // keeps an error that the program has not queried yet
 }
 
 ArrayWatch::~ArrayWatch() {

@@ -13,8 +13,8 @@ namespace mural {
 
 namespace {
 
-// Sends one question and reads its answer into memory that room(sizeBytes) gives; null: it is not wanted. The session
-// may end in between: then there is no answer, and the program learns of it by a GL error.
+// Sends one request and reads its answer into the memory that room(sizeBytes) returns. Null skips the answer. If the
+// session ends before the answer arrives, a GL error informs the program.
 template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&& room, Send&& send) {
     Session* s = Session::current();
     if (!s || !t.context) return false;
@@ -41,7 +41,7 @@ template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&
     return ok;
 }
 
-// The same where the size is known: `into` must hold sizeBytes.
+// The same for an answer of known size. `into` must hold sizeBytes.
 template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
     return ask(t, by, [=](uint64_t comes) { return comes == sizeBytes ? into : nullptr; }, send);
 }
@@ -50,7 +50,7 @@ template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint6
 
 GLenum takeError(ThreadState& t) {
     Context& c = *t.context;
-    const GLenum later = gReal.glGetError(); // a driver keeps the first only: what came after is lost natively, too
+    const GLenum later = gReal.glGetError(); // a driver keeps only the first error; later ones are lost natively, too
     if (c.stashedError && !later && c.compatible() && answersNothing()) return GL_NO_ERROR;
     const GLenum error = c.stashedError ? c.stashedError : later;
     c.stashedError = 0;
@@ -70,7 +70,7 @@ void stashError(Context& c, GLenum error) {
 }
 
 void answerLost(Context& c) {
-    stashError(c, driverError()); // an earlier error of the program's comes first
+    stashError(c, driverError()); // an earlier error of the program takes precedence
     stashError(c, GL_OUT_OF_MEMORY);
 }
 
@@ -128,7 +128,7 @@ bool askFinish(ThreadState& t, const char* by) {
     if (t.context) stashError(*t.context, driverError());
     const GLenum before = t.context ? t.context->stashedError : GL_NO_ERROR;
     const bool finished = ask(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
-    if (!finished && t.context) t.context->stashedError = before; // there is no value that could be wrong
+    if (!finished && t.context) t.context->stashedError = before; // the request has no result that could be wrong
     return finished;
 }
 

@@ -18,15 +18,16 @@ namespace mural {
 
 namespace {
 
-// What another context of the share group has deleted may still be bound here.
+// An object that another context of the share group has deleted may still be bound here.
 bool canBindAgain(GLint framebuffer) {
     return !framebuffer || !gReal.glIsFramebuffer || gReal.glIsFramebuffer(static_cast<GLuint>(framebuffer));
 }
 
 bool isExiting = false;
 
-// Mesa finds formats of unpacked types in a table. It creates the table at the first such read and frees it when the process
-// begins to exit, so that reads after that crash. The packed type gives the same bytes without the table; OpenGL ES lacks it.
+// Mesa looks up formats of unpacked types in a table. It creates the table at the first such read and frees it when the
+// process begins to exit. Reads after that crash. The packed type yields the same bytes without the table; OpenGL ES
+// lacks it.
 GLenum withoutTable(const Context& context, GLenum type) {
     static_assert(std::endian::native == std::endian::little);
     return type == GL_UNSIGNED_BYTE && context.api == wire::Api::Desktop ? GL_UNSIGNED_INT_8_8_8_8_REV : type;
@@ -39,7 +40,7 @@ bool isTooLate(const Context& context, const Window& window) {
     return isExiting && context.isMesa && (type == GL_UNSIGNED_BYTE || type == GL_FLOAT);
 }
 
-// The program's own errors come before ours.
+// Errors of the program take precedence over ours.
 Context& withErrorsStashed(Context& context) {
     stashError(context, driverError());
     return context;
@@ -60,7 +61,7 @@ BackBufferRead::~BackBufferRead() {
         if (readBuffer_) (where_ == Where::NodesToo ? mural_glReadBuffer : gReal.glReadBuffer)(static_cast<GLenum>(readBuffer_));
         if (framebuffer_) (where_ == Where::NodesToo ? mural_glBindFramebuffer : gReal.glBindFramebuffer)(target_, static_cast<GLuint>(framebuffer_));
     }
-    driverError(); // ours, if any
+    driverError(); // discards our own error, if any
 }
 
 void BackBufferRead::bindWindow(const Window& window) {

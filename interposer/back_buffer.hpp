@@ -1,5 +1,5 @@
-// The window's back buffer in the program's own context, read without leaving a trace: what the program has
-// bound and set is put back, and its errors stay its own.
+// Reads the window's back buffer in the program's own context without side effects. It restores the program's bindings
+// and state, and preserves the program's errors.
 #pragma once
 
 #include <GL/gl.h>
@@ -13,7 +13,7 @@ struct Window;
 
 class BackBufferRead {
 public:
-    // NodesToo: the nodes are told to read there as well, for a question in between.
+    // NodesToo: the nodes bind the window for reading as well, for a request during the read.
     enum class Where { Here, NodesToo };
 
     BackBufferRead(Context& context, const Window& window, Where where);
@@ -21,8 +21,8 @@ public:
     BackBufferRead(const BackBufferRead&) = delete;
     BackBufferRead& operator=(const BackBufferRead&) = delete;
 
-    // False: something is bound that is deleted already and could not be bound again, or the process exits and the driver has
-    // freed what reads need; nothing is read.
+    // Returns false if nothing can be read. A bound object may be deleted already, so it could not be bound again. The
+    // process may be exiting, so the driver has freed its read tables.
     [[nodiscard]] bool ready() const { return ready_; }
     // Reads RGBA, tightly packed. Leaves memory of pixels outside the buffer unchanged.
     void pixels(GLint x, GLint y, GLsizei width, GLsizei height, void* into, GLenum type = GL_UNSIGNED_BYTE) const;

@@ -34,7 +34,7 @@ bool note(const char* text, size_t length) {
     return written;
 }
 
-// One note about this process: what it is and which libraries it could have drawn by.
+// One note about this process: the program, and the loaded libraries with which it could have drawn.
 struct Libraries {
     char text[8192];
     size_t length;
@@ -61,8 +61,8 @@ int addLibrary(dl_phdr_info* info, size_t, void* into) {
     return 0;
 }
 
-// A process that ends and was never captured leaves word of what it had loaded: `mural run` tells the
-// user when nobody else was captured either.
+// A process that was never captured reports its loaded libraries at its end. `mural run` shows the report to the user
+// if it captured no process at all.
 __attribute__((destructor)) void tellLibraries() {
     if (!launchSettings().notes || process::everCaptured()) return;
     static Libraries libraries;

@@ -29,9 +29,9 @@ namespace mural {
 
 namespace {
 
-Lock announceLock; // taken before the tables' own
+Lock announceLock; // locked before the tables' own lock
 
-// The thread gives up its context: what it encoded is made visible first.
+// Releases the thread's context. Publishes the thread's records first.
 void leaveContext(ThreadState& t) {
     Context* old = t.context;
     if (!old) return;
@@ -51,8 +51,8 @@ void announce(ThreadState& t, Context& c) {
     c.announced = true;
 }
 
-// EGL's configurations do not tell how many buffers a drawable has, and drivers differ. A framebuffer object would hide
-// the drawable's own.
+// EGL's configurations do not report how many buffers a drawable has, and drivers differ. A bound framebuffer object
+// would hide the drawable's own buffers.
 void learnBuffers(const Context& c, Window& w) {
     if (w.announced || c.api != wire::Api::Desktop) return;
     GLint framebuffer = 0;
@@ -62,15 +62,15 @@ void learnBuffers(const Context& c, Window& w) {
     w.config.doubleBuffer = two != 0;
 }
 
-// The buffer that is read from: Mesa has one for each drawable, others one for each context, as the nodes do. So they are
-// told when the context reads from another drawable.
+// Mesa stores the read buffer per drawable. Other drivers and the nodes store it per context. The nodes therefore
+// receive it when the context reads from another drawable.
 void tellReadBuffer(ThreadState& t, const Context& c, const Window& read, uint32_t before) {
     if (!read.config.doubleBuffer || c.api != wire::Api::Desktop || c.compilingList) return;
     GLint framebuffer = 0, buffer = 0;
     if (gReal.glBindFramebuffer) gReal.glGetIntegerv(c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
     if (framebuffer != 0) return;
     gReal.glGetIntegerv(GL_READ_BUFFER, &buffer);
-    const GLint assumed = before || !c.config.doubleBuffer ? GL_NONE : GL_BACK; // by the nodes
+    const GLint assumed = before || !c.config.doubleBuffer ? GL_NONE : GL_BACK; // the nodes' state
     if (buffer != assumed) encode_glReadBuffer(t, static_cast<GLenum>(buffer));
 }
 
@@ -80,8 +80,8 @@ void announce(ThreadState& t, Window& w) {
     records::window(t, w.id, w.config);
 }
 
-// Core contexts have no indices in the program's memory, but Mesa takes them. Programs that are loaded high
-// have no memory below 4 GiB, so that their offsets are known without a question.
+// Core contexts have no indices in client memory, but Mesa accepts them. Programs that are loaded above 4 GiB have no
+// memory below, so smaller values are offsets without a query.
 uintptr_t lowestIndices(const Context& c) {
     if (!c.core) return 0;
     if (!c.isMesa) return UINTPTR_MAX;
@@ -89,17 +89,18 @@ uintptr_t lowestIndices(const Context& c) {
     return getauxval(AT_PHDR) >= kHigh ? kHigh : kFirstPage;
 }
 
-// OpenGL ES 3.0 §2.15.2: a draw that overruns the buffers is an error; not any more with geometry or tessellation shaders.
+// OpenGL ES 3.0 §2.15.2: a draw that overruns the buffers is an error. Geometry or tessellation shaders lift this rule.
 bool feedbackCounts(const Context& c) {
     if (c.api != wire::Api::Es2 || (c.version != 30 && c.version != 31)) return false;
     const auto* extensions = reinterpret_cast<const char*>(gReal.glGetString(GL_EXTENSIONS));
     return extensions && !std::strstr(extensions, "_geometry_shader") && !std::strstr(extensions, "_tessellation_shader");
 }
 
-// GLX of Mesa's software drivers swaps only in threads that have a current context (drisw_swap_buffers), whichever it is.
+// True for Mesa's software drivers: their GLX swaps only in threads with a current context, no matter which
+// (drisw_swap_buffers).
 bool swapsNeedContext = false;
 
-// Version and profile that the driver really gave; needs the context to be current.
+// Queries the actual version and profile from the driver. Requires that the context is current.
 void learnVersion(Context& c) {
     const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
     if (!text) return;
@@ -112,8 +113,8 @@ void learnVersion(Context& c) {
         c.api = digits && *digits == '1' ? wire::Api::Es1 : wire::Api::Es2;
         text = digits ? digits : "2.0";
     }
-    // Mesa gives its buffers a size at the first binding and after a swap only: where the loader tells it of resizes, as
-    // those of GLX and EGL on X11 do, glViewport changes nothing.
+    // Mesa sizes its buffers only at the first binding and after a swap. If the loader reports resizes, as GLX and EGL
+    // on X11 do, glViewport changes nothing.
     c.sizeAtViewport = !c.isMesa;
     c.version = (text[0] - '0') * 10 + (text[1] == '.' ? text[2] - '0' : 0);
     if (c.api == wire::Api::Desktop && c.version >= 32) {
@@ -133,7 +134,8 @@ void learnVersion(Context& c) {
 
 namespace {
 
-// Tells the nodes what the program has given up; a thread without a context leaves it to the next that has one.
+// Sends the nodes the destruction of objects that the program has destroyed. A thread without a context leaves this to
+// the next thread with one.
 void freeDestroyed(ThreadState& t) {
     if (!t.context) return;
     while (const uint32_t id = known::nextDueContext()) records::destroyContext(t, id);
@@ -172,7 +174,7 @@ void end(Context& c) {
 void end(Window& w) {
     releaseDrawn(w);
     w.freeDue = w.freeDue || w.announced;
-    w.drawable = 0; // never found again; its number is not used again
+    w.drawable = 0; // excludes it from lookups; its number is not reused
 }
 
 } // namespace
@@ -217,8 +219,8 @@ void threadLeaves(ThreadState& t) {
 
 namespace {
 
-// Returns whether the driver keeps a front buffer separate from the X window's content: black until the program draws into it.
-// Mesa's software drivers do.
+// Returns whether the driver keeps a front buffer separate from the X window's content. That buffer is black until the
+// program draws into it. Mesa's software drivers keep one.
 bool hasOwnFront() {
     const auto* renderer = reinterpret_cast<const char*>(gReal.glGetString(GL_RENDERER));
     return renderer && (std::strncmp(renderer, "llvmpipe", 8) == 0 || std::strncmp(renderer, "softpipe", 8) == 0);
@@ -320,12 +322,12 @@ bool isVerified(const Session& s, uint32_t frame) {
 bool drawsToFront() {
     GLint framebuffer = 0, buffer = 0;
     gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
-    if (framebuffer != 0) return true; // the window's draw buffer can't be asked for now
+    if (framebuffer != 0) return true; // the window's draw buffer cannot be queried now
     gReal.glGetIntegerv(GL_DRAW_BUFFER, &buffer);
     return buffer != GL_BACK && buffer != GL_BACK_LEFT && buffer != GL_NONE;
 }
 
-// A window with two buffers goes on with its back buffer as it is: nothing but a picture of what is seen.
+// Shows the front buffer of a double-buffered window as a picture. The back buffer stays as it is.
 void showFront(ThreadState& t, Window& w) {
     Session* s = Session::current();
     if (!s || !s->alive()) return;
@@ -345,7 +347,7 @@ void showFront(ThreadState& t, Window& w) {
 void flushedWindow(ThreadState& t) {
     if (!t.context) return;
     Window* w = findWindowById(t.context->drawWindow);
-    // EGL shows a surface with one buffer when it is swapped.
+    // EGL shows a single-buffered surface at its swap.
     if (!w || t.cursor == w->lastFlush || !(w->config.doubleBuffer ? t.context->frontDue : !w->isEgl)) return;
     if (w->config.doubleBuffer) showFront(t, *w);
     else endFrame(w);
@@ -359,13 +361,13 @@ void beforeMakeCurrent(const Context* next, const Window* draw, const Window* re
     if (t.context == next && t.context->drawWindow == drawWindow && t.context->readWindow == readWindow) return;
     const Window* const given = findWindowById(t.context->drawWindow);
     if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue)) return;
-    gReal.glFlush(); // the driver's own front, where nothing was drawn, must not come over the picture
+    gReal.glFlush(); // so that the driver's own, undrawn front does not cover the picture
     flushedWindow(t);
 }
 
 namespace {
 
-// GLX gives up those of a plain X window with the last context that was bound to it.
+// GLX frees the buffers of a plain X window with the last context that was bound to it.
 bool hasBuffers(const Window& w) { return w.announced && (w.isEgl || w.drawable != w.native || w.holders > 0); }
 
 } // namespace
@@ -377,9 +379,10 @@ bool swapLocally() {
 }
 
 bool swapsItself(Window* w) {
-    if (!w || w->inherited || w->nativeGone || !hasBuffers(*w)) return true; // the driver knows it, or reports the error
+    // the driver does the swap or reports the error
+    if (!w || w->inherited || w->nativeGone || !hasBuffers(*w)) return true;
     if (w->drawnInPart) {
-        w->drawnInPart = false; // the next picture is whole
+        w->drawnInPart = false; // the next picture is complete
         return false;
     }
     return swapLocally() || w->isPixmap;
@@ -387,10 +390,11 @@ bool swapsItself(Window* w) {
 
 namespace {
 
-// Drivers gather what a list draws even where it is discarded (llvmpipe up to 36 MiB), and nobody swaps to end that.
+// Drivers accumulate the draws of a list even if they are discarded (llvmpipe up to 36 MiB). Without local swaps only a
+// flush releases them.
 void flushLists(Context& c) {
-    constexpr uint32_t kMostLists = 32; // some 60 KiB each
-    if (c.listsUnflushed < kMostLists || swapLocally() || c.frontDue) return; // a flush would show what is in front
+    constexpr uint32_t kMostLists = 32; // about 60 KiB each
+    if (c.listsUnflushed < kMostLists || swapLocally() || c.frontDue) return; // a flush would show the front buffer
     c.listsUnflushed = 0;
     gReal.glFlush();
 }
@@ -399,7 +403,7 @@ void flushLists(Context& c) {
 
 namespace {
 
-// No context of the thread is flushed by it. What others have drawn there they have published with their own flush.
+// Flushes no context of this thread. Other threads have published their draws into the window with their own flush.
 void endFrameWithoutContext(Session& s, Window& w) {
     if (!w.isEgl && __atomic_load_n(&swapsNeedContext, __ATOMIC_RELAXED)) return;
     ThreadState& t = ownThreadState();
@@ -418,7 +422,7 @@ void endFrame(Window* w) {
     Session* s = Session::current();
     if (w && w->inherited) inheritedUsed(w);
     if (s && windowsAsked()) takeGoneWindows();
-    // One buffer alone is shown by flushes, of a context that has the window current.
+    // A single-buffered window is shown by flushes of a context that has the window current.
     const bool shows = w && !w->inherited && !w->nativeGone && hasBuffers(*w) && (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
     if (!s || !s->alive() || !shows) {
         refreshDrawLocally(t);
@@ -437,7 +441,7 @@ void endFrame(Window* w) {
     records::swap(t, w->id, frame);
     ++t.context->swaps;
     flushLists(*t.context);
-    s->publish(t, false, false); // waitForCredit wakes the head when it has to
+    s->publish(t, false, false); // waitForCredit wakes the head if necessary
     watchFromHere(t);
     if (putsItself) s->takePictures(frame);
     s->waitForCredit();

@@ -6,7 +6,7 @@
 
 namespace mural {
 
-// Call before the next draw, so that a context that does not draw rounds the number as well.
+// Call before the next draw. A context that does not draw then rounds the number as well.
 void fitDefaultSamples(const ThreadState& t);
 
 } // namespace mural

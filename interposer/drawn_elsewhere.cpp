@@ -17,7 +17,8 @@ namespace mural {
 
 namespace {
 
-// A state change is proof at once. A picture is proof only if it persists: fresh memory may contain anything.
+// A state change proves draws past the library at once. A picture proves them only if it persists, because fresh memory
+// may contain anything.
 constexpr int kEmptyFrames = 3;
 
 // If the stream contains no call of the program, every state must have its initial value.
@@ -30,7 +31,7 @@ bool stateChanged(const Context& c) {
     if (c.version >= 20) gReal.glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &buffer);
     bool enabled = false;
     for (const GLenum what : {GL_DEPTH_TEST, GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST}) enabled = enabled || gReal.glIsEnabled(what);
-    driverError(); // of a state that this version lacks
+    driverError(); // from a query that this version lacks
     return program || buffer || texture || enabled || clear[0] != 0 || clear[1] != 0 || clear[2] != 0 || clear[3] != 0;
 }
 

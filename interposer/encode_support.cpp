@@ -11,17 +11,17 @@
 namespace mural {
 
 namespace {
-// What a thread holds when there is nothing to capture (any more).
+// Resets the thread's state for a program without capture, or after its end.
 void goAlone(ThreadState& t) {
     t.cursor = t.limit = t.chunkEnd = nullptr;
     t.chunk = UINT32_MAX;
     t.drawLocally = t.vertexLocally = true;
 }
 
-// What EGL and GLX do without a current context.
+// Commands that EGL and GLX allow without a current context.
 bool needsNoContext(uint32_t opcode) { return opcode == wire::kOpCreateImage || opcode == wire::kOpDestroyImage || opcode == wire::kOpSwap; }
 
-// Under the lock, as another thread may close the fast path at this moment (enterGroup).
+// Takes the lock, because another thread may close the fast path at this moment (group_order::enter).
 void openFastPath(ThreadState& t) {
     Guard guard(t.context->group->lock);
     t.limit = t.shared ? nullptr : t.chunkEnd;
@@ -30,7 +30,7 @@ void openFastPath(ThreadState& t) {
 
 std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
     if (!t.context && !needsNoContext(opcode)) {
-        t.drawLocally = t.vertexLocally = true; // they are false where a forked child has its parent's state
+        t.drawLocally = t.vertexLocally = true; // a forked child finds its parent's state cleared to false
         return nullptr;
     }
     if (t.drawingAwaited) beforeAwaitedDrawing(t, opcode);
@@ -73,7 +73,7 @@ static DataArg imageInMemory(ThreadState& t, const void* pixels, GLenum format, 
     if (!pixels) return {};
     const sizes::ImageLayout layout = sizes::layoutOf(unpackStore(*t.context), format, type, width, height, depth, dimensions);
     const size_t tight = layout.known ? sizes::tightBytes(layout) : 0;
-    if (tight == 0 || tight == SIZE_MAX) return {}; // the driver reports the error, the nodes get no data
+    if (tight == 0 || tight == SIZE_MAX) return {}; // the driver reports the error; the nodes receive no data
     if (isTight(layout)) return DataArg::of(static_cast<const std::byte*>(pixels) + layout.firstByte, tight);
     void* packed = scratchMemory(t, tight);
     if (!packed) return {};
@@ -125,7 +125,7 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
 }
 
 GLsizei readableElements(const void* value, GLsizei count, uint32_t elementBytes) {
-    constexpr uint64_t kMostBytes = 256 * 1024; // of all uniforms of a stage, far above what drivers have
+    constexpr uint64_t kMostBytes = 256 * 1024; // all uniforms of a stage, far above the limits of drivers
     const uint64_t wanted = uint64_t(count) * elementBytes < kMostBytes ? uint64_t(count) * elementBytes : kMostBytes;
     return static_cast<GLsizei>(readableBytes(value, wanted) / elementBytes);
 }

@@ -1,5 +1,5 @@
-// Writing one record: beginRecord, put…, endRecord. No allocation, lock or system call unless the
-// chunk is full or several threads share the context's objects.
+// Writes one record: beginRecord, put…, endRecord. Uses no allocation, lock or system call unless the chunk is full or
+// several threads share the context's objects.
 #pragma once
 
 #include <GL/gl.h>
@@ -11,12 +11,12 @@
 
 namespace mural {
 
-// The slow path: takes a new chunk, or the share group's lock, or finds out the window's size before
-// the first drawing after a swap. Null: not capturing.
+// The slow path. Takes a new chunk or the share group's lock, or queries the window's size before the first draw after
+// a swap. Null: not capturing.
 std::byte* makeRoom(ThreadState& t, uint32_t opcode, uint32_t sizeBytes);
 void unlockGroup(ThreadState& t);
 
-// Space for a record of sizeBytes (header included, a multiple of 4); returns where its arguments go.
+// Reserves a record of sizeBytes, including the header; a multiple of 4. Returns the place of the arguments.
 inline std::byte* beginRecord(ThreadState& t, uint32_t opcode, uint32_t sizeBytes) {
     std::byte* p = t.cursor;
     if (reinterpret_cast<uintptr_t>(p) + sizeBytes + 4 > reinterpret_cast<uintptr_t>(t.limit)) [[unlikely]] {
@@ -34,24 +34,24 @@ inline std::byte* beginRecord(ThreadState& t, uint32_t opcode, uint32_t sizeByte
     return p + 8;
 }
 
-// `arguments` is what beginRecord returned, sizeBytes the same as there.
+// `arguments` is the result of beginRecord; sizeBytes is the same value.
 inline void endRecord(ThreadState& t, std::byte* arguments, uint32_t sizeBytes) {
     __atomic_store_n(&t.cursor, arguments + sizeBytes - 4, __ATOMIC_RELEASE);
     if (t.locked) [[unlikely]] unlockGroup(t);
 }
 
-// Bytes behind a pointer argument.
+// The bytes of a pointer argument.
 struct DataArg {
     const void* pointer = nullptr;
     uint64_t sizeBytes = 0;
-    bool isOffset = false; // pointer is an offset into the bound buffer
+    bool isOffset = false; // the pointer is an offset into the bound buffer
 
     static DataArg of(const void* p, uint64_t bytes) { return {p, p ? bytes : 0, false}; }
     static DataArg offset(const void* p) { return {p, 0, true}; }
     static DataArg text(const char* p) { return {p, p ? std::strlen(p) + 1 : 0, false}; }
 };
 
-// Bytes that the value takes in the record: a tag, and what stands inline.
+// Returns the number of bytes in the record: a tag and the inline data.
 inline uint32_t wireBytes(const DataArg& d) {
     if (d.isOffset) return 12;
     if (!d.pointer || d.sizeBytes > record::kInlineBytes) return 4;
@@ -59,7 +59,7 @@ inline uint32_t wireBytes(const DataArg& d) {
 }
 
 void spill(ThreadState& t, const DataArg& d);
-// Values too large for a record go ahead of it, in pieces.
+// Sends a value that is too large for a record ahead of it, in pieces.
 inline void spillLarge(ThreadState& t, const DataArg& d) {
     if (d.sizeBytes > record::kInlineBytes && !d.isOffset) [[unlikely]] spill(t, d);
 }
@@ -101,23 +101,23 @@ private:
     std::byte* p_;
 };
 
-// Where an image in client memory, or an offset, comes from under the unpack state of the current
-// context; re-packed tightly into scratch memory when rows are apart.
+// Returns the source of an image under the unpack state of the current context: client memory or an offset. Rows with
+// gaps are packed tightly into scratch memory.
 DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width,
                     GLsizei height, GLsizei depth, int dimensions);
-// The same for one pixel, which is in client memory whatever is bound.
+// The same for one pixel, which is in client memory regardless of bindings.
 DataArg elementSource(ThreadState& t, const void* element, GLenum format, GLenum type);
 // The same for bytes that the pixel store does not rearrange (compressed images).
 DataArg packedSource(ThreadState& t, const void* data, uint64_t sizeBytes);
-// count strings as u32 lengths, then their bytes one after the other. lengths may be null.
+// Packs `count` strings: u32 lengths, then the concatenated bytes. `lengths` may be null.
 DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings, const GLint* lengths);
 
-// Of an array of uniforms: drivers take no more than the uniform has, whatever the count says, so behind that there
-// may be no memory. How many are there; asked for long ones only.
+// Returns how many elements of a uniform array are readable. Drivers read no more elements than the uniform has,
+// whatever the count says. Memory may therefore end earlier. Called for counts above kSureElements only.
 constexpr GLsizei kSureElements = 256;
 GLsizei readableElements(const void* value, GLsizei count, uint32_t elementBytes);
 
-// True: shaders write into buffers that are bound there.
+// Returns whether shaders or transform feedback write into buffers bound to the target.
 constexpr bool writesThrough(GLenum target) {
     return target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER || target == GL_TRANSFORM_FEEDBACK_BUFFER;
 }

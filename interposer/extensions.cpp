@@ -33,7 +33,7 @@ template <size_t N> bool oneOf(const LocalExtension (&extensions)[N], const char
 }
 template <size_t N> bool oneOf(const char* const (&names)[N], const char* name, size_t length) { return oneOf(names, N, name, length); }
 
-// name: with a space before and after.
+// name: surrounded by spaces.
 bool nodesHave(const char* name) {
     Session* s = Session::get();
     return !s || std::strlen(s->nodeExtensions()) <= 2 || std::strstr(s->nodeExtensions(), name);
@@ -75,8 +75,8 @@ void makeText(Context& c) {
     if (c.extensionText) copyKept(whole, c.extensionText, advertised);
 }
 
-// Programs keep these pointers after Mesa has unloaded the driver that they point into, with its last EGL display. So
-// they point to the registry's copies or to permanent copies.
+// Programs keep these pointers after Mesa has unloaded the driver that contains the text, with its last EGL display.
+// The pointers therefore refer to the registry's copies or to permanent copies.
 struct KeptName {
     KeptName* next;
     char name[1];

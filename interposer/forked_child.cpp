@@ -24,7 +24,8 @@ void childBegins() {
     forgetNews();
 }
 
-// The child copies the tables: no other thread may be changing them. Bounded, for a signal handler may fork.
+// Locks the tables, because the child copies them and no other thread may be changing them. Bounded, because a signal
+// handler may fork.
 void beforeFork() {
     constexpr int kTries = 100;
     const timespec nap{0, 200'000};
@@ -42,13 +43,13 @@ void afterFork() {
 
 void inChild() {
     tablesHeld = false;
-    process::forked(); // the lock was the parent's: it is free
+    process::forked(); // a lock of the parent counts as free in the child
 }
 
 } // namespace
 
 void expectForks() {
-    if (process::everCaptured()) return; // a child has its parent's handlers
+    if (process::everCaptured()) return; // a child inherits its parent's handlers
     process::onChildBegins(childBegins);
     pthread_atfork(beforeFork, afterFork, inChild);
 }

@@ -1,15 +1,16 @@
-// What a forked child keeps of its parent: nothing that is in the parent's stream. Contexts that the nodes know draw on
-// their own in the child; a context that the child makes connects to the head anew, as a program of its own.
+// State of a forked child. It drops everything that belongs to the parent's stream. Contexts that the nodes have draw
+// locally in the child. A context that the child creates connects to the head anew, as a separate program.
 #pragma once
 
 namespace mural {
 
 struct Window;
 
-// After the process has connected: its children begin as such.
+// Call after the process has connected. Its forked children then start with clean state.
 void expectForks();
 
-// The child makes one of its parent's contexts current, or shows a picture of it: says once that the wall lacks it.
+// Call when the child makes one of its parent's contexts current, or shows its picture. Reports once that the wall
+// lacks that picture.
 void inheritedUsed(Window* window);
 
 } // namespace mural

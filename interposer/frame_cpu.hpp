@@ -1,4 +1,4 @@
-// CPU time per frame of a thread that shows frames. The difference to a run without Mural is the overhead of capture.
+// CPU time per frame of a thread that shows frames. Its excess over a run without Mural is the overhead of capture.
 #pragma once
 
 #include <cstdint>

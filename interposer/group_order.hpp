@@ -1,5 +1,5 @@
-// The order of records among threads whose contexts share objects. One thread alone writes on a fast path, without the
-// group's lock. From the second thread on every record takes the lock and publishes the records before it.
+// Orders records among threads whose contexts share objects. A single thread writes on a fast path without the group's
+// lock. From the second thread on, every record takes the lock and publishes the records before it.
 #pragma once
 
 namespace mural {
@@ -10,12 +10,12 @@ struct ThreadState;
 
 namespace group_order {
 
-// The thread makes the context current. Closes the fast path of the group's other threads when it is not alone.
+// Makes the context current in the thread. Closes the fast path of the group's other threads, if there are any.
 void enter(ThreadState& t, Context& c);
-// It gives the context up; under the group's lock. Its records are published.
+// Releases the context and publishes the thread's records. Requires the group's lock.
 void leave(ThreadState& t, Session* s);
-// Before each record of a thread that is not alone: publishes what the others have completed. Returns with the group's
-// lock held.
+// Call before each record of a thread that is not alone in its group. Publishes the completed records of the others.
+// Returns with the group's lock held.
 void takeTurn(ThreadState& t, Session& s);
 
 } // namespace group_order

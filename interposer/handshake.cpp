@@ -37,12 +37,12 @@ private:
     int fd_;
 };
 
-// Signals of the program interrupt any call; timers may do so each time.
+// Transfers data despite the program's signals, which may interrupt any call. Timers may interrupt each one.
 class Transfer {
 public:
     explicit Transfer(int socket) : socket_(socket), endNs_(monotonicNowNs() + kPatienceNs) {}
 
-    // move(at, bytes): one send or receive without waiting; its result.
+    // move(at, bytes) does one non-blocking send or receive and returns its result.
     template <class Move> bool all(void* data, size_t bytes, short event, Move&& move) const {
         auto* at = static_cast<char*>(data);
         while (bytes > 0) {
@@ -59,7 +59,7 @@ public:
     bool send(const void* data, size_t bytes) const {
         return all(const_cast<void*>(data), bytes, POLLOUT, [this](char* at, size_t left) { return ::send(socket_, at, left, MSG_NOSIGNAL | MSG_DONTWAIT); });
     }
-    // A descriptor that comes with the bytes goes into `passed`.
+    // Stores a descriptor that arrives with the bytes in `passed`.
     bool receive(void* into, size_t bytes, OwnedFd* passed) const {
         return all(into, bytes, POLLIN, [&](char* at, size_t left) { return receiveSome(at, left, passed); });
     }
@@ -96,7 +96,7 @@ private:
     const int64_t endNs_;
 };
 
-// Framed by spaces, so that a name is found with one before and behind it.
+// Adds a space before and after the text, so that every name has a space on both sides.
 char* receiveText(const Transfer& transfer, uint32_t bytes) {
     auto* text = static_cast<char*>(std::malloc(size_t{bytes} + 3));
     if (!text) return nullptr;
@@ -107,7 +107,7 @@ char* receiveText(const Transfer& transfer, uint32_t bytes) {
     return text;
 }
 
-// A descriptor that finds no free number in the process is dropped on its way.
+// The kernel drops a descriptor on its way if the process has no free number for it.
 void sayNoDescriptor() {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);
@@ -115,7 +115,7 @@ void sayNoDescriptor() {
         static_cast<unsigned long long>(limit.rlim_cur));
 }
 
-// A forked child must not write there: the kernel leaves the mapping out of it.
+// Maps the shared memory. A forked child must not write there, so the kernel excludes the mapping from children.
 capture::CaptureHeader* mapMemory(int memory) {
     const off_t size = lseek(memory, 0, SEEK_END);
     void* const mapping = size > 0 ? mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0) : MAP_FAILED;

@@ -1,5 +1,5 @@
-// The first words between a program and the head (common/capture_ring.hpp). Nothing is kept open: the mapping is all
-// that connects them afterwards, so a program may close or replace every descriptor.
+// The handshake between a program and the head (common/capture_ring.hpp). No descriptor stays open: only the mapping
+// connects them afterwards. A program may therefore close or replace every descriptor.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,11 @@ namespace mural {
 struct Handshake {
     capture::Welcome welcome{};
     capture::CaptureHeader* header = nullptr; // the mapping
-    char* extensions = nullptr;               // with a space before and behind each; from malloc
+    char* extensions = nullptr;               // each surrounded by spaces; from malloc
 };
 
-// On a connected socket, which is closed. False: the reason has been said, and nothing is held.
+// Does the handshake on a connected socket, and closes the socket. Returns false after an error, which has been
+// reported; `result` then holds no resources.
 bool shakeHands(int socket, Handshake& result);
 
 } // namespace mural

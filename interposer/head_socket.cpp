@@ -20,7 +20,7 @@ namespace {
 
 constexpr timeval kTimeout{30, 0};
 
-// -1: errno says why.
+// Returns -1 after an error, with errno set.
 int connectTo(const sockaddr_un& address, size_t bytes) {
     const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (fd < 0) return -1;
@@ -28,7 +28,7 @@ int connectTo(const sockaddr_un& address, size_t bytes) {
     setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kTimeout, sizeof kTimeout);
     const int64_t endNs = monotonicNowNs() + kTimeout.tv_sec * kNsPerS;
     int result = 0;
-    do { // a signal interrupts it only while the head's backlog is full: nothing has begun
+    do { // a signal interrupts it only while the head's backlog is full; no connection has begun
         result = ::connect(fd, reinterpret_cast<const sockaddr*>(&address), static_cast<socklen_t>(bytes));
     } while (result != 0 && errno == EINTR && monotonicNowNs() < endNs);
     if (result == 0) return fd;
@@ -38,7 +38,7 @@ int connectTo(const sockaddr_un& address, size_t bytes) {
     return -1;
 }
 
-// Abstract names begin with a 0 byte and have no end; paths end with one.
+// Abstract names begin with a 0 byte and have no terminator. Paths end with a 0 byte.
 int connectByName(const char* name, bool isAbstract) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -51,7 +51,8 @@ int connectByName(const char* name, bool isAbstract) {
     return connectTo(address, offsetof(sockaddr_un, sun_path) + length + 1);
 }
 
-// The socket as `mural run` sees it, where something is mounted over its folder here: session names are mural-PID-RANDOM.
+// Connects to the socket in the mount namespace of `mural run`, because a mount may hide its folder here. Session names
+// are mural-PID-RANDOM.
 int connectByRoot(const char* session, const char* path) {
     char seen[sizeof(sockaddr_un::sun_path)];
     const long pid = std::strncmp(session, "mural-", 6) ? 0 : std::strtol(session + 6, nullptr, 10);

@@ -3,9 +3,9 @@
 
 namespace mural {
 
-// A connected stream socket (close-on-exec, timeouts of 30 s), owned by the caller; -1: no head is reachable, which has
-// been said in one line. The head's abstract socket comes first; it belongs to a network namespace, so in another one the
-// socket in the file system serves.
+// Returns a connected stream socket (close-on-exec, timeouts of 30 s), owned by the caller. -1: no head is reachable;
+// one line has reported this. The head's abstract socket is tried first. It belongs to a network namespace, so other
+// namespaces use the socket in the file system.
 int openHeadSocket();
 
 } // namespace mural

@@ -1,5 +1,6 @@
-// A cache of pixels that the nodes have sent and that no command has changed since. A program that reads pixel by pixel
-// would otherwise need a round trip each time. The second small read at one position of the stream fetches a block.
+// A cache of pixels that the nodes have sent and that no command has changed since. Without it, a program that reads
+// pixel by pixel would need a round trip each time. The second small read at one position of the stream fetches a
+// block.
 #pragma once
 
 #include <GL/gl.h>

@@ -13,7 +13,7 @@ namespace mural {
 
 namespace {
 
-Lock tableLock; // of all that follows
+Lock tableLock; // guards all variables below
 Context** contexts = nullptr;
 uint32_t contextCount = 0;
 Window* windows = nullptr;
@@ -30,7 +30,7 @@ bool isCurrentAnywhere(const Context& c) {
     return false;
 }
 
-// The program and the nodes have given it up.
+// Returns whether the program and the nodes have both released it, so its memory can be reused.
 bool mayBecomeAnother(const Context& c) { return c.destroyed && !c.freeDue && !c.held[0] && !c.held[1] && !isCurrentAnywhere(c); }
 bool mayBecomeAnother(const Window& w) { return w.drawable == 0 && !w.freeDue && w.holders <= 0 && !w.boundGroup; }
 
@@ -44,7 +44,7 @@ bool isUsed(const ShareGroup* group) {
 
 void emptyOut(Context& c) {
     ShareGroup* const group = c.group;
-    DebugListener* const debug = c.debug; // a driver's late thread may still call it
+    DebugListener* const debug = c.debug; // a late thread of the driver may still call it
     if (debug) forget(*debug);
     std::free(c.extensionText);
     std::free(c.extensionNames);
@@ -58,7 +58,7 @@ void emptyOut(Context& c) {
     std::free(group);
 }
 
-// In the table, with nothing in it.
+// Returns an empty entry of the table.
 Context* emptyContext() {
     for (uint32_t i = 0; i < contextCount; ++i) {
         if (!mayBecomeAnother(*contexts[i])) continue;
@@ -88,8 +88,8 @@ Window* emptyWindow() {
 
 bool isBare(const Window& w) { return !w.isEgl && w.drawable == w.native; }
 
-// GLX destroys its drawable of a plain X window with the last context that holds it. bareWindow() makes it anew.
-// GLX windows, pbuffers and EGL surfaces have functions that destroy them.
+// GLX destroys its drawable of a plain X window with the last context that holds it. bareWindow() creates it again. GLX
+// windows, pbuffers and EGL surfaces have functions that destroy them.
 void release(Window* w) {
     if (!w || --w->holders > 0 || !isBare(*w)) return;
     w->sizeKnown = false;
@@ -103,7 +103,7 @@ Window* findLocked(uintptr_t drawable, void* display) {
     return nullptr;
 }
 
-// `config` comes from a context or a configuration: it has neither a size nor an X window.
+// `config` comes from a context or a configuration, so it has neither a size nor an X window.
 void setConfig(Window& w, const wire::WindowConfig& config) {
     const wire::WindowConfig before = w.config;
     w.config = config;
@@ -125,7 +125,7 @@ Window* addLocked(uintptr_t drawable, void* display, bool isEgl, const wire::Win
     return w;
 }
 
-// The driver has destroyed its drawable and makes another one. The nodes keep the window: it is the same on the wall.
+// The driver has destroyed its drawable and creates another one. The nodes keep the window: it is the same on the wall.
 void renew(Window& w, const wire::WindowConfig& config) {
     setConfig(w, config);
     w.announced = false;
@@ -139,9 +139,9 @@ void renew(Window& w, const wire::WindowConfig& config) {
 
 namespace known {
 
-// Any context of the group that the nodes have serves as the one to share with. It need not be the one
-// that the program named: that may not have been current yet, so its version is not known; it is told
-// when it is, and shares then with this one. Only with the first of a group is there none.
+// Returns any context of the group that the nodes have. It need not be the one that the program named. That context may
+// not have been current yet, so its version is unknown. It is announced at its first use, and shares with this one
+// then. Only the first context of a group has no sharer.
 const Context* sharerOf(const Context& c) {
     Guard guard(tableLock);
     for (uint32_t i = 0; i < contextCount; ++i) {
@@ -181,7 +181,8 @@ Context* idleHolderOf(const Window& w) {
 
 namespace {
 
-// The last of a group that the nodes have holds the objects for those that they have not been told of yet.
+// Returns whether this is the group's last context on the nodes, while contexts that are not announced yet need its
+// objects.
 bool holdsObjects(const Context& c) {
     bool awaited = false;
     for (uint32_t i = 0; i < contextCount; ++i) {
@@ -206,7 +207,7 @@ uint32_t nextDueContext() {
     return 0;
 }
 
-// X windows go without a word to GLX. Some that no context holds are kept: programs go to and fro.
+// Limit for X windows without contexts: their end is not reported to GLX, and programs may bind them again.
 constexpr int kIdleWindows = 16;
 
 uint32_t nextDueWindow() {
@@ -223,7 +224,7 @@ uint32_t nextDueWindow() {
         ++idle;
     }
     if (idle <= kIdleWindows) return 0;
-    oldest->announced = false; // told anew when it is bound again
+    oldest->announced = false; // announced again at its next binding
     return oldest->id;
 }
 
@@ -248,7 +249,7 @@ void inherit() {
     }
 }
 
-// The drawables of GLX and EGL live on while contexts hold them, as in the driver.
+// GLX and EGL drawables persist while contexts hold them, as in the driver.
 bool nativeEnds(uint64_t server, uint64_t native) {
     bool any = false;
     Guard guard(tableLock);
@@ -283,7 +284,7 @@ Window* bareWindow(uintptr_t drawable, void* display, const wire::WindowConfig& 
 } // namespace known
 
 Context* addContext(void* native, void* display, Context* shareWith, wire::Api api, const wire::WindowConfig& config) {
-    // A sandbox may begin before the context is made current, and forbid to connect.
+    // Connects now: a sandbox that forbids connections may begin before the context is made current.
     if (!shareWith || !shareWith->group->inherited) Session::get();
     Guard guard(tableLock);
     Context* c = emptyContext();
@@ -294,7 +295,7 @@ Context* addContext(void* native, void* display, Context* shareWith, wire::Api a
     c->config = config;
     c->id = ++lastContext;
     c->group = shareWith ? shareWith->group : make<ShareGroup>();
-    c->destroyed = !c->group; // then it is never found
+    c->destroyed = !c->group; // excludes it from lookups
     return c->group ? c : nullptr;
 }
 

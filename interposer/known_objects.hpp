@@ -1,5 +1,6 @@
-// All contexts and windows that the program has, and those that the nodes still have to be told the end of. What both
-// have given up lends its memory to the next one: programs that make and destroy them in each frame don't grow.
+// Tables of the program's contexts and windows, including destroyed ones whose end the nodes have not received. Memory
+// of objects that both sides have released is reused. Programs that create and destroy objects in each frame do not
+// grow.
 #pragma once
 
 #include <cstdint>
@@ -9,32 +10,34 @@
 namespace mural::known {
 
 [[nodiscard]] inline bool nodesHave(const Context& c) { return c.announced && (!c.destroyed || c.freeDue); }
-// Another context of its group that the nodes have; null: there is none.
+// Returns another context of the group that the nodes have; null: none.
 const Context* sharerOf(const Context& c);
-// The context is bound to these drawables (null: none), and no longer to those before.
+// Binds the context to these drawables (null: none) and releases the previous ones.
 void hold(Context& c, Window* draw, Window* read);
 
-// A context that is current nowhere and was bound to this window alone last; null: there is none.
+// Returns a context that is current in no thread and was last bound to this window alone; null: none.
 Context* idleHolderOf(const Window& w);
-// In any thread.
+// Returns whether the context is current in any thread.
 bool isCurrent(const Context& c);
-// One that is not destroyed; null: none.
+// Returns a context of the display that is not destroyed; null: none.
 Context* contextOf(void* display);
 
-// Ids that the nodes are told the end of now, each once; 0: no more.
+// Return the next id whose destruction must be sent to the nodes now, each once. 0: no more.
 uint32_t nextDueContext();
 uint32_t nextDueWindow();
-// Of all tables; for the time of a fork.
+// The lock of all tables, held during a fork.
 Lock& tables();
-// For a forked child: what the nodes know is the parent's.
+// For a forked child: marks all objects on the nodes as the parent's.
 void inherit();
-// An X window is destroyed. True: drawables of it are known.
+// Handles the destruction of an X window. Returns true if it has known drawables.
 bool nativeEnds(uint64_t server, uint64_t native);
-// Ids of the drawables on an X window, up to `most`. Returns how many there are.
+// Stores the ids of the drawables on an X window, up to `most`. Returns their number.
 uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t most);
-// The plain X window of this number, which GLX takes without making a drawable of it. Mesa makes one at the first
-// binding, with the configuration of that context, and destroys it when no context is bound to it or was bound to
-// it last. The next binding makes another one, with the configuration of its context. Null: no memory.
+// Returns the plain X window of this number, for which the program has created no GLX drawable. Null: no memory.
+//
+// Mesa creates a drawable at the first binding, with the configuration of that context. It destroys the drawable when
+// no context is bound to it or was last bound to it. The next binding creates another one, with the configuration of
+// its context.
 Window* bareWindow(uintptr_t drawable, void* display, const wire::WindowConfig& config);
 
 } // namespace mural::known

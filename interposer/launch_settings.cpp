@@ -11,10 +11,10 @@ namespace {
 
 LaunchSettings settings{};
 bool isRead = false;
-char storage[16384]; // of all values; setproctitle() and its kin overwrite the environment's own memory
+char storage[16384]; // holds all values; setproctitle() and similar calls overwrite the environment's own memory
 size_t used = 0;
 
-// Not by getenv, which this library replaces and which may run before its constructors.
+// Does not call getenv, which this library replaces and which may run before its constructors.
 const char* valueOf(const char* name) {
     const size_t length = std::strlen(name);
     for (char** e = environ; e && *e; ++e)
@@ -22,7 +22,7 @@ const char* valueOf(const char* name) {
     return nullptr;
 }
 
-// A copy that stays; null where the variable is missing, empty or too long.
+// Returns a permanent copy; null if the variable is missing, empty or too long.
 const char* kept(const char* name) {
     const char* value = valueOf(name);
     const size_t bytes = value ? std::strlen(value) + 1 : 0;
@@ -49,7 +49,7 @@ __attribute__((constructor)) void readSettings() {
 } // namespace
 
 const LaunchSettings& launchSettings() {
-    readSettings(); // another library's constructor may come first
+    readSettings(); // another library's constructor may run first
     return settings;
 }
 

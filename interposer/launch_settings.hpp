@@ -1,5 +1,5 @@
-// Settings of `mural run` for this process, copied out of the environment when the library is loaded. Programs change or
-// clear their environment before they use GL; these copies stay.
+// Settings of `mural run` for this process, copied from the environment when the library is loaded. Programs may change
+// or clear their environment before they use GL; these copies persist.
 #pragma once
 
 namespace mural {
@@ -10,7 +10,7 @@ struct LaunchSettings {
     const char* notes;          // MURAL_NOTES
     const char* realGlxVendor;  // MURAL_REAL_GLX_VENDOR
     const char* realEglVendors; // MURAL_REAL_EGL_VENDORS
-    const char* native;         // MURAL_NATIVE and its companions
+    const char* native;         // MURAL_NATIVE; the next two fields hold its companions
     const char* nativeReport;
     const char* nativeFrames;
 };

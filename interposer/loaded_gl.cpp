@@ -19,7 +19,8 @@ bool isOwnGl(const LoadedObject& object) {
     return object.path()[0] && name && isGlLibraryName(name) && !leadsToGlvnd(object);
 }
 
-// Exports GL's names past GLVND and past us. Not by dlsym: that looks into what an object needs as well.
+// Returns whether the object exports GL names that bypass GLVND and Mural. Does not use dlsym, which also searches the
+// object's dependencies.
 bool isPastUs(const LoadedObject& object) {
     const char* path = object.path();
     return path[0] && !std::strstr(path, "/libGLX_mural.") && !std::strstr(path, "/libmural_front.") && object.function("glClear") && !leadsToGlvnd(object);

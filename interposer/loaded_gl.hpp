@@ -8,7 +8,8 @@ namespace mural {
 // Path of a loaded GL library without GLVND; null: none. Valid until the program ends.
 const char* loadedOwnGl();
 
-// Paths of up to three loaded libraries that export GL names past GLVND and past us, joined by " and "; false: none.
+// Stores the paths of up to three loaded libraries that export GL names past GLVND and past us, joined by " and ".
+// Returns false if there are none.
 bool librariesPastUs(char* into, size_t sizeBytes);
 
 } // namespace mural

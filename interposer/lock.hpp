@@ -1,5 +1,5 @@
-// A lock on one word that sleeps by futex: std::mutex would pull in more than libc promises to a
-// preloaded library, and must not run destructors.
+// A lock on one word that sleeps by futex. A preloaded library can rely on libc only, and std::mutex would need more.
+// The lock must not run destructors.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,8 @@
 
 namespace mural {
 
-// The word is 0 when free. Otherwise it names the process that holds the lock: a thread of the parent that held it at a
-// fork does not exist in the child, so a lock of another process counts as free.
+// The word is 0 when free. Otherwise it identifies the process that holds the lock. A parent's thread that held it at a
+// fork does not exist in the child. A lock of another process therefore counts as free.
 class Lock {
 public:
     void lock() {
@@ -37,7 +37,7 @@ private:
 
     static bool isHeld(uint32_t word, uint32_t mine) { return word != 0 && (word & ~kStateBits) == mine; }
 
-    // False: another thread of this process holds it, and the word says that somebody waits.
+    // Returns false if another thread of this process holds the lock. The word then has kAwaited set.
     bool takeContended(uint32_t mine) {
         uint32_t seen = word_.load(std::memory_order_relaxed);
         for (;;) {

@@ -33,7 +33,8 @@ bool isUserStderr() {
     return now.isOpen && userStderr.isOpen && now.device == userStderr.device && now.inode == userStderr.inode;
 }
 
-// Both signals are sent to the thread that writes: a closed pipe, a limit of file size. They are taken back.
+// Suppresses the signals of failed writes: SIGPIPE for a closed pipe, SIGXFSZ for a file-size limit. Both go to the
+// writing thread. The destructor removes them.
 class NoWriteSignals {
 public:
     NoWriteSignals() {
@@ -41,7 +42,7 @@ public:
         sigset_t pending;
         sigpending(&pending);
         for (const int number : {SIGPIPE, SIGXFSZ})
-            if (!sigismember(&pending, number)) sigaddset(&signals_, number); // others are the program's own
+            if (!sigismember(&pending, number)) sigaddset(&signals_, number); // pending signals are the program's own
         pthread_sigmask(SIG_BLOCK, &signals_, &before_);
     }
     ~NoWriteSignals() {
@@ -80,7 +81,7 @@ size_t formatLine(char* line, size_t sizeBytes, const char* prefix, const char* 
     const int n = vsnprintf(line + before, sizeBytes - before, format, arguments);
     if (n < 0) return 0;
     const size_t whole = before + static_cast<size_t>(n);
-    const size_t end = whole < sizeBytes ? whole : sizeBytes - 1; // vsnprintf has kept one byte, which the newline takes
+    const size_t end = whole < sizeBytes ? whole : sizeBytes - 1; // the newline replaces vsnprintf's terminator
     line[end] = '\n';
     return end + 1;
 }

@@ -1,5 +1,5 @@
-// One line to the user's stderr, by write(2): no locks, no allocation, no stdio of the host program. Only to the file
-// that descriptor 2 was at the start: daemons close it, and may open a file of their own there.
+// Writes one line to the user's stderr with write(2): no locks, no allocation, no stdio of the host program. Writes
+// only to the file that descriptor 2 was at the start, because daemons close it and may open another file there.
 #pragma once
 
 #include <cstdarg>
@@ -7,15 +7,16 @@
 
 namespace mural {
 
-// prefix, the formatted text as far as there is room, and a newline; no terminator. Returns the length, 0: nothing.
+// Formats the prefix, the text as far as it fits, and a newline, without a terminator. Returns the length; 0: nothing.
 size_t formatLine(char* line, size_t sizeBytes, const char* prefix, const char* format, va_list arguments);
 
-// All bytes, through interruptions; neither SIGPIPE nor SIGXFSZ reaches the program. False: not all were written.
+// Writes all bytes despite interruptions. Neither SIGPIPE nor SIGXFSZ reaches the program. Returns false if bytes are
+// left.
 bool writeAll(int fd, const void* data, size_t bytes);
 
-// "mural: " + text + newline. printf formats.
+// Writes "mural: " + text + newline. Formats like printf.
 void say(const char* format, ...) __attribute__((format(printf, 1, 2)));
-// Only the first time per place.
+// Writes only once per call site.
 #define MURAL_SAY_ONCE(...)                                                                        \
     do {                                                                                           \
         static bool said = false;                                                                  \

@@ -1,5 +1,5 @@
-// Mapped buffers: data that the program writes is sent to the nodes, and data that the nodes write is fetched. The
-// mapping itself is the program's own context's.
+// Mapped buffers. Data that the program writes is sent to the nodes, and data that the nodes write is fetched. The
+// mapping itself belongs to the program's own context.
 #pragma once
 
 #include <GL/gl.h>
@@ -27,10 +27,10 @@ void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr lengt
 void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by = __builtin_FUNCTION());
 // The same before a mapping with this access: unwritten bytes must not overwrite the nodes' with outdated values.
 void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access, const char* by = __builtin_FUNCTION());
-// The program has waited for the GL: updates persistent mappings with data written by the nodes.
+// Call after the program has waited for the GL. Updates persistent mappings with data written by the nodes.
 void refreshMaps(ThreadState& t, const char* by = __builtin_FUNCTION());
-// From now on only the nodes know the content of buffers. This one (0: any) is bound for writes by shaders or transform
-// feedback.
+// From now on only the nodes have the current content of buffers. This buffer (0: any) is bound for writes by shaders
+// or transform feedback.
 void nodesMayWrite(ThreadState& t, GLuint buffer);
 void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers);
 // The program's own context has copied into the buffer. If the source is known to the nodes only, the copy is outdated.

@@ -16,8 +16,8 @@ namespace {
 
 int64_t firstNs = 0;
 long frames = 0;
-uint64_t cpuNs = 0; // of the threads that show frames…
-long cpuFrames = 0; // …for so many frames
+uint64_t cpuNs = 0; // of the threads that show frames
+long cpuFrames = 0; // number of frames in cpuNs
 
 void writeReport(const char* path, int64_t nowNs) {
     const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);

@@ -13,15 +13,16 @@
 
 namespace mural {
 
-// A message that the program's own driver has told is not told again when the nodes' drivers tell it,
-// who replay the same calls: the n-th of the nodes is new when fewer have come from here.
+// Filters messages that the program has already received from its own driver. The nodes' drivers replay the same calls
+// and report the same messages. The n-th message from the nodes is new only if the local driver has reported fewer than
+// n.
 struct DebugListener {
     struct Told {
         uint64_t hash;
         uint32_t here, nodes;
     };
-    static constexpr uint32_t kMessages = 256; // kinds that are remembered; the oldest goes
-    Lock lock; // drivers call back from threads of their own
+    static constexpr uint32_t kMessages = 256; // limit of remembered messages; replaces the oldest
+    Lock lock; // drivers call back from their own threads
     GLDEBUGPROC callback = nullptr;
     const void* user = nullptr;
     Told told[kMessages] = {};
@@ -44,12 +45,12 @@ struct Waiting {
     Waiting* next;
     char text[capture::kNewsTextBytes + 1];
 };
-constexpr int kMostWaiting = 64; // for threads that do nothing; the oldest goes
+constexpr int kMostWaiting = 64; // limit for threads that take no news; drops the oldest
 Lock newsLock;
-Waiting* waiting = nullptr; // in order
+Waiting* waiting = nullptr; // oldest first
 int waitingCount = 0;
 
-// Numbers of messages differ from process to process, so they are no part of it.
+// Excludes message numbers, because they differ between processes.
 uint64_t hashOf(GLenum source, GLenum type, GLenum severity, const char* text, size_t length) {
     uint64_t hash = 1469598103934665603u;
     const auto add = [&](uint64_t value) { hash = (hash ^ value) * 1099511628211u; };
@@ -57,7 +58,7 @@ uint64_t hashOf(GLenum source, GLenum type, GLenum severity, const char* text, s
     add(type);
     add(severity);
     for (size_t i = 0; i < length; ++i) add(static_cast<unsigned char>(text[i]));
-    return hash | 1; // 0: nothing
+    return hash | 1; // 0 marks an empty entry
 }
 
 void APIENTRY heardHere(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* user) {
@@ -85,13 +86,13 @@ void tellMessage(Context& c, const wire::News& n, const char* text) {
         user = c.debug->user;
     }
     if (callback) return callback(n.source, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes), text, user);
-    // Errors and what compilers say stand in the driver's own log already.
+    // The driver's own log already contains errors and compiler messages.
     if (n.type == GL_DEBUG_TYPE_ERROR || n.source == GL_DEBUG_SOURCE_SHADER_COMPILER || !gReal.glDebugMessageInsert) return;
     gReal.glDebugMessageInsert(GL_DEBUG_SOURCE_THIRD_PARTY, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes), text);
 }
 
-// GL keeps the first error until it is asked for. The driver here, who had the same call, may have had no memory
-// either, or an error before: where one was told since, or waits to be, it stands for both.
+// GL keeps the first error until a query. The local driver executed the same call, and may have run out of memory or
+// raised an error before. An error that the program has received since, or that is still pending, stands for both.
 void tellOutOfMemory(Context& c, const wire::News& n) {
     if (n.type != c.errorsTold) return;
     stashError(c, driverError());
@@ -176,7 +177,7 @@ void takeWaitingNews(ThreadState& t) {
 
 void forgetNews() {
     Guard guard(newsLock);
-    waiting = nullptr; // not freed: a thread of the parent may have been changing the list
+    waiting = nullptr; // not freed, because a thread of the parent may have been changing the list
     waitingCount = 0;
 }
 

@@ -1,5 +1,5 @@
-// What the nodes' GL tells of the program's contexts without having been asked: driver messages, memory
-// that could not be had, contexts that are lost. Taken at swaps, questions and glGetError.
+// Driver events: unrequested reports of the nodes' GL about the program's contexts. They are debug messages, out of
+// memory and lost contexts. The program receives them at swaps, requests and glGetError.
 #pragma once
 
 #include <GL/gl.h>
@@ -13,19 +13,19 @@ struct Context;
 struct DebugListener;
 struct ThreadState;
 
-// Hands the program what concerns the thread's context.
+// Passes the news of the thread's context to the program.
 void takeWaitingNews(ThreadState& t);
 inline void takeNews(ThreadState& t) {
     const Session* s = Session::current();
     if (s && s->newsWaiting()) [[unlikely]] takeWaitingNews(t);
 }
 
-// For a forked child: they are for its parent's contexts.
+// For a forked child: drops the news, which concern the parent's contexts.
 void forgetNews();
 
 // The callback of glDebugMessageCallback; null: messages go to the driver's log.
 void listen(Context& c, GLDEBUGPROC callback, const void* user);
-// Its context is gone: it tells nobody.
+// Ends the listener with its context: it passes on no more messages.
 void forget(DebugListener& listener);
 GLDEBUGPROC listener(const Context& c);
 const void* listenersUser(const Context& c);

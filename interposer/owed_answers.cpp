@@ -10,7 +10,7 @@ namespace mural::owed {
 namespace {
 
 Lock tableLock;
-OwedAnswer* first = nullptr; // the oldest
+OwedAnswer* first = nullptr; // oldest first
 OwedAnswer** last = &first;
 int onTheirWay = 0;
 uint64_t onTheirWayBytes = 0;
@@ -68,14 +68,14 @@ void release(OwedAnswer* answer) {
     Guard guard(tableLock);
     answer->forgotten = true;
     if (answer->state != OwedAnswer::State::Asked) return unlinkAndFree(answer);
-    if (answer->coming) return; // another thread writes there
+    if (answer->coming) return; // another thread writes into its memory
     std::free(answer->bytes);
     answer->bytes = nullptr;
 }
 
 void forgetAll() {
     Guard guard(tableLock);
-    first = nullptr; // release() frees what is still referred to
+    first = nullptr; // release() frees entries that are still referenced
     last = &first;
     onTheirWay = 0;
     onTheirWayBytes = 0;

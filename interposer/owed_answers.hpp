@@ -1,5 +1,5 @@
-// Answers of the nodes that nobody waits for yet: the program has asked and gone on. They come in any order, between
-// those that are waited for; whoever reads the replies puts each of them where it belongs (Session).
+// Deferred replies: the program has sent the request and continues without waiting. They arrive in any order, mixed
+// with awaited replies. The thread that reads the replies stores each in its place (Session).
 #pragma once
 
 #include <cstddef>
@@ -7,36 +7,37 @@
 
 namespace mural {
 
-// So many may be on their way, and so many bytes of them: the head keeps what is not read yet.
+// Limits of the number and size of pending replies, because the head stores them until they are read.
 constexpr int kMostOwed = 64;
 constexpr uint64_t kMostOwedBytes = uint64_t{256} << 20;
 
 struct OwedAnswer {
-    enum class State { Asked, Here, None }; // None: it came, and is no answer
+    enum class State { Asked, Here, None }; // None: the nodes had no answer
     uint32_t request = 0;
     uint64_t sizeBytes = 0;
     std::byte* bytes = nullptr;
     State state = State::Asked;
-    bool coming = false;    // its bytes are being read
-    bool forgotten = false; // nobody wants it any more
+    bool coming = false;    // a thread is reading its bytes
+    bool forgotten = false; // released before its arrival
     OwedAnswer* next = nullptr;
 };
 
 namespace owed {
 
-// From any thread. Null: there is no memory.
+// Adds a pending reply. Any thread may call it. Null: no memory.
 OwedAnswer* add(uint32_t request, uint64_t sizeBytes);
-// The oldest that is on its way while there is no room for another one of so many bytes; 0: there is room.
+// Returns the oldest pending request if there is no room for another reply of this size; 0: there is room.
 uint32_t inTheWayOf(uint64_t sizeBytes);
-// Its answer has not come. Otherwise its entry changes no more.
+// Returns whether the reply is still pending. Otherwise its entry no longer changes.
 [[nodiscard]] bool isAwaited(uint32_t request);
-// What came has been used, or is not wanted any more: the entry is the caller's no longer.
+// Ends the caller's ownership of the entry, after its use or without one.
 void release(OwedAnswer* answer);
 
-// For a forked child: the answers go to its parent.
+// For a forked child: drops all entries, because the replies go to its parent.
 void forgetAll();
 
-// For the one that reads the replies: where this answer's bytes go; null: nowhere. arrived() follows.
+// For the thread that reads replies. Returns the place for this reply's bytes; null: skip them. A call of arrived()
+// must follow.
 void* placeOf(uint32_t request, uint64_t sizeBytes, bool failed);
 void arrived(uint32_t request, bool whole);
 

@@ -26,9 +26,9 @@ struct OwedRead {
 
 namespace {
 
-constexpr uint64_t kToldBytes = uint64_t{16} << 20; // of a buffer at once
+constexpr uint64_t kToldBytes = uint64_t{16} << 20; // bytes per record
 
-// Null: there is nobody to ask, or the driver takes no call between glBegin and glEnd.
+// Returns null without a live session, and between glBegin and glEnd, where the driver accepts no such call.
 Session* sessionFor(const ThreadState& t) {
     Session* const s = Session::current();
     return s && s->alive() && t.context && t.context->openPrimitive == kNoPrimitive ? s : nullptr;
@@ -40,12 +40,12 @@ void put(ThreadState& t, const OwedRead& read) {
     if (isTight(layout)) return writeOwnCopy(t, read.buffer, read.place.offset + static_cast<uint64_t>(layout.firstByte), read.answer->bytes, sizes::tightBytes(layout));
     const size_t span = sizes::spanBytes(layout);
     void* const whole = scratchMemory(t, span);
-    if (!whole || !readOwnCopy(t, read.buffer, read.place.offset, whole, span)) return; // bytes between the rows stay
+    if (!whole || !readOwnCopy(t, read.buffer, read.place.offset, whole, span)) return; // preserves bytes between rows
     sizes::unpackTight(whole, read.answer->bytes, layout);
     writeOwnCopy(t, read.buffer, read.place.offset, whole, span);
 }
 
-// Takes the first of the list at `p` out of it.
+// Removes the entry at `p` from the list.
 void drop(OwedReads& reads, OwedRead*& p) {
     OwedRead* const read = p;
     p = read->next;
@@ -55,7 +55,7 @@ void drop(OwedReads& reads, OwedRead*& p) {
     std::free(read);
 }
 
-// Under the lock, as the next one. The first of the list at `p`.
+// Completes the read at `p` and removes it from the list. Requires the lock, as does settleLocked().
 void settleFirst(ThreadState& t, Session& s, OwedReads& reads, OwedRead*& p, const char* by) {
     if (!s.waitOwed(p->answer->request, by)) answerLost(*t.context);
     else if (p->answer->state == OwedAnswer::State::Here) put(t, *p);
@@ -69,7 +69,8 @@ void settleLocked(ThreadState& t, Session& s, OwedReads& reads, GLuint buffer, c
     }
 }
 
-// The session has ended with reads into the buffer owed: they raise an error when the program uses the buffer.
+// Call after the session has ended with pending reads into the buffer. They raise an error when the program uses the
+// buffer.
 void loseReads(ThreadState& t, GLuint buffer) {
     const Session* const s = Session::current();
     if (!s || s->alive() || !t.context) return;
@@ -85,20 +86,20 @@ void loseReads(ThreadState& t, GLuint buffer) {
     }
 }
 
-// After a wait, without a lock: what nodes tell may reach the program's own functions.
+// Call after a wait, without a lock held, because news may call functions of the program.
 void waited(ThreadState& t, const Session& s) {
     takeNews(t);
     if (!s.alive()) refreshDrawLocally(t);
 }
 
-// False: not now, for it is mapped.
+// Sends the buffer's bytes to the nodes. Returns false if the buffer is mapped, so they cannot be read now.
 bool tellNodes(ThreadState& t, GLuint buffer) {
     uint64_t size = 0;
     if (!ownSize(t, buffer, size)) return false;
     for (uint64_t at = 0; at < size; at += kToldBytes) {
         const uint64_t count = size - at < kToldBytes ? size - at : kToldBytes;
         void* const bytes = scratchMemory(t, count);
-        if (!bytes || !readOwnCopy(t, buffer, at, bytes, count)) return true; // there is nothing that could be told
+        if (!bytes || !readOwnCopy(t, buffer, at, bytes, count)) return true; // nothing can be sent
         records::bufferBytes(t, buffer, at, DataArg::of(bytes, count));
     }
     return true;
@@ -115,7 +116,7 @@ bool append(OwedReads& reads, GLuint buffer, const PackPlace& place, OwedAnswer*
     return true;
 }
 
-// Memory for the answer; null: there is none. What is owed longest is settled when it is too much.
+// Returns an entry for the reply; null: no memory. Completes the oldest reads first if the limits are reached.
 OwedAnswer* makeRoom(ThreadState& t, Session& s, OwedReads& reads, uint64_t sizeBytes, const char* by) {
     s.takeArrived();
     while (reads.first && (reads.count.load(std::memory_order_relaxed) >= kMostOwed || reads.sizeBytes + sizeBytes > kMostOwedBytes))
@@ -130,7 +131,7 @@ template <class Send> bool owe(ThreadState& t, const PackPlace& place, uint64_t 
     if (!s || sizeBytes == 0 || sizeBytes > kMostOwedBytes) return false;
     const GLuint buffer = boundPackBuffer();
     OwedReads& reads = t.context->group->owedReads;
-    // What another context of the share group has deleted may still be bound here.
+    // A buffer that another context of the share group has deleted may still be bound here.
     if (!reads.onlyReadInto(buffer) || !gReal.glIsBuffer(buffer)) return false;
     buffersRead(t);
     {
@@ -213,7 +214,7 @@ void unmappedHere(ThreadState& t, GLuint buffer) {
     if (nodesLack(t, buffer) && reads.usedElsewhere.get(buffer) && tellNodes(t, buffer)) reads.nodesLack.set(buffer, false);
 }
 
-// Before its first other use the nodes may lack of the new bytes what is read into them.
+// Before its first use for other purposes, the nodes may lack those bytes of the new storage that reads have written.
 void newStorage(ThreadState& t, GLuint buffer) {
     if (!t.context) return;
     OwedReads& reads = t.context->group->owedReads;
@@ -224,7 +225,7 @@ void forgetReads(ThreadState& t, GLuint buffer, const char* by) {
     if (!t.context || buffer == 0 || t.context->openPrimitive != kNoPrimitive) return;
     OwedReads& reads = t.context->group->owedReads;
     if (reads.count.load(std::memory_order_relaxed) > 0) {
-        // It lives on where another context has it bound.
+        // The buffer persists while another context has it bound.
         if (known::sharerOf(*t.context)) settle(t, buffer, by);
         if (!sessionFor(t)) return;
         Guard guard(reads.lock);

@@ -1,6 +1,6 @@
 // Deferred replies: reads into pixel pack buffers whose pixels the program has not used yet. The call sends a request
 // and returns. The reply is written into the program's own copy of the buffer when the program first reads, writes or
-// otherwise uses it. Until another use, the nodes do not receive the bytes, which they do not need.
+// otherwise uses it. The nodes do not need the bytes, and receive them only before a use for other purposes.
 #pragma once
 
 #include <GL/gl.h>

@@ -6,11 +6,11 @@
 
 namespace mural::process {
 
-constinit Page page{}; // in .bss: the kernel clears private anonymous memory only
+constinit Page page{}; // in .bss, because the kernel clears private anonymous memory only
 
 namespace {
 
-// Inherited by children.
+// Children inherit it.
 uint32_t lastNumber = 0;
 void (*childHandler)() = nullptr;
 

@@ -1,5 +1,6 @@
-// State that belongs to one process and ends in a forked child. The kernel clears it in the child (MADV_WIPEONFORK), so a
-// child is recognised without a system call, also where no handler of pthread_atfork runs: raw fork and clone.
+// State that belongs to one process and ends in a forked child. The kernel clears it in the child (MADV_WIPEONFORK). A
+// child is thus recognised without a system call. This also works for raw fork and clone, which run no handler of
+// pthread_atfork.
 #pragma once
 
 #include <atomic>
@@ -13,14 +14,14 @@ class Session;
 namespace process {
 
 struct alignas(4096) Page {
-    std::atomic<uint32_t> number;    // counts the forks of a line of processes, from 1; 0: a child that has not begun yet
+    std::atomic<uint32_t> number; // number of forks in the line of ancestors, from 1; 0: a child that has not begun yet
     std::atomic<uint32_t> beginning; // 1: a thread has begun the child
     Session* session;                // null: none, or not connected yet
     bool connectTried;
 };
 extern Page page;
 
-// Begins the process: calls the child handler when the parent had begun before. Returns its number.
+// Begins the process. Calls the child handler if the parent had begun before. Returns the process number.
 uint32_t begin();
 
 inline uint32_t number() {
@@ -28,14 +29,14 @@ inline uint32_t number() {
     return known != 0 ? known : begin();
 }
 
-// Called once in each forked child, by the thread that first uses the interposer there.
+// Sets the handler that runs once in each forked child, in the thread that first uses the interposer there.
 void onChildBegins(void (*handler)());
-// For the handler of pthread_atfork: kernels before 4.14 do not clear the page.
+// For the handler of pthread_atfork, because kernels before 4.14 do not clear the page.
 void forked();
-// This process, or one that it was forked from, has been captured.
+// Returns whether this process or one of its ancestors has been captured.
 [[nodiscard]] bool everCaptured();
 
-// Zeroed memory, which a forked child finds zeroed again. Never freed. Null: there is no memory.
+// Returns zeroed memory, which is zeroed again in a forked child. Never freed. Null: no memory.
 void* memory(size_t sizeBytes);
 
 } // namespace process

@@ -42,7 +42,7 @@ struct LayoutWriter {
 // Array elements have separate locations: "a[0]" stands for all `size` elements.
 void addUniform(LayoutWriter& w, GLuint program, const char* name, GLint size) {
     const GLint first = gReal.glGetUniformLocation(program, name);
-    if (first < 0) return; // in a block, or built in
+    if (first < 0) return; // in a block, or built-in
     w.add(first, name);
     const size_t length = std::strlen(name);
     if (size <= 1 || length < 3 || std::strcmp(name + length - 3, "[0]") != 0) return;

@@ -13,7 +13,7 @@ void QueryAnswers::begun(GLenum target, GLuint index, GLuint query) {
     Active* place = nullptr;
     for (Active& a : active_) {
         if (a.query == 0 && !place) place = &a;
-        if (a.query != 0 && a.target == target && a.index == index) return; // an error: one is active
+        if (a.query != 0 && a.target == target && a.index == index) return; // an error: a query is active already
     }
     if (place) *place = {target, index, query};
 }

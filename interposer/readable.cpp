@@ -8,14 +8,14 @@ namespace mural {
 
 namespace {
 
-constexpr uintptr_t kPageBytes = 4096; // the smallest; larger pages are asked for more than once
+constexpr uintptr_t kPageBytes = 4096; // smallest page size; larger pages are checked more than once
 
-// sigprocmask reads the new mask before it refuses the unknown operation. Sandboxes allow it, as libc cannot do without;
-// process_vm_readv they may refuse, or end the program for.
+// sigprocmask reads the new mask before it rejects the unknown operation. Sandboxes allow it, because libc needs it.
+// They may reject process_vm_readv, or kill a program for it.
 bool isReadable(uintptr_t at) {
     constexpr int kUnknownOperation = -1;
     constexpr uintptr_t kMaskBytes = 8;
-    if (at < kMaskBytes) return false; // a null mask is none
+    if (at < kMaskBytes) return false; // a null mask is not read
     const int before = errno;
     const long result = syscall(SYS_rt_sigprocmask, kUnknownOperation, at & ~(kMaskBytes - 1), nullptr, kMaskBytes);
     const bool faulted = result != 0 && errno == EFAULT;

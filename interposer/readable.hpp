@@ -1,11 +1,11 @@
-// Whether memory of the program may be read, asked from the kernel: no signal handler is touched.
+// Asks the kernel whether memory of the program is readable, without signal handlers.
 #pragma once
 
 #include <cstdint>
 
 namespace mural {
 
-// How many of the bytes, from the first on, may be read. All, where the kernel refuses the question.
+// Returns the number of readable bytes from the first on. Returns sizeBytes if the kernel does not answer.
 uint64_t readableBytes(const void* memory, uint64_t sizeBytes);
 
 } // namespace mural

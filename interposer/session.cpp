@@ -25,14 +25,14 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kSliceNs = 50 * kNsPerMs;   // how often a blocked thread looks whether the head lives
-constexpr int64_t kStuckNs = 60 * kNsPerS;    // a running head that gives nothing for so long is given up
+constexpr int64_t kSliceNs = 50 * kNsPerMs;   // interval at which a blocked thread checks whether the head lives
+constexpr int64_t kStuckNs = 60 * kNsPerS;    // limit for a running head that makes no progress
 
 Lock connectLock;
-Lock ringLock;    // publications and freed chunks have one producer, one consumer
-Lock requestLock; // one question at a time
+Lock ringLock;    // makes one producer of publications and one consumer of freed chunks
+Lock requestLock; // allows one request at a time
 
-// While it exists a thread waits; the header says so to `mural stat`, and for how long to the report.
+// Marks a wait of a thread during its lifetime. `mural stat` shows the reason; the report shows the duration.
 class Waiting {
 public:
     Waiting(capture::CaptureHeader& header, capture::Wait what)
@@ -45,7 +45,7 @@ public:
     }
     Waiting(const Waiting&) = delete;
     Waiting& operator=(const Waiting&) = delete;
-    // Time for which this process and the head both ran; to be called once per slice.
+    // Returns the time during which this process and the head both ran. Must be called once per slice.
     [[nodiscard]] int64_t forNs() { return running_.countNs(monotonicNowNs(), beat()); }
 
 private:
@@ -57,9 +57,9 @@ private:
     RunningTime running_;
 };
 
-// Under the lock of questions.
+// Requires the request lock.
 void countTrip(capture::CaptureHeader& header, const char* by) {
-    constexpr char kPrefix[] = "mural_"; // of wrappers
+    constexpr char kPrefix[] = "mural_"; // prefix of wrapper names
     const char* command = std::strncmp(by, kPrefix, sizeof kPrefix - 1) == 0 ? by + sizeof kPrefix - 1 : by;
     uint32_t i = 0;
     for (; i + 1 < capture::kTripCounts && header.trips[i].command[0]; ++i)
@@ -81,7 +81,7 @@ Session* Session::get() {
     if (process::page.connectTried) return process::page.session;
     process::page.connectTried = true;
     if (!launchSettings().session) return nullptr;
-    void* const place = std::calloc(1, sizeof(Session)); // never freed: outlives the program's destructors
+    void* const place = std::calloc(1, sizeof(Session)); // never freed, because it outlives the program's destructors
     if (!place) return nullptr;
     auto* const session = new (place) Session;
     if (!session->connect()) {
@@ -107,7 +107,7 @@ uint32_t Session::displayNumber(const char* name) {
 
 bool Session::connect() {
     const int socket = openHeadSocket();
-    if (socket < 0) return false; // it has said why
+    if (socket < 0) return false; // the reason has been reported
     Handshake handshake;
     if (!shakeHands(socket, handshake)) return false;
     nameKey_ = window_mark::sessionKey(launchSettings().session);
@@ -123,11 +123,12 @@ void Session::die(const char* why) {
     if (why) say("%s; the program goes on alone", why);
 }
 
-// The kernel marks the word of a head that ends without a word of its own (nodes/head/life_mark.hpp).
+// Returns whether the head lives. The kernel marks headLife if the head ends without setting headGone
+// (nodes/head/life_mark.hpp).
 bool Session::headAlive() {
     if (!alive()) return false;
     const bool gone = header_->headGone.load(std::memory_order_acquire) || header_->headLife.load(std::memory_order_acquire) & FUTEX_OWNER_DIED;
-    if (gone) die(nullptr); // the head, or `mural run`, has told the user why
+    if (gone) die(nullptr); // the head or `mural run` has reported the reason
     return !gone;
 }
 
@@ -141,7 +142,8 @@ void Session::publish(ThreadState& t, bool last, bool hurry) {
     if (published || hurry) wakeReader(hurry);
 }
 
-// After a publication: what the reader does is read behind it, as the reader reads the publications behind that.
+// Call after a publication. Reads the reader's state after the publication is written. The reader reads publications
+// after it writes its state, so no wake-up is lost.
 void Session::wakeReader(bool fromNap) {
     std::atomic_thread_fence(std::memory_order_seq_cst);
     const auto reader = static_cast<capture::Reader>(header_->reader.load(std::memory_order_relaxed));
@@ -225,7 +227,7 @@ void Session::waitForCredit() {
     Waiting waiting(*header_, capture::Wait::Frames);
     wakeReader(true);
     for (bool inVain = false; alive() && tooMany(done); inVain = true) {
-        if (inVain) { // nothing of this is looked at in most frames
+        if (inVain) { // most frames skip these checks
             if (!headAlive()) return;
             if (waiting.forNs() > 10 * kStuckNs) die("no frame came back for 10 minutes");
         }
@@ -280,7 +282,7 @@ bool Session::aheadAnswer(uint32_t request, uint64_t& value) {
             break;
         }
         const bool later = here != 0 && static_cast<int32_t>((here - request) << 1) > 0;
-        if (later || (waiting && waiting->forNs() > kStuckNs)) break; // then it is asked once more
+        if (later || (waiting && waiting->forNs() > kStuckNs)) break; // the caller sends a new request then
         if (!waiting) waiting.emplace(*header_, capture::Wait::Answer);
         futexWait(answer.request, here, kSliceNs);
         if (!headAlive()) break;
@@ -358,7 +360,8 @@ void Session::takePictures(uint32_t frame) {
     Waiting waiting(*header_, capture::Wait::Window);
     const auto has = [&](uint32_t frames) { return static_cast<int32_t>(frame - frames) <= 0; };
     while (alive() && !has(picturesTaken_)) {
-        // A frame without a picture is shown without a reply; the reply of any other comes before it counts as shown.
+        // A frame without a picture counts as shown without a reply. For all others the reply arrives before the frame
+        // counts as shown.
         const bool shown = has(header_->framesShown.load(std::memory_order_acquire));
         const uint32_t tail = header_->replyTail.load(std::memory_order_acquire);
         if (replyWaits()) {
@@ -372,7 +375,7 @@ void Session::takePictures(uint32_t frame) {
     }
 }
 
-// An answer that is not the one waited for: owed, late to a question given up, or a picture.
+// Takes a reply that no thread waits for: a deferred one, a late one for an abandoned request, or a picture.
 bool Session::takeOwed(const wire::ReplyHeader& header) {
     if (header.kind == capture::kPictureReply) return takePicture(header);
     void* const into = owed::placeOf(header.requestId, header.sizeBytes, header.failed != 0);
@@ -404,7 +407,7 @@ bool Session::waitOwed(uint32_t request, const char* by) {
 }
 
 void Session::takeArrived() {
-    if (!alive() || !requestLock.tryLock()) return; // who has it takes them, too
+    if (!alive() || !requestLock.tryLock()) return; // the holder of the lock takes them as well
     wire::ReplyHeader header{};
     while (alive() && replyWaits() && answerBytes(&header, sizeof header) && takeOwed(header)) {}
     requestLock.unlock();

@@ -1,6 +1,6 @@
-// The connection to the head: one per process, opened with the first context. Owns the mapping, hands
-// out chunks, publishes what was encoded, waits for credit and answers. When the head is gone every
-// call becomes a no-op and the program goes on alone. A forked child has none until it makes a context.
+// The connection to the head: one per process, opened with the first context. It owns the mapping, hands out chunks,
+// publishes records, and waits for credit and answers. After the end of the head every call becomes a no-op, and the
+// program continues alone. A forked child has no session until it creates a context.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace mural {
 
 class Session {
 public:
-    // The process's session; connects once, when `mural run` has named a head. Null: no capture.
+    // Returns the process's session. Connects once, if `mural run` has named a head. Null: no capture.
     static Session* get();
     // Like get(), but never connects.
     static Session* current();
@@ -21,55 +21,57 @@ public:
     [[nodiscard]] const capture::Welcome& welcome() const { return welcome_; }
     [[nodiscard]] bool alive() const { return __atomic_load_n(&alive_, __ATOMIC_ACQUIRE); }
     [[nodiscard]] capture::CaptureHeader* header() { return header_; }
-    // Of the session's name (common/window_mark.hpp).
+    // Key of the session's name (common/window_mark.hpp).
     [[nodiscard]] uint64_t nameKey() const { return nameKey_; }
-    // The number by which the head knows the X display of this name. It takes the same name for the same display.
+    // Returns the number of an X display for the head. The head treats equal names as the same display.
     uint32_t displayNumber(const char* name);
-    // Extensions that all nodes have, with a space before and behind each.
+    // GL extensions that all nodes have, each surrounded by spaces.
     [[nodiscard]] const char* nodeExtensions() const { return extensions_; }
 
-    // Makes all complete records of the thread visible to the head. `last`: the chunk is used up. `hurry`: the
-    // head is to read it now, and not when its nap is over.
+    // Makes all completed records of the thread visible to the head. `last`: the chunk is used up. `hurry`: the head
+    // must read them now and not after its nap.
     void publish(ThreadState& t, bool last, bool hurry = true);
-    // A fresh chunk for the thread (after publish(t, true)); false when the head is gone.
+    // Gives the thread a new chunk, after publish(t, true). Returns false if the head has ended.
     bool takeChunk(ThreadState& t);
-    // Blocks until no more frames are on their way than the session's latency allows. Frames faster than
-    // capture::kAheadNs may be some more.
+    // Blocks until the number of pending frames is within the session's latency. Frames faster than capture::kAheadNs
+    // may exceed it.
     void waitForCredit();
-    // Blocks until all frames of this process are in its windows (--display app); bounded.
+    // Blocks until all frames of this process are in its windows (--display app). The wait is bounded.
     void waitShown();
 
-    // For a frame that announceOwnPut() has announced, after its records are published: until its picture is in the
-    // window; bounded.
+    // Blocks until the picture of a frame is in the window. Requires announceOwnPut() for the frame, and published
+    // records. The wait is bounded.
     void takePictures(uint32_t frame);
 
-    // One question to the nodes at a time per process; `by` is the function that asks, counted under its name.
+    // Begins a request to the nodes, one at a time per process. The round trip counts under `by`, the requesting
+    // function.
     uint32_t beginRequest(const char* by);
-    // The head of the answer; false when the head died (the request is over then).
+    // Reads the header of the answer. Returns false if the head has ended; the request is then over.
     bool answerHeader(uint32_t request, wire::ReplyHeader& header);
-    // The next bytes of the answer.
+    // Reads the next bytes of the answer.
     bool answerBytes(void* into, uint64_t sizeBytes);
     void endRequest();
-    // The id of a question whose answer is taken later (interposer/owed_answers.hpp).
+    // Returns the id of a request with a deferred reply (interposer/owed_answers.hpp).
     uint32_t nextOwed() { return capture::kOwed | (__atomic_add_fetch(&lastOwed_, 1, __ATOMIC_RELAXED) & (capture::kOwed - 1)); }
-    // Until it is here, or came as none; a round trip when it is not on its way from the head already. False: the head
-    // died.
+    // Blocks until the reply has arrived, or the nodes had none. Counts a round trip if the head is not sending it
+    // already. Returns false if the head has ended.
     bool waitOwed(uint32_t request, const char* by);
-    // Takes what has come of such answers, so that the head need not keep them.
+    // Reads deferred replies that have arrived, so that the head need not store them.
     void takeArrived();
-    // The same for an answer that is read later: no round trip. Waits until it is there; false when the head died
-    // or the answer's place has been taken by another's.
+    // Returns the id of a prefetch request, which causes no round trip. aheadAnswer() blocks until its answer has
+    // arrived. It returns false if the head has ended or a later answer has replaced this one.
     uint32_t nextAhead() { return capture::kAskedAhead | __atomic_add_fetch(&lastAhead_, 1, __ATOMIC_RELAXED); }
     bool aheadAnswer(uint32_t request, uint64_t& value);
 
-    // After each frame of the thread: what it costs the program.
+    // Call after each frame of the thread. Adds up the thread's CPU time.
     void countFrameCpu(ThreadState& t);
     uint32_t nextFrame() { return __atomic_add_fetch(&framesSubmitted_, 1, __ATOMIC_RELAXED); }
-    // The nodes have told something that no thread has taken yet.
+    // Returns whether the nodes have sent news that no thread has taken yet.
     [[nodiscard]] bool newsWaiting() const {
         return header_ && header_->newsTail.load(std::memory_order_relaxed) != __atomic_load_n(&newsTaken_, __ATOMIC_RELAXED);
     }
-    // The oldest; false: there is none. text has room for capture::kNewsTextBytes and an end. One thread at a time.
+    // Takes the oldest news; false: none. `text` needs room for capture::kNewsTextBytes and a terminator. One thread at
+    // a time.
     bool takeNews(wire::News& news, char* text);
     void die(const char* why);
 
@@ -79,7 +81,7 @@ private:
     bool takePicture(const wire::ReplyHeader& header);
     [[nodiscard]] bool replyWaits() const;
     bool headAlive();
-    [[nodiscard]] bool publishLocked(ThreadState& t, bool last); // false: there was nothing, or no room
+    [[nodiscard]] bool publishLocked(ThreadState& t, bool last); // false: no records, or no room
     void wakeReader(bool fromNap);
     [[nodiscard]] bool mayGoAhead(uint32_t submitted, uint32_t done, int64_t nowNs) const;
     [[nodiscard]] uint32_t framesSubmitted() const { return __atomic_load_n(&framesSubmitted_, __ATOMIC_RELAXED); }
@@ -89,13 +91,13 @@ private:
     const char* extensions_ = "";
     uint64_t nameKey_ = 0;
     bool alive_ = false;
-    uint32_t framesSubmitted_ = 0; // by all threads
-    int64_t submittedNs_[capture::kAheadFrames] = {}; // of frame n at n modulo their number
+    uint32_t framesSubmitted_ = 0; // of all threads
+    int64_t submittedNs_[capture::kAheadFrames] = {}; // submission time of frame n at index n modulo kAheadFrames
     uint32_t lastRequest_ = 0;
     uint32_t lastAhead_ = 0;
     uint32_t lastOwed_ = 0;
     uint32_t newsTaken_ = 0;
-    uint32_t picturesTaken_ = 0; // the latest frame among them; under the lock of questions
+    uint32_t picturesTaken_ = 0; // latest frame whose picture was taken; guarded by the request lock
 };
 
 } // namespace mural

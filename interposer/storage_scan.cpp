@@ -15,7 +15,7 @@ void StorageScan::feed(const char* text, size_t length) {
         if (text[i] == '\r') continue;
         const In before = in_;
         step(text[i]);
-        last_ = in_ == before ? text[i] : ' '; // at the start or end of a comment no character counts twice
+        last_ = in_ == before ? text[i] : ' '; // so that no character counts twice at the start or end of a comment
     }
 }
 

@@ -8,9 +8,9 @@ namespace mural {
 
 class StorageScan {
 public:
-    // The text, in any number of pieces.
+    // Scans the text, in any number of pieces.
     void feed(const char* text, size_t length);
-    // True after a block without `readonly`, or a possible one: a macro, an included text.
+    // Returns true after a block without `readonly`, or a possible one: a macro, an included text.
     [[nodiscard]] bool mayWrite() const { return mayWrite_; }
 
 private:

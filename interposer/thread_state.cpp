@@ -18,10 +18,10 @@ uint16_t lastStream = 0;
 pthread_key_t endKey;
 pthread_once_t endKeyOnce = PTHREAD_ONCE_INIT;
 
-// A thread ends: what it encoded is published, its entry waits for the next thread.
+// Ends a thread: publishes its records and leaves its entry to the next thread.
 void threadEnded(void* p) {
     auto* t = static_cast<ThreadState*>(p);
-    if (t->stream == 0) return; // the thread that forked, in the child
+    if (t->stream == 0) return; // the forking thread, in the child
     threadLeaves(*t);
     if (Session* s = Session::current()) s->publish(*t, true);
     t->cursor = t->limit = t->chunkEnd = nullptr;
@@ -50,7 +50,7 @@ void* grow(void*& memory, size_t& have, size_t bytes) {
 constinit thread_local ThreadState* tThread __attribute__((tls_model("initial-exec"))) = &idleThread;
 
 ThreadState& ownThreadState() {
-    if (tThread->stream != 0) return *tThread; // the parent's state is zero in a forked child
+    if (tThread->stream != 0) return *tThread; // a forked child finds the parent's state zeroed
     pthread_once(&endKeyOnce, [] { pthread_key_create(&endKey, threadEnded); });
     Guard guard(listLock);
     ThreadState* t = takeOver();

@@ -17,7 +17,7 @@ namespace mural {
 
 namespace {
 
-// MURAL_VERIFY_DUMP=folder: both pictures of frames that differ, as PPM.
+// MURAL_VERIFY_DUMP=folder: writes both pictures of differing frames as PPM.
 void dump(const Window& w, uint32_t frame, const char* which, const uint8_t* rgba) {
     const char* folder = getenv("MURAL_VERIFY_DUMP");
     if (!folder) return;
@@ -38,12 +38,13 @@ void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels, const Colo
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
     if (!read.ready()) return countUncompared(Uncompared::NotReadable);
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
-    read.pixels(0, 0, 1, 1, mine, reads.type); // Mesa clips a read to the size that its buffers had before it
+    read.pixels(0, 0, 1, 1, mine, reads.type); // Mesa clips a read to the buffers' size before that read
     read.pixels(0, 0, width, height, mine, reads.type);
     if (driverError() != GL_NO_ERROR) return countUncompared(Uncompared::NotReadable);
     const GLenum errorBefore = t.context->stashedError;
-    auto* theirs = const_cast<void*>(askPixels(t, 0, 0, width, height, GL_RGBA, reads.type, 0, "--verify")); // in memory of this thread
-    t.context->stashedError = errorBefore; // a lost answer is no error of the program's
+    // points to memory of this thread
+    auto* theirs = const_cast<void*>(askPixels(t, 0, 0, width, height, GL_RGBA, reads.type, 0, "--verify"));
+    t.context->stashedError = errorBefore; // a lost answer is not an error of the program
     if (!theirs) return countUncompared(Uncompared::NoAnswer);
     const ColourDifference difference = compareColours(mine, theirs, pixels, reads.type);
     auto* h = Session::current()->header();

@@ -8,8 +8,8 @@ namespace mural {
 struct ThreadState;
 struct Window;
 
-// Compares the window's back buffer with the nodes' picture and adds to the counts of the report. A window that is not current
-// is bound for the read. A frame that can't be compared is counted with its reason.
+// Compares the window's back buffer with the nodes' picture and adds to the counts of the report. A window that is not
+// current is bound for the read. A frame that cannot be compared is counted with its reason.
 void verifyFrame(ThreadState& t, Window& w);
 void countUncompared(capture::Uncompared reason);
 

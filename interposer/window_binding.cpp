@@ -34,7 +34,7 @@ WindowBinding::WindowBinding(ThreadState& t, Window& w) : t_(t), before_(*t.cont
 
 // Returns the thread's own context, or one that is current nowhere and was bound to this window last.
 Context* WindowBinding::contextFor(const Window& w) const {
-    if (!before_.drawWindow || !before_.readWindow) return nullptr; // it could not be bound again as it was
+    if (!before_.drawWindow || !before_.readWindow) return nullptr; // its previous state could not be restored
     const bool leaves = keepsBuffers(findWindowById(before_.drawWindow), before_) && keepsBuffers(findWindowById(before_.readWindow), before_);
     if (before_.drawWindow == w.id) return leaves ? &before_ : nullptr;
     if (Context* const idle = known::idleHolderOf(w)) return idle;

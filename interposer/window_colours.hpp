@@ -13,7 +13,7 @@ struct Window;
 struct ColourReads {
     GLenum type;
     uint32_t pixelBytes;
-    uint32_t fillFlag; // of kOpFillWindow
+    uint32_t fillFlag; // flag of kOpFillWindow
 };
 
 // Returns the type that reads all bits of the window as GL_RGBA. OpenGL ES before 3 reads bytes only.

@@ -11,7 +11,7 @@ struct Window;
 // Returns false if the drawable no longer exists.
 bool askWindowSize(const Window& w, uint32_t& width, uint32_t& height);
 
-// Before pixels of the window are read: Mesa gives its buffers their size then, too.
+// Call before pixels of the window are read, because Mesa sizes its buffers then, too.
 void beforeAwaitedReading(ThreadState& t);
 
 } // namespace mural

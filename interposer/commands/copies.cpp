@@ -1,5 +1,5 @@
-// Commands that copy out of a framebuffer. A node has only its tile of a window: what lies outside
-// is fetched from the others first and handed to all (kOpFillWindow).
+// Commands that copy out of a framebuffer. A node has only its tile of a window. The remaining pixels are first fetched
+// from the other nodes and sent to all (kOpFillWindow).
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -16,7 +16,8 @@ using namespace mural;
 
 namespace {
 
-// What a copy into a texture level reads; `ask` gives the level's internal format. The copy itself raises the errors.
+// Returns the planes that a copy into a texture level reads. `ask` queries the level's internal format. The copy itself
+// raises the errors.
 template <class Ask> GLbitfield planesInto(ThreadState& t, Ask&& ask) {
     Session* s = Session::current();
     if (!t.context || !s || s->welcome().nodeCount < 2) return GL_COLOR_BUFFER_BIT;
@@ -33,7 +34,7 @@ namespace mural::copies {
 
 namespace {
 
-// Of the window that the read framebuffer of the nodes is.
+// Requires that the read framebuffer of the nodes is the window.
 void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, bool forCopy, const char* by) {
     const Window* window = findWindowById(t.context->readWindow);
     if (!window) return;
@@ -62,7 +63,7 @@ void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfiel
     }
 }
 
-// The nodes read the window in between, and not the object that the program has bound for reading.
+// During `gather` the nodes read the window instead of the object that the program has bound for reading.
 template <class Gather> void readingWindow(ThreadState& t, Gather&& gather) {
     GLint object = 0;
     if (!readsWindow(*t.context) && gReal.glBindFramebuffer) gReal.glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &object);
@@ -80,12 +81,12 @@ bool severalNodes(const ThreadState& t) {
 
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     if (!severalNodes(t)) return;
-    if (t.context->listPrimitive) return; // where the list takes no copies
+    if (t.context->listPrimitive) return; // a list accepts no copies there
     if (t.context->compilingList) drawAll(t, by);
     else if (readsWindow(*t.context)) gatherNow(t, x, y, w, h, planes, true, by);
 }
 
-// Within a window with samples drivers copy all of them, which a node has only of what it has drawn.
+// Within a multisampled window, drivers copy all samples. A node has only the samples that it has drawn itself.
 void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     if (!severalNodes(t)) return;
     const Window* const read = readsWindow(*t.context) ? findWindowById(t.context->readWindow) : nullptr;
@@ -105,7 +106,8 @@ void drawAll(ThreadState& t, const char* by) {
     records::drawAll(t);
     const Window* window = findWindowById(t.context->readWindow);
     if (!window) return;
-    constexpr GLbitfield kAll = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT; // what other nodes have drawn until now
+    // sends the pictures drawn by other nodes so far
+    constexpr GLbitfield kAll = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
     const auto width = static_cast<GLsizei>(window->config.width), height = static_cast<GLsizei>(window->config.height);
     readingWindow(t, [&] { gatherNow(t, 0, 0, width, height, kAll, false, by); });
 }
@@ -178,7 +180,7 @@ void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig,
     ThreadState& t = *tThread;
     buffersRead(t);
     encode_glBitmap(t, width, height, xorig, yorig, xmove, ymove, imageSource(t, bitmap, GL_COLOR_INDEX, GL_BITMAP, width, height, 1, 2));
-    // The raster position moves in the program's own context too: an empty bitmap moves it as well.
+    // The raster position also moves in the program's own context, because an empty bitmap moves it as well.
     if (t.context && t.context->compilingList) {
         t.context->group->listsMoveRaster = true;
         t.context->group->listMovesRaster.set(t.context->compiledList, true);

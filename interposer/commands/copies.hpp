@@ -16,8 +16,9 @@ void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLb
 // The same for a command that names the window, independent of the read binding. Not available in display lists.
 void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
 
-// From now on every node draws the whole window. For fragment shaders that write to memory, for display lists that copy
-// from a window or contain conditional rendering, which cannot be interrupted for a request, and for copies of samples.
+// Makes every node draw the whole window from now on. Display lists that copy from a window or contain conditional
+// rendering need this, because no request can interrupt them. Fragment shaders that write to memory and copies of
+// samples need it as well.
 void drawAll(ThreadState& t, const char* by = __builtin_FUNCTION());
 
 // The planes that a copy reads into an image: of this format, or of a level of the bound or named texture.

@@ -93,8 +93,8 @@ void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElemen
     sendClientArrays(t, *c, all);
 }
 
-// During transform feedback the driver counts vertices and executes the draw first: the nodes' drivers may not count,
-// and would draw what is an error here. Returns false if nothing is counted; the caller continues.
+// Executes the draw in the driver first, which counts vertices during transform feedback. The nodes' drivers may not
+// count, and would draw although the call is an error here. Returns false if nothing is counted; the caller continues.
 template <class Local, class Send> bool drawnCounted(ThreadState& t, Local&& local, Send&& send) {
     if (!t.drawLocally || !t.context || !t.context->drawsFeedback) return false;
     if (raisesNothing(*t.context, local)) send();

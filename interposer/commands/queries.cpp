@@ -45,7 +45,8 @@ template <class Local, class Send> void beginQuery(GLenum target, GLuint index, 
 
 bool isResult(GLenum pname) { return pname == GL_QUERY_RESULT || pname == GL_QUERY_RESULT_NO_WAIT; }
 
-// A query without a begin has counted nothing, and the driver knows its state. A list begins its queries at every call.
+// A query without a begin has counted nothing, so the driver's own state is correct. A list begins its queries at every
+// call.
 bool neverBegun(const ThreadState& t, GLuint id) {
     return NameBits::known(id) && !t.context->queryBegun.get(id) && !t.context->group->listCounts.get(id);
 }
@@ -174,7 +175,7 @@ void noteListCondition(ThreadState& t, GLuint id) {
 
 namespace mural {
 void tellListConditions(ThreadState& t, const char* by) {
-    // each node knows the result itself
+    // each node has the result itself
     if (!capturing(t) || t.context->compilingList || t.context->group->allDrawn) return;
     const ShareGroup& group = *t.context->group;
     for (int i = 0; i < group.listConditionCount; ++i) tellCondition(t, by, group.listConditions[i]);
@@ -183,8 +184,8 @@ void tellListConditions(ThreadState& t, const char* by) {
 
 extern "C" {
 
-// A node knows its own tiles only, but its draws may depend on all of them. The result of the whole picture is fetched
-// and sent to all nodes; for a display list, at its call.
+// A node has the results of its own tiles only, but its draws may depend on all of them. The result of the whole
+// picture is fetched and sent to all nodes; for a display list, at its call.
 void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
     ThreadState& t = *tThread;
     if (!capturing(t) || t.context->compilingList) {

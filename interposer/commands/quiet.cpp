@@ -7,9 +7,9 @@ namespace mural::quiet {
 
 namespace {
 
-// Every driver has as many draw buffers; a higher number may be an error, and the driver knows.
+// Every driver has this many draw buffers. Higher numbers may be errors, so the driver decides.
 constexpr GLint kSureDrawBuffers = 4;
-// Groups per dimension that every driver takes.
+// Groups per dimension that every driver accepts.
 constexpr GLuint kSureGroups = 65535;
 // Mesh tasks per draw that every driver accepts.
 constexpr GLuint kSureMeshTasks = 65535;
@@ -41,7 +41,7 @@ bool clearsBuffer(GLenum buffer, GLint drawBuffer, bool color, GLenum plane) {
 }
 
 void clearDepthStencil(GLuint framebuffer, GLenum buffer, GLint drawBuffer, GLfloat depth, GLint stencil) {
-    discarded([&] { // Mesa looks whether the framebuffer is complete only if it is going to clear, or for one plane
+    discarded([&] { // Mesa checks completeness only before an actual clear, or for one plane
         if (clearsBuffer(buffer, drawBuffer, false, GL_DEPTH_STENCIL)) gReal.glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &depth);
         else gReal.glClearNamedFramebufferfi(framebuffer, buffer, drawBuffer, depth, stencil);
     });
@@ -51,15 +51,15 @@ void settleArrays(const ThreadState& t) {
     if (t.drawLocally || !t.context || t.context->compilingList) return;
     stashError(*t.context, driverError());
     gReal.glDrawArrays(GL_POINTS, 0, 0);
-    (void)driverError(); // not the program's
+    (void)driverError(); // not an error of the program
 }
 
 void rectangle(const ThreadState& t) {
-    gReal.glBegin(GL_QUADS); // what drivers make of it; between glBegin and glEnd an error
+    gReal.glBegin(GL_QUADS); // as drivers execute glRect*; an error between glBegin and glEnd
     if (!t.context || t.context->openPrimitive == kNoPrimitive) gReal.glEnd();
 }
 
-// A mesh is primitives, one for each row, which may be errors. Here one of them, which is empty.
+// The driver draws a mesh as one primitive per row, and each may raise an error. This call makes one empty primitive.
 void evalMesh2(GLenum mode, GLint i1, GLint i2, GLint j1, GLint j2) {
     const bool begins = mode == GL_FILL ? j1 < j2 : mode == GL_LINE ? i1 <= i2 || j1 <= j2 : true;
     gReal.glEvalMesh2(mode, 1, 0, begins ? 0 : 1, mode == GL_FILL ? 1 : 0);
@@ -117,7 +117,7 @@ bool indirectIsWrong(const ThreadState& t, const void* indirect, uint64_t sizeBy
     gReal.glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
     const bool compatible = t.context && t.context->compatible();
     if (buffer == 0) return !compatible; // client memory
-    if (!isDesktop(t, 0)) gReal.glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &array); // ES demands one
+    if (!isDesktop(t, 0)) gReal.glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &array); // ES requires a vertex array
     return array == 0 || !withinBuffer(GL_DRAW_INDIRECT_BUFFER, GL_DRAW_INDIRECT_BUFFER_BINDING, offset, sizeBytes);
 }
 
@@ -129,7 +129,8 @@ void drawIndirect(const ThreadState& t, GLenum mode, const void* indirect, GLsiz
 void drawElementsIndirect(const ThreadState& t, GLenum mode, GLenum type, const void* indirect, GLsizei stride) {
     const bool isIndex = type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
     if (isDesktop(t, 43)) gReal.glMultiDrawElementsIndirect(mode, type, indirect, 0, stride);
-    else if (!isIndex) gReal.glDrawElementsIndirect(mode, type, indirect); // which error comes first differs
+    // drivers differ in the error that they raise first
+    else if (!isIndex) gReal.glDrawElementsIndirect(mode, type, indirect);
     else gReal.glDrawElements(mode, 0, type, nullptr);
 }
 

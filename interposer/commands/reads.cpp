@@ -1,4 +1,4 @@
-// Pixels and texture images: drawn on the nodes, so read from the nodes.
+// Reads of pixels and texture images. The nodes draw them, so the nodes answer.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/commands/quiet.hpp"
@@ -18,13 +18,13 @@ using namespace mural::image_reads;
 
 namespace {
 
-// A pixmap is drawn by the program's own GL too, and drivers let it have one buffer whatever its configuration
-// says: what is in it is known here. A bound pack buffer is the nodes' as well.
+// The program's own GL draws pixmaps, too, so it can read them locally. Drivers may give a pixmap a single buffer,
+// whatever its configuration says. A bound pack buffer belongs to the nodes as well.
 bool readsOwnPixmap(Context& c) {
     if (!c.drawsPixmap || c.readWindow != c.drawWindow || packBufferBound(c)) return false;
     return readsWindow(c);
 }
-// Drivers look at that only when there is something to read.
+// Drivers check the pack buffer only if there is something to read.
 bool outOfPackBuffer(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* offset) {
     if (!packBufferBound(c) || width == 0 || height == 0) return false;
     const sizes::ImageLayout layout = sizes::layoutOf(packStore(c), format, type, width, height, 1, 2);
@@ -39,10 +39,10 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
     }
     ReadArea clip{x, y, width, height};
     const bool reads = cutToReadFramebuffer(c, format, type, clip);
-    beforeAwaitedReading(t); // Mesa cuts the rectangle first, and gives its buffers a new size then
+    beforeAwaitedReading(t); // Mesa clips the rectangle first, and then resizes its buffers
     if (!reads) return;
     sizes::PixelStore store = packStore(c);
-    if (store.rowLength == 0) store.rowLength = width; // rows keep their distance when clipped
+    if (store.rowLength == 0) store.rowLength = width; // clipped rows keep their stride
     store.skipPixels += clip.x - x;
     store.skipRows += clip.y - y;
     const sizes::ImageLayout layout = sizes::layoutOf(store, format, type, clip.w, clip.h, 1, 2);
@@ -52,7 +52,8 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
     }
     const void* tight = askPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, 0, by);
     if (!tight) {
-        if (capturing(t)) gReal.glReadPixels(x, y, width, height, format, type, pixels); // the nodes can't answer; else an error is raised
+        // the nodes cannot answer; without a session an error is raised
+        if (capturing(t)) gReal.glReadPixels(x, y, width, height, format, type, pixels);
         return;
     }
     if (layout.known) deliver(t, tight, pixels, layout);
@@ -64,7 +65,7 @@ void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum 
     askAndDeliver(t, {byName, which, level, format, type, bytes}, pixels, layout, by);
 }
 
-// The driver's own answer comes first: it gives the errors, and the content where nodes have none.
+// The driver's own call comes first: it raises errors, and fills what the nodes do not answer.
 template <class Local> void readBound(GLenum target, GLint level, GLenum format, GLenum type, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
@@ -88,7 +89,7 @@ void mural_glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum 
 void mural_glReadnPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, GLsizei bufSize, void* data) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data);
-    // The driver's own read tells whether bufSize is enough; its pixels are written over.
+    // The driver's own read checks bufSize. Its pixels are overwritten.
     const bool valid = packsAhead(t, [&] { gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data); });
     if (valid) readPixels(t, x, y, width, height, format, type, data);
 }
@@ -130,7 +131,7 @@ void mural_glGetMultiTexImageEXT(GLenum texunit, GLenum target, GLint level, GLe
     whileActive(t, texunit, [&] { readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), "glGetMultiTexImageEXT"); });
 }
 
-// A part: the whole level is asked for, the part copied out of it.
+// Reads a part: requests the whole level and copies the part out of it.
 void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLsizei width, GLsizei height, GLsizei depth, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
     ThreadState& t = *tThread;
     const auto local = [&] { gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type, bufSize, pixels); };

@@ -11,13 +11,13 @@ namespace {
 
 constexpr char kPreload[] = "LD_PRELOAD=";
 constexpr size_t kPreloadBytes = sizeof kPreload - 1;
-constexpr size_t kMaxEntries = 8192; // of an environment that is changed; the stack takes 64 KiB for them
+constexpr size_t kMaxEntries = 8192; // limit for changed environments; their pointers take 64 KiB of the stack
 constexpr char kLibrary[] = "libGLX_mural.so.0";
 constexpr char kFront[] = "libmural_front.so";
 
-// The capture's variables at the start of this process, as whole entries.
+// The capture's variables at the start of this process, as complete entries.
 struct Started {
-    char preload[8192]; // our libraries in LD_PRELOAD, between blanks
+    char preload[8192]; // our libraries in LD_PRELOAD, separated by spaces
     char session[256];
     char socketPath[256];
     char notes[256];
@@ -46,7 +46,7 @@ const char* nextWord(const char*& at, size_t& length) {
     return length ? word : nullptr;
 }
 
-// The entries of ours; only with a folder, as others depend on LD_LIBRARY_PATH.
+// Keeps the entries of our libraries. Entries without a folder depend on LD_LIBRARY_PATH and are ignored.
 void keepPreload(const char* list) {
     size_t length = 0, used = 0;
     while (const char* word = nextWord(list, length)) {
@@ -59,7 +59,8 @@ void keepPreload(const char* list) {
     }
 }
 
-// `mural run` inside a captured script: the processes of its own session are started without the capture on purpose.
+// True for `mural run` inside a captured script. It deliberately starts the processes of its own session without
+// capture.
 bool isMural() {
     char path[4096];
     const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
@@ -99,7 +100,8 @@ CapturedEnvironment::CapturedEnvironment(char* const* environment) : environment
     bool hasSession = false;
     for (; environment && environment[count_]; ++count_) {
         const char* entry = environment[count_];
-        if (isEntry(entry, "MURAL_DISABLE") || isEntry(entry, "MURAL_NATIVE")) return; // not to be captured
+        // the new program must not be captured
+        if (isEntry(entry, "MURAL_DISABLE") || isEntry(entry, "MURAL_NATIVE")) return;
         if (isEntry(entry, "LD_PRELOAD")) preload_ = entry;
         hasSession = hasSession || isEntry(entry, "MURAL_SESSION");
     }

@@ -1,6 +1,8 @@
-// The calls by which a program becomes another or starts one, in front of the C library's: each goes on with an environment
-// that keeps the new program captured. Not caught are system() and popen(), which start their shell inside the C library,
-// and raw system calls. These run after fork and vfork: nothing is allocated, no lock is taken.
+// Replaces the C library's calls that execute or start a program. Each call continues with an environment that keeps
+// the new program captured. Calls of system() and popen() are not covered, because they start their shell inside the C
+// library. Raw system calls are not covered either.
+//
+// The functions run after fork and vfork, so they allocate nothing and take no lock.
 #include <cerrno>
 #include <cstdarg>
 #include <spawn.h>
@@ -25,7 +27,7 @@ Next next;
 
 template <class F> void find(F& function, const char* name) { function = reinterpret_cast<F>(mural::loader::nextFunction(name)); }
 
-// At the start: later it may be the child of a fork, where the loader's locks may be held.
+// Runs at the start, because a forked child may find the loader's locks held.
 __attribute__((constructor)) void findNext() {
     find(next.execve, "execve");
     find(next.execvpe, "execvpe");
@@ -36,7 +38,7 @@ __attribute__((constructor)) void findNext() {
 }
 
 const Next& nextCalls() {
-    if (!next.execve) findNext(); // called by another library's constructor
+    if (!next.execve) findNext(); // for calls from another library's constructor
     return next;
 }
 
@@ -47,13 +49,13 @@ int notThere() {
 
 } // namespace
 
-// In the caller's frame: the stack is the only memory that is free to use here.
+// Allocates in the caller's frame: only the stack is safe to use here.
 #define CAPTURED(environment)                                                                              \
     const CapturedEnvironment change(environment);                                                         \
     char* const* captured = environment;                                                                   \
     if (change.neededBytes()) captured = change.build(__builtin_alloca(change.neededBytes()))
 
-// The arguments of execl and its kin, from `first` to the null behind the last.
+// Collects the arguments of execl and its variants, from `first` to the terminating null.
 #define LISTED(arguments, first)                                                             \
     va_list list;                                                                            \
     size_t count = 1;                                                                        \
@@ -117,7 +119,7 @@ MURAL_EXEC int execlp(const char* file, const char* first, ...) noexcept {
 
 MURAL_EXEC int execle(const char* path, const char* first, ...) noexcept {
     LISTED(arguments, first);
-    char* const* environment = va_arg(list, char* const*); // behind the null
+    char* const* environment = va_arg(list, char* const*); // follows the null
     va_end(list);
     return execve(path, arguments, environment);
 }

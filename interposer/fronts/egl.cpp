@@ -1,6 +1,5 @@
-// The EGL front: libEGL (of libglvnd) loads this library through the vendor file that
-// __EGL_VENDOR_LIBRARY_FILENAMES names. As in glx.cpp, the real vendor's library does the work.
-// Source: libglvnd, glvnd/libeglabi.h.
+// The EGL front. libEGL (of libglvnd) loads this library through the vendor file in __EGL_VENDOR_LIBRARY_FILENAMES. As
+// in glx.cpp, the real vendor's library does the work. Source: libglvnd, glvnd/libeglabi.h.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <cstdio>
@@ -56,12 +55,13 @@ Window* addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_
     if (!surface || nativeRun()) return nullptr;
     wire::WindowConfig c = configOf(dpy, config);
     c.isPbuffer = pbuffer;
-    // Mesa gives windows two buffers, whatever EGL_RENDER_BUFFER says, and others one. Desktop GL is asked (learnBuffers).
+    // Mesa gives windows two buffers, whatever EGL_RENDER_BUFFER says, and other surfaces one. Desktop GL is queried
+    // (learnBuffers).
     c.doubleBuffer = !pbuffer;
     for (const EGLint* a = attributes; a && *a != EGL_NONE; a += 2) {
         if (a[0] == EGL_GL_COLORSPACE) c.srgb = a[1] == EGL_GL_COLORSPACE_SRGB;
     }
-    const bool isX = hasXWindows(dpy) && native <= UINT32_MAX; // what other platforms take are pointers
+    const bool isX = hasXWindows(dpy) && native <= UINT32_MAX; // other platforms use pointers
     return addWindow(reinterpret_cast<uintptr_t>(surface), dpy, true, c, isX ? native : 0);
 }
 
@@ -104,7 +104,7 @@ EGLBoolean makeCurrent(EGLDisplay dpy, EGLSurface draw, EGLSurface read, EGLCont
     return ok;
 }
 
-// The thread gives up its context.
+// Releases the thread's context.
 EGLBoolean releaseThread() {
     static auto* call = real<EGLBoolean()>("eglReleaseThread");
     const EGLBoolean ok = call();
@@ -123,7 +123,7 @@ void frameShown(EGLDisplay dpy, EGLSurface surface) {
     else endFrame(windowFor(dpy, surface));
 }
 
-// EGL 1.5, 3.10.1: a surface that is not current for drawing is not shown, and the driver tells the error.
+// EGL 1.5, 3.10.1: only a surface that is current for drawing is shown. The driver reports the error.
 bool isCurrentForDrawing(const Window* w) { return w && tThread->context && tThread->context->drawWindow == w->id; }
 
 template <class Call> EGLBoolean swap(EGLDisplay dpy, EGLSurface surface, Call&& call) {
@@ -149,7 +149,7 @@ EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EG
     return swap(dpy, surface, [&] { return call(dpy, surface, rects, n); });
 }
 
-// Not advertised; who calls it all the same shows the whole picture.
+// Not advertised. A call shows the whole picture.
 EGLBoolean postSubBuffer(EGLDisplay dpy, EGLSurface surface, EGLint x, EGLint y, EGLint width, EGLint height) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint, EGLint, EGLint)>("eglPostSubBufferNV");
     return swap(dpy, surface, [&] { return call(dpy, surface, x, y, width, height); });
@@ -173,7 +173,7 @@ EGLSurface createWindowSurface(EGLDisplay dpy, EGLConfig config, EGLNativeWindow
     return made;
 }
 
-// The attributes of platform functions as the other functions have them.
+// Converts the attributes of platform functions to the type of the other functions.
 struct Narrow {
     explicit Narrow(const EGLAttrib* attributes) {
         int n = 0;
@@ -223,7 +223,7 @@ EGLBoolean destroySurface(EGLDisplay dpy, EGLSurface surface) {
     destroyWindow(reinterpret_cast<uintptr_t>(surface), dpy);
     return call(dpy, surface);
 }
-// The picture of a pbuffer becomes a texture: that of the nodes, put together, on each of them.
+// Makes the picture of a pbuffer a texture. Each node receives the picture that is combined from all nodes.
 EGLBoolean bindTexImage(EGLDisplay dpy, EGLSurface surface, EGLint buffer) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint)>("eglBindTexImage");
     static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");
@@ -247,7 +247,7 @@ const char* queryString(EGLDisplay dpy, EGLint name) {
     return name == EGL_EXTENSIONS && !nativeRun() ? filterWindowSystemExtensions(text) : text;
 }
 
-// eglGetDisplay and eglGetPlatformDisplay(EXT) come to vendors as this.
+// Vendors receive eglGetDisplay and eglGetPlatformDisplay(EXT) as this call.
 EGLDisplay getPlatformDisplay(EGLenum platform, void* native, const EGLAttrib* attributes) {
     const EGLDisplay made = vendorGetPlatformDisplay(platform, native, attributes);
     rememberDisplay(made, platform, native);
@@ -279,7 +279,7 @@ const OwnEntry kOwn[] = {
 };
 constinit Front front("egl", kOwn);
 
-// Opens the library that a vendor file (JSON) names; null when there is none.
+// Opens the library that a vendor file (JSON) names; null if there is none.
 void* openNamedBy(const char* vendorFile) {
     FILE* file = fopen(vendorFile, "re");
     if (!file) return nullptr;
@@ -294,7 +294,7 @@ void* openNamedBy(const char* vendorFile) {
     return loader::openLibrary(at, RTLD_LAZY);
 }
 
-// The vendor library that the user's own list of vendor files leads to, else the usual ones.
+// Opens the vendor library from the user's own list of vendor files, or else a common one.
 void* openVendor() {
     const char* list = wantedEglVendors();
     while (list && *list) {

@@ -12,14 +12,14 @@ namespace {
 
 struct Known {
     EGLDisplay display = nullptr;
-    xcb_connection_t* connection = nullptr; // null: of another platform than X
+    xcb_connection_t* connection = nullptr; // null: a platform other than X
 };
-constexpr int kMost = 16; // displays beyond are asked through EGL
+constexpr int kMost = 16; // further displays are queried through EGL
 Known known[kMost];
 int count = 0;
 Lock lock;
 
-// Threads may share it, as Mesa does; Xlib's own calls would need XInitThreads.
+// Several threads may share an xcb connection, as Mesa does. Xlib's own calls would need XInitThreads.
 xcb_connection_t* connectionOf(EGLenum platform, void* native) {
     if (platform == EGL_PLATFORM_XCB_EXT) return static_cast<xcb_connection_t*>(native);
     if (platform != EGL_PLATFORM_X11_KHR) return nullptr;

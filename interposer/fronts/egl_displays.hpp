@@ -1,5 +1,5 @@
-// Which X connection an EGLDisplay stands for. eglQuerySurface asks the X server once for a window's width and once for
-// its height; with the connection both come in one answer, in every frame.
+// Maps each EGLDisplay to its X connection. eglQuerySurface queries the X server separately for a window's width and
+// height. One query of the connection returns both, in every frame.
 #pragma once
 
 #include <EGL/egl.h>
@@ -10,19 +10,19 @@ struct xcb_connection_t;
 
 namespace mural {
 
-// eglGetDisplay and its kin have given `made` for this.
+// Records that eglGetDisplay or a similar function has returned `made` for this native display.
 void rememberDisplay(EGLDisplay made, EGLenum platform, void* native);
-// Null: not known. EGL_DEFAULT_DISPLAY has a connection of its own, which only the driver knows.
+// Returns null if the connection is unknown. The driver alone knows the connection of EGL_DEFAULT_DISPLAY.
 xcb_connection_t* xConnectionOf(EGLDisplay display);
-// False: its native windows are those of another platform, such as Wayland or GBM.
+// Returns false for native windows of another platform, such as Wayland or GBM.
 bool hasXWindows(EGLDisplay display);
-// It closes.
+// Call before the connection closes.
 void forgetConnection(xcb_connection_t* connection);
 
-// Null: it is not known, as EGL has opened it itself, or the display is not of X.
+// Returns null if EGL has opened the connection itself, or if the display does not belong to X.
 xcb_connection_t* xConnectionOf(EGLDisplay display);
 
-// False where the connection is not known, or the server knows no such window.
+// Returns false if the connection is unknown, or the server has no such window.
 bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height);
 
 } // namespace mural

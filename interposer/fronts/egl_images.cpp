@@ -24,8 +24,8 @@ template <class Attribute> int32_t valueOf(const Attribute* attributes, EGLint n
     return 0;
 }
 
-// The thread's own state serves also where no context is current. Published at once: the thread that
-// uses the image next may be another one.
+// Writes records with the thread's own state, which works without a current context, too. Publishes them at once,
+// because another thread may use the image next.
 template <class Write> void tellNodes(Write&& write) {
     Session* s = Session::current();
     if (nativeRun() || !s || !s->alive()) return;
@@ -70,7 +70,7 @@ EGLImageKHR createImageKhr(EGLDisplay dpy, EGLContext context, EGLenum target, E
     return made;
 }
 
-// The number of an image may be another's as soon as the driver has it back.
+// Sends the destruction first, because the driver may reuse the image's number as soon as it is freed.
 EGLBoolean destroyImage(EGLDisplay dpy, EGLImage image) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLImage)>("eglDestroyImage");
     tellDestroyed(image);

@@ -36,7 +36,7 @@ private:
     Loader library_ = nullptr;
 };
 
-// Both entries feed one encoder, but only the first one used is active: a library behind the preloaded entry may itself
+// Both entries feed one encoder, but only the first one used is active. A library behind the preloaded entry may itself
 // call GLVND, and its calls would arrive twice.
 enum class Way : int { Open, Vendor, Preload };
 bool claimProgram(Way way);

@@ -15,10 +15,10 @@ namespace mural {
 namespace {
 
 constexpr char kGlxVendor[] = "__GLX_VENDOR_LIBRARY_NAME";
-constexpr char kGlxScreenVendor[] = "__GLX_FORCE_VENDOR_LIBRARY_"; // with the number of a screen
+constexpr char kGlxScreenVendor[] = "__GLX_FORCE_VENDOR_LIBRARY_"; // followed by the number of a screen
 constexpr char kEglVendors[] = "__EGL_VENDOR_LIBRARY_FILENAMES";
 constexpr char kOurVendor[] = "mural";
-constexpr char kOurEglFile[] = "mural_egl_vendor.json"; // beside this library
+constexpr char kOurEglFile[] = "mural_egl_vendor.json"; // in the folder of this library
 
 using Getenv = char*(const char*);
 Getenv* nextGetenv = nullptr;
@@ -51,12 +51,13 @@ char* ourEglFile() {
     return path;
 }
 
-// Whether GLVND asks for its vendor; `answer` is then the value for it.
+// Returns whether GLVND queries its vendor. Stores the value for it in `answer`.
 bool answersGlvnd(const char* name, const void* caller, char*& answer) {
     if (name[0] != '_' || name[1] != '_' || (std::strncmp(name, "__GLX_", 6) && std::strncmp(name, "__EGL_", 6))) return false;
     static char ourVendor[] = "mural";
     if (!std::strcmp(name, kGlxVendor)) answer = ourVendor;
-    else if (!std::strncmp(name, kGlxScreenVendor, sizeof kGlxScreenVendor - 1)) answer = nullptr; // the one for all screens counts
+    // the setting for all screens applies
+    else if (!std::strncmp(name, kGlxScreenVendor, sizeof kGlxScreenVendor - 1)) answer = nullptr;
     else if (!std::strcmp(name, kEglVendors)) answer = ourEglFile();
     else return false;
     return isCaptured() && isGlvnd(caller);
@@ -82,12 +83,12 @@ const char* wantedEglVendors() {
 
 } // namespace mural
 
-// Allocators call these while they start: nothing here allocates.
+// Allocators call these functions while they start, so they allocate nothing.
 extern "C" __attribute__((visibility("default"))) char* getenv(const char* name) noexcept {
     using namespace mural;
     char* answer = nullptr;
     if (answersGlvnd(name, __builtin_return_address(0), answer)) return answer;
-    if (!nextGetenv) findNext(); // called by another library's constructor
+    if (!nextGetenv) findNext(); // for calls from another library's constructor
     return nextGetenv ? nextGetenv(name) : nullptr;
 }
 

@@ -1,7 +1,6 @@
-// The GLX front: libGLX (of libglvnd) loads this library as a vendor named "mural". It passes
-// everything on to the real vendor's library and keeps for itself what makes contexts, binds them
-// and shows pictures. So every GL call arrives here, whichever way the program found it.
-// Source: libglvnd, glvnd/libglxabi.h.
+// The GLX front. libGLX (of libglvnd) loads this library as a vendor named "mural". It forwards all calls to the real
+// vendor's library, except those that create contexts, bind them, or show pictures. Every GL call thus arrives here,
+// regardless of how the program found the function. Source: libglvnd, glvnd/libglxabi.h.
 #include <cstdlib>
 #include <cstring>
 #include <X11/Xlib.h>
@@ -36,10 +35,10 @@ Entry vendorEntry(const char* name) {
     return reinterpret_cast<Entry>(vendorGetProcAddress(reinterpret_cast<const GLubyte*>(name)));
 }
 
-// The real library's own GLX function.
+// Returns the real library's own GLX function.
 template <class F> F* real(const char* name) { return reinterpret_cast<F*>(glxFront().behind(name)); }
 
-// Bits of a visual or framebuffer configuration, by whichever question the caller has.
+// Returns the bits of a visual or framebuffer configuration. `ask` queries one attribute.
 template <class Ask> wire::WindowConfig configFrom(Ask ask) {
     wire::WindowConfig c{};
     c.red = clampByte(ask(glx::kRed));
@@ -167,7 +166,7 @@ int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divis
     return swapsItself(findWindow(drawable, dpy)) ? call(dpy, drawable, target, divisor, remainder) : 0;
 }
 
-// Not advertised; who calls it all the same shows the whole picture.
+// Not advertised. A call shows the whole picture.
 void copySubBuffer(Display* dpy, XID drawable, int x, int y, int width, int height) {
     static auto* call = real<void(Display*, XID, int, int, int, int)>("glXCopySubBufferMESA");
     if (!nativeRun()) endFrame(findWindow(drawable, dpy));
@@ -268,7 +267,7 @@ void destroyGlxPixmap(Display* dpy, GLXPixmap pixmap) {
     call(dpy, pixmap);
 }
 
-// The driver copies the pixmap, or takes it as it is; the nodes get what the texture then shows.
+// The driver copies the pixmap or uses it directly. The nodes receive the resulting texture image.
 void bindTexImage(Display* dpy, XID drawable, int buffer, const int* attributes) {
     static auto* call = real<void(Display*, XID, int, const int*)>("glXBindTexImageEXT");
     static auto* query = real<void(Display*, XID, int, unsigned*)>("glXQueryDrawable");
@@ -281,7 +280,7 @@ void bindTexImage(Display* dpy, XID drawable, int buffer, const int* attributes)
         textureFromLocal(target == glx::kTexture2d ? GL_TEXTURE_2D : GL_TEXTURE_RECTANGLE, format == glx::kTextureRgba);
 }
 
-// Three ways to ask for the extensions; only those that reach over one machine are told.
+// Filters the result of the three extension queries: only extensions that work across machines are reported.
 const char* told(const char* text) { return nativeRun() ? text : filterWindowSystemExtensions(text); }
 
 const char* queryExtensionsString(Display* dpy, int screen) {
@@ -325,8 +324,7 @@ const OwnEntry kOwn[] = {
 };
 constinit Front front("glX", kOwn);
 
-// The library of the vendor that really draws: what the user had set, NVIDIA's when the X server is
-// theirs, else Mesa's.
+// Opens the library of the vendor that draws: the user's setting, or else Mesa's, or else NVIDIA's.
 void* openVendor() {
     const char* wish = wantedGlxVendor();
     const char* const candidates[] = {wish && *wish ? wish : "mesa", "mesa", "nvidia"};
@@ -376,7 +374,7 @@ extern "C" __attribute__((visibility("default"))) Bool __glx_Main(uint32_t versi
     void* handle = mural::openVendor();
     auto* main = handle ? reinterpret_cast<Main*>(mural::loader::symbolIn(handle, "__glx_Main")) : nullptr;
     if (!main || !main(version, exports, vendor, imports)) return False;
-    mural::loader::keepLoaded(exports); // programs that end GLX and begin again find it as it is, and the vendor with it
+    mural::loader::keepLoaded(exports); // a program that restarts GLX finds it and the vendor unchanged
     if (!mural::claimProgram(mural::Way::Vendor)) return True;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;

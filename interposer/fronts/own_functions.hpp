@@ -1,4 +1,4 @@
-// What the fronts tell the rest of the interposer.
+// Functions of the fronts for the rest of the interposer.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@ namespace mural {
 
 struct Context;
 struct Window;
-// The driver's own function, past the fronts: the context becomes current with these windows in the calling thread.
+// Call the driver's own function, past the fronts: make the context current with these windows in the calling thread.
 bool makeGlxCurrent(const Window& draw, const Window& read, const Context& context);
 bool makeEglCurrent(const Window& draw, const Window& read, const Context& context);
 bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height);

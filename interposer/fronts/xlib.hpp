@@ -1,17 +1,17 @@
-// Xlib's functions, from the copy that the program already has; nothing is linked, nothing is loaded.
+// Xlib's functions, from the copy that the program has already loaded. Nothing is linked or loaded.
 #pragma once
 
 #include "interposer/loader/libc_loader.hpp"
 
 namespace mural {
 
-// A function of a library that the program has loaded, which stays loaded from then on; null: not loaded.
+// Returns a function of a library that the program has loaded, and keeps that library loaded. Null: not loaded.
 template <class F> F* loadedFunction(const char* library, const char* name) {
     void* handle = loader::openLibrary(library, RTLD_LAZY | RTLD_NOLOAD);
     return handle ? reinterpret_cast<F*>(loader::symbolIn(handle, name)) : nullptr;
 }
 
-// The same, looked up until the library is there. Any thread.
+// The same, repeated until the library is loaded. Any thread may use it.
 template <class F> struct Loaded {
     const char* library;
     const char* name;
@@ -26,12 +26,12 @@ template <class F> struct Loaded {
 };
 
 inline void* xlibSymbol(const char* name) {
-    static void* handle = nullptr; // kept: the library stays
+    static void* handle = nullptr; // kept, so that the library stays loaded
     if (!handle) handle = loader::openLibrary("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
     return handle ? loader::symbolIn(handle, name) : nullptr;
 }
 
-// Null when the program has no Xlib.
+// Returns null if the program has no Xlib.
 template <class F> F* xlib(const char* name) { return reinterpret_cast<F*>(xlibSymbol(name)); }
 
 } // namespace mural

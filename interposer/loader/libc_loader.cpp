@@ -9,8 +9,8 @@ namespace mural::loader {
 
 namespace {
 
-// A function of the C library, searched once; `linked` is what the loader has bound the name to, should there be no
-// C library of a known name.
+// Returns a function of the C library, searched once. Falls back to `linked`, the loader's own binding of the name, if
+// no C library with a known name exists.
 template <class F> F* cached(F*& known, const char* name, F* linked) {
     if (F* found = __atomic_load_n(&known, __ATOMIC_RELAXED)) return found;
     auto* found = reinterpret_cast<F*>(libcFunction(name));
@@ -23,7 +23,7 @@ template <class F> F* cached(F*& known, const char* name, F* linked) {
 
 void* libcFunction(const char* name) {
     void* found = nullptr;
-    for (const char* library : {"libc.so.6", "libdl.so.2"}) { // before glibc 2.34 they were two
+    for (const char* library : {"libc.so.6", "libdl.so.2"}) { // two libraries before glibc 2.34
         findObject([&](const LoadedObject& object) {
             const char* soname = object.soname();
             if (!soname || std::strcmp(soname, library)) return false;
@@ -46,8 +46,8 @@ void* nextFunction(const char* name) {
     return found;
 }
 
-// These three store the result before they return it, which prevents a tail call. The C library looks at its caller for
-// RTLD_NEXT and for the search path, and after a tail call it would see our caller.
+// These three functions store the result before they return it, which prevents a tail call. The C library examines its
+// caller for RTLD_NEXT and for the search path. After a tail call it would see our caller.
 
 void* openLibrary(const char* name, int flags) {
     static decltype(&::dlopen) known = nullptr;

@@ -9,7 +9,7 @@ LoadedObject::LoadedObject(const dl_phdr_info& info)
     for (size_t i = 0; i < segmentCount_; ++i)
         if (segments_[i].p_type == PT_DYNAMIC) dynamic_ = reinterpret_cast<const ElfW(Dyn)*>(base_ + segments_[i].p_vaddr);
     for (const ElfW(Dyn)* d = dynamic_; d && d->d_tag != DT_NULL; ++d) {
-        if (d->d_un.d_ptr <= base_) continue; // the loader has made it an address, except in the vDSO
+        if (d->d_un.d_ptr <= base_) continue; // the loader has relocated it to an address, except in the vDSO
         if (d->d_tag == DT_STRTAB) strings_ = reinterpret_cast<const char*>(d->d_un.d_ptr);
         if (d->d_tag == DT_SYMTAB) symbols_ = reinterpret_cast<const ElfW(Sym)*>(d->d_un.d_ptr);
         if (d->d_tag == DT_VERSYM) versions_ = reinterpret_cast<const ElfW(Half)*>(d->d_un.d_ptr);
@@ -38,7 +38,7 @@ bool LoadedObject::defines(uint32_t symbol, const char* name) const {
     return s.st_shndx != SHN_UNDEF && ELF64_ST_TYPE(s.st_info) == STT_FUNC && !std::strcmp(strings_ + s.st_name, name);
 }
 
-// Number of the symbol; 0: none. A default version wins over the older ones of the same name.
+// Returns the number of the symbol; 0: none. A default version takes precedence over older ones of the same name.
 uint32_t LoadedObject::findByGnuHash(const char* name) const {
     uint32_t hash = 5381, found = 0;
     for (const char* c = name; *c; ++c) hash = hash * 33 + static_cast<unsigned char>(*c);
@@ -57,7 +57,7 @@ uint32_t LoadedObject::findByGnuHash(const char* name) const {
     }
 }
 
-// The older table, in the same way; some linkers make no other.
+// The same with the older table; some linkers write only this one.
 uint32_t LoadedObject::findByHash(const char* name) const {
     uint32_t hash = 0, found = 0;
     for (const char* c = name; *c; ++c) {

@@ -14,11 +14,11 @@ public:
     explicit LoadedObject(const dl_phdr_info& info);
 
     [[nodiscard]] const char* path() const { return path_; }
-    [[nodiscard]] const char* soname() const; // null: it has none
-    // The function that it defines under this name, in the version that new programs get; null: it has none.
+    [[nodiscard]] const char* soname() const; // null: none
+    // Returns the function that the object defines under this name, in the default version. Null: none.
     [[nodiscard]] void* function(const char* name) const;
     [[nodiscard]] bool contains(const void* address) const;
-    // Whether the predicate holds for the name of a library that it is linked with.
+    // Returns whether the predicate holds for the name of a library in its dependencies.
     template <class Predicate> [[nodiscard]] bool needs(Predicate predicate) const {
         for (const ElfW(Dyn)* d = dynamic_; strings_ && d && d->d_tag != DT_NULL; ++d)
             if (d->d_tag == DT_NEEDED && predicate(strings_ + d->d_un.d_val)) return true;
@@ -43,7 +43,7 @@ private:
     const uint32_t* hash_ = nullptr;
 };
 
-// Calls visit(object) for each loaded object in the loader's order until it returns true; whether it did.
+// Calls visit(object) for each loaded object in the loader's order until it returns true. Returns whether it did.
 template <class Visit> bool findObject(Visit visit) {
     return dl_iterate_phdr([](dl_phdr_info* info, size_t, void* data) { return (*static_cast<Visit*>(data))(LoadedObject(*info)) ? 1 : 0; }, &visit) != 0;
 }

@@ -1,7 +1,7 @@
-// The preloaded front: exports all names of GL, GLX and EGL in front of a GL library that GLVND does not
-// lead to, and jumps to the wrappers of libGLX_mural.so.0, the same that the vendor front gives out.
-// `mural run` preloads it only into programs that have such a library. Names of GLVND's libraries, which
-// may be there as well, are passed on: their calls arrive by the vendor front.
+// The preloaded front. It exports all names of GL, GLX and EGL before a GL library that does not use GLVND. Its
+// functions jump to the wrappers of libGLX_mural.so.0, which the vendor front returns as well. `mural run` preloads it
+// only into programs with such a library. If GLVND's libraries are loaded as well, their names are passed on, because
+// their calls arrive through the vendor front.
 #include <initializer_list>
 
 #include "interposer/loader/libc_loader.hpp"
@@ -14,11 +14,11 @@ namespace mural {
 
 namespace {
 
-// A name that no library has: as a program would find it by a lookup that may fail.
+// The function for a name that no library has. It returns null, like a failed lookup.
 void* nothing() { return nullptr; }
 
-// The function that the program would have found without us. Libraries that were opened without making
-// their names global are not behind us in the order, so they are asked by name.
+// Returns the function that the program would have found without us. Libraries that were opened without global names
+// are not in the search order, so they are queried by name.
 Entry nextEntry(const char* name) {
     if (void* found = loader::symbolIn(RTLD_NEXT, name)) return reinterpret_cast<Entry>(found);
     for (const char* library : {"libGL.so.1", "libEGL.so.1", "libGLESv2.so.2", "libGLESv1_CM.so.1"}) {
@@ -33,7 +33,7 @@ Entry nextEntry(const char* name) {
 
 bool isOwnGl(Entry entry) { return objectOf(reinterpret_cast<const void*>(entry)) == GlObject::Own; }
 
-// Functions of the library behind, for the encoder: exported, or found by the library's own lookup.
+// Returns functions of the wrapped library for the encoder: exported ones, or results of the library's own lookup.
 Entry behindUs(const char* name) {
     const Entry exported = nextEntry(name);
     if (exported && isOwnGl(exported)) return exported;
@@ -46,7 +46,7 @@ Entry behindUs(const char* name) {
     return nullptr;
 }
 
-// What a program's call of `name` leads to, when the library behind has `next` for it.
+// Returns the target of a program's call of `name`, for which the wrapped library has `next`.
 Entry frontOf(const char* name, Entry next) {
     if (!isOwnGl(next)) return next;
     const Entry ours = mural_front_entry(name, behindUs);
@@ -72,7 +72,7 @@ Entry resolveSlot(int number) {
     const Entry next = nextEntry(name);
     if (!next) return reinterpret_cast<Entry>(nothing);
     const Entry entry = frontOf(name, next);
-    loader::keepLoaded(reinterpret_cast<const void*>(next)); // the slot outlives an unloading
+    loader::keepLoaded(reinterpret_cast<const void*>(next)); // the slot must not outlive the library
     __atomic_store_n(&gSlots[number], entry, __ATOMIC_RELEASE);
     return entry;
 }
@@ -80,7 +80,7 @@ Entry resolveSlot(int number) {
 void* replaceFound(const char* name, void* found) {
     if (thunkOf(name) < 0) return found;
     auto next = reinterpret_cast<Entry>(found);
-    if (isOurs(found)) next = nextEntry(name); // there only because we are
+    if (isOurs(found)) next = nextEntry(name); // found only because we export it
     return next ? reinterpret_cast<void*>(frontOf(name, next)) : nullptr;
 }
 

@@ -9,7 +9,8 @@ namespace {
 using Dlsym = void*(void*, const char*);
 Dlsym* nextDlsym = nullptr;
 
-// Another library's that stands behind this one, else the C library's. Not found by dlvsym, which may be replaced as well.
+// Returns the dlsym of the next library in load order, or the C library's. Does not use dlvsym, which may be replaced
+// as well.
 Dlsym* findDlsym() {
     Dlsym* next = __atomic_load_n(&nextDlsym, __ATOMIC_RELAXED);
     if (next) return next;
@@ -28,14 +29,14 @@ bool maybeGl(const char* name) {
 
 extern "C" __attribute__((visibility("default"))) void* dlsym(void* handle, const char* name) noexcept {
     using namespace mural;
-    // A jump (this file is always built with -foptimize-sibling-calls): libc has to see our caller, whose
-    // place in the order RTLD_NEXT and RTLD_DEFAULT go by.
+    // This is a tail call, because this file is always built with -foptimize-sibling-calls. libc must see our caller:
+    // RTLD_NEXT and RTLD_DEFAULT depend on the caller's place in the load order.
     if (!maybeGl(name) || handle == RTLD_NEXT) {
         Dlsym* next = findDlsym();
         if (!next) return nullptr;
         return next(handle, name);
     }
-    // Stored before it is used: a tail call would hide our caller from libc.
+    // Stores the result first, because a tail call would make libc see our caller instead of us.
     Dlsym* next = findDlsym();
     void* volatile found = next ? next(handle, name) : nullptr;
     return found ? replaceFound(name, found) : nullptr;

@@ -19,13 +19,13 @@ std::atomic<int> asked{0};
 namespace {
 
 struct Question {
-    xcb_connection_t* connection = nullptr; // null: a free place
+    xcb_connection_t* connection = nullptr; // null: a free entry
     unsigned sequence = 0;
     uint64_t server = 0, native = 0;
 };
 constexpr int kMaxQuestions = 64; // further windows are skipped
 Question questions[kMaxQuestions];
-Lock lock; // of all questions
+Lock lock; // guards all questions
 
 struct Xcb {
     template <class F> static F* get(const char* name) { return loadedFunction<F>(kXcb, name); }

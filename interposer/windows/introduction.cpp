@@ -83,7 +83,7 @@ bool putMark(const Xcb& xcb, xcb_connection_t* c, const Window& w, const Mark& m
     return found;
 }
 
-// With EGL_DEFAULT_DISPLAY only the driver knows its connection, so this function opens one of its own for the moment.
+// The driver alone knows the connection of EGL_DEFAULT_DISPLAY. This function therefore opens a temporary connection.
 // A number without an X window belongs to another platform of EGL.
 void introduceByXcb(Window& w, Session& s) {
     static const Xcb xcb;

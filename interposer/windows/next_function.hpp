@@ -1,5 +1,5 @@
-// X requests that the preloaded library stands before: each goes on to the next function of its name in the
-// program's own order; nothing is ever loaded.
+// Replaced X requests of the preloaded library. Each continues with the next function of its name in the program's own
+// load order. Nothing is ever loaded.
 #pragma once
 
 #include "interposer/loader/libc_loader.hpp"
@@ -19,18 +19,18 @@ struct NextFunction {
     void* get() {
         if (void* known = __atomic_load_n(&found, __ATOMIC_RELAXED)) return known;
         void* next = loader::symbolIn(RTLD_NEXT, name);
-        if (!next) { // the program has loaded the library out of everybody's sight
+        if (!next) { // the program has loaded the library without global names
             void* handle = loader::openLibrary(library, RTLD_LAZY | RTLD_NOLOAD);
             if (handle) next = loader::symbolIn(handle, name);
             if (handle) loader::closeLibrary(handle);
         }
-        if (next) loader::keepLoaded(next); // a plugin that brings its library may be unloaded and loaded elsewhere
+        if (next) loader::keepLoaded(next); // a plugin with its own library may be unloaded and loaded elsewhere
         __atomic_store_n(&found, next, __ATOMIC_RELAXED);
         return next;
     }
 };
 
-// The result of a request that cannot be made because the process has no such library.
+// The result of a request without the library in this process.
 template <class Result> struct Nothing {
     static Result value() { return Result{}; }
 };
@@ -38,7 +38,7 @@ template <> struct Nothing<void> {
     static void value() {}
 };
 
-// `like` names the function itself: its type is the next one's.
+// `like` is the replacing function itself. It has the type of the next function.
 template <class Result, class... Parameters, class... Arguments>
 Result callNext(NextFunction& next, Result (*like)(Parameters...), Arguments... arguments) {
     (void)like;
@@ -46,7 +46,7 @@ Result callNext(NextFunction& next, Result (*like)(Parameters...), Arguments... 
     return call ? call(arguments...) : Nothing<Result>::value();
 }
 
-// The same for a function of which only the type is known here: no reference to it is left for the linker.
+// The same with the type of the function only, so that the linker sees no reference to it.
 template <class Function> struct CallOf;
 template <class Result, class... Parameters> struct CallOf<Result(Parameters...)> {
     static Result call(NextFunction& next, Parameters... arguments) {

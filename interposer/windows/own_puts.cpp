@@ -11,7 +11,7 @@ namespace mural {
 
 namespace {
 
-// A function of the libxcb that the program has loaded.
+// Calls a function of the libxcb that the program has loaded.
 #define XCB(function, ...)                                \
     ([&] {                                                \
         static NextFunction next{#function, kXcb};        \
@@ -24,8 +24,8 @@ struct Target {
     uint32_t depth = 0;
     uint32_t padBits = 0, bitsPerPixel = 0;
 };
-Target targets[capture::kOwnWindows]; // as the slots of the header
-Lock targetsLock;                     // of both
+Target targets[capture::kOwnWindows]; // parallel to the header's slots
+Lock targetsLock;                     // guards both
 uint32_t nextSlot = 0;
 
 const xcb_visualtype_t* visualOf(const xcb_setup_t* setup, xcb_visualid_t id) {
@@ -42,7 +42,7 @@ const xcb_format_t* formatOf(const xcb_setup_t* setup, uint8_t depth) {
     return nullptr;
 }
 
-// Asks the server, which answers the grabbing connection. False: there is no such window.
+// Queries the server, which answers the grabbing connection. Returns false for an unknown window or format.
 bool ask(xcb_connection_t* c, xcb_window_t window, Target& target, capture::OwnWindow& slot) {
     const auto attributesAsked = XCB(xcb_get_window_attributes_unchecked, c, window);
     const auto geometryAsked = XCB(xcb_get_geometry_unchecked, c, window);
@@ -72,7 +72,7 @@ Target* find(xcb_window_t window) {
     return nullptr;
 }
 
-// Errors of a checked request wait for xcb_request_check, and are thrown away here: the window may be gone.
+// Discards the errors of a checked request, which wait for xcb_request_check otherwise. The window may be gone.
 void send(xcb_connection_t* c, xcb_void_cookie_t request) { XCB(xcb_discard_reply, c, request.sequence); }
 
 } // namespace
@@ -103,7 +103,7 @@ void forgetOwnPuts(xcb_connection_t* c) {
 }
 
 void putOwnPicture(const wire::ReplyHeader& picture, const std::byte* pixels) {
-    constexpr size_t kRequestBytes = 200 * 1024; // within what servers take without BIG-REQUESTS
+    constexpr size_t kRequestBytes = 200 * 1024; // below the limit of servers without BIG-REQUESTS
     Target target;
     {
         Guard guard(targetsLock);

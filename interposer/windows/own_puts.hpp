@@ -1,5 +1,5 @@
-// Pictures that the program puts into its own windows, through the connection that holds a grab of their X server
-// (interposer/windows/server_grabs.hpp). The head sends them as replies, in the window's own format.
+// Puts pictures into the program's own windows, through the connection that holds a grab of their X server
+// (interposer/windows/server_grabs.hpp). The head sends the pictures as replies, in the window's own format.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,15 @@ namespace mural {
 
 struct Window;
 
-// Before the records of a frame of this window. True: the head will send the picture (Session::takePictures); false: it
-// shows the picture itself, as no connection of this process has grabbed the server.
+// Call before the records of a frame of this window. Returns true if the head will send the picture
+// (Session::takePictures). Returns false if the head shows it, because no connection of this process has grabbed the
+// server.
 bool announceOwnPut(capture::CaptureHeader& header, const Window& w, uint32_t frame);
 
-// Puts a picture that has come into its window. The X server reports no error of it to the program.
+// Puts a received picture into its window. The X server reports no error of it to the program.
 void putOwnPicture(const wire::ReplyHeader& picture, const std::byte* pixels);
 
-// What is known of windows through this connection may be out of date.
+// Drops the cached properties of windows on this connection, which may be outdated.
 void forgetOwnPuts(xcb_connection_t* c);
 
 } // namespace mural

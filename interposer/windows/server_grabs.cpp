@@ -1,6 +1,6 @@
-// The requests that grab and release an X server. A grab is noted before its request is sent, and waits until the head
-// has shown what was swapped before: afterwards the head's connection is not served. A release is flushed, as the head
-// would wait for it otherwise.
+// Replaces the requests that grab and release an X server. A grab is recorded before its request is sent. The request
+// waits until the head has shown all swapped frames, because the server then stops serving the head's connection. A
+// release is flushed at once, because the head would wait for it otherwise.
 #include "interposer/windows/server_grabs.hpp"
 
 #include <X11/Xlib.h>
@@ -35,14 +35,15 @@ int descriptorOf(Display* dpy) {
     return dpy && next.get() ? MURAL_CALL_OF(next, XConnectionNumber, dpy) : -1;
 }
 
-// A connection may be closed with the grab on it; its socket tells, whoever has closed it.
+// A grab and its connection. The program may close the connection without a release. A changed socket inode reveals
+// this.
 struct Grab {
     int descriptor = -1;
     ino_t socket = 0;
     xcb_connection_t* connection = nullptr;
-    Display* display = nullptr; // where the connection is not known yet: libX11-xcb comes with the GL driver
+    Display* display = nullptr; // while the connection is unknown: libX11-xcb comes with the GL driver
 };
-constexpr int kMaxGrabs = 8; // servers; an X server has one grab at a time
+constexpr int kMaxGrabs = 8; // limit of servers; an X server has one grab at a time
 Grab grabs[kMaxGrabs];
 int grabCount = 0; // read without the lock
 Lock grabsLock;
@@ -52,7 +53,7 @@ ino_t socketOf(int descriptor) {
     return descriptor >= 0 && fstat(descriptor, &about) == 0 && S_ISSOCK(about.st_mode) ? about.st_ino : 0;
 }
 
-// Under the lock.
+// Requires the lock.
 void removeAt(int index) {
     grabs[index] = grabs[grabCount - 1];
     __atomic_store_n(&grabCount, grabCount - 1, __ATOMIC_RELEASE);
@@ -91,14 +92,15 @@ struct Peer {
         if (descriptor < 0 || getpeername(descriptor, reinterpret_cast<sockaddr*>(&address), &bytes) != 0) bytes = 0;
     }
     [[nodiscard]] bool isAs(const Peer& other) const { return bytes > 0 && bytes == other.bytes && std::memcmp(&address, &other.address, bytes) == 0; }
-    // The server of DISPLAY: EGL opens a connection of its own where the program names no display.
+    // Returns whether this is the server of DISPLAY. EGL opens its own connection there if the program names no
+    // display.
     [[nodiscard]] bool isDefault() const {
         const char* const name = getenv("DISPLAY");
         const char* const number = name ? std::strchr(name, ':') : nullptr;
         if (!number || address.ss_family != AF_UNIX || bytes == 0) return false;
         char path[sizeof(sockaddr_un::sun_path) + 1] = {};
         const auto& local = reinterpret_cast<const sockaddr_un&>(address);
-        const size_t skipped = local.sun_path[0] == 0 ? 1 : 0; // abstract
+        const size_t skipped = local.sun_path[0] == 0 ? 1 : 0; // an abstract name
         const size_t length = bytes - offsetof(sockaddr_un, sun_path);
         if (length <= skipped || length > sizeof local.sun_path) return false;
         std::memcpy(path, local.sun_path + skipped, length - skipped);

@@ -1,5 +1,6 @@
-// X windows end without a word to GLX or EGL: the nodes are told when the program destroys one that it has
-// drawn in, so that the wall turns to another. Other windows end with their parent or their connection (gone_windows.hpp).
+// Reports destroyed X windows, which GLX and EGL do not report. If the program destroys a window that it has drawn in,
+// the nodes are notified, and the wall shows another window. Windows also end with their parent or their connection
+// (gone_windows.hpp).
 #include <X11/Xlib.h>
 #include <xcb/xcb.h>
 
@@ -23,7 +24,7 @@ uint64_t serverOf(xcb_connection_t* c) {
     return socket && c ? mural::serverOf(socket(c)) : 0;
 }
 
-// GLX releases the context that this thread has current there; contexts of other threads stay until they are released.
+// GLX releases this thread's current context of the display. Contexts of other threads stay until their release.
 void displayCloses(Display* dpy) {
     if (const Context* c = tThread->context; c && c->display == dpy) becameCurrent(nullptr, nullptr, nullptr);
     displayEnds(dpy, false);

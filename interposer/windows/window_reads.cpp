@@ -1,6 +1,6 @@
-// Requests by which a program reads its windows, or copies between them and its pixmaps, through X: they
-// wait for the pictures that are under way, then go on unchanged. The drawable is not looked at: a read
-// of a parent or of the root window contains our windows as well, and an X id does not tell what it is.
+// Replaces the X requests by which a program reads its windows, or copies between them and its pixmaps. They wait for
+// pending pictures and then continue unchanged. They do not examine the drawable. A read of a parent or of the root
+// window contains our windows as well, and an X id does not reveal its kind.
 #include <X11/Xlib.h>
 #include <xcb/shm.h>
 #include <xcb/xcb.h>
@@ -30,7 +30,7 @@ MURAL_SHOWN int XCopyPlane(Display* dpy, Drawable from, Drawable to, GC gc, int 
     PASS_ON(kXlib, XCopyPlane, dpy, from, to, gc, x, y, w, h, toX, toY, plane);
 }
 
-// As in X11/extensions/XShm.h, whose package is not needed for this one declaration.
+// Declared as in X11/extensions/XShm.h. That package is not needed for this one declaration.
 MURAL_SHOWN Bool XShmGetImage(Display* dpy, Drawable d, XImage* image, int x, int y, unsigned long planes) {
     PASS_ON(kXext, XShmGetImage, dpy, d, image, x, y, planes);
 }

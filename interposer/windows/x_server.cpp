@@ -24,11 +24,11 @@ union Address {
 
 bool peerOf(int socket, Address& address) {
     std::memset(&address, 0, sizeof address);
-    socklen_t bytes = sizeof address - 1; // a path ends with 0
+    socklen_t bytes = sizeof address - 1; // a path has a terminating 0
     return socket >= 0 && getpeername(socket, &address.any, &bytes) == 0;
 }
 
-// An abstract socket begins with 0; servers listen there and at a file of the same name.
+// Skips the 0 byte of an abstract socket. Servers listen there and at a file of the same name.
 const char* pathOf(const Address& address) { return address.local.sun_path + (address.local.sun_path[0] == 0); }
 
 uint64_t hash(const void* data, size_t bytes) {
