@@ -37,7 +37,8 @@ bool isAcceptable(const Attribute& attribute, int wish, int offered) {
     return attribute.other == Other::AnyButZero && wish != 0 && offered != 0;
 }
 
-// Of values that there are, for one that there is not.
+// Substitutes the smallest offered value above the wish, or the largest offered one if none is above. Returns the wish
+// itself if it is offered.
 int nearestTo(int wish, const std::set<int>& offered) {
     const auto above = offered.lower_bound(wish);
     return above != offered.end() ? *above : *offered.rbegin();

@@ -1,7 +1,9 @@
-// Choice of a framebuffer configuration whose bits are exactly those asked for: one bit more or less
-// rounds, clears or blends differently, and the picture is no longer the native one. Where a driver has no such
-// one (depths of 32 bits are Mesa's alone), the nearest in depth, stencil, samples, bits of a colour and bits of alpha, if
-// there are any, is taken, and told: a picture that may differ is better than none.
+// Chooses a framebuffer configuration that has exactly the requested bits. One bit more or less changes rounding,
+// clears or blending, and the picture then differs from the native one.
+//
+// A driver may lack such a configuration: only Mesa has depths of 32 bits. The nearest depth, stencil, samples, colour
+// bits and non-zero alpha bits then replace the wish. The surface reports its real bits. A picture that may differ is
+// better than none.
 #pragma once
 
 #include <cstddef>
@@ -15,33 +17,35 @@ namespace mural::gl {
 
 constexpr int kMaxSurfaceSize = 16384;
 
-// Something that a backend can make surfaces of. Width and height of bits mean nothing here.
+// One kind of surface that a backend can create. Width and height of `bits` have no meaning here.
 struct ConfigCandidate {
     SurfaceConfig bits;
-    int rank = 0; // of several with equal bits the one with the lowest rank is taken, then the first
+    int rank = 0; // the lowest rank wins among equal bits, then the first candidate
 };
 
-// Index into candidates; the error names the first wish that none comes near, and what there is. Of what has not the bits
-// asked for, the least that has more is taken, else the most that there is.
+// Returns an index into `candidates`. Attributes without the requested value get the next larger value, or the largest
+// one if none is larger. Errors: no candidate is acceptable; the text names the first attribute that fails and the
+// values on offer.
 Result<size_t> matchConfig(const std::string& backend,
                            const std::vector<ConfigCandidate>& candidates,
                            const SurfaceConfig& wish);
 
-// What a surface of this candidate is, of the size that was wished.
+// Returns the bits of a candidate with the size of the wish.
 SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& wish);
 
-// "depth 24 instead of 32, samples 0 instead of 4"; empty: all is as wished.
+// Returns a text such as "depth 24 instead of 32, samples 0 instead of 4". Empty: no difference.
 std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish);
 
-// True when both can be drawn to by the same context on backends that bind contexts to configurations.
+// Returns whether one context can draw to both on backends that bind contexts to configurations.
 bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other);
 
 // maxSize: the largest viewport of the driver, at most kMaxSurfaceSize.
 Result<void> checkSize(const std::string& backend, const SurfaceConfig& wish, int maxSize);
 
-// What to ask the driver for. Up to 3.0 there are no profiles: the driver gives its latest compatible
-// version, as glXCreateContext does. At 3.1 drivers disagree whether a request without a profile is
-// compatible (measured, Mesa 22.3.6: GLX and OSMesa yes, EGL no), so 3.2 with the profile is asked for.
+// The context version that is requested from the driver. Up to 3.0 there are no profiles: the driver returns its latest
+// compatible version, as glXCreateContext does. Drivers disagree whether a request for 3.1 without a profile is
+// compatible (measured, Mesa 22.3.6: GLX and OSMesa yes, EGL no). Mural therefore requests 3.2 with the profile instead
+// of 3.1.
 struct VersionRequest {
     int major, minor;
     bool profile; // name the profile

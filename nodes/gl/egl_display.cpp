@@ -55,7 +55,7 @@ bool isSoftware(const EglFunctions& egl, EGLDeviceEXT device) {
     return hasWord(extensions, "EGL_MESA_device_software");
 }
 
-// Null when this display can't be initialized or can't do what is needed; why is then filled.
+// Returns null, with the reason in `why`, if this display can't be initialized or lacks a necessary feature.
 std::shared_ptr<EglDisplayState> initialize(const EglFunctions& egl,
                                             EGLDisplay display,
                                             std::string where,
@@ -103,7 +103,8 @@ std::shared_ptr<EglDisplayState> openSurfaceless(const EglFunctions& egl, std::s
     return state;
 }
 
-// A device's display that draws with a GPU, else one that draws in software, else null.
+// Returns the display of a device that draws with a GPU. With `softwareToo`, a device with a software renderer is the
+// second choice. Null: there is none.
 std::shared_ptr<EglDisplayState> openDevice(const EglFunctions& egl, bool softwareToo, std::string& why) {
     EGLDeviceEXT devices[64];
     EGLint count = 0;
@@ -182,7 +183,7 @@ EglConfigs listEglConfigs(const EglDisplayState& display, bool srgb) {
         candidate.bits.stencil = attribute(EGL_STENCIL_SIZE);
         candidate.bits.samples = attribute(EGL_SAMPLES);
         candidate.bits.srgb = srgb && display.colorspace;
-        // EGL knows neither accumulation buffers nor stereo pbuffers.
+        // EGL has neither accumulation buffers nor stereo pbuffers.
         const bool floats = display.has("EGL_EXT_pixel_format_float") &&
                             attribute(EGL_COLOR_COMPONENT_TYPE_EXT) == EGL_COLOR_COMPONENT_TYPE_FLOAT_EXT;
         const bool everyApi = (attribute(EGL_RENDERABLE_TYPE) & EGL_OPENGL_BIT) != 0;

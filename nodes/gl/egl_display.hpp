@@ -31,51 +31,51 @@ struct EglFunctions {
     decltype(&eglMakeCurrent) makeCurrent = nullptr;
     decltype(&eglQueryString) queryString = nullptr;
     decltype(&eglQuerySurface) querySurface = nullptr;
-    // Null where EGL_KHR_image_base is missing.
+    // Null without EGL_KHR_image_base.
     PFNEGLCREATEIMAGEKHRPROC createImage = nullptr;
     PFNEGLDESTROYIMAGEKHRPROC destroyImage = nullptr;
     PFNEGLGETPLATFORMDISPLAYEXTPROC getPlatformDisplay = nullptr;
-    // Null where the extensions of devices are missing.
+    // Null without the device extensions.
     PFNEGLQUERYDEVICESEXTPROC queryDevices = nullptr;
     PFNEGLQUERYDEVICESTRINGEXTPROC queryDeviceString = nullptr;
     PFNEGLQUERYDISPLAYATTRIBEXTPROC queryDisplayAttrib = nullptr;
 };
 
-// Surfaces and contexts that nobody needs any more, until the next ones are current: NVIDIA's driver (580.159) looks
-// at what it knew of those before them then, and where they were released and destroyed meanwhile it ended the process (half
-// of all nodes that started; seen in its memory: what it looked at was another one's by then). For the same reason nothing is
-// released there before others become current.
+// Keeps unused surfaces and contexts until others are current. NVIDIA's driver (580.159) reads its data about the
+// previous surfaces and contexts in the next eglMakeCurrent. If they were released and destroyed before, it ended the
+// process: half of all starting nodes. Its memory showed that it read data of another object by then. For the same
+// reason Mural releases nothing on that driver before others are current.
 class EglLeftOvers {
 public:
     void addSurface(EGLSurface surface);
     void addContext(EGLContext context);
-    // Others are current now, or nothing ever will be.
+    // Destroys all of them. Requires that other surfaces and contexts are current, or that none will be again.
     void destroy(const EglFunctions& egl, EGLDisplay display);
 
 private:
-    std::mutex mutex_; // contexts of second threads go by those
+    std::mutex mutex_; // other threads destroy the contexts of their shared readers
     std::vector<EGLSurface> surfaces_;
     std::vector<EGLContext> contexts_;
 };
 
-// Never terminated: EGL hands out the same display to everyone who asks in this process, and another
-// platform (the next pipe's) may still draw with it.
+// The display is never terminated. EGL returns the same display to all callers in the process, so the platform of
+// another pipe may still draw with it.
 struct EglDisplayState {
     EglFunctions egl;
     EGLDisplay display = EGL_NO_DISPLAY;
     std::string where; // "surfaceless" or "device 0"
     bool software = false;
-    bool mesa = false; // by its vendor
+    bool mesa = false; // the vendor string names Mesa
     std::string extensions;
     int version = 0; // 10 * major + minor
     bool noConfigContext = false;
     bool surfaceless = false;
     bool colorspace = false;
-    bool flushControl = false; // contexts can be asked not to flush when another one becomes current; Mesa's alone are
-    // Measured when the platform is opened.
+    bool flushControl = false; // contexts can be created without a flush when another becomes current; Mesa only
+    // Measured when the platform opens.
     int maxSurfaceSize = kMaxSurfaceSize;
     ColorBuffers colorBuffers = ColorBuffers::OneNamedFront;
-    bool tellsResets = true; // until a driver has refused
+    bool tellsResets = true; // false after the driver has refused once
     EglLeftOvers left;
 
     EglDisplayState() = default;
@@ -86,25 +86,25 @@ struct EglDisplayState {
     [[nodiscard]] bool has(const char* extension) const;
 };
 
-// The surfaceless display, or one of a device. A GPU is preferred to a software renderer: with
-// several vendors installed the surfaceless platform may lead to Mesa's software renderer although the
-// machine's windows are drawn by another vendor's GPU. Of other drivers than Mesa a device's display is preferred, which
-// all of them have had for long.
+// Opens the surfaceless display or the display of a device. A GPU is preferred to a software renderer. With several
+// vendors installed, the surfaceless platform may select Mesa's software renderer although another vendor's GPU draws
+// the machine's windows. With drivers other than Mesa a device's display is preferred; all of them have supported it
+// for long.
 Result<std::shared_ptr<EglDisplayState>> openEglDisplay();
 
-// That of a device, where `display` is the surfaceless one; else null. For drivers whose surfaceless display can't do
-// what is needed.
+// Returns the display of a device if `display` is surfaceless, otherwise null. Some drivers lack a necessary feature on
+// their surfaceless display.
 std::shared_ptr<EglDisplayState> openOtherEglDisplay(const EglDisplayState& display);
 
 struct EglConfigs {
     std::vector<EGLConfig> handles;
     std::vector<ConfigCandidate> candidates; // same order
 };
-// All that can make pbuffers. srgb: whether surfaces shall be made in the sRGB colour space, which
-// with EGL belongs to the surface and not to its configuration.
+// Lists all configurations for pbuffers. srgb: surfaces in the sRGB colour space, which in EGL is a property of the
+// surface and not of its configuration.
 EglConfigs listEglConfigs(const EglDisplayState& display, bool srgb);
 
-// "EGL_BAD_MATCH (the wishes do not go together)"; takes the error of this thread.
+// Returns and clears the error of this thread, such as "EGL_BAD_MATCH (the wishes do not go together)".
 std::string takeEglError(const EglFunctions& egl);
 
 } // namespace mural::gl

@@ -1,11 +1,14 @@
-// Contexts over EGL without a window system: pbuffers of the whole picture's size.
+// Contexts over EGL without a window system. Surfaces are pbuffers of the whole picture's size.
 //
-// Measured with Mesa 22.3.6 (llvmpipe), tests/gl/ keeps it so:
-//  - Pbuffers have one colour buffer. Which names mean it: see README.md here.
-//  - EGL_MAX_PBUFFER_WIDTH says 4096, yet 16384 works, and 16385 is granted without an error although
-//    the viewport then ends at 16384: so sizes are checked against GL_MAX_VIEWPORT_DIMS, not EGL.
-//  - No accumulation buffers and no stereo; sRGB is a property of the surface.
-//  - eglGetProcAddress of libglvnd gives a function for every name that begins with "gl".
+// Measured with Mesa 22.3.6 (llvmpipe) and checked by tests/gl/:
+//
+// Pbuffers have one colour buffer. README.md lists its names. There are no accumulation buffers and no stereo. The
+// surface has the sRGB property.
+//
+// The attribute EGL_MAX_PBUFFER_WIDTH is 4096, but 16384 works. 16385 succeeds without an error, although the viewport
+// then ends at 16384. Sizes are therefore checked against GL_MAX_VIEWPORT_DIMS.
+//
+// The function eglGetProcAddress of libglvnd returns a function for every name that begins with "gl".
 #include <algorithm>
 #include <utility>
 
@@ -49,7 +52,7 @@ public:
     [[nodiscard]] EGLContext handle() const { return handle_; }
     [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
     [[nodiscard]] EGLenum api() const { return api_; }
-    // What is bound when the caller names no surface.
+    // Surface that is bound when the caller names none.
     [[nodiscard]] EGLSurface dummy() const {
         return dummy_ ? static_cast<EglSurface*>(dummy_.get())->handle() : EGL_NO_SURFACE;
     }
@@ -76,7 +79,7 @@ private:
     EGLImageKHR handle_;
 };
 
-// The API that is bound, and the current context, are the calling thread's own.
+// The bound API and the current context are per thread.
 class EglReader final : public SharedReader {
 public:
     EglReader(SharedDisplay display, std::unique_ptr<Context> context) : display_(std::move(display)), context_(std::move(context)) {}
@@ -129,7 +132,7 @@ public:
     EglPlatform(const EglPlatform&) = delete;
     EglPlatform& operator=(const EglPlatform&) = delete;
     ~EglPlatform() override {
-        if (display_->mesa) return; // released already
+        if (display_->mesa) return; // already released
         display_->egl.makeCurrent(display_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
 
@@ -144,10 +147,10 @@ public:
         return "EGL " + display_->where + ", " + renderer_ + ", " + version_;
     }
 
-    // Makes a context and asks it what no EGL query tells.
+    // Creates a context and reads the properties that no EGL query returns.
     Result<void> measure();
-    // Mesa's driver in software shows what was drawn to surfaces with samples in 22.3, not in 25.0. To draw and see takes a node's start 0.13 s of CPU time
-    // there: it compiles shaders that no cache keeps.
+    // Surfaces with samples work with Mesa's software driver 22.3 and fail with 25.0. The test by drawing costs a
+    // node's start 0.13 s of CPU time there, because it compiles shaders that no cache keeps.
     [[nodiscard]] bool isKnownToShowSamples() const {
         const int mesa = parseMesaVersion(version_);
         return display_->software && mesa > 0 && mesa <= 22;
@@ -160,9 +163,9 @@ private:
         SurfaceConfig bits;
     };
     Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
-    // Its contents are undefined.
+    // Creates a surface with undefined contents.
     Result<std::unique_ptr<EglSurface>> createPbuffer(const SurfaceConfig& wish) const;
-    // What is current stays current.
+    // Keeps the current context and surfaces.
     Result<void> clear(const EglSurface& surface);
 
     SharedDisplay display_;
@@ -207,7 +210,7 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
     if (!context) return context.error();
     const EglFunctions& egl = display_->egl;
     auto* clearing = static_cast<EglContext*>(*context);
-    // Handles of what is current, which may be gone as objects (EglLeftOvers).
+    // The code keeps handles, because the objects of the current context and surfaces may be gone (EglLeftOvers).
     const EGLContext before = egl.getCurrentContext();
     const EGLSurface draw = egl.getCurrentSurface(EGL_DRAW), read = egl.getCurrentSurface(EGL_READ);
     egl.bindApi(clearing->api());
@@ -221,7 +224,7 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
         currentApi_ = clearing->api();
         return {};
     }
-    // A release acts on the API that is bound.
+    // A release acts on the bound API.
     if (before != EGL_NO_CONTEXT) egl.bindApi(currentApi_);
     if (!egl.makeCurrent(display_->display, draw, read, before))
         return Error{"EGL can't make the context current again after clearing a pbuffer: " + takeEglError(egl) + "; see mural doctor"};
@@ -259,12 +262,12 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
         EGLContext made = EGL_NO_CONTEXT;
         if (display_->noConfigContext) made = egl.createContext(display_->display, EGL_NO_CONFIG_KHR, share, attributes.data());
         if (made != EGL_NO_CONTEXT || (display_->noConfigContext && display_->mesa)) return made;
-        if (display_->noConfigContext) (void)egl.getError(); // NVIDIA: contexts of ES 1 are of a configuration alone
+        if (display_->noConfigContext) (void)egl.getError(); // NVIDIA requires a configuration for ES 1 contexts
         return egl.createContext(display_->display, config->handle, share, attributes.data());
     };
     bool tellsReset = wish.tellsReset && display_->tellsResets;
     EGLContext handle = create(tellsReset);
-    if (handle == EGL_NO_CONTEXT && tellsReset) { // contexts that share must all do so, or none
+    if (handle == EGL_NO_CONTEXT && tellsReset) { // contexts of a share group must all have this attribute, or none
         (void)egl.getError();
         tellsReset = false;
         handle = create(tellsReset);
@@ -291,11 +294,12 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
         if (wanted && draw && read && draw != read) finishDrawing(*this);
         else if (display_->flushControl && heldBack == HeldBack::Flushed) flushDrawing(*this);
     }
-    if (!wanted && !display_->mesa) { // stays current until others are (EglLeftOvers), and none of the caller's draws wait
+    // the context stays current until others are (EglLeftOvers); no draw of the caller is deferred
+    if (!wanted && !display_->mesa) {
         if (egl.getCurrentContext() != EGL_NO_CONTEXT) flushDrawing(*this);
         return {};
     }
-    // Release acts on the API that is bound, so it must still be the current context's.
+    // A release acts on the bound API, which must still match the current context.
     if (wanted) {
         currentApi_ = wanted->api();
         egl.bindApi(currentApi_);
@@ -353,7 +357,7 @@ Result<std::unique_ptr<Platform>> openEgl() {
     auto platform = std::make_unique<EglPlatform>(display.value());
     if (auto measured = platform->measure(); !measured) return measured.error();
     if (platform->isKnownToShowSamples() || showsSamples(*platform)) return std::unique_ptr<Platform>(std::move(platform));
-    // The same driver by another platform of EGL has them (Mesa 25.0, software).
+    // The same driver has them on another EGL platform (Mesa 25.0, software).
     if (auto other = openOtherEglDisplay(**display)) {
         auto device = std::make_unique<EglPlatform>(std::move(other));
         if (device->measure() && device->drawsAs(*platform) && showsSamples(*device)) platform = std::move(device);

@@ -5,9 +5,9 @@
 
 namespace mural::gl {
 
-// own: the result of the platform's loader. Returns libepoxy's function if it dispatches this command in contexts of
-// all kinds, otherwise `own` (docs/decisions/0002-entry-points-of-the-nodes.md). libepoxy resolves the driver's
-// function on the first call, and aborts if no context is current then.
+// Returns libepoxy's function if it dispatches this command in contexts of all kinds, otherwise `own`. The rule is in
+// docs/decisions/0002-entry-points-of-the-nodes.md. libepoxy resolves the driver's function on the first call. It
+// aborts if no context is current then. own: the result of the platform's loader.
 Proc throughEpoxy(const char* name, Proc own);
 
 } // namespace mural::gl

@@ -7,7 +7,7 @@
 namespace mural::gl {
 namespace {
 
-// Xlib's error handler belongs to the process and gets no pointer of ours.
+// Xlib's error handler is process-wide and has no user pointer.
 XErrorTrap* innermostTrap = nullptr; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 std::recursive_mutex trapMutex;      // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
@@ -36,7 +36,7 @@ Result<void> loadFunctions(GlxFunctions& f) {
                  " lacks functions of GLX 1.3: install the packages libx11-6 and libglx0"};
 }
 
-// Only double-buffered ones, as windows are: with one buffer GL_BACK would not be there.
+// Lists only double-buffered configurations, as windows have them. GL_BACK does not exist with one buffer.
 void listConfigs(GlxDisplayState& state) {
     int count = 0;
     GLXFBConfig* all = state.glx.getFbConfigs(state.display, state.screen, &count);
@@ -85,7 +85,7 @@ bool GlxDisplayState::has(const char* extension) const {
 
 Result<void> openGlxDisplay(GlxDisplayState& state) {
     if (auto loaded = loadFunctions(state.glx); !loaded) return loaded;
-    const char* name = std::getenv("DISPLAY"); // NOLINT(concurrency-mt-unsafe): nobody sets it while nodes run
+    const char* name = std::getenv("DISPLAY"); // NOLINT(concurrency-mt-unsafe): nodes never set it
     state.name = name ? name : "";
     state.display = state.glx.openDisplay(nullptr);
     if (!state.display)
@@ -111,7 +111,7 @@ Result<void> openGlxDisplay(GlxDisplayState& state) {
 
 XErrorTrap::XErrorTrap(const GlxDisplayState& state)
     : lock_(trapMutex), state_(state), outer_(innermostTrap), previous_(nullptr) {
-    state_.glx.sync(state_.display, 0); // earlier requests' errors are not ours
+    state_.glx.sync(state_.display, 0); // errors of earlier requests do not count
     innermostTrap = this;
     previous_ = state_.glx.setErrorHandler(&XErrorTrap::handle);
 }

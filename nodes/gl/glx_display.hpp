@@ -53,21 +53,20 @@ struct GlxDisplayState {
     bool noConfigContext = false;
     bool esProfile = false;
     bool robust = false;
-    bool flushControl = false; // contexts can be asked not to flush when another one becomes current
-    bool tellsResets = true; // until a driver has refused
-    std::vector<GLXFBConfig> configs; // those that double-buffered pbuffers can be made of
+    bool flushControl = false; // contexts can be created without a flush when another becomes current
+    bool tellsResets = true; // false after the driver has refused once
+    std::vector<GLXFBConfig> configs; // configurations for double-buffered pbuffers
     std::vector<ConfigCandidate> candidates; // same order
-    int maxSurfaceSize = kMaxSurfaceSize; // measured when the platform is opened
+    int maxSurfaceSize = kMaxSurfaceSize; // measured when the platform opens
 
     [[nodiscard]] bool has(const char* extension) const;
 };
 
-// Opens the display that DISPLAY names. The state is filled but for maxSurfaceSize.
+// Opens the display that DISPLAY names. Fills the state except maxSurfaceSize.
 Result<void> openGlxDisplay(GlxDisplayState& state);
 
-// Catches the X errors of one display while it lives: Xlib's own handler would end the process.
-// Errors of other displays go on to the handler that was set before. The handler belongs to the
-// process: traps of other threads (pipes) wait.
+// Catches the X errors of one display during its lifetime. Xlib's own handler would end the process. Errors of other
+// displays go to the previous handler. The handler is process-wide, so traps of other threads (pipes) wait.
 class XErrorTrap {
 public:
     explicit XErrorTrap(const GlxDisplayState& state);
@@ -75,7 +74,8 @@ public:
     XErrorTrap& operator=(const XErrorTrap&) = delete;
     ~XErrorTrap();
 
-    // Waits until the server has seen all requests. Empty: no error since the trap was set.
+    // Waits until the server has processed all requests. Returns an empty text if no error occurred since the trap was
+    // set.
     std::string take();
 
 private:

@@ -1,8 +1,8 @@
-// Contexts over GLX on an X display: double-buffered pbuffers of the whole picture's size.
+// Contexts over GLX on an X display. Surfaces are double-buffered pbuffers of the whole picture's size.
 //
-// Measured with Mesa 22.3.6 (llvmpipe, Xvfb), tests/gl/ keeps it so: accumulation buffers of 16 bits
-// and 4 samples exist, but not together; GL_BACK and GL_FRONT are two buffers; a wish that the driver
-// can't meet comes back as an X error, which is caught here.
+// Measured with Mesa 22.3.6 (llvmpipe, Xvfb) and checked by tests/gl/. Accumulation buffers of 16 bits and 4 samples
+// exist, but not together. GL_BACK and GL_FRONT are two buffers. A wish that the driver can't meet causes an X error,
+// which XErrorTrap catches.
 #include <algorithm>
 #include <utility>
 
@@ -17,7 +17,8 @@ namespace {
 
 using SharedDisplay = std::shared_ptr<GlxDisplayState>;
 
-// What is destroyed is not current any more: clear() binds again what was current before it.
+// Destroyed objects must not stay current, because clear() restores the context and surfaces that were current before
+// it.
 void release(const GlxDisplayState& display) {
     XErrorTrap trap(display);
     display.glx.makeContextCurrent(display.display, 0, 0, nullptr);
@@ -59,7 +60,7 @@ public:
 
     [[nodiscard]] GLXContext handle() const { return handle_; }
     [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
-    // Bound when the caller names no surface: GLX allows none only for some versions.
+    // Surface that is bound when the caller names none. GLX allows none only for some versions.
     [[nodiscard]] GLXPbuffer dummy() const { return dummy_->handle(); }
 
 private:
@@ -92,9 +93,9 @@ private:
         SurfaceConfig bits;
     };
     Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
-    // Its contents are undefined.
+    // Creates a surface with undefined contents.
     Result<std::unique_ptr<GlxSurface>> createPbuffer(const SurfaceConfig& wish);
-    // What is current stays current.
+    // Keeps the current context and surfaces.
     Result<void> clear(const GlxSurface& surface);
     Result<void> checkSupport(const ContextConfig& wish) const;
     std::vector<int> contextAttributes(const ContextConfig& wish) const;
@@ -151,7 +152,8 @@ Result<void> GlxPlatform::clear(const GlxSurface& surface) {
     if (!glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(), static_cast<GlxContext*>(*context)->handle())) return failed(trap.take());
     clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
     if (!glx.makeContextCurrent(display_->display, draw, read, before)) return failed(trap.take());
-    // A front that is flushed into a pixmap of another depth is an X error, and cleared (Mesa's software driver, alpha on a screen of depth 24).
+    // A flush of the front into a pixmap of another depth causes an X error, yet the front is cleared. This happens
+    // with Mesa's software driver and alpha on a screen of depth 24.
     (void)trap.take();
     return {};
 }
@@ -208,7 +210,7 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
     };
     bool tellsReset = wish.tellsReset && display_->robust && display_->tellsResets;
     GLXContext handle = create(tellsReset);
-    if (!handle && tellsReset) { // contexts that share must all do so, or none
+    if (!handle && tellsReset) { // contexts of a share group must all have this attribute, or none
         tellsReset = false;
         handle = create(tellsReset);
         if (handle) display_->tellsResets = false;

@@ -6,7 +6,7 @@
 namespace mural::gl {
 namespace {
 
-// How a plane travels through client memory without loss.
+// Lossless format of a plane in client memory.
 struct PlaneFormat {
     GLbitfield mask;
     GLenum internalFormat, format, type, attachment;
@@ -51,7 +51,7 @@ template <class Function> void load(decltype(&OSMesaGetProcAddress) find, Functi
 
 } // namespace
 
-// While it lives, pixels pass unchanged between client memory and the default framebuffer.
+// During its lifetime, pixels pass unchanged between client memory and the default framebuffer.
 class OsmesaPixels::NeutralState {
 public:
     NeutralState(const OsmesaPixels& pixels, bool compatibility)
@@ -72,7 +72,7 @@ public:
         gl_.drawBuffer(GL_FRONT);
         gl_.readBuffer(GL_FRONT);
         gl_.disable(GL_FRAMEBUFFER_SRGB);
-        gl_.disablei(GL_SCISSOR_TEST, 0); // a blit looks at the first scissor box only
+        gl_.disablei(GL_SCISSOR_TEST, 0); // a blit uses the first scissor box only
     }
     NeutralState(const NeutralState&) = delete;
     NeutralState& operator=(const NeutralState&) = delete;

@@ -1,10 +1,11 @@
-// Takes the contents of OSMesa's default framebuffer out of one context and puts them into another.
+// Copies the contents of OSMesa's default framebuffer from one context to another.
 //
-// OSMesa keeps the buffers in the context, not with the memory that it is given: a second surface of
-// the same size would show the first one's picture, one of another size or in another context an
-// empty one. These copies make surfaces behave as those of EGL and GLX. Nothing else of GL's state
-// changes. Colours, stencil and 16-bit depth come back exactly; of 24-bit depths a third comes back one
-// unit off (measured over all values: a blit takes them through floats, which miss 6 % of the values).
+// OSMesa keeps the buffers in the context, not in the memory that the caller passes. A second surface of the same size
+// would show the picture of the first. A surface of another size or in another context would be empty. These copies
+// make surfaces behave as in EGL and GLX. They change no other GL state.
+//
+// Colours, stencil and 16-bit depth are restored exactly. A third of the 24-bit depths come back one unit off. A blit
+// converts them to floats, which lack 6 % of the values (measured over all values).
 #pragma once
 
 #include <cstddef>
@@ -27,10 +28,11 @@ class OsmesaPixels {
 public:
     explicit OsmesaPixels(decltype(&OSMesaGetProcAddress) getProcAddress);
 
-    // Both: a context is current with a framebuffer of these bits. compatibility: not a core profile.
+    // Precondition of save() and restore(): a context is current with a framebuffer of these bits. compatibility: not a
+    // core profile.
     SavedPixels save(const SurfaceConfig& config, bool compatibility) const;
     void restore(const SurfaceConfig& config, bool compatibility, const SavedPixels& pixels) const;
-    // Colours, depth and stencil 0, alpha as given, whatever the context's masks are.
+    // Sets colours, depth and stencil to 0 and alpha to `alpha`. Ignores the masks of the context.
     void clearNew(const SurfaceConfig& config, bool compatibility, GLfloat alpha) const;
 
 private:

@@ -1,15 +1,20 @@
-// Contexts over OSMesa: Mesa's software renderer without any window system.
+// Contexts over OSMesa: Mesa's software renderer without a window system.
 //
-// Measured with Mesa 22.3.6, tests/gl/ keeps it so:
-//  - One colour buffer; no multisampling, no stereo, no sRGB, no ES, no forward-compatible contexts.
-//  - GL_FRAMEBUFFER_SRGB does nothing here, where EGL and GLX of the same Mesa honour it on every
-//    framebuffer of desktop GL: a program that enables it on its window is not exact over OSMesa.
-//  - For the same reason (no sRGB view of the buffer) glAccum gives other colours than in a window: there
-//    Mesa accumulates decoded sRGB. So accumulation buffers are not offered.
-//  - Formats belong to the context and buffers live in it: see osmesa_pixels.hpp.
-//  - Only one buffer can be bound, for drawing and reading.
-//  - Debug and robust contexts do not exist; the wishes are granted, because a well-defined
-//    program's picture does not depend on them.
+// Measured with Mesa 22.3.6 and checked by tests/gl/:
+//
+// There is one colour buffer, and no multisampling, stereo, sRGB, ES or forward-compatible context.
+//
+// The state GL_FRAMEBUFFER_SRGB has no effect. EGL and GLX of the same Mesa honour it on every framebuffer of desktop
+// GL. The picture of a program that enables it on its window is therefore not exact.
+//
+// The buffer has no sRGB view, so glAccum results differ from a window's, where Mesa accumulates decoded sRGB.
+// Accumulation buffers are therefore not offered.
+//
+// Formats belong to the context, which also holds the buffers (osmesa_pixels.hpp). One buffer at a time can be bound,
+// for both drawing and reading.
+//
+// Debug and robust contexts do not exist. The request succeeds, because the picture of a well-defined program does not
+// depend on it.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -23,8 +28,8 @@
 namespace mural::gl {
 namespace {
 
-// The colour formats that llvmpipe draws as it does for windows: OSMESA_RGB gives garbage (measured), so
-// a wish without alpha gets a channel that the replay has to keep at 1.
+// Colour formats with the same llvmpipe results as in windows. OSMESA_RGB gives garbage (measured). A surface without
+// alpha therefore has an alpha channel that the replay keeps at 1.
 struct ColorFormat {
     int red, green, blue, alpha;
     GLenum format, type;
@@ -36,8 +41,8 @@ constexpr std::array<ColorFormat, 3> kColorFormats{{
     {5, 6, 5, 0, OSMESA_RGB_565, GL_UNSIGNED_SHORT_5_6_5, 2},
 }};
 
-// Not without depth: then llvmpipe clips what it draws to windows elsewhere (its "linear" rasterizer) than
-// what it draws here, and stippled lines have another phase (measured).
+// Formats without depth are missing: llvmpipe then clips differently from windows, which its "linear" rasterizer draws.
+// Stippled lines also have another phase (measured).
 struct DepthStencil {
     int depth, stencil;
 };
@@ -90,8 +95,8 @@ public:
     OsmesaSurface(const SurfaceConfig& config, const ColorFormat& format) : config_(config) {
         const size_t sizeBytes = static_cast<size_t>(config.width) * static_cast<size_t>(config.height) *
                                  static_cast<size_t>(format.bytesPerPixel);
-        // Not cleared: OSMesa only writes it, and only when GL is flushed; a big one costs nothing until then. What is drawn and
-        // read lies in the context's own buffers, which bind() clears.
+        // The memory stays uninitialised. OSMesa only writes it, and only when GL is flushed, so a large surface costs
+        // nothing before that. Draws and reads use the context's own buffers, which bind() clears.
         memory_ = std::shared_ptr<std::byte[]>(new std::byte[sizeBytes]);
     }
     OsmesaSurface(const OsmesaSurface&) = delete;
@@ -103,7 +108,7 @@ public:
     [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
 
     std::shared_ptr<std::byte[]> memory_;
-    OsmesaContext* home_ = nullptr; // the context whose buffers hold the contents; null: saved_ has them
+    OsmesaContext* home_ = nullptr; // context that holds the contents; null: saved_ holds them
     SavedPixels saved_;
 
 private:
@@ -119,9 +124,9 @@ public:
     ~OsmesaContext() override;
 
     [[nodiscard]] OSMesaContext handle() const { return handle_; }
-    // Makes it current with the surface and brings the surface's contents here. Null: with a dummy.
+    // Makes the context current with the surface and moves the surface's contents here. Null: with a dummy.
     Result<void> bind(OsmesaSurface* surface);
-    // Moves the contents of the surface that lives here back to the surface. Leaves this context current.
+    // Saves the contents of the resident surface in the surface. Leaves this context current.
     void evict();
     void forget(OsmesaSurface* surface) {
         if (resident_ == surface) resident_ = nullptr;
@@ -135,8 +140,8 @@ private:
     OSMesaContext handle_;
     ContextConfig config_;
     ColorFormat format_;
-    OsmesaSurface* resident_ = nullptr; // whose contents our buffers hold
-    std::shared_ptr<std::byte[]> bound_; // what OSMesa writes to, even after its surface is gone
+    OsmesaSurface* resident_ = nullptr; // surface that this context's buffers hold
+    std::shared_ptr<std::byte[]> bound_; // memory that OSMesa writes to, even after its surface is destroyed
     std::shared_ptr<std::byte[]> dummy_{new std::byte[16]};
 };
 
@@ -152,7 +157,7 @@ OsmesaContext::~OsmesaContext() {
     state_->current = nullptr;
     if (previous && previous != this) {
         OsmesaSurface* surface = previous->resident_;
-        (void)previous->bind(surface); // it was bound like that a moment ago
+        (void)previous->bind(surface); // the same binding succeeded before
     }
 }
 
@@ -171,7 +176,7 @@ void OsmesaContext::evict() {
         resident_->home_ = nullptr;
         resident_ = nullptr;
     }
-    // Another size: OSMesa lets go of the old buffers, whose contents nobody may see again.
+    // The change of size makes OSMesa free the old buffers, so their contents never become visible again.
     if (bound_) bindMemory(dummy_, 1, 1);
 }
 

@@ -31,7 +31,7 @@ Result<Context*> ClearingContexts::find(const SurfaceConfig& bits, bool anyConfi
     config.surface = bits;
     config.surface.width = config.surface.height = 1;
     auto made = create(config);
-    if (!made) { // a driver that has only OpenGL ES
+    if (!made) { // the driver has OpenGL ES only
         config.api = Api::Es2;
         config.major = 2;
         auto embedded = create(config);
@@ -52,7 +52,7 @@ void clearCurrentSurface(Platform& platform, const SurfaceConfig& bits, ColorBuf
     else load(platform, clearDepth, "glClearDepth");
     if (buffers == ColorBuffers::FrontAndBack) load(platform, drawBuffer, "glDrawBuffer");
     if (!clear) return;
-    // The other clear values are 0 in a context where nothing was set.
+    // The other clear values are initially 0.
     if (clearDepth) clearDepth(0);
     if (clearDepthf) clearDepthf(0);
     if (drawBuffer) drawBuffer(GL_FRONT_AND_BACK);

@@ -11,10 +11,10 @@
 namespace mural {
 namespace {
 
-constexpr int64_t kPumpSliceNs = 50 * kNsPerMs;      // between two looks whether the program lives
-constexpr int64_t kValuePatienceNs = 20 * kNsPerMs;  // for the rest of a value, without which nodes can do nothing
-constexpr size_t kFlushBytes = size_t{64} * 1024;    // nodes begin with what they have by then
-constexpr size_t kMaxQueuedBytes = size_t{1} << 31;  // answers that the program asked for but does not take
+constexpr int64_t kPumpSliceNs = 50 * kNsPerMs; // interval of the check whether the program has ended
+constexpr int64_t kValuePatienceNs = 20 * kNsPerMs; // wait for the rest of a value that nodes can't use alone
+constexpr size_t kFlushBytes = size_t{64} * 1024; // nodes start on partial data of this size
+constexpr size_t kMaxQueuedBytes = size_t{1} << 31; // limit of replies that the program does not read
 
 std::string nameOf(pid_t pid) {
     std::ifstream file("/proc/" + std::to_string(pid) + "/comm");
@@ -71,7 +71,7 @@ void CaptureClient::drain() {
 void CaptureClient::stop() {
     stop_ = true;
     memory_->wakePump();
-    const std::lock_guard lock(mutex_); // so that the writer is either before its look or asleep
+    const std::lock_guard lock(mutex_); // the writer is then either before its check of stop_ or asleep
     replyQueued_.notify_all();
 }
 
@@ -92,7 +92,7 @@ void CaptureClient::pump() {
             continue;
         }
         flushNodes(!arrived_ && monotonicNowNs() - arrivedNs_ >= kValuePatienceNs);
-        if (stop_ || gone) break; // gone: and nothing has come since that was seen
+        if (stop_ || gone) break; // gone: no publication has arrived since the program's end was detected
         gone = programGone();
         if (!gone) waitForMore();
     }
@@ -119,7 +119,7 @@ void CaptureClient::reportEnd() {
         const std::lock_guard lock(mutex_);
         problem = problem_;
     }
-    if (!problem.empty()) memory_->setHeadGone(); // it goes on alone
+    if (!problem.empty()) memory_->setHeadGone(); // the program continues without Mural
     events_.programEnded(id_, problem);
 }
 
@@ -143,7 +143,7 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
     return true;
 }
 
-// Not all: a value whose rest is on its way may stay until more comes, or nothing does.
+// Flushes the packets to the nodes. Unless `all` is set, an incomplete value may stay until more data arrives.
 void CaptureClient::flushNodes(bool all) {
     if (unflushedBytes_ == 0) return;
     if (all) nodes_.flush();
@@ -194,8 +194,8 @@ void CaptureClient::writeReplies() {
     }
 }
 
-// False: the program is gone, was dropped, or the session ends. There is no deadline: a program that is stopped takes
-// the rest when it runs again, and a reply that ends in the middle would be lost. kMaxQueuedBytes bounds what waits.
+// Returns false if the program is gone or was dropped, or if the session ends. There is no deadline: a paused program
+// reads the rest when it continues, and a partial reply would be useless. kMaxQueuedBytes bounds the queue.
 bool CaptureClient::writeAll(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const size_t written = memory_->writeReply(bytes);

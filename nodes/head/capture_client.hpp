@@ -1,6 +1,8 @@
-// One captured program: a thread that pumps its publications to the nodes, and a thread that hands it the
-// nodes' answers. Its memory says whether it lives (CaptureMemory::programGone). The program may have
-// closed its end of the socket; the head's end is closed with the client, which tells the player.
+// One captured program, with two threads. The pump sends its publications to the nodes, and the other thread writes the
+// nodes' replies to the program.
+//
+// CaptureMemory::programGone detects the program's end. The program may have closed its end of the socket. The head's
+// end is closed with this object, which informs the player.
 #pragma once
 
 #include <atomic>
@@ -24,19 +26,19 @@ namespace mural {
 class CaptureEvents {
 public:
     virtual ~CaptureEvents() = default;
-    // From the pump's thread, as its last act; everything that the program had published is with the
-    // nodes. problem: why the program was dropped, empty when it ended by itself. Not called when the
-    // pump ends because of drain(): the program is still there then.
+    // Called by the pump's thread as its last action, after all publications of the program were sent to the nodes. Not
+    // called if drain() ended the pump, because the program still exists then. problem: the reason for dropping the
+    // program; empty: it ended by itself.
     virtual void programEnded(uint32_t client, const std::string& problem) = 0;
 };
 
 struct Reply {
     wire::ReplyHeader header{};
     ByteBuffer bytes;
-    std::function<void()> written; // the program has all of it before it; may be empty
+    std::function<void()> written; // called after the complete reply was written to the program's memory; may be empty
 };
 
-// All calls from any thread.
+// Thread-safe.
 class CaptureClient {
 public:
     CaptureClient(uint32_t id,
@@ -44,13 +46,13 @@ public:
                   std::unique_ptr<CaptureMemory> memory,
                   NodeSet& nodes,
                   CaptureEvents& events);
-    ~CaptureClient(); // stop()
+    ~CaptureClient(); // calls stop()
 
-    // An error: there are no threads for it.
+    // Errors: no threads available.
     Result<void> start(FileDescriptor socket);
-    // Pumps what is published at this moment, then ends the pump.
+    // Ends the pump after everything published before this call was sent.
     void drain();
-    // Ends both threads soon, whatever is left.
+    // Ends both threads soon. Drops the remaining data.
     void stop();
 
     void reply(Reply reply);
@@ -66,7 +68,7 @@ private:
     void pump();
     void waitForMore();
     void reportEnd();
-    bool pumpNext(CaptureMemory::Range& range); // false: nothing there, or a corrupt ring
+    bool pumpNext(CaptureMemory::Range& range); // false: no publication, or a corrupt ring
     [[nodiscard]] bool drained() const;
     [[nodiscard]] bool programGone() const;
     void flushNodes(bool all = true);
@@ -84,9 +86,9 @@ private:
     FileDescriptor socket_;
     std::thread pumpThread_;
     std::thread replyThread_;
-    size_t unflushedBytes_ = 0; // the pump's, as the next three
-    bool arrived_ = false;      // something since it last waited
-    int64_t arrivedNs_ = 0;     // when it last waited after something
+    size_t unflushedBytes_ = 0; // used by the pump's thread, as the next three
+    bool arrived_ = false; // data arrived since the last wait
+    int64_t arrivedNs_ = 0; // start of the last wait after arrived data
     ArrivalPace pace_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> draining_{false};
@@ -94,7 +96,7 @@ private:
     std::atomic<bool> pumpEnded_{false};
     std::atomic<uint64_t> bytesSent_{0};
 
-    std::mutex mutex_; // what follows
+    std::mutex mutex_; // guards the members below
     std::condition_variable replyQueued_;
     std::deque<Reply> replies_;
     size_t replyQueueBytes_ = 0;

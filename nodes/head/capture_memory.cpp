@@ -26,7 +26,7 @@ Error systemError(const char* what) {
                  std::strerror(errno) + "; check the limits of memory, open files and file sizes (ulimit -a)"};
 }
 
-// A file description of its own for the program, with a lock that says whether anybody has it still.
+// Opens a separate file description for the program, with a lock. The lock shows whether any process still has it.
 Result<FileDescriptor> openForProgram(int fd) {
     const std::string path = "/proc/self/fd/" + std::to_string(fd);
     FileDescriptor opened;
@@ -51,7 +51,7 @@ void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
     h.totalBytes = h.chunksAt + uint64_t{chunkCount} * kChunkBytes;
 }
 
-// The program may have written anything there.
+// Returns only plain characters, because the program may have written anything there.
 std::string commandName(const capture::TripCount& trips) {
     std::string name;
     for (const char c : trips.command) {
@@ -118,7 +118,7 @@ CaptureMemory::Next CaptureMemory::next(Range& range) {
     const uint32_t tail = publishedTail();
     if (tail == publishedHead_) return Next::Empty;
     if (tail - publishedHead_ > chunkCount_) return Next::Bad;
-    // Copied once: the program could change it between check and use.
+    // Copied once, because the program could change it between check and use.
     Publication p;
     const uint32_t slot = publishedHead_ & (chunkCount_ - 1);
     std::memcpy(&p, at(publicationsAt_ + slot * sizeof(Publication)), sizeof(p));
@@ -137,14 +137,14 @@ CaptureMemory::Next CaptureMemory::next(Range& range) {
 bool CaptureMemory::take(const Range& range) {
     if (range.lastOfChunk) {
         const uint32_t head = shared_->freedHead.load(std::memory_order_acquire);
-        if (freedTail_ - head >= chunkCount_) return false; // freed more often than taken
+        if (freedTail_ - head >= chunkCount_) return false; // more chunks freed than taken
         const uint32_t slot = freedTail_ & (chunkCount_ - 1);
         std::memcpy(at(freedAt_ + slot * sizeof(uint32_t)), &range.chunk, sizeof(uint32_t));
         store(shared_->freedTail, ++freedTail_);
     }
     const bool wasFull = publishedTail() - publishedHead_ >= chunkCount_;
     shared_->publishedHead.store(++publishedHead_, std::memory_order_release);
-    if (wasFull) futexWakeAll(shared_->publishedHead); // only then can the program wait for room
+    if (wasFull) futexWakeAll(shared_->publishedHead); // the program waits for space only in this case
     return true;
 }
 
@@ -154,7 +154,8 @@ uint32_t CaptureMemory::publishedTail() const {
 
 void CaptureMemory::waitPublished(capture::Reader how, int64_t timeoutNs) {
     shared_->reader.store(static_cast<uint32_t>(how), std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_seq_cst); // either it sees this, or the look below what it has published
+    // either the program sees this value, or the check below sees its publication
+    std::atomic_thread_fence(std::memory_order_seq_cst);
     if (publishedTail() == publishedHead_) futexWait(shared_->publishedTail, publishedHead_, timeoutNs);
     shared_->reader.store(static_cast<uint32_t>(capture::Reader::Reads), std::memory_order_relaxed);
 }
@@ -164,7 +165,7 @@ void CaptureMemory::wakePump() const { futexWakeAll(shared_->publishedTail); }
 size_t CaptureMemory::writeReply(std::span<const std::byte> bytes) {
     const uint32_t head = shared_->replyHead.load(std::memory_order_acquire);
     const uint32_t used = replyTail_ - head;
-    if (used >= replyCapacity_) return 0; // full, or a head that makes no sense: never past the end
+    if (used >= replyCapacity_) return 0; // full, or an invalid head: never write past the end
     const size_t count = std::min<size_t>(bytes.size(), replyCapacity_ - used);
     const uint32_t slot = replyTail_ & (replyCapacity_ - 1);
     const size_t first = std::min<size_t>(count, replyCapacity_ - slot);
@@ -206,7 +207,7 @@ bool CaptureMemory::putNews(const wire::News& news, const std::string& text) {
 std::optional<PixelFormat> CaptureMemory::ownWindow(uint32_t window, uint32_t frame) const {
     for (const capture::OwnWindow& own : shared_->ownWindows) {
         if (own.window.load(std::memory_order_acquire) != window) continue;
-        if (static_cast<int32_t>(frame - own.frame.load()) > 0) return std::nullopt; // swapped after the grab
+        if (static_cast<int32_t>(frame - own.frame.load()) > 0) return std::nullopt; // swap after the grab
         PixelFormat format;
         format.depth = static_cast<int>(own.depth.load() & 0xff);
         format.bitsPerPixel = static_cast<int>(own.bitsPerPixel.load() & 0xff);
@@ -224,7 +225,7 @@ void CaptureMemory::setFramesDone(uint32_t frames) {
     std::atomic_thread_fence(std::memory_order_seq_cst);
     uint64_t wanted = shared_->framesWanted.load(std::memory_order_relaxed);
     if (!(wanted & capture::kFramesWanted) || static_cast<int32_t>(frames - static_cast<uint32_t>(wanted)) < 0) return;
-    shared_->framesWanted.compare_exchange_strong(wanted, 0); // or another thread has just said what it wants
+    shared_->framesWanted.compare_exchange_strong(wanted, 0); // fails if another thread has just stored its own request
     futexWakeAll(shared_->framesDone);
 }
 void CaptureMemory::setFramesShown(uint32_t frames) { store(shared_->framesShown, frames); }
@@ -241,7 +242,7 @@ std::vector<std::string> CaptureMemory::displayNames() const {
     std::vector<std::string> names(std::min(shared_->displayCount.load(std::memory_order_acquire), capture::kDisplays));
     for (size_t i = 0; i < names.size(); ++i) {
         char copy[capture::kDisplayNameBytes];
-        std::memcpy(copy, shared_->displays[i], sizeof copy); // first: the program may change it
+        std::memcpy(copy, shared_->displays[i], sizeof copy); // copied first, because the program may change it
         names[i].assign(copy, strnlen(copy, sizeof copy));
     }
     return names;

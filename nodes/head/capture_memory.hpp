@@ -1,7 +1,7 @@
-// The head's side of the memory that one captured program shares (common/capture_ring.hpp).
-// The program may write anything anywhere in it at any time. So nothing is believed: offsets and the
-// head's own positions are kept here and only copied out, indices from the ring are read once and
-// checked.
+// The head's side of the memory that it shares with one captured program (common/capture_ring.hpp).
+//
+// The program may write anything anywhere in it at any time, so the head trusts nothing. It keeps offsets and its own
+// positions in private memory and only copies them out. It reads indices of the ring once and checks them.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@
 
 namespace mural {
 
-// The program's own counts, for the report.
+// Counters of the program, for the report.
 struct CaptureCounts {
     uint64_t verifiedFrames = 0;
     uint64_t verifiedPixels = 0;
@@ -32,28 +32,29 @@ struct CaptureCounts {
     std::array<uint64_t, capture::kUncomparedReasons> uncomparedFrames{}; // by capture::Uncompared
     uint64_t callsUnsupported = 0;
     uint64_t roundTrips = 0;
-    std::map<std::string, uint64_t> tripsBy; // command → round trips that it caused
+    std::map<std::string, uint64_t> tripsBy; // number of round trips by command
     std::array<uint64_t, capture::kWaits> waitNs{}; // by capture::Wait
-    capture::Wait waitingFor = capture::Wait::Nothing; // of a program that is there
+    capture::Wait waitingFor = capture::Wait::Nothing; // current wait of a running program
     uint64_t frameCpuNs = 0;
     uint64_t frameCpuFrames = 0;
 };
 
-// Threads: one for publications and chunks, one for replies; news and the words of progress from any.
+// Threads: one for publications and chunks, and one for replies. News and the progress words may come from any thread.
 class CaptureMemory {
 public:
-    // Both powers of two.
+    // Requires powers of two.
     static Result<std::unique_ptr<CaptureMemory>> create(
         uint32_t chunkCount = capture::kDefaultChunks, uint32_t replyBytes = capture::kReplyBytes);
     CaptureMemory(const CaptureMemory&) = delete;
     CaptureMemory& operator=(const CaptureMemory&) = delete;
     ~CaptureMemory();
 
-    // For the program. Its file description is another than the head's own, and locked: the kernel releases the lock
-    // with the program's last descriptor and mapping.
+    // Returns the descriptor for the program. Its file description differs from the head's own and has a lock. The
+    // kernel releases the lock with the program's last descriptor and mapping.
     [[nodiscard]] int fdToPass() const { return programFd_.get(); }
-    void passed() { programFd_ = FileDescriptor(); } // to the program, or on its way there
-    // After passed(): nobody has it any more. A program may close all descriptors; it does not unmap what it does not know.
+    void passed() { programFd_ = FileDescriptor(); } // call after the descriptor was sent to the program
+    // Returns whether no process has the memory open or mapped. Requires passed(). A program may close all descriptors,
+    // but does not unmap memory that is unknown to it.
     [[nodiscard]] bool programGone() const;
 
     struct Range {
@@ -63,32 +64,32 @@ public:
         bool lastOfChunk = false;
     };
     enum class Next { Empty, Ready, Bad };
-    Next next(Range& range); // the oldest publication, not taken yet
-    bool take(const Range& range); // done with it; false: the ring of freed chunks is corrupt
+    Next next(Range& range); // the oldest publication that was not taken
+    bool take(const Range& range); // releases the publication; false: the ring of freed chunks is corrupt
     [[nodiscard]] uint32_t publishedTail() const;
     [[nodiscard]] uint32_t takenHead() const { return publishedHead_; }
-    void waitPublished(capture::Reader how, int64_t timeoutNs); // returns at once when there is something
+    void waitPublished(capture::Reader how, int64_t timeoutNs); // returns at once if a publication exists
     void wakePump() const;
 
-    // Writes as much as there is room for.
+    // Writes as much as fits. Returns the number of bytes.
     size_t writeReply(std::span<const std::byte> bytes);
     void waitReplyRoom(int64_t timeoutNs) const;
-    // The answer to a request with capture::kAskedAhead, for the program to find when it wants it.
+    // Stores the reply to a request with capture::kAskedAhead. The program reads it when it needs the value.
     void answerAhead(uint32_t request, uint64_t value);
 
-    // False: the program has not looked at what it was told before.
+    // Returns false if all slots hold news that the program has not read.
     bool putNews(const wire::News& news, const std::string& text);
 
-    // The format of a window into which the program puts the pictures of this frame itself; nothing: it does not.
+    // Returns the format of the window if the program itself puts this frame's picture into it, otherwise nullopt.
     [[nodiscard]] std::optional<PixelFormat> ownWindow(uint32_t window, uint32_t frame) const;
 
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);
-    void beat() { shared_->headBeat.fetch_add(1, std::memory_order_relaxed); } // the head runs
-    void setHeadGone(); // and wakes whoever sleeps on any word
-    std::atomic<uint32_t>& lifeWord() { return shared_->headLife; } // for a LifeMark
+    void beat() { shared_->headBeat.fetch_add(1, std::memory_order_relaxed); } // heartbeat of the head
+    void setHeadGone(); // also wakes the waiters on all words
+    std::atomic<uint32_t>& lifeWord() { return shared_->headLife; } // the word of a LifeMark
     [[nodiscard]] CaptureCounts counts() const;
-    // Of the X displays on which the program has windows, by number.
+    // Names of the X displays on which the program has windows, by number.
     [[nodiscard]] std::vector<std::string> displayNames() const;
 
 private:

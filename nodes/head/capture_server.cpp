@@ -48,8 +48,8 @@ Result<FileDescriptor> listenAbstract(const std::string& session) {
     return listenAt("@" + session, address, offsetof(sockaddr_un, sun_path) + 1 + session.size());
 }
 
-// Its folder lets only this user in. Not valid without a path, or where it can't be: programs of this network namespace
-// do not need it, and others say what they could not reach.
+// Opens a socket in a folder that only this user can access. Returns an invalid descriptor without a path or on
+// failure. Programs of this network namespace do not need it. Programs of others then report that they can't connect.
 FileDescriptor listenInFolder(const std::string& path) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -138,10 +138,11 @@ CaptureServer::~CaptureServer() {
 
 void CaptureServer::serve() {
     while (!stop_) {
-        std::vector<pollfd> looks{{listener_.get(), POLLIN, 0}, {pathListener_.get(), POLLIN, 0}}; // a negative one is passed over
+        // poll ignores a negative descriptor
+        std::vector<pollfd> looks{{listener_.get(), POLLIN, 0}, {pathListener_.get(), POLLIN, 0}};
         for (const Newcomer& n : newcomers_) looks.push_back({n.socket.get(), POLLIN, 0});
         if (poll(looks.data(), looks.size(), kAcceptSliceMs) < 0) continue;
-        // Those that came first leave first: the vector shrinks from the end.
+        // Backwards, because the vector shrinks during the loop.
         for (size_t i = newcomers_.size(); i-- > 0;) {
             if (settle(newcomers_[i], looks[i + kListeners].revents != 0))
                 newcomers_.erase(newcomers_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -151,10 +152,11 @@ void CaptureServer::serve() {
     }
 }
 
-// A program that is stopped before its Hello may take any time. Others must not hold a place for so long.
+// A program of this user may be paused for any time before its Hello. Other peers may hold a place only until the
+// deadline.
 void CaptureServer::acceptOne(int listener) {
     FileDescriptor socket(accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
-    // Without a descriptor it would come back at once, with the same.
+    // Waits, because without a free descriptor the next accept4() would fail at once.
     if (!socket.valid() && (errno == EMFILE || errno == ENFILE)) poll(nullptr, 0, kAcceptSliceMs);
     if (!socket.valid()) return;
     if (newcomers_.size() >= kMaxNewcomers) {
@@ -173,7 +175,7 @@ bool CaptureServer::settle(Newcomer& newcomer, bool readable) {
     auto* hello = reinterpret_cast<std::byte*>(&newcomer.hello);
     const ssize_t n = recv(newcomer.socket.get(), hello + newcomer.haveBytes,
                            sizeof(Hello) - newcomer.haveBytes, MSG_DONTWAIT);
-    if (n == 0) return true; // it left
+    if (n == 0) return true; // the peer has closed the connection
     if (n < 0) return errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR;
     newcomer.haveBytes += static_cast<size_t>(n);
     if (newcomer.haveBytes < sizeof(Hello)) return false;

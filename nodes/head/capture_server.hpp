@@ -1,4 +1,4 @@
-// The session's Unix sockets: programs connect, send Hello, and get their shared memory.
+// The session's Unix sockets. Programs connect, send Hello and receive their shared memory.
 #pragma once
 
 #include <atomic>
@@ -18,30 +18,30 @@
 namespace mural {
 
 struct Admission {
-    capture::Welcome welcome{};  // refused, extensionBytes, magic and version are the server's
-    int memoryFd = -1;           // the host's
+    capture::Welcome welcome{}; // the server sets refused, extensionBytes, magic and version
+    int memoryFd = -1; // owned by the ProgramHost
     std::string extensions;
 };
 
-// Who decides about programs. Called by the server's thread.
+// Admits programs. Called by the server's thread.
 class ProgramHost {
 public:
     virtual ~ProgramHost() = default;
-    // An error refuses the program; its text is for the program's user.
+    // Returns the admission. An error refuses the program; its text is shown to the program's user.
     virtual Result<Admission> admitProgram(pid_t pid) = 0;
-    // It was sent its Welcome (or not: then the socket is invalid and the admission void).
+    // Called after the Welcome was sent. An invalid socket means that it was not sent, and the admission is void.
     virtual void programWelcomed(uint32_t client, FileDescriptor socket) = 0;
 };
 
 struct CaptureAddresses {
-    std::string abstractName; // reached from the head's network namespace
-    std::string path;         // reached from its mount namespace; empty: none
+    std::string abstractName; // reachable from the head's network namespace
+    std::string path; // reachable from its mount namespace; empty: none
 };
 
 class CaptureServer {
 public:
-    // digest: of the command table, must be equal at both ends.
-    // status: the session's state as JSON, for `mural stat`; called by the server's thread.
+    // digest: the digest of the command table, which must be equal at both ends.
+    // status: returns the session's state as JSON, for `mural stat`; called by the server's thread.
     static Result<std::unique_ptr<CaptureServer>> start(const CaptureAddresses& addresses,
                                                         uint64_t digest,
                                                         ProgramHost& host,
@@ -54,26 +54,26 @@ private:
     struct Newcomer {
         FileDescriptor socket;
         Deadline deadline;
-        bool mayTakeLong = false; // past the deadline it keeps its place until another one needs it
+        bool mayTakeLong = false; // after the deadline it stays until another program needs its place
         capture::Hello hello{};
-        size_t haveBytes = 0; // of hello
+        size_t haveBytes = 0; // received bytes of hello
     };
 
     CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest, ProgramHost& host, std::function<std::string()> status);
     void serve();
     void acceptOne(int listener);
-    bool settle(Newcomer& newcomer, bool readable); // true: done with it, one way or the other
+    bool settle(Newcomer& newcomer, bool readable); // true: accepted or refused
     void answer(FileDescriptor socket, const capture::Hello& hello);
     Result<Admission> judge(int socket, const capture::Hello& hello);
     void tellStatus(int socket);
 
     const FileDescriptor listener_;
-    const FileDescriptor pathListener_; // not valid: there is none
+    const FileDescriptor pathListener_; // invalid: no path
     const std::string path_;
     const uint64_t digest_;
     ProgramHost& host_;
     const std::function<std::string()> status_;
-    std::vector<Newcomer> newcomers_; // connected, Hello not complete yet
+    std::vector<Newcomer> newcomers_; // connected, with an incomplete Hello
     std::atomic<bool> stop_{false};
     std::thread thread_;
 };

@@ -1,8 +1,8 @@
 // Assigns the chunks of chunk queues before each frame, from the times that nodes report (balancer/queue). Each node
 // draws one consecutive run of chunks, because draw order must not change.
 //
-// The times are those of one window (FrameTimes). The other nodes take over a lost node's chunks until it returns. Then
-// all nodes reset to the initial shares at one position of the stream (Replay::shareAnew), and new shares follow.
+// FrameTimes selects the window whose times count. The other nodes take over a lost node's chunks until it returns.
+// Then all nodes reset to the initial shares at one position of the stream (Replay::shareAnew), and new shares follow.
 #pragma once
 
 #include <functional>

@@ -541,7 +541,7 @@ private:
     const ConfigWishes& wishes_;
     const Index only_;
     const int nodesBefore_;
-    std::set<Index> canvases_; // those that show something, or the selected one
+    std::set<Index> canvases_; // canvases with content, or the selected one
     FrameInput input_;
     std::vector<Draw> draws_;
     std::vector<int> pictures_; // per draw

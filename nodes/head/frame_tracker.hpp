@@ -46,7 +46,7 @@ public:
 
     // Announces a picture for the outputs. Must precede the completion of its frame.
     void pictureHeld(uint32_t client, uint32_t frame);
-    // Tells the X window of a window. Several drawables may be on one X window.
+    // Sets the X window of a window. Several drawables may belong to one X window.
     void isOn(uint32_t client, uint32_t window, uint64_t native);
     void pictureReleased(uint32_t client, uint32_t frame);
 

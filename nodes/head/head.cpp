@@ -29,14 +29,14 @@ constexpr int64_t kLaunchPatienceMs = 30'000;
 volatile std::sig_atomic_t asked = 0;
 void askToFinish(int) { asked = 1; }
 
-// The terminal's Ctrl-C reaches head and `mural run` alike; it is for `mural run` to decide then.
+// Ctrl-C of the terminal reaches both the head and `mural run`, which decides then.
 void setUpSignals() {
     launch::rememberSignals();
     signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN); // a limit of file sizes is an error of the call
+    signal(SIGXFSZ, SIG_IGN); // a file size limit then is an error of the call
     signal(SIGINT, SIG_IGN);
     struct sigaction finish {};
-    finish.sa_handler = askToFinish; // no SA_RESTART: waits end
+    finish.sa_handler = askToFinish; // no SA_RESTART: signals end waits
     sigaction(SIGTERM, &finish, nullptr);
     sigaction(SIGHUP, &finish, nullptr);
 }
@@ -64,7 +64,7 @@ Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const Sess
                        [&] { return asked != 0 || control.broken(); });
 }
 
-// Where --out puts the pictures of a canvas beside the first: a folder in that of the first, or a video beside its.
+// Returns the output path of a further canvas: a folder inside --out, or a video next to the video of --out.
 std::string outOfCanvas(const std::string& out, const std::string& name) {
     std::string plain;
     for (const char c : name) plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
@@ -97,7 +97,7 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, Co
     output.say = [&control](const std::string& text) { control.say(text); };
     auto file = openOutput(config.out, output);
     if (!file) return file.error();
-    // The sink lives as long as the session that is asked for its last picture.
+    // The sink lives as long as the session, which calls lastPicture.
     const auto* pngs = dynamic_cast<const PngFiles*>(file->get());
     options.lastPicture = [pngs, out = config.out] { return pngs ? pngs->lastPath() : out; };
     options.file = std::move(*file);
@@ -142,7 +142,7 @@ Result<int> runSession(ControlChannel& control) {
     }
     auto nodes = launch(*config, plan, control);
     if (!nodes) return nodes.error();
-    for (const LaunchedNode& node : *nodes) // nobody's windows wait for it
+    for (const LaunchedNode& node : *nodes) // swap barriers do not include an absent node
         if (!node.connection) plan.nodes[static_cast<size_t>(node.plan.node)].swapBarrier.clear();
     options.startNode = [options = launchOptionsOf(*config)](const NodePlan& node) { return startNode(node, options, Deadline::inMs(kLaunchPatienceMs)); };
     HeadSession session(*config, std::move(plan), std::move(*nodes), control, std::move(options));
@@ -152,7 +152,7 @@ Result<int> runSession(ControlChannel& control) {
 } // namespace
 
 int runHead(int controlFd) {
-    fcntl(controlFd, F_SETFD, FD_CLOEXEC); // nodes must not hold it open
+    fcntl(controlFd, F_SETFD, FD_CLOEXEC); // nodes must not inherit it
     keepFreedMemory();
     setUpSignals();
     const PauseWatch pauseWatch;

@@ -15,8 +15,8 @@ using Json = nlohmann::json;
 
 constexpr int64_t kTickMs = 50;
 constexpr int64_t kProgressNs = 200 * kNsPerMs;  // at most 5 lines per second
-constexpr int64_t kOutputNewsMs = 20'000;        // `mural run` gives up a head that is silent
-constexpr int64_t kProcessPatienceMs = 2000;     // from a node's Bye to the end of its process
+constexpr int64_t kOutputNewsMs = 20'000; // below the silence after which `mural run` gives up the head
+constexpr int64_t kProcessPatienceMs = 2000; // from a node's Bye to the end of its process
 
 std::vector<int> picturesOf(const SessionPlan& plan) {
     std::vector<int> pictures;
@@ -35,7 +35,7 @@ std::vector<PictureAssembler::Compose> composeOthersBy(const SessionPlan& plan) 
     return others;
 }
 
-// Of each picture, to the program's.
+// Returns the zoom of each picture relative to the program's.
 std::vector<Zoom> sizesOf(const SessionPlan& plan) {
     std::vector<Zoom> sizes;
     for (const NodePlan& node : plan.nodes) {
@@ -53,7 +53,7 @@ std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
 }
 
 std::string plantOf() {
-    const char* const plant = std::getenv("MURAL_PLANT"); // a fault on purpose, for tests of the tests
+    const char* const plant = std::getenv("MURAL_PLANT"); // fault injection, for tests of the tests
     return plant != nullptr ? plant : "";
 }
 
@@ -102,11 +102,11 @@ HeadSession::HeadSession(SessionConfig config,
     , lives_(nodes.size(), 0)
     , refusals_(nodes.size())
     , totals_(nodes.size()) {
-    NodeEvents& events = *this; // a private base: make_unique could not convert
+    NodeEvents& events = *this; // make_unique can't convert to a private base
     for (int node = 0; node < nodeCount_; ++node) {
         LaunchedNode& launched = nodes[static_cast<size_t>(node)];
         totals_[static_cast<size_t>(node)].node = node;
-        ready_[static_cast<size_t>(node)] = !launched.connection; // nobody waits for it
+        ready_[static_cast<size_t>(node)] = !launched.connection; // the start does not wait for an absent node
         nodes_.add(std::make_unique<NodeLink>(NodePlace{node, launched.plan.where},
                                               std::move(launched.connection),
                                               std::move(launched.process), events));
@@ -149,7 +149,7 @@ HeadSession::~HeadSession() {
     returns_->stop([] {});
     if (programs_) programs_->endAll();
     nodes_.end();
-    output_.reset(); // its thread asks the programs' table
+    output_.reset(); // its thread calls the program table
 }
 
 int HeadSession::run() {
@@ -249,7 +249,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         NodeTotals& totals = totals_[static_cast<size_t>(node)];
         totals.replaySeconds += static_cast<double>(message.replayNs) / static_cast<double>(kNsPerS);
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
-        totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // until its Bye knows better
+        totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // the node's Bye replaces this value
     }
     dealer_.frameDone(node, message);
     chunks_.frameDone(node, message);
@@ -265,7 +265,8 @@ Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& heade
     return done;
 }
 
-// Frames of all nodes come before: only then another window is the main one, or the program forgotten.
+// Takes effect after the message of the last node, because frames of the window precede it. Only then may another
+// window become the main one, or the program's state be dropped.
 Result<void> HeadSession::nodeWindowGone(int node, const wire::WindowGoneMessage& message) {
     windowGone({message.client, message.window}, node);
     return {};
@@ -304,7 +305,7 @@ Result<void> HeadSession::nodeLog(int node, const std::string& text) {
     std::string line = text.substr(0, text.find('\n'));
     {
         const std::lock_guard lock(mutex_);
-        if (!ready_[static_cast<size_t>(node)]) { // why it will not start: said when it has ended
+        if (!ready_[static_cast<size_t>(node)]) { // reason of a failed start, which is reported when the node has ended
             refusals_[static_cast<size_t>(node)] = line;
             return {};
         }
@@ -367,12 +368,12 @@ void HeadSession::finishNodes() {
     constexpr int kSliceMs = 5;
     const int64_t beganNs = monotonicNowNs();
     const Deadline deadline = Deadline::inMs(options_.endPatienceMs);
-    // Its own thread: a node that takes nothing would hold up the watch over the nodes.
+    // Uses a separate thread, because a node that reads nothing would delay the watch over the nodes.
     std::thread asking([this] { nodes_.broadcast(wire::HeadCommand::Finish, {}); });
     while (!allReadersEnded()) {
         watchNodes(monotonicNowNs());
         loseSilentNodes(beganNs, deadline.passed());
-        if (deadline.passed()) break; // a reader may hang in an output: that is seen to below
+        if (deadline.passed()) break; // a reader may hang in an output, which finishOutput() handles
         poll(nullptr, 0, kSliceMs);
     }
     asking.join();
@@ -446,7 +447,7 @@ SessionStatus HeadSession::status() {
         NodeLink& link = nodes_.link(static_cast<int>(i));
         NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0, streamOf(plan_.nodes[i])};
         node.totals.frames = frames_.framesOf(node.totals.node);
-        node.totals.pictureBytes = link.pictureBytes(); // its Bye has what it says itself
+        node.totals.pictureBytes = link.pictureBytes(); // the node's Bye holds the other numbers
         node.totals.pictureRawBytes = link.pictureRawBytes();
         node.returning = returns_->onItsWay(node.totals.node);
         node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);

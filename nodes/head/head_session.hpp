@@ -39,33 +39,34 @@ namespace mural {
 
 // A program's own window.
 struct NativeWindow {
-    uint32_t client = 0, window = 0; // as in the stream
-    uint32_t id = 0;                 // on its X display
-    std::string display;             // as the program names it; empty: not told
+    uint32_t client = 0, window = 0; // ids in the stream
+    uint32_t id = 0; // XID on its display
+    std::string display; // name in the program; empty: unknown
 };
 
 struct HeadOptions {
     uint64_t registryDigest = 0;
-    std::unique_ptr<PictureSink> file; // of --out; null: none
+    std::unique_ptr<PictureSink> file; // sink of --out; null: none
     std::function<std::string()> lastPicture; // path of the last file; may be empty
     std::function<Result<std::unique_ptr<PictureSink>>(const NativeWindow& window)> openWindow;
-    std::vector<std::shared_ptr<PictureSink>> canvasFiles; // of --out, for each canvas beside the first
-    std::function<Result<std::unique_ptr<PictureSink>>(int offsetX)> openWall; // where the head shows the wall (headShowsWall), or a canvas beside it
-    std::unique_ptr<recording::StreamRecorder> recorder; // of --record; null: none
-    std::function<bool()> interrupted; // a signal asks to finish; may be empty
-    // Starts a lost node again, by the thread that runs the session; empty: none is.
+    std::vector<std::shared_ptr<PictureSink>> canvasFiles; // sinks of --out for the further canvases
+    // opens wall windows if the head shows the wall (headShowsWall) or a further canvas
+    std::function<Result<std::unique_ptr<PictureSink>>(int offsetX)> openWall;
+    std::unique_ptr<recording::StreamRecorder> recorder; // --record; null: none
+    std::function<bool()> interrupted; // returns whether a signal requests the end; may be empty
+    // Restarts a lost node. Called by the session's thread. Empty: nodes are not restarted.
     std::function<Result<StartingNode>(const NodePlan&)> startNode;
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
-    int64_t byePatienceMs = 10'000; // without anything from a node
-    int64_t silencePatienceMs = 20'000; // the same, while it is asked nothing; nodes say every 4 s that they live
-    int64_t endPatienceMs = 60'000; // with
-    int64_t outputPatienceMs = 150'000; // video encoders hold frames back
-    int64_t recordPatienceMs = 60'000; // until the end of the recording is written
+    int64_t byePatienceMs = 10'000; // silence of a node at the end of the session
+    int64_t silencePatienceMs = 20'000; // silence of a node before that; nodes send a heartbeat every 4 s
+    int64_t endPatienceMs = 60'000; // end of all nodes, even if they send messages
+    int64_t outputPatienceMs = 150'000; // video encoders buffer frames
+    int64_t recordPatienceMs = 60'000; // limit for writing the end of the recording
 };
 
-// run() by one thread, the one that has launched the nodes.
+// run() must be called by the thread that launched the nodes.
 class HeadSession : private NodeEvents {
 public:
     HeadSession(SessionConfig config,
@@ -75,7 +76,7 @@ public:
                 HeadOptions options);
     ~HeadSession() override;
 
-    int run(); // the exit status of the head
+    int run(); // returns the exit status of the head
 
 private:
     Result<void> nodeReady(int node, const std::string& json) override;
@@ -91,7 +92,7 @@ private:
     Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) override;
     void nodeLost(int node, const std::string& why) override;
 
-    // Nodes that come back (head_session_returns.cpp).
+    // Restarts of nodes (head_session_returns.cpp).
     NodeReturns::Hooks returnHooks();
     void linkAgain(int node, StartingNode& starting);
     void introduceAgain(int node);
@@ -116,11 +117,12 @@ private:
     std::vector<std::string> explainLines();
 
     void serve();
-    bool askedToFinish(Deadline deadline); // waits until then for the control connection
+    bool askedToFinish(Deadline deadline); // waits for the control connection until the deadline
     void tick();
     void watchNodes(int64_t nowNs);
-    Result<std::unique_ptr<PictureSink>> openNativeWindow(const WindowPicture& picture); // by the output's thread
-    void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // client, window
+    // called by the output's thread
+    Result<std::unique_ptr<PictureSink>> openNativeWindow(const WindowPicture& picture);
+    void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // window: client, window
     void reportProgress(int64_t nowNs);
 
     void finish();
@@ -132,7 +134,7 @@ private:
     SessionStatus status();
     [[nodiscard]] std::vector<QueueTotals> queues() const;
     std::vector<int> waitsFor(const ProgramStatus& program);
-    std::string streamOf(const NodePlan& plan); // with the mutex
+    std::string streamOf(const NodePlan& plan); // requires mutex_
     void noNodeIsLeft();
 
     const SessionConfig config_;
@@ -141,50 +143,50 @@ private:
     HeadOptions options_;
     const int nodeCount_;
     const bool sendsPictures_;
-    std::string placement_; // of the head's threads
-    std::string economyLine_; // which nodes are spared what they have had, for --explain
-    std::string streamLine_; // how the stream travels, for --explain; empty: in this machine's memory
+    std::string placement_; // placement of the head's threads
+    std::string economyLine_; // for --explain: nodes with delta coding
+    std::string streamLine_; // for --explain: transport of the stream; empty: shared memory only
 
-    // In the order of construction; the nodes' readers use all of it and are ended before.
+    // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameTracker frames_;
     AnswerAssembler answers_;
     NewsMerger news_;
-    std::unique_ptr<PictureOutput> output_; // null: no pictures come
+    std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
     PictureAssembler pictures_;
     TileDealer dealer_;
     ChunkDealer chunks_;
     SlowdownAdvice advice_;
     NodeSet nodes_;
     std::unique_ptr<NodeReturns> returns_;
-    std::unique_ptr<ProgramTable> programs_; // once the nodes are ready
+    std::unique_ptr<ProgramTable> programs_; // set when the nodes are ready
     std::unique_ptr<CaptureServer> server_;
 
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
-    const std::map<int, std::string> absences_; // nodes that were not there at the start, and why
-    std::set<int> multicastNodes_; // nodes whose stream comes by multicast where that reaches them
-    std::set<int> economical_; // nodes that are spared what they have had
-    std::string exchangeSecret_;   // of nodes that send each other parts of pictures or wait for each other, in hex
+    const std::map<int, std::string> absences_; // nodes absent at the start, with the reason
+    std::set<int> multicastNodes_; // nodes that receive the stream by multicast if it reaches them
+    std::set<int> economical_; // nodes with delta coding
+    std::string exchangeSecret_; // in hex; for nodes that exchange parts of pictures or share a swap barrier
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;
     int64_t lastProgressFrame_ = 0;
     bool framesReached_ = false;
     recording::WriterTotals recorded_;
 
-    std::mutex membership_; // held while a node becomes a member, or is lost: before mutex_
-    std::mutex mutex_; // what follows
+    std::mutex membership_; // held while a node becomes a member or is lost; locked before mutex_
+    std::mutex mutex_; // guards the members below
     NodeViews views_;
-    int promisedGlVersion_ = 0;       // to the programs…
-    std::string promisedExtensions_;  // …by the nodes of the start
+    int promisedGlVersion_ = 0; // announced to programs…
+    std::string promisedExtensions_; // …from the nodes of the start
     std::vector<NodeFacts> facts_;
     std::vector<bool> ready_;
-    std::vector<bool> introduced_; // nodes that know where the others of their picture are
-    std::vector<uint32_t> lives_;  // how often each was started again
+    std::vector<bool> introduced_; // nodes that have the addresses of the other nodes of their picture
+    std::vector<uint32_t> lives_; // number of restarts by node
     std::set<int> rerouted_; // nodes that multicast does not reach
-    std::vector<std::string> refusals_; // what nodes said before they were ready
+    std::vector<std::string> refusals_; // latest log line of each node before it was ready
     std::vector<NodeTotals> totals_;
-    std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // windows, and which nodes have not said so yet
+    std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // by window: nodes that have not reported its end
     std::string startFailure_;
 };
 

@@ -1,4 +1,4 @@
-// Up to where programs may come: what the session opens, in which order.
+// The start of a session: opens everything in order, until programs may connect.
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ const char* whyOwnStreams(const std::string& stream) {
 } // namespace
 
 Result<void> HeadSession::bringUp() {
-    placement_ = placeOwnThreads(); // before its threads start: they inherit it
+    placement_ = placeOwnThreads(); // before its threads start, because they inherit the placement
     for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.way);
     nodes_.startReading();
     openMulticast();
@@ -67,13 +67,13 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
     return setup;
 }
 
-// One stream for all nodes of other machines. Without it each gets its own, as ever.
+// Opens one stream for all nodes of other machines. Without it each node has its own connection.
 void HeadSession::openMulticast() {
     std::vector<int> nodes = nodesForMulticast(config_.stream, plan_);
     multicastNodes_.insert(nodes.begin(), nodes.end());
     std::erase_if(nodes, [this](int node) { return absences_.contains(node); });
     if (nodes.empty()) {
-        multicastNodes_.clear(); // there will be no group
+        multicastNodes_.clear(); // no group is created
         streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
         return;
     }
@@ -106,7 +106,8 @@ Result<void> HeadSession::openEconomy() {
     return {};
 }
 
-// Nodes that draw ranges of one picture learn where the others take parts of it; those whose windows wait for each other, who leads them.
+// Sends addresses to the nodes. Nodes that draw ranges of one picture receive the addresses for its parts. Nodes of a
+// swap barrier receive the address of its leader.
 void HeadSession::introduceNodes() {
     Json pictures = Json::object(), swaps = Json::object();
     {
@@ -142,7 +143,7 @@ Result<void> HeadSession::awaitReady() {
     }
 }
 
-// Windows of programs may be larger still, which is seen when they come; mutex_ is held.
+// Checks the wall's size only: larger windows of programs are detected when they appear. Requires mutex_.
 Result<void> HeadSession::checkSize() {
     const int64_t side = std::max(config_.width, config_.height);
     for (size_t i = 0; config_.tiling != Tiling::Lean && i < facts_.size(); ++i) {
@@ -160,7 +161,8 @@ void HeadSession::openTables() {
     welcome.policy = config_.policy == CapturePolicy::Full ? capture::kPolicyFull : capture::kPolicyState;
     welcome.latency = static_cast<uint32_t>(config_.latency);
     welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
-    // What is recorded shall play on any number of nodes: the program fetches what it copies from a window, as with several.
+    // A recording must play on any number of nodes. The program therefore fetches the pixels that it copies from a
+    // window, as it does with several nodes.
     welcome.nodeCount = static_cast<uint32_t>(options_.recorder ? std::max(nodeCount_, 2) : nodeCount_);
     welcome.displayApp = config_.display == Display::App ? 1 : 0;
     {
@@ -204,7 +206,7 @@ void HeadSession::beginRecording() {
     nodes_.recordBy(options_.recorder.get());
 }
 
-// Near the network card, when there is a network in between.
+// Places the thread near the network card if any node is on another machine.
 std::string HeadSession::placeOwnThreads() const {
     if (!config_.placeThreads) return "not placed: --no-placement";
     if (config_.hosts.empty()) return "not placed: all nodes are on this machine";

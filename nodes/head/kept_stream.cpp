@@ -13,7 +13,7 @@ namespace {
 constexpr int64_t kSliceMs = 100;
 
 std::unique_ptr<recording::KeptStream> emptyStream(uint64_t mostBytes) {
-    // a node that cannot return is reported elsewhere
+    // The message is dropped, because a node that cannot return is reported elsewhere.
     return std::make_unique<recording::KeptStream>(static_cast<size_t>(mostBytes), [](const std::string&) {});
 }
 
@@ -107,7 +107,7 @@ Result<KeptStream::Snapshot> KeptStream::snapshot(uint64_t place, Deadline deadl
     if (there) {
         lock.unlock(); // the thread is paused, and no other thread touches the log
         {
-            // locked late: a snapshot of a later position waits for those of earlier ones
+            // Locked after `lock` was released: a snapshot of a later position waits for earlier ones.
             const std::lock_guard alone(snapshots_);
             Snapshot snapshot{kept_->snapshot(), {}};
             for (const auto& [client, frame] : frames_) snapshot.frames.push_back({client, frame});

@@ -1,5 +1,6 @@
-// Tells programs that the head has ended without a word, by a robust futex in the memory they share: the kernel marks it
-// when the thread that holds it ends, also by SIGKILL. Programs read one word and need neither descriptor nor call.
+// Shows programs that the head has ended, even without a message. It is a robust futex in their shared memory. The
+// kernel marks it when the thread that holds it ends, also by SIGKILL. Programs read one word and need neither a
+// descriptor nor a system call.
 #pragma once
 
 #include <atomic>
@@ -8,8 +9,8 @@
 
 namespace mural {
 
-// Held by the thread that makes it, one per thread, until it is destroyed by the same thread. The word may be written by
-// anybody: the kernel follows pointers in this object only.
+// Held by the thread that creates it, until the same thread destroys it. A thread can hold only one. Any process may
+// write the word, because the kernel follows only pointers in this object.
 class LifeMark {
 public:
     explicit LifeMark(std::atomic<uint32_t>& word);
@@ -21,7 +22,7 @@ private:
     std::atomic<uint32_t>& word_;
     robust_list entry_{};
     robust_list_head list_{};
-    void* before_ = nullptr; // the C library's list of this thread
+    void* before_ = nullptr; // the C library's robust list of this thread
     size_t beforeBytes_ = 0;
     bool held_ = false;
 };

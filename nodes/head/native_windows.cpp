@@ -36,7 +36,7 @@ public:
         for (const uint32_t frame : superseded) config_.done(client_, frame);
     }
 
-    // The thread ends when the queue is empty, or when its X server does not answer.
+    // Ends the thread when the queue is empty or its X server does not answer.
     void end() {
         const std::lock_guard lock(mutex_);
         ending_ = true;
@@ -88,7 +88,7 @@ private:
         config_.done(client_, picture.frame);
     }
 
-    // As one picture: the program's window has no room for two.
+    // Returns one picture, with both eyes side by side for pairs, because the program's window holds a single picture.
     Picture wholeOf(const WindowPicture& picture) {
         const Picture view = picture.picture->view();
         if (!config_.pairs) return view;
@@ -111,7 +111,7 @@ private:
     PictureSink* windowOf(const WindowPicture& picture) {
         const auto found = windows_.find(picture.window);
         if (found != windows_.end()) return found->second.get();
-        if (windows_.size() >= kMaxWindows) windows_.clear(); // mostly closed ones by then
+        if (windows_.size() >= kMaxWindows) windows_.clear(); // most of them are closed
         auto opened = config_.openWindow(picture);
         if (!opened && complained_.insert(picture.window).second) config_.say(opened.error().message);
         auto& window = windows_[picture.window];
@@ -128,7 +128,7 @@ private:
         config_.blocked(client_, isBlocked);
     }
 
-    // Nobody needs to see the picture any more.
+    // Returns whether the picture need not be shown any more.
     bool isSuperseded(uint32_t window) {
         const std::lock_guard lock(mutex_);
         return dropped_ || ending_ || std::ranges::any_of(queue_, [&](const WindowPicture& later) { return later.window == window; });
@@ -141,13 +141,13 @@ private:
 
     const uint32_t client_;
     const NativeWindowsConfig& config_;
-    OwnedPicture bothEyes_; // the thread's, as the next two
-    std::map<uint32_t, std::unique_ptr<PictureSink>> windows_; // null: it could not be opened
+    OwnedPicture bothEyes_; // used by thread_, as the next two
+    std::map<uint32_t, std::unique_ptr<PictureSink>> windows_; // null: the window could not be opened
     std::set<uint32_t> complained_;
 
-    std::mutex mutex_; // of what follows
+    std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    std::deque<WindowPicture> queue_; // a null picture: the window is gone
+    std::deque<WindowPicture> queue_; // null picture: the window is gone
     bool isBlocked_ = false;
     bool ending_ = false, dropped_ = false, ended_ = false;
     std::thread thread_;
@@ -205,7 +205,7 @@ void NativeWindows::drop() {
     for (const auto& program : ending_) program->drop();
 }
 
-// Under the lock; joins at once.
+// Requires mutex_. The joins return at once.
 void NativeWindows::removeEnded() {
     std::erase_if(ending_, [](const auto& program) { return program->hasEnded(); });
 }

@@ -1,5 +1,5 @@
-// The programs' own windows (--display app). Each program's pictures are shown by a thread of their own: an X server that
-// does not answer, stopped or grabbed by somebody, holds up the programs with windows on it and nothing else.
+// The programs' own windows (--display app). Each program has a thread that shows its pictures. An X server that does
+// not answer, because it is stopped or grabbed, therefore delays only the programs with windows on it.
 #pragma once
 
 #include <condition_variable>
@@ -21,28 +21,29 @@
 namespace mural {
 
 struct NativeWindowsConfig {
-    bool pairs = false; // pictures are both eyes' (stackEyes)
+    bool pairs = false; // pictures contain both eyes (stackEyes)
     std::function<Result<std::unique_ptr<PictureSink>>(const WindowPicture& picture)> openWindow;
-    // True: the program has grabbed its X server and puts this picture itself; done() follows.
+    // Returns true if the program has grabbed its X server and puts this picture itself. done() follows.
     std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram;
-    std::function<void(uint32_t client, uint32_t frame)> done;   // the picture is shown, or never will be
-    std::function<void(uint32_t client, bool isBlocked)> blocked; // its X server does not answer, or does again
+    std::function<void(uint32_t client, uint32_t frame)> done; // the picture was shown or dropped
+    std::function<void(uint32_t client, bool isBlocked)> blocked; // its X server stops or resumes to answer
     std::function<void(const std::string&)> say;
 };
 
-// The functions of the config are called by the threads.
+// The threads of the programs call the functions of the config.
 class NativeWindows {
 public:
     explicit NativeWindows(NativeWindowsConfig config);
-    ~NativeWindows(); // drop()
+    ~NativeWindows(); // calls drop()
 
-    // One thread; they never block. While a program's X server does not answer, only the latest picture of a window waits.
+    // One thread calls these; they never block. While a program's X server does not answer, only the latest picture of
+    // each window is queued.
     void show(WindowPicture picture);
-    void windowGone(uint32_t client, uint32_t window); // after its last picture
+    void windowGone(uint32_t client, uint32_t window); // called after its last picture
     void clientGone(uint32_t client);
-    void finish(); // shows what waits; not what an X server does not take
+    void finish(); // shows queued pictures, unless their X server does not answer
 
-    void drop(); // what waits; any thread
+    void drop(); // drops queued pictures; any thread
 
 private:
     class Program;
@@ -51,7 +52,7 @@ private:
     void removeEnded();
 
     const NativeWindowsConfig config_;
-    std::mutex mutex_; // of what follows
+    std::mutex mutex_; // guards the members below
     bool dropped_ = false;
     std::map<uint32_t, std::unique_ptr<Program>> programs_;
     std::vector<std::unique_ptr<Program>> ending_;

@@ -52,7 +52,7 @@ class NodeLink {
 public:
     NodeLink(NodePlace place,
              std::unique_ptr<Connection> connection, // null: the node has not connected and counts as lost
-             std::unique_ptr<NodeProcess> process, // null: not our child (tests)
+             std::unique_ptr<NodeProcess> process, // null: not a child of this process (tests)
              NodeEvents& events);
     ~NodeLink();
 

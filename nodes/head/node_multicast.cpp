@@ -115,7 +115,7 @@ std::vector<NodeMulticast::Change> NodeMulticast::takeChanges() {
         if (!node) continue;
         if (event.kind == rsp::MemberEvent::Kind::Gone) {
             nodes_.erase(event.id);
-            // A node that leaves or ends also says so on its own connection, after its earlier messages.
+            // A node that leaves or ends reports it on its own connection as well, after its earlier messages.
             const bool itself = event.reason == rsp::GoneReason::Left || event.reason == rsp::GoneReason::Cut;
             if (!itself) changes.push_back({*node, Change::Kind::Gone, false, 0, textOf(event.reason)});
             continue;

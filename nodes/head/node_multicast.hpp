@@ -29,8 +29,8 @@ public:
     // to a node.
     static Result<std::unique_ptr<NodeMulticast>> open(const std::string& stream, const NetworkPath& path);
 
-    // What nodes need to join: the description and the secret. The control port is at the address by which they reach
-    // the head.
+    // Returns the data that nodes need to join: the description and the secret. The control port is at the address by
+    // which they reach the head.
     [[nodiscard]] std::string invitation() const;
     [[nodiscard]] const SessionSecret& secret() const { return secret_; }
 

@@ -42,14 +42,14 @@ std::vector<Viewport> evenParts(int n) {
 
 std::string queueName(RenderPass pass) {
     pass.range = 0;
-    pass.ranges = 1; // all of them have the same tiles
+    pass.ranges = 1; // all ranges have the same tiles
     const std::string of = describe(pass);
     return of.empty() ? "tiles" : "tiles of " + of;
 }
 
 std::string chunksName(const NodePlan& collector, int ranges) { return "draws of nodes " + std::to_string(collector.node) + " to " + std::to_string(collector.node + ranges - 1); }
 
-// Empty: nothing.
+// Returns why the tiles of a queue can't move. Empty: they can.
 std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, int queue) {
     if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its first tiles' size";
     for (const NodePlan& node : plan.nodes) {
@@ -63,7 +63,7 @@ std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, i
     return {};
 }
 
-// Node processes for each of `passes`; the first passes get one more where it does not come out even.
+// Returns the number of node processes of a pass. The first passes get one more if the division has a remainder.
 int nodesOfPass(int nodes, int passes, int pass) { return nodes / passes + (pass < nodes % passes ? 1 : 0); }
 
 } // namespace
@@ -75,7 +75,8 @@ NodeReach reachOf(const std::string& host, const std::string& ownHost) {
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost) {
     const bool queues = config.tileWidth > 0;
-    const int tiles = queues ? kMostNodes : config.columns * config.rows; // of a queue, as many as it has; that is not known yet
+    // the number of tiles of a queue is unknown yet
+    const int tiles = queues ? kMostNodes : config.columns * config.rows;
     const int ranges = config.passes.ranges;
     const std::vector<RenderPass> passes = passesOf(config.passes);
     const auto passCount = static_cast<int>(passes.size());
@@ -87,7 +88,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
 
     SessionPlan plan;
     plan.wall = compositionOf(config.passes);
-    plan.nodesShowWall = passCount == 1 && !queues; // windows of nodes stay where they are, tiles of a queue do not
+    plan.nodesShowWall = passCount == 1 && !queues; // windows of nodes can't move, unlike tiles of a queue
     for (int p = 0; p < passCount; ++p) {
         const int parts = std::max(1, nodesOfPass(count / ranges, passCount, p));
         const std::vector<TileRegion> regions = queues ? std::vector<TileRegion>(static_cast<size_t>(parts)) : splitGrid(config.columns, config.rows, parts);
@@ -111,7 +112,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 node.collector = collector;
                 if (config.chunks > 0 && ranges > 1) node.chunkQueue = static_cast<int>(plan.chunkQueues.size());
                 if (plan.nodesShowWall) node.swapBarrier = "barrier";
-                const int place = node.node % asked; // more passes than nodes were given: several on each machine
+                const int place = node.node % asked; // with more passes than nodes, each machine runs several
                 if (place >= localNodes) {
                     node.where = config.hosts[static_cast<size_t>(place - localNodes)];
                     node.reach = reachOf(node.where, ownHost);
@@ -185,7 +186,8 @@ bool headTakesPictures(const SessionConfig& config, const SessionPlan& plan) {
 
 bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
     const bool nodesShow = node.canvas == 0 ? plan.nodesShowWall : plan.canvases[static_cast<size_t>(node.canvas) - 1].nodesShowWall;
-    return config.display == Display::Windows && nodesShow && node.pass.range == 0; // the collector has the picture
+    // only the collector has the picture
+    return config.display == Display::Windows && nodesShow && node.pass.range == 0;
 }
 
 std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {

@@ -108,7 +108,7 @@ NodeReturns::Numbers NodeReturns::numbers(int node) const {
     return nodes_[static_cast<size_t>(node)].numbers;
 }
 
-// ---- by the session's thread. It is the only one that changes phases but for those of a link that ends, so that hooks are
+// ---- Functions of the session's thread. Only this thread changes phases, except when a link ends. Hooks can therefore be
 // called without the lock.
 
 void NodeReturns::tick(int64_t nowNs) {

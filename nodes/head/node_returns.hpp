@@ -26,13 +26,13 @@ public:
     struct Hooks {
         std::function<Result<StartingNode>(int node)> start; // called by tick(); empty: nodes are never restarted
         std::function<void(int node, StartingNode&)> connected; // creates the link and sends the setup
-        // a reason why the session cannot take the node back; empty: it can
+        // Returns why the session can't take the node back. Empty: it can.
         std::function<std::string(int node)> whyNever;
         std::function<void(int node)> introduce; // introduces the node to the others of its picture, before the resync
         std::function<NodeSet::Turns(int node)> turns;
-        std::function<std::string(int node)> tilesOfLost; // what happens to the node's tiles while it is lost
+        std::function<std::string(int node)> tilesOfLost; // consequence for the node's tiles while it is lost
         std::function<NodeSet::Admission(int node, uint32_t view)> admitted; // called with the lock that orders packets
-        // the node stays lost; the string is a line for the user
+        // Called when the node stays lost; the string is a line for the user.
         std::function<void(int node, const std::string&)> gaveUp;
         std::function<void(const std::string&)> say;
     };
@@ -50,11 +50,12 @@ public:
     void ready(int node); // its capabilities suit the session
     void synchronized(int node, const wire::SynchronizedMessage& message);
     void turns(uint32_t number, const std::vector<std::byte>& turns);
-    // Nodes skip frames that nobody waits for during their resync, until that has failed once.
+    // Returns whether nodes skip frames during their resync if no component waits for them. False after a resync
+    // failed.
     [[nodiscard]] bool skipsFrames() const;
     // Called by Hooks::admitted when it agrees. Returns false if the node is lost already.
     bool becomesMember(int node);
-    [[nodiscard]] bool awaited() const; // some node may come back
+    [[nodiscard]] bool awaited() const; // a node may return
     [[nodiscard]] bool onItsWay(int node) const;
 
     struct Numbers {
@@ -62,7 +63,7 @@ public:
         uint64_t snapshotBytes = 0, queuedBytes = 0;
         std::vector<wire::ClientFrame> framesGiven;
     };
-    [[nodiscard]] Numbers numbers(int node) const; // of its last resync
+    [[nodiscard]] Numbers numbers(int node) const; // numbers of its last resync
 
     void tick(int64_t nowNs);
     // Ends all restarts in progress and starts no more. Calls `watch` meanwhile.
@@ -72,7 +73,7 @@ private:
     enum class Phase { Member, Waiting, Starting, Readying, Ready, CatchingUp, Over };
     struct Node {
         Phase phase = Phase::Member;
-        int tries = 0; // since it last was steady
+        int tries = 0; // attempts since it was last steady
         int64_t lostNs = 0, nextNs = 0, memberNs = 0;
         Deadline readyBy = Deadline::never();
         std::unique_ptr<StartingNode> starting; // accessed by tick() only

@@ -62,15 +62,15 @@ public:
     void replace(int node, std::unique_ptr<NodeLink> link);
     // The state that only members can report for a restarted node.
     enum class Turns { None, OfFrames, OfAreas };
-    // Returns the snapshot for the node, and queues all later packets in its link. If `turns` is set, asks members for
-    // their state at this position.
+    // Returns the snapshot for the node, and queues all later packets in its link. If `turns` is set, requests the
+    // state of members at this position.
     struct TurnsAsked {
         uint32_t number = 0; // number of the TellTurns
         std::function<bool(int node)> knows; // the member has the same kind of state
         std::vector<NodeLink*> asked; // output: the members that will answer if they live
     };
     Result<KeptStream::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
-    // Makes the node a member after all packets so far and tells all nodes. `announce` runs first and may refuse. If
+    // Makes the node a member after all packets so far and informs all nodes. `announce` runs first and may refuse. If
     // the node receives batches, delta coding restarts with an empty dictionary for all nodes, because no other one is
     // as short.
     struct Admission {
@@ -83,13 +83,13 @@ public:
     // Switches the node's feed to its connection. Returns false if its queue is not empty. `now`: sends the queue at
     // once.
     bool goDirect(int node, bool now);
-    // Asks a member to join the multicast group. watch() switches its transport after it has joined.
+    // Invites a member to join the multicast group. watch() switches its transport after it has joined.
     void inviteToGroup(int node);
 
     // Loses silent nodes, and synchronises the losses of connections and multicast group. `rerouted` receives nodes
     // that multicast no longer reaches (false) or reaches again (true).
     void watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted);
-    void loseAll(const std::string& why); // those that have not said Bye
+    void loseAll(const std::string& why); // all nodes that have not sent Bye
     void end();
 
     // The nodes whose full connections block the stream.

@@ -7,7 +7,8 @@
 
 namespace mural {
 
-// `format` comes from the program and is checked: where it makes no sense, or the memory is short, the reply has no pixels.
+// Returns the reply with the converted picture. `format` comes from the program and is checked. The reply has no pixels
+// if the format is invalid or memory is short.
 Reply ownPictureReply(uint32_t frame, uint32_t window, const PixelFormat& format, const Picture& picture);
 
 } // namespace mural

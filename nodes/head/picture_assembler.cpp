@@ -15,8 +15,8 @@ using wire::PictureHeader;
 constexpr uint32_t kMaxSide = 32768;
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28; // 16384 * 16384
 constexpr size_t kMostOpenPictures = 4096;
-constexpr size_t kKeptWindows = 8;  // more windows than that rarely swap; of each pass
-constexpr size_t kKeptPictures = 6; // latest, in the output's queue, being shown
+constexpr size_t kKeptWindows = 8; // more windows rarely swap; per pass
+constexpr size_t kKeptPictures = 6; // the latest, those in the output's queue, and the shown one
 
 bool sensible(const PictureHeader& h) {
     if (h.format > static_cast<uint32_t>(kLastPictureFormat)) return false;
@@ -73,7 +73,7 @@ void PictureAssembler::nodeLost(int node) {
     const std::lock_guard lock(mutex_);
     views_.lost(node);
     for (auto& [key, open] : open_) open.awaited[static_cast<size_t>(node)] = false;
-    for (auto at = open_.begin(); at != open_.end();) at = settle(at); // frames of a window in their order
+    for (auto at = open_.begin(); at != open_.end();) at = settle(at); // keeps the order of a window's frames
 }
 
 void PictureAssembler::nodeJoins(int node, uint32_t view) {
@@ -101,7 +101,8 @@ PictureAssembler::OpenPictures::iterator PictureAssembler::opened(int node, uint
     return at;
 }
 
-// Delivers the picture when no part is awaited, and forgets it when nobody will speak of it again. The next one.
+// Delivers the picture when no part is awaited. Erases the entry when all nodes have reported the frame. Returns the
+// next entry.
 PictureAssembler::OpenPictures::iterator PictureAssembler::settle(OpenPictures::iterator at) {
     Open& open = at->second;
     if (!open.delivered && allOf(open.awaited, open.done)) {
@@ -129,7 +130,7 @@ void PictureAssembler::deliver(const Key& key, const Open& open) {
     if (result.picture) deliver_(std::move(result));
 }
 
-// Null where there is no memory for it.
+// Leaves the picture null without memory for it.
 void PictureAssembler::assemble(WindowPicture& result, const Open& open) {
     std::vector<std::shared_ptr<const OwnedPicture>> pictures;
     std::vector<Picture> views;
@@ -152,25 +153,26 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::composed(const Compose& co
     return whole;
 }
 
-// A pass of which nothing came (its nodes are lost) stays as it was; never seen, or of a window of another size, it is
-// black.
+// Returns the picture of one pass. A pass without any part, whose nodes are lost, keeps its previous picture. Without
+// one of the same size it is black.
 std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowKey& key, const Open& open) {
     const auto mine = [&](const Part& part) { return part.pass == std::get<2>(key) && part.header.windowWidth > 0; };
     const auto any = std::ranges::find_if(open.parts, mine);
     const auto before = latestOf(key);
     const auto seen = std::ranges::find_if(open.parts, [](const Part& part) { return part.header.windowWidth > 0; });
     PictureHeader size = any != open.parts.end() ? any->header : seen->header;
-    if (any == open.parts.end() && !sizes_.empty()) { // of another canvas
+    if (any == open.parts.end() && !sizes_.empty()) { // the part belongs to another canvas
         const Zoom& from = sizes_[static_cast<size_t>(seen->pass)];
         const Zoom& to = sizes_[static_cast<size_t>(std::get<2>(key))];
         size.windowWidth = static_cast<uint32_t>(std::clamp<double>(std::round(size.windowWidth / from.x * to.x), 1, kMaxSide));
         size.windowHeight = static_cast<uint32_t>(std::clamp<double>(std::round(size.windowHeight / from.y * to.y), 1, kMaxSide));
     }
-    const auto near = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; }; // kernels' sizes differ by 1
+    // kernel sizes differ by 1
+    const auto near = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; };
     if (any == open.parts.end() && before && near(before->width(), size.windowWidth) && near(before->height(), size.windowHeight)) return before;
     const auto width = static_cast<int>(size.windowWidth);
     const auto height = static_cast<int>(size.windowHeight);
-    auto format = PictureFormat::Bgra8; // that loses nothing of any part
+    auto format = PictureFormat::Bgra8; // becomes the deepest format of all parts
     for (const Part& part : open.parts)
         if (mine(part)) format = std::max(format, formatOf(part.header));
     auto picture = spare();
@@ -195,11 +197,11 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
     return picture;
 }
 
-// Fresh memory at every frame would be cleared and paged in each time: as dear as the assembly itself.
+// Reuses memory. Fresh memory would be cleared and paged in at every frame, which costs as much as the assembly itself.
 std::shared_ptr<OwnedPicture> PictureAssembler::spare() {
     for (const auto& picture : made_) {
         if (picture.use_count() > 1) continue;
-        std::atomic_thread_fence(std::memory_order_acquire); // what its last reader did is over
+        std::atomic_thread_fence(std::memory_order_acquire); // orders this after the accesses of its last reader
         return picture;
     }
     auto picture = std::make_shared<OwnedPicture>();

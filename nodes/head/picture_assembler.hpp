@@ -1,4 +1,4 @@
-// Whole pictures from the parts that the nodes send at every swap.
+// Assembles whole pictures from the parts that nodes send at every swap.
 #pragma once
 
 #include <cstdint>
@@ -24,35 +24,36 @@ struct WindowPicture {
     uint32_t client = 0;
     uint32_t window = 0;
     uint32_t frame = 0;
-    uint64_t nativeWindow = 0; // X window id, 0: none; from bit 32 on the number of its display (CaptureHeader::displays)
+    uint64_t nativeWindow = 0; // X window id, 0: none; bits 32 and up: number of its display (CaptureHeader::displays)
     std::shared_ptr<const OwnedPicture> picture;
-    std::vector<std::shared_ptr<const OwnedPicture>> others; // of the canvases beside the first, in their order; null: no memory
+    // pictures of the further canvases, in their order; null: out of memory
+    std::vector<std::shared_ptr<const OwnedPicture>> others;
 };
 
-// Sessions with several passes (render_pass.hpp) get a picture of each, put together by `compose`.
-// A picture is whole when every living node has sent its part or has finished the frame without one.
-// Where a node was lost, the picture keeps what that window's picture before had there.
-// All calls from any thread. `deliver` is called under the lock, so in the order of frames: it must
-// not block.
+// Sessions with several passes (render_pass.hpp) have a picture of each, which `compose` combines. A picture is
+// complete when every living node has sent its part or has finished the frame without one. In the region of a lost node
+// the picture keeps the pixels of the window's previous picture.
+//
+// Thread-safe. `deliver` is called under the lock, which keeps the order of frames. It must not block.
 class PictureAssembler {
 public:
     using Deliver = std::function<void(WindowPicture picture)>;
 
-    // Pictures of the passes in their order, none empty, to the picture of the frame.
+    // Combines the pictures of the passes, in their order and none empty, to the picture of the frame.
     using Compose = std::function<void(const std::vector<Picture>& passes, OwnedPicture& into)>;
 
     PictureAssembler(int nodes, Deliver deliver);
-    // passOf: the picture that each node draws a part of.
-    // others: the pictures of further canvases, of the same passes. sizes: of each pass's picture, to that of the program; empty: they are alike.
+    // passOf: index of each node's pass. others: functions that compose the pictures of further canvases from the same
+    // passes. sizes: zoom of each pass's picture relative to the program's. Empty: all sizes are equal.
     PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver, std::vector<Compose> others = {}, std::vector<Zoom> sizes = {});
 
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
     void nodeLost(int node);
-    // It sends parts of the frames from this view on.
+    // The node sends parts of frames from this view on.
     void nodeJoins(int node, uint32_t view);
     void nodeInView(int node, uint32_t view);
-    void clientGone(uint32_t client); // no node sends anything of it any more
+    void clientGone(uint32_t client); // no node sends more parts of it
 
 private:
     using Key = std::tuple<uint32_t, uint32_t, uint32_t>; // client, window, frame
@@ -63,12 +64,12 @@ private:
         wire::PictureHeader header{};
         ByteBuffer rows;
     };
-    // Kept until all nodes have finished the frame: who sent a part says so after it.
+    // Kept until all nodes have finished the frame, because a node reports the end of a frame after its part.
     struct Open {
         std::vector<Part> parts;
-        std::vector<bool> awaited;  // per node: it speaks of this frame, unless it is lost
-        std::vector<bool> done;     // per node: no part of it is awaited
-        std::vector<bool> finished; // per node
+        std::vector<bool> awaited; // per node: it reports this frame and is not lost
+        std::vector<bool> done; // per node: no part is awaited
+        std::vector<bool> finished; // per node: it has reported the frame's end
         bool delivered = false;
     };
     using OpenPictures = std::map<Key, Open>;
@@ -93,8 +94,8 @@ private:
     const int passes_;
     NodeViews views_;
     OpenPictures open_;
-    std::vector<std::shared_ptr<OwnedPicture>> made_; // memory of pictures, for the next ones
-    // Latest picture of the windows that swapped last, the newest first.
+    std::vector<std::shared_ptr<OwnedPicture>> made_; // reusable pictures
+    // Latest pictures of the windows that swapped last, newest first.
     std::list<std::pair<WindowKey, std::shared_ptr<const OwnedPicture>>> latest_;
 };
 

@@ -100,7 +100,7 @@ void PictureOutput::work() {
     changed_.notify_all();
 }
 
-// A video that is not complete shows nothing of what is in it.
+// An incomplete video has no readable frame, so it counts no saved pictures.
 void PictureOutput::finishFile() {
     const auto finished = file_->finish();
     if (finished) return;

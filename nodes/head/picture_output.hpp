@@ -1,8 +1,8 @@
-// The thread that shows and saves finished pictures; NativeWindows has one more for each program with windows.
+// The thread that shows and saves finished pictures. NativeWindows has a further thread for each program with windows.
 //
-//   wall picture (main window) → file sink (--out), all frames or those of --save
-//   the same → windows of the wall (--display windows with several passes)
-//   every window with a native X window → that window (--display app)
+// The wall picture (main window) goes to the file sink (--out): all frames, or the frames of --save. It also goes to
+// the windows of the wall (--display windows with several passes). The picture of every window with a native X window
+// goes to that window (--display app).
 #pragma once
 
 #include <condition_variable>
@@ -24,53 +24,53 @@
 
 namespace mural {
 
-// A canvas beside the first: it shows the wall's frames, too.
+// A further canvas. It shows the wall's frames as well.
 struct OtherCanvas {
     std::string name;
-    bool pairs = false;                // its pictures are both eyes' (stackEyes)
-    std::shared_ptr<PictureSink> file; // null: nothing is saved
-    std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // empty: nodes have windows of it, or nobody
+    bool pairs = false; // its pictures contain both eyes (stackEyes)
+    std::shared_ptr<PictureSink> file; // null: not saved
+    std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // empty: the head opens no windows of it
 };
 
 struct PictureOutputConfig {
-    std::vector<int64_t> saveFrames; // of the wall, from 1; empty: all
-    int64_t lastFrame = 0;           // none behind it is saved: some come before the program has ended; 0: no limit
+    std::vector<int64_t> saveFrames; // frames of the wall, from 1; empty: all
+    int64_t lastFrame = 0; // last saved frame; more may come before the program ends; 0: no limit
     bool toNativeWindows = false;    // --display app
-    bool pairs = false;              // pictures are both eyes' (stackEyes)
-    // Opens the sink of the native window that this picture, which is of no interest otherwise, belongs to.
+    bool pairs = false; // pictures contain both eyes (stackEyes)
+    // Opens the sink of the native window that this picture belongs to. Uses no other data of the picture.
     std::function<Result<std::unique_ptr<PictureSink>>(const WindowPicture& picture)> openWindow;
-    // As of NativeWindowsConfig; needed with toNativeWindows.
+    // The functions of NativeWindowsConfig; required with toNativeWindows.
     std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram = [](const WindowPicture&, const Picture&) { return false; };
     std::function<void(uint32_t client, bool isBlocked)> displayBlocked = [](uint32_t, bool) {};
-    // Opens the windows of the wall, where the head has them; empty: nodes have, or nobody.
+    // Opens the windows of the wall. Empty: the head has no such windows.
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
-    std::vector<OtherCanvas> canvases; // as of WindowPicture::others
-    // When a picture has gone wherever it had to; by any thread of the output.
+    std::vector<OtherCanvas> canvases; // in the order of WindowPicture::others
+    // Called when a picture was passed to all its outputs, by any thread of the output.
     std::function<void(uint32_t client, uint32_t frame)> done;
     std::function<void(const std::string&)> say;
 };
 
 struct OutputTotals {
-    int64_t wallFrames = 0;  // of the main window that are out
+    int64_t wallFrames = 0; // completed frames of the main window
     int64_t savedPictures = 0;
     int64_t lastSavedFrame = 0;
 };
 
-// add(), waitForRoom(), clientGone() and windowGone() from any thread.
+// Thread safety: add(), waitForRoom(), clientGone() and windowGone() may be called from any thread.
 class PictureOutput {
 public:
-    // file: null when nothing is saved. It is called by the output's thread only.
+    // file: null if no picture is saved. Only the output's thread calls it.
     PictureOutput(PictureOutputConfig config, std::unique_ptr<PictureSink> file);
-    ~PictureOutput(); // drop(), and waits for the picture that is being shown
+    ~PictureOutput(); // calls drop() and waits for the current picture
 
-    void add(WindowPicture picture); // never blocks
-    void waitForRoom();              // until the queue is short again, or the output ends
+    void add(WindowPicture picture); // does not block
+    void waitForRoom(); // waits until the queue is short or the output ends
     void clientGone(uint32_t client);
-    void windowGone(uint32_t client, uint32_t window); // after its last picture
+    void windowGone(uint32_t client, uint32_t window); // called after its last picture
 
-    // Writes what is queued and completes the files; false when the deadline passed before that.
+    // Writes the queued pictures and completes the files. Returns false if the deadline passes first.
     bool finish(Deadline deadline);
-    void drop(); // what is queued; nobody waits for room any more
+    void drop(); // drops queued pictures and ends waitForRoom()
     [[nodiscard]] OutputTotals totals() const;
 
 private:
@@ -95,13 +95,13 @@ private:
         std::unique_ptr<PictureSink> wall;
         bool fileFailed = false, wallFailed = false;
     };
-    std::vector<Shown> canvases_; // as in the config
+    std::vector<Shown> canvases_; // in the order of config_.canvases
     MainWindow mainWindow_;
     NativeWindows natives_;
 
-    mutable std::mutex mutex_; // what follows
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    std::deque<WindowPicture> queue_; // a null picture: the window, or (0) the client is gone
+    std::deque<WindowPicture> queue_; // null picture: the window is gone; window 0: the client
     OutputTotals totals_;
     bool finishing_ = false;
     bool dropped_ = false;

@@ -88,7 +88,8 @@ void ProgramTable::reply(uint32_t id, Reply reply) {
 }
 
 void ProgramTable::news(const wire::News& news, const std::string& text) {
-    if (const auto client = find(news.client)) (void)client->memory().putNews(news, text); // full: nobody looks
+    // dropped if the program reads no news
+    if (const auto client = find(news.client)) (void)client->memory().putNews(news, text);
 }
 
 void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {

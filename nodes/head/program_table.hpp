@@ -1,5 +1,5 @@
-// The captured programs of the session: who may come in, who is there, and what those that have gone
-// left for the report.
+// The captured programs of the session. Admits programs, lists the current ones, and keeps the numbers of ended ones
+// for the report.
 #pragma once
 
 #include <atomic>
@@ -19,19 +19,19 @@
 namespace mural {
 
 struct ProgramTerms {
-    capture::Welcome welcome{}; // alike for all programs but for the id
+    capture::Welcome welcome{}; // equal for all programs except the id
     std::string extensions;
     bool framesDoneWhenShown = false; // --display app without latency
     uint32_t chunkCount = capture::kDefaultChunks;
 };
 
-// All calls from any thread but for drainAll(), reap() and endAll() (one thread).
+// Thread-safe, except that drainAll(), reap() and endAll() need one thread.
 class ProgramTable : public ProgramHost, public CaptureEvents {
 public:
     struct Events {
-        std::function<void(const CaptureClient& client)> came; // before its first packet
+        std::function<void(const CaptureClient& client)> came; // called before its first packet
         std::function<void(size_t count)> countChanged;
-        std::function<void(uint32_t client, const std::string& line)> gone; // line: for the user, or empty
+        std::function<void(uint32_t client, const std::string& line)> gone; // line: for the user; may be empty
     };
 
     ProgramTable(ProgramTerms terms, NodeSet& nodes, Events events);
@@ -41,31 +41,32 @@ public:
     void programWelcomed(uint32_t client, FileDescriptor socket) override;
     void programEnded(uint32_t client, const std::string& problem) override;
 
-    void refuseFrom(const std::string& reason); // programs that come from now on; before drainAll()
+    void refuseFrom(const std::string& reason); // refuses programs from now on; call before drainAll()
     void reply(uint32_t client, Reply reply);
     void news(const wire::News& news, const std::string& text);
     void credit(uint32_t client, uint32_t finished, uint32_t shown);
-    // Credit does not wait for the program's windows while its X server does not answer.
+    // While the X server does not answer, the credit does not wait for the program's windows.
     void displayBlocked(uint32_t client, bool isBlocked);
-    // True: the program puts this picture into its window itself (capture::OwnWindow); `done` is called when it has it.
+    // Returns true if the program itself puts this picture into its window (capture::OwnWindow). `done` is called when
+    // the program has the picture.
     bool giveOwnPicture(uint32_t client, uint32_t frame, uint64_t nativeWindow, const Picture& picture, std::function<void()> done);
-    void beat();         // tells all programs that the head runs; from its main loop
-    void tellHeadGone(); // all programs go on alone
+    void beat(); // sends the heartbeat to all programs; called by the main loop
+    void tellHeadGone(); // all programs continue without Mural
 
-    // Everything published at this moment goes to the nodes; the pumps end, answers and credit still
-    // reach the programs. `tick` is called meanwhile.
+    // Sends everything published before this call to the nodes and ends the pumps. Replies and credit still reach the
+    // programs. Calls `tick` meanwhile.
     void drainAll(Deadline deadline, const std::function<void()>& tick);
-    void reap();    // joins the threads of programs that have gone
-    void endAll();  // tells them and joins all; the nodes must not hold a pump up any more
+    void reap(); // joins the threads of ended programs
+    void endAll(); // informs the programs and joins all threads; requires that no node blocks a pump
 
-    // Of an X display of the program, which may have ended; empty: not told.
+    // Returns the name of an X display of the program, even after its end. Empty: unknown.
     [[nodiscard]] std::string displayName(uint32_t client, uint32_t number) const;
-    [[nodiscard]] CaptureCounts counts() const; // over all programs, past and present
-    [[nodiscard]] std::vector<ProgramStatus> status() const; // of those that are there, but for their frames
+    [[nodiscard]] CaptureCounts counts() const; // sum over current and ended programs
+    [[nodiscard]] std::vector<ProgramStatus> status() const; // current programs, without their frames
 
 private:
     using Clients = std::map<uint32_t, std::shared_ptr<CaptureClient>>;
-    struct Progress { // of a program, as it was told last
+    struct Progress { // latest progress sent to a program
         uint32_t finished = 0, shown = 0;
         bool isBlocked = false; // its X server does not answer
     };
@@ -80,16 +81,17 @@ private:
     NodeSet& nodes_;
     const Events events_;
 
-    mutable std::mutex mutex_; // what follows
+    mutable std::mutex mutex_; // guards the members below
     std::string refusal_;
     bool headGone_ = false;
     uint32_t nextId_ = 1;
-    Clients admitted_; // not welcomed yet
+    Clients admitted_; // no Welcome was sent yet
     Clients clients_;
     std::map<uint32_t, Progress> progress_;
     std::vector<std::shared_ptr<CaptureClient>> gone_;
     CaptureCounts goneCounts_;
-    std::map<uint32_t, std::vector<std::string>> goneDisplays_; // of programs with windows: pictures may come later
+    // of ended programs with windows, because pictures may follow
+    std::map<uint32_t, std::vector<std::string>> goneDisplays_;
 };
 
 } // namespace mural

@@ -11,7 +11,7 @@ namespace mural {
 struct QueueTotals {
     std::string name;
     bool chunks = false; // chunks of draws, in one row of columns; otherwise tiles
-    int columns = 0, rows = 0; // 0: the size of the picture is not known yet
+    int columns = 0, rows = 0; // 0: the size of the picture is unknown yet
     int width = 0, height = 0; // of a tile, pixels
     int64_t frames = 0; // compared frames
     int64_t moves = 0; // frames after which pieces moved

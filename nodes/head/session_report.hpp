@@ -1,4 +1,4 @@
-// The last line of a session: its numbers (docs/reference/control-protocol.md).
+// The numbers of a session, sent as its last line (docs/reference/control-protocol.md).
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@
 
 namespace mural {
 
-// Of the leader of a swap barrier.
+// Numbers of a swap barrier, from its leader.
 struct SwapTotals {
-    int64_t members = 0; // 0: it leads none
-    int64_t swaps = 0;   // that were shown by more than one
-    int64_t medianNs = 0, p99Ns = 0, mostNs = 0; // between the first and the last of them
+    int64_t members = 0; // 0: the node leads none
+    int64_t swaps = 0; // swaps shown by more than one member
+    int64_t medianNs = 0, p99Ns = 0, mostNs = 0; // time between the first and the last member of a swap
     int64_t clockErrorNs = 0;
 };
 
@@ -30,16 +30,16 @@ struct NodeTotals {
     double replaySeconds = 0;   // CPU time of its replay thread: drawing…
     double readbackSeconds = 0; // …and reading the pictures
     int64_t commands = 0;
-    int64_t exchangeBytes = 0;  // of pictures, to other nodes
-    int64_t pictureBytes = 0, pictureRawBytes = 0; // of those that went to the head packed, and before
+    int64_t exchangeBytes = 0; // picture bytes sent to other nodes
+    int64_t pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
     SwapTotals swaps;
     bool lost = false;
-    int64_t joins = 0;          // how often it came back
-    int64_t snapshotBytes = 0;  // that it was given then, the last time…
-    double secondsToBack = 0;   // …and from its loss to its first frame
+    int64_t joins = 0; // number of returns
+    int64_t snapshotBytes = 0; // at the last return: size of the snapshot…
+    double secondsToBack = 0; // …and time from the loss to the first frame
 };
 
-// From a node's Bye; what is missing or odd stays 0.
+// Reads a node's Bye. Missing or invalid values stay 0.
 void readBye(const std::string& json, NodeTotals& totals);
 
 struct SessionNumbers {
@@ -56,21 +56,21 @@ struct SessionNumbers {
     std::vector<NodeTotals> nodes;
 };
 
-// [{"name": …}]; null: no tiles move.
+// Returns [{"name": …}]. Null: no tiles move.
 nlohmann::json queuesJson(const std::vector<QueueTotals>& queues);
 
-// {"records": …, "rawBytes": …}; null: it is off.
+// Returns {"records": …, "rawBytes": …}. Null: delta coding is off.
 nlohmann::json economyJson(const EconomyCounts& counts);
 
 nlohmann::json reportOf(const SessionNumbers& numbers);
 
-// "room", "frames", "answer", "window", "nothing".
+// Returns "room", "frames", "answer", "window" or "nothing".
 std::string waitName(capture::Wait wait);
-// "front buffer", …: why `--verify` could not compare a frame.
+// Returns why `--verify` could not compare a frame, such as "front buffer".
 std::string reasonText(capture::Uncompared reason);
 nlohmann::json waitSecondsOf(const CaptureCounts& counts); // {"room": 0.5, …}
 
-// Frames per second and bytes per frame of the last second or so. One thread.
+// Frames per second and bytes per frame over about the last second. Used by one thread.
 class ProgressMeter {
 public:
     struct Rates {

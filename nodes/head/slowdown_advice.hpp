@@ -1,6 +1,6 @@
-// Tells the user when the program's own drawing defeats the chosen way to divide the work.
+// Reports to the user that the program's own drawing defeats the chosen division of the work.
 //
-// Each line appears once per session.  Thread-safe.
+// Reports each line once per session. Thread-safe.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@ class SlowdownAdvice {
     SlowdownAdvice(const SessionConfig& config, int nodeCount, ControlChannel& control)
         : tiling_(config.tiling), nodeCount_(nodeCount), control_(control) {}
 
-    // flags: those of a FrameDoneMessage.  sharesDraws: the node draws one range of a database.
+    // flags: FrameDoneMessage::flags. sharesDraws: the node draws one range of a database.
     void frameDone(uint32_t flags, bool sharesDraws);
 
     bool drawnWhole() const { return drawnWhole_; } // see SessionReport
@@ -27,7 +27,7 @@ class SlowdownAdvice {
     const Tiling tiling_;
     const int nodeCount_;
     ControlChannel& control_;
-    std::atomic<int64_t> unsharedFrames_{0}; // of all nodes, since the start
+    std::atomic<int64_t> unsharedFrames_{0}; // sum over all nodes since the start
     std::atomic<bool> keepsPicture_{false};
     std::atomic<bool> keepsAreas_{false};
     std::atomic<bool> drawnWhole_{false};

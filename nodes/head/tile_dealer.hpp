@@ -1,7 +1,7 @@
 // Assigns the tiles of tile queues before each frame, from the times that nodes report (balancer/queue), and derives
 // the area of each node.
 //
-// The times are those of one window (FrameTimes). The other nodes take over a lost node's tiles until it returns.
+// FrameTimes selects the window whose times count. The other nodes take over a lost node's tiles until it returns.
 #pragma once
 
 #include <cstdint>

@@ -18,9 +18,9 @@ namespace mural::launch {
 
 namespace {
 
-constexpr size_t kMaxEnded = 256; // programs that ended unseen; build tools and shells leave no note
+constexpr size_t kMaxEnded = 256; // ended programs that the capture did not see; build tools and shells write no note
 
-// What is worth opening: the rest of a program's hundred libraries is not.
+// Returns whether the library may draw. The other libraries of a program, about a hundred, are not opened.
 bool mayDraw(std::string_view path) {
     for (const char* beginning : {"libGL", "libEGL", "libOSMesa", "libvulkan", "libX11.", "libxcb."}) {
         if (baseName(path).starts_with(beginning)) return true;
@@ -28,7 +28,7 @@ bool mayDraw(std::string_view path) {
     return false;
 }
 
-// Files that are mapped for execution, by /proc/PID/maps.
+// Lists the files that are mapped for execution, from /proc/PID/maps.
 UnseenProgram runningProgram(pid_t pid) {
     UnseenProgram found;
     char name[4096];
@@ -48,11 +48,11 @@ UnseenProgram runningProgram(pid_t pid) {
 
 struct Finding {
     Drawing drawing = Drawing::None;
-    std::string program, path; // of the library that draws
-    bool glvnd = false; // is there as well
+    std::string program, path; // path: the library that draws
+    bool glvnd = false; // the program also has GLVND
 };
 
-// The way of drawing that is not GLVND's; the more special one when there are several.
+// Returns the program's way of drawing outside GLVND. Of several, returns the most specific one.
 Finding findingOf(const UnseenProgram& program) {
     Finding found{Drawing::None, std::string(baseName(program.program)), {}};
     const auto rank = [](Drawing d) {
@@ -63,7 +63,7 @@ Finding findingOf(const UnseenProgram& program) {
     for (const std::string& path : program.libraries) {
         const Drawing drawing = mayDraw(path) ? drawingOf(path) : Drawing::None;
         found.glvnd = found.glvnd || drawing == Drawing::Glvnd || (drawing == Drawing::OwnGl && fronted);
-        if (drawing == Drawing::OwnGl && fronted) continue; // would have been seen
+        if (drawing == Drawing::OwnGl && fronted) continue; // the preload library captures it
         if (rank(drawing) <= rank(found.drawing)) continue;
         found.drawing = drawing;
         found.path = path;
@@ -98,7 +98,7 @@ std::string describeBypass(const std::vector<UnseenProgram>& programs, bool fail
         const Finding found = findingOf(program);
         if (failed && found.drawing == Drawing::X11) continue;
         const std::string text = describe(found);
-        // Of several programs, one that draws by X11 only may be the launcher's dialog.
+        // Prefers other programs to one that draws with X11 only, which may be the launcher's dialog.
         if (text.empty() || (!line.empty() && (found.drawing == Drawing::X11 || best.drawing == Drawing::OwnGl))) continue;
         best = found;
         line = text;
@@ -128,7 +128,7 @@ BypassWatch::~BypassWatch() { close(fd_); }
 
 std::string BypassWatch::notesPath() const { return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_); }
 
-// Notes are lines of fields between tabs: "say" and a text, or "ended", the program, its libraries.
+// Notes are lines of fields between tabs: "say" and a text, or "ended", the program and its libraries.
 void BypassWatch::readNotes() {
     char part[16384];
     std::string text;

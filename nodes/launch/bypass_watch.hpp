@@ -1,5 +1,5 @@
-// By what programs draw when Mural sees nothing of it: from the libraries of their processes, and from
-// what the library inside them leaves when they end. Owned by one thread.
+// Determines how programs draw if the capture sees none of it. Examines the libraries of their processes, and the notes
+// that the capture library writes when a program ends. Owned by one thread.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ struct UnseenProgram {
     std::vector<std::string> libraries; // paths
 };
 
-// One line about the programs: which one draws past Mural, by what, and what to do; empty when their
-// libraries do not tell. Of one that failed, to have loaded no GL yet tells nothing.
+// Returns one line: the program that draws without the capture library, its method, and the remedy. Empty: the
+// libraries show nothing. failed: the program ended with an error, so a missing GL library proves nothing.
 std::string describeBypass(const std::vector<UnseenProgram>& programs, bool failed = false);
 
 // The same about one that runs GL without the capture library; empty where it has the library, or no GL.
@@ -35,13 +35,13 @@ public:
 
     // The file for the captured programs' notes (MURAL_NOTES).
     [[nodiscard]] std::string notesPath() const;
-    // Lines that captured programs want said, each once.
+    // Returns new lines from the notes of captured programs, each once.
     std::vector<std::string> news();
-    // Looks at processes that run now.
+    // Examines running processes. Returns a line as describeBypass().
     [[nodiscard]] std::string lookAt(const std::vector<pid_t>& processes) const;
-    // One line for each program that runs GL without the capture library, the first time it is seen; empty: there is none.
+    // Returns one line for each program that uses GL without the capture library, at its first detection. Empty: none.
     std::string uncaptured(const std::vector<pid_t>& processes);
-    // About the programs that have ended; failed: the one that was started, with an error.
+    // Returns a line about programs that have ended. failed: the started program ended with an error.
     [[nodiscard]] std::string aboutEnded(bool failed) const { return describeBypass(ended_, failed); }
 
 private:

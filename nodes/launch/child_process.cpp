@@ -64,7 +64,7 @@ int reasonFrom(int fd) {
 } // namespace
 
 void rememberSignals() {
-    if (remembered.known) return; // later they are ours already
+    if (remembered.known) return; // later calls would save the handlers of this process
     sigprocmask(SIG_SETMASK, nullptr, &remembered.mask);
     sigaction(SIGPIPE, nullptr, &remembered.pipe);
     sigaction(SIGXFSZ, nullptr, &remembered.fileSize);

@@ -37,7 +37,7 @@ bool isOurEglList(std::string_view list) {
     return std::any_of(files.begin(), files.end(), [](auto f) { return baseName(f) == kEglVendorFileName; });
 }
 
-// Takes over a vendor variable and keeps the user's own value where the interposer finds it.
+// Replaces a vendor variable and saves the user's value for the interposer.
 void replaceVendor(Environment& environment, std::string_view name, std::string_view keptName, std::string_view ours, bool alreadyOurs) {
     const auto before = environment.get(name);
     if (!alreadyOurs) {

@@ -1,5 +1,5 @@
-// The environments of processes that `mural run` starts. The program's environment gains the capture library; those of
-// head and nodes lose it and all other preloaded libraries. Value types without global state.
+// The environments of processes that `mural run` starts. The program's environment gains the capture library. The
+// environments of head and nodes lose it and all other preloaded libraries. Value types without global state.
 #pragma once
 
 #include <optional>

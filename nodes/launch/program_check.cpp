@@ -40,7 +40,7 @@ bool hasFileCapabilities(const std::string& path) {
     return getxattr(path.c_str(), "security.capability", nullptr, 0) > 0;
 }
 
-// The reason why the loader would not preload our library into this program; empty if it would.
+// Returns why the loader would not preload the capture library into this program. Empty: it would.
 std::string loaderObstacle(const std::string& path, const ExecutableFacts& facts) {
     struct stat file {};
     if (stat(path.c_str(), &file) != 0) return {};

@@ -58,7 +58,7 @@ void ProgramSupervisor::readSignals() {
     while (read(signalFd_, &info, sizeof info) == sizeof info) {
         const int number = static_cast<int>(info.ssi_signo);
         if (number == SIGCHLD) {
-            program_.running(); // collects its status if it was this one
+            program_.running(); // collects the status of program_
             std::set<pid_t> known = ours_;
             known.insert(program_.pid());
             reapAdopted(known);
@@ -68,7 +68,7 @@ void ProgramSupervisor::readSignals() {
             if (number == SIGTERM) asked_.insert(program_.pid());
             end(kStopGraceMs);
         } else if (!programRunning()) {
-            stopSignal_ = number; // nobody else is there to take it
+            stopSignal_ = number; // no program is left to receive it
         } else if (!fromTerminal(info)) {
             program_.signal(number);
         }
@@ -91,7 +91,8 @@ void ProgramSupervisor::end(int64_t graceMs) {
     if (!killAt_ || wanted.leftNs() < killAt_->leftNs()) killAt_ = wanted;
 }
 
-// A process that was about to fork when it was asked to end leaves one that nobody has asked.
+// Sends SIGTERM to processes that have not received it. A process may fork before it handles the signal, and its child
+// receives none.
 void ProgramSupervisor::askNewcomers() {
     for (const ProcessFacts& p : descendantsOf(getpid(), ours_)) {
         if (p.state != 'Z' && !isOurs(p.session) && asked_.insert(p.pid).second) kill(p.pid, SIGTERM);

@@ -1,8 +1,8 @@
 // Supervises one program and its descendants: forwards signals, tracks descendants that leave the process group, and
 // ends all of them on request.
 //
-// The program stays in our process group, so the terminal sends Ctrl-C to it directly and it is not sent twice. A
-// SIGINT from another process is forwarded.
+// The program stays in the process group of this process, so the terminal sends Ctrl-C to it directly. This class then
+// does not send it again. It forwards a SIGINT from another process.
 //
 // Owned by one thread, which waits for signalFd() and calls tick() at least ten times per second.
 #pragma once

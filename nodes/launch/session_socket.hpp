@@ -13,8 +13,8 @@ namespace mural::launch {
 // `mural run`. A later create() removes the folder of a session whose processes were all killed.
 class SessionSocket {
 public:
-    // session: as of newSessionName(). runtimeFolder: $XDG_RUNTIME_DIR, which is used where it belongs to this user and
-    // the path is short enough for a socket; else the system's folder for temporary files.
+    // session: a result of newSessionName(). runtimeFolder: $XDG_RUNTIME_DIR. It is used if it belongs to this user and
+    // the path is short enough for a socket. Otherwise the system's folder for temporary files is used.
     static Result<std::unique_ptr<SessionSocket>> create(const std::string& session, const std::string& runtimeFolder);
     SessionSocket(const SessionSocket&) = delete;
     SessionSocket& operator=(const SessionSocket&) = delete;

@@ -16,7 +16,7 @@ public:
 
     // Leader only: listens for the other members. Returns the port; 0: not the leader.
     Result<uint16_t> open();
-    // Connects to the leader. On error, tells the user and shows this node's windows without the barrier.
+    // Connects to the leader. On error, reports it to the user and shows this node's windows without the barrier.
     void follow(const std::string& host, uint16_t port);
 
     [[nodiscard]] SwapBarrier* barrier() const { return barrier_.get(); }

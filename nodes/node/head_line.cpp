@@ -17,7 +17,8 @@ constexpr int64_t kChangeOverMs = 20'000;
 constexpr int64_t kConnectMs = 20'000;
 constexpr int64_t kJoinMs = 10'000;
 
-// host:port, and the secret that proves that this node was asked for, and the head to it that it is the head.
+// Connects to host:port. The secret proves to the head that it started this node, and to the node that the peer is the
+// head.
 Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options) {
     auto where = splitHostPort(options.connect);
     if (!where || where->host.empty() || where->port == 0) return Error{"--connect " + options.connect + ": give it as HOST:PORT, with a port from 1 to 65535"};
@@ -43,7 +44,7 @@ Result<std::unique_ptr<HeadLine>> HeadLine::open(const NodeOptions& options) {
     return line;
 }
 
-// The card and the address are those by which the head is reached.
+// Uses the network interface and the address that reach the head.
 Result<rsp::GroupOptions> HeadLine::groupOptions(const std::string& stream, const std::string& secretHex, const std::string& name) const {
     auto description = parseConnectionDescription(stream);
     if (!description) return description.error();
@@ -94,7 +95,7 @@ Result<void> HeadLine::changeOver(uint64_t skipBytes) {
     return had ? Result<void>() : had.error();
 }
 
-// Nothing but the command in hand may be in its batch: what is behind it is read another way.
+// Requires that the current command is the last one in its batch, because later packets are read in another way.
 Result<void> HeadLine::endBatch() {
     if (!inBatch_) return {};
     uint32_t stream = 0;
@@ -109,7 +110,7 @@ Result<void> HeadLine::unpackBatches(uint64_t storeBytes, const std::string& pla
     economy::Limits limits;
     limits.storeBytes = storeBytes;
     if (auto ended = endBatch(); !ended) return ended;
-    unpacker_.reset(); // its memory first
+    unpacker_.reset(); // frees the old memory before the new allocation
     batchDecoder_ = std::make_unique<economy::BatchDecoder>();
     unpacker_ = std::make_unique<economy::Unpacker>(limits);
     if (!unpacker_->ready()) return Error{"no memory for a store of " + std::to_string(storeBytes >> 20) + " MiB; give a smaller one by --store"};
@@ -175,7 +176,8 @@ Result<economy::BatchHead> HeadLine::readBatch() {
 Result<void> HeadLine::readPayload(uint32_t sizeBytes, uint32_t mostBytes) {
     if (sizeBytes > mostBytes) return Error{"the head sent a packet of " + std::to_string(sizeBytes) + " bytes: it is of another build"};
     payload_.resize(sizeBytes);
-    return line().read(payload_, Deadline::never()); // the head may be stopped in the middle; its end closes the connection
+    // no deadline: the head may pause in the middle; its end closes the connection
+    return line().read(payload_, Deadline::never());
 }
 
 void HeadLine::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
@@ -192,7 +194,7 @@ void HeadLine::sendLocked(wire::NodeMessage type, std::span<const std::byte> a, 
     const wire::MessageHeader header{static_cast<uint32_t>(type), static_cast<uint32_t>(a.size() + b.size())};
     for (const auto part : {std::as_bytes(std::span(&header, 1)), a, b}) {
         if (broken_ || part.empty()) continue;
-        broken_ = !connection_->write(part, Deadline::never()).ok(); // as in readPayload()
+        broken_ = !connection_->write(part, Deadline::never()).ok(); // no deadline, as in readPayload()
     }
     if (!broken_) connection_->flush();
 }

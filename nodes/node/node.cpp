@@ -44,7 +44,7 @@ double processCpuSeconds() {
     return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
-// Near the GPU. Not where the CPU draws: the driver's threads need all cores then.
+// Places the replay thread near the GPU. Not with software rendering, because the driver's threads then need all cores.
 std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
     if (!setup.placeThreads) return "not placed: --no-placement";
     if (gl::drawsWithoutGpu(renderer)) return "not placed: drawn without a GPU";
@@ -70,8 +70,8 @@ int64_t processCpuNowNs() {
 }
 
 constexpr int64_t kMeetMs = 10'000;
-constexpr int64_t kSlower = 2; // times what the work takes, added by the planted fault
-constexpr int kLostPacket = 10; // of those given to a node that catches up, by the planted fault
+constexpr int64_t kSlower = 2; // planted fault: additional time, as a multiple of the work's time
+constexpr int kLostPacket = 10; // planted fault: index of the packet that a node in resync drops
 
 class Node {
 public:
@@ -82,7 +82,7 @@ public:
         while (!finished_ && !line_->broken()) {
             std::span<const std::byte> payload;
             const auto header = line_->next(payload);
-            if (!header) return finished_ ? 0 : 1; // the head is gone: nothing is left to do
+            if (!header) return finished_ ? 0 : 1; // the connection to the head is lost
             heartbeat.begins();
             if (!take(header.value(), payload)) return 1;
             heartbeat.ended();
@@ -98,19 +98,21 @@ private:
         return goesOn;
     }
 
-    // Time at work goes up to now. What follows is not waiting for anybody.
+    // Adds the time since beganNs_ to the work. Called before a wait, which does not count.
     void countWork() {
         const int64_t nowNs = workNowNs();
-        const int64_t workedNs = std::max<int64_t>(nowNs - std::exchange(beganNs_, nowNs), 0); // two clocks are read one after the other
+        // the difference of two clocks may decrease
+        const int64_t workedNs = std::max<int64_t>(nowNs - std::exchange(beganNs_, nowNs), 0);
         if (slow_) std::this_thread::sleep_for(std::chrono::nanoseconds(kSlower * workedNs));
         busyNs_ += workedNs * (slow_ ? 1 + kSlower : 1);
     }
 
-    // Nodes that draw by the same cores keep each other waiting, whatever tiles they have: there their own work alone counts.
-    // What the thread of pictures does is added to their frames' work.
+    // Returns the CPU time of this process if nodes share the cores of a machine, otherwise the time. Nodes on the same
+    // cores delay each other whatever their tiles are, so only their own work counts there. The CPU time of the picture
+    // thread is excluded: PictureSender adds it to the frames.
     [[nodiscard]] int64_t workNowNs() const { return countsCpu_ ? processCpuNowNs() - (sender_ ? sender_->cpuNs() : 0) : monotonicNowNs(); }
 
-    // What the head is told, in order.
+    // Sends a message to the head, in order with pictures.
     void tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {}) {
         if (!sender_) return line_->send(type, a, b);
         stuck_ = !sender_->tell(type, a, b) || stuck_;
@@ -248,14 +250,14 @@ private:
         return {};
     }
 
-    // What was had before is forgotten.
+    // Starts with an empty dictionary.
     bool unpackBatches() {
         const char* const plant = std::getenv("MURAL_PLANT");
         const auto unpacks = line_->unpackBatches(static_cast<uint64_t>(setup_.storeBytes), plant ? plant : "");
         return unpacks || fail(unpacks.error().message);
     }
 
-    // With the nodes that draw the other ranges of this one's picture.
+    // Opens the exchange with the nodes that draw the other ranges of the same picture.
     Result<void> openExchange(nlohmann::json& ready) {
         const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
         if (!secret) return Error{"the head gave no secret for pictures between nodes: " + secret.error().message};
@@ -269,16 +271,17 @@ private:
         if (const char* plant = std::getenv("MURAL_PLANT")) composer.plant = plant;
         exchange_ = std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.life}, secret.value());
         composer_ = std::make_unique<PictureComposer>(composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
-        // Also where nobody comes at first: one that was lost comes to those that are there.
+        // Every node listens, even one without initial peers: a restarted node connects to those present.
         if (auto listening = exchange_->listen(setup_.exchangeHere); !listening) return Error{"no pictures of other nodes can be taken: " + listening.error().message};
         ready["exchange"] = endpointText(setup_.exchangeHere ? "127.0.0.1" : line_->ownAddress(), exchange_->port());
         return {};
     }
 
-    // Nodes send to the collector only.
+    // Returns whether nodes send to the collector only.
     [[nodiscard]] bool isStar() const { return setup_.composition == compositor::nameOf(compositor::Strategy::Serial); }
 
-    // The nodes with the ranges before this one's; the others come here. One that comes back goes to those that are there.
+    // Returns whether this node opens the connection to the node of `rank`. A node connects to all lower ranks and
+    // accepts the higher ones. A restarted node connects to all.
     [[nodiscard]] bool goesTo(int rank) const {
         const int own = setup_.pass.range;
         return rank != own && (setup_.catchesUp || rank < own) && (!isStar() || rank == 0 || own == 0);
@@ -289,7 +292,7 @@ private:
         for (int rank = 0; exchange_ && rank < setup_.pass.ranges; ++rank) {
             if (!goesTo(rank)) continue;
             const auto where = addressIn(json, "pictures", setup_.collector + rank);
-            if (!where && setup_.catchesUp) continue; // it is lost, or not so far
+            if (!where && setup_.catchesUp) continue; // that node is lost or not ready
             if (!where) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
             const auto connected = exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kMeetMs));
             if (!connected) line_->sendText(wire::NodeMessage::Log, "the node with range " + std::to_string(rank + 1) + " is not reached at " + endpointText(where->host, where->port) + ": " + connected.error().message + "; what nodes would send each other there is missing");
@@ -301,7 +304,7 @@ private:
         return true;
     }
 
-    // Where that node listens. No address: it runs where the head does.
+    // Returns the address at which `node` listens. Without a host it runs on the head's machine.
     [[nodiscard]] std::optional<HostPort> addressIn(const nlohmann::json& all, const char* what, int node) const {
         const auto found = all.is_object() ? all.find(what) : all.end();
         if (found == all.end() || !found->is_object()) return std::nullopt;
@@ -312,12 +315,12 @@ private:
     }
 
     bool fail(const std::string& why) {
-        line_->sendText(wire::NodeMessage::Log, why); // the head says it
+        line_->sendText(wire::NodeMessage::Log, why); // the head prints it
         if (line_->broken()) std::cerr << "mural node: " << why << '\n';
         return false;
     }
 
-    // What programs may be promised: what any kind of context offers here.
+    // Returns the capabilities that programs can use: the extensions of every kind of context here.
     static nlohmann::json probe(gl::Platform& platform) {
         nlohmann::json ready;
         ready["host"] = hostName();
@@ -356,13 +359,13 @@ private:
         return true;
     }
 
-    // It has left out what its pictures need. Nobody shall see that.
+    // Ends this node, because it has skipped frames that its pictures depend on. No picture of it is shown from now on.
     void unsound() {
         if (catchesUp_ || std::exchange(unsound_, true)) return;
         line_->sendText(wire::NodeMessage::Log, "its frames build on earlier ones that it did not draw while it caught up; it ends, to be started again and draw them");
     }
 
-    // Some node is a member from here on. If it is this one: what was before, others have told.
+    // A node becomes a member. If it is this node, other nodes have sent all earlier messages.
     bool newMember(std::span<const std::byte> arguments) {
         uint32_t words[4] = {};
         if (arguments.size() < sizeof words) return false;
@@ -375,14 +378,15 @@ private:
         }
         shareWith(static_cast<int>(node), life, arguments.subspan(sizeof words));
         if (catchesUp_ && !itself) return true;
-        if (std::exchange(catchesUp_, false)) busyNs_ = 0; // what it was given is no frame's work
+        if (std::exchange(catchesUp_, false)) busyNs_ = 0; // the resync is no frame's work
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
         tell(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
         return true;
     }
 
-    // If that node draws a range of this one's picture: from here on with it, and without the `absent`.
+    // Composes with `node` from now on, and without the ranks of `absent`. No effect unless it draws a range of the
+    // same picture.
     void shareWith(int node, uint32_t life, std::span<const std::byte> absent) {
         const auto rankOf = [this](int other) { return other >= setup_.collector && other < setup_.collector + setup_.pass.ranges ? other - setup_.collector : -1; };
         if (!composer_ || !replay_ || rankOf(node) < 0) return;
@@ -465,7 +469,7 @@ private:
             if (sender_) picture = f.read();
             countWork();
             if (windows_) showTiles(f);
-            beganNs_ = workNowNs(); // who takes the picture may have let it wait
+            beganNs_ = workNowNs(); // excludes a wait for the barrier or the display
         }
         countWork();
         wire::FrameDoneMessage done{};
@@ -484,7 +488,7 @@ private:
         done.calls = calls_[f.client] + (f.client == clientInHand_ ? replay_->counts().commands - callsBefore_ : 0);
         if (!picture) return tell(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
         stuck_ = !sender_->send({headerOf(f), std::move(picture), done}) || stuck_;
-        beganNs_ = workNowNs(); // it may have waited for room
+        beganNs_ = workNowNs(); // excludes a wait for queue space
     }
 
     void windowGone(uint32_t client, uint32_t window) {
@@ -525,7 +529,7 @@ private:
         config.alpha = setup_.windowPixels ? PictureAlpha::Kept : PictureAlpha::Dropped;
         const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) { line_->send(type, a, b); };
         sender_ = std::make_unique<PictureSender>(config, send, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
-        beganNs_ = workNowNs(); // its clock counts from now
+        beganNs_ = workNowNs(); // the sender's clock starts now
     }
 
     void showTiles(const ReplayOutputs::Frame& f) {
@@ -538,7 +542,7 @@ private:
 
     void sayBye() {
         nlohmann::json bye;
-        if (sender_ && !sender_->finish()) return; // it has said so
+        if (sender_ && !sender_->finish()) return; // the sender has logged the reason
         const ReplayCounts counts = replay_ ? replay_->counts() : ReplayCounts{};
         bye["commands"] = counts.commands;
         bye["malformed"] = counts.malformed;
@@ -557,36 +561,36 @@ private:
     }
 
     const std::unique_ptr<HeadLine> line_;
-    const std::string name_; // by which the head knows this node
+    const std::string name_; // identifies this node to the head
     NodeSetup setup_;
-    std::unique_ptr<BarrierPart> swaps_; // null: its windows wait for nobody
+    std::unique_ptr<BarrierPart> swaps_; // null: no swap barrier
     std::unique_ptr<TileWindows> windows_;
     std::unique_ptr<Replay> replay_;
-    std::unique_ptr<PictureSender> sender_; // null: the head wants no pictures
-    bool stuck_ = false; // nothing goes out any more
+    std::unique_ptr<PictureSender> sender_; // null: the head requests no pictures
+    bool stuck_ = false; // the sender failed: no message leaves this node
     uint64_t lastCpuNs_ = 0;
     bool countsCpu_ = false;
-    int64_t beganNs_ = 0; // when the work in hand was begun…
-    int64_t busyNs_ = 0;  // …and all before it, since the last frame
-    bool slow_ = false;   // a fault for tests to find
-    std::map<uint32_t, uint64_t> calls_; // by client, of packets that are done with
-    std::map<uint32_t, uint32_t> frames_; // by client: the last one
+    int64_t beganNs_ = 0; // workNowNs() at the start of the current work
+    int64_t busyNs_ = 0; // completed work since the last frame
+    bool slow_ = false; // planted fault
+    std::map<uint32_t, uint64_t> calls_; // commands by client, in completed packets
+    std::map<uint32_t, uint32_t> frames_; // latest frame by client
     std::set<std::pair<uint32_t, uint32_t>> saidEightBits_; // client, window
-    bool unsound_ = false;      // it can't draw what the others draw
-    bool losesPackets_ = false; // a fault for tests to find
-    int packetsGiven_ = 0;      // while it catches up
-    bool catchesUp_ = false; // it replays what others have told of
-    uint32_t clientInHand_ = 0;          // whose packet was taken last…
-    uint64_t callsBefore_ = 0;           // …and the records of all clients before it
+    bool unsound_ = false; // this node can't draw the picture of the others
+    bool losesPackets_ = false; // planted fault
+    int packetsGiven_ = 0; // packets received during the resync
+    bool catchesUp_ = false; // in resync: replays commands whose messages the head has from other nodes
+    uint32_t clientInHand_ = 0; // client of the current or latest packet
+    uint64_t callsBefore_ = 0; // commands of all clients before that packet
     bool finished_ = false;
-    std::unique_ptr<PictureExchange> exchange_; // null: no other node has a part of this one's picture
+    std::unique_ptr<PictureExchange> exchange_; // null: this node draws all ranges of its picture
     std::unique_ptr<PictureComposer> composer_; // by it
 };
 
 } // namespace
 
 int runNode(const NodeOptions& options) {
-    signal(SIGPIPE, SIG_IGN); // a display that ends is an error of its windows, and not the node's end
+    signal(SIGPIPE, SIG_IGN); // the end of a display is an error of its windows and must not end the node
     const PauseWatch pauseWatch;
     auto line = HeadLine::open(options);
     if (!line) {

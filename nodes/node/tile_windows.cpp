@@ -5,10 +5,11 @@
 namespace mural {
 
 Result<std::unique_ptr<TileWindows>> TileWindows::open(const NodeSetup& setup) {
-    return std::unique_ptr<TileWindows>(new TileWindows(setup)); // the windows come with the first picture's size
+    // the windows open with the first picture, whose size they need
+    return std::unique_ptr<TileWindows>(new TileWindows(setup));
 }
 
-// The window of an area, or those of tiles.
+// Returns the window of the node's area, or the windows of its tiles.
 std::vector<TileWindow> TileWindows::windowsFor(int width, int height) const {
     if (setup_.hasArea) {
         const PixelViewport whole{0, 0, width, height};
@@ -41,7 +42,7 @@ Result<void> TileWindows::reopen(int width, int height) {
 }
 
 Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barrier) {
-    const bool other = !setup_.pass.shown.none(); // of a canvas with pixels of its own
+    const bool other = !setup_.pass.shown.none(); // the canvas has its own resolution
     const int width = other ? f.picture.w : static_cast<int>(f.config.width), height = other ? f.picture.h : static_cast<int>(f.config.height);
     const uint64_t native = uint64_t{f.config.nativeHigh} << 32 | f.config.nativeLow;
     if (mainWindow_.swapped(f.client, f.window, f.config.width, f.config.height, native) == 0) return {};

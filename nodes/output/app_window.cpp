@@ -9,7 +9,7 @@ namespace mural {
 
 namespace {
 
-constexpr int kLargestSide = 32767; // of a window, and of coordinates in the X protocol
+constexpr int kLargestSide = 32767; // limit of X windows and coordinates
 constexpr uint8_t kBadWindow = 3;
 constexpr uint8_t kBadMatch = 8;
 constexpr uint8_t kBadDrawable = 9;
@@ -78,11 +78,11 @@ Result<void> AppWindow::show(int64_t frame, const Picture& picture) {
 }
 
 Result<void> AppWindow::showBefore(Deadline deadline, const Picture& picture) {
-    // What an earlier call left behind when its deadline passed: shared memory may still be read.
+    // Completes puts of an earlier call whose deadline passed. The server may still read their shared memory.
     if (Result<void> settled = settle(0, deadline); !settled)
         return settled;
     firstError_.reset();
-    // More than one attempt: shared memory was refused, or the window's id names a new window now.
+    // Further attempts follow if shared memory was refused, or if the window's id now belongs to a new window.
     for (int attempt = 0; attempt < 3; ++attempt) {
         if (windowGone_ || !converter_) {
             if (Result<void> adopted = adopt(deadline); !adopted)
@@ -103,7 +103,7 @@ Result<void> AppWindow::showBefore(Deadline deadline, const Picture& picture) {
                              config_.window, x_->displayName())};
 }
 
-// A server that answers, but slowly, is not blocked: a second attempt would take as long.
+// A slow server that answers is not blocked, because a second attempt would take as long.
 Error AppWindow::missed(XAnswer answer) {
     isBlocked_ = answer == XAnswer::TimedOut && !hasAnswered_;
     return x_->describe(answer);
@@ -114,8 +114,8 @@ std::string AppWindow::describe() const {
                        shared_ != nullptr ? "shared memory" : "through the connection");
 }
 
-// Sets windowGone_ when the window is not, or no longer, the program's. That is an error only for one that never was:
-// programs end while their last pictures are on the way.
+// Sets windowGone_ if the window is not the program's, or no longer. That is an error only at the first check, because
+// programs end while their last pictures are in transfer.
 Result<void> AppWindow::confirmOwner(Deadline deadline) {
     if (!owner_)
         return {};
@@ -133,7 +133,7 @@ Result<void> AppWindow::confirmOwner(Deadline deadline) {
                              config_.window, x_->displayName())};
 }
 
-// Looks at the window: its pixels and its size. Not finding it is not an error.
+// Reads the window's pixel format and size. A missing window is not an error.
 Result<void> AppWindow::adopt(Deadline deadline) {
     xcb_connection_t* c = x_->get();
     const auto attributesAsked = xcb_get_window_attributes(c, config_.window);
@@ -200,7 +200,7 @@ Result<AppWindow::Outcome> AppWindow::showOnce(const Picture& picture, Deadline 
     return judge();
 }
 
-// True when there is shared memory of that size now.
+// Ensures shared memory of that size. Returns false if there is none.
 bool AppWindow::sharedFor(size_t sizeBytes, Deadline deadline) {
     if (!config_.sharedMemory || sharedRefused_)
         return false;
@@ -223,8 +223,8 @@ AppWindow::putShared(const Picture& picture, int width, int height, Deadline dea
     return settle(0, deadline);
 }
 
-// In bands as high as one request allows; in columns too where even one row is too long. Never more
-// bytes unanswered than the socket takes at once: so no write can block past the deadline.
+// Sends bands as high as one request allows, and columns if one row is too long. The unanswered bytes never exceed the
+// socket's buffer, so no write can block past the deadline.
 Result<void>
 AppWindow::putInPieces(const Picture& picture, int width, int height, Deadline deadline) {
     const size_t requestBytes = size_t{x_->setup().maximum_request_length} * 4;
@@ -248,13 +248,13 @@ AppWindow::putInPieces(const Picture& picture, int width, int height, Deadline d
                 static_cast<uint8_t>(converter_->format().depth), static_cast<uint32_t>(sizeBytes),
                 reinterpret_cast<uint8_t*>(piece_.data())));
             if (Result<void> ready = settle(mostUnanswered - 1, deadline); !ready || firstError_)
-                return ready; // after an error the number may be another window's
+                return ready; // after an error the id may belong to another window
         }
     }
     return {};
 }
 
-// `part` in the picture's coordinates; X wants the topmost row first.
+// `part` is in coordinates of the picture. X expects the topmost row first.
 void AppWindow::convert(const Picture& picture,
                         const PixelViewport& part,
                         std::byte* target) const {
@@ -270,7 +270,7 @@ void AppWindow::sent(xcb_void_cookie_t request) {
     unanswered_.push_back({request, x_->sendFence()});
 }
 
-// Waits until no more than `keep` puts are unanswered.
+// Waits until at most `keep` puts are unanswered.
 Result<void> AppWindow::settle(size_t keep, Deadline deadline) {
     xcb_flush(x_->get());
     while (unanswered_.size() > keep) {
@@ -287,7 +287,7 @@ Result<void> AppWindow::settle(size_t keep, Deadline deadline) {
     return {};
 }
 
-// What the errors of one picture mean.
+// Derives the outcome from the errors of one picture.
 Result<AppWindow::Outcome> AppWindow::judge() {
     if (firstError_ == nullptr)
         return Outcome::Done;
@@ -296,7 +296,7 @@ Result<AppWindow::Outcome> AppWindow::judge() {
         windowGone_ = true;
         return Outcome::Done;
     }
-    converter_.reset(); // look at the window again: another one may have its id now
+    converter_.reset(); // another window may have the id now: read it again
     if (shared_ != nullptr && error->error_code != kBadMatch) {
         shared_.reset();
         sharedRefused_ = true;

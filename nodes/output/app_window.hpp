@@ -1,14 +1,13 @@
-// Shows pictures in a window that belongs to another X client: the program's own window. Pixels keep alpha and all
-// bits per channel of the window's visual.
+// Shows pictures in a window that belongs to another X client: the program's own window. Pixels keep alpha and all bits
+// per channel of the window's visual.
 //
-// Pixels are put 1:1, upper left corners together, clipped to the window; child windows stay on
-// top, as with OpenGL. A window that is gone, unmapped or of another size is not an error. One
-// thread.
+// Pixels are put 1:1, aligned at the upper left corners and clipped to the window. Child windows stay on top, as with
+// OpenGL. A window that is gone, unmapped or of another size is not an error. Used by one thread.
 //
-// X window numbers are given again: after a program has ended, the next program's windows often have
-// them. So the window's owner is checked before each picture. X has no request that draws only if the
-// owner is still the same. Between the check and the picture lies no wait of ours: in that moment the
-// window would have to end, its client to disconnect, another client to connect and to create a window.
+// X reuses window ids: the windows of the next program often have the ids of an ended one. The window's owner is
+// therefore checked before each picture. X has no request that draws only if the owner is still the same. No wait of
+// this process lies between the check and the picture. A wrong window is possible only if, within that moment, the
+// window ends, its client disconnects, and another client connects and creates a window.
 #pragma once
 
 #include <cstdint>
@@ -29,32 +28,32 @@ namespace mural {
 struct AppWindowConfig {
     std::string displayName;   // empty: DISPLAY
     uint32_t window = 0;       // XID
-    std::optional<WindowOwner> owner; // nothing is painted in a window that is not of this program
-    int64_t timeoutMs = 5'000; // of open() and of each show(); another client may grab the server
-    bool sharedMemory = true;  // where the server has it
-    size_t pieceBytes = 32 * 1024; // without shared memory: pixels per request
+    std::optional<WindowOwner> owner; // pictures are painted only in a window of this program
+    int64_t timeoutMs = 5'000; // limit of open() and of each show(); another client may grab the server
+    bool sharedMemory = true; // used if the server supports it
+    size_t pieceBytes = 32 * 1024; // bytes of pixels per request without shared memory
 };
 
 class AppWindow : public PictureSink {
 public:
-    // Fails without a display, or when the window's pixels can't be written. A window that is not there
-    // (any more: a program may end right after its last swap) is no error: windowGone() tells. Neither is a
-    // display that does not answer in time: show() connects then.
+    // Errors: no display, or a visual whose pixels can't be written. A missing window is no error, because a program
+    // may end right after its last swap: see windowGone(). A display that does not answer in time is no error either:
+    // show() connects then.
     static Result<std::unique_ptr<AppWindow>> open(AppWindowConfig config);
 
-    // Returns when the server has done it. After a deadline has passed it can be called again.
+    // Returns after the server has drawn the picture. May be called again after a deadline has passed.
     Result<void> show(int64_t frame, const Picture& picture) override;
     [[nodiscard]] bool isBlocked() const override { return isBlocked_; }
     Result<void> finish() override { return {}; } // every picture was complete when show() returned
     [[nodiscard]] bool takesDeepPictures() const override { return true; }
     [[nodiscard]] std::string describe() const override;
 
-    // The last picture found no window; the next one looks again.
+    // Returns whether the last picture found no window. The next picture checks again.
     [[nodiscard]] bool windowGone() const { return windowGone_; }
     [[nodiscard]] bool usesSharedMemory() const { return shared_ != nullptr; }
 
 private:
-    // A put of pixels that the server has not answered for yet.
+    // A put of pixels that the server has not acknowledged.
     struct Put {
         xcb_void_cookie_t request;
         unsigned fence;
@@ -82,17 +81,17 @@ private:
     AppWindowConfig config_;
     std::unique_ptr<XConnection> x_;
     std::optional<WindowOwnerCheck> owner_;
-    bool ownerChecked_ = false; // before some picture
-    std::optional<PixelConverter> converter_; // of the window's visual
+    bool ownerChecked_ = false; // a check before an earlier picture has completed
+    std::optional<PixelConverter> converter_; // for the window's visual
     xcb_gcontext_t gc_ = 0;                   // 0: none yet
     std::unique_ptr<SharedPixels> shared_;
     bool sharedRefused_ = false;
     std::vector<std::byte> piece_;
     std::deque<Put> unanswered_;
-    XOwned<xcb_generic_error_t> firstError_; // of the puts of one picture
+    XOwned<xcb_generic_error_t> firstError_; // first error among the puts of one picture
     bool windowGone_ = false;
-    bool isBlocked_ = false;  // as of the last show()
-    bool hasAnswered_ = false; // the server, since show() began
+    bool isBlocked_ = false; // state of the last show()
+    bool hasAnswered_ = false; // the server has answered since show() began
 };
 
 } // namespace mural

@@ -1,6 +1,6 @@
-// A child process that reads its standard input from us: with deadlines for its start, its input and its end. It has
-// its own process group, so that Ctrl-C does not end it before its file is complete. If this process dies, the child
-// reads end-of-file and completes the file.
+// A child process that reads its standard input from this process: with deadlines for its start, its input and its end.
+// It has its own process group, so that Ctrl-C does not end it before its file is complete. If this process dies, the
+// child reads end-of-file and completes the file.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ private:
     std::string program_;
     pid_t pid_ = -1;
     int pidFd_ = -1; // -1 without kernel support
-    int inputFd_ = -1; // our end of a socket pair
+    int inputFd_ = -1; // this process's end of a socket pair
     int outputFd_ = -1; // memfds
     int errorFd_ = -1;
     int status_ = 0; // of waitpid, after the child has ended

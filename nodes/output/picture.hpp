@@ -1,5 +1,5 @@
-// Finished pictures as the outputs take them: rows bottom first as in OpenGL, tightly packed, 4
-// bytes per pixel. Windows with an alpha channel show the alpha; all other outputs ignore it.
+// Finished pictures for the outputs: bottom row first as in OpenGL, tightly packed, 4 bytes per pixel. Windows with an
+// alpha channel show the alpha; all other outputs ignore it.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace mural {
 
 constexpr size_t kPictureBytesPerPixel = 4;
 
-// A view of somebody else's pixels.
+// A view of pixels in memory that it does not own.
 struct Picture {
     int width = 0;
     int height = 0;
@@ -37,7 +37,7 @@ public:
     OwnedPicture(int width, int height) { resize(width, height); }
     explicit OwnedPicture(const Picture& source) { assign(source); }
 
-    // Contents are unspecified afterwards when the size or the format changes. Memory is kept for the next use.
+    // Leaves the contents unspecified if the size or the format changes. Keeps the memory for reuse.
     void resize(int width, int height, PictureFormat format = PictureFormat::Bgra8);
     void assign(const Picture& source);
 
@@ -66,25 +66,25 @@ void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureForma
 // are dropped.
 void copyInto(OwnedPicture& target, int x, int y, const Picture& source);
 
-// The part of `source` inside `rectangle`; pixels of the rectangle outside of `source` are black.
+// Returns the part of `source` inside `rectangle`. Pixels of the rectangle outside of `source` are black.
 OwnedPicture cutOut(const Picture& source, const PixelViewport& rectangle);
 
-// Lowest row becomes the topmost one.
+// Mirrors the picture vertically.
 void flipRows(OwnedPicture& picture);
 
 struct PictureDifference {
-    bool sizesDiffer = false;     // then nothing else is compared
-    int64_t differingPixels = 0;  // with any difference in B, G or R
-    int largestDifference = 0;    // of one channel, 0 to 255
-    int firstX = -1, firstY = -1; // lowest row first, then from the left; -1 when there is none
+    bool sizesDiffer = false; // true: the pixels are not compared
+    int64_t differingPixels = 0; // pixels with a difference in B, G or R
+    int largestDifference = 0; // in one channel, 0 to 255
+    int firstX = -1, firstY = -1; // lowest row first, then from the left; -1: no difference
 
     [[nodiscard]] bool same() const { return !sizesDiffer && differingPixels == 0; }
 };
 
-// Both pictures are Bgra8.
+// Requires Bgra8 pictures.
 PictureDifference comparePictures(const Picture& expected, const Picture& actual);
 
-// One line for people, e.g. "12 of 307200 pixels differ, by at most 3, first at x 10, y 20".
+// Returns a line such as "12 of 307200 pixels differ, by at most 3, first at x 10, y 20".
 std::string
 describe(const PictureDifference& difference, const Picture& expected, const Picture& actual);
 

@@ -1,4 +1,4 @@
-// Where finished pictures go: a folder, a video, a window. Owned and called by one thread.
+// A sink of finished pictures: a folder, a video or a window. Owned and called by one thread.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,26 @@ public:
     PictureSink() = default;
     PictureSink(const PictureSink&) = delete;
     PictureSink& operator=(const PictureSink&) = delete;
-    // Ends the output as finish() does, but without telling what went wrong.
+    // Ends the output as finish() does, but drops the error.
     virtual ~PictureSink() = default;
 
-    // Takes the picture; its memory is the caller's again on return.
+    // Shows the picture. Its memory can be reused on return.
     virtual Result<void> show(int64_t frame, const Picture& picture) = 0;
 
     // Returns false if show() and showPair() take Bgra8 only.
     [[nodiscard]] virtual bool takesDeepPictures() const { return false; }
 
-    // The same with one for each eye; who has no room for two shows them side by side.
+    // Shows one picture per eye. The default shows both side by side.
     virtual Result<void> showPair(int64_t frame, const EyePair& eyes) {
         sideBySide(eyes, bothEyes_);
         return show(frame, bothEyes_.view());
     }
 
-    // Nothing more comes: completes what is open. Further calls do nothing.
+    // Completes open files. Further calls do nothing.
     virtual Result<void> finish() = 0;
 
-    // The last show() failed only because a display has not answered in time: the same picture may be shown again.
+    // Returns true if the last show() failed only because a display did not answer in time. The same picture may be
+    // shown again.
     [[nodiscard]] virtual bool isBlocked() const { return false; }
 
     [[nodiscard]] virtual std::string describe() const = 0;

@@ -18,8 +18,8 @@ bool contiguous(uint32_t mask) {
     return (low & (low + 1)) == 0;
 }
 
-// Returns what OpenGL stores in a channel of another bit count [OpenGL 4.6 §2.3.5]: value / largest * newLargest, rounded.
-// A mask without bits gives zeros.
+// Returns OpenGL's value of a channel with another bit count [OpenGL 4.6 §2.3.5]: value / largest * newLargest,
+// rounded. A mask without bits gives zeros.
 std::vector<uint32_t> channelTable(int sourceBits, uint32_t mask) {
     const uint64_t largest = (uint64_t{1} << sourceBits) - 1;
     std::vector<uint32_t> table(largest + 1);

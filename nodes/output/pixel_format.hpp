@@ -12,9 +12,9 @@
 namespace mural {
 
 struct PixelFormat {
-    int depth = 24;        // bits that mean something
-    int bitsPerPixel = 32; // bits that are stored
-    int rowPadBits = 32;   // rows begin on multiples of this
+    int depth = 24; // significant bits
+    int bitsPerPixel = 32; // stored bits
+    int rowPadBits = 32; // rows start at multiples of this
     uint32_t redMask = 0xff0000;
     uint32_t greenMask = 0x00ff00;
     uint32_t blueMask = 0x0000ff;
@@ -22,11 +22,11 @@ struct PixelFormat {
 
 class PixelConverter {
 public:
-    // Fails for formats that have no red, green and blue, or pixels that are no whole bytes.
+    // Errors: a format without red, green and blue, or with pixels of a fraction of a byte.
     static Result<PixelConverter> make(const PixelFormat& format);
 
     [[nodiscard]] size_t bytesPerPixel() const { return bytesPerPixel_; }
-    [[nodiscard]] size_t rowBytes(int width) const; // with its padding
+    [[nodiscard]] size_t rowBytes(int width) const; // includes the padding
     [[nodiscard]] const PixelFormat& format() const { return format_; }
 
     // Reads `pixels` pixels of a Picture of that format; writes pixels * bytesPerPixel() bytes, least significant byte

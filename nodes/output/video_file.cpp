@@ -22,7 +22,7 @@ Result<std::set<std::string>> listEncoders(const std::string& program) {
     return encodersIn(process.value()->output());
 }
 
-// Detects early what ffmpeg would report after the first picture.
+// Detects errors early that ffmpeg would report after the first picture.
 Result<void> checkFolder(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code error;

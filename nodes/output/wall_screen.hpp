@@ -88,11 +88,11 @@ public:
     Result<void> draw(std::vector<TileBuffer>& buffers);
     // Shows the drawn pictures in quick succession, not before `atNs` (monotonicNowNs()).
     Result<void> present(int64_t atNs = 0);
-    // When the server had the last pictures (monotonicNowNs()).
+    // Returns the time at which the server had the last pictures (monotonicNowNs()).
     [[nodiscard]] int64_t presentedNs() const { return presentedNs_; }
     Result<void> arrange(const std::vector<TileWindow>& tiles);
 
-    // Processes events of the server.
+    // Processes events from the server.
     Result<void> doWork();
     void waitForEvents(int wakeFd, int64_t timeoutNs) {
         session_->waitForEvents(wakeFd, timeoutNs);

@@ -32,7 +32,7 @@ private:
     WallWindowsConfig config_;
     const TileGrid grid_;
     const std::function<void(const std::string&)> say_;
-    std::string whyNot_; // why windows have no buffer per eye; "": they have, or it is not known yet
+    std::string whyNot_; // reason for no buffer per eye; "": windows have one, or it is unknown yet
     std::unique_ptr<WallWindows> windows_;
     int width_ = 0, height_ = 0;
 };

@@ -68,20 +68,20 @@ public:
     // Draws all pictures, then shows them in quick succession.
     Result<void> showAll(std::span<const TilePicture> pictures);
 
-    // The same in two steps, for a swap barrier between them. `present` shows the pictures drawn last, not before
-    // `atNs` (monotonicNowNs()), and returns when the server had them.
+    // Performs showAll() in two steps, for a swap barrier between them. present() shows the latest drawn pictures,
+    // not before `atNs` (monotonicNowNs()). It returns when the server has them.
     Result<void> drawAll(std::span<const TilePicture> pictures);
     Result<int64_t> present(int64_t atNs);
 
     // True if the windows have a buffer per eye.
     [[nodiscard]] bool stereo() const;
-    // Why requested stereo is not available; otherwise "".
+    // Returns why requested stereo is not available; otherwise "".
     [[nodiscard]] std::string whyNotStereo() const;
 
     // Moves and resizes the same number of tiles. Pictures follow with the next show.
     Result<void> arrange(const std::vector<TileWindow>& tiles);
 
-    // The user has asked to close a window.
+    // Returns whether the user has requested to close a window.
     [[nodiscard]] bool closeRequested() const;
 
     [[nodiscard]] std::string describe() const; // e.g. "4 windows on :0 (OpenGL, llvmpipe)"

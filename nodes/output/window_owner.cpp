@@ -12,7 +12,7 @@ namespace {
 
 using namespace window_mark;
 
-// None with onlyIfExists: the server has no such atom.
+// Returns XCB_ATOM_NONE if `onlyIfExists` is set and the server has no such atom.
 Result<xcb_atom_t> propertyOf(XConnection& x, uint32_t client, bool onlyIfExists, Deadline deadline) {
     const PropertyName name(client);
     const auto asked = xcb_intern_atom(x.get(), onlyIfExists, name.length, name.text);

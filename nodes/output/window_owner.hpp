@@ -10,7 +10,7 @@
 
 namespace mural {
 
-// The drawable of a program, as its stream names it.
+// A drawable of a program, as named in its stream.
 struct WindowOwner {
     uint64_t sessionKey = 0;
     uint32_t client = 0, window = 0;
@@ -20,15 +20,15 @@ class WindowOwnerCheck {
 public:
     explicit WindowOwnerCheck(WindowOwner owner)
         : owner_(owner) {}
-    // Takes one round trip, the first time two. Returns false for a window that does not exist. Errors are those of the
-    // connection.
+    // Takes one round trip, the first time two. Returns false for a window that does not exist. Errors: the connection
+    // fails.
     Result<bool> owns(XConnection& x, xcb_window_t window, Deadline deadline);
 
 private:
     Result<void> findProperty(XConnection& x, Deadline deadline);
 
     const WindowOwner owner_;
-    xcb_atom_t property_ = XCB_ATOM_NONE; // none: the server has not heard of it yet
+    xcb_atom_t property_ = XCB_ATOM_NONE; // none: the server has no such atom yet
 };
 
 // Marks a window that a process of Mural has created in place of the program.

@@ -16,8 +16,8 @@ namespace mural {
 
 namespace {
 
-// The part of connecting for which xcb knows no deadline happens in a thread that is left alone
-// when the server doesn't answer; it then cleans up by itself.
+// xcb has no deadline for this part of connecting. It runs in a thread, which is abandoned if the server does not
+// answer. The thread then frees its own resources.
 struct Attempt {
     std::mutex mutex;
     std::condition_variable done;
@@ -29,8 +29,7 @@ struct Attempt {
 void connectInto(const std::shared_ptr<Attempt>& attempt, const std::string& displayName) {
     xcb_connection_t* connection =
         xcb_connect(displayName.empty() ? nullptr : displayName.c_str(), nullptr);
-    // Asked here because later calls of the extension would wait for the answer, without a
-    // deadline.
+    // Queried here, because later calls of the extension would wait for the reply without a deadline.
     if (xcb_connection_has_error(connection) == 0)
         xcb_get_extension_data(connection, &xcb_shm_id);
     const std::lock_guard lock(attempt->mutex);
@@ -98,7 +97,7 @@ XConnection::XConnection(xcb_connection_t* connection, std::string displayName)
     socklen_t addressBytes = sizeof address;
     local_ = ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &addressBytes) == 0 &&
              address.ss_family == AF_UNIX;
-    // The kernel accounts more than the bytes themselves: a quarter of the limit always fits.
+    // The kernel counts more than the bytes themselves. A quarter of the limit always fits.
     int bufferBytes = 0;
     socklen_t optionBytes = sizeof bufferBytes;
     ::getsockopt(fd, SOL_SOCKET, SO_SNDBUF, &bufferBytes, &optionBytes);
@@ -144,7 +143,7 @@ XAnswer XConnection::check(xcb_void_cookie_t request,
         xcb_discard_reply(connection_, fence);
         xcb_discard_reply(connection_, request.sequence);
     }
-    // Answered: the server is past the request, so this returns at once.
+    // The server has passed the request, so this returns at once.
     if (answer == XAnswer::Reply)
         error.reset(xcb_request_check(connection_, request));
     return answer;

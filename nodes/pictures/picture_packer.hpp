@@ -1,5 +1,6 @@
-// A node's end of pictures that travel packed: of each window only the tiles that are not as in the picture before, each run of them by the codec
-// that gets it there soonest, or as the user wants it. Bytes: docs/reference/wire-format.md, "Packed pictures".
+// The sending end of transferred pictures. Encodes only the tiles of a window that differ from its previous picture.
+// Each run of tiles uses the codec that delivers it soonest, or the user's codec. Format: docs/reference/wire-format.md, "Packed
+// pictures".
 #pragma once
 
 #include <cstdint>
@@ -18,15 +19,16 @@ namespace mural {
 // Alpha in lossy codecs, which store it separately and take Bgra8 only. Lossless codecs keep all bits of any PictureFormat.
 enum class PictureAlpha { Kept, Dropped };
 
-// Used by one thread. The other end gets all that is packed, in this order.
+// Used by one thread. The receiver must decode all packed pictures in the same order.
 class PicturePacker {
 public:
-    // codec: as of PlaneEncoder.
+    // codec: a name for PlaneEncoder.
     explicit PicturePacker(const std::string& codec, PictureAlpha alpha = PictureAlpha::Kept);
 
-    // Rows bottom first, 4 bytes per pixel, B G R A; neither side is 0. The bytes live until the next call. Errors: no memory.
+    // Encodes rows bottom first, 4 bytes per pixel, B G R A. Requires width and height above 0. The bytes are valid
+    // until the next call. Errors: out of memory.
     [[nodiscard]] Result<std::span<const std::byte>> pack(uint32_t client, uint32_t window, int32_t width, int32_t height, const std::byte* bgra);
-    // The link carried so much in a time in which it was never idle.
+    // Reports a measurement of the link: bytes sent in a time without idle periods.
     void transferred(uint64_t bytes, int64_t ns) { codec_.transferred(bytes, ns); }
     void windowGone(uint32_t client, uint32_t window) { windows_.erase({client, window}); }
     void clientGone(uint32_t client);
@@ -36,7 +38,7 @@ public:
 
 private:
     LinkEncoder codec_;
-    const bool asColours_; // codecs that lose something must know which byte is red
+    const bool asColours_; // lossy codecs need the real channel order
     const PictureAlpha alpha_;
     std::map<std::pair<uint32_t, uint32_t>, compositor::UnchangedTilesEncoder> windows_;
     std::vector<std::byte> packed_, rgba_;

@@ -11,8 +11,8 @@ namespace mural {
 
 namespace {
 
-constexpr size_t kMostFrames = 2;         // one is packed, one waits
-constexpr size_t kTellingBytes = 1 << 16; // fewer vanish in buffers
+constexpr size_t kMostFrames = 2; // one in encoding and one waiting
+constexpr size_t kTellingBytes = 1 << 16; // smaller transfers measure buffers instead of the link
 
 std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
     return config.codec == kRawCodec ? nullptr : std::make_unique<PicturePacker>(config.codec, config.alpha);
@@ -31,7 +31,7 @@ PictureSender::~PictureSender() {
         stop_ = true;
     }
     changed_.notify_all();
-    thread_.join(); // each job has an end
+    thread_.join(); // every job terminates
 }
 
 int64_t PictureSender::cpuNs() const {
@@ -40,8 +40,8 @@ int64_t PictureSender::cpuNs() const {
     return int64_t{t.tv_sec} * kNsPerS + t.tv_nsec;
 }
 
-// False: the condition did not come true within roomMs. A message that is being sent does not count: a head that is
-// stopped takes none, and its end breaks the connection.
+// Returns false if the condition stays false for roomMs. The time of a message in transfer does not count: a paused
+// head reads nothing, and its end closes the connection.
 template <class Condition> bool PictureSender::await(std::unique_lock<std::mutex>& lock, Condition condition) {
     constexpr int64_t kSliceMs = 100;
     for (int64_t waitedMs = 0; !condition();) {
@@ -53,7 +53,7 @@ template <class Condition> bool PictureSender::await(std::unique_lock<std::mutex
     return true;
 }
 
-// A message that is larger than all that may wait goes when nothing else does.
+// A message larger than mostBytes waits until no other message is queued.
 bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
     std::unique_lock lock(mutex_);
     const auto room = [&] { return isFrame ? frames_ < kMostFrames : waitingBytes_ == 0 || waitingBytes_ + bytes <= config_.mostBytes; };
@@ -80,7 +80,7 @@ bool PictureSender::tell(wire::NodeMessage type, std::span<const std::byte> a, s
     {
         const std::lock_guard lock(mutex_);
         if (stuck_) return false;
-        alone = idle(); // and stays so, for only this thread gives jobs
+        alone = idle(); // stays true: only this thread queues jobs
     }
     if (alone) {
         send_(type, a, b);
@@ -113,7 +113,7 @@ bool PictureSender::finish() {
 void PictureSender::run() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [this] { return !jobs_.empty() || stop_; }); // ends with the object
+        changed_.wait(lock, [this] { return !jobs_.empty() || stop_; }); // the destructor ends the wait
         if (jobs_.empty()) return;
         Job job = std::move(jobs_.front());
         jobs_.pop_front();
@@ -122,7 +122,7 @@ void PictureSender::run() {
         const bool isFrame = job.frame.has_value();
         const size_t bytes = job.message ? job.message->bytes.size() : 0;
         work(job);
-        job = {}; // its memory is free before the next one is read
+        job = {}; // frees the memory before the next picture is read
         lock.lock();
         working_ = false;
         frames_ -= isFrame ? 1 : 0;
@@ -149,7 +149,7 @@ void PictureSender::forget(const Forgotten& forgotten) {
     else packer_->clientGone(forgotten.client);
 }
 
-// What GL has lost is black: the frame is one all the same.
+// Sends a black picture if the readback fails, so that the frame still completes.
 void PictureSender::sendFrame(Frame& frame) {
     const wire::PictureHeader& h = frame.header;
     const int64_t beganCpuNs = threadCpuNowNs();
@@ -171,7 +171,7 @@ void PictureSender::sendFrame(Frame& frame) {
         if (packed) {
             send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
             if (packed->size() >= kTellingBytes) packer_->transferred(packed->size(), monotonicNowNs() - packedNs);
-        } else { // no memory for it
+        } else { // out of memory
             send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
         }
     } else {

@@ -1,4 +1,5 @@
-// Waits for pictures, packs and sends them by a thread of its own, so that the next frame is drawn meanwhile. What else a node tells the head keeps its place among them.
+// Waits for pictures, encodes and sends them on its own thread, while the node draws the next frame. Other messages of
+// the node keep their order relative to pictures.
 #pragma once
 
 #include <atomic>
@@ -23,46 +24,49 @@
 namespace mural {
 
 struct PictureSenderConfig {
-    std::string codec = "raw"; // as of PlaneEncoder; raw: pictures go as they are
+    std::string codec = "raw"; // a name for PlaneEncoder; raw: no encoding
     PictureAlpha alpha = PictureAlpha::Kept;
-    Zoom way;                  // they go smaller by this (picture_way.hpp)
-    bool addsCpu = false;      // what a picture takes here is added to its frame's work: nodes share cores. Else the longer one counts, for both go on at once
-    size_t mostBytes = size_t{64} << 20; // of messages behind pictures
-    int64_t readMs = 60'000;   // until GL has drawn a picture
-    int64_t roomMs = 120'000;  // until there is room for another, without the time of sending: longer than a picture may take to be read
+    Zoom way; // reduction for the transfer (picture_way.hpp)
+    // nodes share cores: adds this thread's CPU time to the frame's work. Otherwise the longer of the two counts,
+    // because both run in parallel
+    bool addsCpu = false;
+    size_t mostBytes = size_t{64} << 20; // limit of messages queued after pictures
+    int64_t readMs = 60'000; // limit for GL to complete a picture
+    int64_t roomMs = 120'000; // limit of the wait for queue space, without sending time; must exceed readMs
 };
 
-// All calls from one thread.
+// Thread safety: all calls must come from one thread.
 class PictureSender {
 public:
-    // One message of up to two parts; called by either thread, one at a time. It lasts as long as the head takes nothing, and ends with it.
+    // Sends one message of up to two parts. Called by the caller's thread or the sender's, never by both at a time.
+    // Blocks while the head reads nothing, and returns when the head ends.
     using Send = std::function<void(wire::NodeMessage, std::span<const std::byte>, std::span<const std::byte>)>;
     using Log = std::function<void(const std::string&)>;
     struct Frame {
         wire::PictureHeader header{};
         std::unique_ptr<PictureRead> picture;
-        wire::FrameDoneMessage done{}; // sent behind it; time that reading and packing take is added here
+        wire::FrameDoneMessage done{}; // sent after the picture; the sender adds the time of readback and encoding
     };
 
     PictureSender(PictureSenderConfig config, Send send, Log log);
-    // What was given still goes out.
+    // Completes all queued jobs.
     ~PictureSender();
     PictureSender(const PictureSender&) = delete;
     PictureSender& operator=(const PictureSender&) = delete;
 
-    // Waits while two others are on their way. False: nothing goes out any more.
+    // Queues a frame. Waits while two others are queued or in work. Returns false if sending has failed.
     bool send(Frame frame);
-    // Behind all that was given; by the calling thread where nothing is under way.
+    // Sends a message after all queued jobs. The calling thread sends it if the sender is idle.
     bool tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {});
-    // Of pictures that come later: nothing builds on those of this window, or of this program's.
+    // Forgets the last pictures of the window, or of all windows of the client. Later pictures do not refer to them.
     void windowGone(uint32_t client, uint32_t window);
     void clientGone(uint32_t client);
-    // Until all has gone out. False: it did not, in time.
+    // Waits until all jobs are sent. Returns false after roomMs without progress, or if sending has failed.
     bool finish();
 
-    // CPU time of the thread so far.
+    // Returns the CPU time of the sender's thread.
     [[nodiscard]] int64_t cpuNs() const;
-    // Of all packed pictures; after finish().
+    // Size of all encoded pictures before encoding. Requires finish().
     [[nodiscard]] uint64_t rawBytes() const { return packer_ ? packer_->rawBytes() : 0; }
     [[nodiscard]] uint64_t packedBytes() const { return packer_ ? packer_->packedBytes() : 0; }
     [[nodiscard]] bool packs() const { return packer_ != nullptr; }
@@ -74,9 +78,9 @@ private:
     };
     struct Forgotten {
         uint32_t client;
-        std::optional<uint32_t> window; // nothing: all of them
+        std::optional<uint32_t> window; // nullopt: all windows
     };
-    struct Job { // one of them
+    struct Job { // exactly one member is set
         std::optional<Frame> frame;
         std::optional<Message> message;
         std::optional<Forgotten> forgotten;
@@ -86,23 +90,23 @@ private:
     void work(Job& job);
     void sendFrame(Frame& frame);
     void forget(const Forgotten& forgotten);
-    void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b); // by the thread
+    void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b); // called by thread_
     bool give(Job job, size_t bytes, bool isFrame);
     template <class Condition> bool await(std::unique_lock<std::mutex>& lock, Condition condition);
-    [[nodiscard]] bool idle() const { return jobs_.empty() && !working_; } // mutex_ is held
+    [[nodiscard]] bool idle() const { return jobs_.empty() && !working_; } // requires mutex_
 
     const PictureSenderConfig config_;
     const Send send_;
     const Log log_;
-    const std::unique_ptr<PicturePacker> packer_; // null: pictures go as they are. Used by whoever works
+    const std::unique_ptr<PicturePacker> packer_; // null: no encoding; used by thread_
     std::vector<std::byte> black_, onWay_;
     bool saidLost_ = false;
-    std::atomic<bool> sending_{false}; // the thread is in send_
+    std::atomic<bool> sending_{false}; // thread_ is in send_
 
-    std::mutex mutex_; // of all below
+    std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::deque<Job> jobs_;
-    size_t frames_ = 0, waitingBytes_ = 0; // given and not done: frames; bytes of messages
+    size_t frames_ = 0, waitingBytes_ = 0; // frames, and bytes of messages, that are queued or in work
     bool working_ = false, stop_ = false, stuck_ = false;
     std::thread thread_;
     clockid_t clock_{};

@@ -14,7 +14,7 @@ struct Placement {
 };
 
 // Binds the calling thread, within its current affinity. With a single NUMA node or without such a device it changes
-// nothing, and the description says so.
+// nothing, and the description gives the reason.
 Placement placeThread(DeviceKind kind);
 
 } // namespace mural

@@ -28,7 +28,7 @@ Result<FileDescriptor> connectAbstract(const std::string& session) {
     return socket;
 }
 
-// Whole, by the deadline; a descriptor that comes along goes into `memory`.
+// Fills `into` completely before the deadline. Stores a received descriptor in `memory`.
 bool receiveWhole(int socket, std::span<std::byte> into, FileDescriptor* memory, Deadline deadline) {
     while (!into.empty()) {
         pollfd look{socket, POLLIN, 0};
@@ -80,7 +80,7 @@ CaptureLink::CaptureLink(FileDescriptor socket, const capture::Welcome& welcome,
 
 CaptureLink::~CaptureLink() { leave(); }
 
-// A chunk for each packet: so a freed chunk says that a packet is with the nodes.
+// Uses one chunk per packet, so that a freed chunk shows that the nodes have its packet.
 bool CaptureLink::publish(uint16_t thread, std::span<const std::byte> packet) {
     const uint32_t head = header_->freedHead.load(std::memory_order_relaxed);
     if (header_->freedTail.load(std::memory_order_acquire) == head) return false;
@@ -90,7 +90,8 @@ bool CaptureLink::publish(uint16_t thread, std::span<const std::byte> packet) {
     const uint32_t tail = header_->publishedTail.load(std::memory_order_relaxed);
     capture::publications(header_)[tail & (header_->chunkCount - 1)] = {chunk, 0, static_cast<uint32_t>(packet.size()), thread, 1};
     header_->publishedTail.store(tail + 1, std::memory_order_release);
-    std::atomic_thread_fence(std::memory_order_seq_cst); // either the reader sees it, or we that it sleeps
+    // either the reader sees the publication, or the check below sees that it sleeps
+    std::atomic_thread_fence(std::memory_order_seq_cst);
     if (header_->reader.load(std::memory_order_relaxed) != static_cast<uint32_t>(capture::Reader::Reads)) futexWakeAll(header_->publishedTail);
     return true;
 }

@@ -1,5 +1,5 @@
-// One program towards a head, without GL: the shared memory of a capture (common/capture_ring.hpp) from the program's side.
-// Used by one thread. Answers are taken and dropped.
+// The connection of one replayed program to a head, without GL: the program's side of a capture's shared memory
+// (common/capture_ring.hpp). Used by one thread. Reads replies and drops them.
 #pragma once
 
 #include <atomic>
@@ -26,21 +26,21 @@ public:
     [[nodiscard]] const capture::Welcome& welcome() const { return welcome_; }
     [[nodiscard]] bool headGone() const { return header_->headGone.load() != 0; }
 
-    // Each returns at once; what it needs is waited for on the word beside it.
+    // These functions do not block. After a failure, wait on the word that follows the function.
     bool publish(uint16_t thread, std::span<const std::byte> packet); // false: no chunk is free
     [[nodiscard]] const std::atomic<uint32_t>& chunkWord() const { return header_->freedTail; }
-    [[nodiscard]] bool allTaken() const; // the same word
+    [[nodiscard]] bool allTaken() const; // wait on chunkWord()
 
     void submitted(uint32_t frame) { header_->framesSubmitted.store(frame, std::memory_order_relaxed); }
-    bool mayGoOn(uint32_t submittedFrame); // by the session's latency
+    bool mayGoOn(uint32_t submittedFrame); // applies the session's latency
     [[nodiscard]] const std::atomic<uint32_t>& framesWord() const { return header_->framesDone; }
 
     void asked() { ++asked_; }
-    [[nodiscard]] uint64_t unanswered(); // so many questions, after what has come was dropped
+    [[nodiscard]] uint64_t unanswered(); // drops received replies; returns the number of missing ones
     [[nodiscard]] const std::atomic<uint32_t>& answersWord() const { return header_->replyTail; }
 
-    // The program ends here: nothing but gone() may follow, which is true once the head has seen that and the nodes
-    // have heard of it.
+    // Ends the program. Only gone() may be called afterwards. It returns true after the head has detected the end and
+    // informed the nodes.
     void leave();
     bool gone(int64_t sliceMs);
 
@@ -48,15 +48,15 @@ private:
     CaptureLink(FileDescriptor socket, const capture::Welcome& welcome, capture::CaptureHeader* header, size_t sizeBytes);
     void takeAnswers();
 
-    FileDescriptor socket_; // says whether the head has seen the end
+    FileDescriptor socket_; // closed by the head after it has detected the end
     const capture::Welcome welcome_;
     capture::CaptureHeader* header_; // null: the program has left
     const size_t sizeBytes_;
     uint64_t asked_ = 0;
     uint64_t answered_ = 0;
     wire::ReplyHeader reply_{};
-    size_t replyHeaderBytes_ = 0; // that have come
-    uint64_t replyBytes_ = 0;     // that are still to come, behind the header
+    size_t replyHeaderBytes_ = 0; // received bytes of reply_
+    uint64_t replyBytes_ = 0; // missing bytes after the header
 };
 
 } // namespace mural

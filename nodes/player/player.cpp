@@ -21,10 +21,10 @@ using recording::RecordView;
 
 constexpr int64_t kWelcomePatienceMs = 30'000;
 constexpr int64_t kRoomPatienceMs = 60'000;
-constexpr int64_t kFramePatienceMs = 600'000; // as programs have
+constexpr int64_t kFramePatienceMs = 600'000; // the same as for programs
 constexpr int64_t kLeavePatienceMs = 5'000;
-constexpr int64_t kSliceNs = 10 * kNsPerMs;   // between two looks at what other programs are answered
-constexpr uint64_t kMostUnanswered = 16;      // so much is drawn ahead of answers that nobody reads
+constexpr int64_t kSliceNs = 10 * kNsPerMs; // interval for dropping the replies to other programs
+constexpr uint64_t kMostUnanswered = 16; // limit of requests without a reply, which the player does not use
 
 bool asksForReply(uint16_t opcode) {
     switch (opcode) {
@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    // Waits on the word until done() holds; the answers to all programs are dropped meanwhile.
+    // Waits on the word until done() holds. Drops the replies to all programs meanwhile.
     template <class Done> Result<void> await(CaptureLink& link, const std::atomic<uint32_t>& word, int64_t patienceMs, const char* what, Done done) {
         const Deadline deadline = Deadline::inMs(patienceMs);
         while (true) {
@@ -114,7 +114,8 @@ private:
 
     Result<void> send(CaptureLink& link, uint32_t stream, std::span<const std::byte> packet) {
         if (packet.size() > capture::kChunkBytes) return Error{"the recording has a packet of " + std::to_string(packet.size()) + " bytes, which no program can send; record again"};
-        // Nodes get the packets of all programs in the order in which they were recorded.
+        // Waits until the previous program's packets are taken, so that nodes receive all packets in the recorded
+        // order.
         if (last_ != nullptr && last_ != &link)
             if (auto r = await(*last_, last_->chunkWord(), kRoomPatienceMs, "took nothing", [&] { return last_->allTaken(); }); !r) return r;
         last_ = &link;
@@ -128,7 +129,8 @@ private:
         return await(link, link.framesWord(), kFramePatienceMs, "finished no frame", [&] { return link.mayGoOn(frame); });
     }
 
-    // packet_ is what is sent: the recorded packet, with windows that are there. frame: that it shows last, if any.
+    // Copies the recorded packet to packet_ and replaces its windows by existing ones. frame: the last frame that it
+    // shows; unchanged if there is none.
     Result<void> prepare(CaptureLink& link, uint32_t stream, std::span<const std::byte> packet, uint32_t& frame) {
         packet_.assign(packet.begin(), packet.end());
         recording::RecordWalk walk(packet);
@@ -164,7 +166,7 @@ private:
         CaptureLink& link = *found->second;
         const auto taken = await(link, link.chunkWord(), kRoomPatienceMs, "took nothing", [&] { return link.allTaken(); });
         link.leave();
-        // The next program's packets come behind the nodes' word that this one has gone.
+        // Waits for the head, so that the next program's packets follow the end of this one.
         const Deadline deadline = Deadline::inMs(kLeavePatienceMs);
         while (taken && !deadline.passed() && !link.gone(kSliceNs / kNsPerMs)) dropAnswers();
         if (last_ == &link) last_ = nullptr;
@@ -174,8 +176,8 @@ private:
 
     const PlayOptions& options_;
     PlayerWindows windows_;
-    std::map<uint32_t, std::unique_ptr<CaptureLink>> links_; // by the client's recorded number
-    CaptureLink* last_ = nullptr;                            // to whom the last packet went
+    std::map<uint32_t, std::unique_ptr<CaptureLink>> links_; // key: the client's recorded number
+    CaptureLink* last_ = nullptr; // link of the last packet
     std::vector<std::byte> packet_;
     int64_t beganNs_ = 0;
     int64_t firstNs_ = -1; // recorded time of the first entry

@@ -9,7 +9,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kXPatienceMs = 10'000;
-constexpr uint32_t kMostPixels = 32767; // per side, as X has it
+constexpr uint32_t kMostPixels = 32767; // per side, the limit of X
 
 } // namespace
 

@@ -1,4 +1,5 @@
-// Windows in place of those that the recorded program had (--display app): the head shows pictures in them. Used by one thread.
+// Windows in place of the recorded program's windows (--display app). The head shows pictures in them. Used by one
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,8 @@ class PlayerWindows {
 public:
     // session: the name of the session that shows pictures in the windows.
     PlayerWindows(std::string title, const std::string& session);
-    // The window of that size, made or resized; its id on the display. clientNow: the program's number in this session.
+    // Creates or resizes the window to that size. Returns its id on the display. clientNow: the program's number in
+    // this session.
     Result<uint32_t> show(uint32_t client, uint32_t clientNow, uint32_t window, uint32_t width, uint32_t height);
     void destroy(uint32_t client, uint32_t window);
 
@@ -28,7 +30,7 @@ private:
 
     const std::string title_;
     const uint64_t sessionKey_;
-    std::unique_ptr<XConnection> x_; // with the first window
+    std::unique_ptr<XConnection> x_; // created with the first window
     std::map<std::pair<uint32_t, uint32_t>, xcb_window_t> windows_;
 };
 

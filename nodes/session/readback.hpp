@@ -1,5 +1,5 @@
 // The readback of pictures. Direct: synchronous, before the next frame. Buffer: into a pixel buffer that another thread
-// maps. Auto: whichever blocks the drawing thread less.
+// maps. Auto: the method that blocks the drawing thread less.
 #pragma once
 
 #include <cstdint>

@@ -7,9 +7,9 @@
 namespace mural {
 
 struct ScreenView {
-    Viewport area; // place of its picture on the wall
-    double left = -1, right = 1, bottom = -1, top = 1; // its edges on the plane at distance 1 from the eye
-    // from the program's eye coordinates to those of the eye before the screen, which looks along -z
+    Viewport area; // region of its picture on the wall
+    double left = -1, right = 1, bottom = -1, top = 1; // edges of the screen on the plane at distance 1 from the eye
+    // Transforms eye coordinates of the program to eye coordinates of the screen's view, whose axis is -z.
     Matrix4 fromProgram;
 
     friend bool operator==(const ScreenView&, const ScreenView&) = default;

@@ -198,7 +198,7 @@ template <class T> Json valueToJson(const T& value) {
     }
 }
 
-// Each reader returns what the value must be, empty when it is that.
+// Each reader returns the expected type if the value has another type, otherwise an empty text.
 std::string readValue(const Json& j, std::string& into, int64_t) {
     if (!j.is_string()) return "a text";
     into = j.get<std::string>();

@@ -1,5 +1,5 @@
-// The state machine of a swap barrier: who waits, and who is released. Without clocks, threads or sockets: times are
-// arguments.
+// The state machine of a swap barrier: decides when members wait and when they are released. It has no clocks, threads
+// or sockets: times are arguments.
 //
 // All members replay the same stream and reach the same swaps in the same order; some may skip swaps. A round ends when
 // every member waits: the members with the oldest swap are released. A member that misses its deadline is ignored until
@@ -29,7 +29,7 @@ public:
         std::vector<int> late; // ignored from now on
     };
     Step arrive(int member, const SwapKey& key, int64_t nowNs);
-    Step gone(int member, int64_t nowNs); // permanently
+    Step gone(int member, int64_t nowNs); // the member has left permanently
     Step tick(int64_t nowNs);
 
     [[nodiscard]] bool isGone(int member) const { return members_[static_cast<size_t>(member)].state == State::Gone; }
@@ -39,7 +39,7 @@ private:
     struct Member {
         State state = State::Away;
         SwapKey key;
-        uint64_t order = 0; // of its arrival
+        uint64_t order = 0; // order of arrival
     };
     void releaseRounds(Step& step, int64_t nowNs);
     [[nodiscard]] bool passed(const SwapKey& key) const;

@@ -67,7 +67,7 @@ Result<int> callNode(const NodeCall& call) {
         if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR) return Error{"can't wait for the node: " + errnoText(errno)};
         if (look[0].revents != 0) {
             if (auto r = channel.fetch(); !r) {
-                // Its last output comes first.
+                // Reads the queued messages first, because the process may have ended normally.
                 for (auto m = channel.next(); m; m = channel.next())
                     if (m->kind == NodeMessageKind::Ended && !m->body.empty()) return std::to_integer<int>(m->body.front());
                 return Error{"the node there is lost: " + r.error().message};

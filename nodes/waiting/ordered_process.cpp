@@ -22,9 +22,9 @@ constexpr int64_t kSendMs = 10'000;
 constexpr int64_t kEndMs = 2'000; // limit for a process whose head is gone
 constexpr size_t kMostWaiting = 1 << 20; // buffered bytes for standard input
 
-// Sockets instead of pipes on our side: writes raise no signal and do not block.
+// Sockets instead of pipes at this end: writes raise no signal and do not block.
 struct Streams {
-    FileDescriptor input, output, errors; // our ends
+    FileDescriptor input, output, errors; // ends of this process
     FileDescriptor itsInput, itsOutput, itsErrors; // the process's ends
 
     static Result<Streams> make() {

@@ -9,7 +9,7 @@ class Model:
         self.extensions = extensions
         self.opcode = opcode
         self.digest = digest
-        # One entry per meaning: aliases share their canonical command's wrapper, opcode and replay.
+        # One entry per meaning: aliases share the wrapper, opcode and replay of their canonical command.
         self.canonical = [c for c in commands.values() if not c.alias]
         self.aliases = [c for c in commands.values() if c.alias]
         self.sent = [c for c in self.canonical if c.sent and c.name in opcode]
@@ -18,7 +18,7 @@ class Model:
         return self.all[command.alias] if command.alias else command
 
 
-# Foreign handle types are pointers to us: such commands are never carried, only named.
+# Foreign handle types, declared as pointers. Commands with them have a name but are never carried.
 OPAQUE = {'GLeglImageOES': 'void*', 'GLeglClientBufferEXT': 'void*', 'GLVULKANPROCNV': 'void*', 'GLvdpauSurfaceNV': 'GLintptr',
           'GLDEBUGPROC': 'void*', 'GLDEBUGPROCARB': 'void*', 'GLDEBUGPROCAMD': 'void*', 'GLDEBUGPROCKHR': 'void*',
           'GLhandleARB': 'GLuint', 'GLclampx': 'GLint', 'GLfixed': 'GLint'}

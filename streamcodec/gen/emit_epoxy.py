@@ -9,15 +9,15 @@ import re
 
 from emit_common import HEAD
 
-BASE = {'gl': 2.0, 'gles1': 1.0, 'gles2': 2.0}  # versions that every context of a node has
-# libepoxy takes one for the other, though they differ.
+BASE = {'gl': 2.0, 'gles1': 1.0, 'gles2': 2.0} # minimum version of every context of a node
+# libepoxy treats these as aliases of other commands, although they differ.
 HALF_ALIASES = ('glBindVertexArray', 'glBindFramebuffer', 'glBindRenderbuffer')
-# glBegin, glEnd and what may stand between them.
+# glBegin, glEnd and the commands that are valid between them.
 IN_PRIMITIVE = re.compile(
     r'gl(Begin|End|EdgeFlagv?|ArrayElement|CallLists?|PrimitiveRestart(Index)?|EvalPoint[12]'
     r'|(Vertex|Normal|Color|SecondaryColor|Index|FogCoord|(Multi)?TexCoord|EvalCoord|Material|(Vertex)?Weight'
     r'|VertexAttribs?[IL]?|(Vertex|Normal)Stream)(P?\dN?)?(u?[bsi]|[fdhx]|u?i64)v?)(ARB|EXT|NV|OES|ATI)?$')
-# Up to these versions libepoxy asks a library by dlsym, and ends the process where the library lacks the command.
+# Up to these versions libepoxy resolves commands by dlsym in a library. It ends the process if the library lacks one.
 BY_LIBRARY = {'gl': (1.2, 'kGl'), 'gles1': (1.1, 'kEs1'), 'gles2': (2.0, 'kEs2')}
 
 

@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ET
 from emit_common import HEAD, OPAQUE, ctype
 from registry import Command
 
-# Types of glx.xml by their size; nothing of Xlib is included.
+# Types of glx.xml by their size. No header of Xlib is included.
 GLX_TYPES = {
     'Display': 'void', 'XVisualInfo': 'void', 'GLXHyperpipeConfigSGIX': 'void', 'GLXHyperpipeNetworkSGIX': 'void',
     'GLXContext': 'void*', 'GLXFBConfig': 'void*', 'GLXFBConfigSGIX': 'void*', '__GLXextFuncPtr': 'void*',
@@ -17,7 +17,7 @@ GLX_TYPES = {
 }
 XIDS = ('Colormap', 'Font', 'Pixmap', 'Window', 'GLXContextID', 'GLXDrawable', 'GLXPbuffer', 'GLXPbufferSGIX', 'GLXPixmap',
         'GLXVideoCaptureDeviceNV', 'GLXVideoSourceSGIX', 'GLXWindow')
-# Whole names only: GLDEBUGPROC is also the beginning of others.
+# Matches whole names only, because GLDEBUGPROC is also a prefix of other names.
 OPAQUE_NAME = re.compile(r'\b(%s)\b' % '|'.join(OPAQUE))
 # Types of digital media and video libraries that exist on IRIX only.
 FOREIGN = re.compile(r'\b(DM|VL)[A-Za-z]+')

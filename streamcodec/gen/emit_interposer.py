@@ -4,9 +4,9 @@ import re
 from emit_common import HEAD, ctype, prototype
 from registry import TYPE_BYTES
 
-# Between glBegin and glEnd these make a vertex when the index is 0.
+# Commands that emit a vertex between glBegin and glEnd if the index is 0.
 PROVOKING = re.compile(r'glVertexAttribs?[ILP]?\d')
-# What a program may call between glBegin and glEnd.
+# Commands that a program may call between glBegin and glEnd.
 IN_PRIMITIVE = re.compile(r'gl((Begin|End|CallLists?|PrimitiveRestartNV)$|(Vertex|Color|SecondaryColor|Normal|TexCoord|MultiTexCoord)P?\d'
                           r'|VertexAttribs?[ILP]?\d|Index([dfisx]|ub)v?|FogCoord[dfh]|EdgeFlagv?$|Material[fix]|ArrayElement|Eval(Coord|Point))')
 DATA_KINDS = ('array', 'pixels', 'packed', 'data', 'made', 'text', 'strings')
@@ -226,7 +226,7 @@ using namespace mural;
             body += wrapper(c)
             rows.append('wrapped')
         else:
-            rows.append('direct')   # a query: the driver's own entry point, at no cost
+            rows.append('direct') # a query: calls the driver's own entry point without overhead
     wrappers += body + '\nnamespace mural {\nnamespace {\nusing Entry = void (*)();\nconst Entry kWrappers[] = { // in the order of GlFunctions\n'
     for c, row in zip(m.canonical, rows):
         front = 'outside' if row == 'outside' else 'mural'

@@ -8,7 +8,7 @@ from registry import TYPE_BYTES
 NULLABLE = re.compile(r'gl(Named)?Buffer(Data|Storage)')
 WINDOW_POSITION = re.compile(r'glWindowPos')
 COUNT = re.compile(r'(?:vn|n4|n8)\((\w+),')
-MAY_BE_OFFSET = ('pixels', 'packed', 'data')  # into a bound buffer; elsewhere GL would take it for an address
+MAY_BE_OFFSET = ('pixels', 'packed', 'data') # offset into a bound buffer; without one GL would use it as an address
 RESULT = {4: 'GLuint', 8: 'uint64_t'}
 
 

@@ -14,8 +14,8 @@ TYPE_BYTES = {
     'GLdouble': 8, 'GLclampd': 8, 'GLint64': 8, 'GLuint64': 8, 'GLint64EXT': 8, 'GLuint64EXT': 8,
     'GLintptr': 8, 'GLsizeiptr': 8, 'GLintptrARB': 8, 'GLsizeiptrARB': 8, 'GLsync': 8, 'GLeglImageOES': 8,
 }
-# Types that only make sense inside one process or have no carried command.
-HANDLE_TYPES = ('GLsync', 'GLeglImageOES')   # pointers of the program's that serve as names
+# Types that are meaningful only within one process, or that no carried command uses.
+HANDLE_TYPES = ('GLsync', 'GLeglImageOES') # pointers of the program that serve as names
 FOREIGN_TYPES = ('GLeglClientBufferEXT', 'GLVULKANPROCNV', 'GLvdpauSurfaceNV',
                  'GLDEBUGPROC', 'GLDEBUGPROCARB', 'GLDEBUGPROCAMD', 'GLDEBUGPROCKHR', '_cl_context', '_cl_event')
 
@@ -23,7 +23,7 @@ KINDS = {'texture': 'Texture', 'buffer': 'Buffer', 'framebuffer': 'Framebuffer',
          'vertex array': 'VertexArray', 'query': 'Query', 'sampler': 'Sampler', 'program': 'Program',
          'shader': 'Program', 'program pipeline': 'Pipeline', 'transform feedback': 'TransformFeedback',
          'arb program': 'ArbProgram', 'display list': None, 'sync': None}
-# Commands of ARB_vertex_program and its kin: their programs have a name space of their own.
+# Commands of ARB_vertex_program and similar extensions, whose programs have a separate name space.
 ARB_PROGRAM = re.compile(r'gl(Bind|Delete|Gen|Is)Programs?(ARB|NV)$|glExecuteProgramNV$')
 
 QUERY = re.compile(r'gl(Get|Is|AreTextures|AreProgramsResident|CheckFramebuffer|CheckNamedFramebuffer|Query|Test|Finish(Async|Object)|Poll)')
@@ -67,9 +67,9 @@ class Command:
         self.command_class = None
         self.reason = ''
         self.feature = None
-        self.core = {}               # API: its first version that has the command
+        self.core = {} # by API: the first version with the command
         self.extensions = []
-        self.extension_apis = set()  # APIs that an extension of theirs adds the command to
+        self.extension_apis = set() # APIs in which an extension adds the command
 
     def option(self, key, default=None):
         return self.options.get(key, default)
@@ -162,7 +162,7 @@ class Command:
         product = re.fullmatch(r'(\w+)\*(\d+)', p.length)
         if p.length.isdigit():
             p.how, p.expr = 'fixed', int(p.length) * size
-        elif product:   # multiplied in 64 bits, or a wild count would look small
+        elif product: # multiplied in 64 bits, because an overflow would make a large count look small
             p.how, p.expr = 'array', 'vn(%s,%d)' % (product.group(1), int(product.group(2)) * size)
         else:
             p.how, p.expr = 'array', 'vn(%s,%d)' % (p.length, size)
@@ -218,7 +218,7 @@ def load(gl_xml, semantics):
             if name == pattern or fnmatch.fnmatchcase(name, pattern):
                 hit = True
                 commands[name].traits |= traits
-                if 'class' in options:     # a new class starts afresh
+                if 'class' in options: # a new class keeps only options with a dot; 'unsupported' keeps none
                     kept = {} if options['class'] == 'unsupported' else {
                         k: v for k, v in commands[name].options.items() if '.' in k}
                     commands[name].options = kept

@@ -1,5 +1,5 @@
-// Lower bound of the receive cost with recvmmsg: a socket that is drained every 4 ms, the rest interval of RSP's
-// readers, 32 datagrams per call, always into the same buffers, without processing. Independent of Mural.
+// Measures a lower bound of the receive cost with recvmmsg. Drains a socket every 4 ms, the rest interval of RSP's
+// readers. Each call reads 32 datagrams, always into the same buffers, without processing. Independent of Mural.
 //
 //   bare_receiver GROUP PORT INTERFACE-ADDRESS    runs until 0.4 s of silence; prints one line
 #include <arpa/inet.h>

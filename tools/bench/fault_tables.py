@@ -10,11 +10,11 @@ from stream_result import StreamFailed
 from stream_tables import PACE, met, size_for
 
 LINK, LINK_MBIT = "200mbit", 200.0
-FAULT_AT_SECONDS = 1.0   # after the stream began
+FAULT_AT_SECONDS = 1.0 # after the start of the stream
 FROZEN_SECONDS = 1.0
-AVERAGED_SECONDS = 0.05  # a rate is one over so long
-FULL_RATE = 0.9          # of the rate before
-BEGINS_SECONDS = 0.4     # a pause that comes later has other causes: in this time the window is used up
+AVERAGED_SECONDS = 0.05 # averaging time of a rate
+FULL_RATE = 0.9 # fraction of the previous rate
+BEGINS_SECONDS = 0.4 # a later pause has other causes: the window is used up within this time
 
 
 def _median(values):
@@ -53,7 +53,7 @@ def latency(bench):
                 got["rsp"].append(_attempt(bench, "acknowledged flush", lambda: bench.rsp.messages(rig, receivers, 64, bench.messages, PACE * LINK_MBIT)))
                 for peer in timed:
                     if got[peer.name].count(None) == len(got[peer.name]) >= 2:
-                        got[peer.name].append(None)  # who only fails is given up: it takes long
+                        got[peer.name].append(None) # skips a peer that always fails, because each attempt takes long
                         continue
                     count = bench.messages if peer.name == "TCP" and share == "0" else min(bench.messages, 100 if peer.name == "TCP" else 40)
                     got[peer.name].append(_attempt(bench, "acknowledged flush", lambda: peer.messages(rig, receivers, 64, count), essential=False))

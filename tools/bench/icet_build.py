@@ -5,7 +5,7 @@ import os
 import re
 import subprocess
 
-# What IceT's own CMake finds out on 64-bit Linux; everything else it may define stays out.
+# Values that IceT's own CMake detects on 64-bit Linux. Everything else that it may define is left out.
 VALUES = {"ICET_MAJOR_VERSION": "2", "ICET_MINOR_VERSION": "2", "ICET_PATCH_VERSION": "0", "ICET_VERSION": "2.2.0",
           "ICET_SIZEOF_CHAR": "1", "ICET_SIZEOF_SHORT": "2", "ICET_SIZEOF_INT": "4", "ICET_SIZEOF_LONG": "8", "ICET_SIZEOF_LONG_LONG": "8",
           "ICET_SIZEOF_FLOAT": "4", "ICET_SIZEOF_DOUBLE": "8", "ICET_SIZEOF_VOID_P": "8", "ICET_MAGIC_K": "8", "ICET_MAX_IMAGE_SPLIT": "512"}
@@ -40,7 +40,7 @@ def build(folder, bench_folder, into):
     with open(os.path.join(into, "IceTConfig.h"), "w", encoding="utf-8") as file:
         file.write(config)
     library = os.path.join(into, "libicet_kernels.so")
-    # Its strategies name MPI's header, and use nothing of it.
+    # IceT's strategies include MPI's header, and use nothing of it.
     with open(os.path.join(into, "mpi.h"), "w", encoding="utf-8"):
         pass
     sources = sorted(glob.glob(os.path.join(icet, "src", "ice-t", "*.c")) + glob.glob(os.path.join(icet, "src", "strategies", "*.c")))

@@ -9,9 +9,9 @@ from netlab_rig import numbers_of, wait_all
 from stream_result import StreamFailed, StreamResult
 
 UDP_HEAD_BYTES = 28
-WIRE_BYTES = 66  # Ethernet, IPv4 and UDP around a payload, gap and preamble included
+WIRE_BYTES = 66 # Ethernet, IPv4 and UDP bytes per payload, including gap and preamble
 LIMIT_SECONDS = 12
-JOIN_SECONDS = 0.3  # until receivers are in the group: they say nothing of it
+JOIN_SECONDS = 0.3 # time for receivers to join the group, which they do not report
 
 
 def finish(name, programs, seconds=LIMIT_SECONDS):
@@ -67,8 +67,8 @@ class OwnProgram:
     """A peer whose harness sends `bytes=` and tells `gbit=` and `cpu_s_per_GB=` at each end."""
 
     may_miss_bytes = 0
-    joins = True         # receivers need a moment until they are in the group
-    counts_late = False  # a receiver's time begins behind its first byte: none is faster than its sender
+    joins = True # receivers need time to join the group
+    counts_late = False # a receiver's time starts at its first byte, so none is faster than its sender
 
     def __init__(self, name, harness, package, share=lambda receivers: 1.0):
         """share: of the bytes of others, so that its runs last about as long."""
@@ -101,10 +101,10 @@ class OwnProgram:
 
 class Norm(OwnProgram):
     counts_late = True
-    may_miss_bytes = 64 * 1400  # a stream begins where a receiver first hears of it: a block at most
+    may_miss_bytes = 64 * 1400 # a receiver may miss the start of the stream: one block at most
 
     def sender_words(self, rig, receivers, size_bytes, wire_mbit):
-        # Without congestion control, at a rate of its payload; parity costs it more than it brings.
+        # Without congestion control, at the rate of the payload. Parity costs more than it gains here.
         return ["n=%d" % receivers, "bytes=%d" % size_bytes, "rate=%g" % (wire_mbit or 4000), "par=0", "if=eth0"]
 
     def receiver_words(self, rig, host, size_bytes):
@@ -193,7 +193,7 @@ class Uftp(Files):
         hosts, ids = [], []
         for host in range(1, receivers + 1):
             into = os.path.join(self.folder, "host-%d" % host)
-            shutil.rmtree(into, ignore_errors=True) # what an earlier run left there
+            shutil.rmtree(into, ignore_errors=True) # removes the files of an earlier run
             os.makedirs(into)
             hosts.append(rig.start(host, ["uftpd", "-d", "-I", "eth0", "-D", into, "-B", "4194304"]))
             ids.append("0x" + "".join("%02X" % int(part) for part in rig.address(host).split(".")))

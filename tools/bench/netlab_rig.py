@@ -9,11 +9,12 @@ import tempfile
 import time
 from signal import SIGCONT, SIGKILL, SIGTERM
 
-SKIPPED = 77  # exit status: the bench can't run here
+SKIPPED = 77 # exit status: the bench can't run on this machine
 INSIDE = "MURAL_BENCH_INSIDE"
-SETTLE_SECONDS = 1.2  # until the bridge knows who is in which group
-# A switch asks no packet filter. Linux' bridge does so for each frame, where br_netfilter is in the kernel (Debian has it as a
-# module that nothing loads here), which takes a third of all the CPU of a multicast.
+SETTLE_SECONDS = 1.2 # time for the bridge to learn the group members
+# Disables the packet filter of bridges, which a hardware switch does not have. With br_netfilter in the kernel, Linux'
+# bridge calls it for each frame. That takes a third of all CPU time of a multicast. Debian has br_netfilter as a module
+# that nothing loads here.
 PLAIN_SWITCH = "for f in /proc/sys/net/bridge/bridge-nf-call-*tables; do [ ! -e $f ] || echo 0 > $f || exit 1; done"
 
 
@@ -69,7 +70,7 @@ class Program:
 
     def end(self):
         """Ends it for good."""
-        self.signal(SIGCONT)  # one that is stopped could not end
+        self.signal(SIGCONT) # a stopped process can't end
         self.signal(SIGTERM)
         if not self.wait(2):
             self.signal(SIGKILL)

@@ -232,7 +232,7 @@ struct Job {
     double share; // fraction of the memory written per frame
 };
 
-// Writes a draw's share after that of the previous draw, as in a ring buffer.
+// Writes a draw's share of the memory after the previous draw's share, as in a ring buffer.
 struct Writer {
     std::byte* memory;
     Job job;

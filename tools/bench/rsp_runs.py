@@ -9,7 +9,7 @@ from netlab_rig import wait_all
 from stream_result import StreamFailed, StreamResult
 
 START_SECONDS = 10
-KEPT_SECONDS = 40  # longest that a run may take
+KEPT_SECONDS = 40 # longest duration of a run
 
 
 class RspGroup:

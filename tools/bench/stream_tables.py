@@ -5,7 +5,7 @@ from multicast_peers import UDP_HEAD_BYTES, WIRE_BYTES
 from netlab_rig import Rig
 from stream_result import Cell, ratio_text
 
-PACE = 0.95 # of the link, with all heads down to the wire: RSP and raw multicast are given the same
+PACE = 0.95 # fraction of the link's rate, including all headers down to the wire; equal for RSP and raw multicast
 LOSS_GOALS = {"0.1%": 0.97, "1%": 0.93, "5%": 0.80}
 
 
@@ -148,10 +148,10 @@ def cpu(bench):
             cells[peer.name] = Cell()
             runs[peer.name] = lambda peer=peer: peer.stream(rig, receivers, size, pace)
         fill(bench, cells, runs, "CPU at 1 Gbit/s, %d receivers" % receivers)
-        # Of all numbers these differ most by run: the two that are judged are run more often.
+        # These numbers vary most between runs, so the two with a goal are measured more often.
         judged = {name: runs[name] for name in ("raw, UDP_SEGMENT", "rsp, none")}
         fill(bench, cells, judged, "CPU at 1 Gbit/s, %d receivers, those that are judged" % receivers, (bench.judged_times - 1) * bench.rounds)
-    raw = cells["raw, UDP_SEGMENT"]  # batched as RSP is
+    raw = cells["raw, UDP_SEGMENT"] # sends in batches as RSP does
     rows = []
     for name, cell in cells.items():
         sender, receiver = cell.ratio_to(raw, "sender_cpu"), cell.ratio_to(raw, "receiver_cpu")

@@ -1,4 +1,4 @@
-// What `mural run` tells its user, on standard error: lines, one line of progress, the final report.
+// Output of `mural run` to the user, on standard error: messages, one line of progress, and the final report.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace mural::cli {
 class Console {
 public:
     explicit Console(bool quiet);
-    // A line that matters also to those who want quiet.
+    // Prints a line even with --quiet.
     void error(const std::string& text);
     void say(const std::string& text);
-    // On a terminal one line that is written anew; elsewhere a line now and then.
+    // Shows the progress: on a terminal as one line that is overwritten, otherwise as an occasional line.
     void progress(int64_t frame, double framesPerSecond, double bytesPerFrame);
 
 private:
@@ -28,10 +28,10 @@ private:
     Deadline nextLine_;
 };
 
-// The report's lines, in words.
+// Returns the report as lines of text.
 std::vector<std::string> reportLines(const SessionReport& report);
 
-// "glReadPixels 3, glGetQueryObjectuiv 2", the most frequent first; of counts by command.
+// Returns the counts by command, most frequent first: "glReadPixels 3, glGetQueryObjectuiv 2".
 std::string roundTripText(const std::map<std::string, int64_t>& countsBy);
 
 // "812 B", "12.3 kB", "4.56 MB": powers of ten.

@@ -1,4 +1,4 @@
-// What the head says, line by line (docs/reference/control-protocol.md). Pure.
+// The lines that the head sends to `mural run` (docs/reference/control-protocol.md). Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace mural::cli {
 
-// Of windows on several nodes that show frames together; by the node that leads them.
+// Numbers of a swap barrier, from its leader.
 struct SwapReport {
-    int64_t members = 0; // 0: it leads none
+    int64_t members = 0; // 0: the node leads none
     int64_t swaps = 0;
     double medianNs = 0, p99Ns = 0, mostNs = 0, clockErrorNs = 0;
 };
@@ -23,32 +23,32 @@ struct NodeReport {
     double cpuSeconds = 0;
     bool lost = false;
     SwapReport swaps;
-    int64_t joins = 0; // how often it came back, and of the last time:
+    int64_t joins = 0; // number of returns; the next two describe the last one
     double secondsToBack = 0, snapshotBytes = 0;
-    double pictureBytes = 0, pictureRawBytes = 0; // that it sent packed, and what they were before
+    double pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
 };
 
-// What was spared the nodes that are not sent again what they have had.
+// Savings by the filter and delta coding.
 struct EconomyReport {
     bool on = false;
     double records = 0;
     double rawBytes = 0;
-    double stagedBytes = 0; // after references
-    double wireBytes = 0;   // and compression
+    double stagedBytes = 0; // size after replacement by references
+    double wireBytes = 0; // size after compression
     double storeHits = 0, newPages = 0;
     double encodeSeconds = 0;
-    double heldRecords = 0;    // that waited for their first use
-    double leftOutRecords = 0, leftOutBytes = 0; // and those that nobody ever needed
+    double heldRecords = 0; // records deferred until their first use
+    double leftOutRecords = 0, leftOutBytes = 0; // deferred records that were never needed
 };
 
-// Tiles that nodes took from a queue.
+// Numbers of one tile or chunk queue.
 struct QueueReport {
     std::string name;
     std::string of;                        // "tiles" or "chunks"
-    int64_t columns = 0, rows = 0;         // 0: none was dealt
+    int64_t columns = 0, rows = 0; // 0: no tile was assigned
     int64_t tileWidth = 0, tileHeight = 0; // pixels
     int64_t frames = 0, moves = 0, tilesMoved = 0;
-    std::vector<std::pair<int64_t, int64_t>> nodes; // and the tiles that each has
+    std::vector<std::pair<int64_t, int64_t>> nodes; // node, and its number of tiles
 };
 
 struct SessionReport {
@@ -58,23 +58,23 @@ struct SessionReport {
     double bytesPerFrame = 0;
     int64_t callsUnsupported = 0;
     int64_t roundTrips = 0;
-    std::map<std::string, int64_t> roundTripsBy; // command → how many it caused
+    std::map<std::string, int64_t> roundTripsBy; // number of round trips by command
     int64_t verifiedFrames = 0;
     int64_t verifiedPixels = 0;
     int64_t differingPixels = 0;
-    int64_t squaredDifference = 0; // of all components, alpha among them
+    int64_t squaredDifference = 0; // sum over all components, including alpha
     int64_t largestDifference = 0;
-    int64_t uncomparedFrames = 0; // that `--verify` could not compare
-    std::map<std::string, int64_t> uncomparedFramesBy; // reason → how many
+    int64_t uncomparedFrames = 0; // frames that `--verify` could not compare
+    std::map<std::string, int64_t> uncomparedFramesBy; // number of frames by reason
     int64_t savedPictures = 0;
     std::string lastPicture;
-    std::string recording; // path; empty: none was made
+    std::string recording; // path; empty: no recording
     int64_t recordedFrames = 0;
     int64_t recordedBytes = 0;
     EconomyReport economy;
     std::vector<QueueReport> queues;
     std::vector<NodeReport> nodes;
-    std::string json; // the whole, as the head said it
+    std::string json; // the complete report of the head
 };
 
 struct HeadEvent {
@@ -89,7 +89,7 @@ struct HeadEvent {
     SessionReport report; // Report
 };
 
-// Fails on what is not a JSON object with an event. Events of a later head are Unknown.
+// Parses one line. Unknown: an event of a later version. Errors: not a JSON object with an event.
 Result<HeadEvent> parseHeadEvent(const std::string& line);
 
 } // namespace mural::cli

@@ -71,7 +71,7 @@ std::vector<std::string> programOf(const CLI::App& run, const SplitLine& line) {
     return program;
 }
 
-// Prints the first line of --help: CLI11 does not know the arguments after "--", nor the name before a subcommand.
+// Prints the first line of --help. CLI11 supports neither the arguments after "--" nor the name before a subcommand.
 class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {

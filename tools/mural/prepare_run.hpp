@@ -1,4 +1,4 @@
-// What runs and replays find out before a session starts.
+// Preparations of runs and replays before a session starts.
 #pragma once
 
 #include <string>
@@ -9,24 +9,25 @@
 
 namespace mural::cli {
 
-// Names are guessed by nobody else and fit into an abstract socket's.
+// Returns a name that other processes can't guess. It fits into an abstract socket's name.
 std::string newSessionName();
 
-// The session's socket in the file system, for programs in other network namespaces; without it they are not captured,
-// and the run goes on.
+// Creates the session's socket in the file system, for programs in other network namespaces. On failure these programs
+// are not captured, and the run continues.
 void createSessionSocket(PreparedRun& run);
 
-// What can be said about --out before the first picture; the head opens it.
+// Checks --out as far as possible before the first picture. The head opens the output.
 Result<void> checkOutput(const std::string& out);
-// Of pictures that stay in its folder from before, beside those that come; empty: there are none.
+// Returns a message about earlier pictures that stay in the folder next to the new ones. Empty: there are none.
 std::string earlierPictures(const std::string& out);
 
-// Whether a file can be written there, which may be long after: --report is, when all is over. No file is made.
+// Checks whether the file of --report can be written. The report is written at the end, which may be much later.
+// Creates no file.
 Result<void> checkReport(const std::string& file);
 
-// Which display the program and the wall get; starts a private one where the wall needs it, or the program does.
+// Selects the displays of the program and the wall. Starts a private display if the wall or the program needs one.
 Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run);
-// What --display app does not show, once the displays are chosen; empty: nothing.
+// Returns a message about pictures that --display app does not show. Requires chooseDisplay(). Empty: there are none.
 std::string unseenPictures(const RunOptions& options, const PreparedRun& run);
 
 } // namespace mural::cli

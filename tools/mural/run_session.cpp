@@ -17,18 +17,18 @@ namespace {
 
 constexpr int64_t kReadyLocalMs = 60'000;
 constexpr int64_t kReadyRemoteMs = 120'000;
-// A launcher may leave the program behind and be gone: how long its children get until they draw…
+// A launcher may start the program and end. Its children have this time until their first context…
 constexpr int64_t kFirstContextMs = 30'000;
-// …and how long what is left may live on once nobody draws any more.
+// …and the remaining processes have this time after the last context.
 constexpr int64_t kAfterLastContextMs = 1'000;
 constexpr int64_t kWaitNoticeMs = 3'000;
-// A program that has made no context for so long may draw past us: its libraries are looked at.
+// A program without a context for this time may draw without the capture library. Its libraries are then examined.
 constexpr int64_t kUnseenMs = 10'000;
-// How often the program's processes are looked at for those that run without the capture library.
+// Interval of the check for processes that run without the capture library.
 constexpr int64_t kUncapturedMs = 1'000;
-// The head drains and writes pictures after the program's end; as long as it says something it may.
+// Permitted silence of the head after the program's end, while it drains and writes pictures.
 constexpr int64_t kFinishSilenceMs = 120'000;
-constexpr int kWallLost = 1; // exit status, whatever that of the program, which was ended
+constexpr int kWallLost = 1; // exit status, whatever the ended program's status is
 
 class Session {
 public:
@@ -57,7 +57,7 @@ private:
         return launch::kExitUsage;
     }
 
-    // Nothing when programs may connect; otherwise the exit status.
+    // Returns nullopt when programs may connect, otherwise the exit status.
     std::optional<int> awaitReady() {
         const Deadline deadline = Deadline::inMs(run_.config.hosts.empty() ? kReadyLocalMs : kReadyRemoteMs);
         while (!ready_) {
@@ -74,17 +74,17 @@ private:
     }
 
     void whileRunning() {
-        if (framesReached_) program_.end(kEndGraceMs); // said before there was a program to end
+        if (framesReached_) program_.end(kEndGraceMs); // the event arrived before the program was started
         while (program_.programRunning()) turn();
         if (framesReached_ || wallLost_ || program_.askedToStop()) {
             endDescendants();
             return;
         }
         awaitDescendants();
-        if (run_.display) endDescendants(); // their display goes with us
+        if (run_.display) endDescendants(); // their private display ends with this process
     }
 
-    // Programs that leave their launcher: they are our descendants still.
+    // Waits for programs that have left their launcher. They are still descendants of this process.
     void awaitDescendants() {
         const Deadline noticeAt = Deadline::inMs(kWaitNoticeMs);
         Deadline until = Deadline::never();
@@ -116,7 +116,7 @@ private:
         silenceUntil_ = Deadline::inMs(kFinishSilenceMs);
         while (head_->connected() && !report_) {
             turn();
-            if (program_.stopSignal() != signalBefore) break; // the user does not want to wait
+            if (program_.stopSignal() != signalBefore) break; // the user has requested the end
             if (silenceUntil_.passed()) {
                 console_.error("the head does not finish; it is ended");
                 break;
@@ -134,7 +134,7 @@ private:
     }
 
     void tellUnsaved() {
-        const auto& wanted = run_.config.saveFrames; // in their order
+        const auto& wanted = run_.config.saveFrames; // in ascending order
         if (wanted.empty() || report_->frames == 0 || wanted.back() <= report_->frames) return;
         const auto first = std::upper_bound(wanted.begin(), wanted.end(), report_->frames);
         console_.error(fmt::format("--save: frame {} was not saved{}, as the program showed {}", *first, std::next(first) == wanted.end() ? "" : ", nor those behind it", report_->frames));
@@ -149,7 +149,8 @@ private:
         return name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its children?";
     }
 
-    // What is said of programs that draw past us; at most one line of ours, beside what they say.
+    // Reports programs that draw without the capture library: their own notes, and at most one line from an
+    // examination.
     void watchBypass() {
         for (const std::string& line : bypass_.news()) {
             console_.error(line);
@@ -165,7 +166,8 @@ private:
         bypassSaid_ = true;
     }
 
-    // Processes that were started past the capture, such as by a shell whose environment was cleared.
+    // Reports processes that run without the capture library, such as children of a shell whose environment was
+    // cleared.
     void sayUncaptured() {
         if (!uncapturedAt_.passed() || finishing_) return;
         uncapturedAt_ = Deadline::inMs(kUncapturedMs);
@@ -191,7 +193,7 @@ private:
         endUncounted();
     }
 
-    // Who gave --frames waits for the end, which nobody counts to any more.
+    // Ends the program if --frames was given, because its frames are not counted any more.
     void endUncounted() {
         if (finishing_ || wallLost_ || run_.config.frames == 0) return;
         wallLost_ = true;
@@ -242,7 +244,7 @@ private:
     bool ready_ = false;
     bool finishing_ = false;
     bool framesReached_ = false;
-    bool wallLost_ = false; // before the frames that were asked for
+    bool wallLost_ = false; // lost before the requested frames were shown
     bool everClients_ = false;
     int64_t clients_ = 0;
     std::optional<std::string> failure_;

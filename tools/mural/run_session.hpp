@@ -1,4 +1,4 @@
-// A program and its session, from start to end: the head, the program, what each says of the other.
+// A program and its session, from start to end: the head, the program, and the events of each that concern the other.
 #pragma once
 
 #include <memory>
@@ -14,29 +14,29 @@
 
 namespace mural::cli {
 
-constexpr int64_t kEndGraceMs = 3'000; // of a program that is asked to end
+constexpr int64_t kEndGraceMs = 3'000; // time for a program to end after the request
 
-// All that has been found out before anything is captured.
+// Result of the preparations before the capture.
 struct PreparedRun {
     SessionConfig config; // complete
     std::string reportFile; // empty: none
     std::string programPath;
-    std::vector<std::string> program; // with argv[0] as the user wrote it
+    std::vector<std::string> program; // argv[0] is the user's spelling
     launch::Environment programEnvironment;
     launch::Environment headEnvironment;
     std::vector<std::string> headCommand;
-    std::unique_ptr<launch::SessionSocket> socket;            // null: it could not be made
-    std::unique_ptr<launch::PrivateDisplay> display;          // null: the user's own
+    std::unique_ptr<launch::SessionSocket> socket; // null: creation failed
+    std::unique_ptr<launch::PrivateDisplay> display; // null: the user's display
     std::unique_ptr<launch::WallWindowManager> windowManager; // null: no --size
 };
 
-// The report for programs, when there is a file for it.
+// Writes the report in JSON if a file was requested.
 void writeReport(const PreparedRun& run, const std::string& json, Console& console);
 
 // Returns the exit status of `mural run`.
 int runSession(PreparedRun& run, Console& console);
 
-// Without head and capture: counts frames and time (--native).
+// Runs the program without head and capture. Counts frames and time (--native).
 int runNative(PreparedRun& run, Console& console);
 
 } // namespace mural::cli

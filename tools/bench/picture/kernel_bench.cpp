@@ -44,8 +44,8 @@ void fillNoise(std::byte* bytes, size_t sizeBytes, uint32_t seed) {
 
 uint32_t depthWord(DepthFormat format, float z) { return format == DepthFormat::D32F ? std::bit_cast<uint32_t>(z) : static_cast<uint32_t>(z * 16777215.0f) << 8; }
 
-// The first half of the buffer is depth, the second colour. A wavy surface that fills the picture and leans to one
-// side: two surfaces that lean differently intersect in each row, and each is in front in half of the picture.
+// The first half of the buffer is depth, and the second is colour. The surface is wavy, fills the picture and leans to
+// one side. Two surfaces that lean differently intersect in each row. Each is then in front in half of the picture.
 enum class Leans { Left, Right };
 
 void fillSurface(std::byte* bytes, DepthFormat format, Leans leans, uint32_t seed) {
@@ -64,7 +64,7 @@ void fillDepthNoise(std::byte* bytes, DepthFormat format, double covered, uint32
     auto* depth = reinterpret_cast<uint32_t*>(bytes);
     for (size_t y = 0; y < kRows; ++y)
         for (size_t x = 0; x < kColumns; ++x) {
-            // Covered pixels are clustered, as those of objects are.
+            // Covered pixels are clustered, like the pixels of objects.
             const bool isDrawn = static_cast<double>((x / 64 * 7 + y / 64 * 13) % 32) < 32 * covered;
             const float z = isDrawn ? static_cast<float>(random() % 1000) / 1024.0f : 1.0f;
             depth[y * kColumns + x] = depthWord(format, z);

@@ -15,7 +15,7 @@ struct NamedPlane {
 };
 
 [[nodiscard]] Result<NamedPlane> readPlane(const std::string& path);
-// Returns all *.plane files of a folder, sorted by name, without those of a second frame (*.next.*).
+// Returns all *.plane files of a folder, sorted by name. Skips the files of a second frame (*.next.*).
 [[nodiscard]] Result<std::vector<NamedPlane>> readPlanes(const std::string& folder);
 
 } // namespace mural::bench

@@ -18,7 +18,7 @@ namespace {
 const std::vector<std::string> kChoices = {"bitplane", "slope", "raw", "bitplane-zstd", "slope-zstd", "lz4", "zstd"};
 constexpr double kGbitPerSec[] = {0.1, 1, 10, 25, 100};
 constexpr int32_t kPieceColumns = 512, kPieceRows = 256;
-constexpr int kSamples = 3; // measured times per piece, one of which is used
+constexpr int kSamples = 3; // time measurements per piece; each run uses one
 constexpr int kFramesOfScene = 30;
 constexpr unsigned kOrders = 8; // orders of scenes: earlier scenes help or mislead
 

@@ -20,7 +20,7 @@ namespace mural::cli {
 
 namespace {
 
-// Not fmt::print, which throws when the reader of the pipe has gone.
+// Avoids fmt::print, which throws if the reader of the pipe has gone.
 void tell(const std::string& what) { std::fputs(("mural bench accuracy: " + what + "\n").c_str(), stderr); }
 
 // Silent after an interruption.
@@ -108,7 +108,7 @@ int benchCommand(const BenchArguments& a) {
     if (!svg) return complain(svg.error());
     const auto report = measure(a);
     if (!report) return complain(report.error());
-    interruption.reset(); // the rest is quick, or waits for a reader
+    interruption.reset(); // the remaining work is short, or waits for a reader
     const bool written = write(*json, jsonOf(report.value())) && write(*svg, plotOf(report.value()));
     fmt::print("{}", tableOf(report.value()));
     const int status = report.value().exitStatus();

@@ -1,4 +1,4 @@
-// mural bench accuracy: measures how far Mural's pictures differ from those of one machine.
+// The command `mural bench accuracy`: measures the difference between Mural's pictures and the pictures of one machine.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ namespace mural::cli {
 
 namespace {
 
-constexpr size_t kWholeFrames = 2; // per window; afterwards the program's reads are known
+constexpr size_t kWholeFrames = 2; // per window; afterwards the reads of the program are determined
 constexpr int kMostSamples = 16; // reference for antialiasing
 
 struct Way {

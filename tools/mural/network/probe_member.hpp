@@ -1,13 +1,16 @@
-// The process that `mural doctor --network` starts on a host: reports arriving datagrams. Controlled by lines of JSON
-// on standard input, with replies on standard output, independent of the measured network path.
+// The process that `mural doctor --network` starts on a host. It reports arriving datagrams. Lines of JSON on standard
+// input control it, and replies go to standard output. Both are independent of the measured network path.
 //
-//   first line  {"secret", "addresses": the doctor's, "port": TCP, "group", "interface", "survey"}
-//            →  {"version", "reached", "own", "why", "port", "troubles", "facts"}
-//   {"do": "seen"}                                    → {"seen": [{"way", "size", "count"}]}: probes since the last request
-//   {"do": "send", "to", "port", "sizes", "copies"}   → {"troubles"}: sends probes of all kinds to the doctor
-//   {"do": "join", "control"}                         → {"joined", "why"}: joins the doctor's group and reads its stream
-//   {"do": "leave"}                                   → {"bytes", "socketDropped", "refused", "queueDropped"}
-//   It ends with the end of standard input, and after ten minutes of silence.
+//   First line: {"secret", "addresses": the doctor's, "port": TCP, "group", "interface", "survey"}.
+//   Reply to it: {"version", "reached", "own", "why", "port", "troubles", "facts"}.
+//   Request {"do": "seen"} returns {"seen": [{"way", "size", "count"}]}: the probes since the last request.
+//   Request {"do": "send", "to", "port", "sizes", "copies"} sends probes of all kinds to the doctor.
+//   Reply to it: {"troubles"}.
+//   Request {"do": "join", "control"} joins the doctor's group and reads its stream.
+//   Reply to it: {"joined", "why"}.
+//   Request {"do": "leave"} returns {"bytes", "socketDropped", "refused", "queueDropped"}.
+//
+// The process ends at the end of standard input, or after ten minutes of silence.
 #pragma once
 
 namespace mural::cli {
