@@ -1,4 +1,4 @@
-// Finds nodes that Avahi knows of, for as long as this lives.
+// Finds nodes that are announced using Avahi, during its lifetime.
 #pragma once
 
 #include <functional>
