@@ -157,7 +157,7 @@ EGLBoolean destroyContext(EGLDisplay, EGLContext context) {
     return EGL_TRUE;
 }
 
-// A driver looks at them when the next ones become current.
+// The driver uses the current surfaces when the next ones become current, so they must still exist then.
 TEST(EglLeftOvers, areThereUntilToldAndGoOnce) {
     int one = 0, other = 0;
     {
