@@ -1,3 +1,4 @@
+// The choice of the driver's configuration for a requested one, and release of surfaces.
 #include "nodes/gl/config_match.hpp"
 
 #include <gtest/gtest.h>
