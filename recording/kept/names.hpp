@@ -1,5 +1,5 @@
-// State of the GL state tracker: what later commands refer to (bindings, stacks), and the structure of objects as far
-// as it decides which commands replace others.
+// State of the GL state tracker: bindings and stacks that later commands refer to, and the structure of objects as far as
+// it determines which commands replace others.
 #pragma once
 
 #include <compare>
@@ -106,7 +106,7 @@ struct ContextNames {
     bool everCurrent = false, current = false;
     bool unknown = false; // bindings are no longer known
     uint32_t lastStream = 0; // stream in which it was last current
-    bool depthTested = false, stencilTested = false, transfersPixels = false; // ever
+    bool depthTested = false, stencilTested = false, transfersPixels = false; // at any time in the past
     uint64_t colorMaterialMode = 0;
     Objects own; // objects that are not shared
     uint32_t lives = 0;

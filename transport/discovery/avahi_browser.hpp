@@ -10,7 +10,7 @@ namespace mural {
 
 class AvahiBrowser {
 public:
-    // Both from a thread of its own.
+    // Callbacks; both run in the Avahi thread.
     using Found = std::function<void(const Announcement& node, const std::string& address)>;
     using Lost = std::function<void(const Uuid& uuid)>;
     AvahiBrowser(Found found, Lost lost);
