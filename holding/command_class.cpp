@@ -170,7 +170,7 @@ uint8_t findValue(uint16_t opcode) {
     return kNoValue;
 }
 
-// Of commands that draw in a list and set nothing, only the nesting of primitives matters while the list is compiled.
+// While a list is compiled, a command that draws and sets no state only matters for the nesting of primitives.
 int8_t deeperOf(const CommandKind& kind) {
     if (kind.state != StateRole::None && kind.state != StateRole::Use) return kLooked;
     switch (kind.about) {

@@ -97,7 +97,7 @@ bool Follower::record(uint32_t stream, const RecordView& r, Effect& effect) {
     return !thread.inPrimitive && thread.list == 0 && thread.blobBytes.empty();
 }
 
-// What no draw depends on are pictures that it is given neither as a texture nor as a target.
+// Reads everything that a draw may depend on. Pictures that are neither its textures nor its targets are excluded.
 void Follower::readState(At& at) { at.effect.read(at.context != nullptr && (at.context->usesFront || at.context->limits.conditional) ? at.client.key : at.client.state); }
 void Follower::readAll(At& at) { at.effect.read(at.client.key); }
 
@@ -275,7 +275,7 @@ void Follower::window(At& at, const RecordView& r) {
     }
     at.effect.kill(part(window.key, Part::Config));
     at.effect.kill(window.picture); // it gets another surface
-    at.effect.read(part(window.key, Part::Name)); // that it is there
+    at.effect.read(part(window.key, Part::Name)); // the window must exist
 }
 
 // ---- GL

@@ -75,7 +75,7 @@ TEST(ConfigMatch, tellsWhatDiffers) {
     EXPECT_EQ(whatDiffers(there, wish), "");
     wish.depth = 32;
     wish.samples = 4;
-    there.width = 99; // of no account
+    there.width = 99; // the width is not compared
     EXPECT_EQ(whatDiffers(there, wish), "depth 24 instead of 32, samples 0 instead of 4");
     const ConfigCandidate taken = candidate(0, 24, 0);
     wish.width = 77;

@@ -12,7 +12,7 @@
 namespace mural {
 namespace {
 
-// What the windows were told, by all threads.
+// Records the calls that the windows receive, from all threads.
 struct World {
     std::mutex mutex;
     std::condition_variable changed;
