@@ -1,6 +1,6 @@
 // Finds positions in a stream's log by the hashes of two consecutive entries, so the encoder resynchronizes after moved
-// or inserted entries. A short entry alone, such as glEnd, says nothing about its successor; a longer one does if the
-// pair is not found. Results are hints: the encoder compares.
+// or inserted entries. A short entry alone, such as glEnd, does not determine its successor. A longer entry does, and is
+// used if the pair is not found. Results are hints: the encoder compares.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Varints (LEB128): seven bits per byte, lowest first; the top bit says that more follow.
+// Varints (LEB128): seven bits per byte, lowest first; the top bit announces another byte.
 #pragma once
 
 #include <cstddef>

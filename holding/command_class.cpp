@@ -31,17 +31,17 @@ CommandClass ofFamily(const recording::Rule& rule) {
     case Family::Attribute:
     case Family::Color:
     case Family::Limit:
-    case Family::PatternedCell: // what lies in a buffer lies in one for pixels, of which nothing is held
+    case Family::PatternedCell: // data in a buffer is in a pixel buffer, whose uploads are not deferred
     case Family::MatrixMode:
     case Family::ListBase:
-    case Family::ArraySet: // but those above
+    case Family::ArraySet: // except the exceptions of the registry (ofDeferral)
     case Family::ArrayNamedSet:
     case Family::MatrixLoad:
     case Family::MatrixChange:
     case Family::MatrixPush:
     case Family::MatrixPop:
     case Family::GenLists:
-    case Family::DeleteList: // a list of that name that is made later takes its place
+    case Family::DeleteList: // a later list with the same name replaces it
     case Family::FramebufferSet:
     case Family::DrawBuffers:
     case Family::RenderbufferStorage:
@@ -50,16 +50,16 @@ CommandClass ofFamily(const recording::Rule& rule) {
     case Family::ArbProgram:
     case Family::SyncMake:
     case Family::SyncDelete:
-    case Family::Clear: // pictures: textures that are such are not held
+    case Family::Clear: // render targets: uploads to textures that are render targets are not deferred
     case Family::ClearBuffer:
     case Family::Blit:
     case Family::Barrier:
-    case Family::Vertex: // of a glBegin, which was the use
+    case Family::Vertex: // within a glBegin, which has flushed already
     case Family::QueryBegin:
     case Family::QueryEnd:
     case Family::QueryCounter:
     case Family::ConditionalEnd: return CommandClass::Pass;
-    case Family::CellOfAll: // the raster position goes through shaders
+    case Family::CellOfAll: // the raster position passes through shaders
     case Family::Draw:
     case Family::Compute: return CommandClass::Use;
     case Family::Begin: return CommandClass::Begin;
@@ -103,7 +103,7 @@ CommandClass ofFamily(const recording::Rule& rule) {
     case Family::EndList:
     case Family::CallList:
     case Family::CallLists: return CommandClass::List;
-    default: return CommandClass::Unknown; // transform feedback, images of other objects, what nobody knows
+    default: return CommandClass::Unknown; // transform feedback, images of other objects, commands without an effect
     }
 }
 
@@ -155,10 +155,10 @@ CommandClass ownClass(uint16_t opcode) {
     }
 }
 
-// Nothing that is bound says what they do.
+// Returns true for requests that do not depend on bindings.
 bool asksForPictures(uint16_t opcode) { return opcode == wire::kOpSwap || opcode == wire::kOpFrontPicture || opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestQuery || opcode == wire::kOpFinish; }
 
-constexpr uint8_t kBufferBytesValue = 3; // buffer, u64 offset
+constexpr uint8_t kBufferBytesValue = 3; // after buffer and u64 offset
 
 uint8_t findValue(uint16_t opcode) {
     size_t word = 0;
@@ -170,7 +170,7 @@ uint8_t findValue(uint16_t opcode) {
     return kNoValue;
 }
 
-// What a list does later, and does not set, matters by how it nests alone.
+// While a list is compiled, a command that draws and sets no state only matters for the nesting of primitives.
 int8_t deeperOf(const CommandKind& kind) {
     if (kind.state != StateRole::None && kind.state != StateRole::Use) return kLooked;
     switch (kind.about) {
@@ -194,7 +194,7 @@ FrameRole frameRoleOf(const CommandKind& kind) {
         if (kind.family == Family::UseProgram) return FrameRole::Draws;
         return kind.family == Family::Gen || kind.family == Family::Create || kind.family == Family::Delete || kind.family == Family::ProgramDelete ? FrameRole::Ends : FrameRole::Binds;
     case CommandClass::List: return kind.family == Family::CallList || kind.family == Family::CallLists ? FrameRole::Binds : FrameRole::Ends;
-    case CommandClass::Object: // of an object that nothing waits for
+    case CommandClass::Object: // on an object without deferred uploads
         if (kind.small) return FrameRole::Draws;
         return kind.family == Family::TexParameter || kind.family == Family::NamedSet ? FrameRole::Binds : FrameRole::SeenBound;
     case CommandClass::Upload: return kind.small ? FrameRole::Draws : FrameRole::SeenBound;

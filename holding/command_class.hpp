@@ -1,5 +1,6 @@
-// What holding back uploads has to know of each command, in one byte: most need no look at all. Made from the families of
-// recording/kept, so that there is one table of commands; what that does not know ends holding back.
+// Classes of commands for the command filter: one table entry per opcode, so most records pass without examination.
+// Derived from the effects of commands (recording/kept/families.hpp). A command without an effect ends the deferral of its
+// share group.
 #pragma once
 
 #include <array>
@@ -13,24 +14,24 @@
 namespace mural::holding {
 
 enum class CommandClass : uint8_t {
-    Pass,    // neither uses what may be held nor changes what uploads are about
-    Blob,    // a piece of a value that travels ahead of its record
-    Use,     // draws: may use all that is bound
-    Begin,   // glBegin: up to glEnd nothing can be put between
+    Pass,    // reads no deferred object and does not change the target of uploads
+    Blob,    // a piece of a value that precedes its record
+    Use,     // draw: may read all bound objects
+    Begin,   // glBegin: no record may be inserted until glEnd
     End,
-    Arrays,  // belongs to the draw behind it: nothing may come between
-    Bind,    // changes what is bound, or what objects there are
-    Object,  // does something to one object that has to stay behind its uploads
-    Upload,  // may be held
+    Arrays,  // belongs to the following draw: no record may be inserted in between
+    Bind,    // changes bindings, or creates or deletes objects
+    Object,  // acts on one object and must stay after its uploads
+    Upload,  // may be deferred
     List,    // display lists
-    Own,     // one of Mural's
-    UseAll,  // may use anything of the share group
-    Unknown, // may do anything, also to what is bound: from there on nothing of the share group is held
+    Own,     // one of Mural's own records
+    UseAll,  // may read any object of the share group
+    Unknown, // unknown effect, also on bindings: disables deferral for the share group from here on
 };
 
-// What those of class Bind do, one jump for each of them.
+// Actions of commands of class Bind: one case of a switch each.
 enum class Binding : uint8_t {
-    Nothing, // that is followed: renderbuffers, pipelines, samplers, programs of assembly
+    Nothing, // not tracked: renderbuffers, pipelines, samplers, assembly programs
     Unit,
     ClientUnit,
     Texture,
@@ -54,16 +55,16 @@ enum class Binding : uint8_t {
     TextureBuffer,
 };
 
-// What a record means to a frame that is like the one before.
+// Role of a record in frame matching (holder_frames.cpp), where a frame repeats the previous one.
 enum class FrameRole : uint8_t {
-    Draws, // binds nothing, whatever its arguments are
-    Binds, // or does what depends on what is bound: by its arguments
-    Seen,  // looked at each time
-    SeenBound, // the same, and what is bound has to be known
-    Ends,  // changes which objects there are: no frame is like another
+    Draws, // changes no binding, independently of its arguments
+    Binds, // changes bindings or depends on them; its arguments have to match
+    Seen,  // examined in each frame
+    SeenBound, // examined in each frame with the current bindings
+    Ends,  // creates or deletes objects: the frame has no template
 };
 
-// The word of the arguments in which a value of variable size begins, the first; kNoValue: there is none.
+// Special value of CommandKind::valueWord: no value of variable size.
 constexpr uint8_t kNoValue = 0xff;
 
 constexpr int8_t kLooked = INT8_MAX;
@@ -72,23 +73,26 @@ struct CommandKind {
     CommandClass about = CommandClass::Unknown;
     StateRole state = StateRole::Change;
     recording::Family family = recording::Family::Unknown;
-    uint8_t valueWord = kNoValue;
-    bool small = false; // sets uniforms, which are looked at where small state is
-    // While a list is compiled: by how much primitives are nested deeper behind it, if it matters no otherwise; else kLooked.
+    uint8_t valueWord = kNoValue; // argument word in which the first value of variable size begins
+    bool small = false; // sets uniforms, which are examined together with redundant state
+    // Change of the glBegin nesting depth, for commands without another effect in a list that is compiled. kLooked: the
+    // command has to be examined.
     int8_t deeper = kLooked;
     FrameRole frame = FrameRole::Ends;
     Binding binding = Binding::Nothing;
 };
 
-// All of them. Each record is looked up, so whoever does it for many keeps the reference.
+// Table of all commands. Every record is looked up, so loops over records keep a reference to the table.
 class CommandKinds {
 public:
     static const CommandKinds& all();
     const CommandKind& operator[](uint16_t opcode) const { return kinds_[placeOf(opcode)]; }
-    // What a walk over records is about: small state is looked at, or a list compiled; what is bound is followed, where those that bind or draw
-    // are looked at on the way; or nothing is held any more.
+    // Purpose of a walk over records.
+    //   State      redundant state is filtered, or a display list is compiled
+    //   Bindings   bindings are tracked; records that bind or draw are examined on the way
+    //   Untracked  deferral is disabled
     enum class Walk : uint8_t { State, Bindings, Untracked };
-    // Which it may pass. Tables of their own, as most records are asked for nothing else.
+    // Records that a walk may pass. Separate tables, because most records need no other lookup.
     using Interest = recording::RecordWalk::Interest;
     using Interests = std::array<Interest, op::kLimit + 1>;
     [[nodiscard]] const Interests& interests(Walk walk) const { return interests_[static_cast<size_t>(walk)]; }

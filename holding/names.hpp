@@ -33,7 +33,7 @@ struct Group {
     std::array<std::unordered_map<uint32_t, std::unique_ptr<Object>>, 3> objects; // by Kind
     std::array<NameIndex<Object>, 3> named; // by Kind
     std::unordered_map<uint32_t, ListNames> lists;
-    bool listsBind = false; // some lists bind
+    bool listsBind = false; // some display lists change bindings
     std::vector<Object*> held; // objects with a queue, oldest first
     SoonUsed soonUsed;
     uint64_t heldChanges = 0; // number of changes of the set of deferred objects

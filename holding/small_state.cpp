@@ -30,21 +30,21 @@ enum Cell : uint8_t {
     kFirstCap = 64,
 };
 constexpr uint32_t kFirstUnitCap = 128, kCapsOfUnit = 16;
-constexpr uint32_t kUnitsWithCaps = 8; // of fixed function: what drivers have
+constexpr uint32_t kUnitsWithCaps = 8; // fixed-function texture units, as many as drivers have
 
-// ---- whether a value is one that no GL refuses
+// ---- checks that every GL accepts a value
 
 using Check = bool (*)(const RecordView& r);
 
 bool any(const RecordView&) { return true; }
-bool never(const RecordView&) { return false; } // a part of the cell, or one of several buffers, viewports, faces
+bool never(const RecordView&) { return false; } // sets a part of the cell, or one of several buffers, viewports, faces
 bool within(uint32_t value, uint32_t first, uint32_t last) { return value >= first && value <= last; }
 bool compares(const RecordView& r) { return within(argumentWord(r, 0), GL_NEVER, GL_ALWAYS); }
 bool blends(const RecordView& r) {
     const size_t words = r.opcode == op::glBlendFunc ? 2 : 4;
     for (size_t i = 0; i < words; ++i) {
         const uint32_t factor = argumentWord(r, i);
-        const bool ofSource = i % 2 == 0 && factor == GL_SRC_ALPHA_SATURATE; // not everywhere for what is there
+        const bool ofSource = i % 2 == 0 && factor == GL_SRC_ALPHA_SATURATE; // not valid as a destination factor in every GL
         if (factor > GL_ONE && !within(factor, GL_SRC_COLOR, GL_ONE_MINUS_DST_COLOR) && !within(factor, GL_CONSTANT_COLOR, GL_ONE_MINUS_CONSTANT_ALPHA) && !ofSource) return false;
     }
     return true;
@@ -63,7 +63,7 @@ bool winding(const RecordView& r) { return within(argumentWord(r, 0), GL_CW, GL_
 bool bothFaces(const RecordView& r) { return argumentWord(r, 0) == GL_FRONT_AND_BACK && within(argumentWord(r, 1), GL_POINT, GL_FILL); }
 bool shading(const RecordView& r) { return within(argumentWord(r, 0), GL_FLAT, GL_SMOOTH); }
 bool convention(const RecordView& r) { return within(argumentWord(r, 0), GL_FIRST_VERTEX_CONVENTION, GL_LAST_VERTEX_CONVENTION); }
-bool thinLine(const RecordView& r) { // wider ones are refused by forward compatible contexts
+bool thinLine(const RecordView& r) { // forward-compatible contexts refuse wider lines
     const auto width = std::bit_cast<float>(argumentWord(r, 0));
     return width > 0 && width <= 1;
 }
@@ -99,7 +99,8 @@ const StateCommand* commandOf(uint16_t opcode) {
 
 // ---- capabilities
 
-// Of the context, counted; kNoCell: not one whose only effect is on later draws. To enable GL_COLOR_MATERIAL takes the colour of that moment.
+// Returns the cell of a capability of the context. kNoCell: not tracked, because it has other effects than on later draws.
+// Example: enabling GL_COLOR_MATERIAL takes the current colour at that moment.
 uint32_t contextCap(uint32_t what) {
     if (what >= GL_LIGHT0 && what <= GL_LIGHT7) return kFirstCap + 40 + (what - GL_LIGHT0);
     if (what >= GL_CLIP_PLANE0 && what < GL_CLIP_PLANE0 + 8) return kFirstCap + 48 + (what - GL_CLIP_PLANE0);
@@ -207,7 +208,7 @@ StateRole ofFamily(uint16_t opcode) {
     case Family::FeedbackBegin:
     case Family::FeedbackEnd:
     case Family::ConditionalEnd: return StateRole::Use;
-    default: return StateRole::Change; // glPopAttrib, lists, limits of single buffers, what nobody knows
+    default: return StateRole::Change; // glPopAttrib, lists, limits of single buffers, commands without an effect
     }
 }
 
@@ -216,16 +217,16 @@ StateRole ofOwn(uint16_t opcode) {
     case wire::kOpBlobBegin:
     case wire::kOpBlobData:
     case wire::kOpBufferBytes:
-    case wire::kOpSwap: // what was drawn before it counts
+    case wire::kOpSwap: // only earlier draws matter
     case wire::kOpFrontPicture:
     case wire::kOpProgramLayout:
     case wire::kOpProgramRecipe:
     case wire::kOpErrorTold: return StateRole::None;
-    default: return StateRole::Use; // questions, other contexts and windows
+    default: return StateRole::Use; // requests, other contexts and windows
     }
 }
 
-// By opcode, where in kCommands; kNone: a capability.
+// Indices into kCommands by opcode; kNone: a capability.
 constexpr uint8_t kNone = 0xff;
 std::vector<uint8_t> allPlaces() {
     std::vector<uint8_t> places(op::kLimit, kNone);

@@ -1,4 +1,5 @@
-// Small state of a context: capabilities, functions, masks, rectangles, each set whole by one command. What a command has to do with it.
+// Small state of a context: capabilities, functions, masks and rectangles, each set completely by one command. Determines
+// the role of each command for this state, so that the command filter can drop redundant setters.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +9,24 @@
 namespace mural::holding {
 
 enum class StateRole : uint8_t {
-    None,   // neither needs small state nor changes it
-    Set,    // sets one of its cells
-    Use,    // needs it: draws, clears, what saves it
-    Change, // may change any of it in ways that are not followed
+    None,   // neither reads nor changes small state
+    Set,    // sets one cell
+    Use,    // reads it: draws, clears, commands that save state
+    Change, // may change any cell in ways that are not tracked
 };
 
-StateRole stateRoleOf(uint16_t opcode); // for CommandKinds, which remembers it
+StateRole stateRoleOf(uint16_t opcode); // slow; CommandKinds caches the result
 
 constexpr uint32_t kNoCell = UINT32_MAX;
-constexpr uint32_t kStateWords = 6; // of the longest record of class Set that is certain
+constexpr uint32_t kStateWords = 6; // words of the longest record of role Set with a certain result
 
 struct StateSet {
-    uint32_t cell = kNoCell; // kNoCell: none that is followed
-    bool certain = false;    // all of the cell is as the record says; else it may be refused, or sets a part only
-    bool atOnce = false;     // where it stands counts: it can be left out, but not wait
+    uint32_t cell = kNoCell; // kNoCell: not tracked
+    bool certain = false;    // the record sets the whole cell; otherwise GL may refuse it, or it sets only a part
+    bool atOnce = false;     // position matters: the record can be dropped, but not deferred
 };
 
-// Of a command of class Set. unit: the active one of textures; some capabilities are the unit's.
+// Returns the cell that a command of role Set sets. unit: the active texture unit, to which some capabilities belong.
 StateSet stateSetOf(const recording::RecordView& r, uint32_t unit);
 
 } // namespace mural::holding

@@ -1,7 +1,7 @@
 // The stream from the head to the render nodes, and the messages back. Little-endian, 4-byte aligned.
 // Grammar and versions: docs/reference/wire-format.md.
 //
-//   stream  = Packet*, or behind a Setup that says `economy` batches of packets (economy/batch_head.hpp)
+//   stream  = Packet*; after a Setup with `economy`: batches of packets (economy/batch_head.hpp)
 //   Packet  = PacketHeader payload[sizeBytes]
 //   payload of a packet of a capture stream = Record*
 //   Record  = u32 header (low 16 bits opcode, high 16 bits length in 4-byte words, header included;
@@ -14,11 +14,11 @@
 namespace mural::wire {
 
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
-constexpr uint32_t kVersion = 4;      // of packets and records; recordings have these, too
-constexpr uint32_t kBatchVersion = 10; // of batches (economy/), head commands and messages, which only head and nodes exchange
+constexpr uint32_t kVersion = 4;      // of packets and records, also in traces
+constexpr uint32_t kBatchVersion = 10; // of batches (economy/), head commands and messages, between head and nodes only
 
-// Which capture stream a packet belongs to: client (app process) and thread of it.
-// streamOf(0, 0) is the head's own stream: its payload is one HeadCommand.
+// Identifier of a capture stream: a client (a process of the program) and one of its threads.
+// streamOf(0, 0) is the head's own stream, whose packets hold one HeadCommand each.
 constexpr uint32_t streamOf(uint32_t client, uint32_t thread) { return client << 16 | thread; }
 constexpr uint32_t clientOf(uint32_t stream) { return stream >> 16; }
 
@@ -27,48 +27,62 @@ struct PacketHeader {
     uint32_t stream;
 };
 constexpr uint32_t kMaxPacketBytes = 1u << 20;
-// A batch of packets, in which what the node had before is not repeated (economy/): what may follow its head.
+// Maximum size of a batch of delta-coded packets (economy/), without its head.
 constexpr uint32_t kMaxBatchBytes = 4u << 20;
 
 // First word of a packet of the head's own stream.
 enum class HeadCommand : uint32_t {
-    Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/node/setup.hpp)
-    ClientGone = 2, // u32 client: free its contexts
-    Finish = 3,     // no more packets: answer Bye and exit
-    Exchange = 4,   // json: {"pictures", "swaps"}: by the number of each node that puts pictures together, or leads a swap barrier, HOST:PORT
-    Member = 5,     // u32 view, u32 node, u32 first, u32 life, u32 absent*: this node, which was given what came before, draws along from here on;
-                    // all answer InView. first = 1: no other member is left that takes turns with it; whose turn it is begins anew. life: how often
-                    // it was started again. absent: nodes that are no members; its picture is put together without these
-    Synchronize = 6, // u32 number, u32 draws: to a node that catches up; it answers Synchronized, and if it draws, draws windows from their next frames on
-    NewHistory = 7, // what was had before is forgotten: batches behind it refer to what comes from here on
-    TellTurns = 8, // u32 number: members that take turns, or whose areas move, answer Turns, for a node that begins to catch up here
-    Turns = 9,     // as the message has it: to a node that catches up, behind what it was given up to that TellTurns
-    JoinGroup = 10, // u32 node: it joins the multicast group of its setup, beside the stream by which this comes
-    ByGroup = 11,  // ByGroupCommand: its last packet, or batch, by its own connection. It comes by the group, too, and behind it is what follows
-    Areas = 12,    // u32 number, u32 nodes, {f64 x, y, w, h} of each: what they draw of the picture from each window's next full clear on
-    Shares = 13,   // u32 number, u32 nodes, {f64 start, end} of each: which part of a frame's draws they draw, from each window's next shared draws on
+    Setup = 1,        // json: tiles, regions, outputs, backend, rewriting mode (nodes/node/setup.hpp)
+    ClientGone = 2,   // u32 client: frees its contexts and windows
+    Finish = 3,       // the last packet: the node replies Bye and exits
+    // json: {"pictures", "swaps"}: HOST:PORT of each node that composites pictures, or leads a swap barrier, by its number.
+    Exchange = 4,
+    // u32 view, u32 node, u32 first, u32 life, u32 absent*: the restarted node, which has received everything before,
+    // is a member from here on. All members reply InView.
+    //   first    1: no other member has phases; the phases restart
+    //   life     incarnation of the node
+    //   absent   nodes that are no members; the node's picture is composited without them
+    Member = 5,
+    // u32 number, u32 draws: to a node in resync, which replies Synchronized. draws = 1: it draws each window from its
+    // next frame on.
+    Synchronize = 6,
+    NewHistory = 7,   // the dictionary is cleared: later batches refer to nothing earlier
+    // u32 number: members with phases, or with areas that move, reply Turns for a node whose resync begins here.
+    TellTurns = 8,
+    Turns = 9,        // contents of a member's Turns message: to a node in resync, after all packets before that TellTurns
+    JoinGroup = 10,   // u32 node: joins the multicast group of its Setup; packets continue on its own connection
+    // ByGroupCommand: the last packet, or batch, on the node's own connection. The group carries it too, and carries all
+    // later ones alone.
+    ByGroup = 11,
+    // u32 number, u32 nodes, {f64 x, y, w, h} of each: the areas of the picture that nodes draw, from the next full clear
+    // of each window on.
+    Areas = 12,
+    // u32 number, u32 nodes, {f64 start, end} of each: the ranges of a frame's draws that nodes draw, from the next shared
+    // draws of each window on.
+    Shares = 13,
 };
 struct ByGroupCommand {
     uint32_t node;
-    uint32_t skipLow, skipHigh; // bytes that have come to it by the group before this packet, or batch
+    uint32_t skipLow, skipHigh; // bytes that the group carried between the join and this packet, or batch
 };
 
 // Node → head.
 enum class NodeMessage : uint32_t {
-    Ready = 1,     // json: host, pid, renderer, glVersion, extensions, threads
-    Answer = 2,    // AnswerHeader + bytes
-    FrameDone = 3, // FrameDoneMessage
-    Picture = 4,   // PictureHeader + rows, when the picture store is not shared memory
-    Log = 5,       // text: one line for the user
-    Bye = 6,       // json: totals (commands, GL errors, replay time)
-    WindowGone = 7, // WindowGoneMessage: the program has destroyed it, or has gone; after its last FrameDone
-    Alive = 8,     // nothing: every few seconds, also while the replay is at work
-    News = 9,      // News + text: what a node's GL tells of a program's context without being asked
-    InView = 10,   // u32 view, ClientFrame*: what follows was sent after this Member
-    Synchronized = 11, // SynchronizedMessage: it has come to that Synchronize
-    Turns = 12,    // u32 number of the TellTurns; of all windows, where it came: WindowTurn*, or of nodes whose areas move
-                   // u32 windows, WindowAreas of each, Areas*: the latest first, then all that these name
-    PackedPicture = 13, // PictureHeader + what PicturePacker has made of the rows
+    Ready = 1,          // json: host, pid, renderer, glVersion, extensions, threads
+    Answer = 2,         // AnswerHeader + bytes
+    FrameDone = 3,      // FrameDoneMessage
+    Picture = 4,        // PictureHeader + rows, if the picture store is not shared memory
+    Log = 5,            // text: one line for the user
+    Bye = 6,            // json: totals (commands, GL errors, replay time)
+    WindowGone = 7,     // WindowGoneMessage: the program has destroyed the window, or ended; after its last FrameDone
+    Alive = 8,          // no contents: heartbeat every few seconds, also while the replay is busy
+    News = 9,           // News + text: a driver event
+    InView = 10,        // u32 view, ClientFrame*: later messages were sent after this Member
+    Synchronized = 11,  // SynchronizedMessage: the node has reached that Synchronize
+    // u32 number of the TellTurns, then the state of all windows there: WindowTurn*, or, of nodes whose areas move,
+    // u32 windows, WindowAreas of each, Areas*: the latest first, then all that the windows refer to.
+    Turns = 12,
+    PackedPicture = 13, // PictureHeader + the rows as encoded by PicturePacker
 };
 
 struct MessageHeader {
@@ -76,52 +90,53 @@ struct MessageHeader {
     uint32_t sizeBytes;
 };
 
-// Part of the answer to Op::Request… of request `requestId`.
+// Part of the reply to request `requestId` (kOpRequest…).
 struct AnswerHeader {
     uint32_t client;
     uint32_t requestId;
     uint32_t kind;       // AnswerKind
     uint32_t groupBytes; // bytes per pixel (rectangles)
-    int32_t x, y, w, h;  // the part of the asked rectangle that follows (rectangles)
-    uint32_t first;      // 1: what follows is all that was asked: a whole rectangle; of what all nodes hold alike, this node speaks for all
-    uint32_t last;       // 1: nothing more comes from this node for this request
+    int32_t x, y, w, h;  // the part of the requested rectangle that follows (rectangles)
+    uint32_t first;      // 1: the bytes are the complete reply: the whole rectangle, or data that is equal on all nodes
+    uint32_t last;       // 1: the last part from this node for this request
 };
 enum class AnswerKind : uint32_t {
     Rectangle = 1, // disjoint parts of a picture, each from the node that drew it
-    Bytes = 2,     // all nodes hold the same: the first living node's bytes count
+    Bytes = 2,     // equal on all nodes: the bytes of the first living node count
     Sum = 3,       // u64 values, added over nodes
 };
 
-// In the reply ring of the client, before each answer (head → program). The bytes follow at once; the
-// next header begins right after them (no padding). Rectangles: rows of w * groupBytes bytes, tightly
-// packed, lowest row first; what no node sent is 0.
+// Header of each reply in the client's reply ring (head → program). The bytes follow immediately, and the next header
+// follows them without padding. Rectangles: rows of w * groupBytes bytes, tightly packed, lowest row first; pixels that
+// no node sent are 0.
 struct ReplyHeader {
     uint32_t requestId;
     uint32_t kind;       // AnswerKind
-    uint64_t sizeBytes;  // of what follows
+    uint64_t sizeBytes;  // of the following bytes
     int32_t x, y, w, h;  // the union of the parts (rectangles)
     uint32_t groupBytes; // bytes per pixel (rectangles)
-    uint32_t failed;     // 1: no node answered; sizeBytes is 0 then
+    uint32_t failed;     // 1: no node replied; sizeBytes is 0
 };
 static_assert(sizeof(ReplyHeader) == 40);
 
+// Kinds of driver events.
 enum class NewsKind : uint32_t {
-    DebugMessage = 1, // as glDebugMessageCallback has it
-    OutOfMemory = 2,  // GL_OUT_OF_MEMORY; how many kOpErrorTold came before stands in `type`
-    ContextLost = 3,  // what glGetGraphicsResetStatus says stands in `type`
+    DebugMessage = 1, // the arguments of glDebugMessageCallback
+    OutOfMemory = 2,  // GL_OUT_OF_MEMORY; `type`: number of kOpErrorTold before it
+    ContextLost = 3,  // `type`: result of glGetGraphicsResetStatus
 };
 
-// Node → head, and from there into the program's shared memory (capture::NewsSlot).
+// A driver event: from node to head, and from there into the program's shared memory (capture::NewsSlot).
 struct News {
     uint32_t client;
     uint32_t context;
     uint32_t kind; // NewsKind
     uint32_t source, type, id, severity;
-    uint32_t textBytes; // that follow, without an end
+    uint32_t textBytes; // length of the text that follows, without a terminator
 };
 static_assert(sizeof(News) == 32);
 
-// A node sends the Picture of a frame before its FrameDone: what has no Picture by then has none.
+// Completion of a frame. A node sends the Picture of a frame, if any, before its FrameDone.
 struct FrameDoneMessage {
     uint32_t client;
     uint32_t window;
@@ -129,49 +144,52 @@ struct FrameDoneMessage {
     uint32_t width;    // of the window, pixels
     uint32_t height;
     uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
-    uint32_t areas;    // number of the Areas by which its picture is divided; 0: those of the start
-    uint32_t shares;   // number of the Shares by which its draws were; 0: those of the start
-    uint64_t busyNs;   // that the node was at work, on anything, since the frame before: without waits and sending; CPU time where nodes share cores
-    uint64_t replayNs; // CPU time of the replay thread since the frame before
+    uint32_t areas;    // number of the Areas that divide its picture; 0: those of Setup
+    uint32_t shares;   // number of the Shares that divide its draws; 0: those of Setup
+    uint64_t busyNs;   // work since the previous frame, without waits and sending; CPU time where nodes share cores
+    uint64_t replayNs; // CPU time of the replay thread since the previous frame
     uint64_t readbackNs;
     uint64_t calls;    // records of this client since its start, up to this frame
 };
 
-// Fragment shaders write to memory, or kOpDrawAll came: every node draws all.
+// Flags of FrameDoneMessage.
+//
+// Every node draws everything, because fragment shaders write to memory, or after kOpDrawAll.
 constexpr uint32_t kDrawnWhole = 1;
-// Frames build on the one before: of nodes that take turns one goes on drawing them.
+// Frames depend on the previous frame: of nodes with phases, one draws all of them.
 constexpr uint32_t kKeepsPicture = 2;
-// Nothing of the frame was shared between the nodes that draw ranges.
+// No draw of the frame was divided between the nodes that draw ranges.
 constexpr uint32_t kNotSplit = 4;
-// Areas were announced long ago, and the window was never cleared whole since.
+// The window has not been cleared completely since Areas were announced long ago.
 constexpr uint32_t kKeepsAreas = 8;
 
-// How far a program was when a node became a member.
+// Progress of a program when a node became a member.
 struct ClientFrame {
     uint32_t client;
-    uint32_t frame; // the last one before
+    uint32_t frame; // the last frame before
 };
 
-// Whose turn a window is, and what of the frame in hand decides that (nodes/replay/replay_turns.cpp).
+// State of a window in time-multiplex: the node whose turn it is, and the progress of the current frame
+// (nodes/replay/replay_turns.cpp).
 struct WindowTurn {
     uint32_t client;
     uint32_t window;
-    int64_t frames; // that have begun
+    int64_t frames; // number of frames begun
     int64_t turn;
-    int64_t kept;      // frames in a row that have built on the one before
-    uint32_t cleared;  // buffers, in this frame, whole
+    int64_t kept;      // consecutive frames that depend on their predecessor
+    uint32_t cleared;  // buffers cleared completely in this frame
     uint32_t state;    // kTurn…
 };
 static_assert(sizeof(WindowTurn) == 40);
 constexpr uint32_t kTurnOver = 1, kTurnUndecided = 2, kTurnFresh = 4, kTurnForGood = 8;
 
-// By which areas a window is divided (nodes/replay/replay_areas.cpp): their numbers.
+// Numbers of the Areas that divide a window (nodes/replay/replay_areas.cpp).
 struct WindowAreas {
     uint32_t client;
     uint32_t window;
     uint32_t areas, wanted, front;
-    uint32_t drawn; // buffers of which each node has its part alone
-    uint32_t fixed; // 1: they stay
+    uint32_t drawn; // buffers of which each node holds only its own part
+    uint32_t fixed; // 1: the areas no longer change
 };
 static_assert(sizeof(WindowAreas) == 28);
 
@@ -179,16 +197,16 @@ struct SynchronizedMessage {
     uint32_t number; // of the Synchronize
     uint32_t sound;  // Soundness
 };
-// Of the frames of a node that has not drawn all that came before.
+// Soundness of the frames of a node that has not drawn everything before.
 enum class Soundness : uint32_t {
     Open = 0, // no frame of some window has been drawn yet
     Sound = 1,
-    Unsound = 2, // frames depend on what was not drawn
+    Unsound = 2, // frames depend on pixels that were not drawn
 };
 
 struct WindowGoneMessage {
     uint32_t client;
-    uint32_t window; // kAllWindows: the program is gone, and the node has freed what was its own
+    uint32_t window; // kAllWindows: the program has ended, and the node has freed its objects
 };
 constexpr uint32_t kAllWindows = 0;
 
@@ -198,17 +216,17 @@ struct PictureHeader {
     uint32_t frame;
     int32_t x, y, w, h; // lower left origin, rows bottom first, tightly packed
     uint32_t windowWidth, windowHeight;
-    uint32_t nativeLow, nativeHigh; // WindowConfig's X window id, 0 when there is none
+    uint32_t nativeLow, nativeHigh; // X window id of WindowConfig; 0: none
     uint32_t format; // PictureFormat (common/picture_format.hpp)
 };
 static_assert(sizeof(PictureHeader) == 48);
 
-// Mural's own opcodes in capture streams: below kFirstGlOpcode; GL commands have theirs from
+// Mural's own opcodes in capture streams, below kFirstGlOpcode. GL commands have the opcodes of
 // streamcodec/registry/opcodes.lock.
 enum Op : uint16_t {
     kOpInvalid = 0,
-    kOpBlobBegin = 1,      // u64 sizeBytes: a value too large for a record; queued until a command takes it
-    kOpBlobData = 2,       // bytes (length from the record; u32 count first)
+    kOpBlobBegin = 1,      // u64 sizeBytes: a value too large for a record; queued until its command uses it
+    kOpBlobData = 2,       // u32 count, bytes
     kOpCreateContext = 3,  // u32 context, u32 shareContext (0 none), u32 api, u32 versionMajor, minor, u32 profile, u32 flags, u32 surfaceConfig index
     kOpDestroyContext = 4, // u32 context
     kOpMakeCurrent = 5,    // u32 context (0 none), u32 drawWindow, u32 readWindow
@@ -220,49 +238,54 @@ enum Op : uint16_t {
     kOpRequestTexImage = 11,
     kOpRequestBuffer = 12,
     kOpRequestQuery = 13,
-    kOpFillWindow = 14,    // i32 x y w h, u32 planes, bytes: pixels of other tiles, before a copy
+    kOpFillWindow = 14,    // i32 x y w h, u32 planes, bytes: pixels of other tiles; precedes a copy
     kOpProgramLayout = 15, // after a link: u32 program, locations by name
     kOpBufferBytes = 16,   // u32 buffer, u64 offset, bytes: written through a mapping
-    kOpFinish = 17,        // u32 request: answer when all before is done
-    kOpFrontPicture = 18,  // u32 window, u32 frame: like Swap for a single-buffered window or front drawing
-    kOpBeginConditional = 19, // u32 draws: glBeginConditionalRender with the result known; 0: nothing is drawn
-    kOpQueryKnown = 20,    // u32 query, u32 passed: for conditional rendering in the display list that is called next
-    kOpDrawAll = 21,       // from now on every node draws all of every window
+    kOpFinish = 17,        // u32 request: replied to when all earlier commands are complete
+    kOpFrontPicture = 18,  // u32 window, u32 frame: like Swap, for single-buffered windows and front-buffer drawing
+    kOpBeginConditional = 19, // u32 draws: glBeginConditionalRender with the known result; 0: nothing is drawn
+    kOpQueryKnown = 20,    // u32 query, u32 passed: for conditional rendering in the next called display list
+    kOpDrawAll = 21,       // from here on every node draws all of every window
     kOpCreateImage = 22,   // u64 image, u32 context, u32 target, u32 name, i32 level, i32 layer: eglCreateImage of a GL object
     kOpDestroyImage = 23,  // u64 image
-    kOpRequestProgram = 24, // u32 request, u32 program: what it was linked from
-    kOpProgramRecipe = 25,  // u32 program, such an answer: glProgramBinary; nothing: the binary was refused
-    kOpErrorTold = 26,      // glGetError has told an error of the program's own GL
+    kOpRequestProgram = 24, // u32 request, u32 program: reads the recipe of its linked state
+    kOpProgramRecipe = 25,  // u32 program, a reply to kOpRequestProgram: for glProgramBinary; empty: the binary was refused
+    kOpErrorTold = 26,      // glGetError has returned an error of the program's own GL
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;
 
-// In groupBytes of kOpRequestPixels: without the program's pixel transfer (scale, bias, maps).
+// Flags in groupBytes of kOpRequestPixels.
+//
+// The program's pixel transfer (scale, bias, maps) is not applied.
 constexpr uint32_t kPlainTransfer = 0x80000000;
-// There, too: each pixel's samples put together, as a copy of the window has them.
+// The samples of each pixel are resolved, as in a copy of the window.
 constexpr uint32_t kResolved = 0x40000000;
-// In planes of kOpFillWindow: for the copy that is next. A window with samples stays as it is.
+// Flags in planes of kOpFillWindow.
+//
+// For the next copy only. A window with samples keeps its own.
 constexpr uint32_t kForCopy = 0x80000000;
-// In planes of kOpFillWindow: colours are words of GL_UNSIGNED_INT_2_10_10_10_REV, or four floats. Default: four bytes.
+// Colours are words of GL_UNSIGNED_INT_2_10_10_10_REV, or four floats. Default: four bytes.
 constexpr uint32_t kTenBits = 0x40000000;
 constexpr uint32_t kFloats = 0x20000000;
 
-// In kOpSwap and kOpFrontPicture: drawn and counted as any other, but no picture is sent and no credit given.
+// Frame number in kOpSwap and kOpFrontPicture of an unseen frame: it is drawn and counted, but no picture is sent and no
+// credit is returned.
 constexpr uint32_t kUnseenFrame = 0;
 
-// What the app's drawable looks like; the nodes make their surfaces alike.
+// Properties of the program's drawable; the surfaces of the nodes have the same.
 struct WindowConfig {
     uint32_t width, height; // pixels
     uint8_t red, green, blue, alpha;
     uint8_t depth, stencil, samples, doubleBuffer;
     uint8_t accum, stereo, srgb, isPbuffer;
-    uint32_t nativeLow, nativeHigh; // X window id, 0 when there is none
+    uint32_t nativeLow, nativeHigh; // X window id; 0: none
 };
 static_assert(sizeof(WindowConfig) == 28);
 // In doubleBuffer: the front buffer begins black, and swaps do not change it.
 constexpr uint8_t kOwnFront = 2;
 
-// In CreateContext's flags: the program wants to be told when the context is lost.
+// In the flags of kOpCreateContext: the program requests notification of a context loss.
 constexpr uint32_t kLosesOnReset = 0x80000000;
 
 enum class Api : uint32_t { Desktop = 0, Es1 = 1, Es2 = 2 }; // Es2: ES 2 and later

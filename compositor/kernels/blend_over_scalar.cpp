@@ -1,3 +1,4 @@
+// Blending pixel by pixel: the reference for the vector code of blend_over.cpp.
 #include <algorithm>
 #include <cstring>
 

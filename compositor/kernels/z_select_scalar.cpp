@@ -1,3 +1,4 @@
+// Depth compositing pixel by pixel: the reference for the vector code of z_select.cpp.
 #include <bit>
 #include <cmath>
 #include <cstring>

@@ -97,7 +97,7 @@ bool Follower::record(uint32_t stream, const RecordView& r, Effect& effect) {
     return !thread.inPrimitive && thread.list == 0 && thread.blobBytes.empty();
 }
 
-// What no draw depends on are pictures that it is given neither as a texture nor as a target.
+// Reads everything that a draw may depend on. Pictures that are neither its textures nor its targets are excluded.
 void Follower::readState(At& at) { at.effect.read(at.context != nullptr && (at.context->usesFront || at.context->limits.conditional) ? at.client.key : at.client.state); }
 void Follower::readAll(At& at) { at.effect.read(at.client.key); }
 
@@ -120,7 +120,7 @@ void Follower::own(At& at, const RecordView& r) {
         at.client.windows.erase(found);
         return;
     }
-    case wire::kOpFrontPicture: at.thread.inPrimitive = false; return; // shows what there is
+    case wire::kOpFrontPicture: at.thread.inPrimitive = false; return; // shows the present picture
     case wire::kOpSwap: {
         const auto found = at.client.windows.find(first);
         at.thread.inPrimitive = false;
@@ -133,7 +133,7 @@ void Follower::own(At& at, const RecordView& r) {
     }
     case wire::kOpRequestPixels:
     case wire::kOpRequestTexImage:
-    case wire::kOpFinish: return drawGathered(at); // who has asked has the answer
+    case wire::kOpFinish: return drawGathered(at); // the program already has the reply
     case wire::kOpRequestBuffer:
     case wire::kOpRequestQuery:
     case wire::kOpRequestProgram: return;
@@ -160,12 +160,12 @@ void Follower::own(At& at, const RecordView& r) {
         at.effect.kill(part(at.client.state, Part::QueryKnown, first, at.thread.context));
         at.effect.read(at.thread.key);
         return;
-    case wire::kOpErrorTold: // nodes count these, and look at nothing
+    case wire::kOpErrorTold: // nodes count these records and use no state
         at.effect.always = true;
         return at.effect.read(at.thread.key);
     case wire::kOpCreateImage: {
         const auto owner = at.client.contexts.find(argumentWord(r, 2));
-        if (owner != at.client.contexts.end()) owner->second.group->untracked = true; // images share what objects hold
+        if (owner != at.client.contexts.end()) owner->second.group->untracked = true; // images share the contents of objects
         [[fallthrough]];
     }
     default:
@@ -205,7 +205,7 @@ void Follower::destroyContext(At& at, const RecordView& r) {
     const bool current = std::ranges::any_of(streams_, [&](const auto& s) {
         return wire::clientOf(s.first) == wire::clientOf(at.stream) && s.second.context == found->first;
     });
-    if (current) { // it lives until another is: what is its own stays kept
+    if (current) { // it exists until another context is current, so its state stays
         at.effect.always = true;
         return;
     }
@@ -275,7 +275,7 @@ void Follower::window(At& at, const RecordView& r) {
     }
     at.effect.kill(part(window.key, Part::Config));
     at.effect.kill(window.picture); // it gets another surface
-    at.effect.read(part(window.key, Part::Name)); // that it is there
+    at.effect.read(part(window.key, Part::Name)); // the window must exist
 }
 
 // ---- GL
@@ -290,11 +290,12 @@ void Follower::unknown(At& at, bool names) {
 void Follower::gl(At& at, const RecordView& r) {
     const size_t before = at.effect.entries.size();
     execute(at, r);
-    // What a command reads stands behind what it makes anew, which does not depend on what it was: only calls of lists are sequences.
+    // Moves reads after the keys that the command replaces: the new values do not depend on the old ones. Calls of lists
+    // are sequences of commands and keep their order.
     const Family family = ruleOf(r.opcode).family;
     if (family != Family::CallList && family != Family::CallLists)
         std::stable_partition(at.effect.entries.begin() + static_cast<std::ptrdiff_t>(before), at.effect.entries.end(), [](const EffectEntry& e) { return e.mode != Mode::Read; });
-    // Whatever it does, the context that is current in the stream does it.
+    // Any effect depends on the current context of the stream.
     if (at.effect.always || at.effect.entries.size() > before) at.effect.read(at.thread.key);
 }
 

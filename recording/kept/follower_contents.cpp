@@ -155,7 +155,7 @@ void Follower::shaders(At& at, const Rule& rule, const RecordView& r) {
     }
 }
 
-// ---- what counts between two commands
+// ---- queries, feedback, conditional rendering
 
 void Follower::queries(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;

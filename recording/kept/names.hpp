@@ -1,5 +1,5 @@
-// State of the GL state tracker: what later commands refer to (bindings, stacks), and the structure of objects as far
-// as it decides which commands replace others.
+// State of the GL state tracker: bindings and stacks that later commands refer to, and the structure of objects as far as
+// it determines which commands replace others.
 #pragma once
 
 #include <compare>
@@ -50,9 +50,9 @@ struct Object {
     ObjectType type = ObjectType::None;
     uint32_t name = 0;
     Key key = kNoKey, images = kNoKey; // images: of textures and renderbuffers
-    bool made = false;    // something that stays has made it
-    bool deleted = false; // its name is free, but others hold it
-    bool opaque = false;  // what it is made of, or who shares it, is not known
+    bool made = false;    // created by a command that stays in the log
+    bool deleted = false; // its name is free, but other objects hold it
+    bool opaque = false;  // its contents, or the objects that share it, are not known
     uint32_t holders = 0; // bindings and objects that keep it alive
     uint32_t target = 0;  // texture
     std::map<uint64_t, Extent> levels; // texture, by face << 32 | level; renderbuffer: 0
@@ -106,7 +106,7 @@ struct ContextNames {
     bool everCurrent = false, current = false;
     bool unknown = false; // bindings are no longer known
     uint32_t lastStream = 0; // stream in which it was last current
-    bool depthTested = false, stencilTested = false, transfersPixels = false; // ever
+    bool depthTested = false, stencilTested = false, transfersPixels = false; // at any time in the past
     uint64_t colorMaterialMode = 0;
     Objects own; // objects that are not shared
     uint32_t lives = 0;

@@ -1,6 +1,6 @@
-"""Thunks: a function for each name that a libGL, libEGL or libGLES of any make may export.
+"""Emits thunks: a function for each name that the libGL, libEGL or libGLES of any vendor may export.
 
-Each jumps through a slot, which is filled at its first call by whoever links the thunks.
+Each thunk jumps through a slot. The library that contains the thunks fills a slot at its first call.
 Sources: gl.xml, glx.xml, and the prototypes of EGL/egl.h (Debian has no egl.xml).
 """
 import re

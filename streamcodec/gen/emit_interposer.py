@@ -1,4 +1,4 @@
-"""Encoders (one per command that travels) and wrappers (one per command that a program may call)."""
+"""Emits encoders, one per command in the stream, and wrappers, one per command that a program may call."""
 import re
 
 from emit_common import HEAD, ctype, prototype
@@ -13,7 +13,7 @@ DATA_KINDS = ('array', 'pixels', 'packed', 'data', 'made', 'text', 'strings')
 
 
 def pixel_shape(c, dims):
-    """format, type, width, height, depth of an image parameter, as C++ expressions."""
+    """Returns format, type, width, height and depth of an image parameter as C++ expressions."""
     if c.name == 'glPolygonStipple':
         return 'GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1'
     have = {p.name for p in c.params}
@@ -24,7 +24,7 @@ def pixel_shape(c, dims):
 
 
 def result_bytes(c):
-    """Names that the driver makes travel behind the arguments."""
+    """Returns the size of a name that the driver creates; it follows the arguments in the record."""
     if c.name == 'glFenceSync' or (c.command_class == 'object' and c.returns == 'GLuint64'):
         return 8
     return 4 if c.command_class == 'object' and c.returns != 'void' else 0
@@ -75,14 +75,14 @@ def encoder(c, opcode):
 
 
 def uniform_elements(c):
-    """Bytes of an element where drivers cut a count that is too large to the uniform's own; 0: no such command."""
+    """Returns the element size of commands whose excessive count drivers limit to the uniform's; 0: another command."""
     value = c.param('value')
     found = re.fullmatch(r'vn\(count,(\d+)\)', value.expr) if value and value.how == 'array' else None
     return int(found.group(1)) if found and re.match(r'gl(Program)?Uniform', c.name) else 0
 
 
 def is_element(c, p):
-    """One pixel that fills a buffer: drivers look for it where the unpack state says."""
+    """Returns true for a single pixel that fills a buffer. Drivers read it at the position given by the unpack state."""
     return p.how == 'array' and p.expr.startswith('clearBytes') and 'Buffer' in c.name
 
 
@@ -105,7 +105,7 @@ def data_argument(c, p):
 
 
 def buffer_uses(c):
-    """What a command does with buffers that reads may still be owed to."""
+    """Returns statements for buffers that deferred reads may still write to."""
     if c.option('owed') == 'settled':
         buffer = next((p.name for p in c.params if p.kind == 'Buffer'), None)
         return '    settleReads(self, %s);\n' % buffer if buffer else '    settleBound(self, target);\n'
@@ -119,7 +119,7 @@ def buffer_uses(c):
 
 
 def outside_primitive(c):
-    """Wrappers written by hand are not reached between glBegin and glEnd, where drivers refuse the command."""
+    """Returns a function that bypasses a hand-written wrapper between glBegin and glEnd, where drivers refuse the command."""
     names = ', '.join(p.name for p in c.params)
     return ('extern "C" %s outside_%s(%s) {\n    if (refusedInPrimitive(*tThread)) [[unlikely]] return gReal.%s(%s);\n    return mural_%s(%s);\n}\n'
             % (ctype(c.returns), c.name, prototype(c), c.name, names, c.name, names))

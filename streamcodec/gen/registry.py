@@ -1,4 +1,4 @@
-"""Model of the OpenGL registry: commands, their parameters and what semantics.txt adds.
+"""Model of the OpenGL registry: commands, their parameters, and the additions of semantics.txt.
 
 Source: gl.xml of Debian's khronos-api, streamcodec/registry/semantics.txt.
 """
@@ -242,7 +242,7 @@ def load(gl_xml, semantics):
 
 
 def check_traits(semantics, commands):
-    """A line whose traits or effect no command in the stream gets is a mistake."""
+    """Fails for a line with traits or an effect that matches no command of the stream."""
     for pattern, options, number in read_semantics(semantics):
         wanted = options.get('traits') or options.get('effect') or options.get('deferral')
         if wanted and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
@@ -250,7 +250,7 @@ def check_traits(semantics, commands):
 
 
 def root_aliases(commands):
-    """Groups of names for one command are led by the core name: drivers have it in every API."""
+    """Selects the core name as the root of each group of aliases, because drivers have it in every API."""
     for c in commands.values():
         while c.alias and commands[c.alias].alias:
             c.alias = commands[c.alias].alias

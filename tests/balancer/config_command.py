@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mural config as a user meets it: exit statuses, one line for each fault, output that reads back, pictures that are XML.
+"""Tests the command mural config: exit statuses, one line per fault, output that can be parsed again, drawings in valid XML.
 
   config_command.py MURAL CONFIGS    the binary; a folder of configurations without a fault
 """

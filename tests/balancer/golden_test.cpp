@@ -87,7 +87,7 @@ public:
 private:
     void has(const std::string& feature) { features_.insert(feature); }
 
-    // Whether the attribute has this value, here or globally.
+    // Returns true if the attribute has this value, in the section or globally.
     [[nodiscard]] bool is(const Attribute& own, const char* global, const std::function<bool(int32_t)>& wanted) const {
         const auto found = file_.globals.find(global);
         const bool all = found != file_.globals.end() && wanted(std::get<int32_t>(found->second));

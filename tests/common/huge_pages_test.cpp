@@ -1,3 +1,4 @@
+// Requests for huge pages cover whole pages within the given range only.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

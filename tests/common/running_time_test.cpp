@@ -36,7 +36,7 @@ TEST(RunningTime, countsALongWaitOfRareBeats) {
     EXPECT_EQ(countedNs, 60 * kNsPerS);
 }
 
-// The pauses of a process are told by its own watch; here the test is the watch.
+// The watch of a process reports its pauses. Here the test takes the place of the watch.
 class Pauses : public ::testing::Test {
 protected:
     void SetUp() override { pauses::tick(nowNs_); }

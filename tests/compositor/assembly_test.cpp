@@ -1,3 +1,4 @@
+// Assembly of pictures: by depth, by blending, side by side, interleaved and masked.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Averages of pictures: vector and scalar code agree, and results are rounded exactly.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// The bit-plane code of strips: vector and scalar code write equal bytes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

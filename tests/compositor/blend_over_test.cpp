@@ -1,3 +1,4 @@
+// Blending of rows: vector and scalar code agree, and each format rounds exactly.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Codec plug-ins are found by name. Invalid ones are rejected with a reason.
 #include <gtest/gtest.h>
 
 #include "compositor/codecs/registry.hpp"

@@ -1,3 +1,4 @@
+// The codec selector with simulated links and contents: its choice is near the best one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Properties of all codecs of the registry: round trips, truncated input, equal bytes on every instruction set.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Kernels for masks, interleaving and background search, compared with scalar code.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// Alignment and resizing of pixel memory.
 #include "compositor/image/pixel_bytes.hpp"
 
 #include <cstdint>

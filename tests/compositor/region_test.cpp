@@ -1,3 +1,4 @@
+// Regions as sets of pixels, detection of the region of interest, and tile hashes.
 #include <gtest/gtest.h>
 
 #include <random>

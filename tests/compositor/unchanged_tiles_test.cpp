@@ -1,3 +1,4 @@
+// The tile delta sends only changed tiles, and detects lost and damaged planes.
 #include <gtest/gtest.h>
 
 #include "compositor/codecs/registry.hpp"

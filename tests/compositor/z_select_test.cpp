@@ -1,3 +1,4 @@
+// Depth compositing of areas: vector and scalar code agree for every depth function and format.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Serialized batches and their compressed sections: round trips, size limits, damaged input.
 #include "tests/economy/both_sides.hpp"
 
 namespace mural::economy::testing {

@@ -1,3 +1,4 @@
+// The choice of a section's compression, with simulated times, sizes and links.
 #include <gtest/gtest.h>
 
 #include "economy/coding_choice.hpp"

@@ -208,8 +208,8 @@ TEST(Packer, findsPagesWhileShortRecordsArePlain) {
     EXPECT_LE(send(5), 6000u);
 }
 
-// Of runs with equal size only changes are sent, including the second run of that size in a frame. If everything
-// changes, the whole run is sent.
+// Runs of equal size are sent as changes, including the second run of that size in a frame. If everything changes, the
+// whole run is sent.
 TEST(Packer, sendsChangesOfPlainRunsOfOneSize) {
     BothSides sides{Limits{}};
     std::mt19937 random(7);

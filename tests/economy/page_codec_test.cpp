@@ -1,3 +1,4 @@
+// The section of new pages: round trips, filtered pictures, damaged input.
 #include "economy/page_codec.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Green subtraction and its inverse.
 #include "economy/pixel_colours.hpp"
 
 #include <gtest/gtest.h>

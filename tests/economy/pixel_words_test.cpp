@@ -1,3 +1,4 @@
+// The difference filter for pixels and its inverse, with every instruction set.
 #include "economy/pixel_words.hpp"
 
 #include <bit>

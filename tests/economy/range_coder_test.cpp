@@ -1,3 +1,4 @@
+// The range coder restores its input, and expected symbols cost next to nothing.
 #include "economy/range_coder.hpp"
 
 #include "economy/byte_predictor.hpp"

@@ -1,3 +1,4 @@
+// The choice between delta coding and plain records, with simulated times, sizes and links.
 #include <gtest/gtest.h>
 
 #include "economy/way_choice.hpp"

@@ -1,4 +1,4 @@
-"""A private X server for tests and measurements, which chooses a free number itself."""
+"""A private X server for tests and measurements; it selects a free display number."""
 
 import os
 import select

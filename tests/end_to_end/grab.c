@@ -1,10 +1,10 @@
-/* Writes what a program shows: a library for LD_PRELOAD that reads the back buffer before every swap.
+/* Saves the pictures that a program shows: a library for LD_PRELOAD that reads the back buffer before every swap.
  *
- * It stands in front of whatever else is preloaded and reads through it, as part of the program would.
+ * It precedes all other preloaded libraries and reads through them, as the program itself would.
  *   GRAB_OUT=folder   a sub-folder per drawable (w0, w1, … in the order of their first swaps) with one
  *                     PPM per frame (f0000.ppm …); without it the library does nothing
  *   GRAB_FLUSH=1      glFlush and glFinish show a frame, too: for windows with a single buffer
- * The GL state that reading needs is saved and put back; the program's own GL error stays pending.
+ * It saves and restores the GL state that reading changes. A GL error of the program stays pending.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -68,7 +68,7 @@ static const char* const hookNames[HOOK_COUNT] = {
     "glFinish",
 };
 
-static Function nextOf[HOOK_COUNT]; /* what a program found by dlsym or GetProcAddress */
+static Function nextOf[HOOK_COUNT]; /* functions that the program found using dlsym or GetProcAddress */
 static DlsymFunction nextDlsym;
 static Function replacementOf(enum Hook hook);
 
@@ -88,7 +88,7 @@ static void* symbolAfterUs(const char* name) {
     if (nextDlsym == NULL) {
         findNextDlsym();
     }
-    /* Stored and returned: a tail call would make glibc look at our caller's place in the order. */
+    /* No tail call: with one, glibc would resolve RTLD_NEXT from the caller's position in the link order. */
     void* volatile found = nextDlsym(RTLD_NEXT, name);
     static const char* const libraries[] = {"libGL.so.1", "libGLX.so.0", "libEGL.so.1"};
     for (unsigned i = 0; found == NULL && i < sizeof libraries / sizeof *libraries; ++i) {
@@ -108,7 +108,7 @@ static Function next(enum Hook hook) {
     return nextOf[hook];
 }
 
-/* The hook's replacement for a name, after remembering `real`; NULL: not ours. */
+/* Returns the replacement for a name and stores `real`. NULL: the name is not hooked. */
 static Function replace(const char* name, Function real) {
     if (name == NULL || real == NULL || (name[0] != 'g' && name[0] != 'e')) {
         return NULL;
@@ -128,7 +128,7 @@ static Function replace(const char* name, Function real) {
     return NULL;
 }
 
-/* GL's own libraries and the layers behind us look for the real functions, not for ours. */
+/* GL's own libraries, and layers after this one, need the real functions instead of the hooks. */
 static int belongsToGl(const void* address) {
     static const char* const prefixes[] = {"libGL", "libEGL", "libOpenGL", "libmural"};
     Dl_info info;
@@ -188,7 +188,7 @@ static struct Gl loadGl(LookUpFunction lookUp) {
     return gl;
 }
 
-/* What the current context knows; asking for more would leave an error behind. */
+/* Version of the current context. Queries that the version lacks would leave a GL error. */
 struct Abilities {
     int es, version; /* 33 is 3.3 */
     int compatibility;
@@ -358,7 +358,7 @@ static void complain(const char* what, const char* with) {
     fprintf(stderr, "grab: %s %s: %s\n", what, with, strerror(errno));
 }
 
-/* The first free number: also right when a program execs another one that draws. */
+/* Returns the first free number, which also works if the program executes another program that draws. */
 static int claimFolder(const char* out) {
     char path[1024];
     for (int number = 0; number < 10000; ++number) {
@@ -374,7 +374,7 @@ static int claimFolder(const char* out) {
     return -1;
 }
 
-/* The path of the drawable's next frame; 0: nowhere to write. */
+/* Writes the path of the drawable's next frame. Returns 0 if there is no output folder. */
 static int nextPath(uintptr_t handle, char* path, size_t sizeBytes) {
     const char* out = getenv("GRAB_OUT");
     if (out == NULL) {

@@ -1,5 +1,6 @@
-/* An overlay as players and recorders preload them: it stands before the calls that show pictures and before dlsym, dlopen
- * and dlclose, and asks for the next function from its own place in the order. It says at the end what it has seen. */
+/* Simulates the overlay of a game launcher or screen recorder: a preloaded library that hooks swaps, XGetImage, dlsym,
+ * dlopen and dlclose. It finds the next function with RTLD_NEXT, from its own position in the link order. At the end it
+ * prints the calls that it has seen. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stdio.h>
@@ -22,7 +23,7 @@ static void* of_libc(const char* name) {
     return found;
 }
 
-/* Not kept: the library behind may be unloaded and loaded again. */
+/* Returns the next function of this name. The result is not cached, because its library may be unloaded and reloaded. */
 static void* next_of(const char* name) {
     const dlsym_function next = (dlsym_function)of_libc("dlsym");
     const dlopen_function open_next = (dlopen_function)of_libc("dlopen");
@@ -71,7 +72,7 @@ EXPORT gl_function eglGetProcAddress(const char* name) {
     return found ? (gl_function)found : ((gl_function (*)(const char*))next_of("eglGetProcAddress"))(name);
 }
 
-/* Without an own answer even for RTLD_NEXT, which is then looked up from here. */
+/* RTLD_NEXT from the program is not handled: the lookup starts after this library. */
 EXPORT void* dlsym(void* handle, const char* name) {
     ++lookups;
     void* found = own(name);

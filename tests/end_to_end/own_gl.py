@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Programs whose GL library GLVND does not use. Either the preloaded front captures them exactly, or one line reports
-that their calls pass around Mural.
+"""Programs with a GL library that GLVND does not load. Either the preloaded library captures them exactly, or one line
+reports that their calls bypass Mural.
 
   own_gl.py --build build/release [--cases caught,told] [--list]
 """

@@ -1,10 +1,10 @@
-/* Windows with a buffer for each eye, where no driver has any: a library for LD_AUDIT that stands between `mural head`'s windows (GLFW) and GLX. (mural run
- * takes LD_PRELOAD from the head.)
+/* Simulates quad-buffered stereo windows, which no driver of the test machines has: a library for LD_AUDIT between the
+ * wall windows of `mural head` (GLFW) and GLX. LD_PRELOAD is not possible, because mural run removes it from the head.
  *
- * Each framebuffer config says that it is stereo. GL_BACK_LEFT is the window's real back buffer, GL_BACK_RIGHT a texture of the window's
- * size. A swap writes both as they are (STEREO_OUT/w0/f0000.left.ppm, f0000.right.ppm, …; a folder for each drawable), and then makes
- * them magenta: what is not drawn anew shows. GL_BACK would be both buffers: nothing here may draw there, so that ends the process, as
- * does all that is asked of the right buffer and not known here.
+ * Every framebuffer config reports stereo. GL_BACK_LEFT is the window's real back buffer. GL_BACK_RIGHT is a texture of
+ * the window's size. A swap writes both to files (STEREO_OUT/w0/f0000.left.ppm, f0000.right.ppm, …; one folder per
+ * drawable). It then fills both with magenta, so that pixels that the next frame does not draw are visible. GL_BACK would
+ * denote both buffers. Drawing there ends the process, and so does any use of the right buffer that is not implemented.
  *   STEREO_OUT=folder   without it the library does nothing
  */
 #define _GNU_SOURCE
@@ -77,7 +77,7 @@ static struct Window {
     unsigned long drawable;
     unsigned framebuffer, texture;
     int width, height;
-    int right; /* what is drawn to the window goes to the right eye */
+    int right; /* 1: draws to the window go to the buffer of the right eye */
     int frames;
 } windows[MAX_WINDOWS];
 static int windowCount;
@@ -87,7 +87,7 @@ static void fail(const char* what) {
     abort();
 }
 
-/* The process that opens the wall's windows, and no other: programs and nodes see what is there. */
+/* Returns 1 in the head, which opens the wall windows. Programs and nodes use the real GLX. */
 static int active(void) {
     static int known = -1;
     if (known < 0) {
@@ -137,7 +137,7 @@ static void loadGl(void) {
 
 /* ---- the two buffers -------------------------------------------------------------------------- */
 
-/* Of the drawable that is current; its right buffer is as large as the window is now. */
+/* Returns the state of the current drawable, after resizing its right buffer to the window's size. */
 static struct Window* current(void) {
     loadGl();
     const unsigned long drawable = real.currentDrawable();
@@ -279,11 +279,11 @@ static int configAttribute(void* display, void* config, int attribute, int* valu
     return done;
 }
 
-/* ---- who asks --------------------------------------------------------------------------------- */
+/* ---- function lookup -------------------------------------------------------------------------- */
 
 static Function lookUp(const unsigned char* name);
 
-/* Ours instead of `found`; NULL: it is none of these. */
+/* Returns the replacement for `found`. NULL: the function is not replaced. */
 static Function replacementOf(const char* name, Function found) {
     if (strcmp(name, "glXGetFBConfigAttrib") == 0) {
         real.configAttribute = (int (*)(void*, void*, int, int*))found;
@@ -315,7 +315,7 @@ static Function lookUp(const unsigned char* name) {
     return ours ? ours : found;
 }
 
-/* ---- the loader's audit: GLFW looks its functions up in the libraries of GL ---------------------- */
+/* ---- audit interface of the dynamic linker: intercepts GLFW's lookups in the GL libraries --------- */
 
 EXPORT unsigned la_version(unsigned version) { return active() ? version : 0; /* 0: nothing is audited */ }
 

@@ -3,8 +3,8 @@
 
   stopped.py --build build/release [--cases program,head,grabs] [--list]
 
-A stop is much longer than what a healthy process leaves unanswered, and shorter than a test may take. Limits of 20 s and more
-are looked at by the unit tests of their clocks (running_time_test, head_session_test).
+A stop lasts much longer than a healthy process takes to reply, and less than a test may take. Unit tests with simulated
+clocks cover limits of 20 s and more (running_time_test, head_session_test).
 """
 
 import argparse

@@ -1,11 +1,11 @@
-/* Writes what a program's windows show: a library for LD_PRELOAD that reads the window through X as
- * soon as the program's swap has returned, as a screenshot function of the program would.
+/* Saves the contents of a program's windows: a library for LD_PRELOAD that reads the window through X
+ * immediately after each swap, as a screenshot function of the program would.
  *
  *   GRAB_OUT=folder   a sub-folder per window (w0, w1, … in the order of their first swaps) with one PPM
  *                     per frame (f0000.ppm …); without it the library does nothing
  *   GRAB_FLUSH=1      glFlush and glFinish show a frame, too: for windows with a single buffer
  *   GRAB_READ=copy    reads by XCopyArea into a pixmap instead of XGetImage of the window
- * For programs that are linked to their GL library: dlsym and GetProcAddress are left alone (grab.c).
+ * Only for programs that are linked to their GL library: dlsym and GetProcAddress are not hooked (grab.c hooks them).
  */
 #define _GNU_SOURCE
 #include <X11/Xlib.h>
@@ -23,7 +23,7 @@
 enum { MAX_WINDOWS = 256 };
 
 static void* nextSymbol(const char* name) {
-    /* Stored and returned: a tail call would make glibc look at our caller's place in the order. */
+    /* No tail call: with one, glibc would resolve RTLD_NEXT from the caller's position in the link order. */
     void* volatile found = dlsym(RTLD_NEXT, name);
     if (found == NULL) {
         fprintf(stderr, "window_grab: the program has no %s\n", name);
@@ -32,7 +32,7 @@ static void* nextSymbol(const char* name) {
     return found;
 }
 
-/* `name` with the type of the function of that name that the headers or this file declare. */
+/* The next function `name`, with the type that the headers or this file declare. */
 #define NEXT(name) ((__typeof__(&name))nextSymbol(#name))
 
 /* ---- pictures --------------------------------------------------------------------------------- */

@@ -1,3 +1,4 @@
+// Parts of a picture composited in any pairing equal the picture of a single node.
 #include <gtest/gtest.h>
 
 #include "tests/exchange/test_parts.hpp"

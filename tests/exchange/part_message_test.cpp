@@ -1,3 +1,4 @@
+// Messages with parts of pictures: round trips, omitted pixels, damaged input.
 #include <gtest/gtest.h>
 
 #include "nodes/exchange/part_message.hpp"

@@ -1,3 +1,4 @@
+// Connections between nodes that exchange parts of pictures: secrets, lost peers, restarted nodes.
 #include <cstring>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// The choice of the driver's configuration for a requested one, and release of surfaces.
 #include "nodes/gl/config_match.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +75,7 @@ TEST(ConfigMatch, tellsWhatDiffers) {
     EXPECT_EQ(whatDiffers(there, wish), "");
     wish.depth = 32;
     wish.samples = 4;
-    there.width = 99; // of no account
+    there.width = 99; // the width is not compared
     EXPECT_EQ(whatDiffers(there, wish), "depth 24 instead of 32, samples 0 instead of 4");
     const ConfigCandidate taken = candidate(0, 24, 0);
     wish.width = 77;
@@ -157,7 +158,7 @@ EGLBoolean destroyContext(EGLDisplay, EGLContext context) {
     return EGL_TRUE;
 }
 
-// A driver looks at them when the next ones become current.
+// The driver uses the current surfaces when the next ones become current, so they must still exist then.
 TEST(EglLeftOvers, areThereUntilToldAndGoOnce) {
     int one = 0, other = 0;
     {

@@ -1,3 +1,4 @@
+// Replies to a request from several nodes are combined into one.
 #include "nodes/head/answer_assembler.hpp"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// Node setups that follow from a configuration file.
 #include "nodes/head/config_plan.hpp"
 
 #include <algorithm>

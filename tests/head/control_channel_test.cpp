@@ -1,3 +1,4 @@
+// The lines of the control connection: split reads, a slow reader, invalid text.
 #include "nodes/head/control_channel.hpp"
 
 #include <algorithm>

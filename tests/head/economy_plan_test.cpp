@@ -1,3 +1,4 @@
+// Delta coding is used for nodes on other machines, not over shared memory.
 #include "nodes/head/economy_plan.hpp"
 
 #include <gtest/gtest.h>

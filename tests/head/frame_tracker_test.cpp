@@ -1,3 +1,4 @@
+// The frame tracker: completion of frames by several nodes, and credit for the program.
 #include "nodes/head/frame_tracker.hpp"
 
 #include <gtest/gtest.h>

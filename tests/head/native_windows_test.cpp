@@ -12,7 +12,7 @@
 namespace mural {
 namespace {
 
-// What the windows were told, by all threads.
+// Records the calls that the windows receive, from all threads.
 struct World {
     std::mutex mutex;
     std::condition_variable changed;
@@ -105,7 +105,7 @@ TEST_F(NativeWindowsTest, leaveToTheProgramWhatItPutsItself) {
     windows_.finish();
     ASSERT_EQ(world_.shown.size(), 1u);
     EXPECT_EQ(world_.shown[0].first, 200u);
-    EXPECT_FALSE(world_.done.contains({1, 1})); // said by whoever gives it to the program
+    EXPECT_FALSE(world_.done.contains({1, 1})); // reported by the component that passes it to the program
 }
 
 TEST_F(NativeWindowsTest, endWithAServerThatDoesNotAnswer) {

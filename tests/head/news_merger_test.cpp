@@ -1,3 +1,4 @@
+// A driver event that all nodes report reaches the program once.
 #include "nodes/head/news_merger.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Admission of connecting nodes by their secrets.
 #include "nodes/head/node_gate.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The nodes, regions and setups that follow from the options of a session.
 #include "nodes/head/node_plan.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Pictures of several passes (samples, kernels, eyes) become one picture.
 #include "nodes/head/wall_composition.hpp"
 
 #include <cmath>

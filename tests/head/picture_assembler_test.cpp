@@ -1,3 +1,4 @@
+// Parts of pictures from several nodes become whole frames.
 #include "nodes/head/picture_assembler.hpp"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// The place and size of a node's picture on the wall.
 #include "nodes/head/picture_place.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Session and node configurations as JSON: round trips, defaults, errors.
 #include "nodes/session/session_config.hpp"
 #include "nodes/session/session_secret.hpp"
 

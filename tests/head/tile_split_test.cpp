@@ -1,3 +1,4 @@
+// Division of a tile grid among nodes.
 #include "nodes/head/tile_split.hpp"
 
 #include <algorithm>

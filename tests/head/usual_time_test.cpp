@@ -1,3 +1,4 @@
+// The typical duration of an operation, robust against outliers.
 #include <cstdint>
 #include <gtest/gtest.h>
 

@@ -67,7 +67,7 @@ public:
         commands.push_back(PacketBuilder().record(op::glActiveTexture, {GL_TEXTURE0}));
         return commands;
     }
-    // That frame with varying final bindings; rarely another one towards its end.
+    // Returns the frame with varying final bindings, and rarely with a different record towards its end.
     PacketBuilder withOtherEnd(const std::vector<PacketBuilder>& commands) {
         PacketBuilder p;
         const size_t other = below(8) == 0 ? commands.size() - 1 - below(12) : commands.size();
@@ -83,7 +83,7 @@ public:
         p.record(op::glActiveTexture, {GL_TEXTURE0});
         return p.swap(1, ++frame_);
     }
-    // That frame with an upload somewhere, to a bound object; sometimes with others before it.
+    // Returns the frame with an upload to a bound object at a random position, sometimes with other names before it.
     PacketBuilder withUpload(const std::vector<PacketBuilder>& commands) {
         PacketBuilder p;
         const size_t at = commands.size() - 1 - below(below(2) == 0 ? 20 : 120);
@@ -102,7 +102,7 @@ public:
             if (CommandKinds::all()[r.opcode].frame == FrameRole::Ends) return true;
         return false;
     }
-    // That frame with occasional differences anywhere.
+    // Returns the frame with occasional differences at any position.
     PacketBuilder likeFrame(const std::vector<PacketBuilder>& commands, uint32_t changes) {
         PacketBuilder p;
         for (const PacketBuilder& c : commands) {

@@ -1,3 +1,4 @@
+// Detection of storage blocks that a GLSL source may write.
 #include <gtest/gtest.h>
 
 #include <string_view>

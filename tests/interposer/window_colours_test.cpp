@@ -1,3 +1,4 @@
+// Comparison and conversion of window pixels of all formats.
 #include "interposer/window_colours.hpp"
 
 #include <GL/glext.h>

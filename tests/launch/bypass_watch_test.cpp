@@ -1,3 +1,4 @@
+// Detection of programs that draw without the capture library, and the message about them.
 #include "nodes/launch/bypass_watch.hpp"
 
 #include <fstream>

@@ -1,3 +1,4 @@
+// Child processes: environment, descriptors, signals, exit status.
 #include "nodes/launch/child_process.hpp"
 
 #include <csignal>

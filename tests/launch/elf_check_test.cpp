@@ -1,3 +1,4 @@
+// Classification of program files by their headers.
 #include "nodes/launch/elf_check.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The environment of a captured program.
 #include "nodes/launch/environment.hpp"
 
 #include <gtest/gtest.h>

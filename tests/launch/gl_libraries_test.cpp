@@ -1,3 +1,4 @@
+// Detection of a program's GL libraries from names and dependencies.
 #include "nodes/launch/gl_libraries.hpp"
 
 #include <gtest/gtest.h>

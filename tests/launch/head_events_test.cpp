@@ -1,3 +1,4 @@
+// Parsing of the head's events, and the report for the user.
 #include "tools/mural/head_events.hpp"
 
 #include <gtest/gtest.h>

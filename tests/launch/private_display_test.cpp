@@ -1,3 +1,4 @@
+// The private X display of --size: size, access, removal.
 #include "nodes/launch/private_display.hpp"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// Checks of a program before its start.
 #include "nodes/launch/program_check.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Supervision of a program and its children: signals and exit status.
 #include "nodes/launch/program_supervisor.hpp"
 
 #include <csignal>

@@ -1,3 +1,4 @@
+// Parsing and checks of the options of mural run.
 #include "tools/mural/run_options.hpp"
 
 #include <gtest/gtest.h>

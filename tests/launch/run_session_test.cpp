@@ -1,3 +1,4 @@
+// Sessions of mural run with a fake head.
 #include "tools/mural/run_session.hpp"
 
 #include <csignal>

@@ -1,3 +1,4 @@
+// Rates of mural stat from two states of a session.
 #include "tools/mural/session_rates.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The socket at which a session reports its state: place, access rights, stale files.
 #include "nodes/launch/session_socket.hpp"
 
 #include <filesystem>

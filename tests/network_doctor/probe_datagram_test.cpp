@@ -1,3 +1,4 @@
+// Encoding of the probes of mural doctor --network.
 #include "tools/mural/network/probe_datagram.hpp"
 
 #include <gtest/gtest.h>

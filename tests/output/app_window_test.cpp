@@ -1,3 +1,4 @@
+// Pictures in the program's own window, read back from X servers of several depths.
 #include "nodes/output/app_window.hpp"
 
 #include <csignal>

@@ -1,3 +1,4 @@
+// The choice of an output by its name.
 #include "nodes/output/outputs.hpp"
 
 #include <filesystem>

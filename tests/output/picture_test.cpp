@@ -1,3 +1,4 @@
+// Copies, conversions and comparisons of pictures.
 #include "nodes/output/picture.hpp"
 
 #include <cstring>

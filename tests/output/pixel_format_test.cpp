@@ -1,3 +1,4 @@
+// Conversion of pictures to the pixel formats of X visuals.
 #include "nodes/output/pixel_format.hpp"
 
 #include <cmath>

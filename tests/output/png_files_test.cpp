@@ -1,3 +1,4 @@
+// Pictures as PNG files: exact contents, and errors of folders and disks.
 #include "nodes/output/png_files.hpp"
 
 #include <algorithm>

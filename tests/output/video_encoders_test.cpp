@@ -1,3 +1,4 @@
+// The choice of a video encoder from FFmpeg's list.
 #include "nodes/output/video_encoders.hpp"
 
 #include <gtest/gtest.h>

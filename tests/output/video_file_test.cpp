@@ -1,3 +1,4 @@
+// Videos: decoded frames, changed sizes, failing encoders.
 #include "nodes/output/video_file.hpp"
 
 #include <csignal>

@@ -1,3 +1,4 @@
+// Wall windows on a private X server: position, size, contents.
 #include "nodes/output/wall_windows.hpp"
 
 #include <csignal>

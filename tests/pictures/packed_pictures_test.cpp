@@ -1,3 +1,4 @@
+// Encoding of transferred pictures with every codec.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Reduction of pictures before their transfer.
 #include "nodes/pictures/picture_way.hpp"
 
 #include <gtest/gtest.h>

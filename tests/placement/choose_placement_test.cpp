@@ -1,3 +1,4 @@
+// The choice of cores near GPU and network interface.
 #include <gtest/gtest.h>
 
 #include "nodes/placement/machine_view.hpp"

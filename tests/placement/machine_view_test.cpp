@@ -1,3 +1,4 @@
+// Devices of a machine and the cores near them, from hwloc.
 #include "nodes/placement/machine_view.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Binding of a thread to the cores near a device.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>

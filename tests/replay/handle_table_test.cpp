@@ -1,3 +1,4 @@
+// Translation of bindless handles from the program to a node.
 #include "nodes/replay/handle_table.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Positions of samples and kernel pixels of a render pass.
 #include "nodes/replay/pass_place.hpp"
 
 #include <gtest/gtest.h>

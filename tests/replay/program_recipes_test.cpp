@@ -1,3 +1,4 @@
+// Encoding of program recipes, the replacement for program binaries.
 #include "nodes/replay/program_recipes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Regions that are extended to whole bins of the software rasteriser.
 #include "nodes/replay/raster_bins.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The choice of the readback method, with simulated times.
 #include "nodes/replay/readback_choice.hpp"
 
 #include <gtest/gtest.h>

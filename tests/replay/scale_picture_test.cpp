@@ -1,3 +1,4 @@
+// Scaling of pictures for zoom.
 #include "nodes/pictures/scale_picture.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Detection of projection matrices in a program's uniforms and buffers.
 #include "nodes/replay/seen_projection.hpp"
 
 #include <cmath>

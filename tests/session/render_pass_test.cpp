@@ -1,3 +1,4 @@
+// The render passes of a frame: eyes, samples, kernels, turns.
 #include "nodes/session/render_pass.hpp"
 
 #include <cmath>

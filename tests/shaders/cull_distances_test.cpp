@@ -1,3 +1,4 @@
+// Rewriting of shaders that adds cull distances.
 #include <gtest/gtest.h>
 
 #include "nodes/shaders/cull_distances.hpp"

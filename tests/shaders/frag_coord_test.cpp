@@ -1,3 +1,4 @@
+// Rewriting of fragment shaders that moves window positions and scales derivatives.
 #include <gtest/gtest.h>
 
 #include <regex>

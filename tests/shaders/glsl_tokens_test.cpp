@@ -1,3 +1,4 @@
+// The GLSL scanner: versions, directives, comments, edits.
 #include <gtest/gtest.h>
 
 #include "nodes/shaders/glsl_tokens.hpp"

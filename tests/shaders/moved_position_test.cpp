@@ -1,3 +1,4 @@
+// Rewriting of shaders that moves positions, for eyes and samples.
 #include "nodes/shaders/moved_position.hpp"
 
 #include <gtest/gtest.h>

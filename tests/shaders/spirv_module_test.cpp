@@ -1,3 +1,4 @@
+// Detection of FragCoord in SPIR-V modules.
 #include <array>
 #include <cstdint>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Geometry of a tile: culling edges, offsets and positions.
 #include <gtest/gtest.h>
 
 #include <limits>

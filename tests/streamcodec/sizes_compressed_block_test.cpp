@@ -1,3 +1,4 @@
+// Sizes of compressed images and of their blocks.
 #include <gtest/gtest.h>
 
 #include "streamcodec/sizes/compressed_block.hpp"

@@ -1,3 +1,4 @@
+// The range of vertices of an indexed draw.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// Numbers of values at pointer parameters.
 #include <gtest/gtest.h>
 
 #include "streamcodec/sizes/gl_enums.hpp"

@@ -1,3 +1,4 @@
+// Sizes of pixels by format and type.
 #include <gtest/gtest.h>
 
 #include "streamcodec/sizes/gl_enums.hpp"

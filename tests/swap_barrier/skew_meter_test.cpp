@@ -1,3 +1,4 @@
+// The time between the swaps of the first and the last window of a barrier.
 #include "nodes/swap_barrier/skew_meter.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The byte ring: wrap-around, sleeping ends, invalid positions.
 #include "transport/byte_ring.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Connections as text: parsing, errors, connecting.
 #include "transport/connection_description.hpp"
 
 #include <gtest/gtest.h>

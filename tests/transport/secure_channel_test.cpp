@@ -1,3 +1,4 @@
+// The secure channel: handshake, encryption, changed bytes.
 #include "transport/secure_channel.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Connections over shared memory and in-process pipes.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// Copies into memory that another core reads: exactly the requested bytes.
 #include "transport/streaming_copy.hpp"
 
 #include <algorithm>

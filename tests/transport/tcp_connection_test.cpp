@@ -1,3 +1,4 @@
+// TCP connections: addresses, deadlines, errors.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// Parallel connection attempts to several addresses of a host.
 #include "transport/tcp_race.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Encoding of the messages between a head and a daemon (mural node --wait).
 #include "nodes/waiting/node_message.hpp"
 
 #include <gtest/gtest.h>

@@ -19,7 +19,7 @@ public:
     static Result<std::unique_ptr<Announcing>> start(const Announcement& self, const DiscoveryOptions& options);
     ~Announcing(); // sends the final announcement
 
-    // Why nobody finds us by a means now; empty: somebody may.
+    // Return the reason why this node is not announced by beacon, or by Avahi; empty: it is.
     [[nodiscard]] std::string beaconTrouble() const;
     [[nodiscard]] std::string avahiTrouble() const { return publisher_ ? publisher_->trouble() : std::string(); }
 

@@ -56,7 +56,7 @@ void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex
         std::string where = text;
         char card[IF_NAMESIZE] = {};
         if (where.starts_with("fe80:") && interface >= 0 && if_indextoname(static_cast<unsigned>(interface), card)) where += std::string("%") + card;
-        // As strict as the beacon is: they come to terminals.
+        // Validates as strictly as the beacon, because the texts are shown on terminals.
         const Announcement told{AnnouncementKind::Here, port, *uuid, s.fact(facts, "name"), s.fact(facts, "version")};
         if (const auto a = decodeAnnouncement(encode(told))) {
             s.known[name] = *uuid;

@@ -1,4 +1,4 @@
-// Finds nodes that Avahi knows of, for as long as this lives.
+// Finds nodes that are announced using Avahi, during its lifetime.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@ namespace mural {
 
 class AvahiBrowser {
 public:
-    // Both from a thread of its own.
+    // Callbacks; both run in the Avahi thread.
     using Found = std::function<void(const Announcement& node, const std::string& address)>;
     using Lost = std::function<void(const Uuid& uuid)>;
     AvahiBrowser(Found found, Lost lost);

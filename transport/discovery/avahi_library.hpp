@@ -1,4 +1,4 @@
-// libavahi-client, opened where it is installed: nobody needs it for the rest of Mural.
+// Loads libavahi-client at run time where it is installed, so that Mural does not depend on it.
 #pragma once
 
 #include <string>
@@ -16,9 +16,9 @@ namespace mural {
 
 constexpr const char* kAvahiServiceType = "_mural-node._tcp";
 
-// Its functions by their names, without the prefix avahi_.
+// The functions of libavahi-client, without the prefix avahi_.
 struct AvahiLibrary {
-    // The same for all; nullptr: it is not there, and why.
+    // Returns the loaded library, shared by all callers. On failure returns nullptr and sets `why`.
     static const AvahiLibrary* get(std::string& why);
 
     decltype(&avahi_simple_poll_new) simplePollNew;

@@ -4,13 +4,13 @@
 
 namespace mural {
 
-// Only the thread's.
+// State of the Avahi thread; no other thread uses it.
 struct AvahiPublisher::Service {
     Announcement self;
-    std::string name; // another one when somebody has it already
+    std::string name; // another name after a collision
     const AvahiLibrary* avahi = nullptr;
     std::shared_ptr<AvahiThread::Shared> shared;
-    AvahiEntryGroup* group = nullptr; // the client's
+    AvahiEntryGroup* group = nullptr; // owned by the Avahi client
 
     void add();
     static void changed(AvahiEntryGroup*, AvahiEntryGroupState state, void* data);
@@ -30,7 +30,7 @@ void AvahiPublisher::Service::add() {
 
 void AvahiPublisher::Service::changed(AvahiEntryGroup* g, AvahiEntryGroupState state, void* data) {
     auto& s = *static_cast<Service*>(data);
-    s.group = g; // the first call comes before it is known
+    s.group = g; // the first callback precedes the return of entryGroupNew()
     if (state == AVAHI_ENTRY_GROUP_COLLISION) {
         char* other = s.avahi->alternativeServiceName(s.name.c_str());
         if (!other) return;

@@ -1,4 +1,4 @@
-// Announces a node by Avahi for as long as this lives.
+// Announces a node using Avahi during its lifetime.
 #pragma once
 
 #include "transport/discovery/announcement.hpp"

@@ -54,7 +54,7 @@ void NodeTable::lostByAvahi(const Uuid& uuid) {
     remove(found);
 }
 
-// Unless the other method still knows it.
+// Removes a node unless the other method still finds it.
 void NodeTable::remove(std::map<Uuid, Entry>::iterator at) {
     if (!at->second.node.byBeacon && !at->second.node.byAvahi) entries_.erase(at);
 }

@@ -1,3 +1,4 @@
+// The bit-plane code of a strip, word by word: the reference for the vector code of strip_code.cpp.
 #include <bit>
 #include <cstring>
 

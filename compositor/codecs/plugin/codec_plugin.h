@@ -1,10 +1,11 @@
-/* What a codec plug-in offers: a library libmural_codec_NAME.so in a folder that the registry is told of carries the codec
- * NAME. It exports one C function:
+/* The C interface of codec plug-ins. The library libmural_codec_NAME.so provides the codec NAME. It is in the folder that
+ * the registry receives, and exports one C function:
  *
  *     const struct mural_codec_plugin* mural_get_codec_plugin(void);
  *
- * Plain C, so that compiler and C++ library may differ. What each function promises is what compositor/codecs/codec.hpp says
- * of the method of its name. A codec is used by one thread at a time; several codecs of one plug-in by several.
+ * The interface is plain C, so plug-in and Mural may use different compilers and C++ libraries. Each function has the
+ * contract of the method of the same name in compositor/codecs/codec.hpp. One thread at a time uses a codec; several
+ * threads may use several codecs of one plug-in.
  */
 #ifndef MURAL_CODEC_PLUGIN_H
 #define MURAL_CODEC_PLUGIN_H
@@ -16,11 +17,11 @@
 extern "C" {
 #endif
 
-/* Raised whenever the table or a function's meaning changes; Mural takes its own version only. */
+/* Increases with each change of the table or of a function's meaning. Mural accepts only its own version. */
 #define MURAL_CODEC_PLUGIN_VERSION 1
 #define MURAL_CODEC_PLUGIN_ENTRY "mural_get_codec_plugin"
 
-/* Numbers of plane formats, as in compositor/image/plane_format.hpp; 4, 4, 8, 16, 4 and 4 bytes per pixel. */
+/* Plane formats, with the values of compositor/image/plane_format.hpp: 4, 4, 8, 16, 4 and 4 bytes per pixel. */
 enum mural_plane_format {
     MURAL_PLANE_RGBA8 = 0,
     MURAL_PLANE_RGB10A2 = 1,
@@ -32,7 +33,7 @@ enum mural_plane_format {
 
 struct mural_codec;
 
-/* One line: what, where, next step. Ends with a zero. */
+/* One line with the problem, its place and the next step, zero-terminated. */
 struct mural_codec_error {
     char text[1024];
 };
@@ -43,22 +44,22 @@ struct mural_codec_shape {
     int32_t height;
 };
 
-/* Row 0 stands at pixels, the next ones stride_bytes further on each. */
+/* Row 0 begins at pixels; each next row begins stride_bytes later. */
 struct mural_codec_plane {
     struct mural_codec_shape shape;
     int64_t stride_bytes;
     void* pixels;
 };
 
-/* Functions with an error return 1 when it worked and 0 when not; error is written to only then. */
+/* Functions with an error parameter return 1 on success, and 0 on failure. They write to error on failure only. */
 struct mural_codec_plugin {
     uint32_t version;    /* MURAL_CODEC_PLUGIN_VERSION */
     uint32_t size_bytes; /* of this table */
     const char* name;    /* as in the library's name */
     uint32_t lossless;   /* 1, or 0 */
-    uint32_t formats;    /* a bit 1 << FORMAT for each that it takes */
+    uint32_t formats;    /* accepted formats: one bit 1 << FORMAT each */
 
-    struct mural_codec* (*create)(struct mural_codec_error* error); /* null: it did not work */
+    struct mural_codec* (*create)(struct mural_codec_error* error); /* returns null on failure */
     void (*destroy)(struct mural_codec*);
     uint64_t (*bound_bytes)(const struct mural_codec*, const struct mural_codec_shape*);
     int (*encode)(struct mural_codec*, const struct mural_codec_plane*, void* into, uint64_t room_bytes, uint64_t* written_bytes, struct mural_codec_error* error);

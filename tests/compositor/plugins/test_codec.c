@@ -1,4 +1,5 @@
-/* A codec that inverts all bits, and the same made unfit, each in its own way (see CMakeLists.txt). */
+/* A codec plug-in that inverts all bits, and invalid variants of it: each build has another fault, by a macro of
+ * CMakeLists.txt. */
 #include "compositor/codecs/plugin/codec_plugin.h"
 
 #include <stdlib.h>

@@ -1,22 +1,22 @@
-// Holds a grab of the X server while it draws, swaps and looks at its windows through X: rubber bands, window managers,
-// screenshot tools. It prints a checksum of what it sees after each step, and how long the grab lasted.
+// Grabs the X server while it draws, swaps and reads its windows through X, as rubber bands, window managers and
+// screenshot tools do. It prints a checksum of the pixels read in each step, and the duration of the grab.
 //
 //   grabbed_server WAY
 //
-//   xlib, xcb, checked   the functions by which it grabs
+//   xlib, xcb, checked   the function that grabs: Xlib, XCB, or XCB with a checked request
 //   nested               two grabs and one release; then it draws and grabs again
-//   early                it grabs before its first call of GL
-//   second               another connection of the process holds the grab, and looks
-//   closed               that connection is closed with the grab on it
-//   front                a window with a single buffer, shown by glFlush
-//   two                  two windows, each drawn to in turn
-//   large                a window larger than what is on its way at once
-//   opened               a window that is made and first shown during the grab
-//   thread               another thread swaps meanwhile
-//   copy                 it copies its window into a pixmap, and looks at that
-//   egl                  by EGL
-//   without              it grabs nothing, and draws for 3 s
-//   hold                 it draws nothing: another program's grab, for 2 s
+//   early                the grab precedes the first GL call
+//   second               another connection of the process holds the grab and reads
+//   closed               that connection is closed while it holds the grab
+//   front                a single-buffered window, shown by glFlush
+//   two                  two windows, drawn alternately
+//   large                a window larger than the transfer buffers
+//   opened               a window that is created and first shown during the grab
+//   thread               another thread swaps during the grab
+//   copy                 the window is copied into a pixmap, which is read
+//   egl                  EGL instead of GLX
+//   without              no grab; draws for 3 s
+//   hold                 no drawing: simulates another program that holds a grab for 2 s
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 

@@ -1,10 +1,10 @@
-// Reads what it draws, over and over, for a script that stops processes meanwhile. It asks for more than any buffer on the
-// way holds, so most stops come within an answer.
+// Draws and reads back repeatedly, while a script stops the processes of the session. Each reply is larger than any buffer
+// on its path, so most stops interrupt a reply.
 //
 //   stopped_reads KIND SECONDS    KIND: pixels, buffer, texture, query, swaps
 //
-// At the end it says how many reads there were, how many of them differ from the first without a GL error, and how many
-// raised an error; exit status 0 when none differs.
+// At the end it prints the number of reads, of reads that differ from the first without a GL error, and of errors. The
+// exit status is 0 if no read differs.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 
@@ -47,7 +47,7 @@ public:
         glBindTexture(GL_TEXTURE_2D, 0);
     }
 
-    // The bytes read; what was not written keeps the pattern.
+    // Reads into a buffer that was filled with a pattern; bytes that are not written keep it.
     void read(std::vector<GLubyte>& into) {
         std::memset(into.data(), 0x77, into.size());
         if (kind_ == "buffer") return readBuffer(into);
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
         ++reads;
         if (glGetError() != GL_NO_ERROR) {
             ++errors;
-            break; // whoever has lost its answers draws anew
+            break; // a program with a lost reply would draw again
         }
         differ += now != first ? 1 : 0;
         window->swap();

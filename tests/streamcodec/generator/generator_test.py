@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Tests of streamcodec/gen: what comes out for a tiny registry, and what holds for the real one.
+"""Tests of streamcodec/gen: its output for a tiny registry, and properties of its output for the real one.
 
   generator_test.py            runs the tests
-  generator_test.py --update   accepts what comes out now as golden.txt; read the difference first
+  generator_test.py --update   accepts the present output as golden.txt; read the difference first
 """
 import os
 import re

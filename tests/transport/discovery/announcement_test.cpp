@@ -1,3 +1,4 @@
+// Encoding of node announcements.
 #include "transport/discovery/announcement.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The schedule of announcements.
 #include "transport/discovery/announcer.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The persistent UUID of a machine's node.
 #include "transport/discovery/node_id.hpp"
 
 #include <filesystem>

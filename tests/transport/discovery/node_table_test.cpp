@@ -1,3 +1,4 @@
+// The table of discovered nodes.
 #include "transport/discovery/node_table.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-/* Libraries that are no plug-in for this Mural, each in its own way (see CMakeLists.txt). */
+/* Invalid transport plug-ins: each build has another fault, by a macro of CMakeLists.txt. */
 #include "transport/plugin/transport_plugin.h"
 
 #ifndef UNFIT_VERSION

@@ -1,3 +1,4 @@
+// Control connections of a group: limits and order of queued messages.
 #include "transport/rsp/control_link.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The datagram cipher: replays, forgeries, foreign keys.
 #include "transport/rsp/datagram_seal.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Encoding of RSP datagrams, and comparison of sequence numbers.
 #include "transport/rsp/datagram.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The erasure code and its field arithmetic.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Parsing of group options.
 #include "transport/rsp/group_text.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How `mural netperf receive` ends: a sender that is done is its success; one that is killed, sends other bytes, or goes on without it is not.
+"""Exit statuses of `mural netperf receive`: success if the sender completes; failure if the sender is killed, sends other
+bytes, or continues without the receiver.
 
   netperf_ends.py MURAL
 """
