@@ -1,4 +1,4 @@
-"""Opcodes, the table of entry points and the command table: what both sides share."""
+"""Generates the opcodes, the table of entry points and the command table, which encoder and replay share."""
 
 HEAD = '// Generated from the OpenGL registry by streamcodec/gen. Do not edit.\n'
 

@@ -1,9 +1,9 @@
-"""Which commands a render node may have from libepoxy (docs/decisions/0002-entry-points-of-the-nodes.md).
+"""Selects the commands that a render node loads through libepoxy (docs/decisions/0002-entry-points-of-the-nodes.md).
 
-libepoxy finds a command once per process, when it is first called. Where the context of that call has it only under
-another name, libepoxy takes that one, for all contexts to come, also of other kinds, which may not know it. So a
-command comes from libepoxy where no kind of context can offer it another name, and where libepoxy may ask the
-context when it is first called: not between glBegin and glEnd.
+libepoxy resolves a command once per process, at its first call. If the current context offers the command only under
+another name, libepoxy keeps that name for all later contexts. A context of another kind may lack that name. A command
+therefore comes from libepoxy only under two conditions: no kind of context offers it under another name, and libepoxy
+can query the context at the first call, which is impossible between glBegin and glEnd.
 """
 import re
 

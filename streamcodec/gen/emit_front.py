@@ -1,7 +1,7 @@
-"""Thunks: a function for each name that a libGL, libEGL or libGLES of any make may export.
+"""Generates thunks: one function for each name that a libGL, libEGL or libGLES of any vendor may export.
 
-Each jumps through a slot, which is filled at its first call by whoever links the thunks.
-Sources: gl.xml, glx.xml, and the prototypes of EGL/egl.h (Debian has no egl.xml).
+Each thunk jumps through a slot. The client that links the thunks fills the slot at its first call. Sources: gl.xml,
+glx.xml, and the prototypes of EGL/egl.h (Debian has no egl.xml).
 """
 import re
 import xml.etree.ElementTree as ET

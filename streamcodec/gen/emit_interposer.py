@@ -1,4 +1,4 @@
-"""Encoders (one per command that travels) and wrappers (one per command that a program may call)."""
+"""Generates encoders (one per command in the stream) and wrappers (one per command that a program may call)."""
 import re
 
 from emit_common import HEAD, ctype, prototype
@@ -13,7 +13,7 @@ DATA_KINDS = ('array', 'pixels', 'packed', 'data', 'made', 'text', 'strings')
 
 
 def pixel_shape(c, dims):
-    """format, type, width, height, depth of an image parameter, as C++ expressions."""
+    """Returns format, type, width, height and depth of an image parameter, as C++ expressions."""
     if c.name == 'glPolygonStipple':
         return 'GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1'
     have = {p.name for p in c.params}
@@ -24,7 +24,8 @@ def pixel_shape(c, dims):
 
 
 def result_bytes(c):
-    """Names that the driver makes travel behind the arguments."""
+    """Returns the size of the result that the record contains after the arguments, such as a name created by the
+    driver; 0: none."""
     if c.name == 'glFenceSync' or (c.command_class == 'object' and c.returns == 'GLuint64'):
         return 8
     return 4 if c.command_class == 'object' and c.returns != 'void' else 0
@@ -75,14 +76,16 @@ def encoder(c, opcode):
 
 
 def uniform_elements(c):
-    """Bytes of an element where drivers cut a count that is too large to the uniform's own; 0: no such command."""
+    """Returns the bytes per element of a uniform array whose excess count drivers clamp to the uniform's size; 0: no
+    such command."""
     value = c.param('value')
     found = re.fullmatch(r'vn\(count,(\d+)\)', value.expr) if value and value.how == 'array' else None
     return int(found.group(1)) if found and re.match(r'gl(Program)?Uniform', c.name) else 0
 
 
 def is_element(c, p):
-    """One pixel that fills a buffer: drivers look for it where the unpack state says."""
+    """Returns whether the parameter is one pixel that fills a buffer. Drivers read it at the position of the unpack
+    state."""
     return p.how == 'array' and p.expr.startswith('clearBytes') and 'Buffer' in c.name
 
 
@@ -105,7 +108,7 @@ def data_argument(c, p):
 
 
 def buffer_uses(c):
-    """What a command does with buffers that reads may still be owed to."""
+    """Returns the code that notes the command's use of buffers, because deferred reads may still be pending for them."""
     if c.option('owed') == 'settled':
         buffer = next((p.name for p in c.params if p.kind == 'Buffer'), None)
         return '    settleReads(self, %s);\n' % buffer if buffer else '    settleBound(self, target);\n'
@@ -119,7 +122,8 @@ def buffer_uses(c):
 
 
 def outside_primitive(c):
-    """Wrappers written by hand are not reached between glBegin and glEnd, where drivers refuse the command."""
+    """Generates an entry that bypasses a hand-written wrapper between glBegin and glEnd, where drivers reject the
+    command."""
     names = ', '.join(p.name for p in c.params)
     return ('extern "C" %s outside_%s(%s) {\n    if (refusedInPrimitive(*tThread)) [[unlikely]] return gReal.%s(%s);\n    return mural_%s(%s);\n}\n'
             % (ctype(c.returns), c.name, prototype(c), c.name, names, c.name, names))

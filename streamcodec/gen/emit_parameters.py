@@ -1,4 +1,4 @@
-"""Names, types and enums of the commands' parameters, for readers that print records."""
+"""Generates names, types and enums of the commands' parameters, for tools that print records."""
 import xml.etree.ElementTree as ET
 
 from emit_common import HEAD
@@ -14,7 +14,8 @@ TRAVELS = {'scalar': 'Scalar', 'handle': 'Wide', 'offset': 'Wide', 'fixed': 'Fix
 
 
 def read_enums(gl_xml):
-    """{group: {value: name}}; '' holds all that are no bits. Names of core GL win, then those without a vendor, then short ones."""
+    """Returns {group: {value: name}}; group '' holds all enums except bits. Names of core GL take precedence, then
+    names without a vendor suffix, then short names."""
     root = ET.parse(gl_xml).getroot()
     core = {e.get('name') for f in root.findall('feature') for r in f.findall('require') for e in r.findall('enum')}
 

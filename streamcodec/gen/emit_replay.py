@@ -1,4 +1,5 @@
-"""Decoding and calling: one function per command of the stream, with every length checked."""
+"""Generates the functions of the replay, one per command of the stream: each decodes the record, checks every length,
+and calls GL."""
 import re
 
 from emit_common import HEAD, ctype
@@ -19,14 +20,15 @@ def nullable(c, p):
 
 
 def negative_counts(c):
-    """Counts of values that would be an error below 0: the program has been told, and drivers copy so many (Mesa)."""
+    """Returns the count parameters that are an error below 0. The program has received that error, and Mesa would
+    copy that number of values."""
     found = [COUNT.match(p.expr) for p in c.params if p.how == 'array']
     counts = {match.group(1) for match in found if match} | {p.length for p in c.params if p.how == 'made'}
     return [p.name for p in c.params if p.name in counts and p.how == 'scalar' and p.base in ('GLsizei', 'GLint', 'GLsizeiptr')]
 
 
 def decode(c):
-    """Statements that read the arguments into locals named like the parameters."""
+    """Returns the statements that read the arguments into locals with the names of the parameters."""
     lines = []
     for p in c.params:
         if p.how == 'skip':

@@ -1,4 +1,4 @@
-"""The tables of traits and effects: streamcodec/command_traits.hpp, streamcodec/command_effects.hpp."""
+"""Generates the tables of traits and effects: streamcodec/command_traits.hpp, streamcodec/command_effects.hpp."""
 import re
 
 from emit_common import HEAD

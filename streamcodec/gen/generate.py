@@ -5,7 +5,7 @@
                                                      writes DIR/*.hpp, DIR/*.cpp
   generate.py --registry gl.xml --update-lock        appends new commands to opcodes.lock
 
-Nothing that comes out stands in git. Opcodes are stable: streamcodec/registry/opcodes.lock only grows.
+The generated files are not in git. Opcodes never change: streamcodec/registry/opcodes.lock only grows.
 """
 import argparse
 import os

@@ -1,4 +1,4 @@
-"""Model of the OpenGL registry: commands, their parameters and what semantics.txt adds.
+"""Model of the OpenGL registry: commands, their parameters, and the additions of semantics.txt.
 
 Source: gl.xml of Debian's khronos-api, streamcodec/registry/semantics.txt.
 """
@@ -82,7 +82,8 @@ class Command:
         return next((p for p in self.params if p.name == name), None)
 
     def classify(self):
-        """Finds the class and how every parameter travels; falls back to unsupported with a reason."""
+        """Determines the class of the command and the transfer of each parameter. A command without a rule becomes
+        unsupported, with a reason."""
         self.command_class = self.options.get('class')
         wanted_unsupported = self.command_class == 'unsupported'
         outputs = [p for p in self.params if p.pointers and not p.const]
@@ -242,7 +243,7 @@ def load(gl_xml, semantics):
 
 
 def check_traits(semantics, commands):
-    """A line whose traits or effect no command in the stream gets is a mistake."""
+    """Rejects a line whose traits or effect apply to no command of the stream."""
     for pattern, options, number in read_semantics(semantics):
         wanted = options.get('traits') or options.get('effect') or options.get('deferral')
         if wanted and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
@@ -250,7 +251,7 @@ def check_traits(semantics, commands):
 
 
 def root_aliases(commands):
-    """Groups of names for one command are led by the core name: drivers have it in every API."""
+    """Makes the core name the root of each group of aliases, because drivers have that name in every API."""
     for c in commands.values():
         while c.alias and commands[c.alias].alias:
             c.alias = commands[c.alias].alias

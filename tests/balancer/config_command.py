@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""mural config as a user meets it: exit statuses, one line for each fault, output that reads back, pictures that are XML.
+"""Tests mural config from the user's side: exit statuses, one line per fault, output that can be read again, and
+valid XML.
 
-  config_command.py MURAL CONFIGS    the binary; a folder of configurations without a fault
+config_command.py MURAL CONFIGS    the binary; a folder of valid configurations
 """
 import os
 import subprocess

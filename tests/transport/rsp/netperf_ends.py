@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""How `mural netperf receive` ends: a sender that is done is its success; one that is killed, sends other bytes, or goes on without it is not.
+"""Tests the exit status of `mural netperf receive`. It succeeds if the sender finishes. It fails if the sender is
+killed, sends other bytes, or continues without the receiver.
 
-  netperf_ends.py MURAL
+netperf_ends.py MURAL
 """
 
 import os
@@ -21,7 +22,7 @@ def start(words):
 
 
 def start_pair(mural, secret, size, sender_options=(), receiver_options=(), rate="80mbit"):
-    """(sender, receiver), over the loopback."""
+    """Returns (sender, receiver) of a stream over the loopback."""
     common = ["--interface", "lo", "--group", "239.255.77.87:%d" % (20000 + os.getpid() % 20000), "--secret-file", secret,
               "--within", str(WAIT_SECONDS)]
     sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", rate, "--control", "127.0.0.1:0"] + common + list(sender_options))
@@ -33,7 +34,7 @@ def start_pair(mural, secret, size, sender_options=(), receiver_options=(), rate
 
 
 def go_on(receiver):
-    """Until it is in the middle of the stream."""
+    """Waits until the receiver is in the middle of the stream."""
     try:
         receiver.wait(timeout=1.5)
     except subprocess.TimeoutExpired:
