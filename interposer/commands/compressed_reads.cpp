@@ -16,7 +16,7 @@ struct Image {
     Level size;
     int dimensions = 2;
 
-    // Bytes of the tight level; 0: not a block format.
+    // Returns the bytes of the level without gaps; 0: not a block format.
     [[nodiscard]] size_t bytes() const {
         const size_t tight = sizes::compressedBytes(format, size.width, size.height, size.depth);
         return tight == SIZE_MAX ? 0 : tight;

@@ -9,7 +9,7 @@ using namespace mural;
 
 namespace {
 
-// From now on, this context's draws are checked.
+// Enables the check before each draw of this context.
 void parameterSet(ThreadState& t, GLenum pname) {
     if (pname != GL_FRAMEBUFFER_DEFAULT_SAMPLES || !t.context) return;
     t.context->hasDefaultSamples = true;
