@@ -26,7 +26,7 @@ struct WindowPicture {
     uint32_t frame = 0;
     uint64_t nativeWindow = 0; // X window id, 0: none; bits 32 and up: number of its display (CaptureHeader::displays)
     std::shared_ptr<const OwnedPicture> picture;
-    // pictures of the further canvases, in their order; null: out of memory
+    // pictures of the other canvases, in their order; null: out of memory
     std::vector<std::shared_ptr<const OwnedPicture>> others;
 };
 
