@@ -1,3 +1,4 @@
+// Wrappers that set the sample count of framebuffer objects without attachments (interposer/default_samples.hpp).
 #include "interposer/default_samples.hpp"
 
 #include "custom_wrappers.hpp"

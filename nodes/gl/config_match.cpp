@@ -7,7 +7,7 @@
 namespace mural::gl {
 namespace {
 
-// Acceptable substitutes for a value of an attribute.
+// Values that may replace the requested value of an attribute.
 enum class Other { None, Any, AnyButZero };
 
 struct Attribute {

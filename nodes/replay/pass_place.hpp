@@ -41,8 +41,8 @@ struct PassPixel {
 // Returns the pixels that represent the window pixels `r`.
 [[nodiscard]] PixelViewport standingFor(const RenderPass& pass, const PixelViewport& r);
 
-// Returns the transformation of window coordinates to the pass, for a viewport x, y, width, height: scale - 1 in x, y,
-// then offset in x, y, in normalised device coordinates (shaders::kMoveUniform).
+// Returns the transformation of window coordinates to the pass, for a viewport x, y, width, height. The values are
+// scale - 1 in x, y, then offset in x, y, in normalised device coordinates (shaders::kMoveUniform).
 [[nodiscard]] std::array<float, 4> moveInViewport(const RenderPass& pass, const std::array<float, 4>& viewport);
 
 } // namespace mural
