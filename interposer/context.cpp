@@ -81,7 +81,7 @@ void announce(ThreadState& t, Window& w) {
 }
 
 // Core contexts have no indices in client memory, but Mesa accepts them. Programs that are loaded above 4 GiB have no
-// memory below, so smaller values are offsets without a query.
+// memory below, so smaller values are certainly offsets.
 uintptr_t lowestIndices(const Context& c) {
     if (!c.core) return 0;
     if (!c.isMesa) return UINTPTR_MAX;

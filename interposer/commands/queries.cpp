@@ -73,7 +73,7 @@ template <class T> T held(uint64_t value) {
 // earlier frames.
 bool drawsAllItself(const ThreadState& t) { return swapLocally() || t.context->drawsPixmap; }
 
-// The driver's own call comes first: it raises errors, and answers what does not depend on rendering.
+// Executes the driver's own call first. It raises errors, and returns values that do not depend on rendering.
 template <class T, class Local> void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
     if (drawsAllItself(t) || !params || !isResult(pname)) return local();
     uint64_t value = 0;

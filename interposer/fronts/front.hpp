@@ -36,8 +36,8 @@ private:
     Loader library_ = nullptr;
 };
 
-// Both entries feed one encoder, but only the first one used is active. A library behind the preloaded entry may itself
-// call GLVND, and its calls would arrive twice.
+// Both entries feed one encoder, but only the first one used is active. A library that the preloaded
+// entry wraps may itself call GLVND, and its calls would arrive twice.
 enum class Way : int { Open, Vendor, Preload };
 bool claimProgram(Way way);
 

@@ -41,7 +41,7 @@ public:
     // The node has returned. It finishes the frames after `before`; other nodes have finished the earlier ones.
     void nodeJoined(int node, const std::vector<wire::ClientFrame>& before, int64_t nowNs);
     void clientGone(uint32_t client);
-    // No node sends further frames of this window.
+    // Call after the last frame of this window from all nodes.
     void windowGone(uint32_t client, uint32_t window);
 
     // Announces a picture for the outputs. Must precede the completion of its frame.

@@ -89,11 +89,11 @@ public:
     // The node receives delta-coded batches. Call before the first one.
     void setInBatches(bool in) { inBatches_ = in; }
     [[nodiscard]] bool inBatches() const { return inBatches_; }
-    // The node receives batches once it is a member.
+    // Sets whether the node receives batches once it is a member.
     void setJoinsBatches(bool joins) { joinsBatches_ = joins; }
     [[nodiscard]] bool joinsBatches() const { return joinsBatches_; }
 
-    // The node joins the multicast group once it is a member.
+    // Sets whether the node joins the multicast group once it is a member.
     void setJoinsGroup(bool joins) { joinsGroup_ = joins; }
     [[nodiscard]] bool joinsGroup() const { return joinsGroup_; }
 

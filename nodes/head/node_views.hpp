@@ -14,9 +14,9 @@ class NodeViews {
 public:
     explicit NodeViews(size_t nodes) : nodes_(nodes) {}
 
-    // The node is a member from this view on, and sends nothing before.
+    // Makes the node a member from this view on. It must have sent nothing before.
     void joins(int node, uint32_t view) { at(node) = {true, view, view}; }
-    // The node's messages from now on belong to this view.
+    // Records that the node's messages belong to this view from now on.
     void reached(int node, uint32_t view) { at(node).in = view; }
     void lost(int node) { at(node).lives = false; }
 

@@ -50,7 +50,7 @@ public:
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
     void nodeLost(int node);
-    // The node sends parts of frames from this view on.
+    // Adds a returned node. It sends parts of frames from this view on.
     void nodeJoins(int node, uint32_t view);
     void nodeInView(int node, uint32_t view);
     void clientGone(uint32_t client); // no node sends more parts of it

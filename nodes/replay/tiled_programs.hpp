@@ -15,7 +15,7 @@ class TiledPrograms {
 public:
     // Replaces glCompileShader: stores the text and compiles it when a link determines the rewriting.
     void compile(const GlFunctions& gl, GLuint shader);
-    // The shader contains a SPIR-V module or was compiled by another command: it is never rewritten.
+    // Call when the shader receives a SPIR-V module or is compiled by another command. It is then never rewritten.
     void forget(GLuint shader) { shaders_.erase(shader); }
     // Replaces glLinkProgram. Links the original shaders if the rewritten ones do not compile or link.
     void link(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);
