@@ -1,4 +1,4 @@
-"""Generates the opcodes, the table of entry points and the command table, which encoder and replay share."""
+"""Emits the tables that capture library and nodes share: opcodes, entry points and the command table."""
 
 HEAD = '// Generated from the OpenGL registry by streamcodec/gen. Do not edit.\n'
 

@@ -1,9 +1,9 @@
-"""Selects the commands that a render node loads through libepoxy (docs/decisions/0002-entry-points-of-the-nodes.md).
+"""Emits the list of commands that a render node takes from libepoxy (docs/decisions/0002-entry-points-of-the-nodes.md).
 
-libepoxy resolves a command once per process, at its first call. If the current context offers the command only under
-another name, libepoxy keeps that name for all later contexts. A context of another kind may lack that name. A command
-therefore comes from libepoxy only under two conditions: no kind of context offers it under another name, and libepoxy
-can query the context at the first call, which is impossible between glBegin and glEnd.
+libepoxy resolves a command once per process, at its first call. If the context of that call has the command only under
+another name, libepoxy uses that name for all later contexts, which may lack it. A command therefore comes from libepoxy
+under two conditions. No kind of context can offer it another name. And libepoxy may query the context at the first
+call, which is not possible between glBegin and glEnd.
 """
 import re
 

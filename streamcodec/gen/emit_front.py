@@ -1,7 +1,7 @@
-"""Generates thunks: one function for each name that a libGL, libEGL or libGLES of any vendor may export.
+"""Emits thunks: a function for each name that the libGL, libEGL or libGLES of any vendor may export.
 
-Each thunk jumps through a slot. The client that links the thunks fills the slot at its first call. Sources: gl.xml,
-glx.xml, and the prototypes of EGL/egl.h (Debian has no egl.xml).
+Each thunk jumps through a slot. The library that contains the thunks fills a slot at its first call.
+Sources: gl.xml, glx.xml, and the prototypes of EGL/egl.h (Debian has no egl.xml).
 """
 import re
 import xml.etree.ElementTree as ET

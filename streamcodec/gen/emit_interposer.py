@@ -1,4 +1,4 @@
-"""Generates encoders (one per command in the stream) and wrappers (one per command that a program may call)."""
+"""Emits encoders, one per command in the stream, and wrappers, one per command that a program may call."""
 import re
 
 from emit_common import HEAD, ctype, prototype
@@ -13,7 +13,7 @@ DATA_KINDS = ('array', 'pixels', 'packed', 'data', 'made', 'text', 'strings')
 
 
 def pixel_shape(c, dims):
-    """Returns format, type, width, height and depth of an image parameter, as C++ expressions."""
+    """Returns format, type, width, height and depth of an image parameter as C++ expressions."""
     if c.name == 'glPolygonStipple':
         return 'GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1'
     have = {p.name for p in c.params}
@@ -24,8 +24,7 @@ def pixel_shape(c, dims):
 
 
 def result_bytes(c):
-    """Returns the size of the result that the record contains after the arguments, such as a name created by the
-    driver; 0: none."""
+    """Returns the size of a name that the driver creates; it follows the arguments in the record."""
     if c.name == 'glFenceSync' or (c.command_class == 'object' and c.returns == 'GLuint64'):
         return 8
     return 4 if c.command_class == 'object' and c.returns != 'void' else 0
@@ -76,16 +75,14 @@ def encoder(c, opcode):
 
 
 def uniform_elements(c):
-    """Returns the bytes per element of a uniform array whose excess count drivers clamp to the uniform's size; 0: no
-    such command."""
+    """Returns the element size of commands whose excessive count drivers limit to the uniform's; 0: another command."""
     value = c.param('value')
     found = re.fullmatch(r'vn\(count,(\d+)\)', value.expr) if value and value.how == 'array' else None
     return int(found.group(1)) if found and re.match(r'gl(Program)?Uniform', c.name) else 0
 
 
 def is_element(c, p):
-    """Returns whether the parameter is one pixel that fills a buffer. Drivers read it at the position of the unpack
-    state."""
+    """Returns true for a single pixel that fills a buffer. Drivers read it at the position given by the unpack state."""
     return p.how == 'array' and p.expr.startswith('clearBytes') and 'Buffer' in c.name
 
 
@@ -108,7 +105,7 @@ def data_argument(c, p):
 
 
 def buffer_uses(c):
-    """Returns the code that notes the command's use of buffers, because deferred reads may still be pending for them."""
+    """Returns statements for buffers that deferred reads may still write to."""
     if c.option('owed') == 'settled':
         buffer = next((p.name for p in c.params if p.kind == 'Buffer'), None)
         return '    settleReads(self, %s);\n' % buffer if buffer else '    settleBound(self, target);\n'
@@ -122,8 +119,7 @@ def buffer_uses(c):
 
 
 def outside_primitive(c):
-    """Generates an entry that bypasses a hand-written wrapper between glBegin and glEnd, where drivers reject the
-    command."""
+    """Returns a function that bypasses a hand-written wrapper between glBegin and glEnd, where drivers refuse the command."""
     names = ', '.join(p.name for p in c.params)
     return ('extern "C" %s outside_%s(%s) {\n    if (refusedInPrimitive(*tThread)) [[unlikely]] return gReal.%s(%s);\n    return mural_%s(%s);\n}\n'
             % (ctype(c.returns), c.name, prototype(c), c.name, names, c.name, names))

@@ -1,4 +1,4 @@
-"""Generates names, types and enums of the commands' parameters, for tools that print records."""
+"""Emits names, types and enums of the commands' parameters, for tools that print records."""
 import xml.etree.ElementTree as ET
 
 from emit_common import HEAD
@@ -14,8 +14,8 @@ TRAVELS = {'scalar': 'Scalar', 'handle': 'Wide', 'offset': 'Wide', 'fixed': 'Fix
 
 
 def read_enums(gl_xml):
-    """Returns {group: {value: name}}; group '' holds all enums except bits. Names of core GL take precedence, then
-    names without a vendor suffix, then short names."""
+    """Returns {group: {value: name}}; group '' has all values that are no bits. Core names take precedence, then names
+    without a vendor, then short ones."""
     root = ET.parse(gl_xml).getroot()
     core = {e.get('name') for f in root.findall('feature') for r in f.findall('require') for e in r.findall('enum')}
 

@@ -1,5 +1,4 @@
-"""Generates the functions of the replay, one per command of the stream: each decodes the record, checks every length,
-and calls GL."""
+"""Emits the replay functions, one per command of the stream: each validates all lengths, decodes and calls GL."""
 import re
 
 from emit_common import HEAD, ctype
@@ -20,15 +19,15 @@ def nullable(c, p):
 
 
 def negative_counts(c):
-    """Returns the count parameters that are an error below 0. The program has received that error, and Mesa would
-    copy that number of values."""
+    """Returns the counts whose negative values are errors. The program has already received the error, and Mesa would copy
+    that many values."""
     found = [COUNT.match(p.expr) for p in c.params if p.how == 'array']
     counts = {match.group(1) for match in found if match} | {p.length for p in c.params if p.how == 'made'}
     return [p.name for p in c.params if p.name in counts and p.how == 'scalar' and p.base in ('GLsizei', 'GLint', 'GLsizeiptr')]
 
 
 def decode(c):
-    """Returns the statements that read the arguments into locals with the names of the parameters."""
+    """Returns statements that read the arguments into locals with the names of the parameters."""
     lines = []
     for p in c.params:
         if p.how == 'skip':

@@ -1,4 +1,4 @@
-"""Generates the tables of traits and effects: streamcodec/command_traits.hpp, streamcodec/command_effects.hpp."""
+"""Emits the tables of traits and effects (streamcodec/command_traits.hpp, streamcodec/command_effects.hpp)."""
 import re
 
 from emit_common import HEAD
@@ -8,7 +8,7 @@ def traits_of(c):
     return sorted(c.traits | ({'DrawClass'} if c.command_class == 'draw' else set()))
 
 
-# Commands without a described effect that may change what later commands mean.
+# Commands without an effect in the registry that may change the meaning of later commands.
 CHANGES_NAMES = re.compile('Bind|Use|Active|Push|Pop|Begin|End|Delete|Matrix|List|ClientAttrib')
 
 

@@ -5,7 +5,7 @@
                                                      writes DIR/*.hpp, DIR/*.cpp
   generate.py --registry gl.xml --update-lock        appends new commands to opcodes.lock
 
-The generated files are not in git. Opcodes never change: streamcodec/registry/opcodes.lock only grows.
+The output is not in git. Opcodes are stable: streamcodec/registry/opcodes.lock is append-only.
 """
 import argparse
 import os

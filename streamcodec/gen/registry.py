@@ -82,8 +82,7 @@ class Command:
         return next((p for p in self.params if p.name == name), None)
 
     def classify(self):
-        """Determines the class of the command and the transfer of each parameter. A command without a rule becomes
-        unsupported, with a reason."""
+        """Determines the class and the transfer of each parameter. Otherwise sets class unsupported, with a reason."""
         self.command_class = self.options.get('class')
         wanted_unsupported = self.command_class == 'unsupported'
         outputs = [p for p in self.params if p.pointers and not p.const]
@@ -243,7 +242,7 @@ def load(gl_xml, semantics):
 
 
 def check_traits(semantics, commands):
-    """Rejects a line whose traits or effect apply to no command of the stream."""
+    """Fails for a line with traits or an effect that matches no command of the stream."""
     for pattern, options, number in read_semantics(semantics):
         wanted = options.get('traits') or options.get('effect') or options.get('deferral')
         if wanted and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
@@ -251,7 +250,7 @@ def check_traits(semantics, commands):
 
 
 def root_aliases(commands):
-    """Makes the core name the root of each group of aliases, because drivers have that name in every API."""
+    """Selects the core name as the root of each group of aliases, because drivers have it in every API."""
     for c in commands.values():
         while c.alias and commands[c.alias].alias:
             c.alias = commands[c.alias].alias

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Tests mural config from the user's side: exit statuses, one line per fault, output that can be read again, and
-valid XML.
+"""Tests the command mural config: exit statuses, one line per fault, output that can be parsed again, drawings in valid XML.
 
-config_command.py MURAL CONFIGS    the binary; a folder of valid configurations
+  config_command.py MURAL CONFIGS    the binary; a folder of configurations without a fault
 """
 import os
 import subprocess

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Stopped processes, and programs that grab the X server.
+"""Processes that are stopped for a while, and programs that hold a grab of the X server.
 
   stopped.py --build build/release [--cases program,head,grabs] [--list]
 
-A stop is much longer than any silence of a healthy process, and short enough for a test. Unit tests of the clocks
-(running_time_test, head_session_test) cover limits of 20 s and more.
+A stop lasts much longer than a healthy process takes to reply, and less than a test may take. Unit tests with simulated
+clocks cover limits of 20 s and more (running_time_test, head_session_test).
 """
 
 import argparse
@@ -143,8 +143,7 @@ def program_killed_while_stopped(context):
 
 
 def head_killed(context, kind):
-    """A read during which the head is killed is correct or raises an error. It never returns wrong pixels without an
-    error."""
+    """A read during which the head is killed is correct or raises an error. It never returns only wrong pixels."""
     with context.run([context.program("stopped_reads"), kind, "5"]) as run:
         if not run.wait_for_line("begins"):
             return "it did not begin"
@@ -204,8 +203,7 @@ for name, native_way in (("xlib", None), ("xcb", None), ("checked", None), ("nes
 
 @case
 def grabs_of_another_program(context):
-    """The pictures wait for the end of the grab, and so do the program's reads. The program still reads each of its
-    frames."""
+    """The pictures and the program's reads wait for the end of the grab. The program still reads each of its frames."""
     wanted = natively(context, "without")
     with context.run([context.program("grabbed_server"), "without"], options=("--tiles", "2x1", "--display", "app")) as run:
         if not run.wait_for_line("without a grab"):

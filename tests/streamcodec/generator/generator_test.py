@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Tests streamcodec/gen: the output for a tiny registry, and properties of the real registry.
+"""Tests of streamcodec/gen: its output for a tiny registry, and properties of its output for the real one.
 
-generator_test.py            runs the tests generator_test.py --update   accepts the current output as golden.txt;
-read the difference first
+  generator_test.py            runs the tests
+  generator_test.py --update   accepts the present output as golden.txt; read the difference first
 """
 import os
 import re
@@ -167,14 +167,12 @@ class RealRegistry(unittest.TestCase):
         self.assertEqual([], wrong)
 
     def test_draws_without_a_quiet_call_are_vertices(self):
-        """Without `quiet` the program's own context skips the command in contexts with glBegin. Only vertex commands
-        permit that."""
+        """Without `quiet` the program's own context skips the command in contexts with glBegin. Only vertices permit that."""
         wrong = [c.name for c in self.sent if c.command_class == 'draw' and c.option('app') != 'custom' and not c.option('quiet') and 'Vertex' not in c.traits]
         self.assertEqual([], wrong)
 
     def test_copies_out_of_framebuffers_gather_what_they_read(self):
-        """No driver here has the imaging subset, and its copies are not gathered. glAccum and copies of pixels have
-        hand-written wrappers."""
+        """No driver here has the imaging subset, so it is not gathered. glAccum and pixel copies have hand-written wrappers."""
         imaging = re.compile(r'glCopy(Color|Convolution)')
         wrong = [c.name for c in self.sent if ('ReadsFramebuffer' in c.traits) != bool(c.option('copies'))
                  and 'Pixels' not in c.traits and not imaging.match(c.name)]

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Tests the exit status of `mural netperf receive`. It succeeds if the sender finishes. It fails if the sender is
-killed, sends other bytes, or continues without the receiver.
+"""Exit statuses of `mural netperf receive`: success if the sender completes; failure if the sender is killed, sends other
+bytes, or continues without the receiver.
 
-netperf_ends.py MURAL
+  netperf_ends.py MURAL
 """
 
 import os
