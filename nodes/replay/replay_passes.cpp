@@ -61,7 +61,7 @@ const std::byte* Replay::readEveryNth(Window& w, const PixelViewport& r, bool fr
     return pixels_.data();
 }
 
-// A program reads a window of which only every nth pixel is drawn. Each pixel also represents its neighbours.
+// Returns pixels of a window with every nth pixel drawn, for a program's read. Each pixel is repeated for its neighbours.
 const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group) {
     const RenderPass& p = config_.pass;
     const PixelViewport picture = inPass(p, c_->read->whole);
