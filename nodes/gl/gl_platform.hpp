@@ -100,7 +100,8 @@ class Platform {
 public:
     virtual ~Platform() = default;
     // Creates a surface with 0 in all buffers, as new windows have with Mesa: colours, alpha, depth and stencil. A
-    // hidden alpha is 1. No other memory becomes visible there (docs/architecture/security.md). The current context stays current.
+    // hidden alpha is 1. No other memory becomes visible there (docs/architecture/security.md). The current context
+    // stays current.
     virtual Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& config) = 0;
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: none, or a dummy of 1×1 if the driver requires one. A surface that is bound
