@@ -1,4 +1,4 @@
-// Waits on a 32-bit word in memory that processes share, by Linux futexes.
+// Sleeps on, and wakes waiters of, a 32-bit word in memory that processes share (Linux futex).
 #pragma once
 
 #include <atomic>

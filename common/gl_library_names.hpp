@@ -1,5 +1,5 @@
-// Names of GL libraries in the dynamic section of ELF files. The preloaded entry examines loaded libraries, `mural run`
-// examines files; both must agree.
+// Names of GL libraries in the dynamic section of ELF files. The capture library applies them to loaded libraries, and
+// `mural run` to files, with the same result.
 #pragma once
 
 #include <cstring>

@@ -1,5 +1,5 @@
-// Malloc settings for processes that hold uploads and pictures for a frame or a scene: freed memory stays in the
-// process.
+// Malloc settings that keep freed memory in the process. For processes that hold uploads and pictures for a frame or a
+// scene.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ inline void keepFreedMemory() {
     mallopt(M_TRIM_THRESHOLD, kKeptBytes);
 }
 
-// Touches memory in advance, in the calling thread's arena, as if it had been used and freed. The first user then has
-// no page faults. Uses huge pages where available. Requires keepFreedMemory() and a size below kLargestKeptBlockBytes;
+// Touches memory in advance, in the calling thread's arena, so that the first user has no page faults. The memory then
+// counts as freed. Uses huge pages where available. Requires keepFreedMemory() and a size below kLargestKeptBlockBytes;
 // otherwise it has no effect.
 inline void haveKeptMemory(size_t sizeBytes) {
     constexpr size_t kPageBytes = 4096;

@@ -8,8 +8,8 @@ namespace mural {
 namespace {
 
 constexpr size_t kPage = WriteWatch::kPageBytes;
-constexpr size_t kComparedBytes = 64 * 1024; // up to this size a comparison costs less than a query of the kernel
-constexpr uint8_t kQuietCalls = 16; // number of comparisons that cost as much as a fault
+constexpr size_t kComparedBytes = 64 * 1024; // up to this size a comparison costs less than a system call
+constexpr uint8_t kQuietCalls = 16; // number of comparisons of a page that cost as much as a fault
 constexpr size_t kWord = 4, kBlock = 64, kMergedGap = 256;
 
 // Compares whole blocks inline: dense changes spend most of their time here.
@@ -99,7 +99,7 @@ void MapChanges::lockQuiet(Pass& pass) {
         auto& its = *static_cast<Pass*>(p);
         its.map->compare(its, its.map->memory_, from, end);
     };
-    // The next call notices a watch that is lost here.
+    // If the watch is lost here, the next call detects it.
     if (!watch_.lock(pass.quietFrom, pass.quietEnd, visit, &pass)) compare(pass, memory_, pass.quietFrom, pass.quietEnd);
     pass.quietFrom = pass.quietEnd = 0;
 }

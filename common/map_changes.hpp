@@ -26,8 +26,8 @@ public:
     // them.
     using Changed = void (*)(void* self, size_t fromByte, const std::byte* bytes, size_t sizeBytes);
     void collect(bool exact, Changed changed, void* self);
-    // Accepts bytes that others have written into the memory. Calls `changed` for words of `bytes` that differ from the
-    // copy. They do not count as changes afterwards.
+    // Stores bytes that another writer has put into the memory. Calls `changed` for words of `bytes` that differ from
+    // the copy. They do not count as changes afterwards.
     void accept(size_t fromByte, const std::byte* bytes, size_t sizeBytes, Changed changed, void* self);
 
 private:

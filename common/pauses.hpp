@@ -1,5 +1,5 @@
 // Measures how long this process was stopped as a whole: by a signal, a debugger or a frozen cgroup. Deadlines do not
-// count that time. The process cannot see what other processes do meanwhile, so their silence is no failure.
+// count that time: while it is stopped, the process cannot receive what others send, so their silence is no failure.
 //
 // PauseWatch (common/pause_watch.hpp) calls tick(). Without a PauseWatch no pause is known. Any thread may call
 // totalNs().

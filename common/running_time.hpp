@@ -1,5 +1,6 @@
-// The duration of a wait, without the time during which one of the two processes involved did not run. A signal, a
-// debugger or a frozen cgroup stops a process. A limit on such a duration never ends a process that was merely stopped.
+// The duration of a wait for another process, without the time during which either of the two processes was stopped. A
+// signal, a debugger or a frozen cgroup stops a process. A limit on such a duration never ends a process that was
+// merely stopped.
 #pragma once
 
 #include <cstdint>

@@ -26,7 +26,7 @@ struct TileRegion {
     friend bool operator==(const TileRegion&, const TileRegion&) = default;
 };
 
-// Returns edge i of n equal parts of `size` pixels. Requires 0 <= i <= n.
+// Returns the position of edge i when `size` pixels are divided into n parts. Requires 0 <= i <= n.
 [[nodiscard]] constexpr int32_t tileEdge(int32_t size, int n, int i, int alignment) {
     if (i <= 0) return 0;
     if (i >= n) return size;

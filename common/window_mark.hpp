@@ -1,5 +1,5 @@
-// The property by which the head recognizes a window that a captured program draws in. An X window number alone proves
-// nothing. Every X server uses the same numbers, and a server reuses them when a program ends.
+// The X property by which the head recognizes a window that a captured program draws in. A window number alone is no
+// proof: every X server uses the same numbers, and reuses them when a program ends.
 //
 // The program writes the property through its own connection, before its first picture of the window. The head reads it
 // before each picture that it paints. Each program of a session has its own property, because two programs may draw in

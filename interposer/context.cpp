@@ -81,7 +81,7 @@ void announce(ThreadState& t, Window& w) {
 }
 
 // Core contexts have no indices in client memory, but Mesa accepts them. Programs that are loaded above 4 GiB have no
-// memory below, so smaller values are offsets without a query.
+// memory below, so smaller values are certainly offsets.
 uintptr_t lowestIndices(const Context& c) {
     if (!c.core) return 0;
     if (!c.isMesa) return UINTPTR_MAX;
@@ -361,7 +361,7 @@ void beforeMakeCurrent(const Context* next, const Window* draw, const Window* re
     if (t.context == next && t.context->drawWindow == drawWindow && t.context->readWindow == readWindow) return;
     const Window* const given = findWindowById(t.context->drawWindow);
     if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue)) return;
-    gReal.glFlush(); // so that the driver's own, undrawn front does not cover the picture
+    gReal.glFlush(); // so that the driver's front buffer, which lacks the draws, does not cover the picture
     flushedWindow(t);
 }
 
@@ -374,7 +374,7 @@ bool hasBuffers(const Window& w) { return w.announced && (w.isEgl || w.drawable 
 
 bool swapLocally() {
     Session* s = Session::current();
-    // A verified run needs the program's own picture to compare with.
+    // With --verify the program's own GL must draw the picture to compare with.
     return !s || !s->alive() || s->welcome().policy == capture::kPolicyFull || s->welcome().verifyEvery > 0;
 }
 
@@ -390,7 +390,7 @@ bool swapsItself(Window* w) {
 
 namespace {
 
-// Drivers accumulate the draws of a list even if they are discarded (llvmpipe up to 36 MiB). Without local swaps only a
+// Drivers queue the draws of a list even if they are discarded (llvmpipe up to 36 MiB). Without local swaps only a
 // flush releases them.
 void flushLists(Context& c) {
     constexpr uint32_t kMostLists = 32; // about 60 KiB each

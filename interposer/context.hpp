@@ -96,9 +96,10 @@ struct Context {
     void* display = nullptr;   // Display* or EGLDisplay
 
     VertexArrayMirror arrays;
-    GLenum stashedError = 0;   // an error found during our own queries, for the program's next glGetError
+    GLenum stashedError = 0; // an error raised by our own queries, for the program's next glGetError
     DebugListener* debug = nullptr; // the program's debug callback and the messages that it has received
-    uint32_t errorsTold = 0;        // errors that the program has received; nodes count along (wire::kOpErrorTold)
+    // number of errors that the program has received; the nodes keep the same count (wire::kOpErrorTold)
+    uint32_t errorsTold = 0;
     bool outOfMemoryDue = false;    // reported by a node, not yet by glGetError
     bool keepsUnflushed = false;    // KHR_context_flush_control: releasing it flushes nothing
     bool losesOnReset = false;      // the program has requested reset notification

@@ -1,12 +1,12 @@
-// Framebuffer objects without attachments have their own number of samples. Mesa rounds it to a supported number at the
-// first draw, and reports the rounded number afterwards.
+// Keeps the sample count of framebuffer objects without attachments equal to the native one. Mesa rounds the count to a
+// supported number at the first draw, and reports the rounded number afterwards.
 #pragma once
 
 #include "interposer/thread_state.hpp"
 
 namespace mural {
 
-// Call before the next draw. A context that does not draw then rounds the number as well.
+// Makes the driver round the count by an empty clear, because this context may not draw. Call before the next draw.
 void fitDefaultSamples(const ThreadState& t);
 
 } // namespace mural

@@ -1,4 +1,5 @@
-// Records that draw into the window or copy from it. At the first one after a swap, a driver adopts the window's size.
+// Classifies records that draw into the window or copy from it. At the first of them after a swap, drivers adopt a new
+// size of the window.
 #pragma once
 
 #include <cstdint>

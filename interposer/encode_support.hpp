@@ -40,7 +40,7 @@ inline void endRecord(ThreadState& t, std::byte* arguments, uint32_t sizeBytes) 
     if (t.locked) [[unlikely]] unlockGroup(t);
 }
 
-// The bytes of a pointer argument.
+// The source of a pointer argument: data, or an offset into the bound buffer.
 struct DataArg {
     const void* pointer = nullptr;
     uint64_t sizeBytes = 0;

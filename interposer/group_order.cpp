@@ -13,11 +13,10 @@ template <class Visit> void forOthers(const ThreadState& t, const ShareGroup& gr
         if (other != &t && other->context && other->context->group == &group) visit(*other);
 }
 
-// Closes the fast path of another thread without waiting for it. That thread may have read its limit before, and may be
-// within a record. Such a record is concurrent to this call, but not to later commands that the program orders after
-// it. Its records are therefore published before each record of other threads, until it takes its own turn.
-//
-// A barrier (membarrier) would not avoid this, and sandboxes may kill a program for it.
+// Closes the fast path of another thread without waiting for it. That thread may have read its limit earlier and may be
+// writing a record. Such a record is concurrent to this call, but not to later commands that the program orders after
+// it. Its records are therefore published before each record of other threads, until it takes its own turn. A barrier
+// (membarrier) would not avoid this, and sandboxes may kill a program for it.
 void closeFastPath(ThreadState& other) {
     if (other.shared) return;
     other.shared = true;

@@ -37,7 +37,7 @@ private:
     int fd_;
 };
 
-// Transfers data despite the program's signals, which may interrupt any call. Timers may interrupt each one.
+// Transfers data despite the program's signals, which may interrupt any call. A fast timer may interrupt every call.
 class Transfer {
 public:
     explicit Transfer(int socket) : socket_(socket), endNs_(monotonicNowNs() + kPatienceNs) {}

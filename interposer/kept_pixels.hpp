@@ -26,7 +26,8 @@ public:
 
     // Copies the box from the cache to `into`, tightly packed. Returns false if it is not cached.
     bool find(const ThreadState& t, const Kind& kind, const Box& box, void* into) const;
-    // The box to request instead: larger if the previous request directly precedes it in the stream.
+    // Returns the box to request instead. It is larger if the previous request directly precedes this one in the
+    // stream.
     Box wider(const ThreadState& t, const Kind& kind, const Box& box) const;
     // Returns whether this read continues a series of small reads, which justifies fetching a block.
     bool inSeries(const ThreadState& t, const Kind& kind, const Box& box);

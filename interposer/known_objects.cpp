@@ -125,7 +125,8 @@ Window* addLocked(uintptr_t drawable, void* display, bool isEgl, const wire::Win
     return w;
 }
 
-// The driver has destroyed its drawable and creates another one. The nodes keep the window: it is the same on the wall.
+// The driver has destroyed its drawable and creates another one. The window on the nodes is kept, because the wall
+// shows the same one.
 void renew(Window& w, const wire::WindowConfig& config) {
     setConfig(w, config);
     w.announced = false;

@@ -46,7 +46,8 @@ bool plainTransfer(const Context& c) {
     return plain;
 }
 
-// A read outside the buffer leaves memory unchanged, which reveals the buffer's size.
+// Returns whether the pixel is inside the driver's buffer. A read outside leaves memory unchanged, which reveals the
+// buffer's size.
 bool isInside(const BackBufferRead& read, GLint x, GLint y) {
     uint32_t pixel = 0, again = ~0U;
     read.pixels(x, y, 1, 1, &pixel);

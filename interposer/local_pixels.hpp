@@ -26,7 +26,7 @@ struct LocalPixels {
     int binds = 0; // bindings since the last frame
 };
 
-// The window has become current.
+// Call when the window becomes current.
 void localPixelsBound(ThreadState& t, Window& w);
 // Call before a picture of the window is sent. Returns true if another path has drawn into it.
 bool localPixelsChanged(ThreadState& t, Window& w);

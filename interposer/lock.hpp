@@ -1,5 +1,5 @@
-// A lock on one word that sleeps by futex. A preloaded library can rely on libc only, and std::mutex would need more.
-// The lock must not run destructors.
+// A lock in one word, which sleeps by futex. A preloaded library may use libc only, which rules out std::mutex. The
+// lock must not run destructors.
 #pragma once
 
 #include <atomic>

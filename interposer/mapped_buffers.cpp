@@ -32,8 +32,8 @@ namespace {
 
 constexpr uint64_t kAskedBytes = uint64_t{16} << 20; // per request
 
-// The nodes draw and the program's own context does not, so only the nodes know buffers written by shaders. Includes
-// contexts that now select or compile a list.
+// Returns whether the nodes draw and the program's own context does not. Only the nodes then know the content of
+// buffers that shaders write. Also true for contexts that currently select or compile a list.
 bool nodesDraw(const ThreadState& t) { return t.context && !swapLocally() && !t.context->drawsPixmap && !t.context->drawsFeedback; }
 
 // Locks the list of mappings. A request to the nodes ships mappings; the same thread may do so while it holds the lock.

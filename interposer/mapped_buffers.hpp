@@ -10,13 +10,13 @@ namespace mural {
 struct ShareGroup;
 struct ThreadState;
 
-// The program has mapped a range of the buffer at `memory`, with the access bits of glMapBufferRange.
+// Call after the program has mapped a range of the buffer at `memory`, with the access bits of glMapBufferRange.
 void mapBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access);
-// The buffer uses client memory from now on (AMD_pinned_memory), which both sides may write at any time.
+// Call when the buffer begins to use client memory (AMD_pinned_memory), which both sides may write at any time.
 void pinBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t length);
 // Call before an unmap, new storage or deletion ends the mapping. `ship`: its data is still valid.
 void mapEnds(ThreadState& t, GLuint buffer, bool ship);
-// The last context of the group is destroyed, together with its mappings.
+// Drops all mappings of the group. Call when its last context is destroyed.
 void forgetMaps(ShareGroup& group);
 // Call before the program unmaps the buffer. Pinned memory stays.
 void unmaps(ThreadState& t, GLuint buffer);
@@ -33,7 +33,8 @@ void refreshMaps(ThreadState& t, const char* by = __builtin_FUNCTION());
 // or transform feedback.
 void nodesMayWrite(ThreadState& t, GLuint buffer);
 void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers);
-// The program's own context has copied into the buffer. If the source is known to the nodes only, the copy is outdated.
+// Call after the program's own context has copied into the buffer. If only the nodes have the current source, the copy
+// is outdated.
 void copiedHere(ThreadState& t, GLuint buffer);
 // Writes into the program's own copy of a buffer, even if its storage forbids it to the program.
 void writeOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, const void* bytes, uint64_t length);

@@ -10,7 +10,7 @@ namespace mural {
 
 struct ThreadState;
 
-// A program has been linked: from its attached shaders, from one of these texts, or from a recipe
+// Call after a program was linked: from its attached shaders, from one of these texts, or from a recipe
 // (docs/reference/wire-format.md).
 void noteMemoryWriter(ThreadState& t, GLuint program);
 void noteMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count, const GLchar* const* strings);

@@ -20,7 +20,7 @@ inline void takeNews(ThreadState& t) {
     if (s && s->newsWaiting()) [[unlikely]] takeWaitingNews(t);
 }
 
-// For a forked child: drops the news, which concern the parent's contexts.
+// For a forked child: drops pending events, which concern the parent's contexts.
 void forgetNews();
 
 // The callback of glDebugMessageCallback; null: messages go to the driver's log.

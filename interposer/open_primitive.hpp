@@ -1,5 +1,5 @@
-// Between glBegin and glEnd drivers reject all calls except vertex commands. Rejected calls are not sent to the nodes,
-// which would reject them as well, and do not change mirrored state.
+// Tracks whether a context is between glBegin and glEnd. Drivers then reject all calls except vertex commands. Rejected
+// calls are not sent to the nodes, which would reject them as well, and do not change mirrored state.
 #pragma once
 
 #include "interposer/context.hpp"

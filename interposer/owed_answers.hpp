@@ -26,7 +26,8 @@ namespace owed {
 
 // Adds a pending reply. Any thread may call it. Null: no memory.
 OwedAnswer* add(uint32_t request, uint64_t sizeBytes);
-// Returns the oldest pending request if there is no room for another reply of this size; 0: there is room.
+// Returns 0 if there is room for another reply of this size; otherwise the oldest pending request, which must complete
+// first.
 uint32_t inTheWayOf(uint64_t sizeBytes);
 // Returns whether the reply is still pending. Otherwise its entry no longer changes.
 [[nodiscard]] bool isAwaited(uint32_t request);

@@ -69,7 +69,7 @@ void settleLocked(ThreadState& t, Session& s, OwedReads& reads, GLuint buffer, c
     }
 }
 
-// Call after the session has ended with pending reads into the buffer. They raise an error when the program uses the
+// Drops pending reads into the buffer after the end of the session. Their error is raised when the program uses the
 // buffer.
 void loseReads(ThreadState& t, GLuint buffer) {
     const Session* const s = Session::current();
@@ -214,7 +214,7 @@ void unmappedHere(ThreadState& t, GLuint buffer) {
     if (nodesLack(t, buffer) && reads.usedElsewhere.get(buffer) && tellNodes(t, buffer)) reads.nodesLack.set(buffer, false);
 }
 
-// Before its first use for other purposes, the nodes may lack those bytes of the new storage that reads have written.
+// After the buffer's first other use the nodes lack the bytes that reads have written into its new storage.
 void newStorage(ThreadState& t, GLuint buffer) {
     if (!t.context) return;
     OwedReads& reads = t.context->group->owedReads;

@@ -69,12 +69,12 @@ GLuint boundPackBuffer();
 
 // True if the program's own copy is valid and the nodes' is not.
 [[nodiscard]] bool nodesLack(const ThreadState& t, GLuint buffer);
-// The program has unmapped the buffer, or given it new storage.
+// Call after the program has unmapped the buffer, or has given it new storage.
 void unmappedHere(ThreadState& t, GLuint buffer);
 void newStorage(ThreadState& t, GLuint buffer);
-// The program deletes the buffer.
+// Call when the program deletes the buffer.
 void forgetReads(ThreadState& t, GLuint buffer, const char* by = __builtin_FUNCTION());
-// The last context of the group is destroyed.
+// Call when the last context of the group is destroyed.
 void forgetReads(ShareGroup& group);
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// State that belongs to one process and ends in a forked child. The kernel clears it in the child (MADV_WIPEONFORK). A
+// State of one process, which a forked child does not inherit. The kernel clears it in the child (MADV_WIPEONFORK). A
 // child is thus recognised without a system call. This also works for raw fork and clone, which run no handler of
 // pthread_atfork.
 #pragma once
@@ -14,14 +14,16 @@ class Session;
 namespace process {
 
 struct alignas(4096) Page {
-    std::atomic<uint32_t> number; // number of forks in the line of ancestors, from 1; 0: a child that has not begun yet
-    std::atomic<uint32_t> beginning; // 1: a thread has begun the child
+    // number of forks from the first ancestor, from 1; 0: a child that is not initialised yet
+    std::atomic<uint32_t> number;
+    std::atomic<uint32_t> beginning; // 1: a thread initialises the child
     Session* session;                // null: none, or not connected yet
     bool connectTried;
 };
 extern Page page;
 
-// Begins the process. Calls the child handler if the parent had begun before. Returns the process number.
+// Initialises the state of this process. Calls the child handler if the parent was initialised. Returns the process
+// number.
 uint32_t begin();
 
 inline uint32_t number() {

@@ -407,7 +407,7 @@ bool Session::waitOwed(uint32_t request, const char* by) {
 }
 
 void Session::takeArrived() {
-    if (!alive() || !requestLock.tryLock()) return; // the holder of the lock takes them as well
+    if (!alive() || !requestLock.tryLock()) return; // the holder of the lock reads them
     wire::ReplyHeader header{};
     while (alive() && replyWaits() && answerBytes(&header, sizeof header) && takeOwed(header)) {}
     requestLock.unlock();

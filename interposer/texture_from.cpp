@@ -90,8 +90,8 @@ namespace {
 // Number over all windows; most programs have none.
 std::atomic<int> boundPbuffers{0};
 
-// Flips the picture for Mesa. Mesa draws into pbuffers from the top row down, as into windows. The texture shares that
-// memory, so it is upside down.
+// Flips the picture if the driver is Mesa, which draws into pbuffers from the top row down, as into windows. The
+// texture shares that memory, so it is upside down.
 const void* asTheDriverHasIt(ThreadState& t, const void* pixels, GLint width, GLint height) {
     if (!pixels || !t.context->isMesa) return pixels;
     const size_t row = size_t(width) * 4, rows = size_t(height);

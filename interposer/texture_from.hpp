@@ -8,16 +8,18 @@ namespace mural {
 struct ThreadState;
 struct Window;
 
-// The driver here has bound a pixmap to the texture of `target`. Sends its picture to the nodes as an image.
+// Sends the picture of a pixmap to the nodes as an image. Call after the local driver has bound the pixmap to the
+// texture of `target`.
 void textureFromLocal(GLenum target, bool alpha);
-// The nodes draw the pbuffer. Its picture becomes the image of the bound 2D texture, now and after later draws, until
-// it is released. The image is updated when the program binds another drawable; EGL leaves the content undefined while
-// the pbuffer is drawn to.
+// Makes the picture of a pbuffer, which the nodes draw, the image of the bound 2D texture, until it is released. Later
+// draws change the image as well. It is updated when the program binds another drawable; EGL leaves the content
+// undefined while the pbuffer is drawn to.
 void bindDrawn(Window& w, bool alpha);
 void releaseDrawn(Window& w);
-// The thread is about to bind another drawable or none.
+// Call before the thread binds another drawable or none.
 void leavesDrawn(const ThreadState& t);
-// The context is current and its drawables are known: updates its textures whose pbuffers were drawn to.
+// Updates the context's textures whose pbuffers were drawn to. Call when the context is current and its drawables are
+// known.
 void refreshBoundTextures(ThreadState& t);
 
 } // namespace mural

@@ -38,7 +38,7 @@ void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels, const Colo
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
     if (!read.ready()) return countUncompared(Uncompared::NotReadable);
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
-    read.pixels(0, 0, 1, 1, mine, reads.type); // Mesa clips a read to the buffers' size before that read
+    read.pixels(0, 0, 1, 1, mine, reads.type); // Mesa adopts a new buffer size only after it has clipped a read
     read.pixels(0, 0, width, height, mine, reads.type);
     if (driverError() != GL_NO_ERROR) return countUncompared(Uncompared::NotReadable);
     const GLenum errorBefore = t.context->stashedError;

@@ -1,4 +1,4 @@
-// The wrapper of each command, by index of GlFunctions; null: use the driver's own.
+// The table of wrappers, with the indices of GlFunctions. Null: the driver's own function is used.
 #pragma once
 
 namespace mural {

@@ -1,5 +1,5 @@
-// Bindings of ARB_vertex_attrib_binding refer to buffers. A binding without a buffer leaves an array in client memory
-// unchanged. Divisors apply to both.
+// Wrappers of ARB_vertex_attrib_binding. A binding refers to a buffer. A binding without a buffer leaves an array in
+// client memory unchanged. Divisors apply to both.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/array_watch.hpp"
@@ -14,9 +14,8 @@ namespace {
 
 GLuint currentArray(const ThreadState& t) { return t.context ? t.context->arrays.currentName() : 0; }
 
-// The mirror stores a divisor that the program's own context accepts; OpenGL ES, for one, has none for bindings of
-// array
-// 0. The driver's error is queried only if the divisor differs from the mirror's.
+// The mirror stores a divisor that the program's own context accepts. OpenGL ES, for example, accepts no divisor for
+// bindings of vertex array 0. The driver's error is queried only if the divisor differs from the mirror's.
 template <class Local, class Send> void divide(GLuint array, GLuint index, GLuint divisor, Local&& local, Send&& send) {
     ThreadState& t = *tThread;
     if (!t.context) return local();

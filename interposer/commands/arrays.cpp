@@ -1,4 +1,5 @@
-// Vertex array state: stored in the mirror, sent only if it refers to buffers.
+// Wrappers of vertex array state. The state is stored in the mirror (vertex_arrays.hpp), and sent only if it refers to
+// buffers.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"

@@ -16,7 +16,7 @@ struct Image {
     Level size;
     int dimensions = 2;
 
-    // Bytes of the tight level; 0: not a block format.
+    // Returns the bytes of the level without gaps; 0: not a block format.
     [[nodiscard]] size_t bytes() const {
         const size_t tight = sizes::compressedBytes(format, size.width, size.height, size.depth);
         return tight == SIZE_MAX ? 0 : tight;
@@ -50,7 +50,7 @@ Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
     return {along(texels.width, block.width), along(texels.height, block.height), along(texels.depth, block.depth)};
 }
 
-// The driver's own call comes first: it raises errors, and fills what the nodes do not answer.
+// Executes the driver's own call first. It raises errors, and returns data in case the nodes have no answer.
 template <class Local> void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();

@@ -1,3 +1,4 @@
+// Wrappers that set the sample count of framebuffer objects without attachments (interposer/default_samples.hpp).
 #include "interposer/default_samples.hpp"
 
 #include "custom_wrappers.hpp"
@@ -9,7 +10,7 @@ using namespace mural;
 
 namespace {
 
-// From now on, this context's draws are checked.
+// Enables the check before each draw of this context.
 void parameterSet(ThreadState& t, GLenum pname) {
     if (pname != GL_FRAMEBUFFER_DEFAULT_SAMPLES || !t.context) return;
     t.context->hasDefaultSamples = true;

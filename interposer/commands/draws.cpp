@@ -1,4 +1,4 @@
-// Draws from vertex arrays.
+// Wrappers of draws from vertex arrays.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -93,15 +93,17 @@ void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElemen
     sendClientArrays(t, *c, all);
 }
 
-// Executes the draw in the driver first, which counts vertices during transform feedback. The nodes' drivers may not
-// count, and would draw although the call is an error here. Returns false if nothing is counted; the caller continues.
+// Executes the draw first in the driver, which counts vertices during transform feedback and may reject the draw. The
+// nodes' drivers may not count, and would then draw although the call is an error. Returns false if nothing is counted;
+// the caller then executes the draw.
 template <class Local, class Send> bool drawnCounted(ThreadState& t, Local&& local, Send&& send) {
     if (!t.drawLocally || !t.context || !t.context->drawsFeedback) return false;
     if (raisesNothing(*t.context, local)) send();
     return true;
 }
 
-// The number of draws passed to the driver: none, unless one is invalid; then the driver executes none of them.
+// Returns the number of draws for the driver: 0 if all are valid. If any is invalid the driver receives all of them,
+// and executes none.
 GLsizei quietDraws(const ThreadState& t, const GLsizei* count, GLsizei drawcount) {
     if (t.drawLocally || drawcount < 0) return drawcount;
     for (GLsizei i = 0; i < drawcount; ++i)

@@ -38,7 +38,7 @@ template <class Local> bool packsHere(ThreadState& t, Local&& local, const char*
 // delivered in order; askAndDeliver waits for them if this one is not deferred.
 template <class Local> bool packsAhead(ThreadState& t, Local&& local) { return raisesNothing(*t.context, local); }
 
-// The program's own context has written `bytes` bytes into the bound pack buffer: sends them to the nodes.
+// Sends `bytes` bytes of the bound pack buffer to the nodes, after the program's own context has written them.
 void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes);
 
 // The dimensions of an image of that target, as the pack state counts them.

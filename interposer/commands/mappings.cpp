@@ -170,7 +170,7 @@ void mural_glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size,
     encode_glNamedBufferSubData(t, buffer, offset, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0));
     gReal.glNamedBufferSubData(buffer, offset, size, data);
 }
-// The program's own context may copy outdated data, which is not a write of the program.
+// The program's own context may copy outdated data. That copy does not count as a write of the program.
 void mural_glCopyBufferSubData(GLenum readTarget, GLenum writeTarget, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
     ThreadState& t = *tThread;
     boundUsed(t, readTarget);

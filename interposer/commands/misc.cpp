@@ -45,14 +45,14 @@ template <class Call> void callBetweenBeginAndEnd(Context& c, bool closes, Call&
     else gReal.glBegin(mode);
 }
 
-// After a list with an unmatched glBegin. The mode is irrelevant, because nothing is drawn.
+// Call after a list with an unmatched glBegin. The mode of the local primitive is irrelevant, because nothing is drawn.
 void primitiveOpened(ThreadState& t, bool locallyOpen) {
     if (!locallyOpen) gReal.glBegin(GL_POINTS);
     if (t.context) t.context->openPrimitive = GL_POINTS;
 }
 
-// The program's own context needs a list's state changes but not its draws. If a bitmap may move the raster position,
-// it does draw, because a discarded bitmap does not move it.
+// Calls a list for its state changes without its draws. If a bitmap of the list may move the raster position, the draws
+// are executed as well, because a discarded bitmap does not move it.
 template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, bool opens, bool closes, Call&& call) {
     if (t.drawLocally) {
         call();
@@ -225,7 +225,7 @@ void mural_glDrawBuffers(GLsizei n, const GLenum* bufs) {
     ThreadState& t = *tThread;
     if (!t.context) return gReal.glDrawBuffers(n, bufs);
     if (!raisesNothing(*t.context, [&] { gReal.glDrawBuffers(n, bufs); })) return;
-    // without buffers the pointer may be null, which nodes would take for missing values
+    // without buffers the pointer may be null, which nodes would treat as missing data
     static const GLenum kNone = GL_NONE;
     encode_glDrawBuffers(t, n, DataArg::of(bufs ? bufs : &kNone, n > 0 ? uint64_t(n) * sizeof(GLenum) : 0));
     for (GLsizei i = 0; i < n && bufs; ++i)
@@ -343,8 +343,8 @@ void mural_glEnd() {
     else t.context->openPrimitive = kNoPrimitive;
 }
 
-// Primitives are empty in the program's own context, and Mesa may apply attributes set in an empty one only after the
-// pop. A query applies them all.
+// Primitives are empty in the program's own context. Mesa may apply attributes of an empty primitive only after the
+// pop. A query before the pop applies all of them.
 void mural_glPopAttrib() {
     ThreadState& t = *tThread;
     encode_glPopAttrib(t);

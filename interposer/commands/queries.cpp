@@ -1,4 +1,4 @@
-// Query objects. The nodes count, so their answers are combined.
+// Wrappers of query objects. Each node counts its own part, so the result is combined from the answers of all nodes.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/asking.hpp"
@@ -60,7 +60,7 @@ bool result(ThreadState& t, const char* by, GLuint id, uint64_t& value) {
         if (!askQuery(t, id, GL_QUERY_RESULT, value, by)) return false;
         if (keeps) t.context->answers.keep(id, value);
     }
-    if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // a boolean, summed over several tiles
+    if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // a boolean result was summed over several tiles
     return true;
 }
 
@@ -69,10 +69,11 @@ template <class T> T held(uint64_t value) {
     return static_cast<T>(value < largest ? value : largest);
 }
 
-// Whether the program's own context counts as well. Not during list compilation: it has not drawn earlier frames.
+// Returns whether the program's own context counts as well. False during list compilation, because it has not drawn
+// earlier frames.
 bool drawsAllItself(const ThreadState& t) { return swapLocally() || t.context->drawsPixmap; }
 
-// The driver's own call comes first: it raises errors, and answers what does not depend on rendering.
+// Executes the driver's own call first. It raises errors, and returns values that do not depend on rendering.
 template <class T, class Local> void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
     if (drawsAllItself(t) || !params || !isResult(pname)) return local();
     uint64_t value = 0;

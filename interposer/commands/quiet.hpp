@@ -1,6 +1,6 @@
-// Draws that draw nothing. With policy `state`, the program's own context executes a draw only for its errors. Each
-// call below passes the checks of its original call and draws nothing. Arguments that are invalid by themselves are
-// passed on unchanged. Verified against the original calls: tests/programs/draw_errors*.cpp.
+// Harmless replacements for draws. With policy `state`, the program's own context executes a draw only for its errors.
+// Each call below passes the checks of its original call and draws nothing. Arguments that are invalid by themselves
+// are passed on unchanged. Verified against the original calls: tests/programs/draw_errors*.cpp.
 #pragma once
 
 #include "interposer/context.hpp"
@@ -23,7 +23,8 @@ inline void clear(GLbitfield mask) { gReal.glClear(mask & ~GLbitfield{GL_COLOR_B
 // type.
 bool clearsBuffer(GLenum buffer, GLint drawBuffer, bool color, GLenum plane);
 
-// For calls that no arguments make harmless: Mesa clears the bound framebuffer if the named one does not exist.
+// Runs a call with rasterizer discard, for calls that no arguments make harmless. Mesa clears the bound framebuffer if
+// the named one does not exist.
 template <class Call> void discarded(Call&& call) {
     const bool discards = gReal.glIsEnabled(GL_RASTERIZER_DISCARD);
     if (!discards) gReal.glEnable(GL_RASTERIZER_DISCARD);

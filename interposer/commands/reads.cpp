@@ -65,7 +65,7 @@ void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum 
     askAndDeliver(t, {byName, which, level, format, type, bytes}, pixels, layout, by);
 }
 
-// The driver's own call comes first: it raises errors, and fills what the nodes do not answer.
+// Executes the driver's own call first. It raises errors, and returns data in case the nodes have no answer.
 template <class Local> void readBound(GLenum target, GLint level, GLenum format, GLenum type, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();

@@ -1,5 +1,5 @@
-// The EGL front. libEGL (of libglvnd) loads this library through the vendor file in __EGL_VENDOR_LIBRARY_FILENAMES. As
-// in glx.cpp, the real vendor's library does the work. Source: libglvnd, glvnd/libeglabi.h.
+// The EGL entry. libEGL (of libglvnd) loads this library through the vendor file in __EGL_VENDOR_LIBRARY_FILENAMES. As
+// in glx.cpp, calls are forwarded to the real vendor's library. Source: libglvnd, glvnd/libeglabi.h.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <cstdio>
@@ -149,7 +149,7 @@ EGLBoolean swapBuffersWithDamageExt(EGLDisplay dpy, EGLSurface surface, const EG
     return swap(dpy, surface, [&] { return call(dpy, surface, rects, n); });
 }
 
-// Not advertised. A call shows the whole picture.
+// Not advertised. If a program calls it nevertheless, the whole picture is shown.
 EGLBoolean postSubBuffer(EGLDisplay dpy, EGLSurface surface, EGLint x, EGLint y, EGLint width, EGLint height) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint, EGLint, EGLint)>("eglPostSubBufferNV");
     return swap(dpy, surface, [&] { return call(dpy, surface, x, y, width, height); });
@@ -294,7 +294,7 @@ void* openNamedBy(const char* vendorFile) {
     return loader::openLibrary(at, RTLD_LAZY);
 }
 
-// Opens the vendor library from the user's own list of vendor files, or else a common one.
+// Opens the vendor library from the user's own list of vendor files, otherwise a common one.
 void* openVendor() {
     const char* list = wantedEglVendors();
     while (list && *list) {

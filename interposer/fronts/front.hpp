@@ -1,5 +1,5 @@
-// Shared by the entries. An entry wraps a library that draws: it handles contexts, bindings and swaps itself, returns
-// wrappers for GL commands, and forwards everything else.
+// Common code of the GLX and EGL entries. An entry wraps a GL library: it handles contexts, bindings and swaps itself,
+// returns wrappers for GL commands, and forwards everything else.
 #pragma once
 
 #include <cstddef>
@@ -36,12 +36,12 @@ private:
     Loader library_ = nullptr;
 };
 
-// Both entries feed one encoder, but only the first one used is active. A library behind the preloaded entry may itself
-// call GLVND, and its calls would arrive twice.
+// Both entries feed one encoder, but only the first one used is active. A library that the preloaded
+// entry wraps may itself call GLVND, and its calls would arrive twice.
 enum class Way : int { Open, Vendor, Preload };
 bool claimProgram(Way way);
 
-// Patched entry points would bypass the wrappers.
+// Forbids GLVND to patch its entry points, because patched ones would bypass the wrappers.
 template <class Imports> void forbidPatching(Imports& imports) {
     imports.isPatchSupported = nullptr;
     imports.initiatePatch = nullptr;

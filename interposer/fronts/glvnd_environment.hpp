@@ -5,7 +5,7 @@
 
 namespace mural {
 
-// Returns the real vendor: the program's own later setting, or else the user's. Null: neither.
+// Returns the real vendor: the program's own later setting, otherwise the user's. Null: neither exists.
 const char* wantedGlxVendor();
 // The same for EGL's vendor files: a list of paths separated by colons.
 const char* wantedEglVendors();

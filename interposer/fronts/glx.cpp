@@ -1,4 +1,4 @@
-// The GLX front. libGLX (of libglvnd) loads this library as a vendor named "mural". It forwards all calls to the real
+// The GLX entry. libGLX (of libglvnd) loads this library as a vendor named "mural". It forwards all calls to the real
 // vendor's library, except those that create contexts, bind them, or show pictures. Every GL call thus arrives here,
 // regardless of how the program found the function. Source: libglvnd, glvnd/libglxabi.h.
 #include <cstdlib>
@@ -166,7 +166,7 @@ int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divis
     return swapsItself(findWindow(drawable, dpy)) ? call(dpy, drawable, target, divisor, remainder) : 0;
 }
 
-// Not advertised. A call shows the whole picture.
+// Not advertised. If a program calls it nevertheless, the whole picture is shown.
 void copySubBuffer(Display* dpy, XID drawable, int x, int y, int width, int height) {
     static auto* call = real<void(Display*, XID, int, int, int, int)>("glXCopySubBufferMESA");
     if (!nativeRun()) endFrame(findWindow(drawable, dpy));
@@ -324,7 +324,7 @@ const OwnEntry kOwn[] = {
 };
 constinit Front front("glX", kOwn);
 
-// Opens the library of the vendor that draws: the user's setting, or else Mesa's, or else NVIDIA's.
+// Opens the library of the vendor that draws: the user's setting, otherwise Mesa's, otherwise NVIDIA's.
 void* openVendor() {
     const char* wish = wantedGlxVendor();
     const char* const candidates[] = {wish && *wish ? wish : "mesa", "mesa", "nvidia"};

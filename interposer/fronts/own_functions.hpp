@@ -1,4 +1,4 @@
-// Functions of the fronts for the rest of the interposer.
+// Functions of the entries that the rest of the interposer calls.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The interface for the preloaded entry (interposer/preload). That entry has detected that a program's GL library does
-// not use GLVND. It exports that library's names in front of it.
+// The interface for the preloaded library (interposer/preload). That library has detected that a program's GL library
+// does not use GLVND, and exports the same names before it.
 #include "interposer/preload/link.hpp"
 
 #include <cstring>

@@ -1,7 +1,7 @@
-// The preloaded front. It exports all names of GL, GLX and EGL before a GL library that does not use GLVND. Its
-// functions jump to the wrappers of libGLX_mural.so.0, which the vendor front returns as well. `mural run` preloads it
-// only into programs with such a library. If GLVND's libraries are loaded as well, their names are passed on, because
-// their calls arrive through the vendor front.
+// The preloaded entry (libmural_front.so). It exports all names of GL, GLX and EGL before a GL library that does not
+// use GLVND. Its functions jump to the wrappers of libGLX_mural.so.0, which the vendor entry returns as well. `mural
+// run` preloads it only into programs with such a library. If GLVND's libraries are loaded as well, calls of their
+// names are passed on, because they arrive through the vendor entry.
 #include <initializer_list>
 
 #include "interposer/loader/libc_loader.hpp"
@@ -14,7 +14,7 @@ namespace mural {
 
 namespace {
 
-// The function for a name that no library has. It returns null, like a failed lookup.
+// The function for a name that no library exports. It returns null, like a failed lookup.
 void* nothing() { return nullptr; }
 
 // Returns the function that the program would have found without us. Libraries that were opened without global names

@@ -1,6 +1,7 @@
-// Detects X windows that end without a request that names them. The server destroys children with their parents, and
-// all windows of a killed connection. After such a request the interposer asks the server for the known windows. It does
-// not wait for the replies, because another connection may have grabbed the server. It takes them at the next frame.
+// Detects X windows that are destroyed without a request that names them. The server destroys children with their
+// parents, and all windows of a killed connection. After such a request the interposer queries the server for the known
+// windows. It does not wait for the replies, because another connection may have grabbed the server. It reads them at
+// the next frame.
 #pragma once
 
 #include <atomic>

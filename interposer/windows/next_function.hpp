@@ -1,5 +1,4 @@
-// Replaced X requests of the preloaded library. Each continues with the next function of its name in the program's own
-// load order. Nothing is ever loaded.
+// Calls the next function of a replaced X request, in the program's own load order. Never loads a library.
 #pragma once
 
 #include "interposer/loader/libc_loader.hpp"

@@ -1,6 +1,6 @@
-// With --display app, finished pictures reach the program's window on another X connection, up to `latency` frames
-// after the swap. Before the program reads a window or draws into it without GL, it waits here until the window shows
-// the swapped frame.
+// Waits until the program's windows show its frames. With --display app, finished pictures reach the program's window
+// on another X connection, up to `latency` frames after the swap. A program that reads a window, or draws into it
+// without GL, waits here until the window shows the swapped frame.
 #pragma once
 
 namespace mural {

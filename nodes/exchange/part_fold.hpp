@@ -1,5 +1,5 @@
 // Merges the parts of two nodes as one depth test would: per pixel, a later fragment wins if the test passes. Undrawn
-// pixels hold the common clear values. Source: accuracy 4 (fold in draw order).
+// pixels hold the common clear values. See docs/architecture/sort-last.md.
 #pragma once
 
 #include <cstddef>

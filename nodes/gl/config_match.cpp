@@ -7,7 +7,7 @@
 namespace mural::gl {
 namespace {
 
-// Acceptable substitutes for a value of an attribute.
+// Values that may replace the requested value of an attribute.
 enum class Other { None, Any, AnyButZero };
 
 struct Attribute {
@@ -30,8 +30,8 @@ const std::array<Attribute, 10> kAttributes{{
     {"stereo", [](const SurfaceConfig& c) { return c.stereo ? 1 : 0; }},
 }};
 
-// Returns whether a surface with `offered` can replace one with `wish`. An absent alpha channel reads as 1 in blending, so zero
-// and non-zero alpha never replace each other.
+// Returns whether a surface with `offered` can replace one with `wish`. An absent alpha channel reads as 1 in blending,
+// so zero and non-zero alpha never replace each other.
 bool isAcceptable(const Attribute& attribute, int wish, int offered) {
     if (offered == wish || attribute.other == Other::Any) return true;
     return attribute.other == Other::AnyButZero && wish != 0 && offered != 0;

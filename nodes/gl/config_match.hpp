@@ -36,7 +36,8 @@ SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& wish);
 // Returns a text such as "depth 24 instead of 32, samples 0 instead of 4". Empty: no difference.
 std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish);
 
-// Returns whether one context can draw to both on backends that bind contexts to configurations.
+// Returns whether one context can draw to surfaces of both configurations, on backends that bind contexts to
+// configurations.
 bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other);
 
 // maxSize: the largest viewport of the driver, at most kMaxSurfaceSize.

@@ -41,10 +41,10 @@ struct EglFunctions {
     PFNEGLQUERYDISPLAYATTRIBEXTPROC queryDisplayAttrib = nullptr;
 };
 
-// Keeps unused surfaces and contexts until others are current. NVIDIA's driver (580.159) reads its data about the
-// previous surfaces and contexts in the next eglMakeCurrent. If they were released and destroyed before, it ended the
-// process: half of all starting nodes. Its memory showed that it read data of another object by then. For the same
-// reason Mural releases nothing on that driver before others are current.
+// Keeps unused surfaces and contexts until others are current. NVIDIA's driver (580.159) accesses the previous surfaces
+// and contexts in the next eglMakeCurrent. After their release and destruction, their memory held another object's data,
+// and half of all starting nodes crashed. For the same reason Mural releases nothing on that driver before others are
+// current.
 class EglLeftOvers {
 public:
     void addSurface(EGLSurface surface);
@@ -104,7 +104,7 @@ struct EglConfigs {
 // surface and not of its configuration.
 EglConfigs listEglConfigs(const EglDisplayState& display, bool srgb);
 
-// Returns and clears the error of this thread, such as "EGL_BAD_MATCH (the wishes do not go together)".
+// Returns and clears the error of this thread as text, such as "EGL_BAD_MATCH (the wishes do not go together)".
 std::string takeEglError(const EglFunctions& egl);
 
 } // namespace mural::gl

@@ -37,8 +37,8 @@ const Command* commandOf(const char* name) {
 
 void nothing() {}
 
-// libepoxy calls this before it aborts: no version or extension of the current context provides the command. Another
-// context may provide it, or the driver has it anyway.
+// libepoxy calls this before it aborts, because no version or extension of the current context provides the command.
+// Another context may provide it, or the driver may have it nevertheless. The driver's function is used then.
 void* withoutProvider(const char* name) {
     const Command* command = commandOf(name);
     const Proc own = command ? ownFunctions[static_cast<size_t>(command - kCommands)].load() : nullptr;

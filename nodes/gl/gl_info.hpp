@@ -1,4 +1,4 @@
-// Properties of the current context.
+// Queries version, extensions and limits of the current context.
 #pragma once
 
 #include <string>

@@ -100,12 +100,13 @@ class Platform {
 public:
     virtual ~Platform() = default;
     // Creates a surface with 0 in all buffers, as new windows have with Mesa: colours, alpha, depth and stencil. A
-    // hidden alpha is 1. No other memory becomes visible there (docs/architecture/security.md). The current context stays current.
+    // hidden alpha is 1. No other memory becomes visible there (docs/architecture/security.md). The current context
+    // stays current.
     virtual Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& config) = 0;
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
-    // Null context: release. Null surfaces: surfaceless, or a dummy of 1×1 where that is unsupported. A surface for
-    // reading only holds everything that contexts of this thread have drawn there. HeldBack::Kept has no effect with
-    // drivers that flush with each change: OSMesa, and those without KHR_context_flush_control.
+    // Null context: release. Null surfaces: none, or a dummy of 1×1 if the driver requires one. A surface that is bound
+    // for reading only contains everything that contexts of this thread have drawn there. HeldBack::Kept has no effect
+    // with drivers that flush at each change: OSMesa, and those without KHR_context_flush_control.
     virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack = HeldBack::Flushed) = 0;
     // Returns whether a context can draw to one surface and read from another.
     [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }

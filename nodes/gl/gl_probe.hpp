@@ -1,4 +1,5 @@
-// The capabilities of a backend, for `mural doctor`, a node's Ready message, and the intersection that programs see.
+// Queries the capabilities of a backend, for `mural doctor`, a node's Ready message, and the intersection that programs
+// see.
 #pragma once
 
 #include <string>

@@ -152,8 +152,8 @@ Result<void> GlxPlatform::clear(const GlxSurface& surface) {
     if (!glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(), static_cast<GlxContext*>(*context)->handle())) return failed(trap.take());
     clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
     if (!glx.makeContextCurrent(display_->display, draw, read, before)) return failed(trap.take());
-    // A flush of the front into a pixmap of another depth causes an X error, yet the front is cleared. This happens
-    // with Mesa's software driver and alpha on a screen of depth 24.
+    // Ignores the X error of a flush of the front into a pixmap of another depth: the front is cleared nevertheless. It
+    // occurs with Mesa's software driver and alpha on a screen of depth 24.
     (void)trap.take();
     return {};
 }

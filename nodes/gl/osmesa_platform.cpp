@@ -176,7 +176,7 @@ void OsmesaContext::evict() {
         resident_->home_ = nullptr;
         resident_ = nullptr;
     }
-    // The change of size makes OSMesa free the old buffers, so their contents never become visible again.
+    // The change of size makes OSMesa free the old buffers, so their contents cannot appear in another surface.
     if (bound_) bindMemory(dummy_, 1, 1);
 }
 

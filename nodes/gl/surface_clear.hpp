@@ -1,5 +1,5 @@
-// Clears new surfaces. Drivers do not clear their memory: the colours of Mesa's pbuffers without a window system lie in
-// recycled heap memory of the process (measured, 22.3.6), which may hold other pictures.
+// Clears new surfaces, because drivers do not. The colours of Mesa's pbuffers without a window system lie in recycled
+// heap memory of the process (measured, 22.3.6), which may hold other pictures.
 #pragma once
 
 #include <functional>

@@ -86,11 +86,11 @@ bool AnswerAssembler::allAnswered(const Request& request) const {
 
 bool AnswerAssembler::canDeliver(const Request& request) const {
     const bool bytes = request.kind == static_cast<uint32_t>(AnswerKind::Bytes);
-    // A rectangle that lies in one node's part does not wait for the other nodes.
+    // A rectangle that lies in one node's part needs no answers of other nodes.
     const bool rectangle = request.kind == static_cast<uint32_t>(AnswerKind::Rectangle);
     if (rectangle && request.firstNode >= 0 && request.last[static_cast<size_t>(request.firstNode)]) return true;
-    // All nodes hold the same bytes, except undefined ones. The first living node always answers, so that two reads
-    // agree.
+    // All nodes hold the same bytes, except undefined ones. The answer of the first living node is always used, so that
+    // two reads agree.
     const auto speaker = static_cast<int>(std::ranges::find(request.awaited, true) - request.awaited.begin());
     if (bytes && request.firstNode == speaker && request.last[static_cast<size_t>(speaker)]) return true;
     return allAnswered(request);
@@ -104,7 +104,7 @@ void AnswerAssembler::nodeLost(int node) {
         for (auto it = requests_.begin(); it != requests_.end();) {
             Request& request = it->second;
             request.awaited[static_cast<size_t>(node)] = false;
-            // A partial byte answer is discarded: another node sends all of it.
+            // Discards a partial answer of kind Bytes: another node sends all bytes.
             if (request.firstNode == node && !request.last[static_cast<size_t>(node)])
                 request.firstNode = -1;
             if (!allAnswered(request)) {

@@ -29,7 +29,7 @@ public:
     // Completes pending requests from the answers that have arrived.
     void nodeLost(int node);
 
-    // The node answers requests from this view on.
+    // Adds a returned node. It answers requests from this view on.
     void nodeJoins(int node, uint32_t view);
     void nodeInView(int node, uint32_t view);
 

@@ -1,5 +1,5 @@
-// Predicts whether another publication arrives within one nap. If so, the reader polls again without a wake-up, and the
-// program saves a system call (common/capture_ring.hpp).
+// Predicts whether another publication arrives within one nap (common/capture_ring.hpp). If so, the head's reader naps
+// and polls again, and the program saves the system call of a wake-up.
 #pragma once
 
 #include <cstdint>

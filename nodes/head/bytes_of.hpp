@@ -1,4 +1,4 @@
-// The wire representation of a value.
+// Returns the bytes of a value in memory, as they are sent.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
-// One captured program, with two threads. The pump sends its publications to the nodes, and the other thread writes the
-// nodes' replies to the program.
+// One captured program, with two threads. The pump sends the program's publications to the nodes. The other thread
+// writes the nodes' replies to the program.
 //
-// CaptureMemory::programGone detects the program's end. The program may have closed its end of the socket. The head's
-// end is closed with this object, which informs the player.
+// CaptureMemory::programGone detects the program's end, because the program may close its socket earlier. The head's
+// end of the socket closes with this object, which informs the player.
 #pragma once
 
 #include <atomic>
@@ -68,7 +68,7 @@ private:
     void pump();
     void waitForMore();
     void reportEnd();
-    bool pumpNext(CaptureMemory::Range& range); // false: no publication, or a corrupt ring
+    bool pumpNext(CaptureMemory::Range& range); // returns false if there is no publication, or the ring is corrupt
     [[nodiscard]] bool drained() const;
     [[nodiscard]] bool programGone() const;
     void flushNodes(bool all = true);

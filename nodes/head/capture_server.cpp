@@ -21,7 +21,7 @@ constexpr int64_t kAcceptSliceMs = 100;
 constexpr int64_t kHelloPatienceMs = 5000;
 constexpr int64_t kWelcomePatienceMs = 5000;
 constexpr size_t kMaxNewcomers = 64;
-constexpr size_t kListeners = 2; // the abstract one, the one with a path
+constexpr size_t kListeners = 2; // one with an abstract name, one with a path
 
 Error socketError(const std::string& session, const char* what) {
     std::string text = "session socket " + session + ": " + what + ": " + std::strerror(errno);

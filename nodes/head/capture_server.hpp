@@ -54,7 +54,7 @@ private:
     struct Newcomer {
         FileDescriptor socket;
         Deadline deadline;
-        bool mayTakeLong = false; // after the deadline it stays until another program needs its place
+        bool mayTakeLong = false; // after the deadline it stays only until another program needs its place
         capture::Hello hello{};
         size_t haveBytes = 0; // received bytes of hello
     };

@@ -6,11 +6,11 @@
 
 namespace mural {
 
-// The product of the zooms of the compound and its ancestors. Zooms derived from whole channel pixels would differ
-// between neighbours of different sizes.
+// Returns the product of the zooms of the compound and its ancestors. Zooms derived from whole channel pixels would
+// differ between neighbours of different sizes.
 [[nodiscard]] Zoom zoomOf(const config::ResolvedConfig& config, compound::Index compound);
 
-// Clamps the zoom to kMostZoom. The caller, who knows all ranges, numbers them.
+// Returns the pass, with the zoom clamped to kMostZoom. The caller numbers the ranges, because it has all of them.
 [[nodiscard]] RenderPass passOf(const config::ResolvedConfig& config, const compound::RenderContext& context);
 
 } // namespace mural

@@ -211,7 +211,7 @@ private:
         std::vector<compound::Piece> needed;
         for (const compound::Cell& cell : compound::cellsOf(pieces)) {
             std::vector<Range> drawn;
-            // of two draws with the same content the first counts: a depth test keeps existing pixels
+            // of two draws with the same range the first one counts, because a depth test keeps existing pixels
             for (const int i : cell.of) {
                 const Range& range = arrivals[static_cast<size_t>(i)].draw->context.range;
                 if (std::find(drawn.begin(), drawn.end(), range) != drawn.end()) continue;
@@ -239,7 +239,8 @@ private:
         }
     }
 
-    // Queues start with equal strips of the picture or the range. Tiles move to idle nodes afterwards.
+    // Divides the picture or the range into equal strips, one per worker of the queue. Later, idle nodes take over
+    // tiles or chunks.
     void dealOut(const FramePlan& plan, const compound::PlannedQueue& queue, const std::vector<size_t>& draws) {
         const RenderContext& divided = plan.contexts[at(queue.context)];
         const bool chunks = !queue.tiles.empty() && std::any_of(queue.tiles.begin(), queue.tiles.end(), [&](const compound::PlannedTile& t) { return t.range != divided.range; });
@@ -269,7 +270,7 @@ private:
         plan_.queues.push_back(planned);
     }
 
-    // Determines the destinations, their eyes, and the pictures that compose them.
+    // Determines the destinations, their eyes, and the pictures that each is composed of.
     Result<void> placeParts() {
         using Key = std::tuple<Index, Eye>;
         std::map<Key, std::vector<size_t>> parts;

@@ -3,8 +3,8 @@
 //
 // The program's picture maps to the surface of the canvas, or, for screens in a room, to the scene that each screen
 // shows. Each draw of the compound tree becomes one render node with its area, eye, pixels, samples, phase and range.
-// Ranges travel between nodes and everything else to the head, as in a session without a file; the frames of the file
-// do not change these paths.
+// Nodes send their ranges to each other and everything else to the head, as in a session without a file. The frames of
+// the file do not change these paths.
 #pragma once
 
 #include "balancer/compound/load_config.hpp"

@@ -14,14 +14,15 @@ namespace mural {
 
 class DealtQueue {
 public:
-    // The field of a frame message that names the assignment by which the frame was drawn.
+    // Pointer to the member of a frame message that contains the number of the assignment for that frame: its areas or
+    // its shares.
     using Division = uint32_t wire::FrameDoneMessage::*;
 
     explicit DealtQueue(std::vector<int> nodes) : nodes_(std::move(nodes)) {}
 
     QueueTotals totals;
     [[nodiscard]] const std::vector<int>& nodes() const { return nodes_; }
-    [[nodiscard]] const std::vector<int>& takers() const { return takers_; } // the living nodes of the queue
+    [[nodiscard]] const std::vector<int>& takers() const { return takers_; } // the nodes that share the queue and live
     [[nodiscard]] bool has(int node) const;
     // Pieces by node; no value if nothing is assigned.
     [[nodiscard]] bool deals() const { return pieces_.has_value(); }

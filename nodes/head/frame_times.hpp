@@ -1,4 +1,4 @@
-// Each node's busy time per frame of one window, the input of load balancing.
+// Measures each node's busy time per frame of one window, the input of load balancing.
 //
 // The followed window is the largest one. Work for other windows between two of its frames counts as well. Not
 // thread-safe.
@@ -34,7 +34,7 @@ public:
     // If the window was followed, the next window with a frame replaces it.
     void windowGone(uint32_t client, uint32_t window); // or wire::kAllWindows
     void lost(int node);
-    bool joined(int node); // false: it was alive already
+    bool joined(int node); // returns false if the node was alive already
     [[nodiscard]] bool lives(int node) const { return lives_[static_cast<size_t>(node)]; }
 
     [[nodiscard]] bool known() const { return width_ > 0; } // a window is followed

@@ -36,12 +36,12 @@ public:
 
     Result<void> frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs);
     void nodeLost(int node, int64_t nowNs);
-    // Credit waits for this node from now on, although its progress is still unknown.
+    // The node is returning. Credit waits for it from now on, although its progress is still unknown.
     void nodeJoins(int node);
-    // The node finishes the frames after `before`.
+    // The node has returned. It finishes the frames after `before`; other nodes have finished the earlier ones.
     void nodeJoined(int node, const std::vector<wire::ClientFrame>& before, int64_t nowNs);
     void clientGone(uint32_t client);
-    // No node sends further frames of this window.
+    // Call after the last frame of this window from all nodes.
     void windowGone(uint32_t client, uint32_t window);
 
     // Announces a picture for the outputs. Must precede the completion of its frame.

@@ -29,7 +29,8 @@ constexpr int64_t kLaunchPatienceMs = 30'000;
 volatile std::sig_atomic_t asked = 0;
 void askToFinish(int) { asked = 1; }
 
-// Ctrl-C of the terminal reaches both the head and `mural run`, which decides then.
+// Ctrl-C of the terminal reaches the head and `mural run`. The head ignores it, because `mural run` decides about the
+// end.
 void setUpSignals() {
     launch::rememberSignals();
     signal(SIGPIPE, SIG_IGN);

@@ -1,4 +1,4 @@
-// A command of the head's own stream as the payload of a packet.
+// Encodes a command of the head (wire::HeadCommand) as the payload of a packet.
 #pragma once
 
 #include <cstring>

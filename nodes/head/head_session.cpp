@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 constexpr int64_t kTickMs = 50;
 constexpr int64_t kProgressNs = 200 * kNsPerMs;  // at most 5 lines per second
 constexpr int64_t kOutputNewsMs = 20'000; // below the silence after which `mural run` gives up the head
-constexpr int64_t kProcessPatienceMs = 2000; // from a node's Bye to the end of its process
+constexpr int64_t kProcessPatienceMs = 2000; // time between a node's Bye and the end of its process
 
 std::vector<int> picturesOf(const SessionPlan& plan) {
     std::vector<int> pictures;
@@ -265,8 +265,8 @@ Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& heade
     return done;
 }
 
-// Takes effect after the message of the last node, because frames of the window precede it. Only then may another
-// window become the main one, or the program's state be dropped.
+// Takes effect after the message of the last node, because that node still sends frames of the window. Only then may
+// another window become the main one, and the program's state be dropped.
 Result<void> HeadSession::nodeWindowGone(int node, const wire::WindowGoneMessage& message) {
     windowGone({message.client, message.window}, node);
     return {};
@@ -368,7 +368,7 @@ void HeadSession::finishNodes() {
     constexpr int kSliceMs = 5;
     const int64_t beganNs = monotonicNowNs();
     const Deadline deadline = Deadline::inMs(options_.endPatienceMs);
-    // Uses a separate thread, because a node that reads nothing would delay the watch over the nodes.
+    // Broadcasts on a separate thread, because a node that reads nothing would block this one, which watches the nodes.
     std::thread asking([this] { nodes_.broadcast(wire::HeadCommand::Finish, {}); });
     while (!allReadersEnded()) {
         watchNodes(monotonicNowNs());

@@ -97,7 +97,7 @@ void HeadSession::introduceAgain(int node) {
     nodes_.sendAlone(node, wire::HeadCommand::Exchange, nlohmann::json{{"pictures", pictures}}.dump());
 }
 
-// The restarted node's GL must support everything that programs were told about the nodes' GL.
+// The restarted node's GL must support everything that has been announced to programs.
 Result<void> HeadSession::takeAgain(int node, NodeFacts facts) {
     {
         const std::lock_guard lock(mutex_);

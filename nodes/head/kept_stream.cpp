@@ -13,7 +13,7 @@ namespace {
 constexpr int64_t kSliceMs = 100;
 
 std::unique_ptr<recording::KeptStream> emptyStream(uint64_t mostBytes) {
-    // The message is dropped, because a node that cannot return is reported elsewhere.
+    // Drops the message, because another component reports nodes that cannot return.
     return std::make_unique<recording::KeptStream>(static_cast<size_t>(mostBytes), [](const std::string&) {});
 }
 

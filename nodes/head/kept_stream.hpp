@@ -1,4 +1,4 @@
-// The rejoin log: from it a restarted node receives a snapshot, the shortest known stream to the current state
+// The rejoin log, from which restarted nodes receive snapshots: the shortest known stream to the current state
 // (recording/kept). A background thread reduces the log, so that senders never wait for it.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Shows programs that the head has ended, even without a message. It is a robust futex in their shared memory. The
-// kernel marks it when the thread that holds it ends, also by SIGKILL. Programs read one word and need neither a
+// Lets programs detect that the head has ended, even without a message. It is a robust futex in their shared memory.
+// The kernel marks it when the thread that holds it ends, also by SIGKILL. Programs read one word and need neither a
 // descriptor nor a system call.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The programs' own windows (--display app). Each program has a thread that shows its pictures. An X server that does
-// not answer, because it is stopped or grabbed, therefore delays only the programs with windows on it.
+// Shows pictures in the programs' own windows (--display app), with one thread per program. An X server that is stopped
+// or grabbed therefore delays only the programs with windows on it.
 #pragma once
 
 #include <condition_variable>

@@ -127,7 +127,7 @@ bool NodeCatchUp::drawsAgain() {
             unsound_ = sound_ == static_cast<uint32_t>(wire::Soundness::Unsound);
             if (sound_ == static_cast<uint32_t>(wire::Soundness::Sound)) return true;
         }
-        // no program draws into the window; the node would notice a change
+        // without draws into the window there is no frame; the node detects a later draw
         if (deadline.passed() && !unsound_) return true;
         if (unsound_) {
             link_.lose("its frames build on earlier ones that it did not draw; next time it draws them");

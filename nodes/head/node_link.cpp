@@ -9,7 +9,7 @@ namespace {
 
 using wire::NodeMessage;
 
-constexpr int64_t kWatchGapNs = 2 * kNsPerS; // a longer gap means that the head itself was stopped
+constexpr int64_t kWatchGapNs = 2 * kNsPerS; // a longer gap between two checks means that the head itself was stopped
 constexpr int64_t kWriteLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
 constexpr int64_t kReadSliceMs = 100; // interval of the check whether the node was given up
 constexpr int64_t kMessageLimitMs = 60'000; // from a message's header to its last byte
@@ -143,7 +143,8 @@ Result<bool> NodeLink::readHeader(wire::MessageHeader& header) {
     const Result<void> got = connection_->read(bytesOf(header), Deadline::inMs(kReadSliceMs));
     if (got) return true;
     if (!connection_->timedOut()) return got.error();
-    // All messages are read. Only now an ended process counts as lost; a shared-memory connection does not report it.
+    // All messages have been read, so an ended process counts as lost now. A shared-memory connection does not report
+    // its end.
     if (process_ && place_.where == "local") {
         if (const auto how = process_->ended()) return Error{*how};
     }

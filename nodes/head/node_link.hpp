@@ -35,7 +35,7 @@ public:
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
     virtual Result<void> nodeBye(int node, const std::string& json) = 0;
     virtual Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) = 0;
-    // The phases and areas of all windows at the TellTurns of that number.
+    // The node reports the phases and areas of all windows, at the position of the TellTurns command with that number.
     virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) = 0;
     virtual Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) = 0;
     // The last call for a node that ended without Bye, after all of its messages.
@@ -89,11 +89,11 @@ public:
     // The node receives delta-coded batches. Call before the first one.
     void setInBatches(bool in) { inBatches_ = in; }
     [[nodiscard]] bool inBatches() const { return inBatches_; }
-    // The node receives batches once it is a member.
+    // Sets whether the node receives batches once it is a member.
     void setJoinsBatches(bool joins) { joinsBatches_ = joins; }
     [[nodiscard]] bool joinsBatches() const { return joinsBatches_; }
 
-    // The node joins the multicast group once it is a member.
+    // Sets whether the node joins the multicast group once it is a member.
     void setJoinsGroup(bool joins) { joinsGroup_ = joins; }
     [[nodiscard]] bool joinsGroup() const { return joinsGroup_; }
 
@@ -106,7 +106,7 @@ public:
     [[nodiscard]] bool alive() const { return alive_.load(std::memory_order_acquire); }
     [[nodiscard]] bool saidBye() const { return saidBye_.load(std::memory_order_acquire); }
     [[nodiscard]] bool readerEnded() const { return readerEnded_.load(std::memory_order_acquire); }
-    // The time of the last message or packet; the current time while the head processes a message.
+    // Returns the time of the last message or packet; the current time while the head processes a message.
     [[nodiscard]] int64_t lastProgressNs(int64_t nowNs) const {
         return handlingSinceNs_ != 0 ? nowNs : lastMessageNs_.load();
     }

@@ -37,7 +37,7 @@ public:
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline);
     [[nodiscard]] uint64_t writtenBytes() const { return writtenBytes_; }
     void flush();
-    // The stream no longer waits for this node.
+    // Removes a node, for which the stream then no longer waits.
     void remove(int node, const std::string& why);
 
     // A membership change since the last call.

@@ -32,7 +32,7 @@ std::string describeRegion(const NodePlan& plan) {
            std::to_string(r.row + r.rows - 1) + " (row 0 is the lowest)";
 }
 
-// One of n about equal parts of the whole picture.
+// Divides the whole picture into n parts of about equal size.
 std::vector<Viewport> evenParts(int n) {
     std::vector<Viewport> parts;
     const auto edge = [n](int i) { return static_cast<double>(i) / n; };

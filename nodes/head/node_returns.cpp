@@ -42,7 +42,7 @@ std::string NodeReturns::memberLost(int node) {
     return tiles + " until it is back";
 }
 
-// The start of the session was its first attempt.
+// The attempt at the start of the session counts as the first one.
 void NodeReturns::notThere(int node) {
     const int64_t nowNs = monotonicNowNs();
     const std::lock_guard lock(mutex_);
@@ -197,7 +197,8 @@ void NodeReturns::fail(int node, const std::string& why, int64_t nowNs) {
     {
         const std::lock_guard lock(mutex_);
         Node& n = at(node);
-        if (n.catchUp && n.catchUp->unsound() && std::exchange(skipsFrames_, false)) --n.tries; // not the node's fault
+        // the loss is caused by skipped frames: does not count as an attempt
+        if (n.catchUp && n.catchUp->unsound() && std::exchange(skipsFrames_, false)) --n.tries;
         n.problem.clear();
         again = n.tries < terms_.tries && !stopped_;
         n.phase = again ? Phase::Waiting : Phase::Over;

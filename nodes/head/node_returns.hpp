@@ -26,11 +26,12 @@ public:
     struct Hooks {
         std::function<Result<StartingNode>(int node)> start; // called by tick(); empty: nodes are never restarted
         std::function<void(int node, StartingNode&)> connected; // creates the link and sends the setup
-        // Returns why the session can't take the node back. Empty: it can.
+        // Returns the reason why the session can't take the node back. Empty: it can.
         std::function<std::string(int node)> whyNever;
         std::function<void(int node)> introduce; // introduces the node to the others of its picture, before the resync
         std::function<NodeSet::Turns(int node)> turns;
-        std::function<std::string(int node)> tilesOfLost; // consequence for the node's tiles while it is lost
+        // returns the consequence for the node's tiles while it is lost
+        std::function<std::string(int node)> tilesOfLost;
         std::function<NodeSet::Admission(int node, uint32_t view)> admitted; // called with the lock that orders packets
         // Called when the node stays lost; the string is a line for the user.
         std::function<void(int node, const std::string&)> gaveUp;
@@ -59,7 +60,7 @@ public:
     [[nodiscard]] bool onItsWay(int node) const;
 
     struct Numbers {
-        double secondsToBack = 0; // from the loss to membership
+        double secondsToBack = 0; // time from the loss to membership
         uint64_t snapshotBytes = 0, queuedBytes = 0;
         std::vector<wire::ClientFrame> framesGiven;
     };

@@ -28,7 +28,7 @@ void NodeSet::startReading() {
 }
 
 bool NodeSet::broadcast(uint32_t stream, std::span<const std::byte> payload) {
-    if (joining_ > 0) std::this_thread::yield(); // the mutex is not fair
+    if (joining_ > 0) std::this_thread::yield(); // the mutex is not fair: lets the joining thread go first
     const std::lock_guard lock(sendMutex_);
     if (hasLead_.load(std::memory_order_relaxed) && wire::clientOf(stream) != 0) sendLeadLocked();
     if (recorder_) recorder_->packet(stream, payload);

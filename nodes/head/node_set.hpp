@@ -70,9 +70,8 @@ public:
         std::vector<NodeLink*> asked; // output: the members that will answer if they live
     };
     Result<KeptStream::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
-    // Makes the node a member after all packets so far and informs all nodes. `announce` runs first and may refuse. If
-    // the node receives batches, delta coding restarts with an empty dictionary for all nodes, because no other one is
-    // as short.
+    // Makes the node a member after all packets so far, and informs all nodes. `announce` runs first and may refuse. If
+    // the node receives batches, delta coding restarts for all nodes: only an empty dictionary equals the new node's.
     struct Admission {
         bool refused = false;
         bool first = false; // the first member with this kind of state

@@ -56,7 +56,8 @@ Result<KeptStream::Snapshot> NodeSet::beginCatchUp(int node, TurnsAsked* turns, 
 
 Result<void> NodeSet::admit(int node, const std::function<Admission(uint32_t view)>& announce) {
     NodeLink& to = link(node);
-    std::unique_ptr<StreamEconomy::Coder> history; // constructed, and the old one destroyed, without the lock
+    // the new dictionary is constructed, and the old one destroyed, without the lock
+    std::unique_ptr<StreamEconomy::Coder> history;
     if (to.joinsBatches()) {
         auto fresh = StreamEconomy::freshCoder(economy_->limits());
         if (!fresh) return fresh.error();

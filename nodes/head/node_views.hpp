@@ -1,6 +1,6 @@
 // Determines the nodes that will answer an item of the stream: those that were members when it was sent. A returning
 // node becomes a member at one position of the stream (HeadCommand::Member), and each node marks that position in its
-// messages. The view of a message is thus known without parsing the stream.
+// messages. The set of members (view) that applies to a message is thus known without parsing the stream.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@ class NodeViews {
 public:
     explicit NodeViews(size_t nodes) : nodes_(nodes) {}
 
-    // The node is a member from this view on, and sends nothing before.
+    // Makes the node a member from this view on. It must have sent nothing before.
     void joins(int node, uint32_t view) { at(node) = {true, view, view}; }
-    // The node's messages from now on belong to this view.
+    // Records that the node's messages belong to this view from now on.
     void reached(int node, uint32_t view) { at(node).in = view; }
     void lost(int node) { at(node).lives = false; }
 
     [[nodiscard]] uint32_t since(int node) const { return nodes_[static_cast<size_t>(node)].since; }
     [[nodiscard]] bool lives(int node) const { return nodes_[static_cast<size_t>(node)].lives; }
-    // The nodes that will report the item which `teller` is the first to report.
+    // Returns the nodes that will report the same item as `teller`, which is the first to report it.
     [[nodiscard]] std::vector<bool> awaited(int teller) const {
         const uint32_t view = nodes_[static_cast<size_t>(teller)].in;
         std::vector<bool> who;

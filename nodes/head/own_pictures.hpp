@@ -1,4 +1,5 @@
-// A picture as the reply by which the program gets it during a server grab (capture::OwnWindow).
+// Encodes a picture as a reply to the program, which shows it in its own window during a server grab
+// (capture::OwnWindow).
 #pragma once
 
 #include "nodes/head/capture_client.hpp"

@@ -26,7 +26,7 @@ struct WindowPicture {
     uint32_t frame = 0;
     uint64_t nativeWindow = 0; // X window id, 0: none; bits 32 and up: number of its display (CaptureHeader::displays)
     std::shared_ptr<const OwnedPicture> picture;
-    // pictures of the further canvases, in their order; null: out of memory
+    // pictures of the other canvases, in their order; null: out of memory
     std::vector<std::shared_ptr<const OwnedPicture>> others;
 };
 
@@ -50,7 +50,7 @@ public:
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
     void nodeLost(int node);
-    // The node sends parts of frames from this view on.
+    // Adds a returned node. It sends parts of frames from this view on.
     void nodeJoins(int node, uint32_t view);
     void nodeInView(int node, uint32_t view);
     void clientGone(uint32_t client); // no node sends more parts of it

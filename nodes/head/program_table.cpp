@@ -45,8 +45,8 @@ void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
         if (found == admitted_.end()) return;
         const auto client = found->second;
         admitted_.erase(found);
-        if (!socket.valid()) return; // it left before it was let in
-        if (headGone_) client->memory().setHeadGone(); // the nodes were lost in between
+        if (!socket.valid()) return; // the program left before it was admitted
+        if (headGone_) client->memory().setHeadGone(); // the nodes were lost before its admission
         events_.came(*client);
         started = client->start(std::move(socket));
         clients_[id] = client;
@@ -88,7 +88,7 @@ void ProgramTable::reply(uint32_t id, Reply reply) {
 }
 
 void ProgramTable::news(const wire::News& news, const std::string& text) {
-    // dropped if the program reads no news
+    // the news is dropped if the program reads none
     if (const auto client = find(news.client)) (void)client->memory().putNews(news, text);
 }
 
@@ -111,7 +111,7 @@ void ProgramTable::displayBlocked(uint32_t id, bool isBlocked) {
     tellProgress(*found->second, progress);
 }
 
-// Pictures that wait for their window hold back the program that they belong to.
+// A program receives no further credit while too many of its pictures wait for their window.
 void ProgramTable::tellProgress(CaptureClient& client, const Progress& progress) const {
     constexpr uint32_t kMaxUnshown = 3;
     const uint32_t allowed = progress.shown + (terms_.framesDoneWhenShown ? 0 : kMaxUnshown);
@@ -145,7 +145,7 @@ void ProgramTable::tellHeadGone() {
 
 void ProgramTable::drainAll(Deadline deadline, const std::function<void()>& tick) {
     constexpr int kSliceMs = 10;
-    // Programs that are just being let in may have published already.
+    // Programs in the process of admission may have published already.
     while (anyAdmitted() && !deadline.passed()) {
         tick();
         poll(nullptr, 0, kSliceMs);

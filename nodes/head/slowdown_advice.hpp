@@ -1,4 +1,4 @@
-// Reports to the user that the program's own drawing defeats the chosen division of the work.
+// Warns the user if the program's way of drawing prevents the chosen division of the work from saving time.
 //
 // Reports each line once per session. Thread-safe.
 #pragma once

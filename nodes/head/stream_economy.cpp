@@ -83,8 +83,8 @@ void StreamEconomy::hold(uint32_t stream, std::span<const std::byte> payload) {
         holder_.leaveOutSmall(small_.leavesOut());
         return holder_.add(stream, payload);
     }
-    // The head's own commands. Data of a program that has ended is no longer needed. All other data reaches the nodes,
-    // as for a node that joins now.
+    // Commands of the head: data of an ended program is dropped. Before any other command all deferred data is sent, as
+    // for a node that joins now.
     uint32_t words[2] = {};
     std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
     if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) holder_.clientGone(words[1]);
@@ -105,7 +105,7 @@ void StreamEconomy::pack(uint32_t stream, std::span<const std::byte> payload, co
     coder_->packer.ownBytes();
 }
 
-// Where references already replace most bytes, there is little to gain and dictionary space to lose.
+// Returns whether references already replace most bytes. Another coding then gains little, and loses dictionary space.
 bool StreamEconomy::isMostLeftOut() const { return measured_.rawBytes >= kWorthAWayBytes && measured_.leftOutBytes > measured_.rawBytes / 2; }
 
 bool StreamEconomy::full() const { return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes; }

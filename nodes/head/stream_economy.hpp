@@ -1,5 +1,5 @@
-// The stream for nodes behind a network: delta coding (economy/) replaces data that the nodes have already. Packets are
-// collected into batches, which the caller sends. The filter (holding/) precedes the coding.
+// Encodes the stream for nodes on a network: delta coding (economy/) replaces data that the nodes have already. Packets
+// are collected into batches, which the caller sends. The filter (holding/) precedes the coding.
 #pragma once
 
 #include <atomic>
@@ -52,7 +52,7 @@ public:
     // Sets the function that takes and sends a full batch. add() may call it, because deferred data can be released in
     // bulk.
     void sendBy(std::function<void()> send) { send_ = std::move(send); }
-    // Follows a packet that is not sent to any node.
+    // Updates the filter's state with a packet that is not sent to any node.
     void miss(uint32_t stream, std::span<const std::byte> payload);
     void holdNothing() { holds_ = false; } // disables the filter; call before the first packet
     void losesWhatItHolds() { holder_.losesWhatItHolds(); } // fault injection for tests

@@ -6,7 +6,7 @@
 namespace mural {
 namespace {
 
-// The first `at` columns (or rows) go to `nodes` of the nodes.
+// A cut of the grid: the first `at` columns (or rows) go to `nodes` of the nodes.
 struct Cut {
     bool columns = true;
     int at = 0;

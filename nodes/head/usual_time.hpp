@@ -31,7 +31,8 @@ private:
     double usual_ = 0;
 };
 
-// The same per size class, a factor of two each: short operations cost many times more per byte than long ones.
+// Typical durations per size class of a factor of two, because short operations cost many times more per byte than long
+// ones.
 class UsualTimesBySize {
 public:
     [[nodiscard]] UsualTime& of(size_t sizeBytes) { return bySize_[std::min<size_t>(std::bit_width(sizeBytes), kSizes - 1)]; }

@@ -14,7 +14,7 @@ namespace {
 
 uint8_t byteAt(const Picture& p, size_t i) { return std::to_integer<uint8_t>(p.bgra[i]); }
 
-// The last picture of a lost node may be older than a resize. Missing pixels are black.
+// Resizes the last picture of a lost node, which may be older than a resize of the window. Missing pixels are black.
 void fit(OwnedPicture& picture, int width, int height) {
     if (picture.width() != width || picture.height() != height) picture = cutOut(picture.view(), {0, 0, width, height});
 }

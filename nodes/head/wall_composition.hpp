@@ -30,7 +30,7 @@ struct WallComposition {
     StereoMode stereo = StereoMode::Off; // how two eyes are combined
 };
 
-// For a session without a configuration file: one destination, the whole wall.
+// Returns the composition of a session without a configuration file: one destination, the whole wall.
 WallComposition compositionOf(const PassCounts& counts);
 
 [[nodiscard]] int picturesOf(const WallComposition& wall);

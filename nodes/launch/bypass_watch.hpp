@@ -1,5 +1,5 @@
-// Determines how programs draw if the capture sees none of it. Examines the libraries of their processes, and the notes
-// that the capture library writes when a program ends. Owned by one thread.
+// Determines how programs draw if none of their GL calls is captured. Examines the libraries of their processes, and
+// the notes that the capture library writes when a program ends. Owned by one thread.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace mural::launch {
 
-// A program that Mural has seen no context of, and its libraries.
+// A program without a captured context, and its libraries.
 struct UnseenProgram {
     std::string program;
     std::vector<std::string> libraries; // paths
@@ -23,7 +23,8 @@ struct UnseenProgram {
 // libraries show nothing. failed: the program ended with an error, so a missing GL library proves nothing.
 std::string describeBypass(const std::vector<UnseenProgram>& programs, bool failed = false);
 
-// The same about one that runs GL without the capture library; empty where it has the library, or no GL.
+// Returns a line about a program that uses GL without the capture library. Empty: the program has the library, or no
+// GL.
 std::string describeUncaptured(const UnseenProgram& program);
 
 class BypassWatch {

@@ -31,12 +31,12 @@ std::vector<char*> pointers(const std::vector<std::string>& strings) {
 
 bool redirect(int from, int to) { return from < 0 || dup2(from, to) >= 0; }
 
-// In the child, between fork and exec: only async-signal-safe calls.
+// Runs in the child, between fork and exec, with async-signal-safe calls only.
 [[noreturn]] void becomeProgram(const SpawnRequest& request, char** arguments, char** environment, pid_t parent, int reportFd) {
     if (request.ownSession) setsid();
     if (request.signalWhenWeDie != 0) {
         prctl(PR_SET_PDEATHSIG, request.signalWhenWeDie);
-        if (getppid() != parent) _exit(127); // it died before the request counted
+        if (getppid() != parent) _exit(127); // the parent died before PR_SET_PDEATHSIG took effect
     }
     if (remembered.known) {
         sigprocmask(SIG_SETMASK, &remembered.mask, nullptr);

@@ -15,7 +15,7 @@ namespace mural::launch {
 
 namespace {
 
-constexpr size_t kHeadBytes = 512; // the kernel reads 256 for "#!"; ELF headers are smaller
+constexpr size_t kHeadBytes = 512; // the kernel reads 256 bytes of a "#!" line; ELF headers are smaller than this
 constexpr size_t kMaxProgramHeaders = 4096;
 constexpr uint64_t kMaxPathBytes = 4096;
 constexpr uint64_t kMaxTableBytes = 64 << 20; // string tables of the largest libraries have a few MiB
@@ -134,7 +134,7 @@ Result<ExecutableFacts> readExecutable(const std::string& path) {
     } else if (text.starts_with("#!")) {
         readScriptLine(text, facts);
     } else if (text.substr(0, text.find('\n')).find('\0') == std::string_view::npos) {
-        facts.kind = FileKind::PlainScript; // the test of shells: no zero byte in the first line
+        facts.kind = FileKind::PlainScript; // like shells: a text has no zero byte in its first line
     }
     return facts;
 }

@@ -14,7 +14,8 @@ namespace mural::launch {
 
 namespace {
 
-// "pid (name) state ppid pgrp session …": the name may contain spaces and brackets, so the search starts at the end.
+// Parses "pid (name) state ppid pgrp session …". The name may contain spaces and brackets, so the search starts at the
+// end.
 bool readFacts(pid_t pid, ProcessFacts& facts) {
     const std::string path = "/proc/" + std::to_string(pid) + "/stat";
     FILE* file = std::fopen(path.c_str(), "re");

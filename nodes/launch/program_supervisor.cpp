@@ -68,7 +68,7 @@ void ProgramSupervisor::readSignals() {
             if (number == SIGTERM) asked_.insert(program_.pid());
             end(kStopGraceMs);
         } else if (!programRunning()) {
-            stopSignal_ = number; // no program is left to receive it
+            stopSignal_ = number; // no program is left that could receive the signal
         } else if (!fromTerminal(info)) {
             program_.signal(number);
         }

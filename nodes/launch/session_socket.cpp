@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kTemporary = "/tmp";
 constexpr const char* kFileName = "/socket";
-constexpr time_t kMinAgeS = 10; // the head of a newer folder may not listen yet
+constexpr time_t kMinAgeS = 10; // the head of a newer folder may not have opened its socket yet
 
 bool isOwnFolder(const std::string& path, struct stat& facts) {
     return lstat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == geteuid();

@@ -1,5 +1,5 @@
-// The session's socket in the file system, beside its abstract one: programs in another network namespace (sandboxes)
-// reach no abstract socket of this one. Each session has a folder of its own, which only its user may enter.
+// The session's socket in the file system, in addition to its abstract one. Programs in another network namespace
+// (sandboxes) cannot reach an abstract socket. Each session has its own folder, which only its user may enter.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// Source: ICCCM 4.1.2.4 (transients), 4.1.3.1 (WM_STATE), 4.1.5 (replies to configure requests).
+// Implements the window manager of private displays. Source: ICCCM 4.1.2.4 (transients), 4.1.3.1 (WM_STATE), 4.1.5
+// (replies to configure requests).
 #include "nodes/launch/wall_window_manager.hpp"
 
 #include <algorithm>

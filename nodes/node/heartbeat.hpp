@@ -1,5 +1,5 @@
 // Sends heartbeats to the head every few seconds, even while the replay thread works. The head can thus distinguish a
-// long frame from a stopped process. Ends a process whose replay hangs.
+// long frame from a stopped process. Ends this process if its replay hangs.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ public:
     Heartbeat& operator=(const Heartbeat&) = delete;
     ~Heartbeat();
 
-    // The replay thread starts or finishes a packet.
+    // Mark the start and the end of a packet's replay. Called by the replay thread.
     void begins();
     void ended() { workingSinceNs_ = 0; }
 

@@ -98,7 +98,7 @@ private:
         return goesOn;
     }
 
-    // Adds the time since beganNs_ to the work. Called before a wait, which does not count.
+    // Adds the time since beganNs_ to the work. Called before a wait, because waits do not count.
     void countWork() {
         const int64_t nowNs = workNowNs();
         // the difference of two clocks may decrease
@@ -108,8 +108,8 @@ private:
     }
 
     // Returns the CPU time of this process if nodes share the cores of a machine, otherwise the time. Nodes on the same
-    // cores delay each other whatever their tiles are, so only their own work counts there. The CPU time of the picture
-    // thread is excluded: PictureSender adds it to the frames.
+    // cores delay each other regardless of their tiles, so only their own work counts there. The CPU time of the
+    // picture thread is excluded, because PictureSender adds it to the frames.
     [[nodiscard]] int64_t workNowNs() const { return countsCpu_ ? processCpuNowNs() - (sender_ ? sender_->cpuNs() : 0) : monotonicNowNs(); }
 
     // Sends a message to the head, in order with pictures.
@@ -280,8 +280,8 @@ private:
     // Returns whether nodes send to the collector only.
     [[nodiscard]] bool isStar() const { return setup_.composition == compositor::nameOf(compositor::Strategy::Serial); }
 
-    // Returns whether this node opens the connection to the node of `rank`. A node connects to all lower ranks and
-    // accepts the higher ones. A restarted node connects to all.
+    // Returns whether this node opens the connection to the node of `rank`. Nodes connect to all lower ranks and accept
+    // connections of higher ones. A restarted node connects to all.
     [[nodiscard]] bool goesTo(int rank) const {
         const int own = setup_.pass.range;
         return rank != own && (setup_.catchesUp || rank < own) && (!isStar() || rank == 0 || own == 0);

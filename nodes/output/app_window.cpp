@@ -103,7 +103,8 @@ Result<void> AppWindow::showBefore(Deadline deadline, const Picture& picture) {
                              config_.window, x_->displayName())};
 }
 
-// A slow server that answers is not blocked, because a second attempt would take as long.
+// Returns the error of a missed deadline. A server that answers, but slowly, is not blocked: another attempt would take
+// as long.
 Error AppWindow::missed(XAnswer answer) {
     isBlocked_ = answer == XAnswer::TimedOut && !hasAnswered_;
     return x_->describe(answer);

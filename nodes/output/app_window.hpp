@@ -81,7 +81,7 @@ private:
     AppWindowConfig config_;
     std::unique_ptr<XConnection> x_;
     std::optional<WindowOwnerCheck> owner_;
-    bool ownerChecked_ = false; // a check before an earlier picture has completed
+    bool ownerChecked_ = false; // the owner was checked before an earlier picture was complete
     std::optional<PixelConverter> converter_; // for the window's visual
     xcb_gcontext_t gc_ = 0;                   // 0: none yet
     std::unique_ptr<SharedPixels> shared_;

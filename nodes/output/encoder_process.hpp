@@ -1,6 +1,6 @@
-// A child process that reads its standard input from this process: with deadlines for its start, its input and its end.
-// It has its own process group, so that Ctrl-C does not end it before its file is complete. If this process dies, the
-// child reads end-of-file and completes the file.
+// A child process that receives data from this process on its standard input, with deadlines for its start, its input
+// and its end. It has its own process group, so that Ctrl-C does not end it before its file is complete. If this
+// process dies, the child reads end-of-file and completes the file.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// GLFW for one X display. GLFW exists once per process and belongs to the thread that initialised it, as does this
-// object.
+// A GLFW session on one X display. GLFW exists once per process and belongs to the thread that initialised it, as does
+// this object.
 #pragma once
 
 #include <memory>

@@ -1,3 +1,4 @@
+// One window of the wall (class WallWindow of wall_screen.hpp): its creation, its size, and how pictures are drawn.
 #include <algorithm>
 #include <tuple>
 
@@ -210,7 +211,8 @@ Result<void> WallWindow::draw(OwnedPicture& picture, OwnedPicture& right) {
     if (blit_) {
         glfwMakeContextCurrent(window_);
     } else if (otherSize) {
-        // Clears remains of the previous picture beside the new one; ordered with the painter's connection.
+        // Clears remains of the previous picture beside the new one, in order with the requests of the connection that
+        // paints.
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
         (void)session_.sync();
     }

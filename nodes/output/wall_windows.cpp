@@ -33,8 +33,8 @@ struct Job {
 
 } // namespace
 
-// State shared by the thread and its callers. The thread keeps it alive: a thread blocked by an unresponsive server is
-// abandoned.
+// State shared by the windows' thread and its callers. The thread holds a reference, because a thread that an
+// unresponsive server blocks is abandoned.
 struct WallWindows::Shared {
     explicit Shared(const WallWindowsConfig& c)
         : config(c)

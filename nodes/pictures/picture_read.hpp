@@ -1,4 +1,4 @@
-// The readback of a drawn picture, for the thread that encodes it.
+// The readback of a drawn picture, used by the thread that encodes the picture.
 #pragma once
 
 #include <cstddef>

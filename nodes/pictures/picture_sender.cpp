@@ -12,7 +12,7 @@ namespace mural {
 namespace {
 
 constexpr size_t kMostFrames = 2; // one in encoding and one waiting
-constexpr size_t kTellingBytes = 1 << 16; // smaller transfers measure buffers instead of the link
+constexpr size_t kTellingBytes = 1 << 16; // smaller transfers measure socket buffers instead of the link
 
 std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
     return config.codec == kRawCodec ? nullptr : std::make_unique<PicturePacker>(config.codec, config.alpha);
@@ -80,7 +80,7 @@ bool PictureSender::tell(wire::NodeMessage type, std::span<const std::byte> a, s
     {
         const std::lock_guard lock(mutex_);
         if (stuck_) return false;
-        alone = idle(); // stays true: only this thread queues jobs
+        alone = idle(); // remains true, because only this thread queues jobs
     }
     if (alone) {
         send_(type, a, b);

@@ -1,5 +1,5 @@
-// Pictures that are transferred at a reduced size, as the frames of a configuration request (`zoom` of an outputframe).
-// Used by the node that sends them and the head that enlarges them.
+// Transfer of pictures at a reduced size, as the frames of a configuration request (`zoom` of an outputframe). Used by
+// the node that sends them and the head that enlarges them.
 #pragma once
 
 #include <cstddef>

@@ -15,8 +15,8 @@ using compositor::Codec;
 using compositor::MutablePlaneView;
 using compositor::PlaneView;
 
-// The index in this list is the codec number. The user's codec follows the list. Run-length coding is a baseline for
-// measurements and not included.
+// The index in this list is the codec number. The user's codec follows after the list. Run-length coding is omitted,
+// because it is only a baseline for measurements.
 constexpr const char* kCodecs[] = {"raw", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd", "yuv420", "jpeg-90"};
 constexpr CodecNumber kRaw = 0;
 

@@ -1,4 +1,4 @@
-// Exchanges red and blue of pixels.
+// Swizzles pixels: exchanges red and blue.
 #pragma once
 
 #include <cstddef>

@@ -1,3 +1,4 @@
+// Chooses the CPUs near a device (choosePlacement of machine_view.hpp). Pure.
 #include <algorithm>
 #include <iterator>
 

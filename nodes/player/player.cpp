@@ -23,8 +23,8 @@ constexpr int64_t kWelcomePatienceMs = 30'000;
 constexpr int64_t kRoomPatienceMs = 60'000;
 constexpr int64_t kFramePatienceMs = 600'000; // the same as for programs
 constexpr int64_t kLeavePatienceMs = 5'000;
-constexpr int64_t kSliceNs = 10 * kNsPerMs; // interval for dropping the replies to other programs
-constexpr uint64_t kMostUnanswered = 16; // limit of requests without a reply, which the player does not use
+constexpr int64_t kSliceNs = 10 * kNsPerMs; // interval at which replies to the other programs are dropped
+constexpr uint64_t kMostUnanswered = 16; // maximum number of requests without a reply; the player ignores their replies
 
 bool asksForReply(uint16_t opcode) {
     switch (opcode) {

@@ -1,4 +1,4 @@
-// The shaders attached to a program.
+// Queries the shaders attached to a program.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace mural {
 
-// At most 64, in the driver's order.
+// Returns at most 64 shaders, in the driver's order.
 inline std::vector<GLuint> attachedShaders(const GlFunctions& gl, GLuint program) {
     constexpr GLsizei kMost = 64;
     std::vector<GLuint> attached(kMost);

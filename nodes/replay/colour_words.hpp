@@ -1,4 +1,4 @@
-// Pixel types that read colours of a window, or upload them to a texture, without a loss.
+// Pixel types for lossless reads of a window's colours and lossless uploads to a texture.
 #pragma once
 
 #include "gl_functions.hpp"

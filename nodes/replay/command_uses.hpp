@@ -1,4 +1,4 @@
-// Classes of commands for the features of replay, derived from their traits (streamcodec/command_traits.hpp).
+// Classifies commands for single features of the replay, from their traits (streamcodec/command_traits.hpp).
 #pragma once
 
 #include <cstdint>

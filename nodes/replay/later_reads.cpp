@@ -91,7 +91,8 @@ std::unique_ptr<PictureRead> LaterReads::take(bool redFirst, PictureFormat forma
     return nullptr;
 }
 
-// The list holds at most as many buffers as were in use at the same time. The share group's end frees them.
+// The list of free buffers never exceeds the number of buffers in use at one time. The end of the share group frees
+// them.
 void LaterReads::giveBack(Buffer buffer) {
     const std::lock_guard lock(mutex_);
     free_.push_back(buffer);

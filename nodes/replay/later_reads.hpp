@@ -14,7 +14,8 @@
 
 namespace mural {
 
-// Readback of one share group. Lives until its last picture has been read, possibly longer than the program's contexts.
+// Asynchronous readback for one share group. Lives until its last picture has been read, possibly longer than the
+// program's contexts.
 class LaterReads : public std::enable_shared_from_this<LaterReads> {
 public:
     LaterReads(std::unique_ptr<gl::SharedReader> reader, const GlFunctions& gl);

@@ -37,7 +37,7 @@ struct ProgramRecipe {
 class ProgramRecipes {
 public:
     void source(GLuint shader, std::string text) { shaders_[shader].given = std::move(text); }
-    // The shader now contains a module; programs with it have no recipe.
+    // Call when the shader receives a SPIR-V module. Programs with it have no recipe.
     void forget(GLuint shader) { shaders_.erase(shader); }
     void compiled(const GlFunctions& gl, GLuint shader, bool withIncludes);
     void bindOutput(GLuint program, const char* name, const ProgramRecipe::Output& output) { programs_[program].next.outputs[name] = output; }

@@ -74,8 +74,8 @@ bool Replay::record(std::span<const std::byte> bytes) {
 bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
     Args in(arguments, blobs);
     const bool drawing = opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow || opcode == wire::kOpDrawAll;
-    // A read is never part of a list. Between glBegin and glEnd, ending the native list for it would split the
-    // primitive.
+    // A read is never part of a list. A native list cannot be ended between glBegin and glEnd, because that would split
+    // the primitive.
     const bool readsInPrimitive = opcode == wire::kOpRequestPixels && c_->compilesPrimitive;
     if (drawing && c_->compiling && !readsInPrimitive) {
         bool ok = true;
@@ -159,8 +159,8 @@ bool Replay::bindStream(Stream& s) {
     s.context->draw = s.draw;
     s.context->read = s.read;
     if (s.draw) s.draw->drawer = s.context;
-    // The context belongs to another thread of the program: it is still current there, like the previous one in its
-    // thread.
+    // The context belongs to another thread of the program. It stays current there, as the previous context stays
+    // current in its own thread.
     if (!bindSurfaces(gl::HeldBack::Kept)) {
         c_ = none_.get();
         return true;
@@ -226,7 +226,7 @@ GLuint Replay::generate(Kind kind) {
 }
 
 namespace {
-constexpr GLuint kNoObject = UINT32_MAX; // an invalid name for GL
+constexpr GLuint kNoObject = UINT32_MAX; // a name that no GL object has
 } // namespace
 
 GLuint Replay::name(Kind kind, GLuint app) {
@@ -237,7 +237,7 @@ GLuint Replay::name(Kind kind, GLuint app) {
     if (ours) return ours;
     if (c_->core) return kNoObject; // only created names are valid
     ours = generate(kind);
-    if (!ours) return app; // an error there is an error here
+    if (!ours) return app; // if GL rejects the name here, it rejects the program's name as well
     bindName(kind, app, ours);
     return ours;
 }

@@ -51,7 +51,7 @@ namespace mural {
 
 class LaterReads;
 
-// Limits on a stream's memory and work on the node; far above the needs of programs.
+// Limits on the memory and work that a stream may cause on the node, far above the needs of programs.
 struct ReplayLimits {
     uint64_t blobBytes = uint64_t{4} << 30; // queued in one stream
     uint64_t answerBytes = uint64_t{2} << 30; // of one answer
@@ -70,8 +70,8 @@ struct ReplayConfig {
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
     std::optional<ScreenView> screen; // includes the position of the eye
     bool skips = false; // draws no frames until drawAgain()
-    // The node is in resync, and only other nodes have the turns. Until takeTurns() or beginTurns() it draws all
-    // frames, and none is its own turn. It shares no draws before shareAnew().
+    // The node is in resync, and other nodes have the turns. Until takeTurns() or beginTurns() the node draws all
+    // frames and owns none of them. It shares no draws before shareAnew().
     bool catchesUp = false;
     bool cull = false; // rewritten shaders drop whole primitives outside the region
     bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
@@ -137,14 +137,14 @@ public:
     [[nodiscard]] std::vector<wire::WindowTurn> turns() const;
     // Sets the turns that another node reported for this position of the stream.
     void takeTurns(std::span<const wire::WindowTurn> turns);
-    // Called if no node has the turns. Frames in progress stay with the node of the first turn, and all nodes count
-    // anew.
+    // Called if no node has the turns. The node of the first turn keeps frames in progress, and all nodes restart their
+    // counts.
     void beginTurns();
-    // Sort-last: a node has returned; `itself`: this one. All nodes of the picture call it at the same position of the
-    // stream. `returned` is called after the last composition without that node, before the first one with it.
+    // Sort-last: handles the return of a node; `itself`: this node has returned. All nodes of the picture call it at
+    // the same position of the stream. `returned` is called between the last composition without the returned node and
+    // the first one with it.
     void shareAnew(bool itself, std::function<void()> returned);
-    // Applies new shares. They are valid for each window from the next draws that are the first shared ones of their
-    // frame.
+    // Announces new shares. Each window adopts them with the first shared draw of its next frame.
     void moveShares(const Shares& shares);
     // Requires ReplayConfig::areas. Applies new areas to each window at its next full clear (replay_areas.cpp).
     void moveAreas(Areas areas);
@@ -217,7 +217,8 @@ private:
         Range share; // this node's part of lastTotal
         uint32_t shares = 0; // number of the Shares with that part
         uint32_t drawnBy = 0; // number of the Shares of the previous frame
-        // returns of nodes of its picture before the frame began; its composition includes these nodes
+        // number of returned nodes of its picture when the frame began; the composition of the frame includes these
+        // nodes
         uint64_t returns = 0;
         FoldRule rule; // how the nodes' pictures are composited
     };
@@ -266,13 +267,13 @@ private:
         RangeFrame range;
         MovingPart moving;
         bool keepsPicture = false; // one node has the turn permanently
-        bool sceneElsewhere = false; // this frame draws a scene into a framebuffer object (replay_scenes.cpp)
-        bool sceneWasElsewhere = false; // the previous frame did
+        bool sceneElsewhere = false; // this frame draws its scene into a framebuffer object (replay_scenes.cpp)
+        bool sceneWasElsewhere = false; // the previous frame drew its scene into a framebuffer object
         bool begun = false;        // something was drawn since the last swap
         ReadbackChoice readback;
         bool skipped = false; // its frames are not drawn (replay_catch_up.cpp)
         GLbitfield stale = 0; // buffers with wrong content after skipped frames
-        bool frontStaled = false; // the same for its front
+        bool frontStaled = false; // the front buffer is stale as well
         bool unsound = false; // this frame depends on stale buffers
         std::vector<int16_t> accumulated; // values of `drawn`, rows bottom first; empty: none yet
     };

@@ -1,5 +1,5 @@
-// Program binaries. A driver's binary is useless to other drivers. The program's side therefore requests the recipe of
-// the program and stores it with the binary. It sends the recipe back when the binary is loaded.
+// Program binaries. A driver's binary is useless to other drivers. The interposer therefore requests the recipe of the
+// program and stores it with the binary. It sends the recipe back when the program loads the binary.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {

@@ -1,12 +1,12 @@
-// Mesa batches glBitmap and draws the batch before the next dependent command, with the state of that moment. State
-// changes of the node itself must not fall between the two.
+// Draws batched bitmaps before the node changes state. Mesa batches glBitmap, and draws the batch with the state at the
+// next dependent command. That command must be the program's, not one that the node adds.
 #include "gl_opcodes.hpp"
 #include "nodes/replay/replay.hpp"
 
 namespace mural {
 
-// Display lists count only if some list contains a bitmap, because settleBitmaps() has a side effect: Mesa commits
-// pending materials, which a colour would otherwise still change.
+// Calls of display lists count only if some list contains a bitmap. settleBitmaps() has a side effect: Mesa commits
+// pending materials, which a later colour would otherwise still change.
 void Replay::noteBitmaps(uint16_t opcode) {
     if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsHoldBitmaps = true;
     const bool listed = (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsHoldBitmaps;

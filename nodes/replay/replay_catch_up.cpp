@@ -1,6 +1,6 @@
-// Resync of a restarted node, which quickly replays what took the others long. It does not draw frames without an
-// observer: its region is empty, as in frames of another phase. Draw calls without other effects are skipped. When it
-// has nearly caught up it draws again, each window from its next frame on.
+// Resync of a restarted node. It replays quickly what the other nodes took long to draw. It does not draw frames whose
+// pictures are not needed: its region is empty, as in frames of another phase. Draw calls without other effects are
+// skipped. When it has nearly caught up it draws again, each window from its next frame on.
 //
 // A window's buffers are stale until a full clear. Drawing over stale buffers, reading or showing them would differ
 // from the other nodes. The code here detects that beforehand and ends the node; the next incarnation draws all frames.
@@ -10,7 +10,7 @@
 
 namespace mural {
 
-// A node draws everything if another node depends on its picture, or if a copy of the window is filled from outside the
+// Returns false if another node depends on this node's picture, or if a copy of the window is filled from outside the
 // stream. No node depends on the range of a node in resync.
 bool Replay::maySkip() const {
     const RenderPass& p = config_.pass;

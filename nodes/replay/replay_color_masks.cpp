@@ -1,5 +1,5 @@
-// Windows without alpha on surfaces with alpha (OSMesa). Alpha stays 1, the value that blending and reads see without
-// alpha. The colour mask covers all writes except blits.
+// Windows without alpha on surfaces with alpha (OSMesa). Alpha stays 1, the value that blending and reads use for a
+// missing channel. The colour mask prevents all writes of alpha except blits.
 #include "nodes/replay/replay.hpp"
 
 namespace mural {

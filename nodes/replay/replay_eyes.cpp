@@ -3,8 +3,8 @@
 //
 // Shaders receive the transformation as uniforms (nodes/shaders/moved_position). The program's view of its scene is
 // derived from the matrices that it passes to its shaders (seen_projection.hpp). For shaders without matrices the fixed
-// function's are assumed. Fixed function draws with a projection that the replay sets meanwhile.
-// Source: thesis, "Stereo Rendering"; design 4.
+// function's are assumed. The fixed function draws with a projection that the replay sets temporarily. Source: thesis,
+// "Stereo Rendering"; docs/architecture/passes.md.
 #include <algorithm>
 #include <string_view>
 #include <utility>
@@ -36,7 +36,7 @@ SeenProjection Replay::projectionOf(GLuint program) const {
     if (own != c_->shared->projections.end()) return own->second;
     if (c_->fixedProjection.perspective()) return c_->fixedProjection;
     if (c_->shared->projection.perspective()) return c_->shared->projection;
-    // Without any known matrix: a vertical field of view of 60 degrees.
+    // Without any known matrix a vertical field of view of 60 degrees is assumed.
     const auto& v = c_->viewports[0];
     constexpr double kScale = 1.7320508;
     return {kScale * static_cast<double>(std::max(1.0F, v[3]) / std::max(1.0F, v[2])), kScale, 0, 0, 1, 1};

@@ -32,7 +32,7 @@ void Replay::deleteFramebuffers(GLsizei n, const Data& framebuffers, void (*remo
 }
 
 // A node has one eye of a stereo window: the eye of its pass, or the left one. Draws to the other eye alone have no
-// effect here (GL 4.6 17.4.1; design 4: stereo programs keep their eyes).
+// effect here (GL 4.6 17.4.1). Programs that draw both eyes themselves thus keep their own eyes.
 GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
     if (!w || !w->config.stereo || c_->api != wire::Api::Desktop) return buffer;
     const bool right = config_.pass.eye == Eye::Right;
@@ -46,14 +46,14 @@ GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
     default: return buffer;
     }
 }
-// Reads of the other eye return this one: it is the only one here, and the read is no error.
+// Reads of the other eye return this node's eye. It is the only one here, and the read must not be an error.
 GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
     const GLenum here = bufferOfEye(buffer, w);
     if (here != GL_NONE || buffer == GL_NONE) return here;
     return buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT ? GL_FRONT_LEFT : GL_BACK_LEFT;
 }
 
-// Valid for glDrawBuffers as well, which accepts GL_BACK as the only name for several buffers.
+// The name is also valid for glDrawBuffers, which accepts GL_BACK as the only name for several buffers.
 GLenum Replay::onlyBuffer(const gl::Surface& surface) { return surface.colorBuffers() == gl::ColorBuffers::OneNamedBack ? GL_BACK : GL_FRONT_LEFT; }
 // Returns the only colour buffer of the surface that contains the window's buffer (replay_front.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {

@@ -103,7 +103,8 @@ uint64_t Replay::equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GL
     return 0;
 }
 
-// Until the first handle is freed, drivers number handles in request order.
+// Requests the program's handle from this driver. Until the first handle is freed, drivers number handles in request
+// order.
 void Replay::askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs) {
     if (!c_->shared) return;
     const auto known = c_->shared->dealt.find(theirs);
@@ -215,7 +216,7 @@ void Replay::glProgramUniformHandleui64vARB(GLuint program, GLint location, GLsi
     const GLint at = uniformLocation(program, location);
     gl.glProgramUniformHandleui64vARB(ours, at, count, handleValues(ours, at, values.as<GLuint64>(), count).data());
 }
-// Only the shader determines the kind of handle in an attribute. Most are textures.
+// The kind of a handle in a vertex attribute depends on the shader and is unknown here. Most are textures.
 void Replay::glVertexAttribL1ui64ARB(GLuint index, GLuint64EXT x) {
     if (!gl.glVertexAttribL1ui64ARB) return (void)lacking(op::glVertexAttribL1ui64ARB);
     gl.glVertexAttribL1ui64ARB(index, c_->shared ? c_->shared->handles.value(HandleTable::Of::Texture, x) : x);

@@ -29,7 +29,7 @@ bool Replay::ownDestroyImage(Args& in) {
     return true;
 }
 
-// A missing image is an error of the program, or unsupported and already reported by its side.
+// An unknown image is an error of the program, or an unsupported image that the interposer has reported.
 void Replay::withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call) {
     const auto& images = clients_[wire::clientOf(stream_)].images;
     if (const auto it = images.find(image); it != images.end()) call(it->second->handle());

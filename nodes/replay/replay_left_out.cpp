@@ -25,7 +25,7 @@ template <class Call> void forEachDraw(Call&& call) {
 
 } // namespace
 
-// Whether any stage has storage blocks, counters or images. Pipelines are not inspected.
+// Returns whether any stage has storage blocks, counters or images. Pipelines are not inspected.
 bool Replay::mayWriteMemory(GLuint program) {
     const bool can = c_->version >= (c_->api == wire::Api::Desktop ? 42 : 31);
     if (!can || program == 0) return c_->pipelineBound;

@@ -7,7 +7,7 @@
 namespace mural {
 
 namespace {
-constexpr size_t kMostMessages = 64; // between two packets; the program receives the first ones
+constexpr size_t kMostMessages = 64; // between two packets; later ones are dropped
 } // namespace
 
 void Replay::listenToDriver() {
@@ -43,7 +43,7 @@ void Replay::tellMessages() {
 }
 
 // Clears GL errors. The program's own context reports all errors except out of memory on this machine. Returns true if
-// there was none.
+// one of the errors was out of memory.
 bool Replay::takeErrors() {
     constexpr int kMostErrors = 8; // a lost context reports errors forever
     bool noMemory = false;
@@ -56,7 +56,7 @@ bool Replay::takeErrors() {
     return noMemory;
 }
 
-// A reported error includes allocation failures before it.
+// The program has received an error. It includes allocation failures before it, which are therefore not reported again.
 bool Replay::errorTold() {
     if (bound_ == c_ && takeErrors()) tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
     ++c_->errorsTold;

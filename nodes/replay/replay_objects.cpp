@@ -1,4 +1,4 @@
-// Commands with object names or pointers that differ on this node.
+// Replays commands whose object names or pointers differ on this node.
 #include <cstring>
 #include <utility>
 
@@ -249,9 +249,10 @@ void Replay::notePrimitive(uint16_t opcode, std::span<const std::byte> arguments
     if (mode <= GL_PATCHES) c_->compilesPrimitive = true;
 }
 
-// A command that splits lists. Between glBegin and glEnd, GL accepts only calls of lists among these commands. The
-// others are errors there, which the program's own list raises, and would end the native list inside its primitive. A
-// list cannot be ended during the execution of a primitive either, so the lists that it calls are called natively.
+// Compiles a command that splits lists. Between glBegin and glEnd, GL accepts only calls of lists among these commands.
+// The others are errors there. The program's own list raises these errors. Here they would end the native list inside
+// its primitive. A list cannot be ended during the execution of a primitive either, so lists that are called there are
+// called natively.
 bool Replay::compileSplitting(uint16_t opcode, std::span<const std::byte> bytes, std::span<const std::byte> arguments) {
     const bool callsList = opcode == op::glCallList || opcode == op::glCallLists;
     if (c_->compilesPrimitive && !callsList) {
@@ -279,7 +280,7 @@ void Replay::glEndList() {
     gl.glEndList();
     const GLuint list = c_->compiling;
     c_->compiling = 0;
-    applyTileValues(); // changed meanwhile
+    applyTileValues(); // the values may have changed during compilation
     List& slot = c_->shared->lists[list];
     for (const ListItem& item : slot.items) {
         if (item.record.empty()) gl.glDeleteLists(item.native, 1);
@@ -288,8 +289,8 @@ void Replay::glEndList() {
     c_->building = {};
 }
 
-// A command that a native list cannot contain goes between two native lists. Its spilled arguments are stored with it,
-// because the list may be called repeatedly.
+// Stores a command that a native list cannot contain between two native lists. Its blobs are stored with it, because
+// the list may be called repeatedly.
 void Replay::compileSplit(std::span<const std::byte> bytes) {
     ListItem item{.record = {bytes.begin(), bytes.end()}, .blobs = {}};
     for (bool found = true; found;) {

@@ -1,4 +1,4 @@
-// Mural's own records: contexts, windows, client memory. replay_swaps.cpp has those for frames.
+// Replays control records: contexts, windows, client memory. replay_swaps.cpp handles the records for frames.
 #include <cstring>
 #include <utility>
 
@@ -11,7 +11,7 @@
 namespace mural {
 
 namespace {
-// More than any record needs (72 spans of client arrays): the queue must not grow by empty blobs either.
+// More than any record needs (72 spans of client arrays). Without this limit empty blobs could grow the queue.
 constexpr size_t kMaxBlobs = 256;
 } // namespace
 
@@ -26,7 +26,7 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
     s.depth = c.depth;
     s.stencil = c.stencil;
     s.samples = c.samples;
-    s.accum = platform_->accumulates() ? c.accum : 0; // otherwise the replay has its own accumulation buffer
+    s.accum = platform_->accumulates() ? c.accum : 0; // without native ones the replay has its own accumulation buffer
     s.srgb = c.srgb != 0;
     s.stereo = false; // a node has the buffers of one eye (bufferOfEye)
     return s;

@@ -2,7 +2,7 @@
 //
 // All three scale and translate window coordinates. Viewports accept fractions, so they transform every draw, with or
 // without shaders. OpenGL ES lacks fractional viewports; its shaders transform positions
-// (nodes/shaders/moved_position). Source: accuracy 2.5; thesis, "Pixel", "Subpixel" and "zoom".
+// (nodes/shaders/moved_position). Source: docs/architecture/passes.md; thesis, "Pixel", "Subpixel" and "zoom".
 #include <algorithm>
 #include <cstring>
 
@@ -15,8 +15,8 @@ namespace mural {
 
 bool Replay::movesByShaders() const { return c_->api != wire::Api::Desktop || !gl.glViewportIndexedf; }
 
-// The pass for the current draws. A window whose pixels were copied or read in the previous frame is drawn without a
-// kernel. A draw that only shows an already sampled scene is not sampled again (replay_scenes.cpp).
+// Returns the pass for the current draws. A window whose pixels were copied or read in the previous frame is drawn
+// without a kernel. A draw that only shows an already sampled scene is not sampled again (replay_scenes.cpp).
 RenderPass Replay::passOfDraws() const {
     RenderPass p = config_.pass;
     if (!drawsWindow() || !interleaves(c_->draw)) p.kernelX = p.kernelY = 0, p.kernelWidth = p.kernelHeight = 1, p.zoom = {};
@@ -61,7 +61,7 @@ const std::byte* Replay::readEveryNth(Window& w, const PixelViewport& r, bool fr
     return pixels_.data();
 }
 
-// A program's read of a window with every nth pixel: each pixel also stands for its neighbours.
+// Returns pixels of a window with every nth pixel drawn, for a program's read. Each pixel is repeated for its neighbours.
 const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group) {
     const RenderPass& p = config_.pass;
     const PixelViewport picture = inPass(p, c_->read->whole);

@@ -64,7 +64,8 @@ void Replay::glBeginQuery(GLenum target, GLuint id) {
     dropPieces(query);
     query.target = target;
     query.skipped = c_->draw && c_->draw->skipped;
-    // Regions of whole bins overlap. Nodes with and without a GPU must decide equally, so the window's buffers decide.
+    // Regions of whole bins overlap, so overlapping fragments would count twice. Nodes with and without a GPU must
+    // decide equally, so the window's buffers decide.
     const bool overlap = countsSamples(target) && drawsWindow() && c_->draw && (c_->draw->config.samples > 0 || c_->draw->isFlat);
     if (overlap || target == GL_FRAGMENT_SHADER_INVOCATIONS) {
         c_->countedWhole = true;
@@ -144,7 +145,7 @@ bool Replay::ownRequestQuery(Args& in) {
     return true;
 }
 
-// Called when a frame is complete: answers no longer delay its drawing.
+// Answers requested results when a frame is complete, so that answers do not delay its drawing.
 void Replay::answerAskedAhead() {
     if (!bound_ || bound_->askedAhead.empty()) return;
     ContextState* const own = std::exchange(c_, bound_);
@@ -186,8 +187,8 @@ bool Replay::ownQueryKnown(Args& in) {
     return true;
 }
 
-// From a display list. The program's side has sent the result before the call, or this node draws everything and has
-// it.
+// Executes conditional rendering of a display list. The interposer has sent the result before the call, or this node
+// draws everything and has the result itself.
 void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const auto info = c_->queries.find(id);
     if (info == c_->queries.end()) return askDriver(name(Kind::Query, id), mode); // never begun: GL handles that case

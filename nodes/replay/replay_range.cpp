@@ -11,8 +11,8 @@
 // nodes therefore agree without messages. A returned node has no costs, so all nodes begin anew with it, at one
 // position of the stream.
 //
-// The depth test itself folds the draws in their order, so the picture equals a single machine's, bit for bit (accuracy
-// 4). All nodes draw framebuffer objects. nodes/exchange composites the pictures.
+// The composition applies the depth test to the draws in their order, so the picture equals a single machine's, bit for
+// bit (docs/architecture/sort-last.md). All nodes draw framebuffer objects. nodes/exchange composites the pictures.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -185,8 +185,8 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
         return false;
     }
     if (r.phase == RangeFrame::Phase::Fresh) beginSplit(w);
-    // In the first frame no cost is known: the collector draws it. The last node draws any excess over the previous
-    // frame.
+    // In the first frame no cost is known, so the collector draws all. In later frames the last node draws any excess
+    // over the previous frame's cost.
     const auto costAt = [&](double share) { return share >= 1 ? UINT64_MAX : countBefore(share, r.lastTotal); };
     const uint64_t from = r.lastTotal ? costAt(r.share.start) : collects() ? 0 : UINT64_MAX;
     const uint64_t to = r.lastTotal ? costAt(r.share.end) : UINT64_MAX;
@@ -215,7 +215,7 @@ std::span<const std::byte> Replay::noteRangeDraw(Window& w, uint16_t opcode, std
     const auto numbers = c_->shared->primitiveIds.find(name(Kind::Program, c_->program));
     bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound && !stipplesLines() && (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
     if (cuts && c.indices >= 0) cuts = wordAt(arguments, c.indices) == record::kTagOffset && !gl.glIsEnabled(GL_PRIMITIVE_RESTART) && (c_->version < 43 || !gl.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX));
-    if (!cuts) { // drawn whole by the node whose range contains its beginning
+    if (!cuts) { // the node whose range contains its first vertex draws it whole
         mute(w, first != 0 || last == 0);
         return arguments;
     }

@@ -1,4 +1,4 @@
-// Reads of this node's drawings, for the program and for the wall.
+// Reads pixels that this node has drawn, for the program and for the wall.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -112,9 +112,9 @@ bool Replay::ownRequestPixels(Args& in) {
     return true;
 }
 
-// Works around zink (Mesa 25.0). The next read lacks scissored clears since the last request of pixels or bytes, unless
-// the driver is flushed in between. A swap would flush. A flush also draws bitmaps that Mesa has batched. That would be
-// too early for those that the request leaves in the batch (leavesBitmaps).
+// Works around a defect of zink (Mesa 25.0). A read lacks the scissored clears since the last request of pixels or
+// bytes, unless the driver is flushed in between, as by a swap. A flush also draws bitmaps that Mesa has batched. It is
+// therefore omitted while the request must leave bitmaps in the batch (leavesBitmaps).
 void Replay::flushIfAsked(Window& w) {
     if (bound_ && bound_->gathersBitmaps) return;
     if (std::exchange(w.asked, false) && gl.glFlush) gl.glFlush();
@@ -296,7 +296,7 @@ bool Replay::ownFillWindow(Args& in) {
     if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
     if (plane == GL_COLOR_BUFFER_BIT && c_->readBuffer0 == GL_NONE) return true; // the copy is an error
     if (c_->read) c_->read->filled = true;
-    // they belong to another pass, and this node has all pixels of its own
+    // these pixels belong to another pass, and this node has all pixels of its own pass
     if (bound_ && c_->read && !config_.answers && !readsLean() && (c_->read->region == c_->read->whole || c_->read->drawn == c_->read->whole)) {
         forgetGathered();
         return true;

@@ -1,5 +1,5 @@
-// Contexts and windows that the program has destroyed. As in GLX, a current one lives until it is released. A share
-// group keeps its objects as long as one of its contexts lives.
+// Frees contexts and windows that the program has destroyed. As in GLX, a current one lives until it is released. A
+// share group keeps its objects as long as one of its contexts lives.
 #include <algorithm>
 #include <vector>
 
@@ -32,7 +32,8 @@ bool Replay::ownDestroyWindow(Args& in) {
     return true;
 }
 
-// The platform may have an object current that no stream has: streams are bound only when their packets arrive.
+// Releases the platform's current context and surfaces. No stream may have them current any more, because streams are
+// bound only when their packets arrive.
 void Replay::unbindPlatform() {
     (void)platform_->makeCurrent(nullptr, nullptr, nullptr);
     bound_ = nullptr;

@@ -10,7 +10,7 @@ namespace mural {
 // Stereo applies to windows and to scenes in framebuffer objects.
 bool Replay::isSeen() const { return drawsWindow() || c_->sceneSized; }
 
-// Samples apply to scenes: to depth-tested draws, and in windows to all draws while no scene is drawn elsewhere.
+// Sample offsets apply to scenes: to depth-tested draws, and in windows to all draws while no scene is drawn elsewhere.
 bool Replay::drawsScene() const {
     if (!drawsWindow()) return c_->sceneSized && c_->depthTested;
     return c_->depthTested || !c_->draw || !(c_->draw->sceneElsewhere || c_->draw->sceneWasElsewhere);

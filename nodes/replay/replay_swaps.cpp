@@ -63,7 +63,7 @@ void Replay::swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t 
     before.read = boundRead_;
     Window* const draw = drawer.draw;
     Window* const read = drawer.read;
-    // Mesa gathers vertices. Without a flush the context would draw them into the window that is bound next.
+    // Mesa gathers vertices. Without a flush the context would later draw them into the window that is bound next.
     if (bound_ && gl.glFlush) gl.glFlush();
     Stream forSwap;
     forSwap.context = &drawer;
@@ -113,8 +113,8 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         };
     }
     if (window && bound_) flushIfAsked(*window);
-    // A frame counts after its draws: pacing and frame rates depend on that. A later read counts the frame with its
-    // picture.
+    // A frame counts after its draws, because pacing and frame rates depend on that. If its picture is read later, the
+    // frame counts with the picture.
     const bool shown = frame != wire::kUnseenFrame;
     const bool later = shown && ours && readsLater(*ours, f.region);
     const int64_t beganNs = monotonicNowNs();

@@ -6,7 +6,7 @@
 //
 // lean: the framebuffer has the region's size, and window coordinates are translated.
 //
-// Framebuffer objects are always drawn whole. Source: design §4, accuracy M4 and M1.
+// Framebuffer objects are always drawn whole. Source: docs/architecture/tiling.md and exactness.md.
 #include <cstdint>
 
 #include "nodes/replay/pass_place.hpp"

@@ -112,8 +112,8 @@ void Replay::noteTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     if (builds && w.fresh) keepTurn(w); // detected too late for this frame
 }
 
-// Compile-and-execute: the driver draws a list's commands at once, with state that the list may change. The turn must
-// therefore be decided before. Only buffers that were cleared are equal on all nodes.
+// The list is compiled and executed at once: the driver draws its commands immediately, with state that the list may
+// change. The turn must therefore be decided before. Only buffers that were cleared are equal on all nodes.
 void Replay::noteTurnOfList() {
     if (!takesTurns() || c_->compileMode != GL_COMPILE_AND_EXECUTE || !drawsWindow() || !c_->draw) return;
     Window& w = *c_->draw;

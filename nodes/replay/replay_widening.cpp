@@ -1,5 +1,5 @@
-// If every node has to draw all (interposer/memory_writers.hpp), the framebuffer of a lean tile is too small. Windows
-// then get framebuffers of their own size.
+// Lean tiles that grow to the window's size. If every node has to draw everything (interposer/memory_writers.hpp), the
+// framebuffer of a lean tile is too small. Windows then get framebuffers of their own size.
 #include <algorithm>
 #include <utility>
 

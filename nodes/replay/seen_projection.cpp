@@ -14,7 +14,7 @@ struct Row {
 double dot(const Row& a, const Row& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 double determinant(const Row& a, const Row& b, const Row& c) { return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x); }
 
-// A row's component along the fourth row, and the length of the remainder.
+// The component of a row along the fourth row (shear), and the length of the remainder (scale).
 struct Axis {
     double shear, scale;
     Axis(Row row, const Row& fourth, double ww) : shear(dot(row, fourth) / ww) {

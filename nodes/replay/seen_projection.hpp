@@ -6,8 +6,9 @@
 
 namespace mural {
 
-// In eye coordinates, looking along -z: x_clip = scaleX x + shearX w, y alike, w = -z, z_clip = depth w + constant.
-// Also for products with uniformly scaling view and model matrices: lengths are the model's.
+// A projection in eye coordinates, looking along -z: x_clip = scaleX x + shearX w, y_clip likewise, w = -z, z_clip =
+// depth w + constant. Also represents products with view and model matrices that scale uniformly. Lengths are then in
+// units of the model.
 struct SeenProjection {
     double scaleX = 0; // 0: no perspective
     double scaleY = 0; // negative: upside down

@@ -45,7 +45,7 @@ void TiledPrograms::compile(const GlFunctions& gl, GLuint shader) {
     s.type = static_cast<GLenum>(type);
     s.text = sourceOf(gl, shader);
     s.compiled.clear();
-    if (s.text.empty()) gl.glCompileShader(shader); // reproduces the program's error
+    if (s.text.empty()) gl.glCompileShader(shader); // without a text the driver raises the program's error
 }
 
 // Compiles `shader` from `text` unless it already is. Keeps the source that the program has set.

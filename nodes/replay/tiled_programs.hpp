@@ -15,7 +15,7 @@ class TiledPrograms {
 public:
     // Replaces glCompileShader: stores the text and compiles it when a link determines the rewriting.
     void compile(const GlFunctions& gl, GLuint shader);
-    // The shader contains a module or was compiled otherwise: it is never rewritten.
+    // Call when the shader receives a SPIR-V module or is compiled by another command. It is then never rewritten.
     void forget(GLuint shader) { shaders_.erase(shader); }
     // Replaces glLinkProgram. Links the original shaders if the rewritten ones do not compile or link.
     void link(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);
@@ -23,7 +23,7 @@ public:
     GLuint create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts, const ShaderRewrites& rewrites, bool es);
     // Sets the uniforms of `program`, which must be current.
     void apply(const GlFunctions& gl, GLuint program, const TileValues& values);
-    // Sets them in all separable programs.
+    // Sets the uniforms in all separable programs.
     void applySeparable(const GlFunctions& gl, const TileValues& values);
     // GL_PROGRAM_SEPARABLE for the next link.
     void setSeparable(GLuint program, bool separable);

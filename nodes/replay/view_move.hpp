@@ -14,7 +14,7 @@ struct ViewMove {
     std::array<double, 4> x{}, y{}, w{};
     double z = 0;
 
-    // Applies the same to a projection matrix, column-major as in OpenGL.
+    // Applies the transformation to a projection matrix, column-major as in OpenGL.
     void apply(double (&matrix)[16], double unit) const;
 };
 

@@ -1,4 +1,4 @@
-// The area of each node, where areas change during the session (HeadCommand::Areas).
+// Areas of the nodes, for sessions in which areas change (HeadCommand::Areas).
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The readback of pictures. Direct: synchronous, before the next frame. Buffer: into a pixel buffer that another thread
-// maps. Auto: the method that blocks the drawing thread less.
+// Methods of picture readback. Direct: synchronous, before the next frame. Buffer: into a pixel buffer that another
+// thread maps. Auto: the method that blocks the drawing thread less.
 #pragma once
 
 #include <cstdint>

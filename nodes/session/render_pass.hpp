@@ -38,7 +38,7 @@ struct RenderPass {
     bool operator==(const RenderPass&) const = default;
 };
 
-// The number of each; all 1: a session without passes.
+// The number of eyes, kernel pixels, samples, phases and ranges; all 1: a session without passes.
 struct PassCounts {
     StereoMode stereo = StereoMode::Off;
     int kernelWidth = 1, kernelHeight = 1;

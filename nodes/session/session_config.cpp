@@ -178,7 +178,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("build", s.build);
 }
 
-// Area, edges, and the upper three rows of the matrix: nothing when there is none.
+// Area, edges, and the upper three rows of the matrix; null if there is no screen.
 Json valueToJson(const std::optional<ScreenView>& screen) {
     Json numbers = Json::array();
     if (!screen) return numbers;
@@ -198,7 +198,7 @@ template <class T> Json valueToJson(const T& value) {
     }
 }
 
-// Each reader returns the expected type if the value has another type, otherwise an empty text.
+// Each reader returns an empty text, or the expected type if the value has another type.
 std::string readValue(const Json& j, std::string& into, int64_t) {
     if (!j.is_string()) return "a text";
     into = j.get<std::string>();

@@ -1,5 +1,5 @@
-// The user's request for a session. `mural run` reads it from the command line and sends it to the head as one JSON
-// line. Every field has the default of a run without options.
+// The configuration of a session. `mural run` reads it from the command line and sends it to the head as one JSON line.
+// Every field has the default of a run without options.
 #pragma once
 
 #include <cstdint>

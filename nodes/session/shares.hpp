@@ -1,4 +1,4 @@
-// The part of a picture's draws that each node draws, where parts change during the session (HeadCommand::Shares).
+// Shares of a picture's draws, one per node, for sessions in which shares change (HeadCommand::Shares).
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // Drops whole primitives outside a tile before clipping and setup: the last stage before the rasteriser writes
 // gl_CullDistance. Vertices are neither moved nor added, so the remaining primitives are bit-identical. Source:
-// accuracy M4c; ARB_cull_distance.
+// docs/decisions/0004-dropping-primitives-outside-a-tile.md; ARB_cull_distance.
 #pragma once
 
 #include <optional>

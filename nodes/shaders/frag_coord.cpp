@@ -21,8 +21,9 @@ std::string endingOf(std::string_view source) {
     return ending;
 }
 
-// A function, so that expressions with its result keep the native precision: 16 bits for mediump on some drivers.
-// Integer pixel centres are offset by half a pixel in both coordinate systems.
+// Returns a function that yields window coordinates. As a function, expressions with its result keep the native
+// precision, which is 16 bits for mediump on some drivers. Integer pixel centres are offset by half a pixel in both
+// coordinate systems.
 std::string windowCoordinate(const GlslText& text, const std::string& ending) {
     const std::string from = text.uses("origin_upper_left") ? "xz" : "xy";
     const std::string counted = text.uses("pixel_center_integer") ? "(p.xy + 0.5)" : "p.xy";

@@ -1,5 +1,6 @@
-// A framebuffer with the tile's size, or with every nth pixel, changes the coordinates of fragments. Rewritten shaders
-// read window coordinates and derivatives per window pixel. Source: accuracy M1; GL_ARB_fragment_coord_conventions.
+// Makes fragment shaders independent of the framebuffer's size. A framebuffer with the tile's size, or with every nth
+// pixel, changes the coordinates of fragments. Rewritten shaders read window coordinates, and derivatives per window
+// pixel. Source: docs/architecture/exactness.md; GL_ARB_fragment_coord_conventions.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// The assembly language of ARB_fragment_program.
+// Rewrites coordinates in programs of ARB_fragment_program, an assembly language (withWindowPlaceArb).
 #include <cctype>
 #include <charconv>
 #include <vector>

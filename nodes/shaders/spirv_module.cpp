@@ -19,7 +19,7 @@ bool moduleReadsFragCoord(std::span<const std::byte> module) {
         std::memcpy(&value, module.data() + 4 * i, 4);
         return value;
     };
-    if (words < kHeaderWords || word(0) != kMagic) return true; // or the other byte order
+    if (words < kHeaderWords || word(0) != kMagic) return true; // not a module, or a module in the other byte order
     for (size_t at = kHeaderWords; at < words;) {
         const uint32_t length = word(at) >> 16, op = word(at) & 0xFFFF;
         if (length == 0 || length > words - at) return true;

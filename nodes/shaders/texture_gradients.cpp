@@ -39,7 +39,7 @@ constexpr std::array kLookups = {
 };
 constexpr int kFirstWithTexture = 130;
 
-// If all pixels are drawn, the function performs the original lookup, bit for bit.
+// Returns the text of a lookup function. If all pixels are drawn, it performs the original lookup, bit for bit.
 std::string function(std::string_view result, const std::string& name, std::string_view sampler, std::string_view coordinates, std::string_view of, std::string_view own,
                      std::string_view withGradients, bool biased) {
     const std::string p = "p" + std::string(of), head = " " + std::string(result) + " " + name + "(" + std::string(sampler) + " s, " + std::string(coordinates) + " p";
@@ -54,7 +54,7 @@ bool isType(std::string_view word) {
     return word == "float" || word == "vec2" || word == "vec3" || word == "vec4" || word == "ivec4" || word == "uvec4";
 }
 
-// The tokens that call it; none if the text defines a function of that name.
+// Returns the tokens that call the function; none if the text defines a function of that name.
 std::set<size_t> callsOf(const GlslText& text, std::string_view name) {
     std::set<size_t> calls;
     for (size_t i = 0; i < text.tokens.size(); ++i) {

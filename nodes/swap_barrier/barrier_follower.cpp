@@ -41,7 +41,7 @@ Result<BarrierGo> BarrierFollower::ask(const SwapKey& key) {
 int64_t BarrierFollower::await(const SwapKey& key) {
     if (!leader_) return 0;
     auto go = ask(key);
-    if (go && go->showNs == 0) return 0; // shown without the others
+    if (go && go->showNs == 0) return 0; // released alone: there is no common time to wait for
     if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMostSleepNs);
     log_("the swap barrier is broken: its leader is gone: " + go.error().message + "; windows of this node show frames when they are drawn");
     leader_.reset();

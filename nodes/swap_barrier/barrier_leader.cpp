@@ -16,7 +16,7 @@ constexpr int64_t kProofPatienceMs = 5000;
 constexpr int64_t kSendMs = 1000;
 constexpr int64_t kRestMs = 1000; // for the rest of a message
 constexpr int64_t kWakeNs = 50'000;
-constexpr int64_t kMostLeadNs = 4 * kNsPerMs; // members with a higher latency are not waited for
+constexpr int64_t kMostLeadNs = 4 * kNsPerMs; // longest time from release to show; members with a higher latency show later
 
 std::string memberText(int rank) { return "member " + std::to_string(rank + 1) + " of the swap barrier"; }
 

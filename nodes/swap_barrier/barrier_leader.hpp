@@ -41,7 +41,8 @@ private:
     void follow(int rank, Connection& connection);
     void take(int rank, const BarrierReady& ready, int64_t arrivedNs);
     void apply(const BarrierRounds::Step& step); // call with the lock held
-    // A round waits for present members. Measured times include members that have left, as all have when a run ends.
+    // Selects members for a measurement. Waiting: those that a round waits for. All: also those that have left, as all
+    // have when a run ends.
     enum class Whose : uint8_t { Waiting, All };
     [[nodiscard]] int64_t worstClockNs(Whose whose) const;
 

@@ -1,4 +1,4 @@
-// Measures the time between windows of a barrier showing the same frame.
+// Measures the time differences between members of a barrier that show the same frame.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct SkewNumbers {
 class SkewMeter {
 public:
     void released(const SwapKey& key, size_t windows);
-    // All times by the same clock.
+    // All times must be from the same clock.
     void shown(const SwapKey& key, int64_t atNs);
     [[nodiscard]] SkewNumbers numbers() const;
 

@@ -20,7 +20,7 @@ class SwapBarrier {
 public:
     using Log = std::function<void(const std::string&)>; // one line for the user; thread-safe
 
-    // A member that is late by this time is ignored.
+    // A member that exceeds this delay is ignored.
     static constexpr int64_t kPatienceMs = 5000;
 
     SwapBarrier() = default;
@@ -28,8 +28,8 @@ public:
     SwapBarrier& operator=(const SwapBarrier&) = delete;
     virtual ~SwapBarrier() = default;
 
-    // Reports that the picture of `key` is drawn. Returns when all members have reported or the wait is over: the time
-    // of monotonicNowNs() at which to show it. Call from the replay thread.
+    // Reports that the picture of `key` is drawn. Blocks until all members have reported, or the wait times out.
+    // Returns the time of monotonicNowNs() at which to show the picture. Call from the replay thread.
     virtual int64_t await(const SwapKey& key) = 0;
     virtual void shown(const SwapKey& key, int64_t atNs) = 0;
     // Leader only.

@@ -82,7 +82,7 @@ class Command:
         return next((p for p in self.params if p.name == name), None)
 
     def classify(self):
-        """Finds the class and how every parameter travels; falls back to unsupported with a reason."""
+        """Determines the class and the transfer of each parameter. Otherwise sets class unsupported, with a reason."""
         self.command_class = self.options.get('class')
         wanted_unsupported = self.command_class == 'unsupported'
         outputs = [p for p in self.params if p.pointers and not p.const]

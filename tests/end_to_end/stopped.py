@@ -54,7 +54,7 @@ def stop_for_a_while(pids, seconds=STOP_SECONDS):
 
 
 def what_it_read(run, wanted_status=0):
-    """The program's own counts; a text where something is wrong with its end."""
+    """Returns the program's own counts, or an error text after an unexpected end."""
     status = run.status()
     counts = [re.match(r"reads (\d+) differ (\d+) errors (\d+)", line) for line in run.standard_output]
     counts = [[int(number) for number in found.groups()] for found in counts if found]
@@ -64,7 +64,7 @@ def what_it_read(run, wanted_status=0):
 
 
 def reads_through_stops(context, kind, pattern, stops=2, seconds=2 + 2 * STOP_SECONDS):
-    """All reads are right, nothing is said, and the program is on the wall to the end."""
+    """Checks that all reads are correct, no message is printed, and the program stays on the wall to its end."""
     with context.run([context.program("stopped_reads"), kind, str(seconds)]) as run:
         if not run.wait_for_line("begins"):
             return "it did not begin: " + " | ".join(run.standard_error[-3:])
@@ -118,7 +118,7 @@ def head_pixels(context):
 
 @case
 def all_of_it(context):
-    """Ctrl-Z and fg: the program, its launcher, the head and the nodes."""
+    """Ctrl-Z and fg: stops and continues the program, its launcher, the head and the nodes."""
     return reads_through_stops(context, "pixels", r".")
 
 
@@ -143,7 +143,7 @@ def program_killed_while_stopped(context):
 
 
 def head_killed(context, kind):
-    """The read in the middle of which the head goes is right, or raises an error; never wrong pixels alone."""
+    """A read during which the head is killed is correct or raises an error. It never returns only wrong pixels."""
     with context.run([context.program("stopped_reads"), kind, "5"]) as run:
         if not run.wait_for_line("begins"):
             return "it did not begin"
@@ -203,7 +203,7 @@ for name, native_way in (("xlib", None), ("xcb", None), ("checked", None), ("nes
 
 @case
 def grabs_of_another_program(context):
-    """The pictures wait, and with them the program's reads: it sees each of its frames all the same."""
+    """The pictures and the program's reads wait for the end of the grab. The program still reads each of its frames."""
     wanted = natively(context, "without")
     with context.run([context.program("grabbed_server"), "without"], options=("--tiles", "2x1", "--display", "app")) as run:
         if not run.wait_for_line("without a grab"):

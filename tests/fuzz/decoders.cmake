@@ -10,7 +10,7 @@ add_test(NAME replay_fuzz_regression COMMAND replay_fuzz_regression --seconds 3 
          WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/run)
 set_tests_properties(replay_fuzz_regression PROPERTIES LABELS "fuzz;sanitize" TIMEOUT 120)
 
-# The encoder makes the corpus: bin/replay_fuzz_seeds tests/fuzz/corpus
+# Creates the corpus with the encoder: bin/replay_fuzz_seeds tests/fuzz/corpus
 add_executable(replay_fuzz_seeds replay_fuzz_seeds.cpp)
 target_link_libraries(replay_fuzz_seeds PRIVATE encoder_harness)
 

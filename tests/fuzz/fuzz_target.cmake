@@ -1,5 +1,5 @@
 # Adds the fuzz target NAME. NAME_fuzz.cpp becomes NAME_fuzz_regression, a test that runs the corpus and mutations of
-# it, everywhere. With the preset fuzz it also becomes NAME_fuzz, libFuzzer's (bin/NAME_fuzz CORPUS), for which SOURCES
+# it in every build. With the preset fuzz it also becomes NAME_fuzz for libFuzzer (bin/NAME_fuzz CORPUS), for which SOURCES
 # are compiled again with coverage. NAME_fuzz_seeds.cpp, if present, writes the corpus.
 #   LIBRARIES: the tested libraries. SOURCE_LIBRARIES: further libraries of the sources. CORPUS: folders (corpus)
 function(mural_fuzz_target name)
@@ -23,7 +23,7 @@ function(mural_fuzz_target name)
     set(flags -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
     add_executable(${name}_fuzz ../fuzz_entry.cpp ${name}_fuzz.cpp ${of_SOURCES})
     target_link_libraries(${name}_fuzz PRIVATE ${of_LIBRARIES} ${of_SOURCE_LIBRARIES})
-    mural_compile_alone(${name}_fuzz) # the product's sources are written to be
+    mural_compile_alone(${name}_fuzz) # product sources may define equal names
     target_compile_options(${name}_fuzz PRIVATE ${flags})
     target_link_options(${name}_fuzz PRIVATE ${flags})
   endif()

@@ -1,14 +1,15 @@
-"""apitrace as a peer at the same job."""
+"""Traces of apitrace, which are compared with Mural's capture."""
 
 LEAST_TRACE_BYTES = 1000  # less: it has recorded nothing
 TRIES = 4
 
 
 def traced(trace):
-    """What trace() returns, the size of a trace in bytes first. It is called again while that is hardly one.
+    """Returns the result of trace(), whose first value is the size of the trace in bytes. Repeats the call while the
+    trace is almost empty.
 
-    apitrace keeps the trace of a short run in memory, and gives it up when the signal that ends the program comes while a call is
-    being traced: 1 of 25 runs of 64 frames of glxgears.
+    apitrace keeps the trace of a short run in memory. It loses the trace if the terminating signal arrives while it
+    traces a call: 1 of 25 runs of 64 frames of glxgears.
     """
     for _ in range(TRIES):
         size_bytes, *rest = trace()

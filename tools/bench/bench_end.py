@@ -1,4 +1,4 @@
-"""How a bench ends that is stopped: as by Ctrl-C, so that what it has started and its folders end with it."""
+"""Ends of benches. A stopped bench ends as after Ctrl-C, so that its processes and folders are removed."""
 
 import os
 import signal
@@ -8,7 +8,7 @@ STOPPED = 130
 
 
 def run(main):
-    """Ends with main's status; with 130, and one line, when it is stopped by Ctrl-C, SIGTERM or SIGHUP."""
+    """Exits with main's status. After Ctrl-C, SIGTERM or SIGHUP prints one line and exits with status 130."""
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
             signal.signal(number, signal.default_int_handler)

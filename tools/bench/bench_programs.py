@@ -1,4 +1,4 @@
-"""The programs that benches run, and the mural that they measure."""
+"""The programs that benches run, and the `mural` binary that they measure."""
 
 import os
 import re
@@ -9,7 +9,7 @@ import sys
 
 
 def find_mural(wish, top, tool):
-    """Absolute path of the mural to measure; ends the tool with one line when there is none."""
+    """Returns the absolute path of the `mural` to measure. Ends the tool with one line if there is none."""
     path = wish or os.path.join(top, "build", "release", "bin", "mural")
     if not os.path.isfile(path):
         path = shutil.which(wish or "mural")
@@ -34,14 +34,14 @@ def installed(command):
 
 
 def read_list(path):
-    """The commands of a file, one a line; "#" begins a comment."""
+    """Returns the commands of a file, one per line; "#" begins a comment."""
     with open(path, encoding="utf-8") as file:
         lines = [line.strip() for line in file]
     return [line for line in lines if line and not line.startswith("#")]
 
 
 def glmark_scenes():
-    """Names of the scenes of glmark2 that draw; none when it is not installed."""
+    """Returns the names of glmark2's scenes that draw; empty if glmark2 is not installed."""
     if not shutil.which("glmark2"):
         return []
     said = subprocess.run(["glmark2", "--list-scenes"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=60, check=False)

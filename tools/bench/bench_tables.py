@@ -1,4 +1,4 @@
-"""The bench's numbers as tables for people."""
+"""Prints the numbers of benches as tables."""
 
 import statistics
 
@@ -16,7 +16,7 @@ def _cpu_ms(report, role, column=0):
 
 
 def _slowest_node_ms(report, field):
-    """Per frame, of the node that needs most; None when the head does not say."""
+    """Returns the time per frame of the slowest node; None if the head does not report it."""
     values = [node[field] for node in report.get("nodes", []) if field in node]
     return _per_frame_ms(report, max(values)) if values else None
 
@@ -86,7 +86,7 @@ def show_calls(calls):
 
 
 def show_sweep(sweep):
-    """sweep: [(steps per frame, rows of measure_calls)]"""
+    """Prints a sweep: [(steps per frame, rows of measure_calls)]."""
     rows = []
     for index, call in enumerate(sweep[0][1]):
         rows.append([call["name"], "%.0f B" % call["bytes"]] + ["%+.1f" % calls[index]["overNs"] for _, calls in sweep])

@@ -1,4 +1,5 @@
-"""What receivers of two builds need in one group: both of a pair hear the same sender at the same time, so noise of the machine is no difference."""
+"""Compares the receivers of two builds in one group. Both receivers of a pair have the same sender at the same time,
+so noise of the machine affects both."""
 
 import statistics
 
@@ -12,7 +13,7 @@ LINK, RECEIVERS = "1gbit", 4
 
 
 def _run(bench, rig, programs, size_bytes, pace):
-    """CPU seconds per GB of each receiver; the sender is of the build that is measured."""
+    """Returns the CPU seconds per GB of each receiver. The sender is of the measured build."""
     group = bench.rsp.group(rig, RECEIVERS, ["--bytes", str(size_bytes), "--rate", "%dkbit" % round(pace * 1000)], checked=False, receiver_programs=programs)
     sent, received = group.end()
     check_whole(sent, received, size_bytes)
@@ -20,7 +21,7 @@ def _run(bench, rig, programs, size_bytes, pace):
 
 
 def builds(bench):
-    """Table "builds": receivers' CPU beside that of --against."""
+    """Prints the table "builds": the receivers' CPU time next to that of --against."""
     new, old = bench.rsp.mural, bench.against
     pace = PACE * mbit_of(LINK)
     size = size_for(bench.seconds, pace)

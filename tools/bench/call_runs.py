@@ -1,4 +1,4 @@
-"""Runs call_cost natively and through Mural, alternating: what small calls cost."""
+"""Runs call_cost natively and through Mural in alternation, to measure the cost of small calls."""
 
 import json
 import os
@@ -10,7 +10,7 @@ from mural_runs import Wall
 
 
 def find_call_cost(wish, mural, tool):
-    """The program; None, with one line, when it is not built or not wanted ("none")."""
+    """Returns the path of the program. None if it is not built (one line reports this) or not requested ("none")."""
     if wish == "none":
         return None
     path = wish or os.path.join(os.path.dirname(mural), "call_cost")
@@ -23,7 +23,8 @@ def find_call_cost(wish, mural, tool):
 
 
 def measure_calls(runs, call_cost, repeats, options, say):
-    """[{"name", "bytes", "nativeNs", "muralNs", "overNs", "copyNs"}], medians over the repeats; options of call_cost."""
+    """Returns [{"name", "bytes", "nativeNs", "muralNs", "overNs", "copyNs"}], medians over the repeats. Takes options
+    of call_cost."""
     collected = {"native": [], "1x1": []}
     for repeat in range(repeats):
         for text, into in collected.items():

@@ -1,5 +1,6 @@
-"""A corpus of public programs: a folder with corpus-run and apps.tsv. corpus-run starts one with what it needs (a display, a home, input),
-lets its clock stand still but for swaps, and ends it behind the last of the frames that are asked for."""
+"""A corpus of public programs: a folder with corpus-run and apps.tsv. corpus-run starts a program with its
+requirements (a display, a home folder, input). The program's clock advances only at swaps. corpus-run ends the
+program after the last requested frame."""
 
 import os
 
@@ -12,7 +13,8 @@ class Program:
         self.name, self.frames, self.command = columns[0], [int(frame) for frame in columns[3].split(",")], columns[7]
 
     def words(self, out, frames, prefix=""):
-        """The command that runs it and keeps these frames as pictures in out/NAME; prefix: a launcher."""
+        """Returns the command that runs the program and saves these frames as pictures in out/NAME; prefix: a
+        launcher."""
         words = [os.path.join(self.folder, "corpus-run"), "--set", self.which, "--apps", self.name, "--out", out, "--frames", ",".join(map(str, frames))]
         return words + (["--prefix", prefix] if prefix else [])
 
@@ -22,7 +24,7 @@ def is_there(folder):
 
 
 def programs(folder, which, names=None):
-    """Those of a set, such as "public"; only these names, if any are given."""
+    """Returns the programs of a set, such as "public"; only those in `names`, if given."""
     found = []
     with open(os.path.join(folder, "apps.tsv"), encoding="utf-8") as file:
         for line in file:

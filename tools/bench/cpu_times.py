@@ -1,4 +1,4 @@
-"""CPU time of every process of a run, sampled from /proc while it goes on."""
+"""CPU time of every process of a run, sampled from /proc during the run."""
 
 import os
 import threading
@@ -16,12 +16,12 @@ def _read(path):
 
 
 def _fields(stat):
-    """The fields of a stat file behind the process's name, which may hold anything."""
+    """Returns the fields of a stat file after the process's name, which may contain any character."""
     return stat[stat.rfind(b")") + 2:].split()
 
 
 def descendants(root):
-    """pid → fields of its stat file, of root's descendants."""
+    """Returns pid → fields of the stat file, for the descendants of root."""
     children, stats = {}, {}
     for entry in os.listdir("/proc"):
         if not entry.isdigit():
@@ -39,7 +39,8 @@ def descendants(root):
 
 
 class CpuTimes:
-    """`with CpuTimes(pid, role_of):` role_of(command line words) names what a descendant of pid is."""
+    """`with CpuTimes(pid, role_of):` samples the descendants of pid. role_of(command line words) returns the role of
+    one."""
 
     INTERVAL_SECONDS = 0.05
 
@@ -78,9 +79,9 @@ class CpuTimes:
             self.samples.setdefault(pid, []).append((moment, seconds, first))
 
     def of_last(self, window_seconds, frame_role):
-        """role → (seconds, first threads' seconds) in the window that ends with frame_role's last sample.
+        """Returns role → (seconds, first threads' seconds) in the window that ends with frame_role's last sample.
 
-        That is how the time from the first frame to the last is found: programs end with their last frame.
+        Programs end with their last frame, so this window is the time from the first frame to the last.
         """
         ends = [rows[-1][0] for pid, rows in self.samples.items() if self.roles.get(pid) == frame_role]
         if not ends:
@@ -98,7 +99,7 @@ class CpuTimes:
 
 
 def _at(rows, moment, column):
-    """The value at a moment, between two samples by proportion."""
+    """Returns the value at a moment, interpolated between two samples."""
     if moment <= rows[0][0]:
         return rows[0][column]
     for (t0, *a), (t1, *b) in zip(rows, rows[1:]):

@@ -1,4 +1,5 @@
-"""How soon: acknowledged words, frames beside a background, joins, and what a frozen, killed or cut receiver does to the others."""
+"""Measures delays: acknowledged messages, frames during a background stream, joins, and the effect of a frozen,
+killed or disconnected receiver on the others."""
 
 import signal
 import statistics
@@ -29,7 +30,7 @@ def _cell(values, form="%.0f"):
 
 
 def _attempt(bench, what, run, essential=True):
-    """What run() returns, or None, told."""
+    """Returns the result of run(). After a failure reports it and returns None."""
     try:
         return run()
     except StreamFailed as failure:
@@ -41,7 +42,7 @@ def _attempt(bench, what, run, essential=True):
 
 
 def latency(bench):
-    """64 bytes until all are known to have them."""
+    """Measures the time until the sender knows that all receivers have 64 bytes."""
     receivers, rows, numbers = bench.many, [], {}
     timed = [peer for peer in bench.peers if hasattr(peer, "messages")]
     with Rig(bench.netlab, receivers + 1, 1500, LINK) as rig:
@@ -76,7 +77,7 @@ def latency(bench):
 
 
 def frame(bench):
-    """Frames of 10 kB alone, and while another group fills half of the link."""
+    """Measures frames of 10 kB, alone and while another group uses half of the link."""
     receivers, rows, numbers = 4, [], {}
     with Rig(bench.netlab, receivers + 1, 1500, LINK) as rig:
         for background in ("none", "100 Mbit/s"):
@@ -107,7 +108,7 @@ def _frames(bench, rig, receivers, busy):
 
 
 def wait_until_all_flow(group):
-    """A second: joining takes a fraction of it."""
+    """Waits one second; joining takes a fraction of that. Raises an error if a process ends meanwhile."""
     until = time.monotonic() + FAULT_AT_SECONDS
     while time.monotonic() < until:
         for program in [group.sender] + group.receivers:
@@ -117,7 +118,7 @@ def wait_until_all_flow(group):
 
 
 def join(bench):
-    """16 that join at once."""
+    """Measures 16 receivers that join at once."""
     receivers, times = 16, []
     with Rig(bench.netlab, receivers + 1, 1500, LINK) as rig:
         rig.loss("5%")
@@ -136,20 +137,21 @@ def join(bench):
 
 
 class Flow:
-    """The bytes of a receiver by time, from its report."""
+    """The bytes of a receiver over time, from its report."""
 
     def __init__(self, told):
         line = told["timeline"]
         self.began, self.step, self.bytes = line["beganAt"], line["stepSeconds"], line["bytes"]
 
     def rate(self, begin, end):
-        """Bytes per second between two moments."""
+        """Returns bytes per second between two moments."""
         first, last = (round((moment - self.began) / self.step) for moment in (begin, end))
         first, last = max(0, first), min(last, len(self.bytes))
         return sum(self.bytes[first:last]) / ((last - first) * self.step) if last > first else 0.0
 
     def resumed_after(self, moment):
-        """Seconds from a moment until bytes come again after the longest pause that begins soon after it; 0: there is none."""
+        """Returns the seconds from a moment until bytes arrive again after the longest pause that begins soon after
+        it; 0: no pause."""
         first = max(0, int((moment - self.began) / self.step))
         last = first + int(BEGINS_SECONDS / self.step)
         longest, resumed, began = 1, 0.0, None
@@ -163,7 +165,7 @@ class Flow:
         return resumed
 
     def full_after(self, moment, wanted, within=2.0):
-        """Seconds from a moment until the rate of the time that follows is `wanted`; None: never."""
+        """Returns the seconds from a moment until the following rate reaches `wanted`; None: never."""
         at = moment
         while at < moment + within:
             if self.rate(at, at + AVERAGED_SECONDS) >= wanted:
@@ -173,7 +175,8 @@ class Flow:
 
 
 def _faulty_run(bench, rig, receivers, kind):
-    """Seconds of interest of the healthy receiver that took longest, and what the faulty one says."""
+    """Returns the measured seconds of the slowest healthy receiver. For kind "frozen" this is the time until the full
+    rate, otherwise until bytes arrive again."""
     faulty = receivers
     group = bench.rsp.group(rig, receivers, ["--bytes", str(size_for(bench.fault_seconds, PACE * LINK_MBIT)), "--rate", "%dkbit" % (PACE * LINK_MBIT * 1000)])
     wait_until_all_flow(group)
@@ -219,7 +222,7 @@ FAULTS = {"frozen": ("frozen 1 s, full rate after it wakes", 0.100), "killed": (
 
 
 def faults(bench):
-    """One bad receiver of four."""
+    """Measures one faulty receiver of four."""
     receivers, rows, numbers = 4, [], {}
     for kind, (what, goal) in FAULTS.items():
         times = []

@@ -16,7 +16,7 @@ class BuildFailed(Exception):
 
 
 def sources_of(folder):
-    """The folder that holds src/ice-t, in or below `folder` (as in ParaView's source package)."""
+    """Returns the folder that contains src/ice-t, in or below `folder` (as in ParaView's source package)."""
     for root, names, _ in os.walk(folder):
         if os.path.isfile(os.path.join(root, "src", "ice-t", "image.c")):
             return root
@@ -25,7 +25,7 @@ def sources_of(folder):
 
 
 def configured(template):
-    """The text of IceTConfig.h.in, with VALUES filled in as CMake does."""
+    """Returns the text of IceTConfig.h.in with VALUES substituted as by CMake."""
     def define(match):
         return "#define %s %s" % (match.group(1), VALUES[match.group(1)]) if match.group(1) in VALUES else "/* no %s */" % match.group(1)
     text = re.sub(r"^#cmakedefine[ \t]+(\w+).*$", define, template, flags=re.M)
@@ -33,7 +33,7 @@ def configured(template):
 
 
 def build(folder, bench_folder, into):
-    """Returns the path of the shared library, made in the folder `into`."""
+    """Builds the shared library in the folder `into`. Returns its path."""
     icet = sources_of(os.path.abspath(folder))
     with open(os.path.join(icet, "src", "include", "IceTConfig.h.in"), encoding="utf-8") as file:
         config = configured(file.read())

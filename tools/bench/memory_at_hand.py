@@ -1,6 +1,7 @@
-"""Memory that the system has at hand before something is timed.
+"""Requests memory from the system before a measurement.
 
-Where a hypervisor takes free memory away, the first use of each MiB takes milliseconds until it is back: that is nobody's work.
+A hypervisor may have reclaimed free memory. The first use of each MiB then takes milliseconds, which must not count
+in the measurement.
 """
 
 import mmap
@@ -9,7 +10,7 @@ PAGE_BYTES = 4096
 
 
 def have(mib):
-    """Uses so many MiB once and frees them; no more than half of what is available."""
+    """Uses that number of MiB once and frees it; at most half of the available memory."""
     size = min(mib << 20, available_bytes() // 2) // PAGE_BYTES * PAGE_BYTES
     if size == 0:
         return

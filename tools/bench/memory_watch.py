@@ -1,4 +1,4 @@
-"""Memory of the processes of a `mural run`, at chosen frames of its program."""
+"""Memory of the processes of a `mural run`, at selected frames of its program."""
 
 import glob
 import json
@@ -19,7 +19,8 @@ LOOK_SECONDS = 0.01
 
 
 def memory_of(pid):
-    """{"Rss", "Pss", "Private"} in MiB; private is what no other process has. None: the process is gone."""
+    """Returns {"Rss", "Pss", "Private"} in MiB; private memory is shared with no other process. None: the process has
+    ended."""
     sums = {}
     try:
         with open("/proc/%d/smaps_rollup" % pid, encoding="ascii") as file:
@@ -35,7 +36,8 @@ def memory_of(pid):
 
 
 def _session_state(run_pid):
-    """What the head of this `mural run` says (nodes/head/session_status.hpp); None: it does not, yet."""
+    """Returns the state that the head of this `mural run` reports (nodes/head/session_status.hpp); None: no report
+    yet."""
     with open("/proc/net/unix", encoding="ascii", errors="replace") as file:
         names = {line.split("@", 1)[1].strip() for line in file if "@mural-%d-" % run_pid in line}
     for name in names:
@@ -54,7 +56,7 @@ def _session_state(run_pid):
 
 
 def _native_frames(run_pid):
-    """The count that `mural run --native` reads, too."""
+    """Returns the frame count that `mural run --native` reads as well."""
     for link in glob.glob("/proc/%d/fd/*" % run_pid):
         try:
             if "mural-native-report" in os.readlink(link):
@@ -67,7 +69,7 @@ def _native_frames(run_pid):
 
 
 class MemoryWatch:
-    """`run(…)` gives {mark: {role: [memory of each process]}}; roles: app, head, node."""
+    """`run(…)` returns {mark: {role: [memory of each process]}}; roles: app, head, node."""
 
     def __init__(self, mural, environment, limit_seconds=900):
         self.mural = mural
@@ -101,7 +103,7 @@ class MemoryWatch:
 
     @staticmethod
     def _frames(run_pid, native):
-        """Frames, and the pids of the programs that draw (None: not known)."""
+        """Returns the number of frames, and the pids of the programs that draw (None: unknown)."""
         if native:
             return _native_frames(run_pid), None
         state = _session_state(run_pid)

@@ -1,4 +1,5 @@
-"""Other ways to bring the same bytes to many: what RSP is measured against. Built from netlab's harnesses, or Debian's programs."""
+"""Other multicast protocols with which RSP is compared. They are built from netlab's harnesses, or are Debian's
+programs."""
 
 import os
 import re
@@ -27,10 +28,10 @@ def finish(name, programs, seconds=LIMIT_SECONDS):
 
 
 class Harness:
-    """A peer that netlab has a program for, in C++."""
+    """A peer with a C++ program in netlab."""
 
     def __init__(self, folder, name, source, flags=()):
-        """Builds it; self.missing says what stands in the way."""
+        """Builds the program. self.missing has the reason if that fails."""
         self.path = os.path.join(folder, name)
         self.missing = ""
         command = ["g++", "-O2", "-std=c++17", "-w", "-o", self.path, source] + list(flags)
@@ -41,13 +42,13 @@ class Harness:
 
 
 class Raw(Harness):
-    """Multicast without any care: what the network and this machine can do."""
+    """Multicast without repairs: the limit of the network and this machine."""
 
     def __init__(self, netlab_folder, folder):
         super().__init__(folder, "mcraw", os.path.join(netlab_folder, "mcraw.cpp"))
 
     def stream(self, rig, receivers, seconds, wire_mbit, sending="gso", batch=1, bare_receiver=None):
-        """bare_receiver: the program that receives instead, and only empties its socket now and then."""
+        """bare_receiver: replaces the receiving program, and only empties its socket from time to time."""
         payload = rig.mtu - UDP_HEAD_BYTES
         rate = wire_mbit * payload / (payload + WIRE_BYTES)
         common = ["239.1.1.1", "6000"]
@@ -64,14 +65,14 @@ class Raw(Harness):
 
 
 class OwnProgram:
-    """A peer whose harness sends `bytes=` and tells `gbit=` and `cpu_s_per_GB=` at each end."""
+    """A peer whose harness takes `bytes=` and reports `gbit=` and `cpu_s_per_GB=` at each end."""
 
     may_miss_bytes = 0
     joins = True # receivers need time to join the group
     counts_late = False # a receiver's time starts at its first byte, so none is faster than its sender
 
     def __init__(self, name, harness, package, share=lambda receivers: 1.0):
-        """share: of the bytes of others, so that its runs last about as long."""
+        """share: fraction of the other protocols' bytes, so that the runs have about the same duration."""
         self.name, self.harness, self.package, self.share = name, harness, package, share
 
     @property
@@ -122,7 +123,7 @@ class Norm(OwnProgram):
 
 
 class Program:
-    """One that is there already, where a Harness is built."""
+    """An existing program, in place of a built Harness."""
 
     def __init__(self, path):
         self.path = os.path.abspath(path)
@@ -130,7 +131,7 @@ class Program:
 
 
 class OtherProgram(OwnProgram):
-    """A peer of the user's: its program is told all there is to tell, in the words of netlab's harnesses."""
+    """A peer that the user provides. Its program receives all parameters in the syntax of netlab's harnesses."""
 
     def __init__(self, name, path):
         super().__init__(name, Program(path), "it where --peer says")
@@ -167,7 +168,7 @@ class Tcp(OwnProgram):
 
 
 class Files:
-    """What both file senders need: a file of the size, and where to put copies."""
+    """Common parts of the file senders: a file of the requested size, and a folder for copies."""
 
     def __init__(self, folder, name, program, package):
         self.name, self.package = name, package
@@ -236,7 +237,7 @@ class Udpcast(Files):
 
 
 def all_peers(netlab_folder, folder, others=()):
-    """Those whose `missing` is empty can run. others: (name, path) of programs that are there already."""
+    """Returns all peers; those with an empty `missing` can run. others: (name, path) of existing programs."""
     sources = os.path.join(netlab_folder, "peers")
 
     def harness(name, *flags):

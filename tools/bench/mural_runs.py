@@ -1,4 +1,4 @@
-"""One `mural run` as the bench does it: its report, and the CPU time of its processes per frame."""
+"""Runs `mural run` for a bench: returns its report, and the CPU time of its processes per frame."""
 
 import json
 import os
@@ -16,7 +16,7 @@ class RunFailed(Exception):
 
 
 class Wall:
-    """How a run shows its frames: "native", "2x2" (into no window), "2x2@app" (into the program's)."""
+    """The display of a run: "native", "2x2" (without a window), "2x2@app" (in the program's window)."""
 
     def __init__(self, text):
         self.text = text
@@ -26,7 +26,7 @@ class Wall:
 
 
 def role_of(words):
-    """What a process of a run is, by its command line."""
+    """Returns the role of a process of a run, from its command line."""
     name = os.path.basename(words[0])
     if len(words) > 1 and name == "mural" and words[1] in ("head", "node"):
         return words[1]
@@ -41,7 +41,8 @@ class MuralRuns:
         self.environment.update({"DISPLAY": display, "vblank_mode": "0", "__GL_SYNC_TO_VBLANK": "0"})
 
     def run(self, wall, program, frames=None, options=()):
-        """The report, with "cpu": role → (seconds, first thread's seconds) between first and last frame."""
+        """Returns the report, with "cpu": role → (seconds, first thread's seconds) between the first and the last
+        frame."""
         with tempfile.TemporaryDirectory(prefix="mural-bench.") as folder:
             report_file = os.path.join(folder, "report.json")
             command = [self.mural, "run", "--report", report_file, "--quiet", *wall.options, *options]

@@ -1,4 +1,4 @@
-"""A cluster of network namespaces on this machine, made by the program netlab, and programs that run on its hosts."""
+"""A cluster of network namespaces on this machine, created by the program netlab, and programs on its hosts."""
 
 import os
 import re
@@ -23,14 +23,14 @@ class RigFailed(Exception):
 
 
 class Finished:
-    """A program that ended: what it said, and the CPU seconds that it needed."""
+    """An ended program: its output, and the CPU seconds that it used."""
 
     def __init__(self, status, said, wrong, cpu_seconds):
         self.status, self.said, self.wrong, self.cpu_seconds = status, said, wrong, cpu_seconds
 
 
 class Program:
-    """One that runs on a host. Its output goes into files: nobody has to read while it runs."""
+    """A running program on a host. Its output goes into files, so it never waits for a reader."""
 
     def __init__(self, words):
         self.words = words
@@ -44,7 +44,7 @@ class Program:
         return os.pread(self._err.fileno(), size, 0).decode(errors="replace")
 
     def poll(self):
-        """Finished, or None while it runs."""
+        """Returns Finished, or None while the program runs."""
         if self.finished is None:
             pid, status, usage = os.wait4(self.pid, os.WNOHANG)
             if pid:
@@ -58,7 +58,7 @@ class Program:
         return self.finished
 
     def wait(self, seconds):
-        """Finished, or None when it still runs after so long."""
+        """Returns Finished, or None if the program still runs after that time."""
         until = time.monotonic() + seconds
         while self.poll() is None and time.monotonic() < until:
             time.sleep(0.005)
@@ -69,7 +69,7 @@ class Program:
             os.kill(self.pid, number)
 
     def end(self):
-        """Ends it for good."""
+        """Ends the program, at last with SIGKILL."""
         self.signal(SIGCONT) # a stopped process can't end
         self.signal(SIGTERM)
         if not self.wait(2):
@@ -79,7 +79,8 @@ class Program:
 
 
 def find_netlab(folder, tool):
-    """Absolute path of the program netlab; ends the tool, as skipped, with one line when it can't be used."""
+    """Returns the absolute path of the program netlab. If netlab is not usable, prints one line and ends the tool as
+    skipped."""
     path = os.path.join(folder, "netlab") if folder else ""
     if not os.path.isfile(path):
         _skip(tool, "there is no netlab %s; tell its folder by --netlab DIR or MURAL_NETLAB" % ("at " + path if path else "yet"))
@@ -96,7 +97,8 @@ def _skip(tool, why):
 
 
 def go_inside(tool):
-    """Runs this program again in network and mount namespaces of its own: nothing of it is seen outside, all of it ends with it."""
+    """Restarts this program in its own network and mount namespaces. Everything in them is invisible outside and ends
+    with the program."""
     if os.environ.get(INSIDE) == "1":
         return
     unshare = ["unshare", "-nm"] if os.geteuid() == 0 else ["unshare", "-Urnm"]
@@ -139,7 +141,7 @@ class Rig:
             raise RigFailed("netlab %s: %s" % (" ".join(words), done.stderr.decode(errors="replace").strip()))
 
     def loss(self, share):
-        """Of all that comes to any host, independently: "5%"."""
+        """Sets the share of packets, such as "5%", that each host loses independently."""
         if share != self._loss:
             self._netlab(["loss", self.name, "all", share])
             self._loss = share
@@ -164,11 +166,11 @@ class Rig:
 
 
 def wait_all(programs, seconds):
-    """[Finished], None for one that did not end in time."""
+    """Returns [Finished], with None for a program that did not end in time."""
     until = time.monotonic() + seconds
     return [program.wait(max(0.0, until - time.monotonic())) for program in programs]
 
 
 def numbers_of(text):
-    """"recv bytes=5 gbit=0.1" → {"bytes": 5.0, "gbit": 0.1}"""
+    """Parses "recv bytes=5 gbit=0.1" into {"bytes": 5.0, "gbit": 0.1}."""
     return {name: float(value) for name, value in re.findall(r"(\w+)=([0-9.eE+-]+)", text)}

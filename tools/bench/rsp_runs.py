@@ -1,4 +1,4 @@
-"""Runs of `mural netperf` on a rig."""
+"""Runs of `mural netperf` on a rig of network namespaces."""
 
 import json
 import os
@@ -13,11 +13,11 @@ KEPT_SECONDS = 40 # longest duration of a run
 
 
 class RspGroup:
-    """A sender on host 0 and receivers on others."""
+    """A sender on host 0 and receivers on the other hosts."""
 
     def __init__(self, rig, mural, secret, receivers, options, seal="none", place=0, checked=True, receiver_programs=()):
-        """place: groups of another number run beside this one. checked: every byte is compared, which is CPU time that is not the transport's.
-        receiver_programs: another mural for each receiver."""
+        """place: groups of different numbers run at the same time. checked: every byte is compared, which adds CPU
+        time that the transport does not use. receiver_programs: another `mural` for each receiver."""
         self.rig = rig
         ends = [] if checked else ["--unchecked"]
         network = ["--json", "--interface", "eth0", "--secret-file", secret, "--within", str(KEPT_SECONDS),
@@ -37,7 +37,8 @@ class RspGroup:
             time.sleep(0.005)
 
     def end(self, without=()):
-        """(sender's report, [receivers' reports]) when all have ended well; `without`: hosts that need not, None in the list."""
+        """Returns (sender's report, [receivers' reports]) after all have ended without error. `without`: hosts that
+        need not end; None in the list."""
         told = []
         hosts = [host for host in range(len(self.receivers) + 1) if host not in without]
         all_of_it = [self.sender] + self.receivers
@@ -76,7 +77,7 @@ class Rsp:
         return StreamResult(min(r["mbit"] for r in received), sent["cpuSecondsPerGB"], cpu, sent["parity"] + sent["resent"], sent["datagrams"])
 
     def messages(self, rig, receivers, message_bytes, count, wire_mbit, place=0):
-        """Latencies in us until all have a message: {"p50", "p99", ...}"""
+        """Returns the latencies in us until all receivers have a message: {"p50", "p99", ...}."""
         options = ["--message", str(message_bytes), "--count", str(count), "--rate", "%dkbit" % round(wire_mbit * 1000)]
         sent, received = self.group(rig, receivers, options, place=place).end()
         check_whole(sent, received, sent["bytes"])

@@ -1,14 +1,15 @@
-"""What one run of one protocol came to."""
+"""The result of one run of one protocol."""
 
 import statistics
 
 
 class StreamFailed(Exception):
-    """A protocol that did not do its job in a run; the text says how."""
+    """A run in which a protocol failed; the text has the reason."""
 
 
 class StreamResult:
-    """mbit: of the payload at the slowest receiver. CPU in seconds per GB of payload. repairs: datagrams beside the first sendings."""
+    """mbit: payload rate at the slowest receiver. CPU in seconds per GB of payload. repairs: datagrams in addition to
+    the first transmissions."""
 
     def __init__(self, mbit, sender_cpu=None, receiver_cpu=None, repairs=None, datagrams=None):
         self.mbit, self.sender_cpu, self.receiver_cpu = mbit, sender_cpu, receiver_cpu
@@ -23,7 +24,7 @@ class Cell:
         self.failures = []
 
     def add(self, run):
-        """Calls run() and keeps what comes of it."""
+        """Calls run() and stores its result or its failure."""
         try:
             self.results.append(run())
         except StreamFailed as failure:
@@ -45,7 +46,7 @@ class Cell:
         return statistics.median(values) if values else None
 
     def ratio_to(self, other, field="mbit"):
-        """Median of the rounds' ratios: both of a round ran one after the other."""
+        """Returns the median of the rounds' ratios. Both runs of a round followed each other."""
         pairs = [(getattr(a, field), getattr(b, field)) for a, b in zip(self.results, other.results) if a is not None and b is not None]
         ratios = [a / b for a, b in pairs if a is not None and b]
         return statistics.median(ratios) if ratios else None

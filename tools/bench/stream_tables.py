@@ -1,4 +1,4 @@
-"""How fast, at which losses, with how many repairs and at what CPU: RSP, raw multicast and the peers."""
+"""Measures RSP, raw multicast and the peers: rates, losses, repairs and CPU time."""
 
 from bench_tables import table
 from multicast_peers import UDP_HEAD_BYTES, WIRE_BYTES
@@ -10,7 +10,7 @@ LOSS_GOALS = {"0.1%": 0.97, "1%": 0.93, "5%": 0.80}
 
 
 def size_for(seconds, wire_mbit, mtu=1500):
-    """Bytes of payload that take about so long."""
+    """Returns the bytes of payload that take about that time."""
     payload = mtu - UDP_HEAD_BYTES
     return int(seconds * wire_mbit * 125e3 * payload / (payload + WIRE_BYTES))
 
@@ -25,7 +25,8 @@ def mbit_of(rate):
 
 
 def fill(bench, cells, runs, what, rounds=None):
-    """cells[name].add(runs[name]) by turns, as many rounds as are wanted. Who only fails is given up: it takes long."""
+    """Calls cells[name].add(runs[name]) in alternation, for the requested number of rounds. Protocols that always
+    fail are skipped, because failures take long."""
     rounds = bench.rounds if rounds is None else rounds
     for index in range(rounds):
         for name, run in runs.items():
@@ -37,7 +38,8 @@ def fill(bench, cells, runs, what, rounds=None):
 
 
 def goodput(bench):
-    """Rates without loss, of raw multicast's, which looks at no byte that came: neither do these runs, those with losses at all."""
+    """Measures rates without loss, relative to raw multicast. Raw multicast does not check received bytes, so RSP
+    does not check them in these runs either. Runs with losses check all bytes."""
     rows, numbers = [], []
     for link in bench.links:
         for mtu in bench.mtus:
@@ -67,7 +69,8 @@ def _stream_runs(bench, rig, receivers, size_bytes, pace):
 
 
 def loss(bench):
-    """Rates at independent losses, and the repairs that they cost, with parity and by plain sending again."""
+    """Measures rates with independent losses, and the repairs that they cause, with parity and with plain
+    retransmission."""
     link, receivers, losses = "200mbit", bench.many, bench.losses
     pace = PACE * mbit_of(link)
     size = size_for(bench.loss_seconds, pace)
@@ -105,7 +108,7 @@ def _show_loss(bench, cells, names, losses):
 
 
 def unshaped(bench):
-    """As fast as this machine can."""
+    """Measures the maximum rate of this machine, without a limit of the links."""
     rows, numbers = [], []
     for receivers in (1, 4):
         cells = {name: Cell() for name in ["raw", "rsp"] + [peer.name for peer in bench.peers]}
@@ -126,7 +129,8 @@ def unshaped(bench):
 
 
 def cpu(bench):
-    """CPU per GB at 1 Gbit/s; the sender's holds the switch and the receivers' network input: only ratios tell."""
+    """Measures the CPU time per GB at 1 Gbit/s. The sender's includes the switch and the receivers' network input, so
+    only ratios are meaningful."""
     link, receivers = "1gbit", bench.cpu_receivers
     pace = PACE * mbit_of(link)
     size = size_for(bench.cpu_seconds, pace)

@@ -1,4 +1,5 @@
-// Output of `mural run` to the user, on standard error: messages, one line of progress, and the final report.
+// Prints the output of `mural run` for the user on standard error: messages, one line of progress, and the final
+// report.
 #pragma once
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// `mural doctor`: runs all checks of this machine and prints them.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

@@ -41,7 +41,7 @@ Isolated inChild(const std::function<Isolated()>& work, int64_t limitMs) {
     const pid_t pid = fork();
     if (pid == 0) {
         const int silent = open("/dev/null", O_WRONLY | O_CLOEXEC);
-        if (silent >= 0) dup2(silent, STDERR_FILENO); // drivers print to standard error
+        if (silent >= 0) dup2(silent, STDERR_FILENO); // hides messages that drivers print to standard error
         const Isolated result = work();
         const std::string bytes = (result.ok ? "+" : "-") + result.text.substr(0, 4000);
         [[maybe_unused]] const ssize_t n = write(ends[1], bytes.data(), bytes.size());

@@ -30,7 +30,7 @@ HeadControl::start(const std::vector<std::string>& command, const launch::Enviro
     request.environment = environment.entries();
     request.keptFds = {ends[1]};
     request.outputFd = STDERR_FILENO; // standard output belongs to the program
-    request.ownSession = true; // Ctrl-C reaches the program; the head ends after it in order
+    request.ownSession = true; // Ctrl-C reaches the program only; the head ends after it, in order
     auto process = launch::ChildProcess::start(request);
     close(ends[1]);
     if (!process) {
@@ -43,7 +43,7 @@ HeadControl::start(const std::vector<std::string>& command, const launch::Enviro
 HeadControl::~HeadControl() {
     close(fd_); // tells the head to finish
     if (!process_.waitUntil(Deadline::inMs(kEndMs))) process_.end(Deadline::inMs(kEndMs));
-    process_.signalGroup(SIGKILL); // nodes that a killed head could not end
+    process_.signalGroup(SIGKILL); // ends nodes that a killed head left behind
 }
 
 void HeadControl::send(const std::string& line) {

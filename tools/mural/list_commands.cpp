@@ -1,3 +1,4 @@
+// `mural list-commands`: prints the GL commands that the stream supports and the others with reasons.
 #include <fmt/format.h>
 
 #include "streamcodec/command_table.hpp"

@@ -1,4 +1,4 @@
-// mural: one binary with many subcommands. This file parses the command line only.
+// The `mural` binary with all its subcommands. This file parses the command line only.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -308,7 +308,8 @@ private:
     std::function<int()> action_;
 };
 
-// The output of a command is its result: if it is lost, the command has failed.
+// Checks that standard output was written. The output of a command is its result, so a command whose output is lost has
+// failed.
 int afterOutput(int status, std::string why) {
     errno = 0;
     std::cout.flush();

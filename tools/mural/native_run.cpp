@@ -14,7 +14,7 @@ namespace mural::cli {
 
 namespace {
 
-// Descendants may outlive the program; they are waited for while they swap.
+// Descendants may outlive the program. The run waits for them while they swap.
 constexpr int64_t kNoPictureMs = 5'000;
 
 // The file that the capture library rewrites: in memory, named through /proc.

@@ -26,7 +26,7 @@ using rsp::Group;
 
 constexpr size_t kPieceBytes = 256 * 1024;
 constexpr size_t kPieces = 128; // pieces of a stream per read
-constexpr size_t kWarmUp = 20; // messages that do not count
+constexpr size_t kWarmUp = 20; // messages before the measurement
 
 double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; }
 

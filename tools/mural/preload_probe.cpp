@@ -1,3 +1,4 @@
+// Checks in a child process of `mural doctor` that the capture library is preloaded (commands.hpp).
 #include <dlfcn.h>
 #include <string>
 
@@ -6,7 +7,7 @@
 
 namespace mural::cli {
 
-// GLVND's entry into a vendor library, which no other loaded library exports.
+// Searches GLVND's entry into a vendor library, which no other loaded library exports.
 int preloadProbeCommand() {
     void* found = dlsym(RTLD_DEFAULT, "__glx_Main");
     Dl_info info{};

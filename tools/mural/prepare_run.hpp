@@ -1,4 +1,4 @@
-// Preparations of runs and replays before a session starts.
+// Prepares runs and replays before a session starts: names, displays, and checks of outputs.
 #pragma once
 
 #include <string>

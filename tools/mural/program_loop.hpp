@@ -1,5 +1,5 @@
-// One iteration of waiting, for captured and native runs: signals, windows of the private display, and one more
-// descriptor.
+// One iteration of the loop that waits for a program, captured or native: handles signals, windows of the private
+// display, and one more descriptor.
 #pragma once
 
 #include "nodes/launch/program_supervisor.hpp"

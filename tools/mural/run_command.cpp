@@ -1,4 +1,4 @@
-// Finds out all that can be wrong before anything is started, then runs the session.
+// `mural run`: checks everything that can fail before it starts a process, then runs the session.
 #include <cstdio>
 
 #include "nodes/launch/gl_libraries.hpp"

@@ -19,7 +19,7 @@ constexpr int64_t kReadyLocalMs = 60'000;
 constexpr int64_t kReadyRemoteMs = 120'000;
 // A launcher may start the program and end. Its children have this time until their first context…
 constexpr int64_t kFirstContextMs = 30'000;
-// …and the remaining processes have this time after the last context.
+// …and its remaining processes have this time after the last context has ended.
 constexpr int64_t kAfterLastContextMs = 1'000;
 constexpr int64_t kWaitNoticeMs = 3'000;
 // A program without a context for this time may draw without the capture library. Its libraries are then examined.

@@ -1,4 +1,4 @@
-// A program and its session, from start to end: the head, the program, and the events of each that concern the other.
+// Runs a program and its session from start to end. Passes events of the head to the program and vice versa.
 #pragma once
 
 #include <memory>

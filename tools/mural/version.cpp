@@ -1,3 +1,4 @@
+// `mural version`: the version of this build.
 #include <fmt/format.h>
 
 #include "tools/mural/commands.hpp"

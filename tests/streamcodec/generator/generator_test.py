@@ -41,7 +41,7 @@ def tiny(name):
 
 
 def generated(xml=tiny('gl.xml'), semantics=tiny('semantics.txt'), lock=tiny('opcodes.lock')):
-    """All files that come out, as one text."""
+    """Returns all generated files as one text."""
     with tempfile.TemporaryDirectory() as out:
         run = generate('--registry', xml, '--semantics', semantics, '--lock', lock, '--out', out)
         if run.returncode != 0:
@@ -82,7 +82,7 @@ class TinyRegistry(unittest.TestCase):
         self.assertEqual(sorted(lines[2:]), ['glColor3ubv', 'glGenTextures', 'glGetFloatv', 'glOddPointersX', 'glTexImage1D', 'glVertex2s'])
 
     def rejected(self, text):
-        """What the generator reports for these rules."""
+        """Returns the generator's error message for these rules."""
         with tempfile.TemporaryDirectory() as folder:
             rules = os.path.join(folder, 'rules')
             write(rules, text)
@@ -134,7 +134,7 @@ class RealRegistry(unittest.TestCase):
         self.assertLess(64 + len(self.lock), 0xffff)
 
     def test_lock_only_grew(self):
-        """What git has of the lock is the beginning of what stands here."""
+        """The committed lock must be the beginning of the current one."""
         run = subprocess.run(['git', '-C', ROOT, 'show', 'HEAD:streamcodec/registry/opcodes.lock'], capture_output=True, text=True)
         if run.returncode != 0:
             self.skipTest('no git history here')
@@ -142,7 +142,7 @@ class RealRegistry(unittest.TestCase):
         self.assertEqual(old, self.lock[:len(old)])
 
     def test_no_generated_wrapper_writes_to_client_memory(self):
-        """Names that the driver makes are the one exception: they travel after the driver's own call."""
+        """Names created by the driver are the only exception: they are encoded after the driver's own call."""
         wrong = [(c.name, p.name) for c in self.sent if c.option('app') != 'custom' for p in c.params
                  if p.pointers and not p.const and p.how != 'made']
         self.assertEqual([], wrong)
@@ -155,24 +155,24 @@ class RealRegistry(unittest.TestCase):
         self.assertEqual([], wrong)
 
     def test_arrays_of_names_are_as_long_as_they_are_read(self):
-        """replay_.names() reads `length` names: the size that is checked must be four bytes for each."""
+        """replay_.names() reads `length` names, so the checked size must be four bytes per name."""
         wrong = [(c.name, p.expr) for c in self.sent for p in c.params if p.how == 'array' and p.kind and p.length
                  and p.expr not in ('vn(%s,4)' % p.length, 'n4(%s,%s)' % (p.length, p.name))]
         self.assertEqual([], wrong)
 
     def test_core_commands_are_carried_or_explained(self):
-        """No command of a core version is left out by an accident of parsing."""
+        """No command of a core version is unsupported because of a parsing error."""
         vague = ('is not described', 'no rule explains', 'is unknown')
         wrong = [(c.name, c.reason) for c in self.canonical if c.feature and c.command_class == 'unsupported' and any(v in c.reason for v in vague)]
         self.assertEqual([], wrong)
 
     def test_draws_without_a_quiet_call_are_vertices(self):
-        """Without `quiet` the program's own context skips the command wherever it knows glBegin: right for vertices only."""
+        """Without `quiet` the program's own context skips the command in contexts with glBegin. Only vertices permit that."""
         wrong = [c.name for c in self.sent if c.command_class == 'draw' and c.option('app') != 'custom' and not c.option('quiet') and 'Vertex' not in c.traits]
         self.assertEqual([], wrong)
 
     def test_copies_out_of_framebuffers_gather_what_they_read(self):
-        """The imaging subset has no driver here, and is not gathered; glAccum and copies of pixels are written by hand."""
+        """No driver here has the imaging subset, so it is not gathered. glAccum and pixel copies have hand-written wrappers."""
         imaging = re.compile(r'glCopy(Color|Convolution)')
         wrong = [c.name for c in self.sent if ('ReadsFramebuffer' in c.traits) != bool(c.option('copies'))
                  and 'Pixels' not in c.traits and not imaging.match(c.name)]

@@ -22,7 +22,7 @@ def start(words):
 
 
 def start_pair(mural, secret, size, sender_options=(), receiver_options=(), rate="80mbit"):
-    """(sender, receiver), over the loopback."""
+    """Returns (sender, receiver) of a stream over the loopback."""
     common = ["--interface", "lo", "--group", "239.255.77.87:%d" % (20000 + os.getpid() % 20000), "--secret-file", secret,
               "--within", str(WAIT_SECONDS)]
     sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", rate, "--control", "127.0.0.1:0"] + common + list(sender_options))
@@ -34,7 +34,7 @@ def start_pair(mural, secret, size, sender_options=(), receiver_options=(), rate
 
 
 def go_on(receiver):
-    """Until it is in the middle of the stream."""
+    """Waits until the receiver is in the middle of the stream."""
     try:
         receiver.wait(timeout=1.5)
     except subprocess.TimeoutExpired:

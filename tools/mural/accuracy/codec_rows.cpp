@@ -1,3 +1,4 @@
+// Measures the losses and the costs of all picture codecs (measureCodecs of composition_rows.hpp).
 #include <fmt/format.h>
 
 #include "common/clock.hpp"

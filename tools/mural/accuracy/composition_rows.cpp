@@ -47,7 +47,7 @@ MeasuredError errorOfBytes(const Plane& wanted, const Plane& got) {
     return error;
 }
 
-// Composites parts in another order of arrival; the reference is a depth test in draw order.
+// Composites parts that arrive in another order than they are drawn. The reference is a depth test in draw order.
 AccuracyRow depthRow(PlaneFormat format, DepthFunction function, const char* what) {
     constexpr uint32_t kParts = 8;
     std::mt19937 random(1);

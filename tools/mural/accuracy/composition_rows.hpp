@@ -1,4 +1,4 @@
-// Compositing loops on synthetic pictures, compared pixel by pixel with their definitions; and the codecs.
+// Measures compositing loops on synthetic pictures against their definitions, pixel by pixel; and the codecs.
 #pragma once
 
 #include "nodes/output/picture.hpp"

@@ -1,5 +1,5 @@
-// Ctrl-C and other requests to end `mural bench accuracy`. Waiting code polls for them, so processes and folders are
-// cleaned up by their owners.
+// Handles Ctrl-C and other termination signals of `mural bench accuracy`. Waiting code polls for them, so the owners of
+// processes and folders clean up.
 #pragma once
 
 #include <array>

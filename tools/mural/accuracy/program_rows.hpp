@@ -1,4 +1,4 @@
-// Decompositions of a user's program: each frame is compared with the program's own context.
+// Measures decompositions of a user's program: each frame is compared with the program's own context.
 #pragma once
 
 #include "tools/mural/accuracy/accuracy_row.hpp"

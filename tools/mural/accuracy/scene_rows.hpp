@@ -1,4 +1,4 @@
-// Decompositions: compares the scenes drawn natively with every decomposition of Mural.
+// Measures decompositions of Mural's scenes: compares natively drawn scenes with every decomposition.
 #pragma once
 
 #include "tools/mural/accuracy/accuracy_row.hpp"

@@ -12,7 +12,8 @@ namespace {
 constexpr int kWidth = 1021, kHeight = 767, kColumns = 7, kRows = 5; // tiles that do not divide the size
 const Frustum kWhole{-0.83, 0.91, -0.47, 0.52, 0.1, 100};
 
-// A function on the near plane: waves that change by up to a sixth of full brightness per pixel, and edges.
+// A synthetic picture as a function of the position: waves that change by up to a sixth of full brightness per pixel,
+// and edges.
 template <class Real> double brightness(Real x, Real y) {
     const double wave = 0.5 + 0.5 * std::sin(static_cast<double>(x) * 420) * std::cos(static_cast<double>(y) * 310);
     return std::fmod(std::floor(static_cast<double>(x) * 9 + static_cast<double>(y) * 5) + 1000, 2) == 0 ? wave : 1 - wave;
@@ -56,7 +57,8 @@ template <class Real> AccuracyRow transformRow(const char* what, const Bound& bo
 } // namespace
 
 void measureTransforms(std::vector<AccuracyRow>& rows) {
-    // An edge at a pixel's centre may go either way, by its full brightness: in a few of 783 107 pixels.
+    // An edge at a pixel's centre may fall on either side. The error then is its full brightness, in a few of 783 107
+    // pixels.
     rows.push_back(transformRow<float>("35 tiles, by floats", {0.001, {}, 60.0}));
     rows.push_back(transformRow<double>("35 tiles, by doubles", {0.00001, {}, 80.0}));
 }

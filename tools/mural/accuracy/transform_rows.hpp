@@ -1,4 +1,4 @@
-// Pixel positions of parts in float and double: a synthetic picture in parts, compared with the whole in higher
+// Measures pixel positions of parts in float and double: compares a synthetic picture in parts with the whole in higher
 // precision.
 #pragma once
 

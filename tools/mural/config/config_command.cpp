@@ -23,7 +23,7 @@ namespace {
 
 using compound::LoadedConfig;
 
-constexpr size_t kMostWarnings = 10; // keeps errors visible: a file of another format causes a warning per word
+constexpr size_t kMostWarnings = 10; // keeps errors visible, because a file of another format causes a warning per word
 
 void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
     const auto isError = [](const config::Diagnostic& d) { return d.severity == config::Severity::Error; };

@@ -116,7 +116,7 @@ Result<void> HostSurvey::probeBack() {
 
 // Tries common sizes first, then bisects between the largest arrival and the smallest loss.
 Result<void> HostSurvey::findLargest(ProbeWay way) {
-    // Interfaces accept somewhat more than their MTU, but cannot send replies of that size.
+    // Interfaces accept packets somewhat larger than their MTU, but cannot send replies of that size.
     const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kLeastProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes : plan_.cardBytes;
     const size_t most = std::min(plan_.cardBytes, theirs);
     std::vector<size_t> sizes{kLeastProbeBytes};
@@ -138,7 +138,7 @@ Result<void> HostSurvey::findLargest(ProbeWay way) {
 
 Result<void> HostSurvey::stream() {
     rsp::GroupOptions options = plan_.group;
-    // The largest size that arrives: the rate of a session configured for this network.
+    // Streams at the largest size that arrives, which is the size of a session configured for this network.
     const size_t largest = m_.way(ProbeWay::Group).largestBytes;
     if (largest >= kLeastSessionBytes && largest < plan_.cardBytes) options.datagramBytes = largest;
     auto group = rsp::Group::host(options);
@@ -173,7 +173,7 @@ Result<void> HostSurvey::streamTo(rsp::Group& group) {
     if (auto r = group.waitArrived(Deadline::inMs(kArriveMs)); !r) return r;
     const double tookS = static_cast<double>(monotonicNowNs() - beganNs) * 1e-9;
     const rsp::GroupReport report = group.report();
-    // Without members a stream is discarded at any rate.
+    // A group without members discards its stream at any rate, so the measured rate would be meaningless.
     if (report.members.size() != 1) return Error{"the host's member was lost during the stream: it said nothing, or did not take it"};
     const auto& member = report.members.front();
     m_.multicast = member.info.multicast;

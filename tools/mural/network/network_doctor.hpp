@@ -1,4 +1,4 @@
-// `mural doctor --network`: measures, judges, prints.
+// Runs `mural doctor --network`: surveys the network, derives diagnoses, and prints them.
 #pragma once
 
 #include "tools/mural/network/network_arguments.hpp"

@@ -80,7 +80,7 @@ public:
             progress(hosts[i]);
             look(started_[i], survey_.hosts[i], deadline);
         }
-        // Switches forget groups after some time, so the first hosts are checked again.
+        // Checks the first hosts again, because switches forget multicast groups after some time.
         for (size_t i = 0; i + 1 < hosts.size(); ++i) {
             if (started_[i].survey && survey_.hosts[i].failure.empty()) note(started_[i].survey->lookAgain(), survey_.hosts[i]);
         }
@@ -125,8 +125,8 @@ private:
         return {};
     }
 
-    // Returns this machine's addresses of the group's family, that towards the host first: members answer datagrams to
-    // the address they connect to.
+    // Returns this machine's addresses of the group's family. The address towards the host is first, because members
+    // answer datagrams to the address that they connect to.
     [[nodiscard]] std::vector<std::string> addressesFor(const std::string& towards) const {
         std::vector<std::string> texts;
         if (!towards.empty()) texts.push_back(towards);

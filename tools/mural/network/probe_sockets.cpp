@@ -36,7 +36,7 @@ void ProbeSockets::send(ProbeWay way, size_t sizeBytes, const SocketAddress& sin
     std::vector<std::byte> datagram(sizeBytes);
     writeProbe({survey_, way, doctor_, static_cast<uint16_t>(sizeBytes)}, datagram);
     const SocketAddress& to = way == ProbeWay::Single ? single : way == ProbeWay::Group ? group_ : linkLocal_;
-    // Rejection of long datagrams shows in the arrivals and is no error.
+    // A rejected long datagram is not reported as an error; it is missing in the arrivals.
     if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kLeastProbeBytes) troubles_[static_cast<size_t>(way)] = r.error().message;
 }
 
