@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <pthread.h>
+#include <signal.h>
 #include <thread>
 
 #include "common/clock.hpp"
@@ -18,7 +19,12 @@ public:
     PauseWatch() {
         [[maybe_unused]] static const int once = pthread_atfork(nullptr, nullptr, endInChild);
         pauses::tick(monotonicNowNs());
+        // The thread inherits the mask: signals of the process go to the threads that handle them.
+        sigset_t all, before;
+        sigfillset(&all);
+        pthread_sigmask(SIG_SETMASK, &all, &before);
         thread_ = std::thread([this] { watch(); });
+        pthread_sigmask(SIG_SETMASK, &before, nullptr);
     }
     PauseWatch(const PauseWatch&) = delete;
     PauseWatch& operator=(const PauseWatch&) = delete;
