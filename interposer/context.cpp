@@ -227,7 +227,7 @@ bool hasOwnFront() {
 }
 
 void learnFront(Window& w) {
-    if (!w.announced && w.config.doubleBuffer && !w.config.isPbuffer && hasOwnFront()) w.config.doubleBuffer = wire::kOwnFront;
+    if (!w.announced && w.config.doubleBuffer && hasOwnFront()) w.config.doubleBuffer = wire::kOwnFront;
 }
 
 } // namespace

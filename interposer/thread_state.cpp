@@ -1,5 +1,6 @@
 #include "interposer/thread_state.hpp"
 
+#include <climits>
 #include <cstdlib>
 #include <pthread.h>
 
@@ -22,9 +23,13 @@ pthread_once_t endKeyOnce = PTHREAD_ONCE_INIT;
 void threadEnded(void* p) {
     auto* t = static_cast<ThreadState*>(p);
     if (t->stream == 0) return; // the forking thread, in the child
+    // Destructors of other keys may still call GL. The last round ends the thread.
+    if (++t->endRounds < PTHREAD_DESTRUCTOR_ITERATIONS && pthread_setspecific(endKey, t) == 0) return;
+    t->endRounds = 0;
     threadLeaves(*t);
     if (Session* s = Session::current()) s->publish(*t, true);
     t->cursor = t->limit = t->chunkEnd = nullptr;
+    tThread = &idleThread; // before another thread can take the entry over
     t->gone.store(true, std::memory_order_release);
 }
 

@@ -33,6 +33,7 @@ struct ThreadState {
     uint32_t publications = 0;      // number of publications so far
     KeptPixels pixels;
     ThreadState* next = nullptr;    // list of all threads of the process; entries are never removed
+    int endRounds = 0; // rounds of key destructors that this thread has run
     std::atomic<bool> gone{false};  // the thread has ended; another one may take over its entry
     void* scratch = nullptr;        // for re-packed images and strings; grows, never shrinks
     size_t scratchBytes = 0;

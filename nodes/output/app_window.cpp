@@ -115,8 +115,8 @@ std::string AppWindow::describe() const {
                        shared_ != nullptr ? "shared memory" : "through the connection");
 }
 
-// Sets windowGone_ if the window is not the program's, or no longer. That is an error only at the first check, because
-// programs end while their last pictures are in transfer.
+// Sets windowGone_ if the window does not exist or is not the program's. Only another owner at the first check is an
+// error, because programs end while their last pictures are in transfer.
 Result<void> AppWindow::confirmOwner(Deadline deadline) {
     if (!owner_)
         return {};
@@ -125,9 +125,9 @@ Result<void> AppWindow::confirmOwner(Deadline deadline) {
         isBlocked_ = deadline.passed() && !hasAnswered_;
         return owned.error();
     }
-    windowGone_ = !*owned;
+    windowGone_ = *owned != WindowOwnerCheck::Owned::Yes;
     const bool first = !std::exchange(ownerChecked_, true);
-    if (*owned || !first)
+    if (*owned != WindowOwnerCheck::Owned::No || !first)
         return {};
     return Error{fmt::format("the window {:#x} of the X display '{}' is not the program's, which may "
                              "have ended: its pictures are not painted there",

@@ -41,10 +41,10 @@ Result<void> WindowOwnerCheck::findProperty(XConnection& x, Deadline deadline) {
     return {};
 }
 
-Result<bool> WindowOwnerCheck::owns(XConnection& x, xcb_window_t window, Deadline deadline) {
+Result<WindowOwnerCheck::Owned> WindowOwnerCheck::owns(XConnection& x, xcb_window_t window, Deadline deadline) {
     if (property_ == XCB_ATOM_NONE) {
         if (auto found = findProperty(x, deadline); !found) return found.error();
-        if (property_ == XCB_ATOM_NONE) return false;
+        if (property_ == XCB_ATOM_NONE) return Owned::No;
     }
     const auto asked = xcb_get_property(x.get(), 0, window, property_, XCB_ATOM_CARDINAL, 0, kMaxWords);
     XOwned<xcb_get_property_reply_t> mark;
@@ -53,8 +53,10 @@ Result<bool> WindowOwnerCheck::owns(XConnection& x, xcb_window_t window, Deadlin
         xcb_discard_reply(x.get(), asked.sequence);
         return x.describe(answer);
     }
-    if (!mark || mark->format != 32) return false;
-    return names({static_cast<const uint32_t*>(xcb_get_property_value(mark.get())), mark->value_len}, owner_);
+    if (!mark) return Owned::WindowGone;
+    if (mark->format != 32) return Owned::No;
+    const bool named = names({static_cast<const uint32_t*>(xcb_get_property_value(mark.get())), mark->value_len}, owner_);
+    return named ? Owned::Yes : Owned::No;
 }
 
 Result<void> markWindow(XConnection& x, xcb_window_t window, const WindowOwner& owner, Deadline deadline) {

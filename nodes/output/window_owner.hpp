@@ -20,9 +20,9 @@ class WindowOwnerCheck {
 public:
     explicit WindowOwnerCheck(WindowOwner owner)
         : owner_(owner) {}
-    // Takes one round trip, the first time two. Returns false for a window that does not exist. Errors: the connection
-    // fails.
-    Result<bool> owns(XConnection& x, xcb_window_t window, Deadline deadline);
+    enum class Owned { Yes, No, WindowGone };
+    // Takes one round trip, the first time two. Errors: the connection fails.
+    Result<Owned> owns(XConnection& x, xcb_window_t window, Deadline deadline);
 
 private:
     Result<void> findProperty(XConnection& x, Deadline deadline);

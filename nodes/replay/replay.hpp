@@ -526,7 +526,7 @@ private:
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] bool resolves(const Window& w) const;
     const std::byte* readResolved(const PixelViewport& r, GLenum format, const ColourWords& words);
-    [[nodiscard]] PictureFormat pictureFormatOf(const Window& w) const; // the format of readShown()
+    [[nodiscard]] PictureFormat pictureFormatOf(const ContextState& reader, const Window& w) const; // of readShown()
     void packTightly(bool tight);
     void withPlainTransfer(const std::function<void()>& call);
     void withoutReadClamp(const std::function<void()>& call);

@@ -68,7 +68,9 @@ bool Replay::bindSurfaces(gl::HeldBack heldBack) {
 // Called after the program has chosen other buffers of its windows.
 void Replay::buffersChanged(GLenum drawnBefore) {
     if (!bound_ || c_ != bound_) return;
-    if (boundDraw_ && boundDraw_->front && isBoth(drawnBefore) && !isBoth(c_->drawBuffer0)) backToFront(*boundDraw_);
+    // The front has the picture that was drawn to both, also if no command has named it yet.
+    if (boundDraw_ && isBoth(drawnBefore) && !isBoth(c_->drawBuffer0) && hasTwoSurfaces(boundDraw_) && surfaceOf(boundDraw_, GL_FRONT) == boundDraw_->front.get())
+        backToFront(*boundDraw_);
     if (surfaceOf(boundDraw_, c_->drawBuffer0) != drawSurface_ || surfaceOf(boundRead_, readFrom(c_->readBuffer0)) != readSurface_) (void)bindSurfaces();
 }
 

@@ -54,7 +54,7 @@ std::unique_ptr<PictureRead> Replay::readLater(Window& w, const PixelViewport& r
     into_ = reads.get();
     (void)readShown(w, r, front);
     into_ = nullptr;
-    auto picture = reads->take(c_->api != wire::Api::Desktop, pictureFormatOf(w));
+    auto picture = reads->take(c_->api != wire::Api::Desktop, pictureFormatOf(*c_, w));
     c_ = own;
     return picture;
 }

@@ -33,6 +33,8 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     // the memory still contains an earlier picture, of any program
     const bool fresh = beyond == Beyond::Nothing && !into_;
     const bool answering = !fresh || isAnswering();
+    // Earlier errors must not count as errors of the read.
+    if (fresh && takeErrors()) tell(wire::NewsKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
     gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, into_ ? nullptr : pixels_.data());
     if (fresh && (!answering || gl.glGetError() != GL_NO_ERROR)) std::ranges::fill(pixels_, std::byte{0});
     packTightly(false);
@@ -213,8 +215,8 @@ void Replay::readBuffer(GLuint ours, uint64_t offset) {
 }
 
 // Returns Bgra8 for OpenGL ES before 3, which reads windows as bytes only.
-PictureFormat Replay::pictureFormatOf(const Window& w) const {
-    const bool reads = c_->api == wire::Api::Desktop || c_->version >= 30;
+PictureFormat Replay::pictureFormatOf(const ContextState& reader, const Window& w) const {
+    const bool reads = reader.api == wire::Api::Desktop || reader.version >= 30;
     return config_.deepPictures && reads && w.config.red == 10 ? PictureFormat::Bgr10A2 : PictureFormat::Bgra8;
 }
 
@@ -237,7 +239,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const bool bgra = c_->api == wire::Api::Desktop;
     const std::byte* pixels = nullptr;
     const GLenum format = bgra ? GL_BGRA : GL_RGBA;
-    const PictureFormat shownFormat = pictureFormatOf(w);
+    const PictureFormat shownFormat = pictureFormatOf(*c_, w);
     const ColourWords& words = shownFormat == PictureFormat::Bgr10A2 ? kTenBitWords : kByteWords;
     if (resolves(w) && !r.empty()) aside([&] { pixels = readResolved(r, format, words); });
     else withPlainTransfer([&] { pixels = readRegion(r, format, words.type, bytes, Beyond::Nothing); });

@@ -90,6 +90,7 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         if (takesRanges()) rangeDrawn(w);
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
+        f.format = PictureFormat::Bgra8;
         f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, w.part) : regionOf(w, front);
         f.picture = drawsOtherPixels() ? inShown(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
@@ -99,7 +100,7 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         f.sound = isSound(w, front);
         if (!front && f.sound) w.frontStaled = false;
         showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);
-        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.pixels = [this, &w, front](const PixelViewport& r) {
+        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.format = pictureFormatOf(*bound_, w), f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
             const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
             const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
