@@ -29,7 +29,7 @@ GROUPS = {
                 "egl_offscreen", "egl_buffer_names", "egl_blended_rectangles", "egl_images", "egl_pixmaps",
                 "egl_pbuffer_textures", "egl_bound_pbuffers", "egl_sync_order", "draw_read_mix", "fence_order", "flush_control", "surfaceless_sharing",
                 "texture_from_pixmap", "debug_messages",
-                "several_windows", "shared_contexts", "sharing_order", "threads_windows",
+                "several_windows", "shared_contexts", "sharing_order", "thread_keys", "threads_windows",
                 "loader_thread", "context_migration", "glx_pbuffers", "x_fonts", "x_pixmaps", "resize",
                 "resize_moments", "resize_threads", "churn_threads", "window_churn", "window_switch", "windows_end", "drawable_lives", "object_churn", "large_objects"],
     "processes": ["route_dlsym", "route_deepbind", "route_glx_proc", "route_split_libraries",

@@ -14,7 +14,7 @@ import programs
 import run_exact
 
 # Without threads_windows: its windows overlap, so a read returns the pixels that another thread has just shown there.
-PROGRAMS = "immediate,single_buffered,several_windows,resize,window_churn,es1_scene,es2_scene,egl_desktop"
+PROGRAMS = "immediate,single_buffered,several_windows,resize,window_churn,thread_keys,es1_scene,es2_scene,egl_desktop"
 
 
 class WindowComparison(run_exact.Comparison):
