@@ -24,6 +24,7 @@
 #include "interposer/windows/introduction.hpp"
 #include "interposer/windows/own_puts.hpp"
 #include "streamcodec/context_flags.hpp"
+#include "streamcodec/record.hpp"
 
 namespace mural {
 
@@ -219,6 +220,27 @@ void threadLeaves(ThreadState& t) {
 
 namespace {
 
+// Identifies one use of a chunk by one thread.
+uint64_t chunkUse(const ThreadState& t) { return uint64_t{t.stream} << 32 | t.chunksTaken; }
+
+void noteFlush(const ThreadState& t, Window& w) {
+    w.lastFlush = t.cursor;
+    w.lastFlushChunk = chunkUse(t);
+}
+
+// Returns whether the thread has drawn since the window was shown by a flush. Records of earlier chunks count as draws.
+bool drewSinceFlush(const ThreadState& t, const Window& w) {
+    if (!w.lastFlush || w.lastFlushChunk != chunkUse(t)) return true;
+    for (const std::byte* p = w.lastFlush; p < t.cursor;) {
+        uint32_t head[2] = {};
+        std::memcpy(head, p, t.cursor - p >= 8 ? 8 : 4);
+        const uint32_t words = head[0] >> 16 == record::kLongForm ? head[1] : head[0] >> 16;
+        if (words == 0 || drawsIntoWindow(head[0] & 0xffff)) return true;
+        p += size_t{words} * 4;
+    }
+    return false;
+}
+
 // Returns whether the driver keeps a front buffer separate from the X window's content. That buffer is black until the
 // program draws into it. Mesa's software drivers keep one.
 bool hasOwnFront() {
@@ -291,7 +313,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     s->publish(t, false);
     watchFromHere(t);
     if (bound && draw) localPixelsBound(t, *draw);
-    if (bound && draw && !draw->config.doubleBuffer) draw->lastFlush = t.cursor; // nothing is drawn yet
+    if (bound && draw && !draw->config.doubleBuffer) noteFlush(t, *draw); // nothing is drawn yet
 }
 
 void updateWindowSize(ThreadState& t, Window& w) {
@@ -351,7 +373,7 @@ void flushedWindow(ThreadState& t) {
     if (!w || t.cursor == w->lastFlush || !(w->config.doubleBuffer ? t.context->frontDue : !w->isEgl)) return;
     if (w->config.doubleBuffer) showFront(t, *w);
     else endFrame(w);
-    w->lastFlush = t.cursor;
+    noteFlush(t, *w);
 }
 
 void beforeMakeCurrent(const Context* next, const Window* draw, const Window* read) {
@@ -360,7 +382,7 @@ void beforeMakeCurrent(const Context* next, const Window* draw, const Window* re
     const uint32_t drawWindow = draw ? draw->id : 0, readWindow = read ? read->id : 0;
     if (t.context == next && t.context->drawWindow == drawWindow && t.context->readWindow == readWindow) return;
     const Window* const given = findWindowById(t.context->drawWindow);
-    if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue)) return;
+    if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue) || !drewSinceFlush(t, *given)) return;
     gReal.glFlush(); // so that the driver's front buffer, which lacks the draws, does not cover the picture
     flushedWindow(t);
 }

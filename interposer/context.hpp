@@ -144,7 +144,8 @@ struct Window {
     bool introduced = false;   // interposer/windows/introduction.hpp
     bool nativeGone = false;   // the X window was destroyed
     wire::WindowConfig config{};
-    std::byte* lastFlush = nullptr; // stream position at the last flush of a single-buffered window
+    std::byte* lastFlush = nullptr; // stream position at the last flush that showed the window
+    uint64_t lastFlushChunk = 0;    // chunkUse() at that time
     LocalPixels pixels;
     GLuint boundTexture = 0;   // texture of boundGroup that shows this picture (interposer/texture_from.hpp)
     ShareGroup* boundGroup = nullptr;

@@ -194,6 +194,7 @@ bool Session::takeChunk(ThreadState& t) {
                 t.chunk = index;
                 t.publishedBytes = 0;
                 t.chunkEnd = start + capture::kChunkBytes;
+                ++t.chunksTaken;
                 __atomic_store_n(&t.cursor, start, __ATOMIC_RELEASE);
                 return true;
             }

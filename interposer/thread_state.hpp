@@ -29,6 +29,7 @@ struct ThreadState {
     bool mayBeWriting = false;
     uint16_t stream = 0;            // number of this thread in the session, from 1
     uint32_t chunk = UINT32_MAX;    // index of the chunk; UINT32_MAX: none
+    uint32_t chunksTaken = 0;       // number of chunks so far
     uint32_t publishedBytes = 0;    // position in the chunk; later records are not visible yet
     uint32_t publications = 0;      // number of publications so far
     KeptPixels pixels;

@@ -13,7 +13,7 @@ namespace {
 bool goTogether(const Context& c, const Window& w) {
     const wire::WindowConfig &a = c.config, &b = w.config;
     return a.red == b.red && a.green == b.green && a.blue == b.blue && a.alpha == b.alpha && a.depth == b.depth && a.stencil == b.stencil && a.samples == b.samples &&
-           a.doubleBuffer == b.doubleBuffer && a.accum == b.accum && a.stereo == b.stereo && a.srgb == b.srgb;
+           !a.doubleBuffer == !b.doubleBuffer && a.accum == b.accum && a.stereo == b.stereo && a.srgb == b.srgb;
 }
 
 // Returns whether the window keeps its buffers after the context is bound to another one. GLX frees the buffers of a plain X
