@@ -461,6 +461,7 @@ void endFrame(Window* w) {
     if (isVerified(*s, frame)) verifyFrame(t, *w);
     const bool putsItself = s->welcome().displayApp && announceOwnPut(*s->header(), *w, frame);
     records::swap(t, w->id, frame);
+    if (w->config.doubleBuffer) noteFlush(t, *w); // drivers flush the front at a swap
     ++t.context->swaps;
     flushLists(*t.context);
     s->publish(t, false, false); // waitForCredit wakes the head if necessary
