@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """Processes that are stopped for a while, and programs that hold a grab of the X server.
 
-  stopped.py --build build/release [--cases program,head,grabs] [--list]
+  stopped.py --build build/release --cases program,head,grabs [--list]
 
 A stop lasts much longer than a healthy process takes to reply, and less than a test may take. Unit tests with simulated
 clocks cover limits of 20 s and more (running_time_test, head_session_test).
 """
 
-import argparse
 import os
 import re
 import signal
@@ -15,30 +14,12 @@ import subprocess
 import sys
 import time
 
-import display
+import failures
 import programs
-import session
 
 STOP_SECONDS = 1
-CASES = {}  # name: function(context) → None or what is wrong
-
-
-def case(function):
-    CASES[function.__name__] = function
-    return function
-
-
-class Context:
-    def __init__(self, build, mural, display_name):
-        self.build = build
-        self.mural = mural
-        self.display = display_name
-
-    def program(self, name):
-        return os.path.join(self.build, "tests", "programs", name)
-
-    def run(self, command, options=("--tiles", "2x1", "--display", "none")):
-        return session.Session([self.mural, "run", *options, "--", *command], self.display)
+failures.CASES.clear()  # keeps only the cases of this file
+LAYOUT = ("--tiles", "2x1", "--display", "none")
 
 
 def pids_of(run, pattern):
@@ -65,7 +46,7 @@ def what_it_read(run, wanted_status=0):
 
 def reads_through_stops(context, kind, pattern, stops=2, seconds=2 + 2 * STOP_SECONDS):
     """Checks that all reads are correct, no message is printed, and the program stays on the wall to its end."""
-    with context.run([context.program("stopped_reads"), kind, str(seconds)]) as run:
+    with context.run([context.program("stopped_reads"), kind, str(seconds)], LAYOUT) as run:
         if not run.wait_for_line("begins"):
             return "it did not begin: " + " | ".join(run.standard_error[-3:])
         pids = pids_of(run, pattern)
@@ -86,45 +67,45 @@ def reads_through_stops(context, kind, pattern, stops=2, seconds=2 + 2 * STOP_SE
 PROGRAM_ALONE = r"^\S*stopped_reads \w+ \d+$"
 
 
-@case
+@failures.case
 def program_pixels(context):
     return reads_through_stops(context, "pixels", PROGRAM_ALONE)
 
 
-@case
+@failures.case
 def program_buffer(context):
     return reads_through_stops(context, "buffer", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@case
+@failures.case
 def program_texture(context):
     return reads_through_stops(context, "texture", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@case
+@failures.case
 def program_query(context):
     return reads_through_stops(context, "query", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@case
+@failures.case
 def program_swaps(context):
     return reads_through_stops(context, "swaps", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@case
+@failures.case
 def head_pixels(context):
     return reads_through_stops(context, "pixels", r"mural head\b")
 
 
-@case
+@failures.case
 def all_of_it(context):
     """Ctrl-Z and fg: stops and continues the program, its launcher, the head and the nodes."""
     return reads_through_stops(context, "pixels", r".")
 
 
-@case
+@failures.case
 def program_killed_while_stopped(context):
-    with context.run([context.program("stopped_reads"), "pixels", "60"]) as run:
+    with context.run([context.program("stopped_reads"), "pixels", "60"], LAYOUT) as run:
         if not run.wait_for_line("begins"):
             return "it did not begin"
         pids = pids_of(run, PROGRAM_ALONE)
@@ -144,7 +125,7 @@ def program_killed_while_stopped(context):
 
 def head_killed(context, kind):
     """A read during which the head is killed is correct or raises an error. It never returns only wrong pixels."""
-    with context.run([context.program("stopped_reads"), kind, "5"]) as run:
+    with context.run([context.program("stopped_reads"), kind, "5"], LAYOUT) as run:
         if not run.wait_for_line("begins"):
             return "it did not begin"
         time.sleep(0.5)
@@ -156,12 +137,12 @@ def head_killed(context, kind):
         return "%d of %d reads are wrong without an error" % (counts[1], counts[0]) if counts[1] else None
 
 
-@case
+@failures.case
 def head_killed_pixels(context):
     return head_killed(context, "pixels")
 
 
-@case
+@failures.case
 def head_killed_buffer(context):
     return head_killed(context, "buffer")
 
@@ -198,10 +179,10 @@ def grabbed(context, way, like=None):
 # Another connection's grab holds up the program's own GL natively, so these are compared with the first way.
 for name, native_way in (("xlib", None), ("xcb", None), ("checked", None), ("nested", None), ("early", None), ("second", "xlib"), ("closed", "xlib"), ("front", None),
                          ("two", None), ("large", None), ("opened", None), ("thread", None), ("copy", None), ("egl", None)):
-    CASES["grabs_" + name] = lambda context, way=name, like=native_way: grabbed(context, way, like)
+    failures.CASES["grabs_" + name] = lambda context, way=name, like=native_way: grabbed(context, way, like)
 
 
-@case
+@failures.case
 def grabs_of_another_program(context):
     """The pictures and the program's reads wait for the end of the grab. The program still reads each of its frames."""
     wanted = natively(context, "without")
@@ -215,27 +196,5 @@ def grabs_of_another_program(context):
         return None if status == 0 and got == wanted else "status %s, it saw %s instead of %s" % (status, got, wanted)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", required=True)
-    parser.add_argument("--cases", default="", help="beginnings of names, separated by commas; all if none")
-    parser.add_argument("--list", action="store_true")
-    arguments = parser.parse_args()
-    wanted = [name for name in CASES if not arguments.cases or any(name.startswith(part) for part in arguments.cases.split(","))]
-    if arguments.list:
-        print("\n".join(wanted))
-        return 0
-    build = os.path.abspath(arguments.build)
-    wrong = 0
-    with display.PrivateDisplay() as display_name:
-        context = Context(build, os.path.join(build, "bin", "mural"), display_name)
-        for name in wanted:
-            began = time.monotonic()
-            fault = CASES[name](context)
-            wrong += fault is not None
-            print("%-30s %s (%.1f s)" % (name, fault or "ok", time.monotonic() - began), flush=True)
-    return 1 if wrong or not wanted else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(failures.main())
