@@ -81,21 +81,37 @@ const char* wantedEglVendors() {
     return launchSettings().realEglVendors;
 }
 
+namespace {
+
+// Constructors of other libraries call these functions before the address sanitizer has mapped its shadow memory, which
+// instrumented code reads.
+#ifdef __SANITIZE_ADDRESS__
+extern "C" void __asan_init();
+inline void startSanitizer() { __asan_init(); }
+#define MURAL_BEFORE_SANITIZER __attribute__((no_sanitize_address))
+#else
+inline void startSanitizer() {}
+#define MURAL_BEFORE_SANITIZER
+#endif
+
+__attribute__((noinline)) char* valueFor(const char* name, const void* caller, Getenv*& next) {
+    char* answer = nullptr;
+    if (answersGlvnd(name, caller, answer)) return answer;
+    if (!next) findNext(); // for calls from another library's constructor
+    return next ? next(name) : nullptr;
+}
+
+} // namespace
+
 } // namespace mural
 
 // Allocators call these functions while they start, so they allocate nothing.
-extern "C" __attribute__((visibility("default"))) char* getenv(const char* name) noexcept {
-    using namespace mural;
-    char* answer = nullptr;
-    if (answersGlvnd(name, __builtin_return_address(0), answer)) return answer;
-    if (!nextGetenv) findNext(); // for calls from another library's constructor
-    return nextGetenv ? nextGetenv(name) : nullptr;
+extern "C" __attribute__((visibility("default"))) MURAL_BEFORE_SANITIZER char* getenv(const char* name) noexcept {
+    mural::startSanitizer();
+    return mural::valueFor(name, __builtin_return_address(0), mural::nextGetenv);
 }
 
-extern "C" __attribute__((visibility("default"))) char* secure_getenv(const char* name) noexcept {
-    using namespace mural;
-    char* answer = nullptr;
-    if (answersGlvnd(name, __builtin_return_address(0), answer)) return answer;
-    if (!nextSecureGetenv) findNext();
-    return nextSecureGetenv ? nextSecureGetenv(name) : nullptr;
+extern "C" __attribute__((visibility("default"))) MURAL_BEFORE_SANITIZER char* secure_getenv(const char* name) noexcept {
+    mural::startSanitizer();
+    return mural::valueFor(name, __builtin_return_address(0), mural::nextSecureGetenv);
 }
