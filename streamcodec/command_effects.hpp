@@ -38,7 +38,7 @@ enum class EffectKind : uint8_t {
 // The type of the named object, where the effect leaves it open.
 enum class ObjectType : uint8_t { None, Texture, Buffer, Framebuffer, Renderbuffer, VertexArray, Query, Sampler, Program, Pipeline, Feedback, ArbProgram, List, Sync };
 
-// Handling of uploads that are deferred until a command may read them (holding/command_class.hpp).
+// Handling of uploads that are deferred until a command may read them (streamcodec/filter/command_class.hpp).
 enum class Deferral : uint8_t {
     ByEffect,
     Bind,    // changes bindings

@@ -16,8 +16,8 @@
 #include <span>
 #include <string>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 
 namespace mural {
 

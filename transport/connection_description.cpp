@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-#include "transport/tcp_address.hpp"
+#include "transport/tcp/tcp_address.hpp"
 
 namespace mural {
 

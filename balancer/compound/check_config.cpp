@@ -29,7 +29,7 @@ uint64_t repeatsAfter(const ResolvedConfig& config) {
 void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
     size_t layouts = 1;
     for (const config::ResolvedCanvas& c : config.canvases) layouts = std::max(layouts, c.layouts.size());
-    constexpr size_t kMostCompounds = 20'000'000; // bounds the check to a few seconds
+    constexpr size_t kMaxCompounds = 20'000'000; // bounds the check to a few seconds
     FrameInput input = firstFrame(config);
     std::set<std::string> said;
     size_t tried = 0;
@@ -39,7 +39,7 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
             input.views.assign(config.views.size(), ViewState{mode, 1, {}});
             for (input.frameNumber = 0; input.frameNumber < repeatsAfter(config); ++input.frameNumber) {
                 tried += config.compounds.size();
-                if (tried > kMostCompounds) {
+                if (tried > kMaxCompounds) {
                     diagnostics.warn({}, "there are more layouts and frame numbers than can be tried for frames that wait for each other",
                                      "divide the file, or give shorter periods");
                     return;

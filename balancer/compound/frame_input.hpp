@@ -3,7 +3,7 @@
 #pragma once
 
 #include "balancer/compound/display_sizes.hpp"
-#include "common/matrix4.hpp"
+#include "common/geometry/matrix4.hpp"
 
 namespace mural::compound {
 

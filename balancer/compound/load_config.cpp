@@ -4,7 +4,7 @@
 
 #include "balancer/compound/check_config.hpp"
 #include "balancer/config/resolve.hpp"
-#include "balancer/config/text/parser.hpp"
+#include "balancer/config/eqc/parser.hpp"
 
 namespace mural::compound {
 

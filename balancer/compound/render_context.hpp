@@ -2,8 +2,8 @@
 #pragma once
 
 #include "balancer/compound/frame_input.hpp"
-#include "common/frustum.hpp"
-#include "common/jitter.hpp"
+#include "common/geometry/frustum.hpp"
+#include "common/geometry/jitter.hpp"
 
 namespace mural::compound {
 

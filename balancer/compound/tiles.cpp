@@ -8,12 +8,12 @@ namespace mural::compound {
 
 namespace {
 
-constexpr int64_t kMostTiles = 65536;
+constexpr int64_t kMaxTiles = 65536;
 
 int64_t piecesOf(int64_t size, int64_t step) { return (size + step - 1) / step; }
 
 std::vector<PlannedTile> chunksOf(double step) {
-    const double size = std::clamp(step, 1. / kMostTiles, 1.);
+    const double size = std::clamp(step, 1. / kMaxTiles, 1.);
     const auto count = static_cast<int64_t>(std::ceil(1 / size - 1e-9));
     std::vector<PlannedTile> chunks;
     for (int64_t i = 0; i < count; ++i) chunks.push_back({{}, {}, {static_cast<double>(i) * size, i + 1 == count ? 1 : static_cast<double>(i + 1) * size}});
@@ -30,7 +30,7 @@ std::vector<PlannedTile> tilesOf(const PixelViewport& area, const config::Pixels
         return chunks;
     }
     int64_t w = std::max<int64_t>(1, size.pixels->x), h = std::max<int64_t>(1, size.pixels->y);
-    while (piecesOf(area.w, w) * piecesOf(area.h, h) > kMostTiles) (w <= h ? w : h) *= 2;
+    while (piecesOf(area.w, w) * piecesOf(area.h, h) > kMaxTiles) (w <= h ? w : h) *= 2;
     std::vector<PlannedTile> tiles;
     const int64_t columns = piecesOf(area.w, w), rows = piecesOf(area.h, h);
     for (int64_t row = 0; row < rows; ++row) {

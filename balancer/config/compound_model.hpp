@@ -4,10 +4,10 @@
 #include <array>
 
 #include "balancer/config/display.hpp"
-#include "common/pixel_kernel.hpp"
-#include "common/range.hpp"
-#include "common/sub_pixel.hpp"
-#include "common/zoom.hpp"
+#include "common/geometry/pixel_kernel.hpp"
+#include "common/geometry/range.hpp"
+#include "common/geometry/sub_pixel.hpp"
+#include "common/geometry/zoom.hpp"
 
 namespace mural::config {
 

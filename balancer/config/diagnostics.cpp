@@ -7,13 +7,13 @@ namespace mural::config {
 namespace {
 
 // Most diagnostics kept. A file of another format has an error in every word.
-constexpr size_t kMostLines = 200;
+constexpr size_t kMaxLines = 200;
 
 } // namespace
 
 void Diagnostics::add(Diagnostic d) {
     if (d.severity == Severity::Error) ++errors_;
-    if (all_.size() < kMostLines) all_.push_back(std::move(d));
+    if (all_.size() < kMaxLines) all_.push_back(std::move(d));
     // the first error is always kept
     else if (d.severity == Severity::Error && errors_ == 1) all_.back() = std::move(d);
 }

@@ -8,8 +8,8 @@
 
 #include "balancer/config/attribute_values.hpp"
 #include "balancer/config/projection_surface.hpp"
-#include "common/eye.hpp"
-#include "common/viewport.hpp"
+#include "common/geometry/eye.hpp"
+#include "common/geometry/viewport.hpp"
 
 namespace mural::config {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "balancer/config/text/attribute_words.hpp"
-#include "balancer/config/text/value_reader.hpp"
+#include "balancer/config/eqc/attribute_words.hpp"
+#include "balancer/config/eqc/value_reader.hpp"
 
 namespace mural::config {
 

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "balancer/config/source_position.hpp"
-#include "common/vector3.hpp"
+#include "common/geometry/vector3.hpp"
 
 namespace mural::config {
 

@@ -6,7 +6,7 @@
 
 #include "balancer/config/attribute_values.hpp"
 #include "balancer/config/source_position.hpp"
-#include "common/viewport.hpp"
+#include "common/geometry/viewport.hpp"
 
 namespace mural::config {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "balancer/config/projection_surface.hpp"
-#include "common/matrix4.hpp"
-#include "common/viewport.hpp"
+#include "common/geometry/matrix4.hpp"
+#include "common/geometry/viewport.hpp"
 
 namespace mural::config {
 

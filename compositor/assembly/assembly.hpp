@@ -2,8 +2,8 @@
 // result depends on the pictures and their draw orders only, never on the order of arrival.
 #pragma once
 
-#include "common/pixel_kernel.hpp"
-#include "common/result.hpp"
+#include "common/geometry/pixel_kernel.hpp"
+#include "common/base/result.hpp"
 #include "compositor/image/image.hpp"
 #include "compositor/kernels/depth_function.hpp"
 #include "compositor/kernels/mask_channels.hpp"
@@ -27,7 +27,7 @@ struct DepthAssembly {
 [[nodiscard]] Result<void> assembleBlended(Image& into, const Image& part);
 
 // Pixel decomposition: writes the part's pixels to the kernel's positions. If the kernel does not divide the picture,
-// the part may have one more column and row outside of it, which are ignored (common/pixel_kernel.hpp). Planes of one
+// the part may have one more column and row outside of it, which are ignored (common/geometry/pixel_kernel.hpp). Planes of one
 // format.
 [[nodiscard]] Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& part, const PixelKernel& kernel);
 // The inverse: extracts the part. Pixels outside of the picture stay unchanged.

@@ -11,7 +11,7 @@ namespace mural::compositor {
 
 namespace {
 
-constexpr uint32_t kMostFloats = 8192;
+constexpr uint32_t kMaxFloats = 8192;
 constexpr unsigned kShift10[4] = {0, 10, 20, 30};
 constexpr uint32_t kMask10[4] = {1023, 1023, 1023, 3};
 
@@ -27,8 +27,8 @@ Average::Average(PlaneFormat format, int32_t width, int32_t height)
 }
 
 uint32_t Average::most() const {
-    if (shape_.format == PlaneFormat::Rgba8) return kMostAveraged8;
-    return shape_.format == PlaneFormat::Rgb10A2 ? kMostAveraged10 : kMostFloats;
+    if (shape_.format == PlaneFormat::Rgba8) return kMaxAveraged8;
+    return shape_.format == PlaneFormat::Rgb10A2 ? kMaxAveraged10 : kMaxFloats;
 }
 
 void Average::clear() {
@@ -52,7 +52,7 @@ Result<void> Average::add(const PlaneView& picture) {
         return Error{"averaging: a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " " + nameOf(picture.format) + " among " + std::to_string(shape_.width) + "x" +
                      std::to_string(shape_.height) + " " + nameOf(shape_.format) + "; draw all in one size and format"};
     if (count_ >= most()) return Error{"averaging: " + std::to_string(count_) + " pictures are as many as the sums hold; write the average and begin anew"};
-    if (in16Bits_ == kMostIn16Bits) widen();
+    if (in16Bits_ == kMaxIn16Bits) widen();
     for (int32_t y = 0; y < picture.height; ++y) {
         const std::byte* from = picture.row(y);
         const size_t at = rowComponents_ * static_cast<size_t>(y);

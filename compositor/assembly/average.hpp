@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "compositor/image/plane.hpp"
 
 namespace mural::compositor {
@@ -16,7 +16,7 @@ public:
     // Requires a colour format.
     Average(PlaneFormat format, int32_t width, int32_t height);
 
-    // Errors: another shape; more pictures than the sums hold (kMostAveraged8, kMostAveraged10, 8192 for floats).
+    // Errors: another shape; more pictures than the sums hold (kMaxAveraged8, kMaxAveraged10, 8192 for floats).
     [[nodiscard]] Result<void> add(const PlaneView& picture);
     // Errors: another shape; no pictures.
     [[nodiscard]] Result<void> write(const MutablePlaneView& into) const;

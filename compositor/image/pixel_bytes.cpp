@@ -2,21 +2,21 @@
 
 #include <new>
 
-#include "common/huge_pages.hpp"
+#include "common/memory/huge_pages.hpp"
 
 namespace mural::compositor {
 namespace {
 
 constexpr size_t kLineBytes = 64;
-constexpr size_t kMostOfSmallPages = 2 * kHugePageBytes; // below, alignment would waste too much at both ends
+constexpr size_t kMaxOfSmallPages = 2 * kHugePageBytes; // below, alignment would waste too much at both ends
 
-std::align_val_t alignmentOf(size_t sizeBytes) { return std::align_val_t{sizeBytes < kMostOfSmallPages ? kLineBytes : kHugePageBytes}; }
+std::align_val_t alignmentOf(size_t sizeBytes) { return std::align_val_t{sizeBytes < kMaxOfSmallPages ? kLineBytes : kHugePageBytes}; }
 
 } // namespace
 
 void* allocatePixels(size_t sizeBytes) {
     void* const at = ::operator new(sizeBytes, alignmentOf(sizeBytes));
-    if (sizeBytes >= kMostOfSmallPages) askForHugePages({static_cast<std::byte*>(at), sizeBytes});
+    if (sizeBytes >= kMaxOfSmallPages) askForHugePages({static_cast<std::byte*>(at), sizeBytes});
     return at;
 }
 

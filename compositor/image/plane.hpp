@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "common/pixel_viewport.hpp"
+#include "common/geometry/pixel_viewport.hpp"
 #include "compositor/image/pixel_bytes.hpp"
 #include "compositor/image/plane_format.hpp"
 

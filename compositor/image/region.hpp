@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/pixel_viewport.hpp"
+#include "common/geometry/pixel_viewport.hpp"
 
 namespace mural::compositor {
 

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <vector>
 
-#include "common/little_endian.hpp"
-#include "compositor/kernels/find_unlike.hpp"
+#include "common/base/little_endian.hpp"
+#include "compositor/kernels/find_first_difference.hpp"
 
 namespace mural::compositor {
 
@@ -45,7 +45,7 @@ public:
                     at = (at / tileWords + 1) * tileWords;
                     continue;
                 }
-                at += findUnlike(words + at, rowWords - at, pattern.words, pattern.mask);
+                at += findFirstDifference(words + at, rowWords - at, pattern.words, pattern.mask);
                 if (at < rowWords) marks[at / tileWords] = 1;
                 at = (at / tileWords + 1) * tileWords;
             }

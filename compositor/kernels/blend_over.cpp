@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "compositor/kernels/ask_ahead.hpp"
+#include "compositor/kernels/prefetch.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compositor/kernels/blend_over.cpp"
@@ -70,8 +70,8 @@ template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source,
     };
     size_t i = 0;
     for (; i + step <= count; i += step) {
-        askFor(source + i + kAheadWords, 4 * step);
-        askFor(pixels + i + kAheadWords, 4 * step);
+        prefetch(source + i + kAheadWords, 4 * step);
+        prefetch(pixels + i + kAheadWords, 4 * step);
         const auto first = hn::LoadU(d, source + i), second = hn::LoadU(d, source + i + lanes);
         if (hn::AllTrue(d, hn::Eq(hn::Or(first, second), zero))) continue;
         hn::StoreU(blended(first, hn::LoadU(d, pixels + i)), d, pixels + i);

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <hwy/cache_control.h>
 
-#include "compositor/kernels/ask_ahead.hpp"
+#include "compositor/kernels/prefetch.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compositor/kernels/z_select.cpp"
@@ -171,8 +171,8 @@ template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> vo
             hn::Store(hn::VecFromMask(du, win1), du, waitingWins + slot * pair + lanes);
             waitingColours[slot] = colour + i * colourBytes;
             waitingSources[slot] = sourceColour + i * colourBytes;
-            if (!whole) askFor(colour + i * colourBytes, pair * colourBytes);
-            askFor(sourceColour + i * colourBytes, pair * colourBytes);
+            if (!whole) prefetch(colour + i * colourBytes, pair * colourBytes);
+            prefetch(sourceColour + i * colourBytes, pair * colourBytes);
         }
         if (i + lanes <= columns) {
             const auto source0 = hn::LoadU(du, sourceDepth + i), there0 = hn::LoadU(du, depth + i);

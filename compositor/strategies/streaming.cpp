@@ -10,13 +10,13 @@ namespace mural::compositor {
 
 namespace {
 
-constexpr int32_t kLeastRows = 64; // rows of a band: smaller ones cost more than they save in latency
-constexpr int kMostBands = 16;
+constexpr int32_t kMinRows = 64; // rows of a band: smaller ones cost more than they save in latency
+constexpr int kMaxBands = 16;
 
 } // namespace
 
 void makeStreaming(ScheduleMaker& maker) {
-    const int bands = std::clamp(static_cast<int>(maker.rows() / kLeastRows), 1, kMostBands);
+    const int bands = std::clamp(static_cast<int>(maker.rows() / kMinRows), 1, kMaxBands);
     for (int b = 0; b < bands; ++b)
         for (int rank = maker.ranks() - 1; rank > 0; --rank) maker.transfer({rank, rank - 1, maker.band(b, bands), Step::Kind::FoldLater, 0});
 }

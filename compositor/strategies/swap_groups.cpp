@@ -9,11 +9,11 @@ namespace mural::compositor {
 namespace {
 
 // A rank that holds a band of its group's picture.
-struct Holder {
+struct CommandFilter {
     int rank = 0;
     RowRange band;
 };
-using Group = std::vector<Holder>; // in the order of their bands
+using Group = std::vector<CommandFilter>; // in the order of their bands
 
 RowRange common(const RowRange& a, const RowRange& b) { return {std::max(a.first, b.first), std::min(a.end, b.end)}; }
 
@@ -41,12 +41,12 @@ Group merge(ScheduleMaker& maker, const std::vector<Group>& groups) {
     std::vector<RowTransfer> transfers;
     for (size_t s = 0; s < seats.size(); ++s) {
         const Seat& seat = seats[s];
-        const Holder& to = groups[static_cast<size_t>(seat.group)][seat.at];
+        const CommandFilter& to = groups[static_cast<size_t>(seat.group)][seat.at];
         const RowRange band = maker.band(static_cast<int>(s), static_cast<int>(seats.size()));
         for (size_t g = 0; g < groups.size(); ++g) {
             const int distance = static_cast<int>(g) - seat.group;
             const auto kind = distance == 0 ? Step::Kind::Place : distance < 0 ? Step::Kind::FoldEarlier : Step::Kind::FoldLater;
-            for (const Holder& from : groups[g])
+            for (const CommandFilter& from : groups[g])
                 if (from.rank != to.rank) transfers.push_back({from.rank, to.rank, common(from.band, band), kind, std::abs(distance)});
         }
         merged.push_back({to.rank, band});
@@ -70,7 +70,7 @@ Group swapped(ScheduleMaker& maker, std::span<const int> ranks, const GroupSplit
 void swapGroups(ScheduleMaker& maker, const std::vector<int>& ranks, const GroupSplit& split) {
     const Group whole = swapped(maker, ranks, split);
     std::vector<RowTransfer> gather;
-    for (const Holder& h : whole)
+    for (const CommandFilter& h : whole)
         if (h.rank != ranks.front()) gather.push_back({h.rank, ranks.front(), h.band, Step::Kind::Place, 0});
     maker.round(gather);
 }

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <unistd.h>
 
-#include "interposer/launch_settings.hpp"
+#include "interposer/process/launch_settings.hpp"
 
 namespace mural {
 

@@ -1,6 +1,6 @@
 #include "interposer/preload/gl_objects.hpp"
 
-#include "common/gl_library_names.hpp"
+#include "common/base/gl_library_names.hpp"
 #include "interposer/loader/loaded_object.hpp"
 
 namespace mural {

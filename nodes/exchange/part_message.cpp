@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 #include "compositor/image/region_of_interest.hpp"
 
 namespace mural {
@@ -23,7 +23,7 @@ constexpr size_t kHeadBytes = 44, kPieceBytes = 28;
 constexpr int32_t kPieceColumns = 512, kPieceRows = 128;
 
 // 32-bit integer depths are encoded as opaque words, which a lossless codec permits.
-PlaneFormat depthFormatOf(const FoldRule& rule) { return rule.deep ? PlaneFormat::D32F : PlaneFormat::D24S8; }
+PlaneFormat depthFormatOf(const CompositeRule& rule) { return rule.deep ? PlaneFormat::D32F : PlaneFormat::D24S8; }
 
 void put32(std::vector<std::byte>& into, int64_t value) {
     into.resize(into.size() + 4);
@@ -49,7 +49,7 @@ std::vector<PixelViewport> piecesOf(const compositor::Region& drawn) {
 
 } // namespace
 
-std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const FoldRule& rule, PartState state, PlaneEncoder& encoder) {
+std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const CompositeRule& rule, PartState state, PlaneEncoder& encoder) {
     const PixelViewport band{0, rows.first, part.id.box.w, rows.count()};
     const PlaneView colour = viewOf(part.colour, part, PlaneFormat::Rgba8).part(band), depth = viewOf(part.depth, part, depthFormatOf(rule)).part(band);
     const compositor::Region drawn =
@@ -80,7 +80,7 @@ size_t boundBytesOf(const PixelViewport& box, const RowRange& rows) {
     return kHeadBytes + tiles(box.w) * tiles(rows.count()) * kPieceBytes + static_cast<size_t>(box.w) * static_cast<size_t>(rows.count()) * 8;
 }
 
-Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows, const FoldRule& rule, PlaneDecoder& decoder,
+Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows, const CompositeRule& rule, PlaneDecoder& decoder,
                              const std::function<void(const ArrivedPiece&)>& each) {
     const auto damaged = [](const std::string& what) { return Error{"a damaged part of a picture came: " + what}; };
     if (message.size() < kHeadBytes) return damaged("it is cut short");

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 #include "nodes/exchange/part_sender.hpp"
 
 namespace mural {

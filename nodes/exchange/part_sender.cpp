@@ -3,7 +3,7 @@
 #include <array>
 #include <chrono>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural {
 
@@ -11,7 +11,7 @@ namespace {
 
 // In one composition a node sends at most two parts to another. Room for two compositions prevents a deadlock: the
 // slowest node always has room.
-constexpr size_t kMostWaiting = 4;
+constexpr size_t kMaxWaiting = 4;
 constexpr int64_t kWriteMs = 60'000; // the reader gives up the whole picture earlier
 constexpr int64_t kLingerMs = 5'000; // limit for the destructor
 constexpr uint64_t kTellingBytes = 1 << 16; // smaller transfers only measure socket buffers
@@ -33,7 +33,7 @@ PartSender::~PartSender() {
 
 Result<void> PartSender::send(std::vector<std::byte> message, Deadline deadline) {
     std::unique_lock lock(mutex_);
-    const auto ready = [this] { return waiting_.size() < kMostWaiting || !failure_.empty(); };
+    const auto ready = [this] { return waiting_.size() < kMaxWaiting || !failure_.empty(); };
     if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(3600 * kNsPerS)), ready)) return Error{"it takes no pictures"};
     if (!failure_.empty()) return Error{failure_};
     waiting_.push_back(std::move(message));

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 #include "transport/connection.hpp"
 
 namespace mural {

@@ -43,14 +43,14 @@ void PictureComposer::returned(int rank, uint32_t life, const std::set<int>& abs
     rows_ = -1;
 }
 
-PixelViewport PictureComposer::compose(PicturePart& part, const FoldRule& rule) {
+PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& rule) {
     agree();
     const int64_t beganNs = monotonicNowNs();
     if (rows_ != part.id.box.h) {
         rows_ = part.id.box.h;
         steps_ = std::move(compositor::makeSchedule(strategy_, config_.ranks, rows_)[static_cast<size_t>(config_.rank)]);
     }
-    FoldRule used = rule;
+    CompositeRule used = rule;
     using compositor::DepthFunction;
     if (config_.plant == "tie") used.function = rule.function == DepthFunction::Less ? DepthFunction::LessOrEqual : DepthFunction::Less;
     changed_ = {};
@@ -62,14 +62,14 @@ PixelViewport PictureComposer::compose(PicturePart& part, const FoldRule& rule) 
     return changed_;
 }
 
-void PictureComposer::send(const PicturePart& part, const Step& step, const FoldRule& rule) {
+void PictureComposer::send(const PicturePart& part, const Step& step, const CompositeRule& rule) {
     if (lost_.contains(step.peer)) return;
     PlaneEncoder& encoder = encoders_.try_emplace(step.peer, config_.codec).first->second;
     if (const LinkTransfer t = routes_.takeTransfer(step.peer); t.bytes > 0) encoder.transferred(t.bytes, t.ns);
     if (auto sent = routes_.send(step.peer, packPart(part, step.rows, rule, incomplete_ ? PartState::Incomplete : PartState::Complete, encoder), Deadline::inMs(config_.partMs)); !sent) lost(step.peer, sent.error().message);
 }
 
-void PictureComposer::take(PicturePart& part, const Step& step, const FoldRule& rule, int64_t beganNs) {
+void PictureComposer::take(PicturePart& part, const Step& step, const CompositeRule& rule, int64_t beganNs) {
     if (lost_.contains(step.peer)) return;
     const Deadline deadline = Deadline::at(beganNs + (config_.partMs + config_.stageMs * step.stage) * kNsPerMs);
     auto message = routes_.receive(step.peer, boundBytesOf(part.id.box, step.rows), deadline);
@@ -87,7 +87,7 @@ void PictureComposer::take(PicturePart& part, const Step& step, const FoldRule& 
     lost(step.peer, "range " + std::to_string(step.peer + 1) + ": " + done.error().message);
 }
 
-void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Kind kind, const FoldRule& rule) {
+void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Kind kind, const CompositeRule& rule) {
     const auto width = static_cast<size_t>(piece.area.w);
     for (int32_t y = 0; y < piece.area.h; ++y) {
         const size_t to = part.at(piece.area.x, piece.area.y + y), from = static_cast<size_t>(y) * width;
@@ -95,7 +95,7 @@ void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Ki
             std::copy_n(piece.colour + from, width, part.colour.data() + to);
             std::copy_n(piece.depth + from, width, part.depth.data() + to);
         } else {
-            foldRow({part.colour.data() + to, part.depth.data() + to, piece.colour + from, piece.depth + from, width}, kind == Step::Kind::FoldLater ? FoldSide::Later : FoldSide::Earlier, rule);
+            compositeRow({part.colour.data() + to, part.depth.data() + to, piece.colour + from, piece.depth + from, width}, kind == Step::Kind::FoldLater ? LayerOrder::Later : LayerOrder::Earlier, rule);
         }
     }
     changed_ = unite(changed_, piece.area);

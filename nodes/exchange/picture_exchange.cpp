@@ -5,9 +5,9 @@
 #include <chrono>
 #include <utility>
 
-#include "common/little_endian.hpp"
-#include "transport/free_port.hpp"
-#include "transport/secure_connection.hpp"
+#include "common/base/little_endian.hpp"
+#include "transport/tcp/free_port.hpp"
+#include "transport/secure/secure_connection.hpp"
 
 namespace mural {
 

@@ -15,7 +15,7 @@
 
 #include "nodes/exchange/part_routes.hpp"
 #include "transport/connection.hpp"
-#include "transport/secure_channel.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 namespace mural {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/pixel_viewport.hpp"
+#include "common/geometry/pixel_viewport.hpp"
 
 namespace mural {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "nodes/gl/gl_platform.hpp"
 
 namespace mural::gl {

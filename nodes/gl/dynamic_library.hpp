@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::gl {
 

@@ -5,19 +5,19 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "common/kept_memory.hpp"
-#include "common/window_mark.hpp"
-#include "common/pause_watch.hpp"
-#include "nodes/head/codec_choice.hpp"
-#include "nodes/head/composition_choice.hpp"
-#include "nodes/head/config_plan.hpp"
-#include "nodes/head/head_session.hpp"
+#include "common/memory/malloc_tuning.hpp"
+#include "common/ipc/window_mark.hpp"
+#include "common/base/pause_watch.hpp"
+#include "nodes/head/planning/codec_choice.hpp"
+#include "nodes/head/planning/composition_choice.hpp"
+#include "nodes/head/planning/config_plan.hpp"
+#include "nodes/head/session/head_session.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
-#include "nodes/output/app_window.hpp"
+#include "nodes/output/windows/app_window.hpp"
 #include "nodes/output/outputs.hpp"
-#include "nodes/output/png_files.hpp"
-#include "nodes/output/wall_sink.hpp"
+#include "nodes/output/files/png_files.hpp"
+#include "nodes/output/windows/wall_sink.hpp"
 #include "streamcodec/registry_digest.hpp"
 
 namespace mural {
@@ -134,10 +134,10 @@ Result<int> runSession(ControlChannel& control) {
     options.interrupted = [] { return asked != 0; };
     if (const auto outputs = addOutputs(*config, plan, control, options); !outputs) return outputs.error();
     if (!config->record.empty()) {
-        recording::RecorderConfig recorder;
+        trace::RecorderConfig recorder;
         recorder.lastFrame = config->frames;
         recorder.say = [&control](const std::string& text) { control.say(text); };
-        auto made = recording::StreamRecorder::create(config->record, std::move(recorder));
+        auto made = trace::StreamRecorder::create(config->record, std::move(recorder));
         if (!made) return made.error();
         options.recorder = std::move(*made);
     }

@@ -9,7 +9,7 @@
 #include <sys/types.h>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::launch {
 

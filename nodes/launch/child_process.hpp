@@ -7,8 +7,8 @@
 #include <sys/types.h>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::launch {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <unistd.h>
 
-#include "common/gl_library_names.hpp"
+#include "common/base/gl_library_names.hpp"
 #include "nodes/launch/base_name.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/elf_check.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/x_authority.hpp"

@@ -14,8 +14,8 @@
 #include <sys/types.h>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 #include "nodes/launch/child_process.hpp"
 
 namespace mural::launch {

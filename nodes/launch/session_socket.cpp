@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "transport/file_descriptor.hpp"
+#include "common/ipc/file_descriptor.hpp"
 
 namespace mural::launch {
 

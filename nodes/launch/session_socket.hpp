@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::launch {
 

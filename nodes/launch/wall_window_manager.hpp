@@ -13,7 +13,7 @@
 
 #include <xcb/xcb.h>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "nodes/launch/x_authority.hpp"
 
 namespace mural::launch {

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "nodes/output/png_files.hpp"
-#include "nodes/output/video_encoders.hpp"
-#include "nodes/output/video_file.hpp"
+#include "nodes/output/files/png_files.hpp"
+#include "nodes/output/files/video_encoders.hpp"
+#include "nodes/output/files/video_file.hpp"
 
 namespace mural {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/picture_format.hpp"
-#include "common/pixel_viewport.hpp"
+#include "common/base/picture_format.hpp"
+#include "common/geometry/pixel_viewport.hpp"
 
 namespace mural {
 

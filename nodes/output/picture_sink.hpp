@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "nodes/output/eye_pair.hpp"
 #include "nodes/output/picture.hpp"
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/picture_format.hpp"
-#include "common/result.hpp"
+#include "common/base/picture_format.hpp"
+#include "common/base/result.hpp"
 
 namespace mural {
 

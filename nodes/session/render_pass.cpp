@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "common/jitter.hpp"
+#include "common/geometry/jitter.hpp"
 
 namespace mural {
 

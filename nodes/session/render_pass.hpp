@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "common/eye.hpp"
-#include "common/range.hpp"
-#include "common/zoom.hpp"
+#include "common/geometry/eye.hpp"
+#include "common/geometry/range.hpp"
+#include "common/geometry/zoom.hpp"
 
 namespace mural {
 
@@ -31,7 +31,7 @@ struct RenderPass {
     int phase = 0, period = 1; // draws frames n with n mod period == phase
     int range = 0, ranges = 1; // index and number of the ranges of a frame's draws (sort-last)
     Range share; // this node's part of the draws
-    Zoom zoom; // drawn at this scale and resized before it is shown; at most kMostZoom
+    Zoom zoom; // drawn at this scale and resized before it is shown; at most kMaxZoom
 
     Zoom shown; // scale of another canvas relative to the program's picture
 

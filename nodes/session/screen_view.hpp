@@ -1,8 +1,8 @@
 // The view of one screen in a room, such as a side of a CAVE or a tilted screen.
 #pragma once
 
-#include "common/matrix4.hpp"
-#include "common/viewport.hpp"
+#include "common/geometry/matrix4.hpp"
+#include "common/geometry/viewport.hpp"
 
 namespace mural {
 

@@ -163,7 +163,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("stream", s.stream);
     visit("streamSecret", s.streamSecret);
     visit("economy", s.economy);
-    visit("catchesUp", s.catchesUp);
+    visit("catchesUp", s.isResyncing);
     visit("skipsFrames", s.skipsFrames);
     visit("life", s.life);
     visit("storeBytes", s.storeBytes, 1 << 20);
@@ -314,8 +314,8 @@ const char* nameOf(Display display) {
 
 namespace {
 
-bool isPossible(const Zoom& zoom) { return zoom.x > 0 && zoom.x <= kMostZoom && zoom.y > 0 && zoom.y <= kMostZoom; }
-Error noSuchZoom(const std::string& of) { return Error{of + ": its zoom is not above 0, or above " + std::to_string(static_cast<int>(kMostZoom))}; }
+bool isPossible(const Zoom& zoom) { return zoom.x > 0 && zoom.x <= kMaxZoom && zoom.y > 0 && zoom.y <= kMaxZoom; }
+Error noSuchZoom(const std::string& of) { return Error{of + ": its zoom is not above 0, or above " + std::to_string(static_cast<int>(kMaxZoom))}; }
 
 } // namespace
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/result.hpp"
-#include "common/viewport.hpp"
+#include "common/base/result.hpp"
+#include "common/geometry/viewport.hpp"
 #include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
 #include "nodes/session/screen_view.hpp"
@@ -98,7 +98,7 @@ struct NodeSetup {
     std::string pictureCodec = "raw"; // …or PackedPicture messages, unless raw: a name for PlaneEncoder
     bool windowPixels = false; // pictures go to the program's own window, so lossy codecs keep the alpha
     bool deepPictures = false;    // pictures keep 10 bits per channel; requires windowPixels
-    Zoom way; // reduction for the transfer, at most 1 (nodes/pictures/picture_way.hpp)
+    Zoom way; // reduction for the transfer, at most 1 (nodes/frame_transfer/transfer_scale.hpp)
     Readback readback = Readback::Auto; // transfer from GL to memory
     std::string partCodec = "auto"; // codec for parts of pictures between nodes
     bool wallWindows = false; // opens one window per tile
@@ -111,10 +111,10 @@ struct NodeSetup {
     std::string displayName;
     std::string stream; // rsp://…: group that carries the packets; empty: this connection does
     std::string streamSecret; // secret of that group, in hex
-    bool economy = false; // packets arrive in batches (economy/batch_head.hpp)
+    bool economy = false; // packets arrive in batches (streamcodec/delta/batch_head.hpp)
     int64_t storeBytes = int64_t{1} << 30;
     // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Member)
-    bool catchesUp = false;
+    bool isResyncing = false;
     bool skipsFrames = false; // with catchesUp: skips drawing until Synchronize
     uint32_t life = 0; // incarnation: number of restarts
     int collector = 0; // node that composes this node's picture; the nodes of the ranges follow it, one per range

@@ -1,13 +1,13 @@
 // Mutual authentication of the head and a node on TCP. The head gives each node its own 32 random bytes, as one line of
-// 64 hex digits on standard input. Neither end sends the secret; each proves it (transport/secure_channel.hpp).
+// 64 hex digits on standard input. Neither end sends the secret; each proves it (transport/secure/secure_channel.hpp).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <string>
 
-#include "common/result.hpp"
-#include "transport/secure_channel.hpp"
+#include "common/base/result.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 namespace mural {
 

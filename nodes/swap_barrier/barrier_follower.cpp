@@ -3,14 +3,14 @@
 #include <algorithm>
 
 #include "nodes/swap_barrier/barrier_names.hpp"
-#include "transport/secure_connection.hpp"
+#include "transport/secure/secure_connection.hpp"
 
 namespace mural {
 
 namespace {
 
 constexpr int64_t kSendMs = 2000;
-constexpr int64_t kMostSleepNs = 20 * kNsPerMs; // upper bound, whatever time the leader sends
+constexpr int64_t kMaxSleepNs = 20 * kNsPerMs; // upper bound, whatever time the leader sends
 constexpr int64_t kAnswerMs = 4 * SwapBarrier::kPatienceMs; // longer than the leader waits for any member
 
 } // namespace
@@ -42,7 +42,7 @@ int64_t BarrierFollower::await(const SwapKey& key) {
     if (!leader_) return 0;
     auto go = ask(key);
     if (go && go->showNs == 0) return 0; // released alone: there is no common time to wait for
-    if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMostSleepNs);
+    if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMaxSleepNs);
     log_("the swap barrier is broken: its leader is gone: " + go.error().message + "; windows of this node show frames when they are drawn");
     leader_.reset();
     return 0;

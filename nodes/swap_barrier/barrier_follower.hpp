@@ -8,7 +8,7 @@
 #include "nodes/swap_barrier/clock_offset.hpp"
 #include "nodes/swap_barrier/swap_barrier.hpp"
 #include "transport/connection.hpp"
-#include "transport/secure_channel.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 namespace mural {
 

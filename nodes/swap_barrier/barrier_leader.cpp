@@ -4,8 +4,8 @@
 #include <chrono>
 
 #include "nodes/swap_barrier/barrier_names.hpp"
-#include "transport/free_port.hpp"
-#include "transport/secure_connection.hpp"
+#include "transport/tcp/free_port.hpp"
+#include "transport/secure/secure_connection.hpp"
 
 namespace mural {
 
@@ -16,7 +16,7 @@ constexpr int64_t kProofPatienceMs = 5000;
 constexpr int64_t kSendMs = 1000;
 constexpr int64_t kRestMs = 1000; // for the rest of a message
 constexpr int64_t kWakeNs = 50'000;
-constexpr int64_t kMostLeadNs = 4 * kNsPerMs; // longest time from release to show; members with a higher latency show later
+constexpr int64_t kMaxLeadNs = 4 * kNsPerMs; // longest time from release to show; members with a higher latency show later
 
 std::string memberText(int rank) { return "member " + std::to_string(rank + 1) + " of the swap barrier"; }
 
@@ -106,7 +106,7 @@ void BarrierLeader::apply(const BarrierRounds::Step& step) {
     for (const BarrierRounds::Release& release : step.releases) {
         skew_.released(release.key, release.members.size());
         // The estimated time at which all members have received the release.
-        const int64_t showNs = release.members.size() < 2 ? 0 : monotonicNowNs() + std::min(worstClockNs(Whose::Waiting) + kWakeNs, kMostLeadNs);
+        const int64_t showNs = release.members.size() < 2 ? 0 : monotonicNowNs() + std::min(worstClockNs(Whose::Waiting) + kWakeNs, kMaxLeadNs);
         for (const int rank : release.members) {
             if (rank == 0) {
                 waiting_ = false;

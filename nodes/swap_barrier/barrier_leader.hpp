@@ -14,7 +14,7 @@
 #include "nodes/swap_barrier/barrier_rounds.hpp"
 #include "nodes/swap_barrier/swap_barrier.hpp"
 #include "transport/connection.hpp"
-#include "transport/secure_channel.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 namespace mural {
 

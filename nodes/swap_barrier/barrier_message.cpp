@@ -1,6 +1,6 @@
 #include "nodes/swap_barrier/barrier_message.hpp"
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural {
 

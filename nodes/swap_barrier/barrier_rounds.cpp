@@ -6,7 +6,7 @@ namespace mural {
 
 namespace {
 
-constexpr size_t kMostWindows = 256; // windows with a remembered last frame
+constexpr size_t kMaxWindows = 256; // windows with a remembered last frame
 
 } // namespace
 
@@ -63,7 +63,7 @@ void BarrierRounds::releaseRounds(Step& step, int64_t nowNs) {
         members_[i].state = State::Away;
         release.members.push_back(static_cast<int>(i));
     }
-    if (passed_.size() >= kMostWindows) passed_.erase(passed_.begin());
+    if (passed_.size() >= kMaxWindows) passed_.erase(passed_.begin());
     passed_[{release.key.client, release.key.window}] = release.key.frame;
     progressNs_ = nowNs;
     step.releases.push_back(std::move(release));

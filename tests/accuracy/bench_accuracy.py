@@ -15,7 +15,7 @@ import xml.etree.ElementTree as tree
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'end_to_end'))
 
-from processes import processes_with, until
+from harness.processes import processes_with, until
 
 START_SECONDS, END_SECONDS = 60, 60
 

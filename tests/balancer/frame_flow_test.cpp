@@ -7,13 +7,13 @@
 #include <random>
 #include <set>
 
-#include "balancer/compound/cells.hpp"
+#include "balancer/compound/partition.hpp"
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/load_config.hpp"
 #include "balancer/compound/plan_frame.hpp"
 #include "balancer/config/resolve.hpp"
-#include "balancer/config/text/parser.hpp"
-#include "balancer/config/text/writer.hpp"
+#include "balancer/config/eqc/parser.hpp"
+#include "balancer/config/eqc/writer.hpp"
 #include "tests/balancer/symbolic_wall.hpp"
 #include "tests/balancer/tree_maker.hpp"
 #include "tests/sanitized.hpp"
@@ -102,7 +102,7 @@ TEST(FrameFlow, recombinesStripesOfDirectSend) {
                                   "compound { channel \"t\" compound { range [ .5 1 ] outputframe { name \"s1.t\" viewport [ 0 0 1 .5 ] } } inputframe { name \"s2.d\" } outputframe { name \"s2.t\" buffer [ COLOR ] viewport [ 0 .5 1 .5 ] } } "
                                   "inputframe { name \"s2.t\" }";
     for (const std::string channel : {"d", "t"}) {
-        std::vector<Piece> pieces;
+        std::vector<Rect> pieces;
         for (const ShownPart& p : flowOfDraw(compounds, channel).parts) {
             EXPECT_EQ(p.from, p.to);
             pieces.push_back({0, p.to});
@@ -157,7 +157,7 @@ TEST(Cells, areDisjointAndCoverAll) {
     std::mt19937 random(3);
     const auto number = [&](int to) { return static_cast<int>(random() % static_cast<unsigned>(to)); };
     for (int round = 0; round < 200; ++round) {
-        std::vector<Piece> pieces;
+        std::vector<Rect> pieces;
         for (int i = number(6); i >= 0; --i) {
             const int x = number(16), y = number(16);
             pieces.push_back({number(4), {x / 16., y / 16., (1 + number(16 - x)) / 16., (1 + number(16 - y)) / 16.}});
@@ -167,7 +167,7 @@ TEST(Cells, areDisjointAndCoverAll) {
             for (int x = 0; x < 16; ++x) {
                 const auto holds = [&](const Viewport& v) { return v.x * 16 < x + .5 && (v.x + v.w) * 16 > x + .5 && v.y * 16 < y + .5 && (v.y + v.h) * 16 > y + .5; };
                 std::set<int> expected;
-                for (const Piece& p : pieces)
+                for (const Rect& p : pieces)
                     if (holds(p.area)) expected.insert(p.of);
                 int cellsHere = 0;
                 std::set<int> found;

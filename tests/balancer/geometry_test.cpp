@@ -1,11 +1,11 @@
 // Operators on viewports, ranges, kernels and zooms.
 #include <gtest/gtest.h>
 
-#include "common/pixel_kernel.hpp"
-#include "common/range.hpp"
-#include "common/sub_pixel.hpp"
-#include "common/viewport.hpp"
-#include "common/zoom.hpp"
+#include "common/geometry/pixel_kernel.hpp"
+#include "common/geometry/range.hpp"
+#include "common/geometry/sub_pixel.hpp"
+#include "common/geometry/viewport.hpp"
+#include "common/geometry/zoom.hpp"
 
 namespace mural {
 

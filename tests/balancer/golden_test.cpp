@@ -3,9 +3,9 @@
 #include <set>
 
 #include "balancer/config/resolve.hpp"
-#include "balancer/config/text/parser.hpp"
-#include "balancer/config/text/section_fields.hpp"
-#include "balancer/config/text/value_writer.hpp"
+#include "balancer/config/eqc/parser.hpp"
+#include "balancer/config/eqc/section_fields.hpp"
+#include "balancer/config/eqc/value_writer.hpp"
 #include "tests/balancer/example_files.hpp"
 
 namespace mural::config {

@@ -1,7 +1,7 @@
 // Parsing of configurations: the syntax of Equalizer's reader, keywords of early releases, and error messages.
 #include <gtest/gtest.h>
 
-#include "balancer/config/text/parser.hpp"
+#include "balancer/config/eqc/parser.hpp"
 
 namespace mural::config {
 

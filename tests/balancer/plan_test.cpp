@@ -5,7 +5,7 @@
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/plan_frame.hpp"
 #include "balancer/config/resolve.hpp"
-#include "balancer/config/text/parser.hpp"
+#include "balancer/config/eqc/parser.hpp"
 
 namespace mural::compound {
 

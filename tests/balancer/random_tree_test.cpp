@@ -5,7 +5,7 @@
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/load_config.hpp"
 #include "balancer/compound/plan_frame.hpp"
-#include "balancer/config/text/writer.hpp"
+#include "balancer/config/eqc/writer.hpp"
 #include "tests/balancer/symbolic_wall.hpp"
 #include "tests/balancer/tree_maker.hpp"
 #include "tests/sanitized.hpp"

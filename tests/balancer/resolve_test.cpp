@@ -3,7 +3,7 @@
 
 #include "balancer/config/resolve.hpp"
 #include "balancer/config/screen.hpp"
-#include "balancer/config/text/parser.hpp"
+#include "balancer/config/eqc/parser.hpp"
 
 namespace mural::config {
 

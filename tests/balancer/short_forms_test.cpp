@@ -4,25 +4,25 @@
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/load_config.hpp"
 #include "balancer/compound/plan_frame.hpp"
-#include "balancer/config/short_forms.hpp"
-#include "balancer/config/text/parser.hpp"
-#include "balancer/config/text/writer.hpp"
+#include "balancer/config/presets.hpp"
+#include "balancer/config/eqc/parser.hpp"
+#include "balancer/config/eqc/writer.hpp"
 #include "tests/balancer/symbolic_wall.hpp"
 
 namespace mural::compound {
 
 namespace {
 
-using config::ShortForm;
-using config::StereoForm;
+using config::Preset;
+using config::StereoPreset;
 
-LoadedConfig loaded(const ShortForm& form) {
+LoadedConfig loaded(const Preset& form) {
     const auto file = config::shortForm(form);
     EXPECT_TRUE(file.ok()) << file.error().message;
     return loadConfig(file.value(), "short", [](const std::string&) { return std::nullopt; });
 }
 
-void expectWhole(ShortForm form) {
+void expectWhole(Preset form) {
     form.width = 37; // does not divide
     form.height = 23;
     const LoadedConfig one = loaded(form);
@@ -42,30 +42,30 @@ void expectWhole(ShortForm form) {
 } // namespace
 
 TEST(ShortForms, workSeparately) {
-    for (const auto member : {&ShortForm::columns, &ShortForm::rows, &ShortForm::ranges, &ShortForm::pixels, &ShortForm::samples, &ShortForm::frames}) {
+    for (const auto member : {&Preset::columns, &Preset::rows, &Preset::ranges, &Preset::pixels, &Preset::samples, &Preset::frames}) {
         for (const int n : {1, 2, 3, 7}) {
-            ShortForm form;
+            Preset form;
             form.*member = n;
             expectWhole(form);
         }
     }
-    for (const auto stereo : {StereoForm::Anaglyph, StereoForm::Quad, StereoForm::Passive, StereoForm::SideBySide}) {
-        ShortForm form;
+    for (const auto stereo : {StereoPreset::Anaglyph, StereoPreset::Quad, StereoPreset::Passive, StereoPreset::SideBySide}) {
+        Preset form;
         form.stereo = stereo;
         expectWhole(form);
     }
 }
 
 TEST(ShortForms, supportZoom) {
-    ShortForm form;
+    Preset form;
     form.columns = form.ranges = 2;
     form.zoom = {0.5, 2};
     for (const auto& c : loaded(form).resolved.compounds) EXPECT_EQ(c.zoom, c.parent == config::kNone ? form.zoom : Zoom{}) << "what is in it inherits that";
 }
 
 TEST(ShortForms, workInCombination) {
-    for (const auto stereo : {StereoForm::None, StereoForm::Anaglyph, StereoForm::Passive}) {
-        ShortForm form;
+    for (const auto stereo : {StereoPreset::None, StereoPreset::Anaglyph, StereoPreset::Passive}) {
+        Preset form;
         form.columns = form.ranges = form.pixels = form.samples = form.frames = 2;
         form.nodes = {"a", "b", "c"};
         form.stereo = stereo;
@@ -74,7 +74,7 @@ TEST(ShortForms, workInCombination) {
 }
 
 TEST(ShortForms, timeMultiplexNodes) {
-    ShortForm form;
+    Preset form;
     form.columns = form.rows = 2;
     form.nodes = {"a", "b"};
     const LoadedConfig one = loaded(form);
@@ -86,19 +86,19 @@ TEST(ShortForms, timeMultiplexNodes) {
 }
 
 TEST(ShortForms, createTileQueues) {
-    ShortForm form;
+    Preset form;
     form.tileWidth = form.tileHeight = 8;
     form.takers = 3;
     expectWhole(form);
     form.samples = 2;
-    form.stereo = StereoForm::Anaglyph;
+    form.stereo = StereoPreset::Anaglyph;
     expectWhole(form);
     form.takers = 1; // a single node shares nothing
     for (const auto& c : loaded(form).resolved.compounds) EXPECT_TRUE(c.outputQueues.empty());
 }
 
 TEST(ShortForms, inheritTheCompositionInRanges) {
-    ShortForm form;
+    Preset form;
     form.ranges = 3;
     form.composition = "2-3-swap";
     const LoadedConfig three = loaded(form);
@@ -108,7 +108,7 @@ TEST(ShortForms, inheritTheCompositionInRanges) {
 }
 
 TEST(ShortForms, areRejectedWhenInvalid) {
-    ShortForm form;
+    Preset form;
     form.ranges = 0;
     EXPECT_EQ(config::shortForm(form).error().message, "--db can't be 0; give 1 or more");
     form.ranges = 4097;

@@ -5,8 +5,8 @@
 #include <random>
 #include <string>
 
-#include "balancer/queue/random_areas.hpp"
-#include "balancer/queue/tile_queue.hpp"
+#include "balancer/equalizers/random_areas.hpp"
+#include "balancer/equalizers/tile_queue.hpp"
 #include "tests/sanitized.hpp"
 
 namespace mural::queue {

@@ -42,7 +42,7 @@ public:
     }
 
 private:
-    enum class Kind { Areas, Ranges, Pixels, Samples, Frames };
+    enum class Kind { ViewportAssignment, Ranges, Pixels, Samples, Frames };
 
     int number(int from, int to) { return std::uniform_int_distribution<>(from, to)(random_); }
 
@@ -79,7 +79,7 @@ private:
     void divide(Compound& c, int depth) {
         if (depth > 2 || (depth > 0 && number(0, 2) == 0)) return;
         Kind kind = static_cast<Kind>(number(0, 4));
-        if (kind == Kind::Frames && inFrames_) kind = Kind::Areas;
+        if (kind == Kind::Frames && inFrames_) kind = Kind::ViewportAssignment;
         const int n = number(2, 4);
         const auto edges = cuts(n);
         const bool columns = number(0, 1) == 0;
@@ -87,7 +87,7 @@ private:
         for (int i = 0; i < n; ++i) {
             Compound child;
             const double from = edges[static_cast<size_t>(i)], to = edges[static_cast<size_t>(i) + 1];
-            if (kind == Kind::Areas) child.viewport = columns ? Viewport{from, 0, to - from, 1} : Viewport{0, from, 1, to - from};
+            if (kind == Kind::ViewportAssignment) child.viewport = columns ? Viewport{from, 0, to - from, 1} : Viewport{0, from, 1, to - from};
             if (kind == Kind::Ranges) child.range = Range{from, to};
             if (kind == Kind::Pixels) child.pixel = columns ? PixelKernel{i, 0, n, 1} : PixelKernel{0, i, 1, n};
             if (kind == Kind::Samples) child.subPixel = SubPixel{i, n};
@@ -96,7 +96,7 @@ private:
                 child.phase = static_cast<uint32_t>(i);
             }
             // The first part of areas and ranges may be drawn at the destination.
-            const bool here = i == 0 && (kind == Kind::Areas || kind == Kind::Ranges) && number(0, 1) == 0;
+            const bool here = i == 0 && (kind == Kind::ViewportAssignment || kind == Kind::Ranges) && number(0, 1) == 0;
             if (!here) {
                 child.channel = newChannel();
                 config::Frame frame;

@@ -1,9 +1,9 @@
 // Written configurations parse to the same configuration, and are written identically again.
 #include <gtest/gtest.h>
 
-#include "balancer/config/text/parser.hpp"
-#include "balancer/config/text/value_writer.hpp"
-#include "balancer/config/text/writer.hpp"
+#include "balancer/config/eqc/parser.hpp"
+#include "balancer/config/eqc/value_writer.hpp"
+#include "balancer/config/eqc/writer.hpp"
 #include "tests/balancer/example_files.hpp"
 #include "tests/balancer/random_config.hpp"
 

@@ -18,8 +18,8 @@ LIMIT_SECONDS, SKIPPED = 60, 77
 LEAST_PLACES = 10
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
 
-from display import PrivateDisplay
-from processes import until
+from harness.display import PrivateDisplay
+from harness.processes import until
 
 
 def moves_fault(folder, environment):

@@ -14,7 +14,7 @@ STOPPED = 130
 START_SECONDS, END_SECONDS = 60, 60
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
 
-from processes import processes_with, until
+from harness.processes import processes_with, until
 
 
 def fault_of(a, number):

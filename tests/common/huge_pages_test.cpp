@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "common/huge_pages.hpp"
+#include "common/memory/huge_pages.hpp"
 
 namespace mural {
 namespace {

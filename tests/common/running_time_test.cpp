@@ -1,8 +1,8 @@
 // Limits that count only while the processes involved run.
 #include <gtest/gtest.h>
 
-#include "common/clock.hpp"
-#include "common/running_time.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/running_time.hpp"
 
 namespace mural {
 namespace {

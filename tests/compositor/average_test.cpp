@@ -37,7 +37,7 @@ TEST(Average, givesEqualResultsForVectorsAndPixels) {
 // Division in floats, for sums next to every step of the result.
 TEST(Average, dividesExactlyAtEveryStep) {
     forEachTarget([](const char* target) {
-        for (const uint32_t n : {1u, 2u, 3u, 7u, 64u, 257u, 258u, 1000u, 4099u, 65521u, kMostAveraged8}) {
+        for (const uint32_t n : {1u, 2u, 3u, 7u, 64u, 257u, 258u, 1000u, 4099u, 65521u, kMaxAveraged8}) {
             std::vector<uint32_t> sums;
             for (uint32_t value = 0; value < 255; ++value)
                 for (uint32_t d = 0; d < 4; ++d) sums.push_back(std::min(255 * n, value * n + (n + 1) / 2 + d - std::min(2u, value * n + (n + 1) / 2)));

@@ -52,7 +52,7 @@ TEST(Bitplane, givesEqualBytesForVectorsAndWords) {
         for (const Arithmetic a : {Arithmetic::Bytes, Arithmetic::Halves, Arithmetic::Words, Arithmetic::RotatedWords})
             for (const Predictor p : {Predictor::Above, Predictor::Slope})
                 for (const bool first : {true, false})
-                    for (unsigned blocks = 1; blocks <= kMostBlocks; ++blocks) {
+                    for (unsigned blocks = 1; blocks <= kMaxBlocks; ++blocks) {
                         const unsigned columns = blocks * kBlockColumns;
                         const std::vector<uint32_t> words = randomRows(random, columns, 6);
                         const auto* rows = reinterpret_cast<const std::byte*>(words.data());

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "compositor/selector/codec_selector.hpp"
+#include "compositor/selection/codec_selector.hpp"
 #include "tests/compositor/test_planes.hpp"
 
 namespace mural::compositor::test {

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "compositor/kernels/find_unlike.hpp"
+#include "compositor/kernels/find_first_difference.hpp"
 #include "compositor/kernels/interleave_pixels.hpp"
 #include "compositor/kernels/mask_channels.hpp"
 #include "tests/compositor/random_bytes.hpp"
@@ -63,7 +63,7 @@ TEST(FindUnlike, findsTheFirst) {
                 std::vector<uint32_t> words;
                 for (size_t i = 0; i < count; ++i) words.push_back(pattern[i % 4] ^ (random() & ~mask[i % 4]));
                 if (at < count) words[at] ^= mask[at % 4] & (0 - mask[at % 4]);
-                ASSERT_EQ(findUnlike(words.data(), count, pattern, mask), at) << target;
+                ASSERT_EQ(findFirstDifference(words.data(), count, pattern, mask), at) << target;
                 ASSERT_EQ(findUnlikeScalar(words.data(), count, pattern, mask), at);
             }
     });

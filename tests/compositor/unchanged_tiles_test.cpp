@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "compositor/codecs/registry.hpp"
-#include "compositor/codecs/unchanged_tiles.hpp"
+#include "compositor/codecs/tile_delta.hpp"
 #include "tests/compositor/test_planes.hpp"
 
 namespace mural::compositor::test {
@@ -10,8 +10,8 @@ namespace {
 
 struct Link {
     std::unique_ptr<Codec> codec = std::move(CodecRegistry().make("bitplane").value());
-    UnchangedTilesEncoder encoder;
-    UnchangedTilesDecoder decoder;
+    TileDeltaEncoder encoder;
+    TileDeltaDecoder decoder;
 
     std::vector<std::byte> encoded(const Plane& plane) {
         std::vector<std::byte> bytes(encoder.boundBytes(shapeOf(plane.view()), *codec));

@@ -19,9 +19,9 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "end_to_end"))
 
-import display  # noqa: E402  (found by the path above)
-import programs  # noqa: E402
-import shared_nodes  # noqa: E402
+from harness import display  # noqa: E402  (found by the path above)
+from harness import programs  # noqa: E402
+from harness import shared_nodes  # noqa: E402
 
 ROOT = "/usr/lib/x86_64-linux-gnu/piglit"
 NOT_INSTALLED = 77

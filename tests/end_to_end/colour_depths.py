@@ -14,8 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-import display
-import programs
+from harness import display, programs
 
 # A warning appears exactly for windows shown with fewer bits than they have.
 EIGHT_BITS = "bits per channel; its picture is shown and saved with 8"

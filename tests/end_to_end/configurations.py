@@ -14,7 +14,6 @@ present.
 
 import argparse
 import glob
-import json
 import math
 import os
 import re
@@ -22,9 +21,7 @@ import subprocess
 import sys
 import tempfile
 
-import display
-import pictures
-import programs
+from harness import display, pictures, programs
 
 PROGRAM = "fixed_lighting"
 FRAMES = 3

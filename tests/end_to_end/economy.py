@@ -9,9 +9,8 @@ import os
 import sys
 import tempfile
 
-import failures
+from harness import cases
 
-failures.CASES.clear()  # keeps only the cases of this file
 PATCH_BYTES = 64 * 64 * 4
 
 
@@ -21,7 +20,7 @@ def report_of(context, program, frames, *options):
         report_file = os.path.join(folder, "report.json")
         command = [context.program(program), "--frames", str(frames), "--size", "253x191"]
         with context.run(command, ["--display", "none", "--quiet", "--report", report_file, *options]) as run:
-            wrong = failures.check_end(run, 0)
+            wrong = cases.check_end(run, 0)
             if wrong is not None:
                 return wrong
         with open(report_file, encoding="utf-8") as file:
@@ -53,7 +52,7 @@ def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
         print("  %.0f bytes per frame on the wire" % each)
         return None
     check.__name__ = case_name
-    failures.case(check)
+    cases.case(check)
 
 
 per_frame("same_scene", "same_scene", 0.5, 100, (10, 310))  # measured times select the coding of the first frames
@@ -65,7 +64,7 @@ for value in ("same_sources", "same_arrays", "same_pixels"):
     per_frame(value, value, 1, 300, (30, 90))
 
 
-@failures.case
+@cases.case
 def verified_values(context):
     for program in ("same_sources", "same_arrays", "same_pixels"):
         report = verified(context, program, 10, "--tiles", "2x1")
@@ -74,7 +73,7 @@ def verified_values(context):
     return None
 
 
-@failures.case
+@cases.case
 def verified_texture(context):
     """Patches arrive at their position, also with a store that is too small for the texture."""
     for store in ("1GiB", "1MiB"):
@@ -90,7 +89,7 @@ def left_out_of(report):
     return e
 
 
-@failures.case
+@cases.case
 def late_uploads(context):
     """Uploads that are replaced, unchanged, or never drawn are not sent; uploads that are drawn late are sent late."""
     report = verified(context, "late_uploads", 103)
@@ -104,12 +103,12 @@ def late_uploads(context):
     return None
 
 
-@failures.case
+@cases.case
 def equal_state(context):
     """State that does not change, or is set again before a draw, is not sent, and the pictures are exact.
 
     The filter decides by CPU time whether it skips frames, and other load of the machine makes that time longer. A test
-    without a clock asserts the choice where it is cheaper (tests/holding/small_choice_test.cpp). Here it is at least
+    without a clock asserts the choice where it is cheaper (tests/filter/redundancy_tuner_test.cpp). Here it is at least
     tried."""
     report = verified(context, "equal_state", 300, every=10)
     if not isinstance(report, dict):
@@ -122,7 +121,7 @@ def equal_state(context):
     return None
 
 
-@failures.case
+@cases.case
 def off(context):
     """Nodes of this machine receive everything, unless configured otherwise."""
     report = report_of(context, "same_scene", 5)
@@ -132,4 +131,4 @@ def off(context):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

@@ -5,7 +5,6 @@ invalid. Each case checks the status, the number of printed lines, and that noth
   failures.py --build build/release [--cases node,head,ends,arguments] [--list]
 """
 
-import argparse
 import os
 import resource
 import signal
@@ -14,56 +13,7 @@ import sys
 import tempfile
 import time
 
-import display
-import programs
-import session
-
-CASES = {}  # name: function(context) → None or an error
-
-
-def case(function):
-    CASES[function.__name__] = function
-    return function
-
-
-class Context:
-    def __init__(self, build, mural, display_name):
-        self.build = build
-        self.mural = mural
-        self.display = display_name
-
-    def program(self, name):
-        return os.path.join(self.build, "tests", "programs", name)
-
-    def run(self, program_command, options=("--tiles", "2x2", "--display", "none"), environment=None):
-        command = [self.mural, "run"] + list(options) + ["--"] + list(program_command)
-        return session.Session(command, self.display, environment)
-
-    def drawing(self, name, frames=5, **more):
-        return self.run([self.program(name), "--frames", str(frames), "--size", "250x190"], **more)
-
-
-def error_lines(run, words):
-    return [line for line in run.standard_error if any(word in line for word in words)]
-
-
-def check_end(run, wanted_status, frames=None):
-    """Checks the status, the drawn frames, and that nothing remains: common to all cases."""
-    status = run.status()
-    if status != wanted_status:
-        return "status %s instead of %s; it said: %s" % (
-            "none in time" if status is None else status, wanted_status, " | ".join(run.standard_error[-3:]))
-    if frames is not None:
-        drawn = sum(line.startswith("frame ") for line in run.standard_output)
-        if drawn != frames:
-            return "the program drew %d frames instead of %d" % (drawn, frames)
-    left = run.left_behind()
-    return "left behind: " + ", ".join(left) if left else None
-
-
-def kill_all(pids):
-    for pid in pids:
-        os.kill(pid, signal.SIGKILL)
+from harness import cases, programs, session
 
 
 def kill_during_run(context, pattern, how_many, after_line, words):
@@ -75,31 +25,27 @@ def kill_during_run(context, pattern, how_many, after_line, words):
         found = run.wait_for_processes(pattern, max(how_many, 1))
         if not found:
             return "no process fits \"%s\"" % pattern
-        kill_all(found if how_many == 0 else found[:how_many])
-        wrong = check_end(run, 0, frames)
-        said = error_lines(run, words)
+        cases.kill_all(found if how_many == 0 else found[:how_many])
+        wrong = cases.check_end(run, 0, frames)
+        said = cases.error_lines(run, words)
         if wrong is None and len(said) != max(how_many, 1):
             wrong = "%d lines about it instead of %d: %s" % (len(said), max(how_many, 1), " | ".join(said))
         return wrong
 
 
-NODE = r"mural node\b"
-HEAD = r"mural head\b"
-
-
-@case
+@cases.case
 def node_killed_in_the_middle(context):
-    return kill_during_run(context, NODE, 1, "frame 20", ["was lost:"])
+    return kill_during_run(context, cases.NODE, 1, "frame 20", ["was lost:"])
 
 
-@case
+@cases.case
 def node_killed_at_the_start(context):
-    return kill_during_run(context, NODE, 1, "frame 0", ["was lost:"])
+    return kill_during_run(context, cases.NODE, 1, "frame 0", ["was lost:"])
 
 
-@case
+@cases.case
 def two_nodes_killed(context):
-    return kill_during_run(context, NODE, 2, "frame 10", ["was lost:"])
+    return kill_during_run(context, cases.NODE, 2, "frame 10", ["was lost:"])
 
 
 def range_lost(context, composition):
@@ -108,11 +54,11 @@ def range_lost(context, composition):
     with context.drawing("long_scene", 10 ** 6, options=("--display", "none", "--db", "4", "--composition", composition), environment={"SCENE_SHARES": "1"}) as run:
         if not run.wait_for_line("frame 30 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        found = run.wait_for_processes(NODE, 4)
+        found = run.wait_for_processes(cases.NODE, 4)
         if len(found) < 4:
             return "%d of 4 nodes run" % len(found)
         started = time.monotonic()
-        kill_all(sorted(found)[2:3])
+        cases.kill_all(sorted(found)[2:3])
         if not run.wait_for_line("a range of the picture is missing for now: range 3"):
             return "nobody said that a range is missing: " + " | ".join(run.standard_error[-3:])
         drawn = sum(line.startswith("frame ") for line in run.standard_output)
@@ -126,39 +72,39 @@ def range_lost(context, composition):
         return "left behind: " + ", ".join(left) if left else None
 
 
-@case
+@cases.case
 def range_lost_serial(context):
     return range_lost(context, "serial")
 
 
-@case
+@cases.case
 def range_lost_direct_send(context):
     return range_lost(context, "direct-send")
 
 
-@case
+@cases.case
 def range_lost_streaming(context):
     return range_lost(context, "streaming")
 
 
-@case
+@cases.case
 def head_killed_in_the_middle(context):
-    return kill_during_run(context, HEAD, 1, "frame 20", ["head"])
+    return kill_during_run(context, cases.HEAD, 1, "frame 20", ["head"])
 
 
-@case
+@cases.case
 def head_killed_at_the_start(context):
-    return kill_during_run(context, HEAD, 1, "frame 0", ["head"])
+    return kill_during_run(context, cases.HEAD, 1, "frame 0", ["head"])
 
 
-@case
+@cases.case
 def all_nodes_killed(context):
     with context.drawing("long_run", 60) as run:
         if not run.wait_for_line("frame 20"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        kill_all(run.wait_for_processes(NODE, 4))
-        wrong = check_end(run, 0, 60)
-        if wrong is None and not error_lines(run, ["was lost"]):
+        cases.kill_all(run.wait_for_processes(cases.NODE, 4))
+        wrong = cases.check_end(run, 0, 60)
+        if wrong is None and not cases.error_lines(run, ["was lost"]):
             wrong = "nobody said that the nodes were lost"
         return wrong
 
@@ -169,102 +115,102 @@ def killed_while_frames_are_counted(context, pattern, how_many):
     with context.drawing("long_run", 10 ** 6, options=options) as run:
         if not run.wait_for_line("frame 20"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        kill_all(run.wait_for_processes(pattern, how_many))
-        wrong = check_end(run, 1)
-        if wrong is None and len(error_lines(run, ["--frames asked for"])) != 1:
+        cases.kill_all(run.wait_for_processes(pattern, how_many))
+        wrong = cases.check_end(run, 1)
+        if wrong is None and len(cases.error_lines(run, ["--frames asked for"])) != 1:
             wrong = "it said: " + " | ".join(run.standard_error[-4:])
         return wrong
 
 
-@case
+@cases.case
 def head_killed_while_frames_are_counted(context):
-    return killed_while_frames_are_counted(context, HEAD, 1)
+    return killed_while_frames_are_counted(context, cases.HEAD, 1)
 
 
-@case
+@cases.case
 def all_nodes_killed_while_frames_are_counted(context):
-    return killed_while_frames_are_counted(context, NODE, 2)
+    return killed_while_frames_are_counted(context, cases.NODE, 2)
 
 
-@case
+@cases.case
 def node_without_memory(context):
     """One node has no memory for a texture: the program receives the error once, as from its own driver."""
     frames = 60
     with context.drawing("no_memory", frames) as run:
         if not run.wait_for_line("frame 3"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        node = run.wait_for_processes(NODE, 1)[0]
+        node = run.wait_for_processes(cases.NODE, 1)[0]
         with open("/proc/%d/statm" % node, encoding="ascii") as sizes:
             pages = int(sizes.read().split()[0])
         limit = pages * resource.getpagesize() + (3 << 20)  # less than one texture
         resource.prlimit(node, resource.RLIMIT_AS, (limit, limit))
-        wrong = check_end(run, 0, frames)
+        wrong = cases.check_end(run, 0, frames)
         if wrong is None and run.standard_output.count("no memory") != 1:
             wrong = "it was told %d times" % run.standard_output.count("no memory")
-        if wrong is None and len(error_lines(run, ["no memory for an object"])) == 0:
+        if wrong is None and len(cases.error_lines(run, ["no memory for an object"])) == 0:
             wrong = "nobody said which node had no memory"
         return wrong
 
 
-@case
+@cases.case
 def node_driver_reset(context):
     """One node's driver reports a reset (a planted fault). A program with reset notification receives it once, through
     the status and through GL's error for it; for another program one line is printed."""
     for arguments, told in (([], ["lost by status 0x8254, error 0x0507 behind it"]), (["--unasked"], [])):
         command = [context.program("context_lost"), "--frames", "60", "--size", "250x190"] + arguments
         with context.run(command, environment={"MURAL_PLANT": "reset"}) as run:
-            wrong = check_end(run, 0, 60)
+            wrong = cases.check_end(run, 0, 60)
             said = [line for line in run.standard_output if line.startswith("lost")]
-            lines = error_lines(run, ["did not ask to be told"])
+            lines = cases.error_lines(run, ["did not ask to be told"])
             if wrong is None and said != told:
                 wrong = "it was told \"%s\" instead of \"%s\"" % (" | ".join(said), " | ".join(told))
             if wrong is None and len(lines) != (0 if told else 1):
                 wrong = "%d lines for a program that %s: %s" % (len(lines), "asked" if told else "did not ask", " | ".join(lines))
-            if wrong is None and not error_lines(run, ["has lost a context"]):
+            if wrong is None and not cases.error_lines(run, ["has lost a context"]):
                 wrong = "nobody said that the node's driver had lost a context"
             if wrong:
                 return wrong
     return None
 
 
-@case
+@cases.case
 def node_stopped_and_continued(context):
     """A node that is only stopped for a while is not lost."""
     with context.drawing("long_run", 60) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        nodes = run.wait_for_processes(NODE, 1)
+        nodes = run.wait_for_processes(cases.NODE, 1)
         os.kill(nodes[0], signal.SIGSTOP)
         run.wait_for_line("frame 59", 1)
         os.kill(nodes[0], signal.SIGCONT)
-        wrong = check_end(run, 0, 60)
-        if wrong is None and error_lines(run, ["was lost"]):
-            wrong = "it was said to be lost: " + " | ".join(error_lines(run, ["was lost"]))
+        wrong = cases.check_end(run, 0, 60)
+        if wrong is None and cases.error_lines(run, ["was lost"]):
+            wrong = "it was said to be lost: " + " | ".join(cases.error_lines(run, ["was lost"]))
         return wrong
 
 
-@case
+@cases.case
 def node_stopped_for_good(context):
     """A hanging node is dropped, with one line; the others and the program continue."""
     with context.drawing("long_run", 60) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        node = run.wait_for_processes(NODE, 1)[0]
+        node = run.wait_for_processes(cases.NODE, 1)[0]
         os.kill(node, signal.SIGSTOP)
-        wrong = check_end(run, 0, 60)
-        said = error_lines(run, ["was lost:"])
+        wrong = cases.check_end(run, 0, 60)
+        said = cases.error_lines(run, ["was lost:"])
         if wrong is None and (len(said) != 1 or "pid %d)" % node not in said[0]):
             wrong = "not one line about node %d: %s" % (node, " | ".join(said))
         return wrong
 
 
-@case
+@cases.case
 def program_killed(context):
     with context.drawing("long_run", 100000) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
-        kill_all(run.processes(r"^\S*/long_run --frames"))  # not the launcher, whose command line also has the name
-        return check_end(run, 128 + signal.SIGKILL)
+        cases.kill_all(run.processes(r"^\S*/long_run --frames"))  # not the launcher, whose command line also has the name
+        return cases.check_end(run, 128 + signal.SIGKILL)
 
 
 def interrupted(context, number):
@@ -279,17 +225,17 @@ def interrupted(context, number):
         return "left behind: " + ", ".join(left) if left else None
 
 
-@case
+@cases.case
 def launcher_interrupted(context):
     return interrupted(context, signal.SIGINT)
 
 
-@case
+@cases.case
 def launcher_terminated(context):
     return interrupted(context, signal.SIGTERM)
 
 
-@case
+@cases.case
 def launcher_killed(context):
     """kill -9 of `mural run` itself: the other processes must notice it themselves."""
     return interrupted(context, signal.SIGKILL)
@@ -299,9 +245,9 @@ def ends(name):
     def check(context):
         wanted = programs.STATUS.get(name, 0)
         with context.drawing(name) as run:
-            return check_end(run, wanted if wanted >= 0 else 128 - wanted)
+            return cases.check_end(run, wanted if wanted >= 0 else 128 - wanted)
     check.__name__ = "ends_" + name
-    case(check)
+    cases.case(check)
 
 
 for ending in ("exit_dirty", "exit_quick", "exit_three", "exit_abort", "exit_segv", "exit_term",
@@ -309,42 +255,42 @@ for ending in ("exit_dirty", "exit_quick", "exit_three", "exit_abort", "exit_seg
     ends(ending)
 
 
-@case
+@cases.case
 def ends_launcher_script(context):
     """A script that starts the program in the background and waits for it."""
     script = "\"$0\" --frames 5 --size 250x190 & wait $!; exit 7"
     with context.run(["sh", "-c", script, context.program("long_run")]) as run:
-        return check_end(run, 7, 5)
+        return cases.check_end(run, 7, 5)
 
 
-@case
+@cases.case
 def ends_script_that_execs(context):
     with context.run(["sh", "-c", "exec \"$0\" --frames 5 --size 250x190", context.program("exit_three")]) as run:
-        return check_end(run, 3)
+        return cases.check_end(run, 3)
 
 
-@case
+@cases.case
 def ends_program_without_gl(context):
     with context.run(["sh", "-c", "exit 5"]) as run:
-        return check_end(run, 5)
+        return cases.check_end(run, 5)
 
 
-@case
+@cases.case
 def ends_frames_reached(context):
     options = ("--tiles", "2x1", "--display", "none", "--frames", "10")
     with context.drawing("long_run", 100000, options=options) as run:
-        return check_end(run, 0)
+        return cases.check_end(run, 0)
 
 
-@case
+@cases.case
 def ends_picture_that_nobody_sees(context):
     # The size of the wall needs a private display, because the program's window is there.
     for options, told in ((("--size", "250x190", "--display", "app"), 1), (("--tiles", "1x1", "--display", "app"), 0)):
         with context.drawing("immediate", 3, options=options) as run:
-            wrong = check_end(run, 0)
+            wrong = cases.check_end(run, 0)
             if wrong:
                 return wrong
-            lines = error_lines(run, ["private display"])
+            lines = cases.error_lines(run, ["private display"])
             if len(lines) != told:
                 return "%s: %d lines say where the window is, not %d" % (" ".join(options), len(lines), told)
     return None
@@ -365,7 +311,7 @@ def complains(name, arguments, wanted_status, words, environment=None):
             left = run.left_behind()
             return "left behind: " + ", ".join(left) if left else None
     check.__name__ = "arguments_" + name
-    case(check)
+    cases.case(check)
 
 
 ANY = range(1, 128)
@@ -387,7 +333,7 @@ complains("display_missing", ["run", "--display", "app", "--", "{programs}/exit_
           {"DISPLAY": ":9876"})
 
 
-@case
+@cases.case
 def arguments_setuid_program(context):
     with tempfile.TemporaryDirectory(prefix="mural-setuid.") as folder:
         copy = os.path.join(folder, "setuid_program")
@@ -402,32 +348,5 @@ def arguments_setuid_program(context):
             return None
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default="build/release", help="the build folder")
-    parser.add_argument("--mural", help="the launcher; default BUILD/bin/mural")
-    parser.add_argument("--cases", help="beginnings of the cases' names, separated by commas; default all")
-    parser.add_argument("--list", action="store_true", help="show the cases and stop")
-    arguments = parser.parse_args()
-    beginnings = tuple(arguments.cases.split(",")) if arguments.cases else ("",)
-    chosen = [name for name in CASES if name.startswith(beginnings)]
-    if arguments.list:
-        print("\n".join(chosen))
-        return 0
-    if not chosen:
-        raise SystemExit("no case begins with \"%s\"; --list shows all" % arguments.cases)
-    build = os.path.abspath(arguments.build)
-    mural = os.path.abspath(arguments.mural) if arguments.mural else os.path.join(build, "bin", "mural")
-    wrong = 0
-    with display.PrivateDisplay() as display_name:
-        context = Context(build, mural, display_name)
-        for name in chosen:
-            result = CASES[name](context)
-            wrong += result is not None
-            print("%-32s %s" % (name, "right" if result is None else "WRONG: " + result), flush=True)
-    print("%d cases, %d wrong" % (len(chosen), wrong))
-    return 1 if wrong else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(cases.main(__doc__))

@@ -15,11 +15,9 @@ import shutil
 import sys
 import tempfile
 
-import display
-import pictures
-import programs
+from harness import display, pictures, programs
 
-# Names of the frames of tests/programs/hard_cases.cpp, in its order.
+# Names of the frames of tests/programs/state/hard_cases.cpp, in its order.
 CASES = ["coplanar, GL_LESS, D24", "coplanar, GL_LEQUAL, D24", "near 10^-3, far 10^7", "near 10^-4, far 10^6", "far plane infinitely far", "far plane lost in floats",
          "reversed Z", "world at 10^6, matrices by the program", "eye 1 cm from a wall", "through the near plane, ground of 10^5", "lines and points of 1 pixel",
          "lines of 7, points of 9 pixels", "stippled lines and strips", "smooth lines", "mipmaps, anisotropy, derivatives", "gl_FragCoord, stipples, raster position",

@@ -15,11 +15,8 @@ import subprocess
 import sys
 import tempfile
 
-import failures
-import processes
-import session
+from harness import cases, processes, session
 
-failures.CASES.clear()  # keeps only the cases of this file
 SOCKETS = ("/tmp", os.environ.get("XDG_RUNTIME_DIR") or "/tmp")
 
 
@@ -41,7 +38,7 @@ def compared(context, command, frames, options=(), said=(), through=None):
         report_file = os.path.join(folder, "report.json")
         fixed = ["--tiles", "2x1", "--display", "app", "--quiet", "--verify", "--report", report_file] + list(options)
         with context.run(through or command, fixed) as run:
-            wrong = failures.check_end(run, status)
+            wrong = cases.check_end(run, status)
             if wrong is not None:
                 return wrong
         with open(report_file, encoding="utf-8") as file:
@@ -64,7 +61,7 @@ def reloaded(name, *arguments, frames):
     def check(context):
         return compared(context, [context.program("gl_reloaded")] + list(arguments), frames)
     check.__name__ = "reloaded_" + name
-    failures.case(check)
+    cases.case(check)
 
 
 reloaded("both", "both", "untouched", frames=18)
@@ -76,7 +73,7 @@ def executed(way, frames=6, said=()):
     def check(context):
         return compared(context, [context.program("exec_rounds"), way], frames, said=said)
     check.__name__ = "executed_by_" + way
-    failures.case(check)
+    cases.case(check)
 
 
 for call in ("execl", "execlp", "execle", "execv", "execvp", "execvpe", "execve", "fexecve", "execveat", "posix_spawn", "posix_spawnp", "vfork"):
@@ -96,7 +93,7 @@ def hooked(name, program, frames, options=()):
                 return "LD_PRELOAD=%s: %s" % (order % "overlay", wrong)
         return None
     check.__name__ = "hooked_" + name
-    failures.case(check)
+    cases.case(check)
 
 
 hooked("reloaded", ["gl_reloaded", "both", "untouched"], 18)
@@ -114,7 +111,7 @@ def sandboxed(name, unshare, script='exec "$@"'):
             return None
         return compared(context, program, 18, through=words + program)
     check.__name__ = "sandboxed_" + name
-    failures.case(check)
+    cases.case(check)
 
 
 sandboxed("network", ["-Urn"])
@@ -122,7 +119,7 @@ sandboxed("network_and_processes", ["-Urnp", "--fork", "--mount-proc"])
 sandboxed("network_without_user", ["-n"])
 
 
-@failures.case
+@cases.case
 def sandboxed_socket_of_a_killed_launcher_goes(context):
     with context.run([context.program("long_run"), "--frames", "100000"], ["--quiet", "--display", "none"]) as run:
         if not run.wait_for_line("frame 10"):
@@ -133,7 +130,7 @@ def sandboxed_socket_of_a_killed_launcher_goes(context):
         return None if processes.until(lambda: not sockets_of(run), 10) else "its folder is still there"
 
 
-@failures.case
+@cases.case
 def sandboxed_stale_sockets_go(context):
     """The next session removes the files of a session that was killed completely; other folders stay."""
     stale, foreign = "/tmp/mural-1-0123456789abcdef", "/tmp/mural-1-not-a-session"
@@ -144,7 +141,7 @@ def sandboxed_stale_sockets_go(context):
     os.utime(stale, (1, 1))
     try:
         with context.run(["true"], ["--quiet", "--display", "none"], {"XDG_RUNTIME_DIR": None}) as run:
-            wrong = failures.check_end(run, 0)
+            wrong = cases.check_end(run, 0)
         if wrong is None and os.path.exists(stale):
             wrong = stale + " is still there"
         if wrong is None and not os.path.exists(foreign):
@@ -156,4 +153,4 @@ def sandboxed_stale_sockets_go(context):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

@@ -15,9 +15,9 @@ sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.append(os.path.join(os.path.dirname(os.path.dirname(HERE)), "tools", "bench"))
 
-import display  # noqa: E402
-import programs  # noqa: E402
-from memory_watch import MemoryWatch  # noqa: E402
+from harness import display  # noqa: E402
+from harness import programs  # noqa: E402
+from benchlib.memory_watch import MemoryWatch  # noqa: E402
 
 MARKS = (150, 1650)
 LEAK_MARKS = (150, 550)  # frames between which a leak becomes visible: 25 MiB or more

@@ -11,9 +11,8 @@ import subprocess
 import sys
 import tempfile
 
-import failures
+from harness import cases
 
-failures.CASES.clear()  # keeps only the cases of this file
 PATIENCE_SECONDS = 60
 
 
@@ -29,7 +28,7 @@ def own_session(context, run):
     return next((s for s in json.loads(shown.stdout)["sessions"] if s["runPid"] == run.process.pid), None)
 
 
-@failures.case
+@cases.case
 def running_session(context):
     """Runs a program that draws on two nodes."""
     with context.run([context.program("long_run"), "--frames", "1000000", "--size", "250x190"], ["--tiles", "2x1", "--display", "none"]) as run:
@@ -44,13 +43,13 @@ def running_session(context):
         wrong += ["roundTrips"] if program["roundTrips"] != 0 or program["recent"]["roundTripsPerFrame"] != 0 else []
         wrong += ["command"] if "long_run --frames" not in program["command"] else []
         wrong += ["pid"] if program["pid"] not in run.processes(r"long_run") else []
-        wrong += ["node"] if any(n["state"] != "alive" or n["frames"] < 50 or n["pid"] not in run.processes(failures.NODE) for n in session["nodes"]) else []
+        wrong += ["node"] if any(n["state"] != "alive" or n["frames"] < 50 or n["pid"] not in run.processes(cases.NODE) for n in session["nodes"]) else []
         text = stat(context).stdout.decode()
         wrong += ["text"] if "session %d " % run.process.pid not in text or "0.00 round trips per frame" not in text else []
         return "wrong are %s in %s\n%s" % (", ".join(wrong), session, text) if wrong else None
 
 
-@failures.case
+@cases.case
 def who_is_waited_for(context):
     """A stopped node is named as the one for which the program waits."""
     with context.run([context.program("long_run"), "--frames", "1000000", "--size", "250x190"], ["--tiles", "3x1", "--display", "none"]) as run:
@@ -65,14 +64,14 @@ def who_is_waited_for(context):
         return None if waited == [1] and "now for node 1" in text else "waited for is %s\n%s" % (waited, text)
 
 
-@failures.case
+@cases.case
 def trips_are_named(context):
     """The report names round trips by command, with the correct sum."""
     with tempfile.TemporaryDirectory(prefix="mural-stat.") as folder:
         for program, wanted in (("pixels_read", "glReadPixels"), ("queries", "glGetQueryObjectuiv"), ("framebuffers", None), ("immediate", "")):
             report_file = os.path.join(folder, program + ".json")
             with context.run([context.program(program), "--frames", "3"], ["--tiles", "2x2", "--display", "none", "--report", report_file]) as run:
-                wrong = failures.check_end(run, 0)
+                wrong = cases.check_end(run, 0)
                 said = " ".join(run.standard_error)
             if wrong is not None:
                 return "%s: %s" % (program, wrong)
@@ -88,7 +87,7 @@ def trips_are_named(context):
     return None
 
 
-@failures.case
+@cases.case
 def none_of_this_user(context):
     """A user without sessions receives a message. Not tested as root, because sessions of other tests may run."""
     shown = stat(context)
@@ -99,4 +98,4 @@ def none_of_this_user(context):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

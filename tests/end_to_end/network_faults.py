@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-import own_network
+from harness import own_network
 
 HERE = "192.0.2.20"
 RECEIVERS = {"wall1": "192.0.2.21", "wall2": "192.0.2.22", "wall3": "192.0.2.23"}
@@ -299,7 +299,7 @@ def bit_errors(lab):
 
 def stranger(lab):
     total = 2 * RATE_BYTES_PER_S
-    script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "stranger.py")
+    script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "harness", "stranger.py")
     forger = subprocess.Popen(["ip", "netns", "exec", "stranger", sys.executable, script, GROUP, str(GROUP_PORT), STRANGER["stranger"], "4"],
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
     try:

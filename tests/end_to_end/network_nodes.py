@@ -11,9 +11,7 @@ import os
 import sys
 import tempfile
 
-import display
-import own_network
-import session
+from harness import display, own_network, session
 
 HERE = "10.79.0.1"
 NODES = {"wall1": "10.79.0.2", "wall2": "10.79.0.3"}

@@ -10,8 +10,7 @@ import os
 import subprocess
 import sys
 
-import display
-import programs
+from harness import display, programs
 
 WAYS = "glx,both,egl,xcb,default"
 SECONDS = 60

@@ -10,10 +10,8 @@ import os
 import sys
 import tempfile
 
-import failures
-import session
+from harness import cases, session
 
-failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 4
 OPTIONS = ["--tiles", "2x2", "--display", "none", "--verify"]
 
@@ -33,10 +31,10 @@ def caught(case_name, program, kind, options=(), in_script=False, more=None):
                 command = ["sh", "-c", 'LD_LIBRARY_PATH="$0" exec "$@"', libraries(context, kind)] + command
                 environment = None
             with context.run(command, OPTIONS + ["--report", report_file] + list(options), environment) as run:
-                wrong = failures.check_end(run, 0)
+                wrong = cases.check_end(run, 0)
                 if wrong is not None:
                     return wrong
-                said = failures.error_lines(run, ["past Mural", "two GL libraries", "no frame was captured"])
+                said = cases.error_lines(run, ["past Mural", "two GL libraries", "no frame was captured"])
                 if said:
                     return "it said: " + " | ".join(said)
             with open(report_file, encoding="utf-8") as file:
@@ -47,7 +45,7 @@ def caught(case_name, program, kind, options=(), in_script=False, more=None):
             return "%d of %d pixels differ" % (report["differingPixels"], report["verifiedPixels"])
         return None
     check.__name__ = "caught_" + case_name
-    failures.case(check)
+    cases.case(check)
 
 
 for name in ("immediate", "client_arrays", "display_lists", "core_arrays", "textures_classic", "glsl_legacy",
@@ -75,7 +73,7 @@ def told(case_name, program, words, in_script=None, options=(), output=None, she
             report_file = os.path.join(folder, "report.json")
             fixed = ["--tiles", "2x2", "--display", "none", "--quiet", "--report", report_file]
             with context.run(command, fixed + list(options)) as run:
-                wrong = failures.check_end(run, status)
+                wrong = cases.check_end(run, status)
                 if wrong is not None:
                     return wrong
             with open(report_file, encoding="utf-8") as file:
@@ -89,7 +87,7 @@ def told(case_name, program, words, in_script=None, options=(), output=None, she
             return "the program said: " + " | ".join(run.standard_output)
         return None
     check.__name__ = "told_" + case_name
-    failures.case(check)
+    cases.case(check)
 
 
 told("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--front preload"], "glx")
@@ -114,7 +112,7 @@ def silent(program):
             report_file = os.path.join(folder, "report.json")
             with context.run([context.program(program), "--frames", "5", "--size", "253x191"],
                              ["--tiles", "2x1", "--display", "none", "--quiet", "--report", report_file]) as run:
-                wrong = failures.check_end(run, 0)
+                wrong = cases.check_end(run, 0)
                 if wrong is not None:
                     return wrong
                 if run.standard_error:
@@ -123,7 +121,7 @@ def silent(program):
                 frames = json.load(file)["frames"]
         return None if frames >= 5 else "only %d frames are on the wall" % frames
     check.__name__ = "silent_" + program
-    failures.case(check)
+    cases.case(check)
 
 
 for name in ("immediate", "display_lists", "x_fonts", "feedback_select", "pixels_draw", "pixels_read", "framebuffers",
@@ -135,26 +133,26 @@ for name in ("immediate", "display_lists", "x_fonts", "feedback_select", "pixels
 def says(context, program, expected):
     """Returns an error if the program's one line through Mural is not as expected."""
     with context.run([context.program(program)], ["--display", "none", "--quiet"]) as run:
-        wrong = failures.check_end(run, 0)
+        wrong = cases.check_end(run, 0)
         if wrong is None and run.standard_output != [expected]:
             wrong = "the program said: " + " | ".join(run.standard_output)
         return wrong
 
 
-@failures.case
+@cases.case
 def told_extensions_of_all_machines(context):
     """Checks that no list of a window system's extensions names one that exists only on one machine."""
     return says(context, "extension_strings", "0 of 5 lists name what is on one machine only")
 
 
-@failures.case
+@cases.case
 def told_extensions_in_order(context):
     """Checks that GL_EXTENSIONS keeps the driver's order: old programs read only the first kilobytes of the text."""
     lists = []
     for run in (session.Session([context.program("gl_extensions")], context.display),
                 context.run([context.program("gl_extensions")], ["--display", "none", "--quiet"])):
         with run:
-            wrong = failures.check_end(run, 0)
+            wrong = cases.check_end(run, 0)
             if wrong is not None:
                 return wrong
             lists.append([line.split() for line in run.standard_output])
@@ -168,13 +166,13 @@ def told_extensions_in_order(context):
     return None
 
 
-@failures.case
+@cases.case
 def told_names_stay(context):
     """Checks that extension names are still readable after the end of EGL, which unloads the driver."""
     return says(context, "kept_names", "names, 0 gone")
 
 
-@failures.case
+@cases.case
 def told_memory_of_other_apis(context):
     """Checks that memory objects have no memory, and that their device matches none of another API."""
     expected = "object 1, one UUID 1, import 0x%04x, descriptor left 1, storage 0x%04x" % (0x0502, 0x0502)
@@ -182,4 +180,4 @@ def told_memory_of_other_apis(context):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

@@ -9,11 +9,11 @@ import os
 import sys
 import tempfile
 
-import failures
+from harness import cases
 import passes
-import pictures
+from harness import pictures
 
-failures.CASES.clear()  # keeps only the cases of this file
+cases.CASES.clear()  # keeps only the cases of this file
 PROGRAMS = ("immediate", "fixed_lighting", "copied_scene", "es2_scene")
 TILES = ["--tiles", "2x2"]
 LEAST_DB = 20  # half the colour resolution, at edges of triangles
@@ -111,4 +111,4 @@ def files_say_how(context, notes):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

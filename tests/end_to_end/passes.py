@@ -14,11 +14,8 @@ import sys
 import tempfile
 import time
 
-import failures
-import pictures
-import programs
+from harness import cases, pictures, programs
 
-failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 4
 SIZE = (253, 191)
 WAYS = ("fixed", "legacy", "matrices", "mvp", "block", "geometry", "tessellation")
@@ -34,7 +31,7 @@ def case(function):
             print("%-32s %s" % (function.__name__, "; ".join(notes)))
         return wrong
     measured.__name__ = function.__name__
-    failures.case(measured)
+    cases.case(measured)
     return function
 
 
@@ -53,7 +50,7 @@ def through(context, options, program, arguments=(), size=SIZE, frames=FRAMES):
     with tempfile.TemporaryDirectory(prefix="mural-passes.") as folder:
         command = [context.program(program), "--frames", str(frames), "--size", "%dx%d" % size] + list(arguments)
         with context.run(command, ["--display", "none", "--out", folder] + list(options)) as run:
-            wrong = failures.check_end(run, 0)
+            wrong = cases.check_end(run, 0)
             if wrong is not None:
                 raise AssertionError(wrong)
         return [pictures.read_png(os.path.join(folder, name)) for name in sorted(os.listdir(folder))]
@@ -93,7 +90,7 @@ def dplex_shares_the_work(context, notes):
     frames = 30
     options = ["--display", "none", "--dplex", "3", "--explain"]
     with context.drawing("long_run", frames, options=options) as run:
-        wrong = failures.check_end(run, 0, frames)
+        wrong = cases.check_end(run, 0, frames)
         said = [line for line in run.standard_error if "one node goes on drawing" in line]
     return wrong or (said[0] if said else None)
 
@@ -466,9 +463,9 @@ def node_of_a_pass_is_killed(context, notes):
         with context.drawing("long_run", frames, options=["--display", "none", "--subpixel", "3", "--out", out]) as run:
             if not run.wait_for_line("frame 20"):
                 return "the program did not start: " + " | ".join(run.standard_error[-3:])
-            failures.kill_all(run.wait_for_processes(failures.NODE, 3)[:1])
-            wrong = failures.check_end(run, 0, frames)
-            said = failures.error_lines(run, ["was lost:"])
+            cases.kill_all(run.wait_for_processes(cases.NODE, 3)[:1])
+            wrong = cases.check_end(run, 0, frames)
+            said = cases.error_lines(run, ["was lost:"])
         saved = len(os.listdir(out))
     if wrong is None and (len(said) != 1 or saved != frames):
         wrong = "%d lines about it, %d pictures instead of %d" % (len(said), saved, frames)
@@ -476,4 +473,4 @@ def node_of_a_pass_is_killed(context, notes):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

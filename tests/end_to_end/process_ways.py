@@ -12,8 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-import display
-import programs
+from harness import display, programs
 
 # name: minimum number of frames on the wall, over all processes
 FORKS = {"calls": 4, "raw_calls": 4, "together": 20, "raw_together": 20, "egl_together": 0, "before": 10, "after": 3,

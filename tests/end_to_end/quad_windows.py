@@ -9,11 +9,11 @@ import os
 import sys
 import tempfile
 
-import failures
+from harness import cases
 import passes
-import pictures
+from harness import pictures
 
-failures.CASES.clear()  # keeps only the cases of this file
+cases.CASES.clear()  # keeps only the cases of this file
 EYES = ["--eye-base", str(2 * passes.EYE), "--focus", str(passes.FOCUS)]
 DRAW = ["--draw", "fixed"]
 # Both eyes in one window; the sizes are the pictures' sizes.
@@ -36,7 +36,7 @@ def shown_in_quad(context, options, size=passes.SIZE, double=True, frames=passes
         environment = {"LD_AUDIT": library, "STEREO_OUT": buffers} if double else None
         command = [context.program("pass_scene"), "--frames", str(frames), "--size", "%dx%d" % size] + DRAW
         with context.run(command, ["--display", "windows", "--out", out] + options, environment) as run:
-            wrong = failures.check_end(run, 0)
+            wrong = cases.check_end(run, 0)
             said = list(run.standard_error)
         if wrong:
             raise AssertionError(wrong)
@@ -123,7 +123,7 @@ def without_such_windows_they_lie_side_by_side(context, notes):
 @passes.case
 def elsewhere_than_in_windows_of_the_wall_too(context, notes):
     with context.run([context.program("pass_scene"), "--frames", "3", "--size", "%dx%d" % passes.SIZE] + DRAW, ["--display", "app", "--stereo", "quad"] + EYES) as run:
-        wrong = failures.check_end(run, 0)
+        wrong = cases.check_end(run, 0)
         lines = [line for line in run.standard_error if "side by side" in line]
     if wrong:
         return wrong
@@ -131,4 +131,4 @@ def elsewhere_than_in_windows_of_the_wall_too(context, notes):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

@@ -13,12 +13,8 @@ import sys
 import tempfile
 import time
 
-import failures
-import pictures
-import programs
-import session
+from harness import cases, pictures, programs, session
 
-failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 6
 SIZE = (253, 191)
 RECORD = ("--display", "none", "--tiles", "1x1")
@@ -91,7 +87,7 @@ class Workplace:
 
     @staticmethod
     def check(run, status):
-        wrong = failures.check_end(run, status)
+        wrong = cases.check_end(run, status)
         if wrong is not None:
             raise AssertionError(wrong)
 
@@ -136,7 +132,7 @@ def case(function):
             except AssertionError as error:
                 return str(error)
     performed.__name__ = function.__name__
-    failures.case(performed)
+    cases.case(performed)
     return function
 
 
@@ -236,7 +232,7 @@ def killed_head_leaves_what_is_whole(place):
         if not run.wait_for_line("frame 20"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         time.sleep(2.5)  # data older than about a second is in the file
-        failures.kill_all(run.wait_for_processes(failures.HEAD))
+        cases.kill_all(run.wait_for_processes(cases.HEAD))
         if not run.wait_for_line("head"):
             return "nobody said that the head has ended"
         run.process.send_signal(signal.SIGTERM)  # the program would continue without nodes
@@ -253,8 +249,8 @@ def killed_head_leaves_what_is_whole(place):
 @case
 def full_disk_ends_the_recording_only(place):
     with place.context.drawing("long_run", 60, options=list(RECORD) + ["--record", "/dev/full"]) as run:
-        wrong = failures.check_end(run, 0, 60)
-        said = failures.error_lines(run, ["No space left"])
+        wrong = cases.check_end(run, 0, 60)
+        said = cases.error_lines(run, ["No space left"])
     return wrong or (None if len(said) == 1 and "the program goes on" in said[0] else "it said: " + " | ".join(run.standard_error))
 
 
@@ -447,4 +443,4 @@ def dump_understands_all_programs(place):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

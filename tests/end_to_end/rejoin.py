@@ -14,13 +14,9 @@ import sys
 import tempfile
 import time
 
-import failures
-import pictures
-import programs
-import session
+from harness import cases, pictures, programs, session
 
-failures.CASES.clear()  # keeps only the cases of this file
-case = failures.case
+case = cases.case
 WIDTH, HEIGHT = 252, 190
 BACK = "is back in the picture"
 PROGRAM = "long_scene"
@@ -89,7 +85,7 @@ class Watch:
 
     def end(self, run):
         """Returns the error of the run's end; sets the number of frames."""
-        wrong = failures.check_end(run, 0)
+        wrong = cases.check_end(run, 0)
         self.drawn = len(frame_times(run))
         if wrong is None and self.drawn < self.least:
             wrong = "the program drew %d frames, not %d at least" % (self.drawn, self.least)
@@ -131,7 +127,7 @@ def columns_that_differ(first, second):
 
 def nodes_of(run, count=2):
     """Returns the pids of the nodes by their number: the head starts them one after the other."""
-    return sorted(run.wait_for_processes(failures.NODE, count))
+    return sorted(run.wait_for_processes(cases.NODE, count))
 
 
 def said(run, text):
@@ -574,7 +570,7 @@ def killed_while_it_catches_up(context):
 def fresh_node(run, known, seconds=15):
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
-        fresh = [pid for pid in run.processes(failures.NODE) if pid not in known]
+        fresh = [pid for pid in run.processes(cases.NODE) if pid not in known]
         if fresh:
             return fresh[0]
         time.sleep(0.002)
@@ -732,7 +728,7 @@ def late_nodes_too_many(context):
     """Fewer nodes came than are required: one line, and no program."""
     watch = Watch(context, 10, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", "false", "--least-nodes", "1"))
     with watch.start() as run:
-        return failures.check_end(run, 2) or (None if len(said(run, "fewer than --least-nodes 1 are left")) == 1 else "it was not said: " + " | ".join(run.standard_error[-3:]))
+        return cases.check_end(run, 2) or (None if len(said(run, "fewer than --least-nodes 1 are left")) == 1 else "it was not said: " + " | ".join(run.standard_error[-3:]))
 
 
 @case
@@ -769,4 +765,4 @@ def large_store(context):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

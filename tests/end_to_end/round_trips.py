@@ -10,9 +10,8 @@ import os
 import sys
 import tempfile
 
-import failures
+from harness import cases
 
-failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 30
 
 
@@ -22,7 +21,7 @@ def round_trips(case_name, program, at_most, options=()):
             report_file = os.path.join(folder, "report.json")
             command = [context.program(program), "--frames", str(FRAMES), "--size", "253x191"]
             with context.run(command, ["--tiles", "2x2", "--display", "none", "--quiet", "--report", report_file, *options]) as run:
-                wrong = failures.check_end(run, 0)
+                wrong = cases.check_end(run, 0)
                 if wrong is not None:
                     return wrong
             with open(report_file, encoding="utf-8") as file:
@@ -33,7 +32,7 @@ def round_trips(case_name, program, at_most, options=()):
             return "%d round trips instead of %d at most in %d frames" % (report["roundTrips"], at_most, FRAMES)
         return None
     check.__name__ = case_name
-    failures.case(check)
+    cases.case(check)
 
 
 for name in ("immediate", "client_arrays", "core_arrays", "persistent_mapping", "glsl_uniforms", "glsl_blocks", "arb_programs",
@@ -45,4 +44,4 @@ round_trips("queries_later", "queries_later", 12)
 round_trips("reads_later", "reads_later", 20)
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

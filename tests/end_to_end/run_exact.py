@@ -18,10 +18,7 @@ import sys
 import tempfile
 import time
 
-import display
-import pictures
-import programs
-import shared_nodes
+from harness import display, pictures, programs, shared_nodes
 
 
 def parse_arguments(description, add_arguments):

@@ -13,7 +13,6 @@ import os
 import subprocess
 import sys
 
-import programs
 import run_exact
 
 RUNTIMES = ("libasan.so", "libubsan.so")

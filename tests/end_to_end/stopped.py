@@ -14,11 +14,9 @@ import subprocess
 import sys
 import time
 
-import failures
-import programs
+from harness import cases, programs
 
 STOP_SECONDS = 1
-failures.CASES.clear()  # keeps only the cases of this file
 LAYOUT = ("--tiles", "2x1", "--display", "none")
 
 
@@ -67,43 +65,43 @@ def reads_through_stops(context, kind, pattern, stops=2, seconds=2 + 2 * STOP_SE
 PROGRAM_ALONE = r"^\S*stopped_reads \w+ \d+$"
 
 
-@failures.case
+@cases.case
 def program_pixels(context):
     return reads_through_stops(context, "pixels", PROGRAM_ALONE)
 
 
-@failures.case
+@cases.case
 def program_buffer(context):
     return reads_through_stops(context, "buffer", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@failures.case
+@cases.case
 def program_texture(context):
     return reads_through_stops(context, "texture", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@failures.case
+@cases.case
 def program_query(context):
     return reads_through_stops(context, "query", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@failures.case
+@cases.case
 def program_swaps(context):
     return reads_through_stops(context, "swaps", PROGRAM_ALONE, stops=1, seconds=3)
 
 
-@failures.case
+@cases.case
 def head_pixels(context):
     return reads_through_stops(context, "pixels", r"mural head\b")
 
 
-@failures.case
+@cases.case
 def all_of_it(context):
     """Ctrl-Z and fg: stops and continues the program, its launcher, the head and the nodes."""
     return reads_through_stops(context, "pixels", r".")
 
 
-@failures.case
+@cases.case
 def program_killed_while_stopped(context):
     with context.run([context.program("stopped_reads"), "pixels", "60"], LAYOUT) as run:
         if not run.wait_for_line("begins"):
@@ -137,12 +135,12 @@ def head_killed(context, kind):
         return "%d of %d reads are wrong without an error" % (counts[1], counts[0]) if counts[1] else None
 
 
-@failures.case
+@cases.case
 def head_killed_pixels(context):
     return head_killed(context, "pixels")
 
 
-@failures.case
+@cases.case
 def head_killed_buffer(context):
     return head_killed(context, "buffer")
 
@@ -179,10 +177,10 @@ def grabbed(context, way, like=None):
 # Another connection's grab holds up the program's own GL natively, so these are compared with the first way.
 for name, native_way in (("xlib", None), ("xcb", None), ("checked", None), ("nested", None), ("early", None), ("second", "xlib"), ("closed", "xlib"), ("front", None),
                          ("two", None), ("large", None), ("opened", None), ("thread", None), ("copy", None), ("egl", None)):
-    failures.CASES["grabs_" + name] = lambda context, way=name, like=native_way: grabbed(context, way, like)
+    cases.CASES["grabs_" + name] = lambda context, way=name, like=native_way: grabbed(context, way, like)
 
 
-@failures.case
+@cases.case
 def grabs_of_another_program(context):
     """The pictures and the program's reads wait for the end of the grab. The program still reads each of its frames."""
     wanted = natively(context, "without")
@@ -197,4 +195,4 @@ def grabs_of_another_program(context):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

@@ -14,10 +14,8 @@ import subprocess
 import sys
 import tempfile
 
-import failures
-import programs
+from harness import cases, programs
 
-failures.CASES.clear()  # keeps only the cases of this file
 MODES = {"verify": ["--verify"], "app": ["--display", "app"]}
 SIZE = "253x191"
 # glibc fills new memory of nodes with a pattern, which makes missing clears visible. New memory of programs holds 0, because
@@ -53,7 +51,7 @@ def through_mural(context, program, mode, status, wanted, report_is_wrong, layou
         options = ["--tiles", layout, "--quiet", "--report", report_file] + MODES[mode]
         command = ["env"] + ["%s=%s" % item for item in environment.items()] + [context.program(program), "--size", SIZE]
         with context.run(command, options, OF_NODES) as run:
-            wrong = failures.check_end(run, status) or difference(wanted, run.standard_output)
+            wrong = cases.check_end(run, status) or difference(wanted, run.standard_output)
             if wrong is not None:
                 return "%s: %s" % (mode, wrong)
         with open(report_file, encoding="utf-8") as file:
@@ -85,7 +83,7 @@ def surfaces(program, frames, status=0, uncompared=None, layout="2x2", environme
                 return wrong
         return None
     check.__name__ = program
-    failures.case(check)
+    cases.case(check)
 
 
 surfaces("fresh_drawables", 38, uncompared={"window size unknown": 8}, environment=OF_PROGRAMS)
@@ -97,4 +95,4 @@ surfaces("at_exit_egl", 9, status=9, layout="2x1")
 surfaces("at_exit_es", 9, status=9, layout="2x1", uncompared={"own picture not readable": 6})
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

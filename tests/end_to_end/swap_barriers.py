@@ -11,9 +11,8 @@ import signal
 import sys
 import tempfile
 
-import failures
+from harness import cases
 
-failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 120
 FILE = """#Equalizer 1.2 ascii
 server { config {
@@ -36,7 +35,7 @@ def swapped_together(context, options, folder):
     report_file = os.path.join(folder, "report.json")
     command = [context.program("long_run"), "--frames", str(FRAMES), "--size", "400x160"]
     with context.run(command, options + ["--display", "windows", "--explain", "--report", report_file]) as run:
-        wrong = failures.check_end(run, 0)
+        wrong = cases.check_end(run, 0)
         lines = [line for line in run.standard_error if "swap barrier" in line]
     with open(report_file, encoding="utf-8") as file:
         nodes = json.load(file)["nodes"]
@@ -53,7 +52,7 @@ def wrong_numbers(numbers, members):
     return None if in_order else "these are no times: %s" % numbers
 
 
-@failures.case
+@cases.case
 def short_form(context):
     """--tiles: windows of all nodes; the report has the times."""
     for tiles, members in (("3x1", 3), ("2x2", 4)):
@@ -68,7 +67,7 @@ def short_form(context):
     return None
 
 
-@failures.case
+@cases.case
 def over_tcp(context):
     """Nodes connected by TCP."""
     with tempfile.TemporaryDirectory(prefix="mural-swap.") as folder:
@@ -76,7 +75,7 @@ def over_tcp(context):
     return wrong or wrong_numbers(numbers, 2)
 
 
-@failures.case
+@cases.case
 def files_say_it(context):
     """A file's canvas with a swap barrier, and without."""
     for barrier, members in (("swapbarrier { name \"front\" }", 2), ("", 0)):
@@ -99,7 +98,7 @@ def lost(context, which, words):
     with context.run([context.program("long_run"), "--frames", "1000000", "--size", "400x160"], ["--tiles", "3x1", "--display", "windows"]) as run:
         if not run.wait_for_line("frame 50"):
             return "no frames: %s" % " | ".join(run.standard_error[-3:])
-        nodes = sorted(run.processes(failures.NODE))
+        nodes = sorted(run.processes(cases.NODE))
         if len(nodes) != 3:
             return "%d nodes instead of 3" % len(nodes)
         os.kill(nodes[which], signal.SIGKILL)
@@ -111,17 +110,17 @@ def lost(context, which, words):
     return None
 
 
-@failures.case
+@cases.case
 def leader_lost(context):
     """The leading node is killed: the others show their frames on their own."""
     return lost(context, 0, "its leader is gone")
 
 
-@failures.case
+@cases.case
 def member_lost(context):
     """Another node is killed: the rest continues together."""
     return lost(context, 2, "the others swap without it")
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

@@ -10,9 +10,8 @@ import struct
 import sys
 import tempfile
 
-import failures
+from harness import cases
 
-failures.CASES.clear()  # keeps only the cases of this file
 FRAMES = 3
 WIDTH, HEIGHT = 252, 190
 
@@ -24,7 +23,7 @@ def saved(context, program, options=(), environment=None):
         command = [context.program(program), "--frames", str(FRAMES), "--size", "%dx%d" % (WIDTH, HEIGHT)]
         more = ["--tiles", "2x2", "--display", "none", "--out", out, "--report", report_file]
         with context.run(command, more + list(options), environment) as run:
-            wrong = failures.check_end(run, 0)
+            wrong = cases.check_end(run, 0)
             if wrong is not None:
                 return wrong, []
         with open(report_file, encoding="utf-8") as file:
@@ -39,7 +38,7 @@ def saved(context, program, options=(), environment=None):
     return wrong, files
 
 
-@failures.case
+@cases.case
 def windows_change(context):
     """A splash screen, the main window, and the remaining window after the main window's end."""
     wrong, files = saved(context, "window_switch")
@@ -51,7 +50,7 @@ def windows_change(context):
     return None if sizes == wanted else "pictures of the sizes %s" % sizes
 
 
-@failures.case
+@cases.case
 def windows_end_unnamed(context):
     """The X server destroys the large window, for a request that names another window or none."""
     wanted = [(WIDTH, HEIGHT)] * FRAMES + [(WIDTH // 2, HEIGHT // 2)] * FRAMES
@@ -63,7 +62,7 @@ def windows_end_unnamed(context):
     return None
 
 
-@failures.case
+@cases.case
 def drawables_of_one_window(context):
     """Two connections, each with its own drawable: all their swaps are in the window, and on the wall."""
     wrong, files = saved(context, "windows_end", environment={"WINDOWS_END": "shared"})
@@ -72,7 +71,7 @@ def drawables_of_one_window(context):
     return None if [file[:2] for file in files] == [(WIDTH, HEIGHT)] * (2 * FRAMES) else "%d pictures" % len(files)
 
 
-@failures.case
+@cases.case
 def front_buffer_is_shown(context):
     """Each swap, and each glFlush after front-buffer drawing, is a new picture."""
     wrong, files = saved(context, "front_buffer")
@@ -85,4 +84,4 @@ def front_buffer_is_shown(context):
 
 
 if __name__ == "__main__":
-    sys.exit(failures.main())
+    sys.exit(cases.main(__doc__))

@@ -10,7 +10,7 @@ As run_exact.py, but the pictures are the windows' contents (window_grab.c), not
 import os
 import sys
 
-import programs
+from harness import programs
 import run_exact
 
 # Without threads_windows: its windows overlap, so a read returns the pixels that another thread has just shown there.

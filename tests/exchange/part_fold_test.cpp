@@ -6,8 +6,8 @@
 namespace mural::test {
 namespace {
 
-void fold(PicturePart& into, const PicturePart& other, FoldSide side, const FoldRule& rule) {
-    foldRow({into.colour.data(), into.depth.data(), other.colour.data(), other.depth.data(), into.colour.size()}, side, rule);
+void fold(PicturePart& into, const PicturePart& other, LayerOrder side, const CompositeRule& rule) {
+    compositeRow({into.colour.data(), into.depth.data(), other.colour.data(), other.depth.data(), into.colour.size()}, side, rule);
 }
 
 // Three nodes draw a third each; any pairing gives the picture of a single node.
@@ -16,7 +16,7 @@ TEST(PartFold, givesOneNodesPictureForAnyPairing) {
     for (const auto function : kOrders)
         for (const bool deep : {false, true})
             for (int round = 0; round < 40; ++round) {
-                const FoldRule rule = ruleOf(function, deep);
+                const CompositeRule rule = ruleOf(function, deep);
                 PicturePart whole = clearedPart(37, 3, rule);
                 std::vector<PicturePart> parts(3, whole);
                 for (PicturePart& part : parts)
@@ -25,14 +25,14 @@ TEST(PartFold, givesOneNodesPictureForAnyPairing) {
                         draw(part, f.at, f.colour, f.depth, rule);
                     }
                 PicturePart left = parts[0];
-                fold(left, parts[1], FoldSide::Later, rule);
-                fold(left, parts[2], FoldSide::Later, rule);
+                fold(left, parts[1], LayerOrder::Later, rule);
+                fold(left, parts[2], LayerOrder::Later, rule);
                 PicturePart right = parts[2];
-                fold(right, parts[1], FoldSide::Earlier, rule);
-                fold(right, parts[0], FoldSide::Earlier, rule);
+                fold(right, parts[1], LayerOrder::Earlier, rule);
+                fold(right, parts[0], LayerOrder::Earlier, rule);
                 PicturePart middle = parts[1];
-                fold(middle, parts[2], FoldSide::Later, rule);
-                fold(middle, parts[0], FoldSide::Earlier, rule);
+                fold(middle, parts[2], LayerOrder::Later, rule);
+                fold(middle, parts[0], LayerOrder::Earlier, rule);
                 for (const PicturePart* made : {&left, &right, &middle}) {
                     ASSERT_EQ(made->colour, whole.colour) << "function " << static_cast<int>(function) << (deep ? ", deep" : "");
                     ASSERT_EQ(made->depth, whole.depth);
@@ -42,11 +42,11 @@ TEST(PartFold, givesOneNodesPictureForAnyPairing) {
 
 // All 32 bits count.
 TEST(PartFold, comparesAllBitsOfDeepBuffers) {
-    const FoldRule rule = ruleOf(compositor::DepthFunction::Less, true);
+    const CompositeRule rule = ruleOf(compositor::DepthFunction::Less, true);
     PicturePart into = clearedPart(1, 1, rule), later = into;
     draw(into, 0, 1, 0x80000001u, rule);
     draw(later, 0, 2, 0x80000000u, rule);
-    fold(into, later, FoldSide::Later, rule);
+    fold(into, later, LayerOrder::Later, rule);
     EXPECT_EQ(into.colour[0], 2u);
 }
 

@@ -11,7 +11,7 @@ using compositor::DepthFunction;
 using compositor::RowRange;
 
 // Some rectangles of surfaces, edges and noise.
-PicturePart drawnPart(std::mt19937& random, int32_t width, int32_t height, const FoldRule& rule) {
+PicturePart drawnPart(std::mt19937& random, int32_t width, int32_t height, const CompositeRule& rule) {
     PicturePart part = clearedPart(width, height, rule);
     for (int i = 0; i < 4; ++i) {
         const auto x0 = static_cast<int32_t>(random() % static_cast<uint32_t>(width)), y0 = static_cast<int32_t>(random() % static_cast<uint32_t>(height));
@@ -25,7 +25,7 @@ PicturePart drawnPart(std::mt19937& random, int32_t width, int32_t height, const
     return part;
 }
 
-Result<PartState> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows, const FoldRule& rule) {
+Result<PartState> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows, const CompositeRule& rule) {
     PlaneDecoder decoder;
     return unpackPart(message, into.id, rows, rule, decoder, [&](const ArrivedPiece& p) {
         ASSERT_TRUE((PixelViewport{0, rows.first, into.id.box.w, rows.count()}.contains(p.area)));
@@ -41,7 +41,7 @@ TEST(PartMessage, roundTripsRows) {
     std::mt19937 random(11);
     PlaneEncoder encoder;
     for (int round = 0; round < 60; ++round) {
-        const FoldRule rule = ruleOf(kOrders[round % 4], round % 3 == 0);
+        const CompositeRule rule = ruleOf(kOrders[round % 4], round % 3 == 0);
         const auto width = static_cast<int32_t>(1 + random() % 400), height = static_cast<int32_t>(1 + random() % 300);
         const PicturePart part = drawnPart(random, width, height, rule);
         const auto first = static_cast<int32_t>(random() % static_cast<uint32_t>(height));
@@ -62,7 +62,7 @@ TEST(PartMessage, roundTripsRows) {
 }
 
 TEST(PartMessage, omitsUndrawnPixels) {
-    const FoldRule rule = ruleOf(DepthFunction::Less, false);
+    const CompositeRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = clearedPart(1920, 1080, rule);
     EXPECT_EQ(packPart(part, {0, 1080}, rule, PartState::Complete, encoder).size(), 44u);
@@ -72,7 +72,7 @@ TEST(PartMessage, omitsUndrawnPixels) {
 
 TEST(PartMessage, enlargesNoiseByItsHeadersOnly) {
     std::mt19937 random(2);
-    const FoldRule rule = ruleOf(DepthFunction::Less, true);
+    const CompositeRule rule = ruleOf(DepthFunction::Less, true);
     PicturePart part = clearedPart(300, 200, rule);
     for (auto& word : part.colour) word = static_cast<uint32_t>(random());
     for (auto& word : part.depth) word = static_cast<uint32_t>(random());
@@ -81,7 +81,7 @@ TEST(PartMessage, enlargesNoiseByItsHeadersOnly) {
 }
 
 TEST(PartMessage, distinguishesPictures) {
-    const FoldRule rule = ruleOf(DepthFunction::Less, false);
+    const CompositeRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = clearedPart(64, 64, rule);
     const auto message = packPart(part, {0, 32}, rule, PartState::Incomplete, encoder);
@@ -93,7 +93,7 @@ TEST(PartMessage, distinguishesPictures) {
 
 TEST(PartMessage, reportsDamageInOneLine) {
     std::mt19937 random(3);
-    const FoldRule rule = ruleOf(DepthFunction::Less, false);
+    const CompositeRule rule = ruleOf(DepthFunction::Less, false);
     PlaneEncoder encoder;
     PicturePart part = drawnPart(random, 200, 150, rule);
     const auto message = packPart(part, {0, 150}, rule, PartState::Complete, encoder);

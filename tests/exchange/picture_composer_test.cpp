@@ -49,7 +49,7 @@ TEST(PictureComposer, givesOneNodesPictureWithEveryStrategy) {
     std::mt19937 random(23);
     for (const Strategy strategy : kEveryStrategy)
         for (int ranks = 1; ranks <= 9; ++ranks) {
-            const FoldRule rule = ruleOf(kOrders[ranks % 4], ranks % 3 == 0);
+            const CompositeRule rule = ruleOf(kOrders[ranks % 4], ranks % 3 == 0);
             const Scene scene = sceneOf(random, ranks, rule, 97, ranks == 4 ? 3 : 150);
             const Outcome made = compose(scene, strategy);
             EXPECT_TRUE(made.lines.empty());

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "nodes/exchange/part_fold.hpp"
+#include "nodes/exchange/part_composition.hpp"
 #include "nodes/exchange/picture_part.hpp"
 
 namespace mural::test {
@@ -14,7 +14,7 @@ constexpr compositor::DepthFunction kOrders[] = {compositor::DepthFunction::Less
 // As OpenGL converts 24 bits of depth to 32.
 inline uint32_t widened(uint32_t depth24) { return depth24 << 8 | depth24 >> 16; }
 
-inline FoldRule ruleOf(compositor::DepthFunction function, bool deep) {
+inline CompositeRule ruleOf(compositor::DepthFunction function, bool deep) {
     const bool less = function == compositor::DepthFunction::Less || function == compositor::DepthFunction::LessOrEqual;
     return {function, 0xff102030u, less ? 0xffffffffu : 0u, deep};
 }
@@ -29,13 +29,13 @@ inline bool passes(compositor::DepthFunction f, uint32_t later, uint32_t earlier
 }
 
 // Draws one fragment with the depth test.
-inline void draw(PicturePart& part, size_t at, uint32_t colour, uint32_t depth, const FoldRule& rule) {
+inline void draw(PicturePart& part, size_t at, uint32_t colour, uint32_t depth, const CompositeRule& rule) {
     if (!passes(rule.function, depth, part.depth[at])) return;
     part.colour[at] = colour;
     part.depth[at] = depth;
 }
 
-inline PicturePart clearedPart(int32_t width, int32_t height, const FoldRule& rule) {
+inline PicturePart clearedPart(int32_t width, int32_t height, const CompositeRule& rule) {
     PicturePart part;
     part.id = {3, 7, {5, 9, width, height}};
     part.colour.assign(static_cast<size_t>(width * height), rule.clearedColour);
@@ -49,7 +49,7 @@ struct Fragment {
 };
 
 // Few depths, so many are equal; at the clear depth with another colour than the clear's.
-inline std::vector<Fragment> fragmentsOf(std::mt19937& random, size_t pixels, const FoldRule& rule) {
+inline std::vector<Fragment> fragmentsOf(std::mt19937& random, size_t pixels, const CompositeRule& rule) {
     std::vector<Fragment> fragments;
     for (size_t i = 0; i < pixels; ++i) {
         const uint32_t level = random() % 12;

@@ -9,12 +9,12 @@
 namespace mural::test {
 
 struct Scene {
-    FoldRule rule;
+    CompositeRule rule;
     PicturePart whole; // of a single node
     std::vector<PicturePart> parts;
 };
 
-inline Scene sceneOf(std::mt19937& random, int ranks, const FoldRule& rule, int32_t width, int32_t height) {
+inline Scene sceneOf(std::mt19937& random, int ranks, const CompositeRule& rule, int32_t width, int32_t height) {
     Scene s{rule, clearedPart(width, height, rule), {}};
     for (int rank = 0; rank < ranks; ++rank) {
         s.parts.push_back(clearedPart(width, height, rule));
@@ -32,7 +32,7 @@ inline PicturePart foldedWithout(const Scene& scene, const std::set<int>& lost) 
     PicturePart picture = scene.parts[0];
     for (size_t rank = 1; rank < scene.parts.size(); ++rank) {
         const PicturePart& part = scene.parts[rank];
-        if (!lost.contains(static_cast<int>(rank))) foldRow({picture.colour.data(), picture.depth.data(), part.colour.data(), part.depth.data(), part.colour.size()}, FoldSide::Later, scene.rule);
+        if (!lost.contains(static_cast<int>(rank))) compositeRow({picture.colour.data(), picture.depth.data(), part.colour.data(), part.depth.data(), part.colour.size()}, LayerOrder::Later, scene.rule);
     }
     return picture;
 }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "encoders.hpp"
-#include "interposer/own_records.hpp"
+#include "interposer/encode/control_record_writer.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 
 namespace mural {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "nodes/replay/replay.hpp"
+#include "nodes/replay/engine/replay.hpp"
 
 namespace mural::fuzz {
 

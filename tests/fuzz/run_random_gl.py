@@ -22,8 +22,8 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "end_to_end"))
-import display   # noqa: E402
-import programs  # noqa: E402
+from harness import display   # noqa: E402
+from harness import programs  # noqa: E402
 
 PROFILES = ["compat", "core", "es3", "es1"]
 BATCH = 6            # seeds of one run

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "tests/gl/scene.hpp"
 
 namespace mural::test {

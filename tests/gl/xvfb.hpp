@@ -5,7 +5,7 @@
 
 #include <sys/types.h>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::test {
 

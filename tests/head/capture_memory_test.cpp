@@ -1,5 +1,5 @@
 // Wake-ups through the capture memory: the reader of publications and a program that waits for frames.
-#include "nodes/head/capture_memory.hpp"
+#include "nodes/head/capture/capture_memory.hpp"
 
 #include <csignal>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <thread>
 #include <unistd.h>
 
-#include "common/clock.hpp"
-#include "common/futex.hpp"
-#include "nodes/head/arrival_pace.hpp"
-#include "nodes/head/life_mark.hpp"
+#include "common/base/clock.hpp"
+#include "common/ipc/futex.hpp"
+#include "nodes/head/capture/arrival_rate.hpp"
+#include "nodes/head/capture/life_mark.hpp"
 
 namespace mural {
 namespace {
@@ -152,9 +152,9 @@ TEST_F(CaptureMemoryTest, countsFramesAcrossTheWrapOfTheirNumbers) {
     program.join();
 }
 
-TEST(ArrivalPace, napsOnlyAfterTwoQuickArrivals) {
-    ArrivalPace pace;
-    constexpr int64_t kQuickNs = ArrivalPace::kQuickNs;
+TEST(ArrivalRate, napsOnlyAfterTwoQuickArrivals) {
+    ArrivalRate pace;
+    constexpr int64_t kQuickNs = ArrivalRate::kQuickNs;
     EXPECT_FALSE(pace.moreSoon(0));
     pace.arrived(0);
     EXPECT_FALSE(pace.moreSoon(1));

@@ -1,5 +1,5 @@
 // Node setups that follow from a configuration file.
-#include "nodes/head/config_plan.hpp"
+#include "nodes/head/planning/config_plan.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,9 +8,9 @@
 #include <set>
 #include <unistd.h>
 
-#include "balancer/config/short_forms.hpp"
+#include "balancer/config/presets.hpp"
 #include "compositor/strategies/choose_strategy.hpp"
-#include "nodes/head/composition_choice.hpp"
+#include "nodes/head/planning/composition_choice.hpp"
 #include "tests/balancer/example_files.hpp"
 
 namespace mural {
@@ -44,7 +44,7 @@ TEST(ConfigPlan, givesRangesACommonPictureAndCollector) {
 }
 
 SessionPlan planOfRanges(const std::string& composition) {
-    config::ShortForm form;
+    config::Preset form;
     form.ranges = 5;
     form.composition = composition;
     const auto file = config::shortForm(form);
@@ -306,7 +306,7 @@ TEST(ConfigPlan, multipliesZooms) {
 TEST(ConfigPlan, reportsUnsupportedZooms) {
     auto large = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 17 .5 ] outputframe { } }");
     ASSERT_TRUE(large) << large.error().message;
-    EXPECT_EQ(large->nodes[1].pass.zoom, (Zoom{kMostZoom, .5}));
+    EXPECT_EQ(large->nodes[1].pass.zoom, (Zoom{kMaxZoom, .5}));
     ASSERT_EQ(large->warnings.size(), 1u);
     EXPECT_NE(large->warnings[0].find(".eqc:4:"), std::string::npos) << large->warnings[0];
     auto ranges = planOfText("compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] zoom [ .5 .5 ] outputframe { } }");

@@ -1,5 +1,5 @@
 // The lines of the control connection: split reads, a slow reader, invalid text.
-#include "nodes/head/control_channel.hpp"
+#include "nodes/head/session/control_channel.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The frame tracker: completion of frames by several nodes, and credit for the program.
-#include "nodes/head/frame_tracker.hpp"
+#include "nodes/head/frames/frame_tracker.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

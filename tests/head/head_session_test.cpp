@@ -1,5 +1,5 @@
 // The complete head, with fake nodes and fake programs.
-#include "tests/head/session_harness.hpp"
+#include "tests/head/support/session_harness.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,16 +54,16 @@ TEST(HeadSession, reportsDriverEventsToTheProgramOnce) {
     ASSERT_TRUE(swapFrames(program, 1, 2));
     ASSERT_TRUE(program.waitFramesDone(2));
     ASSERT_EQ(program.header()->newsTail.load(), 2u); // from three nodes
-    wire::News news{};
-    const capture::NewsSlot& slot = capture::news(program.header())[1];
+    wire::DriverEvent news{};
+    const capture::DriverEventSlot& slot = capture::news(program.header())[1];
     std::memcpy(&news, slot.news, sizeof news);
     EXPECT_EQ(news.context, 7u);
-    EXPECT_EQ(news.textBytes, capture::kNewsTextBytes); // long texts are truncated
+    EXPECT_EQ(news.textBytes, capture::kDriverEventTextBytes); // long texts are truncated
     EXPECT_EQ(std::string(slot.text, 11), "a slow draw");
     // A program that never reads events: they are lost, and frames continue.
     ASSERT_TRUE(swapFrames(program, 3, 100));
     ASSERT_TRUE(program.waitFramesDone(100));
-    EXPECT_EQ(program.header()->newsTail.load(), capture::kNewsSlots);
+    EXPECT_EQ(program.header()->newsTail.load(), capture::kDriverEventSlots);
     head.finish();
     EXPECT_EQ(head.status(), 0);
 }
@@ -234,7 +234,7 @@ TEST(HeadSession, movesQueuedTilesOnAllNodesAtOnce) {
         for (const auto& packet : head.node(node).packets()) {
             if (packet.stream == 0 && packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::Setup)) continue;
             packets.emplace_back(packet.stream, packet.words);
-            announced += node == 0 && packet.stream == 0 && packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::Areas);
+            announced += node == 0 && packet.stream == 0 && packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::ViewportAssignment);
         }
         if (node == 0) first = packets;
         EXPECT_EQ(packets, first) << "node " << node;

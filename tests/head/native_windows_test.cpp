@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "nodes/head/native_windows.hpp"
+#include "nodes/head/frames/native_windows.hpp"
 
 namespace mural {
 namespace {

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "gl_opcodes.hpp"
-#include "nodes/head/answer_assembler.hpp"
-#include "nodes/head/frame_tracker.hpp"
-#include "nodes/head/kept_stream.hpp"
-#include "nodes/head/news_merger.hpp"
-#include "nodes/head/picture_assembler.hpp"
-#include "recording/record_walk.hpp"
-#include "tests/recording/recorded.hpp"
+#include "nodes/head/results/reply_assembler.hpp"
+#include "nodes/head/frames/frame_tracker.hpp"
+#include "nodes/head/membership/rejoin_log.hpp"
+#include "nodes/head/results/driver_event_merger.hpp"
+#include "nodes/head/frames/picture_assembler.hpp"
+#include "streamcodec/trace/record_walk.hpp"
+#include "tests/trace/recorded.hpp"
 
 namespace mural {
 namespace {
@@ -48,7 +48,7 @@ TEST(NodeJoins, includeTheNodeInPicturesFromItsPositionOn) {
 
 TEST(NodeJoins, includeTheNodeInAnswersFromItsPositionOn) {
     std::vector<std::pair<uint32_t, uint64_t>> sums;
-    AnswerAssembler assembler(2, [&](uint32_t, Reply reply) {
+    ReplyAssembler assembler(2, [&](uint32_t, Reply reply) {
         uint64_t value = 0;
         std::memcpy(&value, reply.bytes.data(), sizeof value);
         sums.emplace_back(reply.header.requestId, value);
@@ -112,25 +112,25 @@ TEST(NodeJoins, takeTheProgressOfTheOnlyNode) {
 }
 
 TEST(NodeJoins, repeatNoDriverEvents) {
-    NewsMerger merger;
-    const wire::News news{1, 2, 1, 0, 0, 0, 0, 0};
+    DriverEventMerger merger;
+    const wire::DriverEvent news{1, 2, 1, 0, 0, 0, 0, 0};
     EXPECT_TRUE(merger.isNew(0, news, "a"));
     merger.nodeJoins(1);
     EXPECT_FALSE(merger.isNew(0, news, "a") && merger.isNew(1, news, "a")) << "the second of each is one message";
 }
 
-size_t contextsIn(const KeptStream::Snapshot& snapshot) {
+size_t contextsIn(const RejoinLog::Snapshot& snapshot) {
     size_t contexts = 0;
-    for (const recording::KeptPacket& packet : snapshot.packets) {
-        recording::RecordWalk walk(packet.payload);
-        for (recording::RecordView r; walk.next(r);) contexts += r.opcode == wire::kOpCreateContext ? 1 : 0;
+    for (const trace::SnapshotPacket& packet : snapshot.packets) {
+        trace::RecordWalk walk(packet.payload);
+        for (trace::RecordView r; walk.next(r);) contexts += r.opcode == wire::kOpCreateContext ? 1 : 0;
     }
     return contexts;
 }
 
-TEST(KeptStream, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
-    KeptStream kept(1 << 20);
-    const auto makes = [&](uint32_t stream, uint32_t context) { kept.append(stream, recording::PacketBuilder().context(context).swap(1, context).bytes()); };
+TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
+    RejoinLog kept(1 << 20);
+    const auto makes = [&](uint32_t stream, uint32_t context) { kept.append(stream, trace::PacketBuilder().context(context).swap(1, context).bytes()); };
     makes(wire::streamOf(1, 0), 7);
     makes(wire::streamOf(2, 0), 8);
     makes(wire::streamOf(1, 1), 9);
@@ -153,21 +153,21 @@ TEST(KeptStream, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
     EXPECT_EQ(contextsIn(*rest), 2u);
 }
 
-TEST(KeptStream, reportsOverflowUntilTheProgramsAreGone) {
-    KeptStream kept(1 << 20);
+TEST(RejoinLog, reportsOverflowUntilTheProgramsAreGone) {
+    RejoinLog kept(1 << 20);
     const auto fits = [&] { return kept.snapshot(kept.hold(), Deadline::inMs(10'000)).ok(); };
     const std::vector<uint32_t> much(65536, 1); // a command without a rule: it stays in the log
-    kept.append(wire::streamOf(1, 0), recording::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
+    kept.append(wire::streamOf(1, 0), trace::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
     EXPECT_TRUE(fits());
-    for (int i = 0; i < 16; ++i) kept.append(wire::streamOf(1, 0), recording::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());
-    kept.append(wire::streamOf(2, 0), recording::PacketBuilder().context(1).bytes());
+    for (int i = 0; i < 16; ++i) kept.append(wire::streamOf(1, 0), trace::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());
+    kept.append(wire::streamOf(2, 0), trace::PacketBuilder().context(1).bytes());
     EXPECT_FALSE(fits());
     EXPECT_FALSE(kept.complete());
     kept.programGone(1);
     EXPECT_FALSE(fits()) << "what they shared is not known any more";
     kept.programGone(2);
     EXPECT_TRUE(fits()) << "nobody is left";
-    kept.append(wire::streamOf(3, 0), recording::PacketBuilder().context(1).bytes());
+    kept.append(wire::streamOf(3, 0), trace::PacketBuilder().context(1).bytes());
     EXPECT_TRUE(fits());
 }
 

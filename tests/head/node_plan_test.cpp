@@ -1,5 +1,5 @@
 // The nodes, regions and setups that follow from the options of a session.
-#include "nodes/head/node_plan.hpp"
+#include "nodes/head/planning/node_plan.hpp"
 
 #include <gtest/gtest.h>
 

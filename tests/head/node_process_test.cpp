@@ -1,5 +1,5 @@
 // Real processes: their environment, input and end.
-#include "nodes/head/node_process.hpp"
+#include "nodes/head/membership/node_process.hpp"
 
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "nodes/head/node_launcher.hpp"
-#include "transport/file_descriptor.hpp"
+#include "nodes/head/membership/node_launcher.hpp"
+#include "common/ipc/file_descriptor.hpp"
 
 namespace mural {
 namespace {

@@ -1,5 +1,5 @@
 // Pictures of several passes (samples, kernels, eyes) become one picture.
-#include "nodes/head/wall_composition.hpp"
+#include "nodes/head/frames/wall_composition.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Parts of pictures from several nodes become whole frames.
-#include "nodes/head/picture_assembler.hpp"
+#include "nodes/head/frames/picture_assembler.hpp"
 
 #include <cstring>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/head/picture_output.hpp"
+#include "nodes/head/frames/picture_output.hpp"
 
 namespace mural {
 namespace {

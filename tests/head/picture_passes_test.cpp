@@ -1,5 +1,5 @@
 // Pictures of several passes: which parts belong together, and the effect of lost nodes on a pass.
-#include "nodes/head/picture_assembler.hpp"
+#include "nodes/head/frames/picture_assembler.hpp"
 
 #include <cstring>
 #include <gtest/gtest.h>

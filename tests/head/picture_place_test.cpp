@@ -1,5 +1,5 @@
 // The place and size of a node's picture on the wall.
-#include "nodes/head/picture_place.hpp"
+#include "nodes/head/frames/picture_place.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Pictures through the complete head: saved, shown, counted.
-#include "tests/head/session_harness.hpp"
+#include "tests/head/support/session_harness.hpp"
 
 #include <gtest/gtest.h>
 #include <map>

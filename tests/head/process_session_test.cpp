@@ -6,9 +6,9 @@
 #include <iostream>
 
 #include "nodes/session/session_secret.hpp"
-#include "tests/head/session_harness.hpp"
-#include "transport/secure_connection.hpp"
-#include "transport/socket_address.hpp"
+#include "tests/head/support/session_harness.hpp"
+#include "transport/secure/secure_connection.hpp"
+#include "transport/tcp/socket_address.hpp"
 
 namespace mural {
 namespace {

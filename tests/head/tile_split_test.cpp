@@ -1,5 +1,5 @@
 // Division of a tile grid among nodes.
-#include "nodes/head/tile_split.hpp"
+#include "nodes/head/planning/tile_split.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

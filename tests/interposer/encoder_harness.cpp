@@ -5,10 +5,10 @@
 #include <new>
 #include <utility>
 
-#include "common/capture_ring.hpp"
-#include "interposer/log.hpp"
-#include "interposer/pixel_store.hpp"
-#include "interposer/session.hpp"
+#include "common/ipc/capture_ring.hpp"
+#include "interposer/diagnostics/log.hpp"
+#include "interposer/memory/pixel_store.hpp"
+#include "interposer/encode/session.hpp"
 
 namespace mural {
 
@@ -39,7 +39,7 @@ bool isTight(const sizes::ImageLayout& layout) {
 }
 void say(const char*, ...) {}
 void beforeAwaitedDrawing(ThreadState&, uint32_t) {}
-void shipLastingMaps(ThreadState&) {}
+void flushPersistentMaps(ThreadState&) {}
 
 // Replaces thread_state.cpp for one thread that never ends.
 ThreadState* firstThread() { return nullptr; }

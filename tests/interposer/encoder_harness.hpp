@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "interposer/context.hpp"
-#include "interposer/encode_support.hpp"
+#include "interposer/context/context.hpp"
+#include "interposer/encode/encode_support.hpp"
 
 namespace mural::testing {
 

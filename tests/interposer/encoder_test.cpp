@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "common/capture_ring.hpp"
+#include "common/ipc/capture_ring.hpp"
 #include "encoders.hpp"
-#include "interposer/own_records.hpp"
+#include "interposer/encode/control_record_writer.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 #include "tests/interposer/record_reader.hpp"
 

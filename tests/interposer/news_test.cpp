@@ -7,17 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "interposer/asking.hpp"
-#include "interposer/context.hpp"
-#include "interposer/log.hpp"
-#include "interposer/news.hpp"
-#include "interposer/real_gl.hpp"
+#include "interposer/readback/node_requests.hpp"
+#include "interposer/context/context.hpp"
+#include "interposer/diagnostics/log.hpp"
+#include "interposer/diagnostics/driver_events.hpp"
+#include "interposer/encode/real_gl.hpp"
 
 namespace mural {
 
 namespace {
 capture::CaptureHeader shared{};
-std::deque<std::pair<wire::News, std::string>> coming;
+std::deque<std::pair<wire::DriverEvent, std::string>> coming;
 std::vector<std::string> inserted;
 GLDEBUGPROC driverCallback = nullptr;
 const void* driverUser = nullptr;
@@ -33,7 +33,7 @@ Session* Session::current() {
     session.header_ = &shared;
     return &session;
 }
-bool Session::takeNews(wire::News& news, char* text) {
+bool Session::takeDriverEvents(wire::DriverEvent& news, char* text) {
     if (coming.empty()) return false;
     news = coming.front().first;
     std::memcpy(text, coming.front().second.c_str(), coming.front().second.size() + 1);
@@ -62,13 +62,13 @@ protected:
         context_.id = 3;
         t_.context = &context_;
     }
-    void comes(wire::NewsKind kind, const std::string& text = "", uint32_t type = 0, uint32_t context = 3) {
+    void comes(wire::DriverEventKind kind, const std::string& text = "", uint32_t type = 0, uint32_t context = 3) {
         coming.push_back({{1, context, static_cast<uint32_t>(kind), GL_DEBUG_SOURCE_API, type, 5, GL_DEBUG_SEVERITY_LOW, static_cast<uint32_t>(text.size())}, text});
         shared.newsTail.fetch_add(1);
     }
     void message(const std::string& text, uint32_t type = GL_DEBUG_TYPE_PERFORMANCE, uint32_t context = 3) {
-        comes(wire::NewsKind::DebugMessage, text, type, context);
-        takeNews(t_);
+        comes(wire::DriverEventKind::DebugMessage, text, type, context);
+        takeDriverEvents(t_);
     }
     void fromDriver(const char* text) { driverCallback(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 9, GL_DEBUG_SEVERITY_LOW, -1, text, driverUser); }
 
@@ -108,14 +108,14 @@ TEST_F(NewsTest, defersMessagesOfOtherContextsToTheirThread) {
     message("mine");
     EXPECT_EQ(heard_, std::vector<std::string>({"mine"}));
     context_.id = 77;
-    comes(wire::NewsKind::DebugMessage, "mine", 0);
-    takeNews(t_);
+    comes(wire::DriverEventKind::DebugMessage, "mine", 0);
+    takeDriverEvents(t_);
     EXPECT_GE(heard_.size(), 2u);
 }
 
 TEST_F(NewsTest, setsOutOfMemoryWhenTheDriverReportedNone) {
-    comes(wire::NewsKind::OutOfMemory);
-    takeNews(t_);
+    comes(wire::DriverEventKind::OutOfMemory);
+    takeDriverEvents(t_);
     EXPECT_TRUE(context_.outOfMemoryDue);
     EXPECT_EQ(context_.stashedError, GLenum{GL_NO_ERROR});
 }
@@ -123,28 +123,28 @@ TEST_F(NewsTest, setsOutOfMemoryWhenTheDriverReportedNone) {
 TEST_F(NewsTest, hidesOutOfMemoryAfterAnEarlierError) {
     for (const GLenum own : {GL_OUT_OF_MEMORY, GL_INVALID_OPERATION}) {
         pendingError = own; // error of the driver, not fetched yet
-        comes(wire::NewsKind::OutOfMemory);
-        takeNews(t_);
+        comes(wire::DriverEventKind::OutOfMemory);
+        takeDriverEvents(t_);
         EXPECT_EQ(std::exchange(context_.stashedError, 0), own);
         EXPECT_FALSE(context_.outOfMemoryDue);
     }
     context_.errorsTold = 2; // the call precedes the second error
-    comes(wire::NewsKind::OutOfMemory, "", 1);
-    takeNews(t_);
+    comes(wire::DriverEventKind::OutOfMemory, "", 1);
+    takeDriverEvents(t_);
     EXPECT_FALSE(context_.outOfMemoryDue);
-    comes(wire::NewsKind::OutOfMemory, "", 2);
-    takeNews(t_);
+    comes(wire::DriverEventKind::OutOfMemory, "", 2);
+    takeDriverEvents(t_);
     EXPECT_TRUE(context_.outOfMemoryDue);
 }
 
 TEST_F(NewsTest, reportsAResetStatusWhenRequested) {
-    comes(wire::NewsKind::ContextLost, "", GL_INNOCENT_CONTEXT_RESET);
-    takeNews(t_);
+    comes(wire::DriverEventKind::ContextLost, "", GL_INNOCENT_CONTEXT_RESET);
+    takeDriverEvents(t_);
     EXPECT_EQ(context_.resetStatus, GLenum{GL_NO_ERROR});
     EXPECT_FALSE(said.empty());
     context_.losesOnReset = true;
-    comes(wire::NewsKind::ContextLost, "", GL_INNOCENT_CONTEXT_RESET);
-    takeNews(t_);
+    comes(wire::DriverEventKind::ContextLost, "", GL_INNOCENT_CONTEXT_RESET);
+    takeDriverEvents(t_);
     EXPECT_EQ(context_.resetStatus, GLenum{GL_INNOCENT_CONTEXT_RESET});
     EXPECT_EQ(context_.stashedError, GLenum{GL_CONTEXT_LOST});
 }

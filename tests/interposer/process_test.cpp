@@ -8,9 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "interposer/lock.hpp"
-#include "interposer/process.hpp"
-#include "interposer/readable.hpp"
+#include "interposer/context/lock.hpp"
+#include "interposer/process/process.hpp"
+#include "interposer/memory/readable.hpp"
 
 namespace mural {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "streamcodec/args.hpp"
-#include "streamcodec/wire.hpp"
+#include "streamcodec/wire/args.hpp"
+#include "streamcodec/wire/wire.hpp"
 
 namespace mural::testing {
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "interposer/storage_scan.hpp"
+#include "interposer/memory/shader_storage_scan.hpp"
 
 namespace mural {
 namespace {

@@ -1,5 +1,5 @@
 // Comparison and conversion of window pixels of all formats.
-#include "interposer/window_colours.hpp"
+#include "interposer/readback/window_colours.hpp"
 
 #include <GL/glext.h>
 #include <gtest/gtest.h>

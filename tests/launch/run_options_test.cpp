@@ -1,5 +1,5 @@
 // Parsing and checks of the options of mural run.
-#include "tools/mural/run_options.hpp"
+#include "tools/mural/run/run_options.hpp"
 
 #include <gtest/gtest.h>
 

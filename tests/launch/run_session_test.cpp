@@ -1,5 +1,5 @@
 // Sessions of mural run with a fake head.
-#include "tools/mural/run_session.hpp"
+#include "tools/mural/run/run_session.hpp"
 
 #include <csignal>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // Rates of mural stat from two states of a session.
-#include "tools/mural/session_rates.hpp"
+#include "tools/mural/stat/session_rates.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tools/mural/running_sessions.hpp"
+#include "tools/mural/stat/running_sessions.hpp"
 
 namespace mural::cli {
 namespace {

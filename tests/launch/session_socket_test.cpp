@@ -10,7 +10,7 @@
 #include <utime.h>
 
 #include "tests/temporary_folder.hpp"
-#include "transport/file_descriptor.hpp"
+#include "common/ipc/file_descriptor.hpp"
 
 namespace mural::launch {
 namespace {

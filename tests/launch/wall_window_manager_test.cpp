@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "nodes/launch/private_display.hpp"
 
 namespace mural::launch {

@@ -1,7 +1,7 @@
 // The stream pattern of netperf: receivers detect every kind of error in it.
 #include <gtest/gtest.h>
 
-#include "tools/mural/stream_pattern.hpp"
+#include "tools/mural/netperf/stream_pattern.hpp"
 
 namespace mural::cli {
 namespace {

@@ -12,8 +12,8 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'end_to_end'))
-import own_network  # noqa: E402
-from own_network import sh  # noqa: E402
+from harness import own_network  # noqa: E402
+from harness.own_network import sh  # noqa: E402
 
 HERE, THERE = '10.78.0.1', '10.78.0.2'
 

@@ -9,7 +9,7 @@
 
 #include "compositor/assembly/assembly.hpp"
 #include "compositor/assembly/average.hpp"
-#include "nodes/exchange/part_fold.hpp"
+#include "nodes/exchange/part_composition.hpp"
 
 namespace mural::compositor {
 namespace {
@@ -131,11 +131,11 @@ TEST(Arrival, givesOnePictureForRangesOfNodes) {
             const std::vector<size_t> edges = edgesOf(random, list.size(), parts);
             const Drawn whole = draw(list, 0, list.size(), f), nothing = draw(list, 0, 0, f);
             for (const bool deep : {false, true}) { // with the kernel, and pixel by pixel
-                const FoldRule rule{f, nothing.colour[0], nothing.depth[0], deep};
+                const CompositeRule rule{f, nothing.colour[0], nothing.depth[0], deep};
                 Drawn sum = draw(list, edges[0], edges[1], f);
                 for (size_t p = 1; p < parts; ++p) {
                     const Drawn part = draw(list, edges[p], edges[p + 1], f);
-                    foldRow({sum.colour.data(), sum.depth.data(), part.colour.data(), part.depth.data(), kPixels}, FoldSide::Later, rule);
+                    compositeRow({sum.colour.data(), sum.depth.data(), part.colour.data(), part.depth.data(), kPixels}, LayerOrder::Later, rule);
                 }
                 ASSERT_EQ(sum.colour, whole.colour) << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
                 ASSERT_EQ(sum.depth, whole.depth) << "seed " << seed;

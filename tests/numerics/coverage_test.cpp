@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "common/pixel_kernel.hpp"
-#include "common/tile_grid.hpp"
-#include "common/viewport.hpp"
+#include "common/geometry/pixel_kernel.hpp"
+#include "common/geometry/tile_grid.hpp"
+#include "common/geometry/viewport.hpp"
 
 namespace mural {
 namespace {

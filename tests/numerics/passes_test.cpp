@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "common/jitter.hpp"
-#include "nodes/replay/pass_place.hpp"
+#include "common/geometry/jitter.hpp"
+#include "nodes/replay/features/pixel_mapping.hpp"
 #include "tests/numerics/case_table.hpp"
 
 namespace mural {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "common/range.hpp"
+#include "common/geometry/range.hpp"
 
 namespace mural {
 namespace {

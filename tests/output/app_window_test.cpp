@@ -1,5 +1,5 @@
 // Pictures in the program's own window, read back from X servers of several depths.
-#include "nodes/output/app_window.hpp"
+#include "nodes/output/windows/app_window.hpp"
 
 #include <csignal>
 #include <cstring>

@@ -1,5 +1,5 @@
 // Pictures as PNG files: exact contents, and errors of folders and disks.
-#include "nodes/output/png_files.hpp"
+#include "nodes/output/files/png_files.hpp"
 
 #include <algorithm>
 #include <filesystem>

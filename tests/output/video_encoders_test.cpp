@@ -1,5 +1,5 @@
 // The choice of a video encoder from FFmpeg's list.
-#include "nodes/output/video_encoders.hpp"
+#include "nodes/output/files/video_encoders.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Videos: decoded frames, changed sizes, failing encoders.
-#include "nodes/output/video_file.hpp"
+#include "nodes/output/files/video_file.hpp"
 
 #include <csignal>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // Wall windows on a private X server: position, size, contents.
-#include "nodes/output/wall_windows.hpp"
+#include "nodes/output/windows/wall_windows.hpp"
 
 #include <csignal>
 #include <cstring>

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "nodes/output/encoder_process.hpp"
+#include "nodes/output/files/encoder_process.hpp"
 
 namespace mural::test {
 

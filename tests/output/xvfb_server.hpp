@@ -5,9 +5,9 @@
 #include <sys/types.h>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "nodes/output/picture.hpp"
-#include "nodes/output/x_connection.hpp"
+#include "nodes/output/windows/x_connection.hpp"
 
 namespace mural::test {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "nodes/replay/accumulation.hpp"
+#include "nodes/replay/features/accumulation.hpp"
 
 namespace mural {
 namespace {

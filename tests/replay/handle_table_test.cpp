@@ -1,5 +1,5 @@
 // Translation of bindless handles from the program to a node.
-#include "nodes/replay/handle_table.hpp"
+#include "nodes/replay/engine/handle_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 
 #include "encoders.hpp"
 #include "gl_opcodes.hpp"
-#include "interposer/own_records.hpp"
-#include "nodes/replay/replay.hpp"
+#include "interposer/encode/control_record_writer.hpp"
+#include "nodes/replay/engine/replay.hpp"
 #include "tests/fuzz/fake_gl.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 constexpr GLbitfield kColour = GL_COLOR_BUFFER_BIT, kDepth = GL_DEPTH_BUFFER_BIT, kStencil = GL_STENCIL_BUFFER_BIT;
 constexpr PixelViewport kLeft{0, 0, 32, 32}, kRight{32, 0, 32, 32};
 
-Areas leftAndRight(uint32_t number, bool swapped) {
+ViewportAssignment leftAndRight(uint32_t number, bool swapped) {
     const Viewport left{0, 0, 0.5, 1}, right{0.5, 0, 0.5, 1};
     return {number, swapped ? std::vector<Viewport>{right, left} : std::vector<Viewport>{left, right}};
 }
@@ -28,10 +28,10 @@ class MovingAreas : public ::testing::Test {
 protected:
     void SetUp() override { replay_ = make(false); }
 
-    std::unique_ptr<Replay> make(bool catchesUp) {
+    std::unique_ptr<Replay> make(bool isResyncing) {
         ReplayConfig config;
         config.areas = leftAndRight(0, false);
-        config.catchesUp = catchesUp;
+        config.isResyncing = isResyncing;
         ReplayOutputs out;
         out.frameDone = [this](const ReplayOutputs::Frame& f) { frame_ = f; };
         out.log = [](const std::string&) {};

@@ -1,5 +1,5 @@
 // Regions that are extended to whole bins of the software rasteriser.
-#include "nodes/replay/raster_bins.hpp"
+#include "nodes/replay/context/raster_bins.hpp"
 
 #include <gtest/gtest.h>
 

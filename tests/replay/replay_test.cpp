@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "encoders.hpp"
-#include "interposer/own_records.hpp"
-#include "nodes/replay/replay.hpp"
+#include "interposer/encode/control_record_writer.hpp"
+#include "nodes/replay/engine/replay.hpp"
 #include "tests/fuzz/fake_gl.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 
@@ -34,7 +34,7 @@ protected:
             pictureBytes_ = f.pixels ? static_cast<int64_t>(f.pixels(f.region) != nullptr) * f.region.area() * 4 : -1;
         };
         out.log = [this](const std::string& line) { log_ += line + "\n"; };
-        out.news = [this](const wire::News& n, const std::string& text) {
+        out.news = [this](const wire::DriverEvent& n, const std::string& text) {
             EXPECT_EQ(n.client, 1u);
             EXPECT_EQ(n.context, 1u);
             EXPECT_EQ(n.textBytes, text.size());
@@ -73,7 +73,7 @@ protected:
     size_t answerBytes_ = 0;
     int answers_ = 0;
     std::string log_;
-    std::vector<wire::News> news_;
+    std::vector<wire::DriverEvent> news_;
     std::string newsText_;
 };
 
@@ -386,7 +386,7 @@ TEST_F(ReplayTest, reportsExhaustedMemory) {
     records::swap(t_, 1, 1);
     EXPECT_TRUE(send());
     ASSERT_EQ(news_.size(), 1u); // the swap reports nothing further
-    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::OutOfMemory));
+    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::OutOfMemory));
     EXPECT_EQ(news_[0].type, 0u);
     records::errorTold(t_);
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 11, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
@@ -401,7 +401,7 @@ TEST_F(ReplayTest, reportsALostContextOnce) {
     for (uint32_t frame = 1; frame < 4; ++frame) records::swap(t_, 1, frame);
     EXPECT_TRUE(send());
     ASSERT_EQ(news_.size(), 1u);
-    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::ContextLost));
+    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::ContextLost));
     EXPECT_EQ(news_[0].type, GLenum{GL_GUILTY_CONTEXT_RESET});
     EXPECT_NE(log_.find("lost"), std::string::npos);
 }
@@ -416,7 +416,7 @@ TEST_F(ReplayTest, reportsDriverMessagesWithDebugOutput) {
     encode_glDrawArrays(t_, GL_POINTS, 0, 1);
     EXPECT_TRUE(send());
     ASSERT_EQ(news_.size(), 1u); // the program already has its own messages
-    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::NewsKind::DebugMessage));
+    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::DebugMessage));
     EXPECT_EQ(news_[0].source, GLenum{GL_DEBUG_SOURCE_API});
     EXPECT_EQ(newsText_, "a slow draw");
 }

@@ -1,11 +1,11 @@
 // Scaling of pictures for zoom.
-#include "nodes/pictures/scale_picture.hpp"
+#include "nodes/frame_transfer/scale_picture.hpp"
 
 #include <gtest/gtest.h>
 #include <numeric>
 #include <vector>
 
-#include "nodes/replay/pass_place.hpp"
+#include "nodes/replay/features/pixel_mapping.hpp"
 
 namespace mural {
 namespace {

@@ -1,5 +1,5 @@
 // Detection of projection matrices in a program's uniforms and buffers.
-#include "nodes/replay/seen_projection.hpp"
+#include "nodes/replay/features/projection_detection.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -29,13 +29,13 @@ Matrix frustum(double l, double r, double b, double t, double n, double f) {
 }
 Matrix turned(double angle) { return {std::cos(angle), 0, -std::sin(angle), 0, 0, 1, 0, 0, std::sin(angle), 0, std::cos(angle), 0, 3, -2, -9, 1}; }
 
-TEST(SeenProjection, recognisesPlainProjections) {
+TEST(ProjectionDetector, recognisesPlainProjections) {
     EXPECT_DOUBLE_EQ(scaleOf(frustum(-2, 2, -1, 1, 3, 50)), 1.5);
     EXPECT_NEAR(scaleOf(frustum(-1, 3, -1, 1, 3, 50)), 1.5, 1e-12) << "sheared";
     EXPECT_NEAR(scaleOf(frustum(-2, 2, -1, 1, 3, 1e9)), 1.5, 1e-12);
 }
 
-TEST(SeenProjection, recognisesProductsWithViewsAndModels) {
+TEST(ProjectionDetector, recognisesProductsWithViewsAndModels) {
     const Matrix p = frustum(-1, 3, -1, 1, 3, 50);
     EXPECT_NEAR(scaleOf(product(p, turned(0.7))), 1.5, 1e-12);
     Matrix small = turned(-1.1);
@@ -43,7 +43,7 @@ TEST(SeenProjection, recognisesProductsWithViewsAndModels) {
     EXPECT_NEAR(scaleOf(product(p, small)), 1.5, 1e-9);
 }
 
-TEST(SeenProjection, rejectsMatricesWithoutPerspective) {
+TEST(ProjectionDetector, rejectsMatricesWithoutPerspective) {
     EXPECT_EQ(scaleOf(turned(0.3)), 0);
     EXPECT_EQ(scaleOf({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1}), 0);
     EXPECT_EQ(scaleOf({}), 0);
@@ -54,7 +54,7 @@ TEST(SeenProjection, rejectsMatricesWithoutPerspective) {
     EXPECT_EQ(scaleOf(bad), 0);
 }
 
-TEST(SeenProjection, readsAllLayoutsOfUniforms) {
+TEST(ProjectionDetector, readsAllLayoutsOfUniforms) {
     const Matrix p = product(frustum(-2, 2, -1, 1, 3, 50), turned(0.2));
     float single[16], turnedOver[16];
     for (size_t i = 0; i < 16; ++i) single[i] = static_cast<float>(p[i]), turnedOver[i % 4 * 4 + i / 4] = static_cast<float>(p[i]);
@@ -63,7 +63,7 @@ TEST(SeenProjection, readsAllLayoutsOfUniforms) {
     EXPECT_NEAR(seenProjectionAt(reinterpret_cast<const std::byte*>(p.data()), true, false).scaleX, 1.5, 1e-12);
 }
 
-TEST(SeenProjection, findsProjectionsInBuffers) {
+TEST(ProjectionDetector, findsProjectionsInBuffers) {
     const Matrix p = frustum(-2, 2, -1, 1, 3, 50);
     std::vector<float> values(7, 0.25f);
     for (const double v : p) values.push_back(static_cast<float>(v));

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "encoders.hpp"
-#include "interposer/own_records.hpp"
-#include "nodes/replay/replay.hpp"
+#include "interposer/encode/control_record_writer.hpp"
+#include "nodes/replay/engine/replay.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 
 namespace mural {

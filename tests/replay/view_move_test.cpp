@@ -1,5 +1,5 @@
 // Transformed clip coordinates compared with the coordinates of the intended matrices.
-#include "nodes/replay/view_move.hpp"
+#include "nodes/replay/features/clip_transform.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Point times(const double (&m)[16], const Point& p) {
 }
 
 // As in the shader.
-Point moved(const ViewMove& m, const Point& p) {
+Point moved(const ClipTransform& m, const Point& p) {
     const auto by = [&](const std::array<double, 4>& row) { return row[0] * p[0] + row[1] * p[1] + row[2] * p[3] + row[3]; };
     return {p[0] + by(m.x), p[1] + by(m.y), p[2] + m.z * by(m.w), p[3] + by(m.w)};
 }
@@ -51,7 +51,7 @@ TEST_F(ViewMoveTest, matchesScreensOfARoom) {
         s.fromProgram = Matrix4::translation({random(-1, 1), random(-1, 1), random(-1, 1)}) * turn(random(-3, 3), random(-1, 1));
         double m[16];
         std::ranges::copy(own.matrix(), m);
-        const SeenProjection seen = seenProjection(m);
+        const ProjectionDetector seen = seenProjection(m);
         const Vector3 eye{random(-9, 9), random(-9, 9), random(-30, -1)};
         const Point clip = times(m, {eye.x, eye.y, eye.z, 1});
 
@@ -83,7 +83,7 @@ TEST_F(ViewMoveTest, isTheIdentityForTheProgramsOwnScreen) {
         std::ranges::copy(own.matrix(), m);
         ScreenView s;
         s.left = own.l / own.n, s.right = own.r / own.n, s.bottom = own.b / own.n, s.top = own.t / own.n;
-        const ViewMove move = screenMove(seenProjection(m), s);
+        const ClipTransform move = screenMove(seenProjection(m), s);
         for (const auto& row : {move.x, move.y, move.w})
             for (const double value : row) EXPECT_NEAR(value, 0, 1e-12);
     }
@@ -93,7 +93,7 @@ TEST_F(ViewMoveTest, matchesEyesInFrontOfOneScreen) {
     const Projection own{-2, 2, -1, 1, 1.5, 60};
     double m[16], shifted[16];
     std::ranges::copy(own.matrix(), m);
-    const SeenProjection seen = seenProjection(m);
+    const ProjectionDetector seen = seenProjection(m);
     const double offset = 0.3, focus = 8, edge = offset * own.n / focus;
     std::ranges::copy(Projection{own.l - edge, own.r - edge, own.b, own.t, own.n, own.f}.matrix(), shifted);
     for (const Vector3 eye : {Vector3{1, -2, -3}, {4, 1, -8}, {-3, 0, -40}}) {
@@ -108,7 +108,7 @@ TEST_F(ViewMoveTest, keepsMirroredProjectionsMirrored) {
     double m[16];
     std::ranges::copy(Projection{-2, 2, -1, 1, 1.5, 60}.matrix(), m);
     m[5] = -m[5];
-    const SeenProjection seen = seenProjection(m);
+    const ProjectionDetector seen = seenProjection(m);
     EXPECT_DOUBLE_EQ(seen.scaleX, 0.75);
     EXPECT_DOUBLE_EQ(seen.scaleY, -1.5);
 }

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "nodes/replay/tiling.hpp"
+#include "nodes/replay/programs/tiling.hpp"
 
 namespace mural {
 namespace {

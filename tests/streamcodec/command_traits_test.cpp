@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "gl_opcodes.hpp"
-#include "holding/command_class.hpp"
-#include "interposer/draw_opcodes.hpp"
-#include "nodes/replay/command_uses.hpp"
-#include "nodes/replay/window_use.hpp"
+#include "streamcodec/filter/command_class.hpp"
+#include "interposer/encode/draw_opcodes.hpp"
+#include "nodes/replay/engine/command_uses.hpp"
+#include "nodes/replay/features/window_use.hpp"
 #include "streamcodec/command_effects.hpp"
 #include "streamcodec/command_table.hpp"
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/opcode_names.hpp"
-#include "streamcodec/wire.hpp"
+#include "streamcodec/wire/wire.hpp"
 
 using namespace mural;
 using enum Trait;
@@ -183,18 +183,18 @@ TEST(CommandUses, ofReplayAgreeWithEachOther) {
 
 // Deferred uploads are sent before a command that may read them.
 TEST(CommandClasses, neverPassCommandsThatMayReadDeferredUploads) {
-    using holding::CommandClass;
-    const auto about = [](CommandClass c) -> Predicate { return [=](uint16_t opcode) { return holding::CommandKinds::all()[opcode].about == c; }; };
-    const auto role = [](holding::StateRole r) -> Predicate { return [=](uint16_t opcode) { return holding::stateRoleOf(opcode) == r; }; };
+    using filter::CommandClass;
+    const auto about = [](CommandClass c) -> Predicate { return [=](uint16_t opcode) { return filter::CommandKinds::all()[opcode].about == c; }; };
+    const auto role = [](filter::StateRole r) -> Predicate { return [=](uint16_t opcode) { return filter::stateRoleOf(opcode) == r; }; };
     const Predicate pass = about(CommandClass::Pass);
     const Rule rules[] = {
         {"draws", has(Draw, Compute, RasterPosition), !pass, {}},
         {"images and bitmaps", both(has(Pixels), !has(ReadsFramebuffer)), !pass, {}},
         {"primitives", has(Begin, End, CallList), !pass, {}},
         {"uploads", has(TextureLevel, TextureLevels, TextureAnyLevel, BufferContents), !pass, {}},
-        {"output uses or changes state", kWrites, either(role(holding::StateRole::Use), role(holding::StateRole::Change)), {}},
-        {"copies use state", has(ReadsFramebuffer), either(role(holding::StateRole::Use), role(holding::StateRole::Change)), {}},
-        {"cells set state", role(holding::StateRole::Set), !has(DrawClass), {}},
+        {"output uses or changes state", kWrites, either(role(filter::StateRole::Use), role(filter::StateRole::Change)), {}},
+        {"copies use state", has(ReadsFramebuffer), either(role(filter::StateRole::Use), role(filter::StateRole::Change)), {}},
+        {"cells set state", role(filter::StateRole::Set), !has(DrawClass), {}},
     };
     expectAll(rules);
 }

@@ -12,7 +12,7 @@
 namespace mural::sizes {
 namespace {
 
-constexpr size_t kMostValues = 16;
+constexpr size_t kMaxValues = 16;
 
 class ParameterCountsGl : public testing::TestWithParam<TestApi> {
 protected:
@@ -27,14 +27,14 @@ protected:
 
     // The bytes that a call reads at its pointer.
     template <class Call> size_t bytesRead(size_t valueBytes, const Call& call) {
-        for (size_t count = 0; count < kMostValues; ++count) {
+        for (size_t count = 0; count < kMaxValues; ++count) {
             memory_.close();
             call(memory_.end() - count * valueBytes);
             takeErrors();
             if (!memory_.touched())
                 return count * valueBytes;
         }
-        return kMostValues * valueBytes;
+        return kMaxValues * valueBytes;
     }
 
     // call(pname, pointer). GL must never read more than `countOf` returns, and exactly that many if it accepts the

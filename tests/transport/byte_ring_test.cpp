@@ -1,5 +1,5 @@
 // The byte ring: wrap-around, sleeping ends, invalid positions.
-#include "transport/byte_ring.hpp"
+#include "transport/shm/byte_ring.hpp"
 
 #include <array>
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "tests/transport/linked_pair.hpp"
 
 namespace mural::test {

@@ -15,7 +15,7 @@
 #include "transport/connect.hpp"
 #include "transport/plugin/plugin_library.hpp"
 #include "transport/rsp/group_connection.hpp"
-#include "transport/secure_connection.hpp"
+#include "transport/secure/secure_connection.hpp"
 
 namespace mural::test {
 

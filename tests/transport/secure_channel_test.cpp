@@ -1,5 +1,5 @@
 // The secure channel: handshake, encryption, changed bytes.
-#include "transport/secure_channel.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -142,7 +142,7 @@ TEST(SecureChannel, detectsAnyChangedBit) {
 TEST(SecureChannel, carriesLongMessagesAndRejectsLongerOnes) {
     Pair p;
     p.talk();
-    const Bytes most(SecureChannel::kMostMessageBytes, std::byte{3});
+    const Bytes most(SecureChannel::kMaxMessageBytes, std::byte{3});
     ASSERT_TRUE(p.host.send(most));
     p.talk();
     ASSERT_EQ(p.atMember.size(), 1u);

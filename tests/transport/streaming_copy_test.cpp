@@ -1,5 +1,5 @@
 // Copies into memory that another core reads: exactly the requested bytes.
-#include "transport/streaming_copy.hpp"
+#include "transport/shm/streaming_copy.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 
 #include "transport/connect.hpp"
 #include "transport/connection_description.hpp"
-#include "transport/tcp_address.hpp"
+#include "transport/tcp/tcp_address.hpp"
 
 namespace mural {
 

@@ -1,5 +1,5 @@
 // Parallel connection attempts to several addresses of a host.
-#include "transport/tcp_race.hpp"
+#include "transport/tcp/tcp_race.hpp"
 
 #include <gtest/gtest.h>
 

@@ -20,9 +20,9 @@
 #include <unistd.h>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/map_changes.hpp"
-#include "common/write_watch.hpp"
+#include "common/base/clock.hpp"
+#include "common/memory/dirty_pages.hpp"
+#include "common/memory/write_watch.hpp"
 
 namespace {
 

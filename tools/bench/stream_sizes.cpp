@@ -12,8 +12,8 @@
 #include <sys/mman.h>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/kept_memory.hpp"
+#include "common/base/clock.hpp"
+#include "common/memory/malloc_tuning.hpp"
 #include "tools/bench/stream/ways.hpp"
 
 using namespace mural;
@@ -26,7 +26,7 @@ constexpr int kZstdLevel = 3; // Zstandard's default
 
 // Rounds alternate between the methods, and medians are reported. Interruptions are a large part of a round with a
 // short trace, so the number of rounds depends on the time.
-constexpr int kLeastRounds = 3, kMostRounds = 15;
+constexpr int kMinRounds = 3, kMaxRounds = 15;
 constexpr int64_t kLongEnoughMs = 4000;
 constexpr size_t kMemoryBytes = size_t{384} << 20;
 
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> names(kWays);
     std::vector<std::vector<Counted>> all(kWays);
     const Deadline longEnough = Deadline::inMs(kLongEnoughMs);
-    for (int round = 0; round < kLeastRounds || (round < kMostRounds && !longEnough.passed()); ++round)
+    for (int round = 0; round < kMinRounds || (round < kMaxRounds && !longEnough.passed()); ++round)
         for (size_t i = 0; i < kWays; ++i) {
             haveMemory();
             auto way = makeWay(i);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/mural/run_options.hpp"
+#include "tools/mural/run/run_options.hpp"
 
 namespace mural::cli {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "tools/mural/head_events.hpp"
 
 namespace mural::cli {

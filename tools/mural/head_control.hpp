@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::cli {
 

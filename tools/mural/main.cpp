@@ -12,19 +12,19 @@
 
 #include "nodes/head/head.hpp"
 #include "nodes/launch/program_check.hpp"
-#include "nodes/node/node.hpp"
+#include "nodes/render/node.hpp"
 #include "tools/mural/accuracy/accuracy_command.hpp"
-#include "nodes/player/player.hpp"
+#include "nodes/trace_player/player.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/config/config_command.hpp"
-#include "tools/mural/discover.hpp"
-#include "tools/mural/dump_command.hpp"
-#include "tools/mural/netperf.hpp"
+#include "tools/mural/daemon/discover.hpp"
+#include "tools/mural/trace/dump_command.hpp"
+#include "tools/mural/netperf/netperf.hpp"
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
-#include "tools/mural/replay_command.hpp"
-#include "tools/mural/trim_command.hpp"
-#include "tools/mural/waiting_commands.hpp"
+#include "tools/mural/trace/replay_command.hpp"
+#include "tools/mural/trace/trim_command.hpp"
+#include "tools/mural/daemon/waiting_commands.hpp"
 
 namespace {
 

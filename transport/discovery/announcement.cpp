@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural {
 
@@ -15,7 +15,7 @@ constexpr std::byte kVersion{1};
 constexpr size_t kHeadBytes = 28;
 
 void append(std::vector<std::byte>& bytes, const std::string& text) {
-    const size_t count = std::min(text.size(), kMostAnnouncedText);
+    const size_t count = std::min(text.size(), kMaxAnnouncedText);
     bytes.push_back(static_cast<std::byte>(count));
     const auto* at = reinterpret_cast<const std::byte*>(text.data());
     bytes.insert(bytes.end(), at, at + count);
@@ -24,7 +24,7 @@ void append(std::vector<std::byte>& bytes, const std::string& text) {
 bool take(std::span<const std::byte>& left, std::string& into) {
     if (left.empty()) return false;
     const auto count = std::to_integer<size_t>(left.front());
-    if (count > kMostAnnouncedText || left.size() < 1 + count) return false;
+    if (count > kMaxAnnouncedText || left.size() < 1 + count) return false;
     into.assign(reinterpret_cast<const char*>(left.data()) + 1, count);
     left = left.subspan(1 + count);
     // Printable only, because the texts are shown on terminals.
@@ -46,7 +46,7 @@ std::vector<std::byte> encode(const Announcement& a) {
 }
 
 std::optional<Announcement> decodeAnnouncement(std::span<const std::byte> bytes) {
-    if (bytes.size() < kHeadBytes || bytes.size() > kMostAnnouncementBytes) return {};
+    if (bytes.size() < kHeadBytes || bytes.size() > kMaxAnnouncementBytes) return {};
     if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0 || bytes[7] != kVersion || bytes[9] != std::byte{0}) return {};
     Announcement a;
     a.kind = static_cast<AnnouncementKind>(bytes[8]);

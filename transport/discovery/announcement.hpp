@@ -29,8 +29,8 @@ struct Announcement {
     std::string version; // Mural's version
 };
 
-constexpr size_t kMostAnnouncedText = 63;
-constexpr size_t kMostAnnouncementBytes = 28 + 2 * (1 + kMostAnnouncedText);
+constexpr size_t kMaxAnnouncedText = 63;
+constexpr size_t kMaxAnnouncementBytes = 28 + 2 * (1 + kMaxAnnouncedText);
 
 // Encodes; truncates long texts.
 std::vector<std::byte> encode(const Announcement& a);

@@ -6,8 +6,8 @@ namespace mural {
 
 void Announcer::heard(const Announcement& a, int64_t nowNs) {
     if (a.kind != AnnouncementKind::Asked) return;
-    const int64_t answerNs = nowNs + static_cast<int64_t>(random_() % static_cast<uint64_t>(kMostAnswerNs));
-    dueNs_ = std::min(dueNs_, std::max(answerNs, saidNs_ + kLeastBetweenNs));
+    const int64_t answerNs = nowNs + static_cast<int64_t>(random_() % static_cast<uint64_t>(kMaxAnswerNs));
+    dueNs_ = std::min(dueNs_, std::max(answerNs, saidNs_ + kMinBetweenNs));
 }
 
 int64_t Announcer::tick(int64_t nowNs, const std::function<void(std::span<const std::byte>)>& say) {

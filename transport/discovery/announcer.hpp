@@ -12,9 +12,9 @@ namespace mural {
 class Announcer {
 public:
     static constexpr int64_t kEveryNs = 1'000'000'000;
-    static constexpr int64_t kLeastBetweenNs = 200'000'000;
+    static constexpr int64_t kMinBetweenNs = 200'000'000;
     // random delay of an answer, so nodes do not answer simultaneously
-    static constexpr int64_t kMostAnswerNs = 50'000'000;
+    static constexpr int64_t kMaxAnswerNs = 50'000'000;
 
     Announcer(Announcement self, uint64_t seed) : self_(std::move(self)), random_(seed) {}
 

@@ -5,16 +5,16 @@
 #include <sys/eventfd.h>
 
 #include "transport/discovery/beacon_sockets.hpp"
-#include "transport/socket_wait.hpp"
+#include "transport/tcp/socket_wait.hpp"
 #include "transport/system_error.hpp"
 
 namespace mural {
 
 namespace {
 constexpr int64_t kLookAtCardsNs = 5 * kNsPerS;
-constexpr int64_t kMostWaitNs = kNsPerS;
+constexpr int64_t kMaxWaitNs = kNsPerS;
 
-Deadline until(int64_t atNs) { return Deadline::inMs(std::clamp<int64_t>((atNs - monotonicNowNs() + kNsPerMs - 1) / kNsPerMs, 0, kMostWaitNs / kNsPerMs)); }
+Deadline until(int64_t atNs) { return Deadline::inMs(std::clamp<int64_t>((atNs - monotonicNowNs() + kNsPerMs - 1) / kNsPerMs, 0, kMaxWaitNs / kNsPerMs)); }
 } // namespace
 
 Result<std::unique_ptr<Announcing>> Announcing::start(const Announcement& self, const DiscoveryOptions& options) {

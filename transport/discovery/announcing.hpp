@@ -9,7 +9,7 @@
 #include "transport/discovery/announcer.hpp"
 #include "transport/discovery/avahi_publisher.hpp"
 #include "transport/discovery/discovery.hpp"
-#include "transport/file_descriptor.hpp"
+#include "common/ipc/file_descriptor.hpp"
 
 namespace mural {
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "transport/discovery/avahi_library.hpp"
 
 namespace mural {
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSliceMs = 100;
 constexpr int64_t kAgainMs = 5'000; // the daemon may start later
-constexpr auto kMostEnd = std::chrono::seconds(1);
+constexpr auto kMaxEnd = std::chrono::seconds(1);
 
 using Shared = AvahiThread::Shared;
 
@@ -72,7 +72,7 @@ AvahiThread::AvahiThread(Ready ready, Lost lost) : shared_(std::make_shared<Shar
 AvahiThread::~AvahiThread() {
     shared_->stop = true;
     std::unique_lock lock(shared_->mutex);
-    shared_->changed.wait_for(lock, kMostEnd, [this] { return shared_->ended; });
+    shared_->changed.wait_for(lock, kMaxEnd, [this] { return shared_->ended; });
 }
 
 std::string AvahiThread::trouble() const {

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "transport/discovery/announcement.hpp"
-#include "transport/rsp/udp_socket.hpp"
+#include "transport/rsp/io/udp_socket.hpp"
 
 namespace mural {
 

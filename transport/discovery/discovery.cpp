@@ -14,7 +14,7 @@ namespace {
 
 // Searches are repeated at growing intervals, because datagrams may be lost.
 constexpr int64_t kFirstPauseMs = 100;
-constexpr int64_t kMostPauseMs = 1'000;
+constexpr int64_t kMaxPauseMs = 1'000;
 constexpr int64_t kSliceMs = 50;
 
 // Shared with Avahi's thread, which may outlive the search.
@@ -57,7 +57,7 @@ Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline, con
         if (sockets && again.passed()) {
             sockets->say(asked);
             again = Deadline::inMs(pauseMs);
-            pauseMs = std::min(2 * pauseMs, kMostPauseMs);
+            pauseMs = std::min(2 * pauseMs, kMaxPauseMs);
         }
         const Deadline slice = Deadline::inMs(sooner(deadline, kSliceMs));
         if (sockets) {

@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 #include "transport/discovery/node_table.hpp"
 
 namespace mural {

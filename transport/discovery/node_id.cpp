@@ -11,7 +11,7 @@
 
 #include <sodium.h>
 
-#include "transport/file_descriptor.hpp"
+#include "common/ipc/file_descriptor.hpp"
 #include "transport/system_error.hpp"
 
 namespace mural {

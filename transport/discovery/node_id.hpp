@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "transport/uuid.hpp"
 
 namespace mural {

@@ -6,14 +6,14 @@ namespace mural {
 
 namespace {
 void addAddress(FoundNode& node, const std::string& address) {
-    if (address.empty() || node.addresses.size() >= NodeTable::kMostAddresses) return;
+    if (address.empty() || node.addresses.size() >= NodeTable::kMaxAddresses) return;
     if (std::ranges::find(node.addresses, address) == node.addresses.end()) node.addresses.push_back(address);
 }
 } // namespace
 
 NodeTable::Entry* NodeTable::entry(const Announcement& a) {
     const auto found = entries_.find(a.uuid);
-    if (found == entries_.end() && entries_.size() >= kMostNodes) return nullptr;
+    if (found == entries_.end() && entries_.size() >= kMaxNodes) return nullptr;
     Entry& e = found == entries_.end() ? entries_[a.uuid] : found->second;
     // The node may have restarted elsewhere: its latest announcement counts.
     if (e.node.port != a.port) e.node.addresses.clear();

@@ -24,8 +24,8 @@ public:
     // Timeout of a beacon.
     static constexpr int64_t kSilentNs = 3'500'000'000;
     // Limit against floods of forged announcements.
-    static constexpr size_t kMostNodes = 1024;
-    static constexpr size_t kMostAddresses = 16;
+    static constexpr size_t kMaxNodes = 1024;
+    static constexpr size_t kMaxAddresses = 16;
 
     void heardBeacon(const Announcement& a, const std::string& from, int64_t nowNs);
     void foundByAvahi(const Announcement& a, const std::string& address);

@@ -13,7 +13,7 @@
 
 #include "transport/fabric/fabric_events.hpp"
 #include "transport/fabric/fabric_message.hpp"
-#include "transport/file_descriptor.hpp"
+#include "common/ipc/file_descriptor.hpp"
 
 namespace mural::fabric {
 

@@ -4,17 +4,17 @@
 #include <cstring>
 #include <rdma/fi_cm.h>
 
-#include "transport/socket_wait.hpp"
+#include "transport/tcp/socket_wait.hpp"
 
 namespace mural::fabric {
 
 namespace {
 
-constexpr size_t kMostDataBytes = 256; // largest data of a connection request
+constexpr size_t kMaxDataBytes = 256; // largest data of a connection request
 constexpr int64_t kSliceMs = 100; // some providers progress only when polled
 
 struct alignas(fi_eq_cm_entry) EventBytes {
-    std::byte bytes[sizeof(fi_eq_cm_entry) + kMostDataBytes];
+    std::byte bytes[sizeof(fi_eq_cm_entry) + kMaxDataBytes];
 };
 
 Event::Kind kindOf(uint32_t event) {

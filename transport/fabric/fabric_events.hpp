@@ -5,8 +5,8 @@
 #include <rdma/fi_eq.h>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 #include "transport/fabric/fabric_handle.hpp"
 
 namespace mural::fabric {

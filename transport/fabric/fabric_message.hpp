@@ -13,7 +13,7 @@
 #include <optional>
 #include <span>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural::fabric {
 

@@ -5,7 +5,7 @@
 #include <rdma/fi_domain.h>
 
 #include "transport/fabric/fabric_message.hpp"
-#include "transport/tcp_address.hpp"
+#include "transport/tcp/tcp_address.hpp"
 
 namespace mural::fabric {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/fabric/fabric_handle.hpp"
 

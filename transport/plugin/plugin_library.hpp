@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "transport/plugin/transport_plugin.h"
 
 namespace mural {

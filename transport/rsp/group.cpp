@@ -4,12 +4,12 @@
 #include <array>
 #include <cstring>
 
-#include "transport/rsp/group_state.hpp"
+#include "transport/rsp/io/group_state.hpp"
 
 namespace mural::rsp {
 
 namespace {
-constexpr size_t kMostPieces = 32; // datagrams copied per lock
+constexpr size_t kMaxPieces = 32; // datagrams copied per lock
 Error tooLate(const std::string& what) { return Error{"the deadline passed while waiting for " + what}; }
 } // namespace
 
@@ -149,7 +149,7 @@ Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, Member
 }
 
 Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline deadline) {
-    std::array<std::span<const std::byte>, kMostPieces> pieces;
+    std::array<std::span<const std::byte>, kMaxPieces> pieces;
     std::unique_lock lock(state_->mutex);
     auto found = state_->readable(lock, from, pieces, deadline);
     if (!found) return found.error();

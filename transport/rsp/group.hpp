@@ -11,15 +11,15 @@
 #include <string>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
-#include "transport/rsp/datagram_seal.hpp"
-#include "transport/rsp/group_core.hpp"
-#include "transport/secure_channel.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
+#include "transport/rsp/wire/datagram_cipher.hpp"
+#include "transport/rsp/protocol/group_core.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 namespace mural::rsp {
 
-constexpr size_t kMostDatagramBytes = 8972; // a longer datagram would lose more at once than it saves
+constexpr size_t kMaxDatagramBytes = 8972; // a longer datagram would lose more at once than it saves
 
 struct GroupOptions {
     std::string group = "239.255.77.85:4277"; // multicast address and port; IPv6 in brackets

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "transport/rsp/group_text.hpp"
-#include "transport/socket_address.hpp"
+#include "transport/tcp/socket_address.hpp"
 
 namespace mural::rsp {
 
@@ -35,22 +35,22 @@ template <class From, class Into> Result<void> put(Result<From> value, Into& int
     return {};
 }
 
-constexpr int64_t kMostMs = 3'600'000;
-constexpr int64_t kMostDatagramBytesAsked = 65'000;
-constexpr int64_t kMostWindowDatagrams = 65'536;
+constexpr int64_t kMaxMs = 3'600'000;
+constexpr int64_t kMaxDatagramBytesAsked = 65'000;
+constexpr int64_t kMaxWindowDatagrams = 65'536;
 
 const std::array<std::pair<const char*, Set>, 15> kParameters{{
     {"control", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.control = v, Result<void>(); }},
-    {"datagram", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMostDatagramBytesAsked), o.datagramBytes); }},
+    {"datagram", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxDatagramBytesAsked), o.datagramBytes); }},
     {"interface", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.interface = v, Result<void>(); }},
     {"multicast", [](GroupOptions& o, const std::string& v) { return choose(v, "on", "off", o.multicast); }},
     {"name", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.name = v, Result<void>(); }},
     {"parity", [](GroupOptions& o, const std::string& v) { return choose(v, "on", "off", o.parity); }},
-    {"probe-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMostMs), o.probeMs); }},
+    {"probe-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxMs), o.probeMs); }},
     {"rate", [](GroupOptions& o, const std::string& v) { return put(parseRate(v), o.bytesPerS); }},
     {"seal", [](GroupOptions& o, const std::string& v) { return put(parseSeal(v), o.seal); }},
     {"secret", [](GroupOptions& o, const std::string& v) { return put(readSecret(v), o.secret); }},
-    {"silent-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMostMs), o.silentMs); }},
+    {"silent-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxMs), o.silentMs); }},
     {"socket", [](GroupOptions& o, const std::string& v) { return put(parseSize(v), o.socketBytes); }},
     {"stalled", [](GroupOptions& o, const std::string& v) -> Result<void> {
          bool eject = true;
@@ -58,8 +58,8 @@ const std::array<std::pair<const char*, Set>, 15> kParameters{{
          o.stalled = eject ? StallPolicy::Eject : StallPolicy::Wait;
          return {};
      }},
-    {"stalled-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMostMs), o.stalledMs); }},
-    {"window", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMostWindowDatagrams), o.windowDatagrams); }},
+    {"stalled-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxMs), o.stalledMs); }},
+    {"window", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxWindowDatagrams), o.windowDatagrams); }},
 }};
 
 std::string allNames() {

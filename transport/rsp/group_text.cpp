@@ -18,7 +18,7 @@ namespace mural::rsp {
 
 namespace {
 
-constexpr size_t kLeastSecretBytes = 16;
+constexpr size_t kMinSecretBytes = 16;
 
 using Unit = std::pair<std::string_view, double>;
 
@@ -74,7 +74,7 @@ Result<ChannelSecret> readSecret(const std::string& path) {
         bytes.assign(std::istreambuf_iterator<char>(file), {});
     }
     while (!bytes.empty() && (bytes.back() == '\n' || bytes.back() == '\r')) bytes.pop_back();
-    if (bytes.size() < kLeastSecretBytes) return Error{path + ": a secret has 16 bytes at least; make one with: head -c 32 /dev/urandom | base64"};
+    if (bytes.size() < kMinSecretBytes) return Error{path + ": a secret has 16 bytes at least; make one with: head -c 32 /dev/urandom | base64"};
     ChannelSecret secret;
     if (sodium_init() < 0) return Error{"libsodium can't be used here"};
     crypto_generichash(reinterpret_cast<unsigned char*>(secret.data()), secret.size(), reinterpret_cast<const unsigned char*>(bytes.data()),

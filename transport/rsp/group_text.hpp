@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "common/result.hpp"
-#include "transport/rsp/keys.hpp"
-#include "transport/secure_channel.hpp"
+#include "common/base/result.hpp"
+#include "transport/rsp/wire/keys.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 namespace mural::rsp {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "balancer/config/global_attributes.hpp"
-#include "balancer/config/text/section_fields.hpp"
+#include "balancer/config/eqc/section_fields.hpp"
 
 namespace mural::config {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural::compositor {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "common/pixel_viewport.hpp"
+#include "common/geometry/pixel_viewport.hpp"
 #include "compositor/codecs/bitplane/tile_decoder.hpp"
 #include "compositor/codecs/bitplane/tile_encoder.hpp"
 #include "compositor/codecs/codec.hpp"

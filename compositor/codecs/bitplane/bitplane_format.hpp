@@ -19,11 +19,11 @@ constexpr unsigned kBlockColumns = 16; // in words
 constexpr unsigned kStripRows = 4;
 constexpr unsigned kChannelBytes = kBlockColumns * kStripRows; // at byte 4 * column + row
 constexpr unsigned kBlockBytes = 4 * kChannelBytes;
-constexpr unsigned kMostBlocks = 16;
-constexpr unsigned kTileColumns = kMostBlocks * kBlockColumns;
+constexpr unsigned kMaxBlocks = 16;
+constexpr unsigned kTileColumns = kMaxBlocks * kBlockColumns;
 constexpr unsigned kTileRows = 64;
 constexpr size_t kStripHeadBytes = 2; // bit mask of non-zero blocks
-constexpr size_t kStripBoundBytes = kStripHeadBytes + kMostBlocks * (2 + kBlockBytes);
+constexpr size_t kStripBoundBytes = kStripHeadBytes + kMaxBlocks * (2 + kBlockBytes);
 // Packing writes, and unpacking reads, up to this many bytes beyond the end.
 constexpr size_t kSlackBytes = 64;
 
@@ -62,7 +62,7 @@ struct StripSource {
 // A parsed strip with validated sizes. kSlackBytes after the payload are readable.
 struct ParsedStrip {
     uint32_t present = 0; // one bit per block
-    std::array<uint16_t, kMostBlocks> widths{}; // per non-zero block: 4 bits per channel
+    std::array<uint16_t, kMaxBlocks> widths{}; // per non-zero block: 4 bits per channel
     const std::byte* payload = nullptr;
 };
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 #include "compositor/codecs/bitplane/word_arithmetic.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -167,8 +167,8 @@ HWY_INLINE uint16_t widthsOf(const Four& channels) {
 }
 
 template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSource& source, std::byte* into) {
-    alignas(64) uint8_t channels[kMostBlocks * kBlockBytes]; // of the non-zero blocks
-    uint16_t widths[kMostBlocks];
+    alignas(64) uint8_t channels[kMaxBlocks * kBlockBytes]; // of the non-zero blocks
+    uint16_t widths[kMaxBlocks];
     uint32_t present = 0;
     unsigned count = 0;
     for (unsigned block = 0; block < source.blocks; ++block) {
@@ -277,7 +277,7 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
 
 template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStrip& strip, const StripTarget& given) {
     const StripTarget target = given;
-    alignas(64) uint8_t channels[kMostBlocks * kBlockBytes];
+    alignas(64) uint8_t channels[kMaxBlocks * kBlockBytes];
     const auto* from = reinterpret_cast<const uint8_t*>(strip.payload);
     const auto count = static_cast<unsigned>(std::popcount(strip.present));
     for (unsigned i = 0; i < count; ++i)

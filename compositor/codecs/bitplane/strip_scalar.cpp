@@ -2,7 +2,7 @@
 #include <bit>
 #include <cstring>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 #include "compositor/codecs/bitplane/strip_code.hpp"
 #include "compositor/codecs/bitplane/word_arithmetic.hpp"
 
@@ -79,8 +79,8 @@ size_t parseStrip(std::span<const std::byte> bytes, unsigned blocks, ParsedStrip
 size_t encodeStripScalar(const StripSource& source, const StripKind& kind, std::byte* into) {
     const Arithmetic a = kind.arithmetic;
     uint32_t present = 0;
-    std::array<uint16_t, kMostBlocks> widths{};
-    std::array<std::array<uint8_t, kBlockBytes>, kMostBlocks> blocks{};
+    std::array<uint16_t, kMaxBlocks> widths{};
+    std::array<std::array<uint8_t, kBlockBytes>, kMaxBlocks> blocks{};
     size_t count = 0;
     for (unsigned b = 0; b < source.blocks; ++b) {
         auto& channels = blocks[count];

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "compositor/codecs/bitplane/strip_code.hpp"
-#include "compositor/kernels/find_unlike.hpp"
+#include "compositor/kernels/find_first_difference.hpp"
 
 namespace mural::compositor::bitplane {
 
@@ -17,7 +17,7 @@ bool areUniform(const TileShape& s, unsigned count, const std::byte* rows, ptrdi
     std::memcpy(pattern, repeated, sizeof pattern);
     constexpr uint32_t kWhole[4] = {~0u, ~0u, ~0u, ~0u};
     for (unsigned y = 0; y < count; ++y, rows += strideBytes)
-        if (findUnlike(reinterpret_cast<const uint32_t*>(rows), s.columns, pattern, kWhole) != s.columns) return false;
+        if (findFirstDifference(reinterpret_cast<const uint32_t*>(rows), s.columns, pattern, kWhole) != s.columns) return false;
     return true;
 }
 

@@ -1,6 +1,6 @@
 #include "compositor/codecs/general/compressed_codec.hpp"
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural::compositor {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural::compositor {
 

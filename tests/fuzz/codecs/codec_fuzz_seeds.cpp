@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "compositor/codecs/registry.hpp"
-#include "compositor/codecs/unchanged_tiles.hpp"
+#include "compositor/codecs/tile_delta.hpp"
 #include "tests/compositor/test_planes.hpp"
 
 namespace mural::fuzz {
@@ -54,7 +54,7 @@ void unchangedTiles(const std::filesystem::path& folder) {
     std::mt19937 random(1);
     const auto made = std::move(CodecRegistry().make("bitplane").value());
     Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Uniform, 520, 130);
-    UnchangedTilesEncoder encoder;
+    TileDeltaEncoder encoder;
     Bytes input = headOf(shapeOf(plane.view()));
     for (const size_t at : {size_t{0}, size_t{4 * 300}, size_t{4 * 520 * 100}}) {
         plane.bytes()[at] ^= std::byte{9};

@@ -6,14 +6,14 @@
 
 namespace mural::fuzz {
 
-constexpr int32_t kMostColumns = 520; // more than two tiles
-constexpr int32_t kMostRows = 140;
+constexpr int32_t kMaxColumns = 520; // more than two tiles
+constexpr int32_t kMaxRows = 140;
 constexpr size_t kInputHeadBytes = 4;
 
 inline compositor::PlaneShape readShape(InputReader& in) {
     const auto format = static_cast<compositor::PlaneFormat>(in.byte() % compositor::kPlaneFormats);
-    const int32_t width = in.half() % kMostColumns + 1;
-    return {format, width, in.byte() % kMostRows + 1};
+    const int32_t width = in.half() % kMaxColumns + 1;
+    return {format, width, in.byte() % kMaxRows + 1};
 }
 
 } // namespace mural::fuzz

@@ -1,6 +1,6 @@
 // Sequences of planes with only their changed tiles. Input: a shape, then pieces, one plane after the other.
 #include "compositor/codecs/registry.hpp"
-#include "compositor/codecs/unchanged_tiles.hpp"
+#include "compositor/codecs/tile_delta.hpp"
 #include "tests/fuzz/codecs/codec_input.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
@@ -13,7 +13,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     InputReader in(input);
     const PlaneShape shape = readShape(in);
     Plane plane(shape.format, shape.width, shape.height);
-    UnchangedTilesDecoder decoder;
+    TileDeltaDecoder decoder;
     uint64_t taken = 0;
     while (!in.empty()) taken += decoder.decode(in.piece(), *codec, plane.view()).ok();
     return taken;

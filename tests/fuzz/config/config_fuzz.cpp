@@ -4,8 +4,8 @@
 
 #include "balancer/compound/check_config.hpp"
 #include "balancer/config/resolve.hpp"
-#include "balancer/config/text/parser.hpp"
-#include "balancer/config/text/writer.hpp"
+#include "balancer/config/eqc/parser.hpp"
+#include "balancer/config/eqc/writer.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace mural::fuzz {

@@ -2,8 +2,8 @@
 // contents. An accepted part can be composited, and sent on without loss.
 #include <algorithm>
 
-#include "common/little_endian.hpp"
-#include "nodes/exchange/part_fold.hpp"
+#include "common/base/little_endian.hpp"
+#include "nodes/exchange/part_composition.hpp"
 #include "tests/fuzz/exchange/part_input.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
@@ -38,7 +38,7 @@ std::optional<PartState> unpackInto(PicturePart& part, const std::vector<std::by
         told += piece.area.area();
         for (int32_t y = 0; y < piece.area.h; ++y) {
             const size_t from = static_cast<size_t>(y) * static_cast<size_t>(piece.area.w), at = part.at(piece.area.x, piece.area.y + y);
-            foldRow({part.colour.data() + at, part.depth.data() + at, piece.colour + from, piece.depth + from, static_cast<size_t>(piece.area.w)}, FoldSide::Later, e.rule);
+            compositeRow({part.colour.data() + at, part.depth.data() + at, piece.colour + from, piece.depth + from, static_cast<size_t>(piece.area.w)}, LayerOrder::Later, e.rule);
         }
     });
     must(told <= band.area(), "pieces are no more than the rows hold");

@@ -7,14 +7,14 @@
 
 namespace mural::fuzz {
 
-constexpr int32_t kMostPartColumns = 300; // more than four tiles
-constexpr int32_t kMostPartRows = 140;
+constexpr int32_t kMaxPartColumns = 300; // more than four tiles
+constexpr int32_t kMaxPartRows = 140;
 constexpr size_t kPartHeadBytes = 6;
 
 struct ExpectedPart {
     PictureId id;
     compositor::RowRange rows;
-    FoldRule rule;
+    CompositeRule rule;
     bool named = false; // the message receives the name of the expected picture, so that the rest of it is parsed
 };
 
@@ -25,7 +25,7 @@ inline ExpectedPart readExpectedPart(InputReader& in) {
     ExpectedPart e;
     e.rule = {kOrders[how % 4], 0xff102030u, less ? 0xffffffffu : 0u, (how & 4) != 0};
     e.named = (how & 8) != 0;
-    const int32_t width = in.half() % kMostPartColumns + 1, height = in.byte() % kMostPartRows + 1;
+    const int32_t width = in.half() % kMaxPartColumns + 1, height = in.byte() % kMaxPartRows + 1;
     e.id = {3, 7, {5, 9, width, height}};
     e.rows.first = in.byte() % height;
     e.rows.end = e.rows.first + 1 + in.byte() % (height - e.rows.first);

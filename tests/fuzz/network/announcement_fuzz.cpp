@@ -10,7 +10,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     const std::vector<std::byte> exact(input.begin(), input.end());
     const auto a = decodeAnnouncement(exact);
     if (!a) return 0;
-    must(a->name.size() <= kMostAnnouncedText && a->version.size() <= kMostAnnouncedText, "texts have their limit");
+    must(a->name.size() <= kMaxAnnouncedText && a->version.size() <= kMaxAnnouncedText, "texts have their limit");
     must(std::ranges::equal(encode(*a), exact), "an announcement is written in one way");
     return 1;
 }

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "tests/fuzz/fuzz_target.hpp"
-#include "transport/rsp/control_message.hpp"
+#include "transport/rsp/wire/control_message.hpp"
 
 namespace mural::fuzz {
 

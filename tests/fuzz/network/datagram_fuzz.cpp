@@ -5,7 +5,7 @@
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/network/fixed_random.hpp"
 #include "tests/fuzz/network/input_reader.hpp"
-#include "transport/rsp/datagram_seal.hpp"
+#include "transport/rsp/wire/datagram_cipher.hpp"
 
 namespace mural::fuzz {
 

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "transport/rsp/outbox.hpp"
+#include "transport/rsp/wire/datagram_sink.hpp"
 
 namespace mural::fuzz {
 
-class DatagramPipe : public rsp::Outbox {
+class DatagramPipe : public rsp::DatagramSink {
 public:
     std::span<std::byte> datagram(rsp::MemberId, size_t bytes) override {
         if (queue_.size() == kMost) queue_.pop_front();

@@ -8,7 +8,7 @@
 #include "tests/fuzz/network/fixed_random.hpp"
 #include "tests/fuzz/network/group_steps.hpp"
 #include "tests/fuzz/network/input_reader.hpp"
-#include "transport/rsp/group_core.hpp"
+#include "transport/rsp/protocol/group_core.hpp"
 
 namespace mural::fuzz {
 
@@ -16,8 +16,8 @@ namespace {
 
 using namespace rsp;
 
-constexpr size_t kMostSteps = 500;
-constexpr size_t kMostConnections = 32;
+constexpr size_t kMaxSteps = 500;
+constexpr size_t kMaxConnections = 32;
 constexpr MemberId kMember = 1; // the genuine one connects first
 
 struct Message {
@@ -84,7 +84,7 @@ private:
         switch (static_cast<GroupStep>(in.byte() % static_cast<int>(GroupStep::Count))) {
         case GroupStep::Wait: nowNs_ += int64_t{in.word()} * 1000; break;
         case GroupStep::Connect:
-            if (open_.size() >= kMostConnections) break;
+            if (open_.size() >= kMaxConnections) break;
             if (const auto id = host_.core.connected("192.0.2.2", "other", nowNs_)) open_.push_back(*id);
             break;
         case GroupStep::Disconnect: disconnect(in.byte()); break;
@@ -158,7 +158,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     InputReader in(input);
     Pair pair;
     uint64_t meant = 0;
-    for (size_t steps = 0; !in.empty() && steps < kMostSteps; ++steps) meant += pair.step(in);
+    for (size_t steps = 0; !in.empty() && steps < kMaxSteps; ++steps) meant += pair.step(in);
     return meant;
 }
 

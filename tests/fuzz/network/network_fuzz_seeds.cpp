@@ -4,13 +4,13 @@
 #include <fstream>
 #include <string>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 #include "tests/fuzz/network/group_steps.hpp"
 #include "tests/fuzz/network/secure_channel_steps.hpp"
 #include "tests/fuzz/network/stream_steps.hpp"
 #include "tools/mural/network/probe_datagram.hpp"
 #include "transport/discovery/announcement.hpp"
-#include "transport/rsp/control_message.hpp"
+#include "transport/rsp/wire/control_message.hpp"
 
 namespace mural::fuzz {
 namespace {

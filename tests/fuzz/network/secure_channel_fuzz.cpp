@@ -4,7 +4,7 @@
 #include "tests/fuzz/network/fixed_random.hpp"
 #include "tests/fuzz/network/input_reader.hpp"
 #include "tests/fuzz/network/secure_channel_steps.hpp"
-#include "transport/secure_channel.hpp"
+#include "transport/secure/secure_channel.hpp"
 
 namespace mural::fuzz {
 

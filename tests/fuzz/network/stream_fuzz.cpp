@@ -6,8 +6,8 @@
 #include "tests/fuzz/network/datagram_pipe.hpp"
 #include "tests/fuzz/network/input_reader.hpp"
 #include "tests/fuzz/network/stream_steps.hpp"
-#include "transport/rsp/receiver.hpp"
-#include "transport/rsp/sender.hpp"
+#include "transport/rsp/protocol/receiver.hpp"
+#include "transport/rsp/protocol/sender.hpp"
 
 namespace mural::fuzz {
 
@@ -17,7 +17,7 @@ using namespace rsp;
 
 constexpr StreamShape kShape{100, 128};
 constexpr MemberId kReader = 1;
-constexpr size_t kMostSteps = 2000;
+constexpr size_t kMaxSteps = 2000;
 
 class Stream {
 public:
@@ -103,7 +103,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     InputReader in(input);
     Stream stream{Sequence(in.word())};
     uint64_t meant = 0;
-    for (size_t steps = 0; !in.empty() && steps < kMostSteps; ++steps) meant += stream.step(in);
+    for (size_t steps = 0; !in.empty() && steps < kMaxSteps; ++steps) meant += stream.step(in);
     return meant;
 }
 

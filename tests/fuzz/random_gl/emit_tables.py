@@ -11,7 +11,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
-sys.path.insert(0, os.path.join(ROOT, 'streamcodec', 'gen'))
+sys.path.insert(0, os.path.join(ROOT, 'streamcodec', 'api', 'gen'))
 import registry  # noqa: E402
 import xml.etree.ElementTree as ET  # noqa: E402
 
@@ -237,7 +237,7 @@ def main():
     arguments.add_argument('--registry', required=True)
     arguments.add_argument('--out', required=True)
     o = arguments.parse_args()
-    commands, _ = registry.load(o.registry, os.path.join(ROOT, 'streamcodec', 'registry', 'semantics.txt'))
+    commands, _ = registry.load(o.registry, os.path.join(ROOT, 'streamcodec', 'api', 'semantics.txt'))
     root = ET.parse(o.registry).getroot()
     text = emit(root, commands, Excluded(os.path.join(HERE, 'excluded.txt')))
     with open(o.out, 'w', encoding='utf-8') as f:

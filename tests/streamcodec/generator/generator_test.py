@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of streamcodec/gen: its output for a tiny registry, and properties of its output for the real one.
+"""Tests of streamcodec/api/gen: its output for a tiny registry, and properties of its output for the real one.
 
   generator_test.py            runs the tests
   generator_test.py --update   accepts the present output as golden.txt; read the difference first
@@ -13,8 +13,8 @@ import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
-GEN = os.path.join(ROOT, 'streamcodec', 'gen')
-REAL = os.path.join(ROOT, 'streamcodec', 'registry')
+GEN = os.path.join(ROOT, 'streamcodec', 'api', 'gen')
+REAL = os.path.join(ROOT, 'streamcodec', 'api')
 GOLDEN = os.path.join(HERE, 'golden.txt')
 GL_XML = next((p for p in ('/usr/share/khronos-api/gl.xml', '/usr/share/khronos-api/api/gl.xml') if os.path.exists(p)), None)
 GL_XML = os.environ.get('MURAL_GL_XML', GL_XML)
@@ -135,7 +135,7 @@ class RealRegistry(unittest.TestCase):
 
     def test_lock_only_grew(self):
         """The committed lock must be the beginning of the current one."""
-        run = subprocess.run(['git', '-C', ROOT, 'show', 'HEAD:streamcodec/registry/opcodes.lock'], capture_output=True, text=True)
+        run = subprocess.run(['git', '-C', ROOT, 'show', 'HEAD:streamcodec/api/opcodes.lock'], capture_output=True, text=True)
         if run.returncode != 0:
             self.skipTest('no git history here')
         old = [n for n in run.stdout.splitlines() if n and n[0] != '#']

@@ -25,7 +25,7 @@ TEST(Announcement, decodesItsOwnEncoding) {
 TEST(Announcement, truncatesLongTexts) {
     Announcement a = example();
     a.name = std::string(200, 'x');
-    EXPECT_EQ(decodeAnnouncement(encode(a))->name, std::string(kMostAnnouncedText, 'x'));
+    EXPECT_EQ(decodeAnnouncement(encode(a))->name, std::string(kMaxAnnouncedText, 'x'));
 }
 
 TEST(Announcement, rejectsTruncatedAndLongerDatagrams) {

@@ -63,9 +63,9 @@ TEST(NodeTable, limitsTheNumberOfNodes) {
         a.uuid[2] = static_cast<std::byte>(i >> 8);
         table.heardBeacon(a, "10.0.0.1", 0);
     }
-    EXPECT_EQ(table.nodes().size(), NodeTable::kMostNodes);
+    EXPECT_EQ(table.nodes().size(), NodeTable::kMaxNodes);
     for (unsigned i = 0; i < 100; ++i) table.heardBeacon(node(0, "x"), "10.0.1." + std::to_string(i), 0);
-    EXPECT_EQ(table.nodes()[0].addresses.size(), NodeTable::kMostAddresses);
+    EXPECT_EQ(table.nodes()[0].addresses.size(), NodeTable::kMaxAddresses);
 }
 
 } // namespace

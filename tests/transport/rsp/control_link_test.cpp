@@ -1,5 +1,5 @@
 // Control connections of a group: limits and order of queued messages.
-#include "transport/rsp/control_link.hpp"
+#include "transport/rsp/io/control_link.hpp"
 
 #include <gtest/gtest.h>
 

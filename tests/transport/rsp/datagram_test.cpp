@@ -1,5 +1,5 @@
 // Encoding of RSP datagrams, and comparison of sequence numbers.
-#include "transport/rsp/datagram.hpp"
+#include "transport/rsp/wire/datagram.hpp"
 
 #include <gtest/gtest.h>
 
@@ -148,7 +148,7 @@ TEST(Datagram, survivesArbitraryBytes) {
         const auto b = readFeedback(bytes);
         accepted += s.has_value() + b.has_value();
         if (s) { EXPECT_LE(s->payload.size(), bytes.size()); }
-        if (b) { EXPECT_LE(b->entryCount, kMostEntries); }
+        if (b) { EXPECT_LE(b->entryCount, kMaxEntries); }
     }
     EXPECT_GT(accepted, 1000u);
 }

@@ -5,9 +5,9 @@
 #include <array>
 #include <random>
 
-#include "common/little_endian.hpp"
-#include "transport/rsp/erasure_code.hpp"
-#include "transport/rsp/gf256.hpp"
+#include "common/base/little_endian.hpp"
+#include "transport/rsp/erasure/erasure_code.hpp"
+#include "transport/rsp/erasure/gf256.hpp"
 
 namespace mural::rsp {
 namespace {
@@ -42,7 +42,7 @@ TEST(Gf256, givesEqualResultsForVectorsAndBytes) {
 }
 
 TEST(ErasureCode, usesASumAsFirstRow) {
-    for (int column = 0; column < kMostInGroup; ++column) EXPECT_EQ(codeFactor(0, column), 1);
+    for (int column = 0; column < kMaxInGroup; ++column) EXPECT_EQ(codeFactor(0, column), 1);
 }
 
 // Restores `lost` of k symbols of any lengths from randomly chosen rows.
@@ -54,7 +54,7 @@ void loseAndSolve(std::mt19937& random, int k, int lost) {
         longest = std::max(longest, symbols.back().size());
     }
     std::vector<int> columns(static_cast<size_t>(k));
-    std::vector<int> rows(kMostRows);
+    std::vector<int> rows(kMaxRows);
     for (size_t i = 0; i < columns.size(); ++i) columns[i] = static_cast<int>(i);
     for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
     std::ranges::shuffle(columns, random);
@@ -82,7 +82,7 @@ void loseAndSolve(std::mt19937& random, int k, int lost) {
 
 TEST(ErasureCode, restoresAnyLossesFromAnyRows) {
     std::mt19937 random(2);
-    for (int k = 1; k <= kMostInGroup; ++k)
+    for (int k = 1; k <= kMaxInGroup; ++k)
         for (int lost = 1; lost <= k; ++lost) loseAndSolve(random, k, lost);
 }
 

@@ -1,5 +1,5 @@
 // The effect of losses on the rate: none for a lossy link or chance, enough for congestion.
-#include "transport/rsp/rate_control.hpp"
+#include "transport/rsp/protocol/rate_control.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The times at which a reader polls its sockets: the amount that accumulates, and the limit of the delay.
 #include <gtest/gtest.h>
 
-#include "transport/rsp/receive_moderation.hpp"
+#include "transport/rsp/protocol/receive_moderation.hpp"
 
 namespace mural::rsp {
 namespace {
@@ -30,7 +30,7 @@ TEST(ReceiveModeration, accumulatesDatagramsOfAFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     EXPECT_LT(looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs), 8333 / 20);
-    EXPECT_EQ(longestNs, ReceiveModeration::kMostRestNs);
+    EXPECT_EQ(longestNs, ReceiveModeration::kMaxRestNs);
 }
 
 // A small socket is polled before it can be full; the same flow into a large one rests for the maximum.
@@ -84,16 +84,16 @@ TEST(ReceiveModeration, continuesALateFlow) {
     (void)looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
     const int64_t lateNs = kBeginNs + 106'000 * kUs;
     m.looked({}, lateNs - 3'000 * kUs); // no datagram arrived
-    EXPECT_EQ(m.restNs(lateNs - 3'000 * kUs), ReceiveModeration::kMostRestNs);
+    EXPECT_EQ(m.restNs(lateNs - 3'000 * kUs), ReceiveModeration::kMaxRestNs);
     m.looked({.datagrams = 500}, lateNs);
-    EXPECT_EQ(m.restNs(lateNs), ReceiveModeration::kMostRestNs);
+    EXPECT_EQ(m.restNs(lateNs), ReceiveModeration::kMaxRestNs);
 }
 
 TEST(ReceiveModeration, endsAStoppedFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
     (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
-    const int64_t laterNs = kBeginNs + 50'000 * kUs + ReceiveModeration::kMostSilenceNs;
+    const int64_t laterNs = kBeginNs + 50'000 * kUs + ReceiveModeration::kMaxSilenceNs;
     EXPECT_EQ(m.restNs(laterNs), 0);
     m.looked({.datagrams = 1}, laterNs);
     EXPECT_EQ(m.restNs(laterNs), 0);

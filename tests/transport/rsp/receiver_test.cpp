@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 
-#include "transport/rsp/receiver.hpp"
+#include "transport/rsp/protocol/receiver.hpp"
 
 namespace mural::rsp {
 namespace {
 
-class Nowhere : public Outbox {
+class Nowhere : public DatagramSink {
 public:
     std::span<std::byte> datagram(MemberId, size_t bytes) override {
         bytes_.resize(bytes);
@@ -74,7 +74,7 @@ TEST(Receiver, sendsFeedbackTwicePerWindow) {
     for (int i = 0; i < kWindows * 256; ++i) {
         StreamDatagram data;
         data.sequence = Sequence(7) + i;
-        data.index = static_cast<uint8_t>(i % kMostInGroup);
+        data.index = static_cast<uint8_t>(i % kMaxInGroup);
         data.payload = payload;
         receiver.input(data, nowNs += 20'000);
         receiver.consume(100);
@@ -90,13 +90,13 @@ TEST(Receiver, usesPayloadsInPlace) {
     ReceiverSettings settings;
     settings.shape = {100, 64};
     Receiver receiver(settings, Sequence(7));
-    Landing landing = receiver.landing();
+    ReceiveBuffers landing = receiver.landing();
     ASSERT_GE(landing.placeBytes, kStreamHeadBytes + 100);
     ASSERT_GE(landing.places.size(), 4u);
     const auto come = [&](int number, std::span<const std::byte> payload) {
         StreamDatagram data;
         data.sequence = Sequence(7) + number;
-        data.index = static_cast<uint8_t>(number % kMostInGroup);
+        data.index = static_cast<uint8_t>(number % kMaxInGroup);
         data.payload = payload;
         receiver.input(data, 1'000'000);
     };
@@ -115,7 +115,7 @@ TEST(Receiver, usesPayloadsInPlace) {
     come(1, landed(3, 99)); // a duplicate: rejected, and its slot is reused
     const std::vector<std::byte> elsewhere(100, std::byte{12});
     come(2, elsewhere);
-    const Landing next = receiver.landing();
+    const ReceiveBuffers next = receiver.landing();
     for (std::byte* const place : next.places)
         for (const auto& piece : std::span(pieces).first(2)) EXPECT_NE(place + kStreamHeadBytes, piece.data());
     for (const size_t again : {1, 3}) EXPECT_NE(std::ranges::find(next.places, landing.places[again]), next.places.end()) << again;

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "transport/rsp/sender.hpp"
+#include "transport/rsp/protocol/sender.hpp"
 
 namespace mural::rsp {
 namespace {
 
-class Kept : public Outbox {
+class Kept : public DatagramSink {
 public:
     std::span<std::byte> datagram(MemberId, size_t bytes) override { return kept_.emplace_back(bytes); }
     // The datagrams since the last call that request an immediate reply.
@@ -37,7 +37,7 @@ TEST(SenderAsks, atTheEndOfAFlushOnly) {
     word.edge = Sequence(5 + 256);
     sender.input(word, nowNs);
     Kept out;
-    const std::vector<std::byte> groupful(1000 * kMostInGroup);
+    const std::vector<std::byte> groupful(1000 * kMaxInGroup);
     for (int i = 0; i < 3; ++i) { // each time a whole group is sent and nothing is left
         ASSERT_EQ(sender.write(groupful), groupful.size());
         (void)sender.tick(nowNs += 100'000, out);

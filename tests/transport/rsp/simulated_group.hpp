@@ -9,10 +9,10 @@
 #include <set>
 #include <string>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "tests/transport/rsp/simulated_network.hpp"
-#include "transport/rsp/datagram_seal.hpp"
-#include "transport/rsp/group_core.hpp"
+#include "transport/rsp/wire/datagram_cipher.hpp"
+#include "transport/rsp/protocol/group_core.hpp"
 
 namespace mural::rsp::test {
 
@@ -67,9 +67,9 @@ private:
 
 class SimulatedGroup {
 public:
-    static constexpr size_t kMostHosts = 128;
+    static constexpr size_t kMaxHosts = 128;
 
-    explicit SimulatedGroup(uint64_t seed, const std::function<void(GroupSettings&)>& change = {}) : network(seed, kMostHosts) {
+    explicit SimulatedGroup(uint64_t seed, const std::function<void(GroupSettings&)>& change = {}) : network(seed, kMaxHosts) {
         settings_.host = true;
         settings_.keys = makeSessionKeys(Seal::Tag);
         settings_.windowDatagrams = 512;

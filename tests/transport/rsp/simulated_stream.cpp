@@ -6,7 +6,7 @@ namespace mural::rsp::test {
 
 namespace {
 
-constexpr size_t kMostHosts = 256;
+constexpr size_t kMaxHosts = 256;
 
 std::byte byteAt(uint64_t place) { return static_cast<std::byte>((place * 0x9e3779b97f4a7c15u) >> 56); }
 
@@ -21,7 +21,7 @@ SenderSettings senderSettings(const StreamPlan& plan) {
 } // namespace
 
 // Sends a datagram when the next one is requested, or at the end.
-class SimulatedStream::Wire : public Outbox {
+class SimulatedStream::Wire : public DatagramSink {
 public:
     Wire(SimulatedStream& stream, DatagramSealer& sealer) : stream_(stream), sealer_(sealer) {}
     ~Wire() override { sendOut(); }
@@ -46,7 +46,7 @@ private:
 };
 
 SimulatedStream::SimulatedStream(const StreamPlan& plan)
-    : plan_(plan), network_(plan.seed, kMostHosts), keys_(makeSessionKeys(plan.seal)), sealer_(keys_, 0), opener_(keys_), sender_(senderSettings(plan), Sequence(plan.first)) {
+    : plan_(plan), network_(plan.seed, kMaxHosts), keys_(makeSessionKeys(plan.seal)), sealer_(keys_, 0), opener_(keys_), sender_(senderSettings(plan), Sequence(plan.first)) {
     network_.faults(0) = plan.toWriter;
     network_.onDatagram(0, [this](std::span<std::byte> d) {
         if (const auto f = readFeedback(opener_.open(d))) sender_.input(*f, network_.nowNs());
@@ -85,7 +85,7 @@ size_t SimulatedStream::join() {
 // Delivers as a socket does: randomly in place in the window or elsewhere.
 std::optional<StreamDatagram> SimulatedStream::landed(std::span<const std::byte> datagram, Receiver& receiver) {
     if (datagram.size() <= kStreamHeadBytes || network_.random() % 2 == 0) return readStream(datagram);
-    const Landing landing = receiver.landing();
+    const ReceiveBuffers landing = receiver.landing();
     if (datagram.size() > landing.placeBytes) return readStream(datagram);
     std::byte* const place = landing.places[network_.random() % landing.places.size()];
     std::ranges::copy(datagram, place);

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "tests/transport/rsp/simulated_network.hpp"
-#include "transport/rsp/datagram_seal.hpp"
-#include "transport/rsp/receiver.hpp"
-#include "transport/rsp/sender.hpp"
+#include "transport/rsp/wire/datagram_cipher.hpp"
+#include "transport/rsp/protocol/receiver.hpp"
+#include "transport/rsp/protocol/sender.hpp"
 
 namespace mural::rsp::test {
 

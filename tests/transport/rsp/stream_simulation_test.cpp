@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/transport/rsp/simulated_stream.hpp"
 

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "transport/rsp/udp_socket.hpp"
+#include "transport/rsp/io/udp_socket.hpp"
 
 namespace mural::rsp {
 namespace {
@@ -48,7 +48,7 @@ struct Came {
     std::vector<std::vector<std::byte>> datagrams;
     size_t landed = 0;
 
-    Came(UdpSocket& socket, const Landing& landing, size_t count) {
+    Came(UdpSocket& socket, const ReceiveBuffers& landing, size_t count) {
         pollfd one{socket.descriptor(), POLLIN, 0};
         while (datagrams.size() < count && poll(&one, 1, 10'000) == 1) {
             for (const UdpSocket::Datagram& d : socket.fetch(landing)) {
@@ -68,11 +68,11 @@ struct Places {
     }
     Places(const Places&) = delete; // `each` points into `bytes`
     Places& operator=(const Places&) = delete;
-    [[nodiscard]] Landing landing() const { return {placeBytes, each}; }
+    [[nodiscard]] ReceiveBuffers landing() const { return {placeBytes, each}; }
 };
 
 // Sends and receives enough single datagrams to show that none are merged.
-void showThatNoneAreJoined(Ends& ends, const Landing& landing) {
+void showThatNoneAreJoined(Ends& ends, const ReceiveBuffers& landing) {
     constexpr size_t kAtOnce = 32;
     for (size_t round = 0; round < 8; ++round) {
         for (size_t i = 0; i < kAtOnce; ++i) ends.send(numbered(kPlace, round + i), kPlace);
@@ -101,15 +101,15 @@ TEST(UdpSocket, usesSeparateSlotsPerCall) {
     Ends ends;
     ends.to.leaveOutSenders();
     const Places few(4);
-    const std::array<Places, 4> looks{Places(kMostAtOnce), Places(kMostAtOnce), Places(kMostAtOnce, 2 * kPlace), Places(kMostAtOnce)};
+    const std::array<Places, 4> looks{Places(kMaxAtOnce), Places(kMaxAtOnce), Places(kMaxAtOnce, 2 * kPlace), Places(kMaxAtOnce)};
     showThatNoneAreJoined(ends, few.landing());
     for (size_t look = 0; look < looks.size(); ++look) {
         const size_t size = looks[look].placeBytes;
-        for (size_t i = 0; i < kMostAtOnce; ++i) ends.send(numbered(size, look + i), size);
-        const Came came(ends.to, looks[look].landing(), kMostAtOnce);
-        ASSERT_EQ(came.datagrams.size(), kMostAtOnce) << look;
-        for (size_t i = 0; i < kMostAtOnce; ++i) EXPECT_EQ(came.datagrams[i], numbered(size, look + i)) << look << ", " << i;
-        EXPECT_EQ(came.landed, kMostAtOnce) << look;
+        for (size_t i = 0; i < kMaxAtOnce; ++i) ends.send(numbered(size, look + i), size);
+        const Came came(ends.to, looks[look].landing(), kMaxAtOnce);
+        ASSERT_EQ(came.datagrams.size(), kMaxAtOnce) << look;
+        for (size_t i = 0; i < kMaxAtOnce; ++i) EXPECT_EQ(came.datagrams[i], numbered(size, look + i)) << look << ", " << i;
+        EXPECT_EQ(came.landed, kMaxAtOnce) << look;
     }
     // The same with fewer slots and with none.
     ends.send(numbered(kPlace, 9), kPlace);

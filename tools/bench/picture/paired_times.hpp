@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "compositor/image/pixel_bytes.hpp"
 
 namespace mural::bench {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "compositor/image/plane.hpp"
 
 namespace mural::bench {

@@ -19,8 +19,8 @@ using namespace compositor;
 namespace {
 
 constexpr uint64_t kPartTag = 1;
-constexpr FoldRule kRule{DepthFunction::Less, 0, 0xffffffffu, false};
-constexpr size_t kMostRanks = 16;
+constexpr CompositeRule kRule{DepthFunction::Less, 0, 0xffffffffu, false};
+constexpr size_t kMaxRanks = 16;
 constexpr int kWarmFrames = 4; // the codec selector explores
 
 struct Drawn {
@@ -71,7 +71,7 @@ std::vector<Drawn> drawnOf(const std::vector<NamedPlane>& planes) {
     }
     // With too few scenes, adds the same upside down.
     const size_t captured = all.size();
-    for (size_t s = 0; captured > 1 && s < captured && all.size() < kMostRanks; ++s) {
+    for (size_t s = 0; captured > 1 && s < captured && all.size() < kMaxRanks; ++s) {
         Drawn turned = all[s];
         const auto turn = [&](auto& values) {
             const auto width = static_cast<ptrdiff_t>(turned.part.id.box.w);
@@ -264,7 +264,7 @@ Faults benchRanks(const std::vector<NamedPlane>& planes, const BenchOptions& opt
     fmt::print("\n{} x {} pixels by depth, each rank another scene, processes joined by sockets: CPU ms of a rank in the mean / of the busiest / MB that all send, a frame\n", drawn[0].part.id.box.w, drawn[0].part.id.box.h);
     fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", "", "ranks", "ours", "IceT", "IceT's CPU over ours", "bytes");
     for (const Way& way : kWays)
-        for (const int ranks : {2, 3, 4, 8, static_cast<int>(kMostRanks)}) {
+        for (const int ranks : {2, 3, 4, 8, static_cast<int>(kMaxRanks)}) {
             if (static_cast<size_t>(ranks) > drawn.size() || (options.quick && ranks > 3)) continue;
             Sum best[2]; // the fastest of several turns
             const int turns = options.quick ? 1 : 3, frames = options.quick ? 3 : 10;

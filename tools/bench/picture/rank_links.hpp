@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::bench {
 

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "compositor/codecs/registry.hpp"
-#include "compositor/selector/codec_selector.hpp"
+#include "compositor/selection/codec_selector.hpp"
 #include "tools/bench/picture/benches.hpp"
 #include "tools/bench/picture/paired_times.hpp"
 

@@ -3,8 +3,8 @@
 #include <lz4.h>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "recording/record_walk.hpp"
+#include "common/base/clock.hpp"
+#include "streamcodec/trace/record_walk.hpp"
 #include "tools/bench/stream/ways.hpp"
 
 namespace mural::bench {
@@ -30,8 +30,8 @@ public:
     void packet(const StreamPacket& p) override {
         const size_t start = now_.bytes.size();
         now_.bytes.insert(now_.bytes.end(), p.payload.begin(), p.payload.end());
-        recording::RecordWalk walk(p.payload);
-        recording::RecordView r;
+        trace::RecordWalk walk(p.payload);
+        trace::RecordView r;
         size_t end = 0;
         while (walk.next(r)) {
             now_.commands.push_back({start + r.offset, r.sizeBytes});

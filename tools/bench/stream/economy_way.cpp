@@ -3,10 +3,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/clock.hpp"
-#include "economy/unpacker.hpp"
-#include "nodes/head/stream_economy.hpp"
-#include "streamcodec/wire.hpp"
+#include "common/base/clock.hpp"
+#include "streamcodec/delta/delta_decoder.hpp"
+#include "nodes/head/broadcast/delta_stream.hpp"
+#include "streamcodec/wire/wire.hpp"
 #include "tools/bench/stream/ways.hpp"
 
 namespace mural::bench {
@@ -14,7 +14,7 @@ namespace {
 
 class EconomyWay final : public Way {
 public:
-    EconomyWay(std::unique_ptr<StreamEconomy> economy, const economy::Limits& limits, bool holds) : economy_(std::move(economy)), unpacker_(limits), holds_(holds) {
+    EconomyWay(std::unique_ptr<DeltaStream> economy, const delta::Limits& limits, bool holds) : economy_(std::move(economy)), unpacker_(limits), holds_(holds) {
         economy_->sendBy([this] { take(); });
         if (!holds) economy_->holdNothing(); // decoded packets are compared with the originals
     }
@@ -73,7 +73,7 @@ private:
     Result<void> unpack() {
         batch_ = std::move(batches_.front()); // decoded packets refer to it
         batches_.pop_front();
-        economy::BatchHeadReader head;
+        delta::BatchHeadReader head;
         size_t at = 0;
         while (at < batch_.size() && !head.add(batch_[at++])) {}
         auto sections = decoder_.decode(head.head(), std::span(batch_).subspan(at));
@@ -83,9 +83,9 @@ private:
         return {};
     }
 
-    std::unique_ptr<StreamEconomy> economy_;
-    economy::BatchDecoder decoder_;
-    economy::Unpacker unpacker_;
+    std::unique_ptr<DeltaStream> economy_;
+    delta::BatchDecoder decoder_;
+    delta::DeltaDecoder unpacker_;
     std::vector<Sent> sent_; // of the frame
     std::deque<std::vector<std::byte>> batches_; // not decoded yet
     std::vector<std::byte> batch_; // being decoded
@@ -99,9 +99,9 @@ private:
 } // namespace
 
 static Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes, bool holds) {
-    economy::Limits limits;
+    delta::Limits limits;
     limits.storeBytes = storeBytes;
-    auto economy = StreamEconomy::open(limits);
+    auto economy = DeltaStream::open(limits);
     if (!economy) return economy.error();
     return std::unique_ptr<Way>(new EconomyWay(std::move(*economy), limits, holds));
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 
 namespace mural::bench {
 

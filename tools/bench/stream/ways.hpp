@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "tools/bench/stream/frames.hpp"
 
 namespace mural::bench {

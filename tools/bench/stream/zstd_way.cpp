@@ -2,7 +2,7 @@
 #include <vector>
 #include <zstd.h>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "tools/bench/stream/ways.hpp"
 
 namespace mural::bench {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "balancer/drawing/svg.hpp"
+#include "balancer/svg/svg.hpp"
 #include "tools/mural/accuracy/accuracy_text.hpp"
 #include "tools/mural/accuracy/cost_plot.hpp"
 

@@ -15,7 +15,7 @@
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/process_tree.hpp"
 #include "nodes/launch/program_check.hpp"
-#include "nodes/output/png_files.hpp"
+#include "nodes/output/files/png_files.hpp"
 #include "tools/mural/accuracy/interruption.hpp"
 
 namespace mural::cli {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/private_display.hpp"
 #include "nodes/output/picture.hpp"

@@ -1,7 +1,7 @@
 // Measures the losses and the costs of all picture codecs (measureCodecs of composition_rows.hpp).
 #include <fmt/format.h>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "compositor/codecs/registry.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
 #include "tools/mural/accuracy/interruption.hpp"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "compositor/assembly/assembly.hpp"
 #include "compositor/assembly/average.hpp"
 #include "compositor/kernels/half_float.hpp"

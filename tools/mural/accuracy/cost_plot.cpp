@@ -17,7 +17,7 @@ using drawing::Style;
 using drawing::Svg;
 
 // relative to 255; column of exact results; room for numbers
-constexpr double kLeastError = 1e-3, kMostError = 100, kExact = 60, kAxis = 40;
+constexpr double kMinError = 1e-3, kMaxError = 100, kExact = 60, kAxis = 40;
 constexpr std::array<const char*, 8> kColours{"#1f6f8b", "#c46a1b", "#5b8c2a", "#8e3b8a", "#b8312f", "#2f4b8f", "#8a7a1d", "#3f3f46"};
 const char *const kText = "#1f2933", *const kSoft = "#66727f", *const kFaint = "#d5dce3";
 
@@ -28,7 +28,7 @@ struct Plot {
     [[nodiscard]] double x(double error) const {
         if (error <= 0) return area.x + kAxis + kExact / 2;
         const double left = area.x + kAxis + kExact;
-        return left + (area.x + area.w - left) * std::log(std::clamp(error, kLeastError, kMostError) / kLeastError) / std::log(kMostError / kLeastError);
+        return left + (area.x + area.w - left) * std::log(std::clamp(error, kMinError, kMaxError) / kMinError) / std::log(kMaxError / kMinError);
     }
     [[nodiscard]] double y(double value) const { return area.y + area.h - area.h * std::log(std::clamp(value, least, most) / least) / std::log(most / least); }
 };
@@ -45,7 +45,7 @@ void drawFrame(Svg& svg, const Plot& p, const std::string& title) {
         svg.line({p.area.x + kAxis, p.y(v)}, {p.area.x + p.area.w, p.y(v)}, faint);
         svg.text({p.area.x + kAxis - 5, p.y(v) + 3}, fmt::format("{:g}", v), {.size = 10, .color = kText, .align = Align::Right});
     }
-    for (double v = kLeastError; v <= kMostError * 1.01; v *= 10) {
+    for (double v = kMinError; v <= kMaxError * 1.01; v *= 10) {
         svg.line({p.x(v), p.area.y}, {p.x(v), p.area.y + p.area.h}, faint);
         svg.text({p.x(v), p.area.y + p.area.h + 14}, fmt::format("{:g}", v), {.size = 10, .color = kText, .align = Align::Middle});
     }

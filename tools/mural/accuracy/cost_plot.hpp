@@ -1,7 +1,7 @@
 // Plots costs below the errors: CPU time and bytes against the error.
 #pragma once
 
-#include "balancer/drawing/svg.hpp"
+#include "balancer/svg/svg.hpp"
 #include "tools/mural/accuracy/accuracy_row.hpp"
 
 namespace mural::cli {

@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "recording/file_reader.hpp"
+#include "streamcodec/trace/trace_reader.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
 
 namespace mural::cli {
@@ -14,13 +14,13 @@ namespace mural::cli {
 namespace {
 
 constexpr size_t kWholeFrames = 2; // per window; afterwards the reads of the program are determined
-constexpr int kMostSamples = 16; // reference for antialiasing
+constexpr int kMaxSamples = 16; // reference for antialiasing
 
 struct Way {
     std::string name;
     Words options;
     Bound bound;
-    bool manySamples = false; // compared with the mean of kMostSamples, not with one node's picture
+    bool manySamples = false; // compared with the mean of kMaxSamples, not with one node's picture
     double pictures = 1; // transferred for assembly
     bool quick = false;
     bool otherPixels = false; // nodes draw other pixels than shown, except in the first frames
@@ -75,7 +75,7 @@ Result<Replayed> replayed(const AccuracyRuns& runs, const std::string& recording
 } // namespace
 
 Result<void> checkRecording(const std::string& recording, const SayProgress& say) {
-    auto reader = recording::FileReader::open(recording);
+    auto reader = trace::TraceReader::open(recording);
     if (!reader) return reader.error();
     if (auto whole = reader.value()->verify(); !whole) return whole.error();
     if (reader.value()->frames() == 0) return Error{"recording " + recording + " has no frame: its program showed no picture; mural dump prints its calls"};
@@ -90,12 +90,12 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         rows.push_back({group, "one node", "", {}, {}, one.error().message, {}});
         return;
     }
-    const auto many = replayed(runs, recording, {"--subpixel", std::to_string(kMostSamples)});
+    const auto many = replayed(runs, recording, {"--subpixel", std::to_string(kMaxSamples)});
     for (const Way& way : ways()) {
         if (quick && !way.quick) continue;
         say(name + ": " + way.name);
         const Result<Replayed>& wanted = way.manySamples ? many : one;
-        AccuracyRow row{group, way.name, way.manySamples ? fmt::format("{} samples", kMostSamples) : "one node", {}, way.bound, {}, {}};
+        AccuracyRow row{group, way.name, way.manySamples ? fmt::format("{} samples", kMaxSamples) : "one node", {}, way.bound, {}, {}};
         const auto got = wanted ? replayed(runs, recording, way.options) : Result<Replayed>(wanted.error());
         if (!got) row.failure = got.error().message;
         else if (got.value().pictures.size() != wanted.value().pictures.size()) row.failure = fmt::format("{} pictures came instead of {}", got.value().pictures.size(), wanted.value().pictures.size());

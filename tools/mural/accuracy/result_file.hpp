@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "common/result.hpp"
-#include "transport/file_descriptor.hpp"
+#include "common/base/result.hpp"
+#include "common/ipc/file_descriptor.hpp"
 
 namespace mural::cli {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/jitter.hpp"
+#include "common/geometry/jitter.hpp"
 #include "tools/mural/accuracy/scenes/scene_names.hpp"
 
 namespace mural::cli {

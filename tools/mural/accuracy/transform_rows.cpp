@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "balancer/compound/frusta.hpp"
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 
 namespace mural::cli {
 

@@ -9,10 +9,10 @@
 #include "balancer/compound/even_split.hpp"
 #include "balancer/compound/load_config.hpp"
 #include "balancer/compound/plan_frame.hpp"
-#include "balancer/config/text/writer.hpp"
-#include "balancer/drawing/config_drawing.hpp"
-#include "common/result.hpp"
-#include "nodes/head/config_gaps.hpp"
+#include "balancer/config/eqc/writer.hpp"
+#include "balancer/svg/config_drawing.hpp"
+#include "common/base/result.hpp"
+#include "nodes/head/planning/unsupported_fields.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/config/config_summary.hpp"
 #include "tools/mural/config/plan_text.hpp"
@@ -23,17 +23,17 @@ namespace {
 
 using compound::LoadedConfig;
 
-constexpr size_t kMostWarnings = 10; // keeps errors visible, because a file of another format causes a warning per word
+constexpr size_t kMaxWarnings = 10; // keeps errors visible, because a file of another format causes a warning per word
 
 void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
     const auto isError = [](const config::Diagnostic& d) { return d.severity == config::Severity::Error; };
     const bool wrong = std::ranges::any_of(loaded.diagnostics.all(), isError);
     size_t warnings = 0;
     for (const config::Diagnostic& d : loaded.diagnostics.all()) {
-        if (!isError(d) && ++warnings > kMostWarnings && wrong) continue;
+        if (!isError(d) && ++warnings > kMaxWarnings && wrong) continue;
         fmt::print(where, "{}{}\n", d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
     }
-    if (wrong && warnings > kMostWarnings) fmt::print(where, "note: {} more warnings are left out; mend what is wrong first\n", warnings - kMostWarnings);
+    if (wrong && warnings > kMaxWarnings) fmt::print(where, "note: {} more warnings are left out; mend what is wrong first\n", warnings - kMaxWarnings);
 }
 
 // Returns an option that does not apply to the requested output; empty: none.

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <map>
 
-#include "balancer/config/text/section_fields.hpp"
+#include "balancer/config/eqc/section_fields.hpp"
 
 namespace mural::cli {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <poll.h>
 
-#include "transport/socket_address.hpp"
+#include "transport/tcp/socket_address.hpp"
 
 namespace mural::cli {
 
@@ -19,7 +19,7 @@ constexpr unsigned kCopies = 5; // copies of each probe: one arrival suffices
 constexpr int kBetweenProbesMs = 1;
 constexpr size_t kExactBytes = 4; // resolution of the largest size
 constexpr size_t kPieceBytes = 64 * 1024;
-constexpr size_t kLeastSessionBytes = 512; // least size of a session's datagrams
+constexpr size_t kMinSessionBytes = 512; // least size of a session's datagrams
 
 // Common packet sizes: tunnels, PPPoE, Ethernet, jumbo frames.
 constexpr size_t kKnownPackets[] = {1280, 1400, 1450, 1492, 1500, 2304, 4352, 8192, 9000};
@@ -61,7 +61,7 @@ Result<void> HostSurvey::greet(Deadline deadline) {
 }
 
 Result<void> HostSurvey::measure() {
-    std::vector<size_t> sizes{kLeastProbeBytes};
+    std::vector<size_t> sizes{kMinProbeBytes};
     if (auto r = probeThere(sizes, {std::begin(kProbeWays), std::end(kProbeWays)}); !r) return r;
     if (auto r = probeBack(); !r) return r;
     for (const ProbeWay way : {ProbeWay::Single, ProbeWay::Group}) {
@@ -105,7 +105,7 @@ Result<void> HostSurvey::probeThere(const std::vector<size_t>& sizes, const std:
 
 Result<void> HostSurvey::probeBack() {
     (void)sockets_.take();
-    const json order{{"do", "send"}, {"to", m_.reached}, {"port", sockets_.port()}, {"sizes", {kLeastProbeBytes}}, {"copies", kCopies}};
+    const json order{{"do", "send"}, {"to", m_.reached}, {"port", sockets_.port()}, {"sizes", {kMinProbeBytes}}, {"copies", kCopies}};
     auto answer = process_.ask(order, Deadline::inMs(kAnswerMs));
     if (!answer) return answer.error();
     takeTroubles(*answer, m_);
@@ -117,9 +117,9 @@ Result<void> HostSurvey::probeBack() {
 // Tries common sizes first, then bisects between the largest arrival and the smallest loss.
 Result<void> HostSurvey::findLargest(ProbeWay way) {
     // Interfaces accept packets somewhat larger than their MTU, but cannot send replies of that size.
-    const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kLeastProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes : plan_.cardBytes;
+    const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kMinProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes : plan_.cardBytes;
     const size_t most = std::min(plan_.cardBytes, theirs);
-    std::vector<size_t> sizes{kLeastProbeBytes};
+    std::vector<size_t> sizes{kMinProbeBytes};
     for (const size_t packet : kKnownPackets) {
         if (packet - plan_.headerBytes < most) sizes.push_back(packet - plan_.headerBytes);
     }
@@ -140,7 +140,7 @@ Result<void> HostSurvey::stream() {
     rsp::GroupOptions options = plan_.group;
     // Streams at the largest size that arrives, which is the size of a session configured for this network.
     const size_t largest = m_.way(ProbeWay::Group).largestBytes;
-    if (largest >= kLeastSessionBytes && largest < plan_.cardBytes) options.datagramBytes = largest;
+    if (largest >= kMinSessionBytes && largest < plan_.cardBytes) options.datagramBytes = largest;
     auto group = rsp::Group::host(options);
     if (!group) return group.error();
     auto where = splitHostPort((*group)->controlAddress());
@@ -191,7 +191,7 @@ Result<void> HostSurvey::lookAgain() {
     const bool arrived = m_.way(ProbeWay::Group).to;
     for (WayMeasured& way : m_.ways) way.toLater = false;
     if (!arrived) return {};
-    return probeThere({kLeastProbeBytes}, {ProbeWay::Group});
+    return probeThere({kMinProbeBytes}, {ProbeWay::Group});
 }
 
 } // namespace mural::cli

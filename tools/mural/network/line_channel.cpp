@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <climits>
 
-#include "transport/socket_wait.hpp"
+#include "transport/tcp/socket_wait.hpp"
 #include "transport/system_error.hpp"
 
 namespace mural::cli {
@@ -15,7 +15,7 @@ Result<std::string> LineChannel::read(Deadline deadline) {
             waiting_.erase(0, end + 1);
             return line;
         }
-        if (waiting_.size() > kMostLineBytes) return Error{"what it says has no end of line"};
+        if (waiting_.size() > kMaxLineBytes) return Error{"what it says has no end of line"};
         if (waitForSocket(in_.get(), POLLIN, deadline) == 0) return Error{"it says nothing"};
         char piece[4096];
         const ssize_t n = ::read(in_.get(), piece, sizeof piece);

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "common/clock.hpp"
-#include "common/result.hpp"
-#include "transport/file_descriptor.hpp"
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
+#include "common/ipc/file_descriptor.hpp"
 
 namespace mural::cli {
 
@@ -22,7 +22,7 @@ public:
     void closeWriting() { out_ = FileDescriptor(); }
 
 private:
-    static constexpr size_t kMostLineBytes = 256 * 1024;
+    static constexpr size_t kMaxLineBytes = 256 * 1024;
     FileDescriptor in_, out_;
     std::string waiting_;
 };

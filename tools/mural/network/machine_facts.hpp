@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "transport/rsp/network_interface.hpp"
+#include "transport/rsp/io/network_interface.hpp"
 
 namespace mural::cli {
 

@@ -9,7 +9,7 @@
 
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/program_check.hpp"
-#include "tools/mural/check_report.hpp"
+#include "tools/mural/doctor/check_report.hpp"
 #include "tools/mural/network/network_survey.hpp"
 #include "tools/mural/network/network_verdict.hpp"
 

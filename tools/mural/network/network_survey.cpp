@@ -10,7 +10,7 @@
 #include "tools/mural/commands.hpp"
 #include "tools/mural/network/host_survey.hpp"
 #include "transport/rsp/group_text.hpp"
-#include "transport/tcp_address.hpp"
+#include "transport/tcp/tcp_address.hpp"
 
 namespace mural::cli {
 
@@ -20,7 +20,7 @@ constexpr int64_t kStartMs = 30'000; // for all members together, as for a sessi
 constexpr int64_t kResolveMs = 5'000;
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
-constexpr size_t kMostDatagramBytes = 8972; // as RSP
+constexpr size_t kMaxDatagramBytes = 8972; // as RSP
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
@@ -115,7 +115,7 @@ private:
         plan_.group.seal = rsp::bestEncryption();
         plan_.group.bytesPerS = *rate;
         plan_.headerBytes = group->family() == AF_INET ? kUdpOverIpv4Bytes : kUdpOverIpv6Bytes;
-        plan_.cardBytes = std::min(interface_.mtuBytes - plan_.headerBytes, kMostDatagramBytes);
+        plan_.cardBytes = std::min(interface_.mtuBytes - plan_.headerBytes, kMaxDatagramBytes);
         plan_.seconds = a_.seconds;
         survey_.here = {muralVersion(), readMachineFacts(interface_, sockets_->bufferBytes()), a_.group, plan_.headerBytes, plan_.cardBytes};
         // Members test their connection to this machine here.

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "tools/mural/network/host_measured.hpp"
 #include "tools/mural/network/network_arguments.hpp"
 

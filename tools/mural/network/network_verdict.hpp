@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tools/mural/doctor_checks.hpp"
+#include "tools/mural/doctor/doctor_checks.hpp"
 #include "tools/mural/network/host_measured.hpp"
 
 namespace mural::cli {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "common/little_endian.hpp"
+#include "common/base/little_endian.hpp"
 
 namespace mural::cli {
 
@@ -22,7 +22,7 @@ void writeProbe(const ProbeDatagram& probe, std::span<std::byte> into) {
 }
 
 std::optional<ProbeDatagram> readProbe(std::span<const std::byte> d) {
-    if (d.size() < kLeastProbeBytes || std::memcmp(d.data(), kMagic.data(), kMagic.size()) != 0) return {};
+    if (d.size() < kMinProbeBytes || std::memcmp(d.data(), kMagic.data(), kMagic.size()) != 0) return {};
     ProbeDatagram p;
     p.survey = loadLittle<uint64_t>(d.data() + 8);
     p.way = static_cast<ProbeWay>(d[16]);

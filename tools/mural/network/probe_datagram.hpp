@@ -19,13 +19,13 @@ enum class ProbeWay : uint8_t {
 };
 constexpr ProbeWay kProbeWays[] = {ProbeWay::Single, ProbeWay::Group, ProbeWay::LinkLocal};
 
-constexpr size_t kLeastProbeBytes = 24;
+constexpr size_t kMinProbeBytes = 24;
 
 struct ProbeDatagram {
     uint64_t survey = 0; // random; distinguishes surveys
     ProbeWay way = ProbeWay::Single;
     bool fromDoctor = false;
-    uint16_t sizeBytes = kLeastProbeBytes;
+    uint16_t sizeBytes = kMinProbeBytes;
 };
 
 // `into` has the size of the datagram.

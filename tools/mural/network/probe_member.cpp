@@ -14,9 +14,9 @@
 #include "tools/mural/network/machine_facts.hpp"
 #include "tools/mural/network/probe_sockets.hpp"
 #include "transport/rsp/group.hpp"
-#include "transport/socket_wait.hpp"
+#include "transport/tcp/socket_wait.hpp"
 #include "transport/system_error.hpp"
-#include "transport/tcp_address.hpp"
+#include "transport/tcp/tcp_address.hpp"
 
 namespace mural::cli {
 
@@ -166,7 +166,7 @@ private:
         for (unsigned copy = 0; copy < order.at("copies").get<unsigned>(); ++copy) {
             for (const ProbeWay way : kProbeWays) {
                 for (const json& size : order.at("sizes")) {
-                    sockets_->send(way, std::clamp<size_t>(size.get<size_t>(), kLeastProbeBytes, 65'000), *to);
+                    sockets_->send(way, std::clamp<size_t>(size.get<size_t>(), kMinProbeBytes, 65'000), *to);
                     poll(nullptr, 0, kBetweenDatagramsMs);
                 }
             }

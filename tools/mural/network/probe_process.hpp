@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/result.hpp"
+#include "common/base/result.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "tools/mural/network/line_channel.hpp"
 

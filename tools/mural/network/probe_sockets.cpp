@@ -2,7 +2,7 @@
 
 #include <poll.h>
 
-#include "transport/tcp_address.hpp"
+#include "transport/tcp/tcp_address.hpp"
 
 namespace mural::cli {
 
@@ -37,7 +37,7 @@ void ProbeSockets::send(ProbeWay way, size_t sizeBytes, const SocketAddress& sin
     writeProbe({survey_, way, doctor_, static_cast<uint16_t>(sizeBytes)}, datagram);
     const SocketAddress& to = way == ProbeWay::Single ? single : way == ProbeWay::Group ? group_ : linkLocal_;
     // A rejected long datagram is not reported as an error; it is missing in the arrivals.
-    if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kLeastProbeBytes) troubles_[static_cast<size_t>(way)] = r.error().message;
+    if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kMinProbeBytes) troubles_[static_cast<size_t>(way)] = r.error().message;
 }
 
 void ProbeSockets::hear(rsp::UdpSocket& socket, bool multicast) {

@@ -5,9 +5,9 @@
 #include <map>
 #include <string>
 
-#include "common/clock.hpp"
+#include "common/base/clock.hpp"
 #include "tools/mural/network/probe_datagram.hpp"
-#include "transport/rsp/udp_socket.hpp"
+#include "transport/rsp/io/udp_socket.hpp"
 
 namespace mural::cli {
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "common/matrix4.hpp"
+#include "common/geometry/matrix4.hpp"
 #include "tools/mural/accuracy/scenes/scene_names.hpp"
 
 namespace mural::scenes {

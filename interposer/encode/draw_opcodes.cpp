@@ -1,0 +1,12 @@
+#include "interposer/encode/draw_opcodes.hpp"
+
+#include "streamcodec/command_traits.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural {
+
+bool drawsIntoWindow(uint32_t opcode) {
+    return opcode == wire::kOpClientArrays || hasTrait(opcode, Trait::DrawClass, Trait::ReadsFramebuffer);
+}
+
+} // namespace mural

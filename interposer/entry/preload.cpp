@@ -1,0 +1,25 @@
+// The interface for the preloaded library (interposer/preload). That library has detected that a program's GL library
+// does not use GLVND, and exports the same names before it.
+#include "interposer/preload/link.hpp"
+
+#include <cstring>
+
+#include "interposer/diagnostics/bypass.hpp"
+#include "interposer/entry/front.hpp"
+#include "interposer/entry/loaded_gl.hpp"
+
+using namespace mural;
+
+extern "C" __attribute__((visibility("default"))) Entry mural_front_entry(const char* name, Loader library) {
+    if (!claimProgram(Way::Preload)) {
+        static bool told = false;
+        const char* own = loadedOwnGl();
+        if (own && !__atomic_exchange_n(&told, true, __ATOMIC_RELAXED))
+            sayBypass("the program uses two GL libraries; GLVND's is on the wall, what %s draws stays in the program's own window", own);
+        return nullptr;
+    }
+    // Needs no lock: all callers pass the same loader.
+    if (!glxFront().attached()) glxFront().attach(library);
+    if (!eglFront().attached()) eglFront().attach(library);
+    return (std::strncmp(name, "egl", 3) ? glxFront() : eglFront()).replacementFor(name);
+}

@@ -1,0 +1,31 @@
+// Merges the parts of two nodes as one depth test would: per pixel, a later fragment wins if the test passes. Undrawn
+// pixels hold the common clear values. See docs/architecture/sort-last.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "compositor/kernels/depth_function.hpp"
+
+namespace mural {
+
+struct CompositeRule {
+    // Less, LessOrEqual, Greater or GreaterOrEqual
+    compositor::DepthFunction function = compositor::DepthFunction::Less;
+    uint32_t clearedColour = 0, clearedDepth = 0;
+    bool deep = false; // the depth buffer has more than 24 bits
+};
+
+enum class LayerOrder : uint8_t { Earlier, Later }; // draw order of the other part
+
+struct CompositeRow {
+    uint32_t* colour;
+    uint32_t* depth;
+    const uint32_t* otherColour;
+    const uint32_t* otherDepth;
+    size_t count;
+};
+
+void compositeRow(const CompositeRow& row, LayerOrder side, const CompositeRule& rule);
+
+} // namespace mural

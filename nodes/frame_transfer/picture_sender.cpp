@@ -1,0 +1,187 @@
+#include "nodes/frame_transfer/picture_sender.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <pthread.h>
+#include <utility>
+
+#include "nodes/frame_transfer/transfer_scale.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr size_t kMaxFrames = 2; // one in encoding and one waiting
+constexpr size_t kTellingBytes = 1 << 16; // smaller transfers measure socket buffers instead of the link
+
+std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
+    return config.codec == kRawCodec ? nullptr : std::make_unique<PicturePacker>(config.codec, config.alpha);
+}
+
+} // namespace
+
+PictureSender::PictureSender(PictureSenderConfig config, Send send, Log log)
+    : config_(std::move(config)), send_(std::move(send)), log_(std::move(log)), packer_(packerFor(config_)), thread_([this] { run(); }) {
+    if (pthread_getcpuclockid(thread_.native_handle(), &clock_) != 0) clock_ = CLOCK_THREAD_CPUTIME_ID;
+}
+
+PictureSender::~PictureSender() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join(); // every job terminates
+}
+
+int64_t PictureSender::cpuNs() const {
+    timespec t{};
+    clock_gettime(clock_, &t);
+    return int64_t{t.tv_sec} * kNsPerS + t.tv_nsec;
+}
+
+// Returns false if the condition stays false for roomMs. The time of a message in transfer does not count: a paused
+// head reads nothing, and its end closes the connection.
+template <class Condition> bool PictureSender::await(std::unique_lock<std::mutex>& lock, Condition condition) {
+    constexpr int64_t kSliceMs = 100;
+    for (int64_t waitedMs = 0; !condition();) {
+        const int64_t sliceMs = std::min(kSliceMs, config_.roomMs - waitedMs);
+        if (sliceMs <= 0) return false;
+        changed_.wait_for(lock, std::chrono::milliseconds(sliceMs));
+        if (!sending_) waitedMs += sliceMs;
+    }
+    return true;
+}
+
+// A message larger than mostBytes waits until no other message is queued.
+bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
+    std::unique_lock lock(mutex_);
+    const auto room = [&] { return isFrame ? frames_ < kMaxFrames : waitingBytes_ == 0 || waitingBytes_ + bytes <= config_.mostBytes; };
+    if (stuck_ || !await(lock, room)) {
+        if (!std::exchange(stuck_, true)) log_("its pictures do not get away: none has gone for " + std::to_string(config_.roomMs / 1000) + " s; it ends");
+        return false;
+    }
+    frames_ += isFrame ? 1 : 0;
+    waitingBytes_ += bytes;
+    jobs_.push_back(std::move(job));
+    lock.unlock();
+    changed_.notify_all();
+    return true;
+}
+
+bool PictureSender::send(Frame frame) {
+    Job job;
+    job.frame = std::move(frame);
+    return give(std::move(job), 0, true);
+}
+
+bool PictureSender::tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+    bool alone = false;
+    {
+        const std::lock_guard lock(mutex_);
+        if (stuck_) return false;
+        alone = idle(); // remains true, because only this thread queues jobs
+    }
+    if (alone) {
+        send_(type, a, b);
+        return true;
+    }
+    Job job;
+    job.message = Message{type, {a.begin(), a.end()}};
+    job.message->bytes.insert(job.message->bytes.end(), b.begin(), b.end());
+    const size_t bytes = job.message->bytes.size();
+    return give(std::move(job), bytes, false);
+}
+
+void PictureSender::windowGone(uint32_t client, uint32_t window) {
+    Job job;
+    job.forgotten = Forgotten{client, window};
+    (void)give(std::move(job), 0, false);
+}
+
+void PictureSender::clientGone(uint32_t client) {
+    Job job;
+    job.forgotten = Forgotten{client, std::nullopt};
+    (void)give(std::move(job), 0, false);
+}
+
+bool PictureSender::finish() {
+    std::unique_lock lock(mutex_);
+    return !stuck_ && await(lock, [this] { return idle(); });
+}
+
+void PictureSender::run() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [this] { return !jobs_.empty() || stop_; }); // the destructor ends the wait
+        if (jobs_.empty()) return;
+        Job job = std::move(jobs_.front());
+        jobs_.pop_front();
+        working_ = true;
+        lock.unlock();
+        const bool isFrame = job.frame.has_value();
+        const size_t bytes = job.message ? job.message->bytes.size() : 0;
+        work(job);
+        job = {}; // frees the memory before the next picture is read
+        lock.lock();
+        working_ = false;
+        frames_ -= isFrame ? 1 : 0;
+        waitingBytes_ -= bytes;
+        changed_.notify_all();
+    }
+}
+
+void PictureSender::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+    sending_ = true;
+    send_(type, a, b);
+    sending_ = false;
+}
+
+void PictureSender::work(Job& job) {
+    if (job.frame) return sendFrame(*job.frame);
+    if (job.message) return send(job.message->type, job.message->bytes, {});
+    if (job.forgotten) forget(*job.forgotten);
+}
+
+void PictureSender::forget(const Forgotten& forgotten) {
+    if (!packer_) return;
+    if (forgotten.window) packer_->windowGone(forgotten.client, *forgotten.window);
+    else packer_->clientGone(forgotten.client);
+}
+
+// Sends a black picture if the readback fails, so that the frame still completes.
+void PictureSender::sendFrame(Frame& frame) {
+    const wire::PictureHeader& h = frame.header;
+    const int64_t beganCpuNs = threadCpuNowNs();
+    auto read = frame.picture->bytes(Deadline::inMs(config_.readMs));
+    if (!read && !std::exchange(saidLost_, true)) log_("a picture is black, as are all that are lost like it: " + read.error().message);
+    if (!read) black_.assign(static_cast<size_t>(h.w) * static_cast<size_t>(h.h) * 4, std::byte{0});
+    std::span<const std::byte> pixels = read ? *read : black_;
+    const int64_t beganNs = monotonicNowNs();
+    const ScaledSize size = sizeOnWay(h.w, h.h, config_.way);
+    if (!config_.way.none()) {
+        onWay_.resize(size.bytes());
+        resizePicture(pixels.data(), h.w, h.h, onWay_.data(), size.w, size.h);
+        pixels = onWay_;
+    }
+    int64_t packedNs = beganNs;
+    if (packer_) {
+        auto packed = packer_->pack(h.client, h.window, size.w, size.h, pixels.data());
+        packedNs = monotonicNowNs();
+        if (packed) {
+            send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
+            if (packed->size() >= kTellingBytes) packer_->transferred(packed->size(), monotonicNowNs() - packedNs);
+        } else { // out of memory
+            send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
+        }
+    } else {
+        send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
+    }
+    const int64_t tookCpuNs = threadCpuNowNs() - beganCpuNs;
+    frame.done.readbackNs += static_cast<uint64_t>(tookCpuNs);
+    if (config_.addsCpu) frame.done.busyNs += static_cast<uint64_t>(tookCpuNs);
+    else frame.done.busyNs = std::max(frame.done.busyNs, static_cast<uint64_t>(packedNs - beganNs));
+    send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&frame.done, 1)), {});
+}
+
+} // namespace mural

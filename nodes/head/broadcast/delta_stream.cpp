@@ -1,0 +1,181 @@
+#include "nodes/head/broadcast/delta_stream.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "common/base/clock.hpp"
+#include "common/memory/malloc_tuning.hpp"
+#include "common/base/quick_clock.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural {
+namespace {
+
+constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // the size of a write without delta coding
+// From these sizes on, the 0.8 us of reading the thread's CPU clock are negligible: for packets, which mostly repeat,
+// and for new bytes. Shorter work is unlikely to be preempted, so the wall clock serves as well.
+constexpr size_t kLongPacketBytes = size_t{256} << 10, kLongBytes = size_t{64} << 10;
+constexpr uint64_t kWorthAWayBytes = 2048;
+constexpr uint64_t kMaxHeldBytes = uint64_t{256} << 20;
+// The first loads of a program are copied several times. Page faults (3 us per new page) took half as long as the rest.
+constexpr size_t kFirstBytes = size_t{16} << 20;
+constexpr uint64_t kFullRawBytes = uint64_t{4} << 20; // a node decodes this much in 1 to 2 ms
+
+int64_t (*clockFor(size_t sizeBytes))() { return sizeBytes >= kLongBytes ? threadCpuNowNs : quickNowNs; }
+
+} // namespace
+
+Result<std::unique_ptr<DeltaStream>> DeltaStream::open(const delta::Limits& limits) {
+    auto coder = freshCoder(limits);
+    if (!coder) return coder.error();
+    std::unique_ptr<DeltaStream> economy(new DeltaStream(limits, std::move(*coder)));
+    haveKeptMemory(kFirstBytes);
+    return economy;
+}
+
+DeltaStream::DeltaStream(const delta::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMaxHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) { pack(stream, payload, walked); }), coder_(std::move(coder)) {}
+
+DeltaStream::Coder::Coder(const delta::Limits& limits) : packer(limits), encoder([](size_t sizeBytes) { return clockFor(sizeBytes)(); }) {}
+
+Result<std::unique_ptr<DeltaStream::Coder>> DeltaStream::freshCoder(const delta::Limits& limits) {
+    auto coder = std::make_unique<Coder>(limits);
+    if (!coder->packer.ready()) return Error{"no memory for a store of " + std::to_string(limits.storeBytes >> 20) + " MiB; give a smaller one by --store"};
+    return coder;
+}
+
+std::unique_ptr<DeltaStream::Coder> DeltaStream::beginAnew(std::unique_ptr<Coder> fresh) {
+    const delta::DeltaEncoderCounts& c = coder_->packer.counts();
+    before_ = {before_.packets + c.packets, before_.records + c.records, before_.rawBytes + c.rawBytes, before_.stagedBytes + c.stagedBytes,
+               before_.storeHits + c.storeHits, before_.newPages + c.newPages, before_.patches + c.patches};
+    return std::exchange(coder_, std::move(fresh));
+}
+
+void DeltaStream::add(uint32_t stream, std::span<const std::byte> payload) {
+    const bool isLong = payload.size() >= kLongPacketBytes;
+    MedianTimer& usualNs = packetNs_.of(payload.size());
+    if (!timesFrame_ && !isLong && usualNs.isKnown()) {
+        hold(stream, payload);
+        encodeNs_ += static_cast<uint64_t>(usualNs.value());
+        return;
+    }
+    nowNs_ = isLong ? threadCpuNowNs : quickNowNs;
+    const int64_t beganNs = nowNs_();
+    sendNs_ = packNs_ = 0;
+    timesPacking_ = true;
+    hold(stream, payload);
+    timesPacking_ = false;
+    const auto ns = static_cast<uint64_t>(nowNs_() - beganNs - sendNs_);
+    encodeNs_ += ns;
+    measured_.holdNs += ns - std::min(ns, packNs_);
+    if (!isLong) usualNs.add(static_cast<double>(ns));
+}
+
+void DeltaStream::miss(uint32_t stream, std::span<const std::byte> payload) {
+    missed_ = true;
+    hold(stream, payload);
+    missed_ = false;
+}
+
+void DeltaStream::hold(uint32_t stream, std::span<const std::byte> payload) {
+    if (!holds_) return pack(stream, payload);
+    if (wire::clientOf(stream) != 0) {
+        holder_.leaveOutSmall(small_.leavesOut());
+        return holder_.add(stream, payload);
+    }
+    // Commands of the head: data of an ended program is dropped. Before any other command all deferred data is sent, as
+    // for a node that joins now.
+    uint32_t words[2] = {};
+    std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
+    if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) holder_.clientGone(words[1]);
+    else holder_.releaseAll();
+    pack(stream, payload);
+}
+
+void DeltaStream::pack(uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
+    if (missed_) return;
+    const int64_t startedNs = timesPacking_ ? nowNs_() : 0;
+    coder_->packer.add(stream, payload, walked);
+    if (timesPacking_) packNs_ += static_cast<uint64_t>(nowNs_() - startedNs);
+    ++packets_;
+    if (!full() || !send_) return coder_->packer.ownBytes();
+    const int64_t beganNs = nowNs_();
+    send_();
+    sendNs_ += nowNs_() - beganNs;
+    coder_->packer.ownBytes();
+}
+
+// Returns whether references already replace most bytes. Another coding then gains little, and loses dictionary space.
+bool DeltaStream::isMostLeftOut() const { return measured_.rawBytes >= kWorthAWayBytes && measured_.leftOutBytes > measured_.rawBytes / 2; }
+
+bool DeltaStream::full() const { return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes; }
+
+Result<std::span<const std::byte>> DeltaStream::take() {
+    delta::DeltaEncoder& packer = coder_->packer;
+    const bool frameGoesOn = full(), isLong = packer.stagedBytes() >= kLongBytes, timed = timesFrame_ || isLong;
+    const auto now = clockFor(packer.stagedBytes());
+    const int64_t beganNs = timed ? now() : 0;
+    measured_.rawBytes += packer.rawBytes();
+    measured_.pageBytes += packer.pageBytes();
+    measured_.leftOutBytes += packer.leftOutBytes();
+    auto batch = coder_->encoder.encode(packer.finish(), link_.nsPerByte(), packer.plain());
+    packer.clear();
+    packets_ = 0;
+    const auto ns = timed ? static_cast<uint64_t>(now() - beganNs) : static_cast<uint64_t>(takeNs_.value());
+    encodeNs_ += ns;
+    if (timed && !isLong) takeNs_.add(static_cast<double>(ns));
+    if (batch) {
+        wireBytes_ += batch->size();
+        measured_.wireBytes += batch->size();
+    }
+    if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
+        delta::ModeSelector& way = coder_->way;
+        const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
+        // Deferred data costs the same either way.
+        if (isMostLeftOut()) way.leftOut();
+        else if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
+        else way.unmeasured();
+        if (way.plain() != packer.plain()) small_.disturbed();
+        else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
+        timesFrame_ = way.wantsTime() || small_.wantsTime();
+        packer.beginFrame(way.plain(), frameGoesOn);
+        measured_ = {0, 0, 0, 0, encodeNs_, holder_.counts().inBytes, 0};
+    }
+    publishCounts();
+    return batch;
+}
+
+void DeltaStream::publishCounts() {
+    const delta::DeltaEncoderCounts& c = coder_->packer.counts();
+    const delta::DeltaEncoderCounts& b = before_;
+    const auto set = [](std::atomic<uint64_t>& to, uint64_t value) { to.store(value, std::memory_order_relaxed); };
+    set(published_.packets, b.packets + c.packets);
+    set(published_.records, b.records + c.records);
+    set(published_.rawBytes, b.rawBytes + c.rawBytes);
+    set(published_.stagedBytes, b.stagedBytes + c.stagedBytes);
+    set(published_.storeHits, b.storeHits + c.storeHits);
+    set(published_.newPages, b.newPages + c.newPages);
+    set(published_.patches, b.patches + c.patches);
+    set(published_.wireBytes, wireBytes_);
+    set(published_.encodeNs, encodeNs_);
+    const filter::CommandFilterCounts& h = holder_.counts();
+    set(published_.holdInBytes, h.inBytes);
+    set(published_.holdOutBytes, h.outBytes);
+    set(published_.heldRecords, h.heldRecords);
+    set(published_.leftOutRecords, h.leftOutRecords);
+    set(published_.leftOutBytes, h.leftOutBytes);
+    set(published_.heldBytes, h.heldBytes);
+}
+
+DeltaCounts DeltaStream::counts() const {
+    const auto of = [](const std::atomic<uint64_t>& from) { return from.load(std::memory_order_relaxed); };
+    DeltaCounts c;
+    c.on = true;
+    c.packer = {of(published_.packets), of(published_.records), of(published_.rawBytes), of(published_.stagedBytes), of(published_.storeHits), of(published_.newPages), of(published_.patches)};
+    c.wireBytes = of(published_.wireBytes);
+    c.encodeNs = of(published_.encodeNs);
+    c.holder = {of(published_.holdInBytes), of(published_.holdOutBytes), of(published_.heldRecords), of(published_.leftOutRecords), of(published_.leftOutBytes), of(published_.heldBytes)};
+    return c;
+}
+
+} // namespace mural

@@ -1,0 +1,137 @@
+// The return of restarted nodes. The lock that orders packets guards the choice of the snapshot's position and of the
+// position where the node becomes a member. The transfer of the snapshot runs without the lock.
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+#include "nodes/head/broadcast/head_command.hpp"
+#include "nodes/head/broadcast/stream_broadcaster.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int64_t kChangeOverMs = 5; // how long watch() waits for the lock per attempt
+
+} // namespace
+
+void StreamBroadcaster::keepLocked(uint32_t stream, std::span<const std::byte> payload) {
+    if (!kept_) return;
+    uint32_t words[2] = {};
+    if (wire::clientOf(stream) != 0) {
+        kept_->append(stream, payload);
+    } else if (payload.size() >= sizeof(words)) {
+        std::memcpy(words, payload.data(), sizeof(words));
+        if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) kept_->programGone(words[1]);
+    }
+}
+
+void StreamBroadcaster::replace(int node, std::unique_ptr<NodeConnection> link) {
+    NodeConnection& before = this->link(node);
+    before.end();
+    if (before.byMulticast() || before.joinsGroup()) multicast_->remove(node, "the head has lost it");
+    std::erase_if(comers_, [node](const NodeMulticast::Change& came) { return came.node == node; });
+    link->setFeed(NodeConnection::Feed::Nothing);
+    link->setMember(false);
+    links_[static_cast<size_t>(node)] = link.get();
+    owned_.push_back(std::move(link));
+}
+
+Result<RejoinLog::Snapshot> StreamBroadcaster::beginCatchUp(int node, TurnsAsked* turns, Deadline deadline) {
+    uint64_t place = 0;
+    {
+        ++joining_;
+        const std::lock_guard lock(sendMutex_);
+        --joining_;
+        place = kept_->hold();
+        if (turns) {
+            for (NodeConnection* link : links_)
+                if (link->member() && link->alive() && turns->knows(link->place().node)) turns->asked.push_back(link);
+            sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::RequestPhase, std::as_bytes(std::span(&turns->number, 1))));
+            flushLocked();
+        }
+        link(node).setFeed(NodeConnection::Feed::Queued);
+    }
+    return kept_->snapshot(place, deadline);
+}
+
+Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(uint32_t view)>& announce) {
+    NodeConnection& to = link(node);
+    // the new dictionary is constructed, and the old one destroyed, without the lock
+    std::unique_ptr<DeltaStream::Coder> history;
+    if (to.joinsBatches()) {
+        auto fresh = DeltaStream::freshCoder(economy_->limits());
+        if (!fresh) return fresh.error();
+        history = std::move(*fresh);
+    }
+    ++joining_;
+    std::unique_lock lock(sendMutex_);
+    --joining_;
+    sendBatchLocked();
+    const Admission admission = announce(++view_);
+    if (admission.refused) return {};
+    std::vector<uint32_t> arguments = {view_, static_cast<uint32_t>(node), admission.first ? 1U : 0U, admission.life};
+    arguments.insert(arguments.end(), admission.absent.begin(), admission.absent.end());
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Member, std::as_bytes(std::span(arguments))));
+    to.setMember(true);
+    if (history) {
+        // The last batch of the old dictionary announces the new one. This node receives batches from here on.
+        const auto anew = commandBytes(wire::HeadCommand::ResetDictionary, {});
+        economy_->add(wire::streamOf(0, 0), anew);
+        sendBatchLocked();
+        history = economy_->beginAnew(std::move(history));
+        const wire::PacketHeader header{static_cast<uint32_t>(anew.size()), wire::streamOf(0, 0)};
+        sendTo(to, std::as_bytes(std::span(&header, 1)), anew);
+        to.setInBatches(true);
+    }
+    sendBatchLocked();
+    flushLinksLocked();
+    lock.unlock();
+    return {};
+}
+
+bool StreamBroadcaster::goDirect(int node, bool now) {
+    ++joining_;
+    const std::lock_guard lock(sendMutex_);
+    --joining_;
+    NodeConnection& to = link(node);
+    if (now)
+        for (const auto& packet : to.takeQueue()) to.sendNow(packet, {});
+    if (!to.queueEmpty()) return false;
+    to.setFeed(NodeConnection::Feed::Direct);
+    to.flushNow();
+    return true;
+}
+
+void StreamBroadcaster::inviteToGroup(int node) {
+    if (!multicast_ || !link(node).joinsGroup()) return;
+    ++joining_;
+    const std::lock_guard lock(sendMutex_);
+    --joining_;
+    const auto number = static_cast<uint32_t>(node);
+    // other nodes ignore it
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::JoinMulticast, std::as_bytes(std::span(&number, 1))));
+    flushLocked();
+}
+
+// Switches the node from its connection to the group, at one packet or batch. The node has received the group's data
+// since it joined. Returns false if writers are busy, possibly with a node that watch() must lose.
+bool StreamBroadcaster::changesOver(const NodeMulticast::Change& came) {
+    NodeConnection& to = link(came.node);
+    ++joining_;
+    const std::unique_lock lock(sendMutex_, std::chrono::milliseconds(kChangeOverMs));
+    --joining_;
+    if (!lock.owns_lock()) return false;
+    if (!to.alive() || !to.member() || to.byMulticast()) return true;
+    sendBatchLocked();
+    const uint64_t skipBytes = multicast_->writtenBytes() - came.fromByte;
+    const wire::SwitchToMulticastCommand command{static_cast<uint32_t>(came.node), static_cast<uint32_t>(skipBytes), static_cast<uint32_t>(skipBytes >> 32)};
+    changingOver_ = &to;
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::SwitchToMulticast, std::as_bytes(std::span(&command, 1))));
+    sendBatchLocked();
+    changingOver_ = nullptr;
+    flushLinksLocked();
+    to.setByMulticast(true);
+    return true;
+}
+
+} // namespace mural

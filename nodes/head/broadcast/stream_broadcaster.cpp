@@ -1,0 +1,204 @@
+#include "nodes/head/broadcast/stream_broadcaster.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "nodes/head/broadcast/bytes_of.hpp"
+#include "nodes/head/broadcast/head_command.hpp"
+
+namespace mural {
+
+void StreamBroadcaster::add(std::unique_ptr<NodeConnection> link) {
+    links_.emplace_back(link.get());
+    owned_.push_back(std::move(link));
+}
+
+void StreamBroadcaster::economizeBy(std::unique_ptr<DeltaStream> economy) {
+    economy_ = std::move(economy);
+    economy_->sendBy([this] {
+        sendBatchLocked();
+        flushLinksLocked();
+    });
+}
+
+void StreamBroadcaster::startReading() {
+    for (NodeConnection* link : links_) link->startReading();
+}
+
+bool StreamBroadcaster::broadcast(uint32_t stream, std::span<const std::byte> payload) {
+    if (joining_ > 0) std::this_thread::yield(); // the mutex is not fair: lets the joining thread go first
+    const std::lock_guard lock(sendMutex_);
+    if (hasLead_.load(std::memory_order_relaxed) && wire::clientOf(stream) != 0) sendLeadLocked();
+    if (recorder_) recorder_->packet(stream, payload);
+    keepLocked(stream, payload);
+    return sendLocked(stream, payload);
+}
+
+bool StreamBroadcaster::broadcast(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const bool sent = broadcast(wire::streamOf(0, 0), commandBytes(command, arguments));
+    flush();
+    return sent;
+}
+
+void StreamBroadcaster::scheduleBeforeNextPacket(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const std::lock_guard lock(leadMutex_);
+    leads_[command] = commandBytes(command, arguments);
+    hasLead_ = true;
+}
+
+void StreamBroadcaster::sendLeadLocked() {
+    std::map<wire::HeadCommand, std::vector<std::byte>> leads;
+    {
+        const std::lock_guard lock(leadMutex_);
+        leads.swap(leads_);
+        hasLead_ = false;
+    }
+    for (const auto& [command, bytes] : leads) sendLocked(wire::streamOf(0, 0), bytes);
+}
+
+bool StreamBroadcaster::broadcast(wire::HeadCommand command, Deadline deadline) {
+    std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
+    if (!lock.owns_lock()) return false;
+    const bool sent = sendLocked(wire::streamOf(0, 0), commandBytes(command, {}));
+    flushLocked();
+    return sent;
+}
+
+bool StreamBroadcaster::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
+    const bool plain = sendPacketLocked(stream, payload);
+    if (!economy_) return plain;
+    const bool batched = std::ranges::any_of(links_, [](const NodeConnection* link) { return link->inBatches() && link->alive(); });
+    if (!batched) {
+        economy_->miss(stream, payload); // its state must still follow the programs
+        return plain;
+    }
+    economy_->add(stream, payload);
+    return true;
+}
+
+bool StreamBroadcaster::sendPacketLocked(uint32_t stream, std::span<const std::byte> payload) {
+    const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), stream};
+    return sendToLinksLocked(bytesOf(header), payload, false);
+}
+
+// Sends to the links that receive batches, or to all others.
+bool StreamBroadcaster::sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload, bool inBatches) {
+    bool any = false;
+    bool byMulticast = false;
+    for (NodeConnection* link : links_) {
+        if (link->inBatches() != inBatches) continue;
+        if (link->byMulticast()) byMulticast = byMulticast || link->alive();
+        else sendTo(*link, header, payload);
+        byMulticast = byMulticast || link == changingOver_;
+        any = any || link->alive();
+    }
+    if (byMulticast) multicastLocked(header, payload);
+    sendingTo_ = kNobody;
+    if (inBatches || !economy_) bytesSent_.fetch_add(header.size() + payload.size(), std::memory_order_relaxed);
+    return any;
+}
+
+void StreamBroadcaster::sendBatchLocked() {
+    if (!economy_ || economy_->empty()) return;
+    auto batch = economy_->take();
+    if (!batch) {
+        for (NodeConnection* link : links_)
+            if (link->inBatches()) link->lose(batch.error().message);
+        return;
+    }
+    const int64_t beganNs = monotonicNowNs();
+    sendToLinksLocked(batch.value(), {}, true);
+    economy_->wrote(batch->size(), monotonicNowNs() - beganNs);
+}
+
+void StreamBroadcaster::sendTo(NodeConnection& link, std::span<const std::byte> header, std::span<const std::byte> payload) {
+    sendingTo_ = link.place().node;
+    link.send(header, payload);
+}
+
+std::vector<int> StreamBroadcaster::full() const {
+    const int to = sendingTo_;
+    if (to == kMulticast) return multicast_->waitsFor();
+    return to == kNobody ? std::vector<int>() : std::vector<int>{to};
+}
+
+void StreamBroadcaster::multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload) {
+    constexpr int64_t kWriteLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
+    const Deadline deadline = Deadline::inMs(kWriteLimitMs);
+    sendingTo_ = kMulticast;
+    Result<void> written = multicast_->write(header, deadline);
+    if (written && !payload.empty()) written = multicast_->write(payload, deadline);
+    if (written) return;
+    for (NodeConnection* link : links_)
+        if (link->byMulticast()) link->lose("the multicast group failed: " + written.error().message);
+}
+
+void StreamBroadcaster::flushLocked() {
+    sendBatchLocked();
+    flushLinksLocked();
+}
+
+void StreamBroadcaster::flushLinksLocked() {
+    for (NodeConnection* link : links_)
+        if (!link->byMulticast()) link->flush();
+    if (multicast_) multicast_->flush();
+}
+
+void StreamBroadcaster::sendAlone(int node, wire::HeadCommand command, const std::string& json) {
+    const auto payload = commandBytes(command, std::as_bytes(std::span(json.data(), json.size())));
+    const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), wire::streamOf(0, 0)};
+    link(node).sendNow(bytesOf(header), payload);
+    link(node).flushNow();
+}
+
+void StreamBroadcaster::flush() {
+    const std::lock_guard lock(sendMutex_);
+    flushLocked();
+}
+
+bool StreamBroadcaster::flushActionable() {
+    const std::lock_guard lock(sendMutex_);
+    const bool stays = economy_ && !economy_->empty() && economy_->inValue();
+    if (stays) flushLinksLocked();
+    else flushLocked();
+    return !stays;
+}
+
+int StreamBroadcaster::livingCount() const {
+    return static_cast<int>(
+        std::ranges::count_if(links_, [](const NodeConnection* link) { return link->alive() && link->feed() == NodeConnection::Feed::Direct; }));
+}
+
+void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted) {
+    for (NodeConnection* link : links_) link->watch(nowNs, patienceNs);
+    if (!multicast_) return;
+    for (const NodeMulticast::Change& change : multicast_->takeChanges()) {
+        using Kind = NodeMulticast::Change::Kind;
+        NodeConnection& link = this->link(change.node);
+        if (change.kind == Kind::Came && link.joinsGroup()) comers_.push_back(change);
+        if (!link.alive() || link.saidBye() || !link.byMulticast()) continue; // or it has returned by another transport
+        if (change.kind == Kind::Gone) link.lose(change.why);
+        else if (change.kind == Kind::Rerouted || !change.multicast) rerouted(change.node, change.multicast);
+    }
+    std::erase_if(comers_, [&](const NodeMulticast::Change& came) {
+        if (!changesOver(came)) return false;
+        rerouted(came.node, came.multicast);
+        return true;
+    });
+    // A writer may be waiting for space in a lost node's connection.
+    for (NodeConnection* link : links_)
+        if ((link->byMulticast() || link->joinsGroup()) && !link->alive()) multicast_->remove(link->place().node, "the head has lost it");
+}
+
+void StreamBroadcaster::loseAll(const std::string& why) {
+    for (NodeConnection* link : links_)
+        if (!link->saidBye()) link->lose(why);
+}
+
+void StreamBroadcaster::end() {
+    for (auto& link : owned_) link->end();
+}
+
+} // namespace mural

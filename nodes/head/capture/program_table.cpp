@@ -1,0 +1,265 @@
+#include "nodes/head/capture/program_table.hpp"
+
+#include <algorithm>
+#include <poll.h>
+
+#include "nodes/head/frames/picture_replies.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int64_t kEndPatienceMs = 5000;
+constexpr uint32_t kMaxIds = 65535; // streams carry 16 bits of it, see wire::streamOf
+
+} // namespace
+
+ProgramTable::ProgramTable(ProgramTerms terms, StreamBroadcaster& nodes, Events events)
+    : terms_(std::move(terms))
+    , nodes_(nodes)
+    , events_(std::move(events)) {}
+
+ProgramTable::~ProgramTable() { endAll(); }
+
+Result<Admission> ProgramTable::admitProgram(pid_t pid) {
+    auto memory = CaptureMemory::create(terms_.chunkCount);
+    const std::lock_guard lock(mutex_);
+    if (!refusal_.empty()) return Error{refusal_};
+    if (!memory) return memory.error();
+    if (nextId_ > kMaxIds) return Error{"this session has had 65535 programs; start a new one"};
+    const uint32_t id = nextId_++;
+    Admission admission;
+    admission.welcome = terms_.welcome;
+    admission.welcome.clientId = id;
+    admission.memoryFd = (*memory)->fdToPass();
+    admission.extensions = terms_.extensions;
+    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this);
+    return admission;
+}
+
+void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
+    size_t count = 0;
+    Result<void> started;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = admitted_.find(id);
+        if (found == admitted_.end()) return;
+        const auto client = found->second;
+        admitted_.erase(found);
+        if (!socket.valid()) return; // the program left before it was admitted
+        if (headGone_) client->memory().setHeadGone(); // the nodes were lost before its admission
+        events_.came(*client);
+        started = client->start(std::move(socket));
+        clients_[id] = client;
+        count = clients_.size();
+    }
+    events_.countChanged(count);
+    if (!started) programEnded(id, started.error().message);
+}
+
+void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
+    std::string line;
+    size_t count = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = clients_.find(id);
+        if (found == clients_.end()) return;
+        if (!problem.empty())
+            line = found->second->describe() + " was dropped: " + problem + "; it goes on alone";
+        addCounts(goneCounts_, found->second->memory().counts());
+        if (auto names = found->second->memory().displayNames(); !names.empty()) goneDisplays_[id] = std::move(names);
+        gone_.push_back(found->second);
+        clients_.erase(found);
+        progress_.erase(id);
+        count = clients_.size();
+    }
+    const uint32_t argument = id;
+    nodes_.broadcast(wire::HeadCommand::ClientGone, std::as_bytes(std::span(&argument, 1)));
+    events_.gone(id, line);
+    events_.countChanged(count);
+}
+
+void ProgramTable::refuseFrom(const std::string& reason) {
+    const std::lock_guard lock(mutex_);
+    refusal_ = reason;
+}
+
+void ProgramTable::reply(uint32_t id, Reply reply) {
+    if (const auto client = find(id)) client->reply(std::move(reply));
+}
+
+void ProgramTable::news(const wire::DriverEvent& news, const std::string& text) {
+    // the news is dropped if the program reads none
+    if (const auto client = find(news.client)) (void)client->memory().putNews(news, text);
+}
+
+void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return;
+    Progress& progress = progress_[id];
+    progress.finished = finished;
+    progress.shown = shown;
+    tellProgress(*found->second, progress);
+}
+
+void ProgramTable::displayBlocked(uint32_t id, bool isBlocked) {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return;
+    Progress& progress = progress_[id];
+    progress.isBlocked = isBlocked;
+    tellProgress(*found->second, progress);
+}
+
+// A program receives no further credit while too many of its pictures wait for their window.
+void ProgramTable::tellProgress(CaptureClient& client, const Progress& progress) const {
+    constexpr uint32_t kMaxUnshown = 3;
+    const uint32_t allowed = progress.shown + (terms_.framesDoneWhenShown ? 0 : kMaxUnshown);
+    const bool isHeldBack = terms_.welcome.displayApp != 0 && !progress.isBlocked;
+    client.memory().setFramesDone(isHeldBack ? std::min(progress.finished, allowed) : progress.finished);
+    client.memory().setFramesShown(progress.shown);
+}
+
+bool ProgramTable::giveOwnPicture(uint32_t id, uint32_t frame, uint64_t nativeWindow, const Picture& picture, std::function<void()> done) {
+    const auto client = find(id);
+    const auto format = client ? client->memory().ownWindow(static_cast<uint32_t>(nativeWindow), frame) : std::nullopt;
+    if (!format) return false;
+    Reply reply = ownPictureReply(frame, static_cast<uint32_t>(nativeWindow), *format, picture);
+    reply.written = std::move(done);
+    client->reply(std::move(reply));
+    return true;
+}
+
+void ProgramTable::beat() {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, client] : clients_) client->memory().beat();
+}
+
+void ProgramTable::tellHeadGone() {
+    {
+        const std::lock_guard lock(mutex_);
+        headGone_ = true;
+    }
+    for (const auto& client : all()) client->memory().setHeadGone();
+}
+
+void ProgramTable::drainAll(Deadline deadline, const std::function<void()>& tick) {
+    constexpr int kSliceMs = 10;
+    // Programs in the process of admission may have published already.
+    while (anyAdmitted() && !deadline.passed()) {
+        tick();
+        poll(nullptr, 0, kSliceMs);
+    }
+    const auto clients = all();
+    for (const auto& client : clients) client->drain();
+    const auto ended = [](const auto& client) { return client->pumpEnded(); };
+    while (!std::ranges::all_of(clients, ended) && !deadline.passed()) {
+        tick();
+        poll(nullptr, 0, kSliceMs);
+    }
+    for (const auto& client : clients)
+        if (!client->pumpEnded()) client->stop();
+}
+
+void ProgramTable::reap() {
+    std::vector<std::shared_ptr<CaptureClient>> ended;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto isOver = [](const auto& client) { return client->pumpEnded(); };
+        const auto firstOver = std::partition(gone_.begin(), gone_.end(), std::not_fn(isOver));
+        ended.assign(std::make_move_iterator(firstOver), std::make_move_iterator(gone_.end()));
+        gone_.erase(firstOver, gone_.end());
+    }
+    // Joined here, outside of the lock.
+}
+
+void ProgramTable::endAll() {
+    constexpr int kSliceMs = 5;
+    const auto clients = all();
+    for (const auto& client : clients) {
+        client->memory().setHeadGone();
+        client->stop();
+    }
+    const auto ended = [](const auto& client) { return client->pumpEnded(); };
+    const Deadline deadline = Deadline::inMs(kEndPatienceMs);
+    while (!std::ranges::all_of(clients, ended) && !deadline.passed()) poll(nullptr, 0, kSliceMs);
+
+    Clients last;
+    Clients unwelcomed;
+    std::vector<std::shared_ptr<CaptureClient>> gone;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const auto& [id, client] : clients_) addCounts(goneCounts_, client->memory().counts());
+        last.swap(clients_);
+        unwelcomed.swap(admitted_);
+        gone.swap(gone_);
+    }
+    // Joined here, outside of the lock.
+}
+
+std::string ProgramTable::displayName(uint32_t client, uint32_t number) const {
+    const std::lock_guard lock(mutex_);
+    const auto here = clients_.find(client);
+    const auto gone = goneDisplays_.find(client);
+    const std::vector<std::string> names = here != clients_.end()      ? here->second->memory().displayNames()
+                                           : gone != goneDisplays_.end() ? gone->second
+                                                                         : std::vector<std::string>();
+    return number < names.size() ? names[number] : std::string();
+}
+
+CaptureCounts ProgramTable::counts() const {
+    const std::lock_guard lock(mutex_);
+    CaptureCounts sum = goneCounts_;
+    for (const auto& [id, client] : clients_) addCounts(sum, client->memory().counts());
+    return sum;
+}
+
+std::vector<ProgramStatus> ProgramTable::status() const {
+    std::vector<ProgramStatus> result;
+    for (const auto& client : all()) {
+        ProgramStatus program;
+        program.id = client->id();
+        program.pid = client->pid();
+        program.command = commandLineOf(client->pid());
+        if (program.command.empty()) program.command = client->name();
+        program.bytesSent = client->bytesSent();
+        program.counts = client->memory().counts();
+        result.push_back(std::move(program));
+    }
+    return result;
+}
+
+std::shared_ptr<CaptureClient> ProgramTable::find(uint32_t id) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    return found == clients_.end() ? nullptr : found->second;
+}
+
+std::vector<std::shared_ptr<CaptureClient>> ProgramTable::all() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::shared_ptr<CaptureClient>> result;
+    for (const auto& [id, client] : clients_) result.push_back(client);
+    return result;
+}
+
+bool ProgramTable::anyAdmitted() const {
+    const std::lock_guard lock(mutex_);
+    return !admitted_.empty();
+}
+
+void ProgramTable::addCounts(CaptureCounts& sum, const CaptureCounts& counts) {
+    sum.verifiedFrames += counts.verifiedFrames;
+    sum.verifiedPixels += counts.verifiedPixels;
+    sum.differingPixels += counts.differingPixels;
+    sum.squaredDifference += counts.squaredDifference;
+    sum.largestDifference = std::max(sum.largestDifference, counts.largestDifference);
+    for (size_t i = 0; i < counts.uncomparedFrames.size(); ++i) sum.uncomparedFrames[i] += counts.uncomparedFrames[i];
+    sum.callsUnsupported += counts.callsUnsupported;
+    sum.roundTrips += counts.roundTrips;
+    for (size_t i = 0; i < counts.waitNs.size(); ++i) sum.waitNs[i] += counts.waitNs[i];
+    for (const auto& [command, trips] : counts.tripsBy) sum.tripsBy[command] += trips;
+    sum.frameCpuNs += counts.frameCpuNs;
+    sum.frameCpuFrames += counts.frameCpuFrames;
+}
+
+} // namespace mural

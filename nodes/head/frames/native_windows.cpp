@@ -1,0 +1,213 @@
+#include "nodes/head/frames/native_windows.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace mural {
+
+namespace {
+
+constexpr size_t kMaxWindows = 64;
+constexpr std::chrono::milliseconds kSlice{500};
+
+} // namespace
+
+class NativeWindows::Program {
+public:
+    Program(uint32_t client, const NativeWindowsConfig& config) : client_(client), config_(config), thread_([this] { work(); }) {}
+
+    ~Program() {
+        drop();
+        thread_.join();
+    }
+
+    void add(WindowPicture picture) {
+        std::vector<uint32_t> superseded;
+        {
+            const std::lock_guard lock(mutex_);
+            if (isBlocked_) std::erase_if(queue_, [&](const WindowPicture& older) {
+                if (!older.picture || older.window != picture.window) return false;
+                superseded.push_back(older.frame);
+                return true;
+            });
+            queue_.push_back(std::move(picture));
+            changed_.notify_all();
+        }
+        for (const uint32_t frame : superseded) config_.done(client_, frame);
+    }
+
+    // Ends the thread when the queue is empty or its X server does not answer.
+    void end() {
+        const std::lock_guard lock(mutex_);
+        ending_ = true;
+        changed_.notify_all();
+    }
+
+    void drop() {
+        const std::lock_guard lock(mutex_);
+        dropped_ = true;
+        changed_.notify_all();
+    }
+
+    void waitEnded() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return ended_; });
+    }
+
+    bool hasEnded() {
+        const std::lock_guard lock(mutex_);
+        return ended_;
+    }
+
+private:
+    void work() {
+        std::unique_lock lock(mutex_);
+        while (!dropped_ && !(ending_ && (queue_.empty() || isBlocked_))) {
+            if (queue_.empty()) {
+                changed_.wait_for(lock, kSlice);
+                continue;
+            }
+            const WindowPicture picture = std::move(queue_.front());
+            queue_.pop_front();
+            lock.unlock();
+            if (picture.picture) take(picture);
+            else forget(picture.window);
+            lock.lock();
+        }
+        queue_.clear();
+        lock.unlock();
+        windows_.clear();
+        lock.lock();
+        ended_ = true;
+        changed_.notify_all();
+    }
+
+    void take(const WindowPicture& picture) {
+        if (config_.giveToProgram(picture, wholeOf(picture))) return;
+        showInWindow(picture);
+        config_.done(client_, picture.frame);
+    }
+
+    // Returns one picture, with both eyes side by side for pairs, because the program's window holds a single picture.
+    Picture wholeOf(const WindowPicture& picture) {
+        const Picture view = picture.picture->view();
+        if (!config_.pairs) return view;
+        sideBySide(eyesOfStack(view), bothEyes_);
+        return bothEyes_.view();
+    }
+
+    void showInWindow(const WindowPicture& picture) {
+        PictureSink* const window = windowOf(picture);
+        while (window != nullptr) {
+            const auto shown = window->show(picture.frame, wholeOf(picture));
+            const bool isBlocked = !shown && window->isBlocked();
+            setBlocked(isBlocked);
+            if (!shown && complained_.insert(picture.window).second) config_.say(shown.error().message);
+            if (shown) complained_.erase(picture.window);
+            if (!isBlocked || isSuperseded(picture.window)) return;
+        }
+    }
+
+    PictureSink* windowOf(const WindowPicture& picture) {
+        const auto found = windows_.find(picture.window);
+        if (found != windows_.end()) return found->second.get();
+        if (windows_.size() >= kMaxWindows) windows_.clear(); // most of them are closed
+        auto opened = config_.openWindow(picture);
+        if (!opened && complained_.insert(picture.window).second) config_.say(opened.error().message);
+        auto& window = windows_[picture.window];
+        if (opened) window = std::move(*opened);
+        return window.get();
+    }
+
+    void setBlocked(bool isBlocked) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (isBlocked_ == isBlocked) return;
+            isBlocked_ = isBlocked;
+        }
+        config_.blocked(client_, isBlocked);
+    }
+
+    // Returns whether the picture need not be shown any more.
+    bool isSuperseded(uint32_t window) {
+        const std::lock_guard lock(mutex_);
+        return dropped_ || ending_ || std::ranges::any_of(queue_, [&](const WindowPicture& later) { return later.window == window; });
+    }
+
+    void forget(uint32_t window) {
+        windows_.erase(window);
+        complained_.erase(window);
+    }
+
+    const uint32_t client_;
+    const NativeWindowsConfig& config_;
+    OwnedPicture bothEyes_; // used by thread_, as the next two
+    std::map<uint32_t, std::unique_ptr<PictureSink>> windows_; // null: the window could not be opened
+    std::set<uint32_t> complained_;
+
+    std::mutex mutex_; // guards the members below
+    std::condition_variable changed_;
+    std::deque<WindowPicture> queue_; // null picture: the window is gone
+    bool isBlocked_ = false;
+    bool ending_ = false, dropped_ = false, ended_ = false;
+    std::thread thread_;
+};
+
+NativeWindows::NativeWindows(NativeWindowsConfig config) : config_(std::move(config)) {}
+
+NativeWindows::~NativeWindows() { drop(); }
+
+NativeWindows::Program& NativeWindows::programOf(uint32_t client) {
+    auto& program = programs_[client];
+    if (!program) program = std::make_unique<Program>(client, config_);
+    return *program;
+}
+
+void NativeWindows::show(WindowPicture picture) {
+    const std::lock_guard lock(mutex_);
+    removeEnded();
+    if (!dropped_) programOf(picture.client).add(std::move(picture));
+}
+
+void NativeWindows::windowGone(uint32_t client, uint32_t window) {
+    WindowPicture gone;
+    gone.client = client;
+    gone.window = window;
+    const std::lock_guard lock(mutex_);
+    const auto found = programs_.find(client);
+    if (found != programs_.end()) found->second->add(std::move(gone));
+}
+
+void NativeWindows::clientGone(uint32_t client) {
+    const std::lock_guard lock(mutex_);
+    const auto found = programs_.find(client);
+    if (found == programs_.end()) return;
+    found->second->end();
+    ending_.push_back(std::move(found->second));
+    programs_.erase(found);
+}
+
+void NativeWindows::finish() {
+    std::vector<Program*> all;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const auto& [client, program] : programs_) all.push_back(program.get());
+        for (const auto& program : ending_) all.push_back(program.get());
+    }
+    for (Program* program : all) program->end();
+    for (Program* program : all) program->waitEnded();
+}
+
+void NativeWindows::drop() {
+    const std::lock_guard lock(mutex_);
+    dropped_ = true;
+    for (const auto& [client, program] : programs_) program->drop();
+    for (const auto& program : ending_) program->drop();
+}
+
+// Requires mutex_. The joins return at once.
+void NativeWindows::removeEnded() {
+    std::erase_if(ending_, [](const auto& program) { return program->hasEnded(); });
+}
+
+} // namespace mural

@@ -1,0 +1,50 @@
+// Starts the planned nodes concurrently, and waits until each has connected.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/result.hpp"
+#include "nodes/head/membership/node_acceptor.hpp"
+#include "nodes/head/planning/node_plan.hpp"
+#include "nodes/head/membership/node_process.hpp"
+#include "transport/connection.hpp"
+
+namespace mural {
+
+struct LaunchedNode {
+    NodePlan plan;
+    std::unique_ptr<NodeProcess> process; // null in tests with in-process nodes
+    std::unique_ptr<Connection> connection;
+    std::string absence = {}; // the reason why it has no connection, "did not start: …"; empty: connected
+};
+
+// A lost node that is being restarted.
+struct StartingNode {
+    LaunchedNode node;
+    std::unique_ptr<NodeAcceptor> gate; // null: connected
+    Deadline deadline = Deadline::never();
+};
+
+struct LaunchOptions {
+    std::string executable; // path of `mural` on this machine
+    std::string remoteMural; // path of `mural` on other hosts
+    std::string launchCommand; // prefix that runs a command on a host
+    int leastNodes = 0; // the session starts with this many nodes; others have lateMs to connect; 0: all nodes
+    int64_t lateMs = 5'000;
+};
+
+// Call from a thread that outlives the nodes. Polls `cancelled`. Errors: fewer nodes than required have connected.
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
+                                              const LaunchOptions& options,
+                                              Deadline deadline,
+                                              const std::function<bool()>& cancelled);
+
+// Starts one node without waiting for its connection.
+Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& options, Deadline deadline);
+// Returns true once the node has connected.
+Result<bool> connected(StartingNode& starting);
+
+} // namespace mural

@@ -1,0 +1,251 @@
+#include "nodes/head/membership/node_restarter.hpp"
+
+#include <algorithm>
+#include <poll.h>
+#include <utility>
+
+namespace mural {
+namespace {
+
+constexpr int64_t kStopPatienceMs = 10'000;
+
+} // namespace
+
+NodeRestarter::NodeRestarter(ReturnTerms terms, StreamBroadcaster& nodes, Hooks hooks)
+    : terms_(std::move(terms))
+    , set_(nodes)
+    , hooks_(std::move(hooks))
+    , nodes_(nodes.size()) {}
+
+NodeRestarter::~NodeRestarter() {
+    stop([] {});
+}
+
+// ---- what becomes of nodes
+
+std::string NodeRestarter::memberLost(int node) {
+    const std::string never = terms_.tries == 0 || !hooks_.start ? "" : hooks_.whyNever(node);
+    const int64_t nowNs = monotonicNowNs();
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    n.phase = Phase::Over;
+    n.lostNs = nowNs;
+    // skipped frames may have caused the loss
+    if (n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false;
+    const std::string tiles = hooks_.tilesOfLost(node);
+    if (terms_.tries == 0 || !hooks_.start || stopped_) return tiles;
+    if (!never.empty()) return tiles + ": " + never;
+    if (nowNs - n.memberNs > terms_.steadyMs * kNsPerMs) n.tries = 0;
+    if (n.tries >= terms_.tries) return tiles + ": it was started again " + std::to_string(n.tries) + " times, and each time was lost soon";
+    n.phase = Phase::Waiting;
+    n.nextNs = nowNs + terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)] * kNsPerMs;
+    return tiles + " until it is back";
+}
+
+// The attempt at the start of the session counts as the first one.
+void NodeRestarter::notThere(int node) {
+    const int64_t nowNs = monotonicNowNs();
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    n.lostNs = nowNs;
+    n.phase = Phase::Waiting;
+    n.nextNs = nowNs + terms_.pausesMs[std::min<size_t>(1, terms_.pausesMs.size() - 1)] * kNsPerMs;
+}
+
+bool NodeRestarter::lostOnItsWay(int node, const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    if (n.phase != Phase::Readying && n.phase != Phase::Ready && n.phase != Phase::CatchingUp) return false;
+    if (n.problem.empty()) n.problem = why;
+    if (n.catchUp) n.catchUp->linkLost();
+    return true;
+}
+
+void NodeRestarter::ready(int node) {
+    const std::lock_guard lock(mutex_);
+    if (at(node).phase == Phase::Readying) at(node).phase = Phase::Ready;
+}
+
+void NodeRestarter::synchronized(int node, const wire::SynchronizedMessage& message) {
+    const std::lock_guard lock(mutex_);
+    if (at(node).catchUp) at(node).catchUp->synchronized(message);
+}
+
+void NodeRestarter::turns(uint32_t number, const std::vector<std::byte>& turns) {
+    const std::lock_guard lock(mutex_);
+    for (Node& n : nodes_)
+        if (n.catchUp) n.catchUp->toldTurns(number, turns);
+}
+
+bool NodeRestarter::skipsFrames() const {
+    const std::lock_guard lock(mutex_);
+    return skipsFrames_;
+}
+
+bool NodeRestarter::becomesMember(int node) {
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    if (n.phase != Phase::CatchingUp || !n.problem.empty() || stopped_) return false;
+    n.phase = Phase::Member;
+    n.memberNs = monotonicNowNs();
+    n.numbers = {static_cast<double>(n.memberNs - n.lostNs) / static_cast<double>(kNsPerS), n.catchUp->snapshotBytes(), n.catchUp->queuedBytes(), n.catchUp->framesGiven()};
+    return true;
+}
+
+bool NodeRestarter::awaited() const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(nodes_, [](const Node& n) { return n.phase != Phase::Member && n.phase != Phase::Over; });
+}
+
+bool NodeRestarter::onItsWay(int node) const {
+    const std::lock_guard lock(mutex_);
+    const Phase phase = nodes_[static_cast<size_t>(node)].phase;
+    return phase != Phase::Member && phase != Phase::Over;
+}
+
+NodeRestarter::Numbers NodeRestarter::numbers(int node) const {
+    const std::lock_guard lock(mutex_);
+    return nodes_[static_cast<size_t>(node)].numbers;
+}
+
+// ---- Functions of the session's thread. Only this thread changes phases, except when a link ends. Hooks can therefore be
+// called without the lock.
+
+void NodeRestarter::tick(int64_t nowNs) {
+    for (size_t node = 0; node < nodes_.size(); ++node) tickNode(static_cast<int>(node), nowNs);
+}
+
+void NodeRestarter::tickNode(int node, int64_t nowNs) {
+    Phase phase = Phase::Over;
+    std::shared_ptr<NodeResync> over;
+    std::string problem;
+    bool due = false;
+    Deadline readyBy = Deadline::never();
+    {
+        const std::lock_guard lock(mutex_);
+        Node& n = at(node);
+        phase = n.phase;
+        if (phase != Phase::CatchingUp && n.catchUp && n.catchUp->done()) over = std::move(n.catchUp); // joined below
+        due = nowNs >= n.nextNs && !n.catchUp;
+        problem = n.problem;
+        readyBy = n.readyBy;
+    }
+    over.reset();
+    if (!problem.empty()) return fail(node, problem, nowNs);
+    switch (phase) {
+    case Phase::Waiting:
+        if (due && set_.link(node).readerEnded()) start(node, nowNs);
+        return;
+    case Phase::Starting: return look(node, nowNs);
+    case Phase::Readying:
+        if (readyBy.passed()) set_.link(node).lose("it was not ready within " + std::to_string(terms_.readyPatienceMs / 1000) + " s");
+        return;
+    case Phase::Ready: return catchUp(node);
+    case Phase::Member:
+    case Phase::CatchingUp:
+    case Phase::Over: return;
+    }
+}
+
+void NodeRestarter::catchUp(int node) {
+    hooks_.introduce(node);
+    std::optional<StreamBroadcaster::TurnsAsked> turns;
+    if (const auto kind = hooks_.turns(node); kind != StreamBroadcaster::Turns::None) turns = {++turnsAsked_, [this, kind](int other) { return hooks_.turns(other) == kind; }, {}};
+    const auto catchUp = std::make_shared<NodeResync>(set_, node, std::move(turns), [this, node](uint32_t view) { return hooks_.admitted(node, view); });
+    {
+        const std::lock_guard lock(mutex_);
+        at(node).catchUp = catchUp;
+        at(node).phase = Phase::CatchingUp;
+        if (!at(node).problem.empty()) catchUp->linkLost();
+    }
+    catchUp->start();
+}
+
+void NodeRestarter::start(int node, int64_t nowNs) {
+    {
+        const std::lock_guard lock(mutex_);
+        ++at(node).tries;
+    }
+    auto started = hooks_.start(node);
+    if (!started) return fail(node, started.error().message, nowNs);
+    const std::lock_guard lock(mutex_);
+    at(node).starting = std::make_unique<StartingNode>(std::move(*started));
+    at(node).phase = Phase::Starting;
+}
+
+void NodeRestarter::look(int node, int64_t nowNs) {
+    StartingNode& starting = *at(node).starting;
+    const auto come = connected(starting);
+    if (!come) {
+        const std::string why = come.error().message;
+        at(node).starting.reset();
+        return fail(node, why, nowNs);
+    }
+    if (!come.value()) return;
+    {
+        const std::lock_guard lock(mutex_);
+        at(node).phase = Phase::Readying;
+        at(node).readyBy = Deadline::inMs(terms_.readyPatienceMs);
+    }
+    hooks_.connected(node, starting);
+    at(node).starting.reset();
+}
+
+void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
+    std::string line = set_.link(node).describe() + " did not come back: " + why + "; ";
+    bool again = false;
+    {
+        const std::lock_guard lock(mutex_);
+        Node& n = at(node);
+        // the loss is caused by skipped frames: does not count as an attempt
+        if (n.catchUp && n.catchUp->unsound() && std::exchange(skipsFrames_, false)) --n.tries;
+        n.problem.clear();
+        again = n.tries < terms_.tries && !stopped_;
+        n.phase = again ? Phase::Waiting : Phase::Over;
+        const int64_t pauseMs = terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)];
+        n.nextNs = nowNs + pauseMs * kNsPerMs;
+        if (again) line += "it is tried again in " + std::to_string(pauseMs / 1000) + " s (" + std::to_string(n.tries + 1) + " of " + std::to_string(terms_.tries) + ")";
+        else line += "after " + std::to_string(n.tries) + (n.tries == 1 ? " try, " : " tries, ") + hooks_.tilesOfLost(node);
+    }
+    if (again) hooks_.say(line);
+    else hooks_.gaveUp(node, line);
+}
+
+bool NodeRestarter::settled() const {
+    const std::lock_guard lock(mutex_);
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+        const NodeConnection& link = set_.link(static_cast<int>(i));
+        if ((nodes_[i].catchUp && !nodes_[i].catchUp->done()) || (!link.alive() && !link.readerEnded())) return false;
+    }
+    return true;
+}
+
+// New members may have queued packets. These are sent before the nodes learn that the session ends.
+void NodeRestarter::stop(const std::function<void()>& watch) {
+    std::vector<int> ending;
+    {
+        const std::lock_guard lock(mutex_);
+        if (stopped_) return;
+        stopped_ = true;
+        for (size_t i = 0; i < nodes_.size(); ++i) {
+            Node& n = nodes_[i];
+            if (n.phase == Phase::Member || n.phase == Phase::Over) continue;
+            const bool linked = n.phase != Phase::Waiting && n.phase != Phase::Starting;
+            if (linked) ending.push_back(static_cast<int>(i));
+            if (n.catchUp) n.catchUp->linkLost();
+            n.starting.reset();
+            if (!linked) n.phase = Phase::Over;
+        }
+    }
+    for (const int node : ending) set_.link(node).lose("the session ends");
+    const Deadline deadline = Deadline::inMs(kStopPatienceMs);
+    while (!settled() && !deadline.passed()) {
+        watch();
+        poll(nullptr, 0, 5);
+    }
+    const std::lock_guard lock(mutex_);
+    for (Node& n : nodes_)
+        if (n.phase != Phase::Member) n.phase = Phase::Over;
+}
+
+} // namespace mural

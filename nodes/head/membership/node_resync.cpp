@@ -1,0 +1,153 @@
+#include "nodes/head/membership/node_resync.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <poll.h>
+
+#include "nodes/head/broadcast/bytes_of.hpp"
+#include "nodes/head/broadcast/head_command.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int64_t kShortRoundNs = 20 * kNsPerMs; // a pause of this length is invisible
+constexpr int kMaxRounds = 8; // a node that is no faster than the others never converges
+constexpr int64_t kDrawPatienceMs = 500; // until each window has had a frame
+constexpr int64_t kDirectPatienceMs = 2'000; // after this time the queue is flushed while other nodes wait
+constexpr int64_t kSnapshotMs = 20'000; // limit for the snapshot
+constexpr int64_t kLookMs = 50; // interval of the check that a member is left to report the phase
+constexpr int64_t kSyncLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
+
+} // namespace
+
+NodeResync::NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns, Admitted admitted)
+    : nodes_(nodes)
+    , node_(node)
+    , link_(nodes.link(node))
+    , turns_(std::move(turns))
+    , admitted_(std::move(admitted)) {}
+
+NodeResync::~NodeResync() {
+    if (thread_.joinable()) thread_.join();
+}
+
+void NodeResync::start() {
+    thread_ = std::thread([this] { work(); });
+}
+
+void NodeResync::synchronized(const wire::SynchronizedMessage& message) {
+    const std::lock_guard lock(mutex_);
+    reached_ = message.number;
+    sound_ = message.sound;
+    changed_.notify_all();
+}
+
+void NodeResync::linkLost() {
+    const std::lock_guard lock(mutex_);
+    lost_ = true;
+    changed_.notify_all();
+}
+
+void NodeResync::toldTurns(uint32_t number, const std::vector<std::byte>& turns) {
+    const std::lock_guard lock(mutex_);
+    if (turns_ && number == turns_->number && !told_) told_ = turns; // all members report the same
+    changed_.notify_all();
+}
+
+void NodeResync::work() {
+    auto snapshot = nodes_.beginCatchUp(node_, turns_ ? &*turns_ : nullptr, Deadline::inMs(kSnapshotMs));
+    if (snapshot) sendSnapshot(*snapshot);
+    else link_.lose(snapshot.error().message);
+    bool there = snapshot && synchronize() && sendTurns();
+    for (int round = 0; there && round < kMaxRounds; ++round) {
+        const int64_t beganNs = monotonicNowNs();
+        sendQueue();
+        there = synchronize();
+        if (monotonicNowNs() - beganNs <= kShortRoundNs) break;
+    }
+    there = there && drawsAgain();
+    if (there)
+        if (const auto admitted = nodes_.admit(node_, admitted_); !admitted) link_.lose(admitted.error().message);
+    const Deadline deadline = Deadline::inMs(kDirectPatienceMs);
+    while (there && link_.alive() && !nodes_.goDirect(node_, deadline.passed())) sendQueue();
+    if (there && link_.alive()) nodes_.inviteToGroup(node_);
+    done_ = true;
+}
+
+void NodeResync::sendSnapshot(const RejoinLog::Snapshot& snapshot) {
+    {
+        const std::lock_guard lock(mutex_);
+        frames_ = snapshot.frames;
+    }
+    for (const trace::SnapshotPacket& packet : snapshot.packets) {
+        if (!link_.alive()) return;
+        const wire::PacketHeader header{static_cast<uint32_t>(packet.payload.size()), packet.stream};
+        link_.sendNow(bytesOf(header), packet.payload);
+        snapshotBytes_ += sizeof(header) + packet.payload.size();
+    }
+}
+
+void NodeResync::sendQueue() {
+    for (const auto& packet : link_.takeQueue()) {
+        if (!link_.alive()) return;
+        link_.sendNow(packet, {});
+        queuedBytes_ += packet.size();
+    }
+    link_.flushNow();
+}
+
+// A snapshot omits frames, so the node cannot count the phase itself. Returns false if the node is lost.
+bool NodeResync::sendTurns() {
+    if (!turns_) return true;
+    const Deadline deadline = Deadline::inMs(kSyncLimitMs);
+    std::optional<std::vector<std::byte>> turns;
+    do {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, std::chrono::milliseconds(kLookMs), [this] { return lost_ || told_; });
+        if (lost_) return false;
+        turns = told_;
+    } while (!turns && std::ranges::any_of(turns_->asked, &NodeConnection::alive) && !deadline.passed());
+    if (turns) sendCommand(wire::HeadCommand::Turns, *turns);
+    return true; // no member reports the phase: it restarts with the first new member
+}
+
+void NodeResync::sendCommand(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    const auto payload = commandBytes(command, arguments);
+    const wire::PacketHeader header{static_cast<uint32_t>(payload.size()), wire::streamOf(0, 0)};
+    link_.sendNow(bytesOf(header), payload);
+    link_.flushNow();
+}
+
+// The next clear of each window completes the current frames. Returns false if the node is lost.
+bool NodeResync::drawsAgain() {
+    const Deadline deadline = Deadline::inMs(kDrawPatienceMs);
+    while (synchronize(true)) {
+        {
+            const std::lock_guard lock(mutex_);
+            unsound_ = sound_ == static_cast<uint32_t>(wire::FrameValidity::Unsound);
+            if (sound_ == static_cast<uint32_t>(wire::FrameValidity::Sound)) return true;
+        }
+        // without draws into the window there is no frame; the node detects a later draw
+        if (deadline.passed() && !unsound_) return true;
+        if (unsound_) {
+            link_.lose("its frames build on earlier ones that it did not draw; next time it draws them");
+            return false;
+        }
+        poll(nullptr, 0, 5);
+        sendQueue();
+    }
+    return false;
+}
+
+// Returns false if the node is lost.
+bool NodeResync::synchronize(bool draws) {
+    const uint32_t number = ++asked_;
+    const uint32_t arguments[] = {number, draws ? 1U : 0U};
+    sendCommand(wire::HeadCommand::Synchronize, bytesOf(arguments));
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::milliseconds(kSyncLimitMs), [&] { return lost_ || reached_ >= number; });
+    if (!lost_ && reached_ < number) link_.lose("it does not come to the end of what it is given");
+    return !lost_ && reached_ >= number;
+}
+
+} // namespace mural

@@ -1,0 +1,70 @@
+// Resync of one restarted node, on its own thread: sends the snapshot and everything after it, and makes the node a
+// member when it has caught up. The other nodes continue meanwhile. Each round sends what programs have produced during
+// the previous one, until a round is too short to delay a frame.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "nodes/head/broadcast/stream_broadcaster.hpp"
+
+namespace mural {
+
+class NodeResync {
+public:
+    // receives the view in which the node becomes a member
+    using Admitted = std::function<StreamBroadcaster::Admission(uint32_t view)>;
+    // turns: for nodes whose phase or areas members report.
+    NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns, Admitted admitted);
+    NodeResync(const NodeResync&) = delete;
+    NodeResync& operator=(const NodeResync&) = delete;
+    ~NodeResync(); // joins the thread, which ends soon after its link is lost
+
+    void start();
+
+    void synchronized(const wire::SynchronizedMessage& message); // the node has reached this position; thread-safe
+    [[nodiscard]] bool unsound() const { return unsound_; } // the node's frames depend on frames that it has skipped
+    void linkLost(); // thread-safe
+    void toldTurns(uint32_t number, const std::vector<std::byte>& turns); // thread-safe
+    [[nodiscard]] bool done() const { return done_; }
+    [[nodiscard]] uint64_t snapshotBytes() const { return snapshotBytes_; }
+    [[nodiscard]] uint64_t queuedBytes() const { return queuedBytes_; }
+    // The last frame of each program at the end of the snapshot.
+    [[nodiscard]] std::vector<wire::ClientFrame> framesGiven() const {
+        const std::lock_guard lock(mutex_);
+        return frames_;
+    }
+
+private:
+    void work();
+    void sendSnapshot(const RejoinLog::Snapshot& snapshot);
+    void sendQueue();
+    bool sendTurns();
+    void sendCommand(wire::HeadCommand command, std::span<const std::byte> arguments);
+    bool synchronize(bool draws = false);
+    bool drawsAgain();
+
+    StreamBroadcaster& nodes_;
+    const int node_;
+    NodeConnection& link_;
+    std::optional<StreamBroadcaster::TurnsAsked> turns_;
+    const Admitted admitted_;
+    uint32_t asked_ = 0; // number of the last Synchronize
+    std::atomic<bool> done_{false};
+    std::atomic<bool> unsound_{false};
+    std::atomic<uint64_t> snapshotBytes_{0}, queuedBytes_{0};
+    mutable std::mutex mutex_; // guards the members below
+    std::condition_variable changed_;
+    uint32_t reached_ = 0;
+    uint32_t sound_ = 0; // wire::Soundness at that position
+    bool lost_ = false;
+    std::optional<std::vector<std::byte>> told_;
+    std::vector<wire::ClientFrame> frames_;
+    std::thread thread_; // declared last: it uses the members above
+};
+
+} // namespace mural

@@ -1,0 +1,128 @@
+#include "nodes/head/membership/rejoin_log.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "streamcodec/snapshot/stream_snapshot.hpp"
+#include "streamcodec/trace/record_walk.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int64_t kSliceMs = 100;
+
+std::unique_ptr<trace::RejoinLog> emptyStream(uint64_t mostBytes) {
+    // Drops the message, because another component reports nodes that cannot return.
+    return std::make_unique<trace::RejoinLog>(static_cast<size_t>(mostBytes), [](const std::string&) {});
+}
+
+} // namespace
+
+RejoinLog::RejoinLog(uint64_t mostBytes) : mostBytes_(mostBytes), kept_(emptyStream(mostBytes)), thread_([this] { work(); }) {}
+
+RejoinLog::~RejoinLog() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+        changed_.notify_all();
+    }
+    thread_.join();
+}
+
+void RejoinLog::append(uint32_t stream, std::span<const std::byte> payload) {
+    ++appended_;
+    Entry entry{stream, {payload.begin(), payload.end()}, 0};
+    const std::lock_guard lock(mutex_);
+    programs_.insert(wire::clientOf(stream));
+    if (!complete_) tooLarge_.insert(wire::clientOf(stream)); // it may share objects with the overflowed programs
+    waitingBytes_ += payload.size();
+    entries_.push_back(std::move(entry));
+    if (complete_ && waitingBytes_ > mostBytes_) overflow();
+    changed_.notify_all();
+}
+
+void RejoinLog::programGone(uint32_t client) {
+    ++appended_;
+    const std::lock_guard lock(mutex_);
+    programs_.erase(client);
+    entries_.push_back({0, {}, client});
+    changed_.notify_all();
+}
+
+uint64_t RejoinLog::hold() {
+    const std::lock_guard lock(mutex_);
+    holds_.insert(appended_);
+    return appended_;
+}
+
+void RejoinLog::overflow() {
+    complete_ = false;
+    tooLarge_ = programs_;
+}
+
+void RejoinLog::work() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [this] { return stop_ || (!entries_.empty() && (holds_.empty() || taken_ < *holds_.begin())); });
+        if (stop_) return;
+        const Entry entry = std::move(entries_.front());
+        entries_.pop_front();
+        waitingBytes_ -= entry.payload.size();
+        const bool wanted = complete_;
+        inHand_ = true;
+        lock.unlock();
+        if (wanted || entry.clientGone != 0) take(entry);
+        const bool fits = kept_->serves();
+        keptBytes_ = kept_->sizeBytes();
+        lock.lock();
+        inHand_ = false;
+        ++taken_;
+        if (entry.clientGone != 0) tooLarge_.erase(entry.clientGone);
+        if (!fits && complete_) overflow();
+        if (!complete_ && (!fits || keptBytes_ > 0)) kept_ = emptyStream(mostBytes_), frames_.clear(), keptBytes_ = 0;
+        if (!complete_ && tooLarge_.empty()) complete_ = true;
+        changed_.notify_all();
+    }
+}
+
+void RejoinLog::take(const Entry& entry) {
+    if (entry.clientGone != 0) {
+        kept_->event({trace::Event::ClientGone, entry.clientGone, 0, {}});
+        frames_.erase(entry.clientGone);
+        return;
+    }
+    trace::RecordWalk walk(entry.payload);
+    trace::RecordView r;
+    while (walk.next(r))
+        if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) frames_[wire::clientOf(entry.stream)] = trace::argumentWord(r, 1);
+    kept_->append(entry.stream, entry.payload);
+}
+
+Result<RejoinLog::Snapshot> RejoinLog::snapshot(uint64_t place, Deadline deadline) {
+    std::unique_lock lock(mutex_);
+    while (!stop_ && (taken_ < place || inHand_) && !deadline.passed()) changed_.wait_for(lock, std::chrono::milliseconds(kSliceMs));
+    const bool there = complete_ && taken_ == place && !inHand_;
+    Result<Snapshot> result = Error{complete_ ? "what it has to be given was not found out in time" : "programs have sent more than the " + std::to_string(mostBytes_ >> 20) + " MiB that are kept for nodes that come back; --store gives more"};
+    if (there) {
+        lock.unlock(); // the thread is paused, and no other thread touches the log
+        {
+            // Locked after `lock` was released: a snapshot of a later position waits for earlier ones.
+            const std::lock_guard alone(snapshots_);
+            Snapshot snapshot{kept_->snapshot(), {}};
+            for (const auto& [client, frame] : frames_) snapshot.frames.push_back({client, frame});
+            result = std::move(snapshot);
+        }
+        lock.lock();
+    }
+    holds_.erase(holds_.find(place));
+    changed_.notify_all();
+    return result;
+}
+
+uint64_t RejoinLog::sizeBytes() const {
+    const std::lock_guard lock(mutex_);
+    return keptBytes_ + waitingBytes_;
+}
+
+} // namespace mural

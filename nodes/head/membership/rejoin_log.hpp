@@ -1,0 +1,85 @@
+// The rejoin log, from which restarted nodes receive snapshots: the shortest known stream to the current state
+// (streamcodec/trace/kept). A background thread reduces the log, so that senders never wait for it.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "common/base/clock.hpp"
+#include "common/base/result.hpp"
+#include "streamcodec/snapshot/snapshot_packet.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural::trace {
+class RejoinLog;
+} // namespace mural::trace
+
+namespace mural {
+
+class RejoinLog {
+public:
+    // mostBytes: memory for the reduced log, and as much again for entries that the thread has not processed.
+    explicit RejoinLog(uint64_t mostBytes);
+    RejoinLog(const RejoinLog&) = delete;
+    RejoinLog& operator=(const RejoinLog&) = delete;
+    ~RejoinLog();
+
+    // Appends a packet of a program. Call with the lock that orders packets.
+    void append(uint32_t stream, std::span<const std::byte> payload);
+    void programGone(uint32_t client);
+    // Returns the current position of the stream. The thread pauses there until a snapshot of the position exists.
+    [[nodiscard]] uint64_t hold();
+
+    struct Snapshot {
+        std::vector<trace::SnapshotPacket> packets; // in stream order
+        std::vector<wire::ClientFrame> frames; // the last frame of each program; the frames in `packets` are not shown
+    };
+    // Returns the snapshot of a held position; once per position, from any thread. Waits until the thread reaches the
+    // position. Errors: the log has overflowed; the deadline has passed.
+    Result<Snapshot> snapshot(uint64_t place, Deadline deadline);
+
+    [[nodiscard]] bool complete() const { return complete_; } // false: the log of some program has overflowed
+    [[nodiscard]] uint64_t sizeBytes() const;
+
+private:
+    struct Entry {
+        uint32_t stream = 0;
+        std::vector<std::byte> payload;
+        uint32_t clientGone = 0; // nonzero: not a packet, but the end of this program
+    };
+    void work();
+    void take(const Entry& entry);
+    void overflow(); // with the lock held: discards the log of all current programs
+
+    const uint64_t mostBytes_;
+    uint64_t appended_ = 0; // accessed by appending threads only
+
+    mutable std::mutex mutex_; // guards all members except the thread's own
+    std::condition_variable changed_;
+    std::deque<Entry> entries_; // not yet processed
+    uint64_t waitingBytes_ = 0;
+    uint64_t taken_ = 0; // number of processed entries
+    std::multiset<uint64_t> holds_; // the thread pauses at the first of these positions
+    std::set<uint32_t> programs_; // programs that have sent packets
+    std::set<uint32_t> tooLarge_; // programs whose log was discarded
+    std::atomic<bool> complete_{true};
+    std::atomic<uint64_t> keptBytes_{0};
+    bool inHand_ = false; // the thread is processing an entry
+    bool stop_ = false;
+
+    std::unique_ptr<trace::RejoinLog> kept_; // owned by the thread; by snapshot() while the thread is paused
+    std::map<uint32_t, uint32_t> frames_; // the same; last frame by program
+    std::mutex snapshots_; // serialises snapshot()
+    std::thread thread_;
+};
+
+} // namespace mural

@@ -1,0 +1,25 @@
+#include "nodes/head/planning/composition_choice.hpp"
+
+#include "compositor/strategies/choose_strategy.hpp"
+
+namespace mural {
+
+void chooseComposition(SessionPlan& plan, const std::string& wish) {
+    const auto asked = compositor::strategyNamed(wish);
+    for (NodePlan& node : plan.nodes) {
+        const int ranges = node.pass.ranges;
+        if (ranges < 2) continue;
+        // All nodes of one picture use the schedule of the first node.
+        if (node.pass.range != 0) {
+            node.composition = plan.nodes[static_cast<size_t>(node.collector)].composition;
+            continue;
+        }
+        const bool chosen = asked || node.composition;
+        if (asked) node.composition = asked;
+        else if (!node.composition) node.composition = compositor::chooseStrategy(ranges);
+        plan.explain.push_back("nodes " + std::to_string(node.node) + " to " + std::to_string(node.node + ranges - 1) + " put their picture together by " + nameOf(*node.composition) +
+                               (chosen ? ", as asked" : std::string(": ") + compositor::whyStrategy(ranges)));
+    }
+}
+
+} // namespace mural

@@ -1,0 +1,270 @@
+#include "nodes/head/planning/node_plan.hpp"
+
+#include <algorithm>
+
+#include "nodes/head/planning/codec_choice.hpp"
+#include "nodes/head/planning/composition_choice.hpp"
+#include "nodes/head/planning/tile_split.hpp"
+#include "nodes/frame_transfer/plane_codecs.hpp"
+#include "nodes/session/stream_build.hpp"
+
+namespace mural {
+namespace {
+
+constexpr int kMaxLocalByDefault = 4;
+constexpr int kMaxNodes = 1 << 20;
+
+std::string countOf(int count, const char* one) {
+    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+std::string describeRegion(const NodePlan& plan) {
+    const TileRegion& r = plan.region;
+    const std::string pass = describe(plan.pass);
+    if (plan.area) {
+        char area[96];
+        std::snprintf(area, sizeof area, "%.4g %.4g %.4g %.4g", plan.area->x, plan.area->y, plan.area->w, plan.area->h);
+        return "node " + std::to_string(plan.node) + " (" + plan.where + ") begins with " + (pass.empty() ? "" : pass + ": ") + "the part [ " + area + " ] of the picture";
+    }
+    return "node " + std::to_string(plan.node) + " (" + plan.where + ") draws " + (pass.empty() ? "" : pass + ": ") +
+           countOf(r.columns * r.rows, "tile") + ": columns " + std::to_string(r.column) + " to " +
+           std::to_string(r.column + r.columns - 1) + ", rows " + std::to_string(r.row) + " to " +
+           std::to_string(r.row + r.rows - 1) + " (row 0 is the lowest)";
+}
+
+// Divides the whole picture into n parts of about equal size.
+std::vector<Viewport> evenParts(int n) {
+    std::vector<Viewport> parts;
+    const auto edge = [n](int i) { return static_cast<double>(i) / n; };
+    for (const TileRegion& r : splitGrid(n, n, n)) parts.push_back({edge(r.column), edge(r.row), edge(r.column + r.columns) - edge(r.column), edge(r.row + r.rows) - edge(r.row)});
+    return parts;
+}
+
+std::string queueName(RenderPass pass) {
+    pass.range = 0;
+    pass.ranges = 1; // all ranges have the same tiles
+    const std::string of = describe(pass);
+    return of.empty() ? "tiles" : "tiles of " + of;
+}
+
+std::string chunksName(const NodePlan& collector, int ranges) { return "draws of nodes " + std::to_string(collector.node) + " to " + std::to_string(collector.node + ranges - 1); }
+
+// Returns why the tiles of a queue can't move. Empty: they can.
+std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, int queue) {
+    if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its first tiles' size";
+    for (const NodePlan& node : plan.nodes) {
+        if (node.queue != queue) continue;
+        const RenderPass& p = node.pass;
+        if (showsWall(config, plan, node)) return "nodes show them in windows of their own (--display windows)";
+        if (p.ranges > 1) return "their nodes share what they draw by ranges";
+        if (p.period > 1) return "their nodes take turns";
+        if (p.kernelWidth * p.kernelHeight > 1 || !p.zoom.none()) return "their nodes draw other pixels than there are";
+    }
+    return {};
+}
+
+// Returns the number of node processes of a pass. The first passes get one more if the division has a remainder.
+int nodesOfPass(int nodes, int passes, int pass) { return nodes / passes + (pass < nodes % passes ? 1 : 0); }
+
+} // namespace
+
+NodeReach reachOf(const std::string& host, const std::string& ownHost) {
+    const bool here = host == "localhost" || host == "127.0.0.1" || host == ownHost;
+    return here ? NodeReach::Tcp : NodeReach::LaunchCommand;
+}
+
+SessionPlan planSession(const SessionConfig& config, const std::string& ownHost) {
+    const bool queues = config.tileWidth > 0;
+    // the number of tiles of a queue is unknown yet
+    const int tiles = queues ? kMaxNodes : config.columns * config.rows;
+    const int ranges = config.passes.ranges;
+    const std::vector<RenderPass> passes = passesOf(config.passes);
+    const auto passCount = static_cast<int>(passes.size());
+    int localNodes = config.localNodes;
+    if (localNodes == 0 && config.hosts.empty()) localNodes = std::max(passCount * ranges, std::min(tiles, kMaxLocalByDefault));
+    const int asked = localNodes + static_cast<int>(config.hosts.size());
+    const int wanted = std::max(asked, passCount * ranges);
+    const int count = std::min(wanted, tiles * passCount * ranges);
+
+    SessionPlan plan;
+    plan.wall = compositionOf(config.passes);
+    plan.nodesShowWall = passCount == 1 && !queues; // windows of nodes can't move, unlike tiles of a queue
+    for (int p = 0; p < passCount; ++p) {
+        const int parts = std::max(1, nodesOfPass(count / ranges, passCount, p));
+        const std::vector<TileRegion> regions = queues ? std::vector<TileRegion>(static_cast<size_t>(parts)) : splitGrid(config.columns, config.rows, parts);
+        const std::vector<Viewport> areas = queues ? evenParts(parts) : std::vector<Viewport>();
+        if (queues && parts > 1) plan.queues.push_back({queueName(passes[static_cast<size_t>(p)]), {}, config.tileWidth, config.tileHeight});
+        for (size_t part = 0; part < regions.size(); ++part) {
+            const TileRegion& region = regions[part];
+            const auto collector = static_cast<int>(plan.nodes.size());
+            for (int range = 0; range < ranges; ++range) {
+                NodePlan node;
+                node.node = static_cast<int>(plan.nodes.size());
+                node.where = "local";
+                node.pass = passes[static_cast<size_t>(p)];
+                node.pass.range = range;
+                node.pass.share = {static_cast<double>(range) / ranges, static_cast<double>(range + 1) / ranges};
+                node.picture = pictureOf(config.passes, node.pass);
+                node.answers = node.picture == 0 && range == 0;
+                node.region = region;
+                if (queues) node.area = areas[part];
+                if (queues && parts > 1) node.queue = static_cast<int>(plan.queues.size()) - 1;
+                node.collector = collector;
+                if (config.chunks > 0 && ranges > 1) node.chunkQueue = static_cast<int>(plan.chunkQueues.size());
+                if (plan.nodesShowWall) node.swapBarrier = "barrier";
+                const int place = node.node % asked; // with more passes than nodes, each machine runs several
+                if (place >= localNodes) {
+                    node.where = config.hosts[static_cast<size_t>(place - localNodes)];
+                    node.reach = reachOf(node.where, ownHost);
+                }
+                plan.explain.push_back(describeRegion(node));
+                plan.nodes.push_back(node);
+            }
+            if (config.chunks > 0 && ranges > 1) plan.chunkQueues.push_back({chunksName(plan.nodes[static_cast<size_t>(collector)], ranges), {}, 1.0 / config.chunks});
+        }
+    }
+    chooseComposition(plan, config.composition);
+    chooseCodecs(plan, config.codec);
+    settleQueues(plan, config);
+    const auto started = static_cast<int>(plan.nodes.size());
+    if (wanted > started) {
+        plan.warnings.push_back(countOf(wanted, "render node") + " asked for, but there " +
+                                (tiles == 1 ? "is " : "are ") + countOf(tiles, "tile") + ": only " +
+                                countOf(started, "node") + " started; --tiles makes more tiles");
+    }
+    return plan;
+}
+
+namespace {
+
+void settleChunkQueues(SessionPlan& plan) {
+    for (size_t q = 0; q < plan.chunkQueues.size(); ++q) {
+        const auto queue = static_cast<int>(q);
+        const auto takes = [queue](const NodePlan& node) { return node.chunkQueue == queue; };
+        const auto nodes = std::ranges::count_if(plan.nodes, takes);
+        const bool turns = std::ranges::any_of(plan.nodes, [&](const NodePlan& node) { return takes(node) && node.pass.period > 1; });
+        char part[32];
+        std::snprintf(part, sizeof part, "%.3g", plan.chunkQueues[q].part);
+        const std::string chunks = "queue \"" + plan.chunkQueues[q].name + "\": its chunks, of " + part + " of the draws, ";
+        if (nodes > 1 && !turns) {
+            plan.explain.push_back(chunks + "are taken by whoever of " + std::to_string(nodes) + " nodes is free: by the times that the last frames took each");
+            continue;
+        }
+        (nodes < 2 ? plan.explain : plan.warnings).push_back(chunks + "are dealt out evenly, and stay: " + (nodes < 2 ? "one node draws all of them" : "their nodes take turns"));
+        for (NodePlan& node : plan.nodes)
+            if (takes(node)) node.chunkQueue = -1;
+    }
+}
+
+} // namespace
+
+void settleQueues(SessionPlan& plan, const SessionConfig& config) {
+    settleChunkQueues(plan);
+    for (size_t q = 0; q < plan.queues.size(); ++q) {
+        const auto queue = static_cast<int>(q);
+        const auto nodes = std::ranges::count(plan.nodes, queue, &NodePlan::queue);
+        const TileQueuePlan& planned = plan.queues[q];
+        const std::string tiles = "queue \"" + planned.name + "\": its tiles of " + std::to_string(planned.width) + "x" + std::to_string(planned.height) + " pixels ";
+        const std::string why = nodes < 2 ? "one node draws all of them" : whyTilesStay(plan, config, queue);
+        if (why.empty()) {
+            plan.explain.push_back(tiles + "are taken by whoever of " + std::to_string(nodes) + " nodes is free: by the times that the last frames took each");
+            continue;
+        }
+        (nodes < 2 ? plan.explain : plan.warnings).push_back(tiles + "are dealt out evenly, and stay: " + why);
+        for (NodePlan& node : plan.nodes)
+            if (node.queue == queue) node.queue = -1;
+    }
+}
+
+bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) { return config.display == Display::Windows && !plan.nodesShowWall; }
+
+bool headShowsCanvas(const SessionConfig& config, const CanvasPlan& canvas) { return config.display == Display::App || (config.display == Display::Windows && !canvas.nodesShowWall); }
+
+bool headTakesPictures(const SessionConfig& config, const SessionPlan& plan) {
+    return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan) || std::ranges::any_of(plan.canvases, [&](const CanvasPlan& c) { return headShowsCanvas(config, c); });
+}
+
+bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
+    const bool nodesShow = node.canvas == 0 ? plan.nodesShowWall : plan.canvases[static_cast<size_t>(node.canvas) - 1].nodesShowWall;
+    // only the collector has the picture
+    return config.display == Display::Windows && nodesShow && node.pass.range == 0;
+}
+
+std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
+    std::vector<const NodePlan*> members;
+    if (node.swapBarrier.empty() || !showsWall(config, plan, node)) return members;
+    for (const NodePlan& other : plan.nodes)
+        if (other.swapBarrier == node.swapBarrier && showsWall(config, plan, other)) members.push_back(&other);
+    if (members.size() < 2) members.clear();
+    return members;
+}
+
+namespace {
+
+// Returns true if the node's pixels reach the program's window unchanged: without scaling, averaging or a lossy codec.
+bool keepsPixels(const SessionPlan& plan, const NodePlan& node) {
+    const RenderPass& p = node.pass;
+    const bool scales = !node.way.none() || node.shown || !p.zoom.none() || !p.shown.none();
+    return picturesOf(plan.wall) == 1 && plan.canvases.empty() && !scales && !mayLose(node.pictureCodec);
+}
+
+} // namespace
+
+NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
+    NodeSetup setup;
+    setup.node = node.node;
+    setup.nodeCount = static_cast<int>(plan.nodes.size());
+    setup.columns = config.columns;
+    setup.rows = config.rows;
+    setup.regionColumn = node.region.column;
+    setup.regionRow = node.region.row;
+    setup.regionColumns = node.region.columns;
+    setup.regionRows = node.region.rows;
+    setup.hasArea = node.area.has_value();
+    setup.area = node.area.value_or(Viewport{});
+    if (node.queue >= 0)
+        for (const NodePlan& other : plan.nodes) {
+            const Viewport area = other.area.value_or(Viewport{});
+            setup.areas.insert(setup.areas.end(), {area.x, area.y, area.w, area.h});
+        }
+    setup.sharesMachine = std::ranges::any_of(plan.nodes, [&](const NodePlan& other) {
+        const bool bothHere = other.reach != NodeReach::LaunchCommand && node.reach != NodeReach::LaunchCommand;
+        return other.node != node.node && (bothHere || (other.reach == node.reach && other.where == node.where));
+    });
+    setup.pass = node.pass;
+    setup.way = node.way;
+    setup.screen = node.screen;
+    setup.collector = node.collector;
+    setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));
+    setup.pictureCodec = node.pictureCodec;
+    setup.windowPixels = config.display == Display::App;
+    setup.deepPictures = setup.windowPixels && keepsPixels(plan, node);
+    setup.partCodec = node.codec;
+    setup.readback = config.readback;
+    setup.answers = node.answers;
+    setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) { return other.collector == node.collector && other.reach == NodeReach::LaunchCommand; });
+    setup.eyeBase = config.eyeBase;
+    setup.focusDistance = config.focusDistance;
+    setup.tiling = config.tiling;
+    setup.glBackend = config.glBackend;
+    setup.sendPictures = headTakesPictures(config, plan);
+    setup.wallWindows = showsWall(config, plan, node);
+    if (const auto members = swapMembersOf(config, plan, node); !members.empty()) {
+        setup.swapMembers = static_cast<int>(members.size());
+        setup.swapRank = static_cast<int>(std::ranges::find(members, node.node, &NodePlan::node) - members.begin());
+        setup.swapLeader = members.front()->node;
+        setup.swapHere = std::ranges::none_of(members, [](const NodePlan* m) { return m->reach == NodeReach::LaunchCommand; });
+    }
+    const NodeWindow window = node.window.value_or(NodeWindow{});
+    setup.windowTitle = window.title;
+    setup.windowAsOnWall = window.asOnWall;
+    setup.fullScreen = config.fullScreen || window.fullScreen;
+    setup.windowX = config.windowX + window.x;
+    setup.windowY = config.windowY + window.y;
+    setup.placeThreads = config.placeThreads;
+    setup.displayName = window.displayName.empty() ? config.displayName : window.displayName;
+    setup.build = streamBuild();
+    return setup;
+}
+
+} // namespace mural

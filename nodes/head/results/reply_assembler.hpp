@@ -1,0 +1,74 @@
+// Assembles the answers of the nodes to a program's request. The answers alone identify requests: all nodes receive the
+// same stream, so every node answers every request.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/pixel_viewport.hpp"
+#include "common/base/result.hpp"
+#include "nodes/head/results/byte_buffer.hpp"
+#include "nodes/head/capture/capture_client.hpp"
+#include "nodes/head/results/reply_senders.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural {
+
+// Thread-safe. `deliver` is called without locks, once per request.
+class ReplyAssembler {
+public:
+    using Deliver = std::function<void(uint32_t client, Reply reply)>;
+
+    ReplyAssembler(int nodes, Deliver deliver);
+
+    Result<void> answer(int node, const wire::AnswerHeader& header, ByteBuffer bytes);
+    // Completes pending requests from the answers that have arrived.
+    void nodeLost(int node);
+
+    // Adds a returned node. It answers requests from this view on.
+    void nodeJoins(int node, uint32_t view);
+    void nodeInView(int node, uint32_t view);
+
+    [[nodiscard]] size_t openRequests() const;
+    // Nodes that have not answered the client's oldest pending request.
+    [[nodiscard]] std::vector<int> missing(uint32_t client) const;
+
+private:
+    using Key = std::pair<uint32_t, uint32_t>; // client, request
+
+    struct Part {
+        int node = 0;
+        PixelViewport rectangle;
+        ByteBuffer bytes;
+    };
+    struct Request {
+        uint32_t kind = 0;
+        uint32_t groupBytes = 0;
+        std::vector<Part> parts;
+        std::vector<bool> awaited; // per node; false after it is lost
+        std::vector<bool> last; // per node: its answer is complete
+        int firstNode = -1; // the node whose answer counts (AnswerKind::Bytes)
+        bool delivered = false; // later answers are discarded
+    };
+
+    Result<void> add(int node, const wire::AnswerHeader& header, ByteBuffer bytes, Request& request);
+    [[nodiscard]] bool allAnswered(const Request& request) const;
+    [[nodiscard]] bool canDeliver(const Request& request) const;
+
+    mutable std::mutex mutex_;
+    const Deliver deliver_;
+    const size_t nodes_;
+    ReplySenders views_;
+    std::map<Key, Request> requests_;
+
+    static Reply assemble(uint32_t requestId, const Request& request);
+    static void assembleRectangle(const Request& request, Reply& reply);
+    static void assembleBytes(const Request& request, Reply& reply);
+    static void assembleSum(const Request& request, Reply& reply);
+};
+
+} // namespace mural

@@ -1,0 +1,44 @@
+// Determines the nodes that will answer an item of the stream: those that were members when it was sent. A returning
+// node becomes a member at one position of the stream (HeadCommand::Member), and each node marks that position in its
+// messages. The set of members (view) that applies to a message is thus known without parsing the stream.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace mural {
+
+// Views are numbered; all initial nodes are members of view 0. Not thread-safe.
+class ReplySenders {
+public:
+    explicit ReplySenders(size_t nodes) : nodes_(nodes) {}
+
+    // Makes the node a member from this view on. It must have sent nothing before.
+    void joins(int node, uint32_t view) { at(node) = {true, view, view}; }
+    // Records that the node's messages belong to this view from now on.
+    void reached(int node, uint32_t view) { at(node).in = view; }
+    void lost(int node) { at(node).lives = false; }
+
+    [[nodiscard]] uint32_t since(int node) const { return nodes_[static_cast<size_t>(node)].since; }
+    [[nodiscard]] bool lives(int node) const { return nodes_[static_cast<size_t>(node)].lives; }
+    // Returns the nodes that will report the same item as `teller`, which is the first to report it.
+    [[nodiscard]] std::vector<bool> awaited(int teller) const {
+        const uint32_t view = nodes_[static_cast<size_t>(teller)].in;
+        std::vector<bool> who;
+        for (const Node& node : nodes_) who.push_back(node.lives && node.since <= view);
+        return who;
+    }
+
+private:
+    struct Node {
+        bool lives = true;
+        uint32_t since = 0;
+        uint32_t in = 0; // view of its current messages
+    };
+    Node& at(int node) { return nodes_[static_cast<size_t>(node)]; }
+
+    std::vector<Node> nodes_;
+};
+
+} // namespace mural

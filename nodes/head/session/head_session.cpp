@@ -1,0 +1,483 @@
+#include "nodes/head/session/head_session.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <thread>
+
+#include "nodes/head/frames/picture_place.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int64_t kTickMs = 50;
+constexpr int64_t kProgressNs = 200 * kNsPerMs;  // at most 5 lines per second
+constexpr int64_t kOutputNewsMs = 20'000; // below the silence after which `mural run` gives up the head
+constexpr int64_t kProcessPatienceMs = 2000; // time between a node's Bye and the end of its process
+
+std::vector<int> picturesOf(const SessionPlan& plan) {
+    std::vector<int> pictures;
+    for (const NodePlan& node : plan.nodes) pictures.push_back(node.picture);
+    return pictures;
+}
+
+PictureAssembler::Compose composeBy(const WallComposition& wall) {
+    if (picturesOf(wall) == 1) return {};
+    return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
+}
+
+std::vector<PictureAssembler::Compose> composeOthersBy(const SessionPlan& plan) {
+    std::vector<PictureAssembler::Compose> others;
+    for (const CanvasPlan& canvas : plan.canvases) others.push_back([wall = canvas.wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); });
+    return others;
+}
+
+// Returns the zoom of each picture relative to the program's.
+std::vector<Zoom> sizesOf(const SessionPlan& plan) {
+    std::vector<Zoom> sizes;
+    for (const NodePlan& node : plan.nodes) {
+        sizes.resize(std::max(sizes.size(), static_cast<size_t>(node.picture) + 1));
+        sizes[static_cast<size_t>(node.picture)] = node.pass.shown;
+    }
+    return sizes;
+}
+
+std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
+    std::map<int, std::string> absences;
+    for (size_t i = 0; i < nodes.size(); ++i)
+        if (!nodes[i].connection) absences[static_cast<int>(i)] = nodes[i].absence;
+    return absences;
+}
+
+std::string plantOf() {
+    const char* const plant = std::getenv("MURAL_PLANT"); // fault injection, for tests of the tests
+    return plant != nullptr ? plant : "";
+}
+
+} // namespace
+
+HeadSession::HeadSession(SessionConfig config,
+                         SessionPlan plan,
+                         std::vector<LaunchedNode> nodes,
+                         ControlChannel& control,
+                         HeadOptions options)
+    : config_(std::move(config))
+    , plan_(std::move(plan))
+    , control_(control)
+    , options_(std::move(options))
+    , nodeCount_(static_cast<int>(nodes.size()))
+    , sendsPictures_(headTakesPictures(config_, plan_))
+    , frames_(nodeCount_,
+              [this](uint32_t client, uint32_t finished, uint32_t shown) {
+                  if (serving_) programs_->credit(client, finished, shown);
+              })
+    , answers_(nodeCount_,
+               [this](uint32_t client, Reply reply) {
+                   if (serving_) programs_->reply(client, std::move(reply));
+               })
+    , pictures_(picturesOf(plan_),
+                composeBy(plan_.wall),
+                [this](WindowPicture picture) {
+                    frames_.pictureHeld(picture.client, picture.frame);
+                    frames_.isOn(picture.client, picture.window, picture.nativeWindow);
+                    output_->add(std::move(picture));
+                },
+                composeOthersBy(plan_),
+                sizesOf(plan_))
+    , dealer_(plan_,
+              [this](const ViewportAssignment& areas) { nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas)); },
+              plantOf())
+    , chunks_(plan_,
+              [this](const RangeAssignment& shares) { nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(shares)); },
+              plantOf())
+    , advice_(config_, nodeCount_, control_)
+    , absences_(absencesOf(nodes))
+    , views_(nodes.size())
+    , facts_(nodes.size())
+    , ready_(nodes.size(), false)
+    , introduced_(nodes.size(), true)
+    , lives_(nodes.size(), 0)
+    , refusals_(nodes.size())
+    , totals_(nodes.size()) {
+    NodeEvents& events = *this; // make_unique can't convert to a private base
+    for (int node = 0; node < nodeCount_; ++node) {
+        LaunchedNode& launched = nodes[static_cast<size_t>(node)];
+        totals_[static_cast<size_t>(node)].node = node;
+        ready_[static_cast<size_t>(node)] = !launched.connection; // the start does not wait for an absent node
+        nodes_.add(std::make_unique<NodeConnection>(NodePlace{node, launched.plan.where},
+                                              std::move(launched.connection),
+                                              std::move(launched.process), events));
+    }
+    ReturnTerms terms;
+    terms.tries = config_.restartNodes;
+    terms.readyPatienceMs = options_.readyPatienceMs;
+    if (terms.tries > 0 && options_.startNode) nodes_.keepBy(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.storeBytes)));
+    returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
+    if (!sendsPictures_) return;
+    PictureOutputConfig output;
+    output.saveFrames = config_.saveFrames;
+    output.lastFrame = config_.frames;
+    output.toNativeWindows = config_.display == Display::App;
+    output.pairs = plan_.wall.stereo == StereoMode::Quad;
+    output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
+    if (headShowsWall(config_, plan_)) output.openWall = [this] { return options_.openWall(0); };
+    for (size_t i = 0; i < plan_.canvases.size(); ++i) {
+        OtherCanvas& canvas = output.canvases.emplace_back();
+        canvas.name = plan_.canvases[i].name;
+        canvas.pairs = plan_.canvases[i].wall.stereo == StereoMode::Quad;
+        if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
+        if (headShowsCanvas(config_, plan_.canvases[i])) canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
+    }
+    output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
+    output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
+    output.giveToProgram = [this](const WindowPicture& picture, const Picture& whole) {
+        const auto done = [this, client = picture.client, frame = picture.frame] { frames_.pictureReleased(client, frame); };
+        return programs_->giveOwnPicture(picture.client, picture.frame, picture.nativeWindow, whole, done);
+    };
+    output.say = [this](const std::string& text) { control_.say(text); };
+    output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));
+}
+
+HeadSession::~HeadSession() {
+    tearingDown_ = true;
+    server_.reset();
+    if (output_) output_->drop();
+    nodes_.loseAll("the head ends");
+    returns_->stop([] {});
+    if (programs_) programs_->endAll();
+    nodes_.end();
+    output_.reset(); // its thread calls the program table
+}
+
+int HeadSession::run() {
+    if (const auto up = bringUp(); !up) {
+        control_.error(up.error().message);
+        return 1;
+    }
+    serve();
+    finish();
+    control_.send(reportOf(numbers()));
+    return 0;
+}
+
+// ---- while it runs
+
+void HeadSession::serve() {
+    while (!askedToFinish(Deadline::inMs(kTickMs))) tick();
+}
+
+bool HeadSession::askedToFinish(Deadline deadline) {
+    const auto line = control_.receive(deadline);
+    if (control_.broken() || (options_.interrupted && options_.interrupted())) return true;
+    if (!line) return false;
+    const Json command = Json::parse(*line, nullptr, false);
+    const bool known = command.is_object() && command.value("command", Json()) == "finish";
+    if (!known) control_.say("the head does not know this command: " + line->substr(0, 60));
+    return known;
+}
+
+void HeadSession::watchNodes(int64_t nowNs) {
+    nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs, [this](int node, bool multicast) {
+        {
+            const std::lock_guard lock(mutex_);
+            multicast ? rerouted_.erase(node) : static_cast<size_t>(rerouted_.insert(node).second);
+        }
+        control_.say(nodes_.link(node).describe() +
+                     (multicast ? ": multicast reaches it again" : ": it does not answer to multicast; its stream goes through its own connection (TCP); mural doctor --network may say why"));
+    });
+}
+
+void HeadSession::tick() {
+    const int64_t nowNs = monotonicNowNs();
+    programs_->beat();
+    watchNodes(nowNs);
+    programs_->reap();
+    returns_->tick(nowNs);
+    reportProgress(nowNs);
+}
+
+void HeadSession::reportProgress(int64_t nowNs) {
+    const FrameTotals totals = frames_.totals();
+    const int64_t onWall = sendsPictures_ ? output_->totals().wallFrames : totals.wallFrames;
+    if (config_.frames > 0 && onWall >= config_.frames && !framesReached_) {
+        framesReached_ = true;
+        control_.send({{"event", "frames-reached"}});
+    }
+    if (totals.wallFrames == lastProgressFrame_ || nowNs - lastProgressNs_ < kProgressNs) return;
+    lastProgressNs_ = nowNs;
+    lastProgressFrame_ = totals.wallFrames;
+    const auto rates = meter_.sample(nowNs, totals.wallFrames, nodes_.bytesSent());
+    control_.send({{"event", "frame"},
+                   {"frame", totals.wallFrames},
+                   {"framesPerSecond", rates.framesPerSecond},
+                   {"bytesPerFrame", rates.bytesPerFrame}});
+}
+
+// ---- what the nodes say
+
+Result<void> HeadSession::nodeReady(int node, const std::string& json) {
+    auto facts = nodeFactsFromJson(json);
+    if (!facts) return facts.error();
+    if (returns_->onItsWay(node)) return takeAgain(node, std::move(*facts));
+    const auto index = static_cast<size_t>(node);
+    const std::lock_guard lock(mutex_);
+    if (ready_[index]) return Error{"it said twice that it is ready"};
+    if (!facts->ownStream.empty()) {
+        nodes_.link(node).setByMulticast(false);
+        control_.say(nodes_.link(node).describe() + ": its stream goes through its own connection (TCP), not by multicast: " + facts->ownStream);
+    }
+    facts_[index] = std::move(*facts);
+    ready_[index] = true;
+    return {};
+}
+
+Result<void> HeadSession::nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) {
+    dealer_.answered();
+    return answers_.answer(node, header, std::move(bytes));
+}
+
+Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& message) {
+    if (sendsPictures_) {
+        pictures_.frameDone(node, message.client, message.window, message.frame);
+        output_->waitForRoom();
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        NodeTotals& totals = totals_[static_cast<size_t>(node)];
+        totals.replaySeconds += static_cast<double>(message.replayNs) / static_cast<double>(kNsPerS);
+        totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
+        totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // the node's Bye replaces this value
+    }
+    dealer_.frameDone(node, message);
+    chunks_.frameDone(node, message);
+    advice_.frameDone(message.flags, plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1);
+    return frames_.frameDone(node, message, monotonicNowNs());
+}
+
+Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
+    if (!sendsPictures_) return Error{"it sent a picture that nobody asked for"};
+    auto placed = placeOnWall(plan_.nodes[static_cast<size_t>(node)], header, std::move(rows));
+    auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
+    output_->waitForRoom();
+    return done;
+}
+
+// Takes effect after the message of the last node, because that node still sends frames of the window. Only then may
+// another window become the main one, and the program's state be dropped.
+Result<void> HeadSession::nodeWindowGone(int node, const wire::WindowGoneMessage& message) {
+    windowGone({message.client, message.window}, node);
+    return {};
+}
+
+void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int node) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto [entry, fresh] = gone_.try_emplace(window);
+        if (fresh) entry->second = views_.awaited(node);
+        std::vector<bool>& awaited = entry->second;
+        awaited[static_cast<size_t>(node)] = false;
+        if (std::ranges::find(awaited, true) != awaited.end()) return;
+        gone_.erase(entry);
+    }
+    const auto [client, id] = window;
+    dealer_.windowGone(client, id);
+    chunks_.windowGone(client, id);
+    if (id != wire::kAllWindows) {
+        frames_.windowGone(client, id);
+        if (output_) output_->windowGone(client, id);
+        return;
+    }
+    frames_.clientGone(client);
+    if (!sendsPictures_) return;
+    pictures_.clientGone(client);
+    output_->clientGone(client);
+}
+
+Result<void> HeadSession::nodeNews(int node, const wire::DriverEvent& news, const std::string& text) {
+    if (serving_ && news_.isNew(node, news, text)) programs_->news(news, text);
+    return {};
+}
+
+Result<void> HeadSession::nodeLog(int node, const std::string& text) {
+    std::string line = text.substr(0, text.find('\n'));
+    {
+        const std::lock_guard lock(mutex_);
+        if (!ready_[static_cast<size_t>(node)]) { // reason of a failed start, which is reported when the node has ended
+            refusals_[static_cast<size_t>(node)] = line;
+            return {};
+        }
+    }
+    control_.say("node " + std::to_string(node) + ": " + line);
+    return {};
+}
+
+Result<void> HeadSession::nodeBye(int node, const std::string& json) {
+    if (!finishing_) return Error{"it ended though nobody had asked it to"};
+    const std::lock_guard lock(mutex_);
+    readBye(json, totals_[static_cast<size_t>(node)]);
+    return {};
+}
+
+void HeadSession::nodeLost(int node, const std::string& why) {
+    if (tearingDown_) return;
+    bool starting = false;
+    {
+        const std::lock_guard lock(mutex_);
+        starting = !serving_;
+        const std::string& refusal = refusals_[static_cast<size_t>(node)];
+        if (starting && startFailure_.empty()) startFailure_ = nodes_.link(node).describe() + " did not start: " + (refusal.empty() ? why : refusal);
+    }
+    if (!starting) loseMember(node, why);
+}
+
+void HeadSession::noNodeIsLeft() {
+    control_.say("no render node is left: programs go on alone, without the wall; start the session again");
+    programs_->refuseFrom("this session has lost all its render nodes; start it again");
+    programs_->tellHeadGone();
+    control_.send({{"event", "wall-lost"}});
+}
+
+// ---- end
+
+void HeadSession::finish() {
+    finishing_ = true;
+    returns_->stop([this] { watchNodes(monotonicNowNs()); });
+    programs_->refuseFrom("the session is ending");
+    programs_->drainAll(Deadline::inMs(options_.drainPatienceMs),
+                        [this] { watchNodes(monotonicNowNs()); });
+    finishNodes();
+    finishOutput();
+    server_.reset();
+    programs_->endAll();
+    if (options_.recorder) recorded_ = options_.recorder->finish(Deadline::inMs(options_.recordPatienceMs));
+    reportProgress(monotonicNowNs());
+    const Deadline deadline = Deadline::inMs(kProcessPatienceMs);
+    for (int node = 0; node < nodeCount_; ++node) {
+        NodeConnection& link = nodes_.link(node);
+        if (link.process() != nullptr && link.saidBye()) link.process()->waitEnded(deadline);
+    }
+    tearingDown_ = true;
+    if (output_) output_->drop();
+    nodes_.end();
+}
+
+void HeadSession::finishNodes() {
+    constexpr int kSliceMs = 5;
+    const int64_t beganNs = monotonicNowNs();
+    const Deadline deadline = Deadline::inMs(options_.endPatienceMs);
+    // Broadcasts on a separate thread, because a node that reads nothing would block this one, which watches the nodes.
+    std::thread asking([this] { nodes_.broadcast(wire::HeadCommand::Finish, {}); });
+    while (!allReadersEnded()) {
+        watchNodes(monotonicNowNs());
+        loseSilentNodes(beganNs, deadline.passed());
+        if (deadline.passed()) break; // a reader may hang in an output, which finishOutput() handles
+        poll(nullptr, 0, kSliceMs);
+    }
+    asking.join();
+}
+
+void HeadSession::finishOutput() {
+    if (!output_) return;
+    const Deadline deadline = Deadline::inMs(options_.outputPatienceMs);
+    while (!output_->finish(Deadline::inMs(std::min(kOutputNewsMs, options_.outputPatienceMs)))) {
+        if (deadline.passed()) {
+            control_.say("the last pictures could not be written in time; the output may be incomplete");
+            return;
+        }
+        control_.say("still writing the last pictures");
+    }
+}
+
+void HeadSession::loseSilentNodes(int64_t sinceNs, bool all) {
+    const int64_t nowNs = monotonicNowNs();
+    for (int node = 0; node < nodeCount_; ++node) {
+        NodeConnection& link = nodes_.link(node);
+        const int64_t silentNs = nowNs - std::max(sinceNs, link.lastProgressNs(nowNs));
+        const bool silent = silentNs > options_.byePatienceMs * kNsPerMs;
+        if (!link.saidBye() && (silent || all)) link.lose("it did not end in time with the session");
+    }
+}
+
+bool HeadSession::allReadersEnded() {
+    for (int node = 0; node < nodeCount_; ++node)
+        if (!nodes_.link(node).readerEnded()) return false;
+    return true;
+}
+
+std::vector<int> HeadSession::waitsFor(const ProgramStatus& program) {
+    switch (program.counts.waitingFor) {
+    case capture::Wait::Frames: return frames_.behind(program.id);
+    case capture::Wait::Answer: return answers_.missing(program.id);
+    case capture::Wait::Room: return nodes_.full();
+    default: return {};
+    }
+}
+
+std::string HeadSession::streamOf(const NodePlan& plan) {
+    if (plan.reach == NodeReach::SharedMemory) return "memory";
+    return nodes_.link(plan.node).byMulticast() && !rerouted_.contains(plan.node) ? "multicast" : "TCP";
+}
+
+SessionStatus HeadSession::status() {
+    SessionStatus result;
+    result.session = config_.session;
+    result.runPid = getppid();
+    result.headPid = getpid();
+    result.nowNs = monotonicNowNs();
+    result.columns = config_.columns;
+    result.rows = config_.rows;
+    result.display = nameOf(config_.display);
+    result.wallFrames = frames_.totals().wallFrames;
+    result.economy = nodes_.economyCounts();
+    result.queues = queues();
+    if (!result.queues.empty() && !result.queues.front().chunks && result.queues.front().columns > 0) {
+        result.columns = result.queues.front().columns;
+        result.rows = result.queues.front().rows;
+    }
+    result.programs = programs_->status();
+    for (ProgramStatus& program : result.programs) {
+        program.progress = frames_.progressOf(program.id);
+        program.waitsForNodes = waitsFor(program);
+    }
+    const std::lock_guard lock(mutex_);
+    for (size_t i = 0; i < facts_.size(); ++i) {
+        NodeConnection& link = nodes_.link(static_cast<int>(i));
+        NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0, streamOf(plan_.nodes[i])};
+        node.totals.frames = frames_.framesOf(node.totals.node);
+        node.totals.pictureBytes = link.pictureBytes(); // the node's Bye holds the other numbers
+        node.totals.pictureRawBytes = link.pictureRawBytes();
+        node.returning = returns_->onItsWay(node.totals.node);
+        node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
+        result.nodes.push_back(std::move(node));
+    }
+    return result;
+}
+
+std::vector<QueueTotals> HeadSession::queues() const {
+    std::vector<QueueTotals> all = dealer_.totals();
+    for (QueueTotals& queue : chunks_.totals()) all.push_back(std::move(queue));
+    return all;
+}
+
+SessionNumbers HeadSession::numbers() {
+    SessionNumbers result;
+    result.frames = frames_.totals();
+    result.bytesSent = nodes_.bytesSent();
+    result.economy = nodes_.economyCounts();
+    result.queues = queues();
+    result.programs = programs_->counts();
+    if (output_) result.output = output_->totals();
+    result.drawnWhole = advice_.drawnWhole();
+    if (options_.lastPicture) result.lastPicture = options_.lastPicture();
+    if (options_.recorder) result.recording = config_.record;
+    result.recorded = recorded_;
+    const std::lock_guard lock(mutex_);
+    result.nodes = totals_;
+    for (NodeTotals& totals : result.nodes) totals.frames = frames_.framesOf(totals.node);
+    return result;
+}
+
+} // namespace mural

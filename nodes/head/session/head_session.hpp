@@ -1,0 +1,193 @@
+// One session of the head: connects programs, nodes and outputs, from the nodes' start to the report.
+//
+//   program → CaptureClient → StreamBroadcaster → nodes
+//   nodes → NodeConnection → FrameTracker     → credit of the programs
+//                    → ReplyAssembler  → replies to the programs
+//                    → PictureAssembler → PictureOutput
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "nodes/head/results/reply_assembler.hpp"
+#include "nodes/head/capture/capture_server.hpp"
+#include "nodes/head/balancing/chunk_equalizer.hpp"
+#include "nodes/head/session/control_channel.hpp"
+#include "nodes/head/frames/frame_tracker.hpp"
+#include "nodes/head/results/driver_event_merger.hpp"
+#include "nodes/head/membership/node_capabilities.hpp"
+#include "nodes/head/membership/node_launcher.hpp"
+#include "nodes/head/membership/node_restarter.hpp"
+#include "nodes/head/broadcast/stream_broadcaster.hpp"
+#include "nodes/head/frames/picture_assembler.hpp"
+#include "nodes/head/frames/picture_output.hpp"
+#include "nodes/head/capture/program_table.hpp"
+#include "nodes/head/session/session_report.hpp"
+#include "nodes/head/session/session_status.hpp"
+#include "nodes/head/session/slowdown_advice.hpp"
+#include "nodes/head/balancing/tile_equalizer.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace mural {
+
+// A program's own window.
+struct NativeWindow {
+    uint32_t client = 0, window = 0; // ids in the stream
+    uint32_t id = 0; // XID on its display
+    std::string display; // name in the program; empty: unknown
+};
+
+struct HeadOptions {
+    uint64_t registryDigest = 0;
+    std::unique_ptr<PictureSink> file; // sink of --out; null: none
+    std::function<std::string()> lastPicture; // path of the last file; may be empty
+    std::function<Result<std::unique_ptr<PictureSink>>(const NativeWindow& window)> openWindow;
+    std::vector<std::shared_ptr<PictureSink>> canvasFiles; // sinks of --out for the further canvases
+    // opens wall windows if the head shows the wall (headShowsWall) or a further canvas
+    std::function<Result<std::unique_ptr<PictureSink>>(int offsetX)> openWall;
+    std::unique_ptr<trace::StreamRecorder> recorder; // --record; null: none
+    std::function<bool()> interrupted; // returns whether a signal requests the end; may be empty
+    // Restarts a lost node. Called by the session's thread. Empty: nodes are not restarted.
+    std::function<Result<StartingNode>(const NodePlan&)> startNode;
+    uint32_t chunkCount = capture::kDefaultChunks;
+    int64_t readyPatienceMs = 30'000;
+    int64_t drainPatienceMs = 10'000;
+    int64_t byePatienceMs = 10'000; // silence of a node at the end of the session
+    int64_t silencePatienceMs = 20'000; // silence of a node before that; nodes send a heartbeat every 4 s
+    int64_t endPatienceMs = 60'000; // end of all nodes, even if they send messages
+    int64_t outputPatienceMs = 150'000; // video encoders buffer frames
+    int64_t recordPatienceMs = 60'000; // limit for writing the end of the recording
+};
+
+// run() must be called by the thread that launched the nodes.
+class HeadSession : private NodeEvents {
+public:
+    HeadSession(SessionConfig config,
+                SessionPlan plan,
+                std::vector<LaunchedNode> nodes,
+                ControlChannel& control,
+                HeadOptions options);
+    ~HeadSession() override;
+
+    int run(); // returns the exit status of the head
+
+private:
+    Result<void> nodeReady(int node, const std::string& json) override;
+    Result<void> nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) override;
+    Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) override;
+    Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) override;
+    Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) override;
+    Result<void> nodeNews(int node, const wire::DriverEvent& news, const std::string& text) override;
+    Result<void> nodeLog(int node, const std::string& text) override;
+    Result<void> nodeBye(int node, const std::string& json) override;
+    Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) override;
+    Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) override;
+    Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) override;
+    void nodeLost(int node, const std::string& why) override;
+
+    // Restarts of nodes (head_session_returns.cpp).
+    NodeRestarter::Hooks returnHooks();
+    void linkAgain(int node, StartingNode& starting);
+    void introduceAgain(int node);
+    Result<void> takeAgain(int node, NodeCapabilities facts);
+    StreamBroadcaster::Admission admit(int node, uint32_t view);
+    void loseMember(int node, const std::string& why);
+    void goOnWithoutAbsent();
+    void goOnWithout(int node);
+    bool noneIsLeft();
+
+    Result<void> bringUp();
+    void openMulticast();
+    Result<void> openEconomy();
+    void introduceNodes();
+    NodeSetup setupFor(const NodePlan& plan);
+    Result<void> awaitReady();
+    Result<void> checkSize();
+    void openTables();
+    void beginRecording();
+    void announceReady();
+    std::string placeOwnThreads() const;
+    std::vector<std::string> explainLines();
+
+    void serve();
+    bool askedToFinish(Deadline deadline); // waits for the control connection until the deadline
+    void tick();
+    void watchNodes(int64_t nowNs);
+    // called by the output's thread
+    Result<std::unique_ptr<PictureSink>> openNativeWindow(const WindowPicture& picture);
+    void windowGone(const std::pair<uint32_t, uint32_t>& window, int node); // window: client, window
+    void reportProgress(int64_t nowNs);
+
+    void finish();
+    void finishNodes();
+    void finishOutput();
+    void loseSilentNodes(int64_t sinceNs, bool all);
+    bool allReadersEnded();
+    SessionNumbers numbers();
+    SessionStatus status();
+    [[nodiscard]] std::vector<QueueTotals> queues() const;
+    std::vector<int> waitsFor(const ProgramStatus& program);
+    std::string streamOf(const NodePlan& plan); // requires mutex_
+    void noNodeIsLeft();
+
+    const SessionConfig config_;
+    const SessionPlan plan_;
+    ControlChannel& control_;
+    HeadOptions options_;
+    const int nodeCount_;
+    const bool sendsPictures_;
+    std::string placement_; // placement of the head's threads
+    std::string economyLine_; // for --explain: nodes with delta coding
+    std::string streamLine_; // for --explain: transport of the stream; empty: shared memory only
+
+    // Declared in the order of construction. The readers of the nodes use all of them and end first.
+    FrameTracker frames_;
+    ReplyAssembler answers_;
+    DriverEventMerger news_;
+    std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
+    PictureAssembler pictures_;
+    TileEqualizer dealer_;
+    ChunkEqualizer chunks_;
+    SlowdownAdvice advice_;
+    StreamBroadcaster nodes_;
+    std::unique_ptr<NodeRestarter> returns_;
+    std::unique_ptr<ProgramTable> programs_; // set when the nodes are ready
+    std::unique_ptr<CaptureServer> server_;
+
+    std::atomic<bool> finishing_{false};
+    std::atomic<bool> tearingDown_{false};
+    std::atomic<bool> serving_{false};
+    const std::map<int, std::string> absences_; // nodes absent at the start, with the reason
+    std::set<int> multicastNodes_; // nodes that receive the stream by multicast if it reaches them
+    std::set<int> economical_; // nodes with delta coding
+    std::string exchangeSecret_; // in hex; for nodes that exchange parts of pictures or share a swap barrier
+    ProgressMeter meter_;
+    int64_t lastProgressNs_ = 0;
+    int64_t lastProgressFrame_ = 0;
+    bool framesReached_ = false;
+    trace::WriterTotals recorded_;
+
+    std::mutex membership_; // held while a node becomes a member or is lost; locked before mutex_
+    std::mutex mutex_; // guards the members below
+    ReplySenders views_;
+    int promisedGlVersion_ = 0; // announced to programs…
+    std::string promisedExtensions_; // …from the nodes of the start
+    std::vector<NodeCapabilities> facts_;
+    std::vector<bool> ready_;
+    std::vector<bool> introduced_; // nodes that have the addresses of the other nodes of their picture
+    std::vector<uint32_t> lives_; // number of restarts by node
+    std::set<int> rerouted_; // nodes that multicast does not reach
+    std::vector<std::string> refusals_; // latest log line of each node before it was ready
+    std::vector<NodeTotals> totals_;
+    std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // by window: nodes that have not reported its end
+    std::string startFailure_;
+};
+
+} // namespace mural

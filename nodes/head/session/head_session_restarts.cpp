@@ -1,0 +1,228 @@
+// The session's handling of lost and restarted nodes.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "nodes/head/session/head_session.hpp"
+
+namespace mural {
+namespace {
+
+// Returns the first name of `wanted` that `has` does not contain.
+std::string firstMissing(const std::string& wanted, const std::vector<std::string>& has) {
+    std::istringstream words(wanted);
+    for (std::string word; words >> word;)
+        if (std::ranges::find(has, word) == has.end()) return word;
+    return "";
+}
+
+std::string seconds(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f s", value);
+    return text;
+}
+
+} // namespace
+
+NodeRestarter::Hooks HeadSession::returnHooks() {
+    NodeRestarter::Hooks hooks;
+    if (options_.startNode) hooks.start = [this](int node) { return options_.startNode(plan_.nodes[static_cast<size_t>(node)]); };
+    hooks.connected = [this](int node, StartingNode& starting) { linkAgain(node, starting); };
+    hooks.introduce = [this](int node) { introduceAgain(node); };
+    hooks.whyNever = [this](int) -> std::string {
+        if (!nodes_.canJoin()) return "programs have sent more than the " + std::to_string(config_.storeBytes >> 20) + " MiB that are kept to start a node again; --store gives more";
+        return "";
+    };
+    // Only members know the state of time-multiplexed nodes and of moving areas.
+    hooks.turns = [this](int node) {
+        const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+        return plan.pass.period > 1 ? StreamBroadcaster::Turns::OfFrames : plan.queue >= 0 ? StreamBroadcaster::Turns::OfAreas : StreamBroadcaster::Turns::None;
+    };
+    hooks.tilesOfLost = [this](int node) -> std::string {
+        const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+        if (plan.pass.range > 0) return plan.chunkQueue >= 0 ? "the others take its chunks" : "what it draws is missing";
+        return plan.queue >= 0 ? "the others take its tiles" : "its tiles stay as they were";
+    };
+    hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
+    hooks.gaveUp = [this](int, const std::string& line) {
+        control_.say(line);
+        const std::lock_guard membership(membership_);
+        if (noneIsLeft()) noNodeIsLeft();
+    };
+    hooks.say = [this](const std::string& line) { control_.say(line); };
+    return hooks;
+}
+
+void HeadSession::linkAgain(int node, StartingNode& starting) {
+    uint32_t life = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        ready_[static_cast<size_t>(node)] = false;
+        refusals_[static_cast<size_t>(node)].clear();
+        rerouted_.erase(node);
+        introduced_[static_cast<size_t>(node)] = false;
+        life = ++lives_[static_cast<size_t>(node)];
+    }
+    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+    NodeEvents& events = *this; // a private base: make_unique could not convert
+    auto link = std::make_unique<NodeConnection>(NodePlace{node, plan.where}, std::move(starting.node.connection), std::move(starting.node.process), events);
+    link->setJoinsBatches(economical_.contains(node));
+    link->setJoinsGroup(multicastNodes_.contains(node));
+    nodes_.replace(node, std::move(link));
+    nodes_.link(node).unpackBy(plan.pictureCodec, plan.way);
+    nodes_.link(node).startReading();
+    NodeSetup setup = setupFor(plan);
+    setup.isResyncing = true;
+    setup.life = life;
+    setup.swapMembers = 0; // the other members of its swap barrier continue without it
+    setup.skipsFrames = returns_->skipsFrames();
+    setup.economy = false; // its snapshot is not delta-coded; ResetDictionary starts the batches
+    nodes_.sendAlone(node, wire::HeadCommand::Setup, toJson(setup));
+}
+
+// The restarted node connects to the other nodes of its picture: to members, and among restarted nodes to those
+// introduced earlier. The other nodes accept the connection without further notice.
+void HeadSession::introduceAgain(int node) {
+    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+    if (plan.pass.ranges < 2) return;
+    nlohmann::json pictures = nlohmann::json::object();
+    {
+        const std::lock_guard lock(mutex_);
+        for (int other = plan.collector; other < plan.collector + plan.pass.ranges; ++other) {
+            const auto index = static_cast<size_t>(other);
+            if (other != node && introduced_[index] && ready_[index] && nodes_.link(other).alive()) pictures[std::to_string(other)] = facts_[index].exchange;
+        }
+        introduced_[static_cast<size_t>(node)] = true;
+    }
+    nodes_.sendAlone(node, wire::HeadCommand::Exchange, nlohmann::json{{"pictures", pictures}}.dump());
+}
+
+// The restarted node's GL must support everything that has been announced to programs.
+Result<void> HeadSession::takeAgain(int node, NodeCapabilities facts) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto index = static_cast<size_t>(node);
+        if (ready_[index]) return Error{"it said twice that it is ready"};
+        if (!facts_[index].renderer.empty() && facts.renderer != facts_[index].renderer)
+            return Error{"it draws by another GL now (" + facts.renderer + ") than before (" + facts_[index].renderer + "); its pictures would not fit the others'"};
+        const std::string missing = firstMissing(promisedExtensions_, facts.extensions);
+        if (facts.glVersion < promisedGlVersion_ || !missing.empty())
+            return Error{"its GL has less than programs were promised: " + (missing.empty() ? "an older version" : "no " + missing)};
+        facts_[index] = std::move(facts);
+        ready_[index] = true;
+    }
+    returns_->ready(node);
+    return {};
+}
+
+// Called with the lock that orders packets.
+StreamBroadcaster::Admission HeadSession::admit(int node, uint32_t view) {
+    const std::lock_guard membership(membership_);
+    StreamBroadcaster::Admission admission;
+    admission.refused = !returns_->becomesMember(node);
+    if (admission.refused) return admission;
+    answers_.nodeJoins(node, view);
+    pictures_.nodeJoins(node, view);
+    frames_.nodeJoins(node);
+    news_.nodeJoins(node);
+    const std::lock_guard lock(mutex_);
+    views_.joins(node, view);
+    admission.life = lives_[static_cast<size_t>(node)];
+    admission.first = true; // of time-multiplexed nodes or nodes with moving areas
+    for (size_t other = 0; other < plan_.nodes.size(); ++other) admission.first = admission.first && (totals_[other].lost || (plan_.nodes[other].pass.period < 2 && plan_.nodes[other].queue < 0));
+    totals_[static_cast<size_t>(node)].lost = false;
+    for (size_t other = 0; other < plan_.nodes.size(); ++other)
+        if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive()) admission.absent.push_back(static_cast<uint32_t>(other));
+    return admission;
+}
+
+Result<void> HeadSession::nodeTurns(int /*node*/, uint32_t number, const std::vector<std::byte>& turns) {
+    returns_->turns(number, turns);
+    return {};
+}
+
+Result<void> HeadSession::nodeSynchronized(int node, const wire::SynchronizedMessage& message) {
+    returns_->synchronized(node, message);
+    return {};
+}
+
+Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) {
+    answers_.nodeInView(node, view);
+    pictures_.nodeInView(node, view);
+    {
+        const std::lock_guard lock(mutex_);
+        const bool itself = views_.since(node) == view;
+        views_.reached(node, view);
+        if (!itself) return {};
+    }
+    const NodeRestarter::Numbers numbers = returns_->numbers(node);
+    frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // plus the frames that it has drawn itself
+    frames_.nodeJoined(node, frames, monotonicNowNs());
+    dealer_.nodeJoined(node);
+    chunks_.nodeJoined(node);
+    int64_t joins = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        NodeTotals& totals = totals_[static_cast<size_t>(node)];
+        joins = ++totals.joins;
+        totals.snapshotBytes = static_cast<int64_t>(numbers.snapshotBytes);
+        totals.secondsToBack = numbers.secondsToBack;
+    }
+    const bool first = absences_.contains(node) && joins == 1;
+    control_.say(nodes_.link(node).describe() + (first ? " came into the picture " : " is back in the picture ") + seconds(numbers.secondsToBack) + (first ? " after the session began; it was given " : " after it was lost; it was given ") +
+                 std::to_string((numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20) + " MiB");
+    return {};
+}
+
+void HeadSession::loseMember(int node, const std::string& why) {
+    std::string refusal;
+    {
+        const std::lock_guard lock(mutex_);
+        refusal = refusals_[static_cast<size_t>(node)];
+    }
+    if (returns_->lostOnItsWay(node, refusal.empty() ? why : refusal)) return;
+    const std::lock_guard membership(membership_);
+    control_.say(nodes_.link(node).describe() + " was lost: " + why + "; " + returns_->memberLost(node));
+    goOnWithout(node);
+}
+
+// Starts the session with the nodes that connected. Absent nodes are restarted like lost ones.
+void HeadSession::goOnWithoutAbsent() {
+    for (const auto& [node, why] : absences_) {
+        const std::lock_guard membership(membership_);
+        const bool taken = plan_.nodes[static_cast<size_t>(node)].queue >= 0;
+        control_.say(nodes_.link(node).describe() + " is not there yet: it " + why + (taken ? "; the others take its tiles until it comes" : "; its tiles stay empty until it comes"));
+        returns_->notThere(node);
+        goOnWithout(node);
+    }
+}
+
+// Call with membership_ locked.
+void HeadSession::goOnWithout(int node) {
+    {
+        const std::lock_guard lock(mutex_);
+        totals_[static_cast<size_t>(node)].lost = true;
+        views_.lost(node);
+    }
+    answers_.nodeLost(node);
+    pictures_.nodeLost(node);
+    frames_.nodeLost(node, monotonicNowNs());
+    dealer_.nodeLost(node);
+    chunks_.nodeLost(node);
+    std::vector<std::pair<uint32_t, uint32_t>> waiting; // requests that wait for this node
+    {
+        const std::lock_guard lock(mutex_);
+        for (const auto& entry : gone_) waiting.push_back(entry.first);
+    }
+    for (const auto& window : waiting) windowGone(window, node);
+    if (noneIsLeft()) noNodeIsLeft();
+}
+
+// True if no node lives and none can be restarted.
+bool HeadSession::noneIsLeft() {
+    if (returns_->awaited()) return false;
+    const std::lock_guard lock(mutex_);
+    return std::ranges::all_of(totals_, [](const NodeTotals& totals) { return totals.lost; });
+}
+
+} // namespace mural

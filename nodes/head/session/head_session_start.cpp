@@ -1,0 +1,262 @@
+// The start of a session: opens everything in order, until programs may connect.
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "nodes/head/planning/delta_plan.hpp"
+#include "nodes/head/session/head_session.hpp"
+#include "nodes/affinity/placement.hpp"
+#include "nodes/session/session_secret.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* explainTiling(Tiling tiling) {
+    switch (tiling) {
+    case Tiling::Culled:
+        return "tiling culled: as exact, and shaders drop what lies outside of a node's tiles; exact where windows and framebuffer objects have depth buffers";
+    case Tiling::Lean: return "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels may differ, mostly by 1";
+    case Tiling::Exact: break;
+    }
+    return "tiling exact: every node has a frame buffer of the whole picture and draws its tiles only; no pixel differs from a single machine's";
+}
+
+const char* whyOwnStreams(const std::string& stream) {
+    return stream == "tcp" ? "--stream tcp" : "there are no two other machines";
+}
+
+} // namespace
+
+Result<void> HeadSession::bringUp() {
+    placement_ = placeOwnThreads(); // before its threads start, because they inherit the placement
+    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.way);
+    nodes_.startReading();
+    openMulticast();
+    if (auto opened = openEconomy(); !opened) return opened;
+    if (std::ranges::any_of(plan_.nodes, [this](const NodePlan& n) { return n.pass.ranges > 1 || !swapMembersOf(config_, plan_, n).empty(); })) {
+        const auto secret = makeSessionSecret();
+        if (!secret) return secret.error();
+        exchangeSecret_ = toHex(secret.value());
+    }
+    for (const NodePlan& plan : plan_.nodes)
+        if (nodes_.link(plan.node).alive()) nodes_.sendAlone(plan.node, wire::HeadCommand::Setup, toJson(setupFor(plan)));
+    if (auto ready = awaitReady(); !ready) return ready;
+    introduceNodes();
+    openTables();
+    goOnWithoutAbsent();
+    auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
+    if (!server) return server.error();
+    server_ = std::move(*server);
+    announceReady();
+    return {};
+}
+
+NodeSetup HeadSession::setupFor(const NodePlan& plan) {
+    NodeSetup setup = setupOf(config_, plan_, plan);
+    setup.exchangeSecret = exchangeSecret_;
+    if (nodes_.link(plan.node).byMulticast() || nodes_.link(plan.node).joinsGroup()) {
+        setup.stream = nodes_.multicast()->invitation();
+        setup.streamSecret = toHex(nodes_.multicast()->secret());
+    }
+    setup.economy = nodes_.link(plan.node).inBatches();
+    setup.storeBytes = config_.storeBytes;
+    return setup;
+}
+
+// Opens one stream for all nodes of other machines. Without it each node has its own connection.
+void HeadSession::openMulticast() {
+    std::vector<int> nodes = nodesForMulticast(config_.stream, plan_);
+    multicastNodes_.insert(nodes.begin(), nodes.end());
+    std::erase_if(nodes, [this](int node) { return absences_.contains(node); });
+    if (nodes.empty()) {
+        multicastNodes_.clear(); // no group is created
+        streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
+        return;
+    }
+    NetworkPath path = nodes_.link(nodes.front()).path();
+    for (const int node : nodes) path.datagramBytes = std::min(path.datagramBytes, nodes_.link(node).path().datagramBytes);
+    auto multicast = NodeMulticast::open(config_.stream, path);
+    if (!multicast) {
+        multicastNodes_.clear();
+        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message + "; mural doctor --network says what to mend";
+        if (!config_.explain) control_.say(streamLine_);
+        return;
+    }
+    streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
+    nodes_.multicastBy(std::move(*multicast));
+    for (const int node : nodes) nodes_.link(node).setByMulticast(true);
+}
+
+Result<void> HeadSession::openEconomy() {
+    const DeltaPlan plan = planEconomy(config_, plan_, [this](int node) { return nodes_.link(node).byMulticast(); });
+    economyLine_ = plan.explain;
+    if (plan.nodes.empty()) return {};
+    delta::Limits limits;
+    limits.storeBytes = static_cast<uint64_t>(config_.storeBytes);
+    auto economy = DeltaStream::open(limits);
+    if (!economy) return economy.error();
+    if (const char* const plant = std::getenv("MURAL_PLANT"); plant != nullptr && std::string_view(plant) == "held") (*economy)->losesWhatItHolds();
+    nodes_.economizeBy(std::move(*economy));
+    for (const int node : plan.nodes) nodes_.link(node).setInBatches(!absences_.contains(node));
+    economical_.insert(plan.nodes.begin(), plan.nodes.end());
+    return {};
+}
+
+// Sends addresses to the nodes. Nodes that draw ranges of one picture receive the addresses for its parts. Nodes of a
+// swap barrier receive the address of its leader.
+void HeadSession::introduceNodes() {
+    Json pictures = Json::object(), swaps = Json::object();
+    {
+        const std::lock_guard lock(mutex_);
+        for (size_t i = 0; i < facts_.size(); ++i) {
+            if (!facts_[i].exchange.empty()) pictures[std::to_string(i)] = facts_[i].exchange;
+            if (!facts_[i].swapBarrier.empty()) swaps[std::to_string(i)] = facts_[i].swapBarrier;
+        }
+    }
+    if (pictures.empty() && swaps.empty()) return;
+    const std::string text = Json{{"pictures", pictures}, {"swaps", swaps}}.dump();
+    nodes_.broadcast(wire::HeadCommand::Exchange, std::as_bytes(std::span(text.data(), text.size())));
+    nodes_.flush();
+}
+
+Result<void> HeadSession::awaitReady() {
+    const Deadline deadline = Deadline::inMs(options_.readyPatienceMs);
+    while (true) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!startFailure_.empty()) return Error{startFailure_};
+            const auto missing = std::ranges::find(ready_, false);
+            if (missing == ready_.end()) return checkSize();
+            if (deadline.passed()) {
+                const auto node = static_cast<int>(missing - ready_.begin());
+                return Error{nodes_.link(node).describe() + " was not ready within " +
+                             std::to_string(options_.readyPatienceMs / 1000) +
+                             " s; try --gl osmesa, or fewer nodes"};
+            }
+        }
+        if (askedToFinish(Deadline::inMs(10)))
+            return Error{"the session was ended before its nodes were ready"};
+    }
+}
+
+// Checks the wall's size only: larger windows of programs are detected when they appear. Requires mutex_.
+Result<void> HeadSession::checkSize() {
+    const int64_t side = std::max(config_.width, config_.height);
+    for (size_t i = 0; config_.tiling != Tiling::Lean && i < facts_.size(); ++i) {
+        const int64_t most = facts_[i].mostPixels;
+        if (most == 0 || side <= most) continue;
+        return Error{nodes_.link(static_cast<int>(i)).describe() + " draws pictures of at most " + std::to_string(most) + " pixels a side, and the wall has " + std::to_string(config_.width) + "x" +
+                     std::to_string(config_.height) + "; give a smaller --size"};
+    }
+    return {};
+}
+
+void HeadSession::openTables() {
+    ProgramTerms terms;
+    capture::Welcome& welcome = terms.welcome;
+    welcome.policy = config_.policy == CapturePolicy::Full ? capture::kPolicyFull : capture::kPolicyState;
+    welcome.latency = static_cast<uint32_t>(config_.latency);
+    welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
+    // A recording must play on any number of nodes. The program therefore fetches the pixels that it copies from a
+    // window, as it does with several nodes.
+    welcome.nodeCount = static_cast<uint32_t>(options_.recorder ? std::max(nodeCount_, 2) : nodeCount_);
+    welcome.displayApp = config_.display == Display::App ? 1 : 0;
+    {
+        const std::lock_guard lock(mutex_);
+        std::vector<NodeCapabilities> facts;
+        for (size_t i = 0; i < facts_.size(); ++i)
+            if (!absences_.contains(static_cast<int>(i))) facts.push_back(facts_[i]);
+        welcome.nodeGlVersion = static_cast<uint32_t>(lowestGlVersion(facts));
+        terms.extensions = commonExtensions(facts);
+        promisedGlVersion_ = lowestGlVersion(facts);
+        promisedExtensions_ = terms.extensions;
+    }
+    terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
+    terms.chunkCount = options_.chunkCount;
+    beginRecording();
+    ProgramTable::Events events;
+    events.came = [this](const CaptureClient& client) {
+        if (options_.recorder) options_.recorder->event({trace::Event::ClientCame, client.id(), client.pid(), client.name()});
+    };
+    events.countChanged = [this](size_t count) {
+        control_.send({{"event", "clients"}, {"count", count}});
+    };
+    events.gone = [this](uint32_t client, const std::string& line) {
+        news_.programGone(client);
+        if (options_.recorder) options_.recorder->event({trace::Event::ClientGone, client, 0, ""});
+        if (!line.empty()) control_.say(line);
+    };
+    programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
+    serving_ = true;
+}
+
+void HeadSession::beginRecording() {
+    if (!options_.recorder) return;
+    trace::About about;
+    about.version = MURAL_VERSION;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const NodeCapabilities& facts : facts_) about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." + std::to_string(facts.glVersion % 10));
+    }
+    options_.recorder->begin(about);
+    nodes_.setRecorder(options_.recorder.get());
+}
+
+// Places the thread near the network card if any node is on another machine.
+std::string HeadSession::placeOwnThreads() const {
+    if (!config_.placeThreads) return "not placed: --no-placement";
+    if (config_.hosts.empty()) return "not placed: all nodes are on this machine";
+    return placeThread(DeviceKind::Network).description;
+}
+
+std::vector<std::string> HeadSession::explainLines() {
+    std::vector<std::string> lines = plan_.explain;
+    for (const NodePlan& node : plan_.nodes)
+        if (const auto members = swapMembersOf(config_, plan_, node); !members.empty() && members.front()->node == node.node)
+            lines.push_back("windows of " + std::to_string(members.size()) + " nodes show each frame together: swap barrier \"" + node.swapBarrier + "\", led by node " + std::to_string(node.node));
+    lines.push_back(explainTiling(config_.tiling));
+    if (!streamLine_.empty()) lines.push_back(streamLine_);
+    lines.push_back(economyLine_);
+    lines.push_back("threads of the head: " + placement_);
+    const std::lock_guard lock(mutex_);
+    for (const NodePlan& plan : plan_.nodes) {
+        const std::string& placement = facts_[static_cast<size_t>(plan.node)].placement;
+        if (!placement.empty()) lines.push_back("thread of node " + std::to_string(plan.node) + ": " + placement);
+    }
+    return lines;
+}
+
+void HeadSession::announceReady() {
+    Json nodes = Json::array();
+    {
+        const std::lock_guard lock(mutex_);
+        for (const NodePlan& plan : plan_.nodes) {
+            if (absences_.contains(plan.node)) continue;
+            const NodeCapabilities& facts = facts_[static_cast<size_t>(plan.node)];
+            nodes.push_back({{"node", plan.node},
+                             {"where", plan.where},
+                             {"pid", facts.pid},
+                             {"gl", facts.renderer}});
+        }
+    }
+    for (const std::string& warning : plan_.warnings) control_.say(warning);
+    if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
+        control_.say("both eyes are shown side by side: windows of the wall alone have a buffer for each; add --display windows");
+    control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
+}
+
+Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
+    const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
+    if (number == capture::kNoDisplay)
+        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer than {} bytes; its window there shows nothing",
+                                 capture::kDisplays, capture::kDisplayNameBytes - 1)};
+    NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
+    if (serving_) window.display = programs_->displayName(picture.client, number);
+    return options_.openWindow(window);
+}
+
+} // namespace mural

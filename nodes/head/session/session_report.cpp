@@ -1,0 +1,173 @@
+#include "nodes/head/session/session_report.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "common/base/clock.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+int64_t wholeOf(const Json& json, const char* name) {
+    const auto found = json.find(name);
+    return found != json.end() && found->is_number_integer() ? found->get<int64_t>() : 0;
+}
+
+Json swapJson(const SwapTotals& s) {
+    if (s.members == 0) return nullptr;
+    return {{"members", s.members}, {"swaps", s.swaps}, {"medianNs", s.medianNs}, {"p99Ns", s.p99Ns}, {"mostNs", s.mostNs}, {"clockErrorNs", s.clockErrorNs}};
+}
+
+double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<double>(kNsPerS); }
+
+} // namespace
+
+void readBye(const std::string& text, NodeTotals& totals) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object()) return;
+    totals.commands = wholeOf(json, "commands");
+    totals.exchangeBytes = wholeOf(json, "exchangeBytes");
+    totals.pictureBytes = wholeOf(json, "pictureBytes");
+    totals.pictureRawBytes = wholeOf(json, "pictureRawBytes");
+    if (const auto swaps = json.find("swapBarrier"); swaps != json.end() && swaps->is_object())
+        totals.swaps = {wholeOf(*swaps, "members"), wholeOf(*swaps, "swaps"),  wholeOf(*swaps, "medianNs"),
+                        wholeOf(*swaps, "p99Ns"),   wholeOf(*swaps, "mostNs"), wholeOf(*swaps, "clockErrorNs")};
+    const auto seconds = json.find("cpuSeconds");
+    if (seconds != json.end() && seconds->is_number()) totals.cpuSeconds = seconds->get<double>();
+}
+
+std::string waitName(capture::Wait wait) {
+    switch (wait) {
+    case capture::Wait::Room: return "room";
+    case capture::Wait::Frames: return "frames";
+    case capture::Wait::Answer: return "answer";
+    case capture::Wait::Window: return "window";
+    case capture::Wait::Nothing: break;
+    }
+    return "nothing";
+}
+
+Json waitSecondsOf(const CaptureCounts& counts) {
+    Json seconds = Json::object();
+    for (uint32_t i = 1; i < capture::kWaits; ++i)
+        seconds[waitName(static_cast<capture::Wait>(i))] = secondsOf(static_cast<int64_t>(counts.waitNs[i]));
+    return seconds;
+}
+
+std::string reasonText(capture::Uncompared reason) {
+    switch (reason) {
+    case capture::Uncompared::NoContext: return "swapped without a current context";
+    case capture::Uncompared::NotBindable: return "window not current";
+    case capture::Uncompared::Front: return "front buffer";
+    case capture::Uncompared::NoSize: return "window size unknown";
+    case capture::Uncompared::NoMemory: return "out of memory";
+    case capture::Uncompared::NotReadable: return "own picture not readable";
+    case capture::Uncompared::NoAnswer: break;
+    }
+    return "no answer from the nodes";
+}
+
+Json uncomparedJson(const CaptureCounts& counts) {
+    Json reasons = Json::object();
+    for (uint32_t i = 0; i < capture::kUncomparedReasons; ++i)
+        if (counts.uncomparedFrames[i] > 0) reasons[reasonText(static_cast<capture::Uncompared>(i))] = counts.uncomparedFrames[i];
+    return reasons;
+}
+
+Json queuesJson(const std::vector<QueueTotals>& queues) {
+    if (queues.empty()) return nullptr;
+    Json list = Json::array();
+    for (const QueueTotals& q : queues) {
+        Json nodes = Json::array();
+        for (const auto& [node, tiles] : q.nodes) nodes.push_back({{"node", node}, {"tiles", tiles}});
+        list.push_back({{"name", q.name},     {"of", q.chunks ? "chunks" : "tiles"}, {"columns", q.columns}, {"rows", q.rows},   {"tileWidth", q.width}, {"tileHeight", q.height},
+                        {"frames", q.frames}, {"moves", q.moves},     {"tilesMoved", q.tilesMoved}, {"taken", q.taken}, {"nodes", nodes}});
+    }
+    return list;
+}
+
+Json economyJson(const DeltaCounts& c) {
+    if (!c.on) return nullptr;
+    return {{"records", c.packer.records},       {"rawBytes", c.packer.rawBytes}, {"stagedBytes", c.packer.stagedBytes},
+            {"wireBytes", c.wireBytes},          {"storeHits", c.packer.storeHits}, {"newPages", c.packer.newPages},
+            {"patches", c.packer.patches},       {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))},
+            {"programBytes", c.holder.inBytes},  {"heldRecords", c.holder.heldRecords}, {"heldBytes", c.holder.heldBytes},
+            {"leftOutRecords", c.holder.leftOutRecords}, {"leftOutBytes", c.holder.leftOutBytes}};
+}
+
+Json reportOf(const SessionNumbers& n) {
+    const double seconds = secondsOf(n.frames.latestNs - n.frames.firstNs);
+    const int64_t frames = n.frames.wallFrames;
+    int64_t calls = 0;
+    Json nodes = Json::array();
+    for (const NodeTotals& node : n.nodes) {
+        calls = std::max(calls, node.commands);
+        nodes.push_back({{"node", node.node},
+                         {"frames", node.frames},
+                         {"cpuSeconds", node.cpuSeconds},
+                         {"replaySeconds", node.replaySeconds},
+                         {"readbackSeconds", node.readbackSeconds},
+                         {"commands", node.commands},
+                         {"exchangeBytes", node.exchangeBytes},
+                         {"pictureBytes", node.pictureBytes},
+                         {"pictureRawBytes", node.pictureRawBytes},
+                         {"swapBarrier", swapJson(node.swaps)},
+                         {"lost", node.lost},
+                         {"joins", node.joins},
+                         {"snapshotBytes", node.snapshotBytes},
+                         {"secondsToBack", node.secondsToBack}});
+    }
+    return {
+        {"event", "report"},
+        {"frames", frames},
+        {"seconds", seconds},
+        // Between the first and the last frame lie frames - 1 intervals.
+        {"framesPerSecond", seconds > 0 ? static_cast<double>(frames - 1) / seconds : 0.0},
+        {"bytesPerFrame", frames > 0 ? n.bytesSent / static_cast<uint64_t>(frames) : 0},
+        {"economy", economyJson(n.economy)},
+        {"queues", queuesJson(n.queues)},
+        {"calls", calls},
+        {"roundTrips", n.programs.roundTrips},
+        {"roundTripsBy", n.programs.tripsBy},
+        {"waitSeconds", secondsOf(std::accumulate(n.programs.waitNs.begin(), n.programs.waitNs.end(), int64_t{0}))},
+        {"waitSecondsBy", waitSecondsOf(n.programs)},
+        {"frameCpuSeconds", secondsOf(static_cast<int64_t>(n.programs.frameCpuNs))},
+        {"frameCpuFrames", n.programs.frameCpuFrames},
+        {"verifiedFrames", n.programs.verifiedFrames},
+        {"verifiedPixels", n.programs.verifiedPixels},
+        {"differingPixels", n.programs.differingPixels},
+        {"squaredDifference", n.programs.squaredDifference},
+        {"largestDifference", n.programs.largestDifference},
+        {"uncomparedFrames", std::accumulate(n.programs.uncomparedFrames.begin(), n.programs.uncomparedFrames.end(), uint64_t{0})},
+        {"uncomparedFramesBy", uncomparedJson(n.programs)},
+        {"drawnWhole", n.drawnWhole},
+        {"callsUnsupported", n.programs.callsUnsupported},
+        {"savedPictures", n.output.savedPictures},
+        {"lastPicture", n.lastPicture},
+        {"recording", n.recording},
+        {"recordedFrames", n.recorded.frames},
+        {"recordedBytes", n.recorded.fileBytes},
+        {"nodes", nodes},
+    };
+}
+
+ProgressMeter::Rates ProgressMeter::sample(int64_t nowNs, int64_t frames, uint64_t bytes) {
+    const Sample now{nowNs, frames, bytes};
+    Rates rates;
+    if (!samples_.empty()) {
+        const Sample& then = samples_.front();
+        const int64_t newFrames = now.frames - then.frames;
+        const double seconds = secondsOf(now.atNs - then.atNs);
+        if (seconds > 0) rates.framesPerSecond = static_cast<double>(newFrames) / seconds;
+        if (newFrames > 0)
+            rates.bytesPerFrame = static_cast<int64_t>(now.bytes - then.bytes) / newFrames;
+    }
+    samples_.push_back(now);
+    while (samples_.size() > 2 && nowNs - samples_.front().atNs > kNsPerS) samples_.erase(samples_.begin());
+    return rates;
+}
+
+} // namespace mural

@@ -1,0 +1,86 @@
+#include "nodes/head/session/session_status.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "common/base/clock.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr size_t kMaxCommandBytes = 4096;
+
+Json programJson(const ProgramStatus& program) {
+    return {
+        {"client", program.id},
+        {"pid", program.pid},
+        {"command", program.command},
+        {"frames", program.progress.finished},
+        {"calls", program.progress.calls},
+        {"bytes", program.bytesSent},
+        {"roundTrips", program.counts.roundTrips},
+        {"roundTripsBy", program.counts.tripsBy},
+        {"waitSeconds", waitSecondsOf(program.counts)},
+        {"waitingFor", waitName(program.counts.waitingFor)},
+        {"waitsForNodes", program.waitsForNodes},
+    };
+}
+
+Json nodeJson(const NodeStatus& node) {
+    return {
+        {"node", node.totals.node},
+        {"where", node.where},
+        {"pid", node.pid},
+        {"gl", node.gl},
+        {"state", node.returning ? "coming back" : node.totals.lost ? "lost" : "alive"},
+        {"silentSeconds", node.silentSeconds},
+        {"stream", node.stream},
+        {"frames", node.totals.frames},
+        {"replaySeconds", node.totals.replaySeconds},
+        {"readbackSeconds", node.totals.readbackSeconds},
+        {"pictureBytes", node.totals.pictureBytes},
+        {"pictureRawBytes", node.totals.pictureRawBytes},
+        {"joins", node.totals.joins},
+        {"snapshotBytes", node.totals.snapshotBytes},
+        {"secondsToBack", node.totals.secondsToBack},
+    };
+}
+
+} // namespace
+
+Json statusOf(const SessionStatus& status) {
+    Json programs = Json::array();
+    for (const ProgramStatus& program : status.programs) programs.push_back(programJson(program));
+    Json nodes = Json::array();
+    for (const NodeStatus& node : status.nodes) nodes.push_back(nodeJson(node));
+    return {
+        {"session", status.session},
+        {"runPid", status.runPid},
+        {"headPid", status.headPid},
+        {"atSeconds", static_cast<double>(status.nowNs) / static_cast<double>(kNsPerS)},
+        {"tiles", std::to_string(status.columns) + "x" + std::to_string(status.rows)},
+        {"display", status.display},
+        {"frames", status.wallFrames},
+        {"economy", economyJson(status.economy)},
+        {"queues", queuesJson(status.queues)},
+        {"programs", programs},
+        {"nodes", nodes},
+    };
+}
+
+std::string commandLineOf(pid_t pid) {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
+    std::string line{std::istreambuf_iterator<char>(file), {}};
+    while (!line.empty() && line.back() == '\0') line.pop_back();
+    if (line.size() > kMaxCommandBytes) line.resize(kMaxCommandBytes);
+    for (char& c : line) {
+        if (c == '\0') c = ' ';
+        if (c < ' ' || c > '~') c = '?';
+    }
+    return line;
+}
+
+} // namespace mural

@@ -1,0 +1,53 @@
+#include "nodes/output/windows/wall_sink.hpp"
+
+#include "nodes/output/windows/wall_layout.hpp"
+
+namespace mural {
+
+Result<void> WallSink::reopen(int width, int height) {
+    config_.tiles = windowsOfTiles(grid_, {0, 0, grid_.columns, grid_.rows}, width, height);
+    windows_.reset(); // one set per process
+    auto opened = WallWindows::open(config_);
+    if (!opened) return opened.error();
+    windows_ = std::move(*opened);
+    width_ = width;
+    height_ = height;
+    return {};
+}
+
+Result<void> WallSink::openFor(const Picture& picture) {
+    return windows_ && picture.width == width_ && picture.height == height_ ? Result<void>() : reopen(picture.width, picture.height);
+}
+
+Result<void> WallSink::showTiles(const Picture& picture, const Picture& right) {
+    std::vector<OwnedPicture> pictures;
+    std::vector<WallWindows::TilePicture> shown;
+    pictures.reserve(2 * config_.tiles.size());
+    const auto part = [&](const Picture& whole, const PixelViewport& tile) { return whole.empty() ? Picture{} : pictures.emplace_back(cutOut(whole, tile)).view(); };
+    for (size_t i = 0; i < config_.tiles.size(); ++i) {
+        const PixelViewport& tile = config_.tiles[i].tile;
+        if (!tile.empty()) shown.push_back({i, part(picture, tile), part(right, tile)});
+    }
+    return windows_->showAll(shown);
+}
+
+Result<void> WallSink::show(int64_t, const Picture& picture) {
+    if (auto opened = openFor(picture); !opened) return opened;
+    return showTiles(picture, {});
+}
+
+// Stereo support is queried once: it depends on the display only.
+Result<void> WallSink::showPair(int64_t frame, const EyePair& eyes) {
+    config_.stereo = whyNot_.empty();
+    if (auto opened = openFor(eyes.left); !opened) return opened;
+    if (windows_->stereo()) return showTiles(eyes.left, eyes.right);
+    if (whyNot_.empty()) {
+        whyNot_ = windows_->whyNotStereo();
+        say_("both eyes are shown side by side: no window with a buffer for each eye opens (" + whyNot_ + "); a graphics card and a display that take quad-buffered stereo do, and --stereo anaglyph needs none");
+    }
+    return PictureSink::showPair(frame, eyes);
+}
+
+std::string WallSink::describe() const { return windows_ ? windows_->describe() : "windows of the wall"; }
+
+} // namespace mural

@@ -1,0 +1,206 @@
+#include "nodes/render/head_connection.hpp"
+
+#include <iostream>
+
+#include "nodes/session/session_secret.hpp"
+#include "transport/connection_description.hpp"
+#include "transport/rsp/group_connection.hpp"
+#include "transport/rsp/group_description.hpp"
+#include "transport/secure/secure_connection.hpp"
+#include "transport/tcp/socket_address.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr int64_t kChangeOverMs = 20'000;
+constexpr int64_t kConnectMs = 20'000;
+constexpr int64_t kJoinMs = 10'000;
+
+// Connects to host:port. The secret proves to the head that it started this node, and to the node that the peer is the
+// head.
+Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options) {
+    auto where = splitHostPort(options.connect);
+    if (!where || where->host.empty() || where->port == 0) return Error{"--connect " + options.connect + ": give it as HOST:PORT, with a port from 1 to 65535"};
+    std::string line;
+    std::getline(std::cin, line);
+    const auto secret = sessionSecretFromHex(line);
+    if (!secret) return Error{"no session secret on standard input: nodes are started by `mural run --nodes`"};
+    const Deadline deadline = Deadline::inMs(kConnectMs);
+    auto connection = connectTcp(where->host, where->port, deadline);
+    if (!connection) return connection.error();
+    auto secure = SecureConnection::connecting(std::move(*connection), options.name, secret.value(), deadline);
+    if (!secure) return secure.error();
+    return std::unique_ptr<Connection>(std::move(*secure));
+}
+
+} // namespace
+
+Result<std::unique_ptr<HeadConnection>> HeadConnection::open(const NodeOptions& options) {
+    auto connection = options.connectFd >= 0 ? openSharedMemory(options.connectFd) : connectByTcp(options);
+    if (!connection) return connection.error();
+    std::unique_ptr<HeadConnection> line(new HeadConnection(std::move(*connection)));
+    if (auto head = splitHostPort(options.connect)) line->headHost_ = head->host;
+    return line;
+}
+
+// Uses the network interface and the address that reach the head.
+Result<rsp::GroupOptions> HeadConnection::groupOptions(const std::string& stream, const std::string& secretHex, const std::string& name) const {
+    auto description = parseConnectionDescription(stream);
+    if (!description) return description.error();
+    auto options = rsp::groupOptionsOf(*description);
+    if (!options) return options.error();
+    const auto secret = sessionSecretFromHex(secretHex);
+    if (!secret) return secret.error();
+    options->secret = secret.value();
+    options->name = name;
+    auto control = splitHostPort(options->control);
+    if (!control) return control.error();
+    options->control = endpointText(headHost_, control->port);
+    options->interface = connection_->path().ownAddress;
+    return options;
+}
+
+Result<void> HeadConnection::follow(const std::string& stream, const std::string& secretHex, const std::string& name) {
+    auto options = groupOptions(stream, secretHex, name);
+    if (!options) return options.error();
+    auto joined = rsp::joinGroup(*options, Deadline::inMs(kJoinMs));
+    if (!joined) return joined.error();
+    stream_ = std::move(*joined);
+    return {};
+}
+
+void HeadConnection::joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name) {
+    const auto failed = [this](const std::string& why) {
+        sendText(wire::NodeMessage::Log, "its stream goes on through its own connection (TCP), not by multicast: " + why + "; mural doctor --network may say why");
+    };
+    auto options = groupOptions(stream, secretHex, name);
+    if (!options) return failed(options.error().message);
+    late_ = std::make_unique<StagedMulticastJoin>(std::move(*options), failed);
+}
+
+Result<void> HeadConnection::changeOver(uint64_t skipBytes) {
+    if (!late_) return Error{"it was not told of a group"};
+    if (auto ended = endBatch(); !ended) return ended;
+    auto stream = late_->goOn(skipBytes, Deadline::inMs(kChangeOverMs));
+    late_.reset();
+    if (!stream) return stream.error();
+    stream_ = std::move(*stream);
+    if (unpacker_) {
+        const auto had = readBatch();
+        return had ? Result<void>() : had.error();
+    }
+    std::span<const std::byte> payload;
+    const auto had = readPacket(payload);
+    return had ? Result<void>() : had.error();
+}
+
+// Requires that the current command is the last one in its batch, because later packets are read in another way.
+Result<void> HeadConnection::endBatch() {
+    if (!inBatch_) return {};
+    uint32_t stream = 0;
+    std::span<const std::byte> payload;
+    const auto more = unpacker_->next(stream, payload);
+    if (!more || more.value()) return Error{"the head sent more in a batch than its last command; head and nodes must be of one build"};
+    inBatch_ = false;
+    return {};
+}
+
+Result<void> HeadConnection::unpackBatches(uint64_t storeBytes, const std::string& plant) {
+    delta::Limits limits;
+    limits.storeBytes = storeBytes;
+    if (auto ended = endBatch(); !ended) return ended;
+    unpacker_.reset(); // frees the old memory before the new allocation
+    batchDecoder_ = std::make_unique<delta::BatchDecoder>();
+    unpacker_ = std::make_unique<delta::DeltaDecoder>(limits);
+    if (!unpacker_->ready()) return Error{"no memory for a store of " + std::to_string(storeBytes >> 20) + " MiB; give a smaller one by --store"};
+    if (plant == "economy") unpacker_->loseWords();
+    return {};
+}
+
+Result<wire::PacketHeader> HeadConnection::next(std::span<const std::byte>& payload) {
+    wire::PacketHeader header{};
+    while (true) {
+        auto more = nextOfBatch(header, payload);
+        if (more && more.value()) return header;
+        if (more) {
+            if (!unpacker_) return readPacket(payload);
+            auto head = readBatch();
+            if (!head) return head.error();
+            if (const auto opened = openBatch(head.value()); !opened) more = opened.error();
+        }
+        if (more) continue;
+        sendText(wire::NodeMessage::Log, more.error().message);
+        return more.error();
+    }
+}
+
+Result<bool> HeadConnection::nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload) {
+    if (!inBatch_) return false;
+    auto more = unpacker_->next(header.stream, payload);
+    inBatch_ = more && more.value();
+    header.sizeBytes = static_cast<uint32_t>(payload.size());
+    return more;
+}
+
+Result<void> HeadConnection::openBatch(delta::BatchHead head) {
+    const auto sections = batchDecoder_->decode(head, payload_);
+    if (!sections) return sections.error();
+    unpacker_->begin(sections.value());
+    inBatch_ = true;
+    return {};
+}
+
+Result<wire::PacketHeader> HeadConnection::readPacket(std::span<const std::byte>& payload) {
+    wire::PacketHeader header{};
+    const auto got = line().read(std::as_writable_bytes(std::span(&header, 1)), Deadline::never());
+    if (!got) return got.error();
+    const auto rest = readPayload(header.sizeBytes, wire::kMaxPacketBytes);
+    if (!rest) return rest.error();
+    payload = payload_;
+    return header;
+}
+
+Result<delta::BatchHead> HeadConnection::readBatch() {
+    delta::BatchHeadReader head;
+    std::byte byte{};
+    do {
+        const auto got = line().read(std::span(&byte, 1), Deadline::never());
+        if (!got) return got.error();
+    } while (!head.add(byte));
+    const auto rest = readPayload(head.head().sizeBytes, wire::kMaxBatchBytes);
+    if (!rest) return rest.error();
+    return head.head();
+}
+
+Result<void> HeadConnection::readPayload(uint32_t sizeBytes, uint32_t mostBytes) {
+    if (sizeBytes > mostBytes) return Error{"the head sent a packet of " + std::to_string(sizeBytes) + " bytes: it is of another build"};
+    payload_.resize(sizeBytes);
+    // no deadline: the head may pause in the middle; its end closes the connection
+    return line().read(payload_, Deadline::never());
+}
+
+void HeadConnection::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+    const std::lock_guard lock(sending_);
+    sendLocked(type, a, b);
+}
+
+void HeadConnection::sendIfFree(wire::NodeMessage type) {
+    const std::unique_lock lock(sending_, std::try_to_lock);
+    if (lock) sendLocked(type, {}, {});
+}
+
+void HeadConnection::sendLocked(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+    const wire::MessageHeader header{static_cast<uint32_t>(type), static_cast<uint32_t>(a.size() + b.size())};
+    for (const auto part : {std::as_bytes(std::span(&header, 1)), a, b}) {
+        if (broken_ || part.empty()) continue;
+        broken_ = !connection_->write(part, Deadline::never()).ok(); // no deadline, as in readPayload()
+    }
+    if (!broken_) connection_->flush();
+}
+
+void HeadConnection::sendText(wire::NodeMessage type, const std::string& text) {
+    send(type, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+} // namespace mural

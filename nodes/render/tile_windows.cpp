@@ -1,0 +1,70 @@
+#include "nodes/render/tile_windows.hpp"
+
+#include "nodes/output/windows/wall_layout.hpp"
+
+namespace mural {
+
+Result<std::unique_ptr<TileWindows>> TileWindows::open(const NodeSetup& setup) {
+    // the windows open with the first picture, whose size they need
+    return std::unique_ptr<TileWindows>(new TileWindows(setup));
+}
+
+// Returns the window of the node's area, or the windows of its tiles.
+std::vector<TileWindow> TileWindows::windowsFor(int width, int height) const {
+    if (setup_.hasArea) {
+        const PixelViewport whole{0, 0, width, height};
+        const PixelViewport tile = intersect(apply(whole, setup_.area), whole);
+        std::vector<TileWindow> windows = placeTiles(std::span(&tile, 1), height);
+        windows[0].title = setup_.windowTitle;
+        if (!setup_.windowAsOnWall) windows[0].screenX = windows[0].screenY = 0;
+        return windows;
+    }
+    const TileGrid grid{setup_.columns, setup_.rows, setup_.tiling == Tiling::Lean ? 2 : 1};
+    return windowsOfTiles(grid, {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows}, width, height);
+}
+
+Result<void> TileWindows::reopen(int width, int height) {
+    WallWindowsConfig config;
+    config.displayName = setup_.displayName;
+    config.tiles = windowsFor(width, height);
+    tiles_.clear();
+    for (const TileWindow& window : config.tiles) tiles_.push_back(window.tile);
+    config.positionX = setup_.windowX;
+    config.positionY = setup_.windowY;
+    config.fullScreen = setup_.fullScreen;
+    windows_.reset(); // one set per process
+    auto opened = WallWindows::open(config);
+    if (!opened) return opened.error();
+    windows_ = std::move(*opened);
+    width_ = width;
+    height_ = height;
+    return {};
+}
+
+Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barrier) {
+    const bool other = !setup_.pass.shown.none(); // the canvas has its own resolution
+    const int width = other ? f.picture.w : static_cast<int>(f.config.width), height = other ? f.picture.h : static_cast<int>(f.config.height);
+    const uint64_t native = uint64_t{f.config.nativeHigh} << 32 | f.config.nativeLow;
+    if (mainWindow_.swapped(f.client, f.window, f.config.width, f.config.height, native) == 0) return {};
+    if (!windows_ || width != width_ || height != height_) {
+        const auto opened = reopen(width, height);
+        if (!opened) return opened;
+    }
+    std::vector<OwnedPicture> pictures(tiles_.size());
+    std::vector<WallWindows::TilePicture> shown;
+    for (size_t i = 0; i < tiles_.size(); ++i) {
+        const PixelViewport& tile = tiles_[i];
+        if (tile.empty()) continue;
+        pictures[i].assign({tile.w, tile.h, f.pixels(tile)});
+        shown.push_back({i, pictures[i].view()});
+    }
+    if (!barrier) return windows_->showAll(shown);
+    const SwapKey key{f.client, f.window, f.frame};
+    if (const auto drawn = windows_->drawAll(shown); !drawn) return drawn;
+    auto presentedNs = windows_->present(barrier->await(key));
+    if (!presentedNs) return presentedNs.error();
+    barrier->shown(key, *presentedNs);
+    return {};
+}
+
+} // namespace mural

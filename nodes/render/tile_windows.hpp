@@ -1,0 +1,35 @@
+// The wall windows of one node: one per tile, or one for its area.
+#pragma once
+
+#include <memory>
+
+#include "common/base/main_window.hpp"
+#include "nodes/output/windows/wall_windows.hpp"
+#include "nodes/replay/engine/replay.hpp"
+#include "nodes/session/session_config.hpp"
+#include "nodes/swap_barrier/swap_barrier.hpp"
+
+namespace mural {
+
+class TileWindows {
+public:
+    static Result<std::unique_ptr<TileWindows>> open(const NodeSetup& setup);
+    // Shows the tiles of the main window (the largest that swaps). With a barrier, waits for its other members.
+    Result<void> show(const ReplayOutputs::Frame& frame, SwapBarrier* barrier);
+
+    void windowGone(uint32_t client, uint32_t window) { mainWindow_.windowGone(client, window); }
+    void clientGone(uint32_t client) { mainWindow_.clientGone(client); }
+
+private:
+    explicit TileWindows(const NodeSetup& setup) : setup_(setup) {}
+    [[nodiscard]] std::vector<TileWindow> windowsFor(int width, int height) const;
+    Result<void> reopen(int width, int height);
+
+    NodeSetup setup_;
+    std::unique_ptr<WallWindows> windows_;
+    int width_ = 0, height_ = 0;
+    MainWindow mainWindow_;
+    std::vector<PixelViewport> tiles_;
+};
+
+} // namespace mural

@@ -1,0 +1,97 @@
+// Configuration and outputs of a Replay: everything that its owner passes in and receives.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "common/base/picture_format.hpp"
+#include "common/geometry/pixel_viewport.hpp"
+#include "common/geometry/tile_grid.hpp"
+#include "common/geometry/viewport.hpp"
+#include "nodes/exchange/part_composition.hpp"
+#include "nodes/exchange/picture_part.hpp"
+#include "nodes/frame_transfer/picture_read.hpp"
+#include "nodes/replay/features/clip_transform.hpp"
+#include "nodes/session/viewport_assignment.hpp"
+#include "nodes/session/readback.hpp"
+#include "nodes/session/render_pass.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural {
+
+// Limits on the memory and work that a stream may cause on the node, far above the needs of programs.
+struct ReplayLimits {
+    uint64_t blobBytes = uint64_t{4} << 30; // queued in one stream
+    uint64_t answerBytes = uint64_t{2} << 30; // of one answer
+    uint32_t listCommands = 1u << 24; // executed by one call of a display list; nesting multiplies them
+};
+
+// This node's part of every picture.
+struct ReplayConfig {
+    int node = 0;
+    TileGrid grid;
+    TileRegion region;
+    std::optional<Viewport> area; // replaces grid and region
+    std::optional<ViewportAssignment> areas; // replaces `area`; moveAreas() sets the following ones
+    RenderPass pass;
+    bool answers = true; // answers requests for pixels; false: nodes of another pass answer them
+    double eyeBase = 0.05, focusDistance = 1; // in the program's units
+    std::optional<ScreenView> screen; // includes the position of the eye
+    bool skips = false; // draws no frames until drawAgain()
+    // The node is in resync, and other nodes have the turns. Until takeTurns() or beginTurns() the node draws all
+    // frames and owns none of them. It shares no draws before shareAnew().
+    bool isResyncing = false;
+    bool cull = false; // rewritten shaders drop whole primitives outside the region
+    bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
+    bool rastersInBins = false; // the driver draws in software, so a region must end on its bins (raster_bins.hpp)
+    Readback readback = Readback::Direct; // of Frame::read
+    bool deepPictures = false; // allows Bgr10A2 in Frame::format
+    std::string plant; // MURAL_PLANT: a planted fault, which tests must detect
+    ReplayLimits limits;
+};
+
+// Outputs of the replay; called on the replay thread.
+struct ReplayOutputs {
+    // Part of an answer; `last` closes this node's part.
+    std::function<void(const wire::AnswerHeader&, std::span<const std::byte>)> answer;
+    // A frame of the window is complete. `pixels` reads the given rectangle in window coordinates. Rows are bottom
+    // first and tightly packed. `pixels` is only valid during the call.
+    struct Frame {
+        uint32_t client, window, frame;
+        wire::WindowConfig config;
+        PixelViewport region; // this node's part of the picture
+        PictureFormat format; // of `pixels` and `read`
+        PixelViewport picture; // the complete picture: the window's size, or every nth pixel of it
+        bool drawnWhole; // every node drew the whole window (Shared::allDrawn)
+        bool keepsPicture; // each frame builds on its predecessor, so one node draws all of them
+        bool sound; // does not depend on skipped draws (ReplayConfig::skips)
+        bool notSplit; // several ranges exist, but no draws were shared
+        uint32_t areas; // number of the Areas that divide the picture
+        uint32_t shares; // number of the Shares that divided the draws; 0: the initial ones, or no shared draws
+        bool keepsAreas; // newer areas have waited too long for a full clear
+        std::function<const std::byte*(const PixelViewport&)> pixels;
+        // Reads `region` once, for another thread, which may have to wait for its drawing. Set where `pixels` is.
+        // Returns null if no picture is available.
+        std::function<std::unique_ptr<PictureRead>()> read;
+    };
+    std::function<void(const Frame&)> frameDone;
+    // Called when an answer about a window depends on skipped draws.
+    std::function<void()> unsound;
+    std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
+    std::function<void(const std::string&)> log;
+    // Sort-last (replay_range.cpp): composites the parts of all nodes of the picture. Afterwards the collector's part
+    // is the whole picture. Returns the area of it that may have changed.
+    std::function<PixelViewport(PicturePart&, const CompositeRule&)> composeParts;
+    // Driver events of a program's context.
+    std::function<void(const wire::DriverEvent&, const std::string& text)> news;
+};
+
+struct ReplayCounts {
+    uint64_t commands = 0, malformed = 0, lacking = 0, glErrors = 0, frames = 0, bytes = 0;
+};
+
+} // namespace mural

@@ -1,0 +1,43 @@
+// Draws batched bitmaps before the node changes state. Mesa batches glBitmap, and draws the batch with the state at the
+// next dependent command. That command must be the program's, not one that the node adds.
+#include "gl_opcodes.hpp"
+#include "nodes/replay/engine/replay.hpp"
+
+namespace mural {
+
+// Calls of display lists count only if some list contains a bitmap. settleBitmaps() has a side effect: Mesa commits
+// pending materials, which a later colour would otherwise still change.
+void Replay::onBitmaps(uint16_t opcode) {
+    if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsHoldBitmaps = true;
+    const bool listed = (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsHoldBitmaps;
+    if (opcode == op::glBitmap || listed) c_->gathersBitmaps = true;
+}
+
+// Commands that neither draw nor change drawing state: the driver continues its batch, as it does natively.
+bool Replay::leavesBitmaps(uint16_t opcode) {
+    switch (opcode) {
+    case wire::kOpBlobBegin:
+    case wire::kOpBlobData:
+    case wire::kOpClientArrays:
+    case wire::kOpRequestBuffer:
+    case wire::kOpRequestQuery:
+    case wire::kOpRequestProgram:
+    case wire::kOpQueryKnown:
+    case wire::kOpProgramLayout:
+    case wire::kOpBufferBytes:
+    case wire::kOpErrorTold: return true;
+    default: return false;
+    }
+}
+
+// Draws the batch with the program's own state, as its next command would.
+void Replay::settleBitmaps() {
+    if (!bound_ || c_ != bound_ || !c_->gathersBitmaps || c_->compiling || !gl.glBegin || !gl.glEnd || !gl.glFlush) return;
+    if (!gl.glGetString(GL_VENDOR)) return; // between glBegin and glEnd, where queries fail
+    c_->gathersBitmaps = false;
+    gl.glBegin(GL_POINTS); // makes Mesa validate programs and samplers; unvalidated ones cause a null pointer access
+    gl.glEnd();
+    gl.glFlush();
+}
+
+} // namespace mural

@@ -1,0 +1,222 @@
+// Moving areas: this node's part of a window changes with some frame.
+//
+// A framebuffer has the whole window's size, so another part needs only another scissor. But other nodes have drawn the
+// earlier content of that part, and this node lacks it. New areas are therefore applied when that content no longer
+// matters: each buffer of the window has been cleared whole, with no draws since.
+//
+// All nodes clear the whole window. Buffers without any draws are equal on all nodes, and need no clear. Every node
+// receives the same commands, and so takes the same decision. A window without full clears keeps its areas.
+//
+// A front buffer with a surface of its own has the areas of the frame that was swapped. Its drawn content persists.
+// Windows that draw into the front, or accumulate, therefore keep their areas.
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "gl_opcodes.hpp"
+#include "nodes/replay/engine/replay.hpp"
+#include "nodes/replay/features/window_use.hpp"
+#include "streamcodec/command_traits.hpp"
+
+namespace mural {
+
+namespace {
+
+bool isFrontBuffer(GLenum buffer) {
+    return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
+}
+
+// Returns whether the command is a valid clear that addresses only the first colour buffer.
+bool clears(uint16_t opcode, GLuint first, GLuint second) {
+    switch (opcode) {
+    case op::glClear: return (first & ~kWindowBuffers) == 0;
+    case op::glClearBufferfv: return (first == GL_COLOR || first == GL_DEPTH) && second == 0;
+    case op::glClearBufferiv: return first == GL_STENCIL && second == 0;
+    case op::glClearBufferfi: return first == GL_DEPTH_STENCIL && second == 0;
+    default: return false;
+    }
+}
+
+GLbitfield buffersOf(const wire::WindowConfig& config) {
+    return GLbitfield{GL_COLOR_BUFFER_BIT} | (config.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0) | (config.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0);
+}
+
+} // namespace
+
+PixelViewport Replay::partOf(const Window& w, const ViewportAssignment* areas) const {
+    if (areas) {
+        const auto node = static_cast<size_t>(config_.node);
+        return node < areas->ofNodes.size() ? intersect(apply(w.whole, areas->ofNodes[node]), w.whole) : PixelViewport{};
+    }
+    return config_.area ? intersect(apply(w.whole, *config_.area), w.whole) : regionViewport(config_.grid, config_.region, w.whole.w, w.whole.h);
+}
+
+void Replay::moveAreas(ViewportAssignment areas) {
+    if (!moves()) return;
+    areas_ = std::make_shared<const ViewportAssignment>(std::move(areas));
+    for (auto& [id, client] : clients_)
+        for (auto& [name, w] : client.windows) {
+            if (w->moving.fixed) continue;
+            if (w->moving.wanted == w->moving.areas) w->moving.waits = 0;
+            w->moving.wanted = areas_;
+            // planted fault: before the window's clear
+            if (config_.plant == "early" && config_.node == 1) w->moving.areas = areas_;
+        }
+    if (config_.plant == "early" && config_.node == 1) areasChanged();
+}
+
+// The window has new buffers, with equal content on all nodes.
+void Replay::divideAnew(Window& w) {
+    w.moving = {};
+    w.moving.areas = w.moving.wanted = w.moving.front = areas_;
+}
+
+void Replay::takeAreas(Window& w) {
+    w.moving.areas = w.moving.wanted;
+    w.moving.waits = 0;
+    w.part = partOf(w, w.moving.areas.get());
+    placePart(w);
+    restoreWindowState();
+}
+
+void Replay::areasChanged() {
+    for (auto& [id, client] : clients_)
+        for (auto& [name, w] : client.windows) {
+            w->part = partOf(*w, w->moving.areas.get());
+            placePart(*w);
+        }
+    if (!bound_) return;
+    ContextState* const own = std::exchange(c_, bound_);
+    restoreWindowState();
+    c_ = own;
+}
+
+// Returns the window's buffers that the command, in the current state, sets to one value everywhere.
+GLbitfield Replay::clearedBy(uint16_t opcode, std::span<const std::byte> arguments) const {
+    GLuint words[2] = {};
+    std::memcpy(words, arguments.data(), std::min(arguments.size(), sizeof words));
+    if (!clears(opcode, words[0], words[1]) || c_->inPrimitive) return 0;
+    GLint mode = GL_RENDER; // GL clears nothing in selection and feedback mode
+    if (c_->api == wire::Api::Desktop && !c_->core) gl.glGetIntegerv(GL_RENDER_MODE, &mode);
+    return mode == GL_RENDER ? clearsWhole(clearsOf(opcode, arguments)) : 0;
+}
+
+// Returns the window's buffers that a draw may change.
+GLbitfield Replay::drawnBy(uint16_t opcode) const {
+    if (hasTrait(opcode, Trait::AllPlanes)) return kWindowBuffers;
+    const Shared& shared = *c_->shared;
+    const GLbitfield known = c_->draw->moving.drawn; // avoids queries to the driver
+    const auto tests = [&](GLbitfield buffer, bool ever, GLenum cap) { return !(known & buffer) && ever && gl.glIsEnabled(cap) ? buffer : 0; };
+    return GLbitfield{GL_COLOR_BUFFER_BIT} | tests(GL_DEPTH_BUFFER_BIT, shared.testsDepth, GL_DEPTH_TEST) | tests(GL_STENCIL_BUFFER_BIT, shared.testsStencil, GL_STENCIL_TEST);
+}
+
+// Called before any command that may change pixels of the window.
+void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
+    const WindowUse use = useOf(opcode);
+    if ((opcode == op::glBegin || opcode == op::glEnd) && !c_->compiling) c_->inPrimitive = opcode == op::glBegin;
+    if ((use != WindowUse::Clears && use != WindowUse::Draws) || !c_->shared) return;
+    if (c_->compiling) {
+        // lists may change depth and stencil
+        if (use == WindowUse::Clears || hasTrait(opcode, Trait::AllPlanes)) c_->shared->testsDepth = c_->shared->testsStencil = true;
+        if (c_->compileMode == GL_COMPILE_AND_EXECUTE) onNativeList(); // the driver draws it during compilation
+        return;
+    }
+    // the items of lists are noted one by one
+    if (!drawsWindow() || !c_->draw || opcode == op::glCallList || opcode == op::glCallLists) return;
+    Window& w = *c_->draw;
+    MovingPart& m = w.moving;
+    const GLbitfield cleared = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
+    const bool stays = opcode == op::glAccum || (cleared & GL_ACCUM_BUFFER_BIT) || (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0)) || w.config.stereo;
+    if (stays && !m.fixed) {
+        m.fixed = true;
+        m.wanted = m.areas;
+    }
+    // All clears, including partial ones, run without the tile (withoutTile), so buffers that are equal on all nodes
+    // stay so.
+    if (use == WindowUse::Clears && (m.drawn & cleared)) m.drawn &= ~clearedBy(opcode, arguments);
+    if (m.wanted != m.areas && (m.drawn == 0 || config_.plant == "uncleared")) takeAreas(w);
+    if (use == WindowUse::Draws) m.drawn |= drawnBy(opcode) & buffersOf(w.config);
+}
+
+// The draws and enables of a native list are unknown.
+void Replay::onNativeList() {
+    if (!drawsWindow() || !c_->draw || !c_->shared) return;
+    Window& w = *c_->draw;
+    if (w.moving.wanted != w.moving.areas && w.moving.drawn == 0 && !c_->compiling) takeAreas(w);
+    const GLbitfield tested = (c_->shared->testsDepth ? GL_DEPTH_BUFFER_BIT : 0) | (c_->shared->testsStencil ? GL_STENCIL_BUFFER_BIT : 0);
+    w.moving.drawn |= (GL_COLOR_BUFFER_BIT | tested) & buffersOf(w.config);
+    if (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0) && !std::exchange(w.moving.fixed, true)) w.moving.wanted = w.moving.areas;
+}
+
+void Replay::onTests(GLenum cap) {
+    if (!c_->shared) return;
+    if (cap == GL_DEPTH_TEST) c_->shared->testsDepth = true;
+    if (cap == GL_STENCIL_TEST) c_->shared->testsStencil = true;
+}
+
+// ---- returned nodes: their snapshot contains no areas. Until they receive them, they draw every window whole.
+
+std::vector<std::byte> Replay::tellAreas() const {
+    std::vector<std::shared_ptr<const ViewportAssignment>> named{areas_};
+    std::vector<wire::WindowAreas> windows;
+    for (const auto& [client, its] : clients_)
+        for (const auto& [id, w] : its.windows) {
+            const MovingPart& m = w->moving;
+            if (!m.areas) continue;
+            windows.push_back({client, id, m.areas->number, m.wanted->number, m.front->number, m.drawn, m.fixed ? 1U : 0U});
+            for (const auto& areas : {m.areas, m.wanted, m.front})
+                if (std::ranges::find(named, areas) == named.end()) named.push_back(areas);
+        }
+    const auto count = static_cast<uint32_t>(windows.size());
+    std::vector<std::byte> bytes(sizeof count + count * sizeof(wire::WindowAreas));
+    std::memcpy(bytes.data(), &count, sizeof count);
+    if (count > 0) std::memcpy(bytes.data() + sizeof count, windows.data(), count * sizeof(wire::WindowAreas));
+    for (const auto& areas : named) {
+        const auto more = bytesOf(*areas);
+        bytes.insert(bytes.end(), more.begin(), more.end());
+    }
+    return bytes;
+}
+
+bool Replay::takeToldAreas(std::span<const std::byte> bytes) {
+    uint32_t count = 0;
+    if (!moves() || bytes.size() < sizeof count) return false;
+    std::memcpy(&count, bytes.data(), sizeof count);
+    bytes = bytes.subspan(sizeof count);
+    if (bytes.size() / sizeof(wire::WindowAreas) < count) return false;
+    std::vector<wire::WindowAreas> windows(count);
+    if (count > 0) std::memcpy(windows.data(), bytes.data(), count * sizeof(wire::WindowAreas));
+    bytes = bytes.subspan(count * sizeof(wire::WindowAreas));
+    std::map<uint32_t, std::shared_ptr<const ViewportAssignment>> named;
+    while (!bytes.empty()) {
+        auto areas = mural::takeAreas(bytes);
+        if (!areas) return false;
+        auto shared = std::make_shared<const ViewportAssignment>(std::move(*areas));
+        if (named.empty()) areas_ = shared;
+        named.emplace(shared->number, shared);
+    }
+    for (const wire::WindowAreas& told : windows) {
+        const auto client = clients_.find(told.client);
+        if (client == clients_.end() || !client->second.windows.contains(told.window)) continue;
+        if (!named.contains(told.areas) || !named.contains(told.wanted) || !named.contains(told.front)) return false;
+        MovingPart& m = client->second.windows[told.window]->moving;
+        m.areas = named[told.areas];
+        m.wanted = named[told.wanted];
+        m.front = named[told.front];
+        m.drawn = told.drawn;
+        m.fixed = told.fixed != 0;
+    }
+    knowsAreas_ = true;
+    areasChanged();
+    return true;
+}
+
+void Replay::beginAreas() {
+    if (!moves()) return;
+    for (auto& [id, client] : clients_)
+        for (auto& [name, w] : client.windows) w->moving.areas = w->moving.wanted = w->moving.front = areas_;
+    knowsAreas_ = true;
+    areasChanged();
+}
+
+} // namespace mural

@@ -1,0 +1,204 @@
+// Frame matching: a frame that binds the same objects as the previous one is not followed record by record.
+//
+// The effect of a record on bindings depends only on its bytes, the current bindings, and the existing objects. A
+// template (FrameTemplate) is kept of a frame that ends with the bindings it began with, except for textures. A next
+// frame with the same records, and equal bytes of those that bind, ends with the same bindings. At a different record,
+// the records before it are followed at once. Commands deferred throughout the template frame stay deferred: the same
+// draws need them no more than before.
+#include "gl_opcodes.hpp"
+#include "streamcodec/filter/command_filter.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural::filter {
+
+namespace {
+
+constexpr size_t kMaxCompared = 1024; // vertex arrays and their bindings, which are compared or copied once per frame
+constexpr double kLike = 0.9, kUnlike = 0.5;
+constexpr size_t kWorthAMark = 64; // records that would be followed in every frame
+constexpr uint32_t kMarkFrames = 16; // frames between two marks
+
+bool fewEnough(const Bindings& b) {
+    size_t count = b.units.size() * kTextureTargets + b.arrays.size();
+    for (const auto& [name, array] : b.arrays) count += array.buffers.size();
+    return count <= kMaxCompared;
+}
+
+using Textures = std::vector<TextureUnit>;
+
+// Returns true if a frame, or a part of one, that leads from `begins` to `after` leads from `now` to `after` too: it
+// binds everything that it changes.
+bool leadsTo(const Textures& now, const Textures& begins, const Textures& after) {
+    if (now == begins) return true;
+    if (now.size() != begins.size() || now.size() != after.size()) return false;
+    for (size_t unit = 0; unit < now.size(); ++unit)
+        for (size_t i = 0; i < kTextureTargets; ++i)
+            if (now[unit][i] != begins[unit][i] && begins[unit][i] == after[unit][i]) return false;
+    return true;
+}
+
+// Returns true if a texture with deferred uploads is bound differently. Draws before the frame binds others may need
+// it.
+bool othersWait(const Textures& now, const Textures& begins) {
+    for (size_t unit = 0; unit < now.size(); ++unit)
+        for (size_t i = 0; i < kTextureTargets; ++i)
+            if (now[unit][i] != begins[unit][i] && now[unit][i] != nullptr && now[unit][i]->waits()) return true;
+    return false;
+}
+
+// Returns true if a frame that begins with these bindings can match the template.
+bool mayBegin(const FrameMatcher& same, const Bindings& now) {
+    return now.equalButTextures(same.begins) && leadsTo(now.units, same.begins.units, same.ends.units) && !othersWait(now.units, same.begins.units);
+}
+
+bool nothingSaved(const Context& c) { return c.attribs.empty() && c.clientAttribs.empty(); }
+
+} // namespace
+
+// Returns true if the next records of this stream can match the template.
+bool CommandFilter::mayRepeat(const Stream& stream) const {
+    const Context* const c = stream.context;
+    return !leavesOutSmall_ && c != nullptr && c->group.use_count() == 1 && !c->group->untracked && stream.list == 0;
+}
+
+// Returns true if the template is still valid for this context.
+bool CommandFilter::repeats(const Stream& stream) const {
+    const FrameMatcher& same = stream.same;
+    if (!mayRepeat(stream) || stream.context != same.context) return false;
+    const Group& group = *stream.context->group;
+    return group.heldChanges == same.heldChanges && group.objectChanges == same.objectChanges;
+}
+
+// Skips records that match the template.
+void CommandFilter::passSame(Stream& stream, trace::RecordWalk& walk, const Packet& packet) {
+    size_t at = walk.at();
+    RecordOffsets walked;
+    const FrameTemplate::Stop stop = stream.same.layout.pass(packet, at, walked);
+    walk.goTo(at, walked);
+    counts_.alikeRecords += walked.records;
+    if (stop == FrameTemplate::Stop::Differs || stop == FrameTemplate::Stop::End) leaveSame(stream);
+}
+
+// Handles a record that passSame() did not skip.
+void CommandFilter::seeSame(Stream& stream, const RecordView& r, const CommandKind& kind) {
+    if (!stream.same.layout.passSeen(r.opcode)) return leaveSame(stream);
+    if (kind.frame != FrameRole::Seen) followSame(stream);
+}
+
+void CommandFilter::followSameTo(Stream& stream, size_t to) {
+    Output nothing(stream.id, {}, otherScratch_, take_);
+    stream.same.layout.follow(to, [&](std::span<const std::byte> bytes) {
+        trace::RecordWalk one(bytes);
+        RecordView r;
+        if (one.next(r)) record(stream, nothing, r, kinds_[r.opcode], 0, bytes);
+    });
+    nothing.finish();
+}
+
+// Follows all skipped records, from the mark on if it was passed.
+void CommandFilter::followSame(Stream& stream) {
+    FrameMatcher& same = stream.same;
+    const size_t passed = same.layout.passed();
+    FrameMatcher::Mark& mark = same.mark;
+    if (mark.followed > same.layout.followed() && mark.followed <= passed && leadsTo(same.began, mark.began, mark.bound.units)) {
+        stream.context->takeOver(mark.bound);
+        stream.inPrimitive = mark.inPrimitive;
+        same.layout.followFrom(mark.followed);
+    }
+    // The next frame may differ a little earlier.
+    const size_t marked = passed - passed / 16;
+    if (marked >= same.layout.followed() + kWorthAMark && (mark.followed == 0 || same.frames - mark.frame >= kMarkFrames)) {
+        followSameTo(stream, marked);
+        if (nothingSaved(*stream.context)) mark = {marked, same.frames, same.began, *stream.context, stream.inPrimitive};
+    }
+    followSameTo(stream, passed);
+}
+
+// Returns to following each record.
+void CommandFilter::leaveSame(Stream& stream) {
+    FrameMatcher& same = stream.same;
+    if (same.now != FrameMatcher::Now::Following) return;
+    followSame(stream);
+    same.now = FrameMatcher::Now::Apart;
+    if (stream.context != nullptr) stream.context->needs = true; // skipped draws were not examined
+}
+
+void CommandFilter::leaveSameOf(const Group& group) {
+    for (auto& [id, stream] : streams_)
+        if (stream.context != nullptr && stream.context->group.get() == &group) leaveSame(stream);
+}
+
+// Called after an examined record.
+void CommandFilter::keepSame(Stream& stream, const RecordView& r, const Packet& packet) {
+    if (stream.same.now == FrameMatcher::Now::Following && !repeats(stream)) leaveSame(stream);
+    if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) endSame(stream, packet.first(r.offset + r.sizeBytes));
+}
+
+// Appends records to the template that is being built. They have been followed.
+void CommandFilter::keepRecords(Stream& stream, const Packet& packet) {
+    FrameMatcher& same = stream.same;
+    trace::RecordWalk walk(packet.subspan(same.keptBytes));
+    RecordView r;
+    bool keeps = repeats(stream);
+    while (keeps && walk.next(r)) {
+        const CommandKind& kind = kinds_[r.opcode];
+        const bool takesValue = same.inValue && kind.about != CommandClass::Blob;
+        same.inValue = kind.about == CommandClass::Blob;
+        const FrameRole role = kind.frame == FrameRole::Ends || (r.opcode == wire::kOpMakeCurrent && trace::argumentWord(r, 0) != stream.context->id) ? FrameRole::Ends : takesValue ? FrameRole::SeenBound : kind.frame;
+        const Same how = role == FrameRole::Draws ? Same::Head : role == FrameRole::Binds ? Same::All : Same::Seen;
+        keeps = role != FrameRole::Ends && same.layout.add(how, packet.subspan(same.keptBytes + r.offset, r.sizeBytes));
+    }
+    same.keptBytes = packet.size();
+    if (keeps) return;
+    same.now = FrameMatcher::Now::Apart;
+    same.layout.clear();
+}
+
+// The frame ends with this packet.
+void CommandFilter::endSame(Stream& stream, const Packet& packet) {
+    using Now = FrameMatcher::Now;
+    FrameMatcher& same = stream.same;
+    if (same.now == Now::Recording) keepRecords(stream, packet);
+    if (same.now == Now::Following && !same.layout.atEnd()) leaveSame(stream);
+    const bool returns = same.begins.units == same.ends.units;
+    if (same.now == Now::Following && (same.layout.followed() > 0 || !returns)) {
+        stream.context->takeOver(same.ends);
+        stream.context->needs = true;
+        stream.inPrimitive = false;
+    }
+    if (!mayRepeat(stream) || stream.inPrimitive || !nothingSaved(*stream.context) || (same.now != Now::Following && !fewEnough(*stream.context))) {
+        same.now = Now::Apart;
+        return;
+    }
+    const Bindings& bound = *stream.context;
+    Group& group = *stream.context->group;
+    if (same.now == Now::Recording) {
+        same.ends = bound;
+        if (!bound.equalButTextures(same.begins)) same.layout.clear();
+    }
+    const double share = same.layout.share();
+    ++same.frames;
+    same.shares += share;
+    if (group.held.empty()) same.heldChanges = group.heldChanges; // no draw can need anything deferred
+    const bool isLike = same.now == Now::Following || (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
+    const bool goesOn = isLike && mayBegin(same, bound);
+    same.now = goesOn ? Now::Following : Now::Apart;
+    if (goesOn) same.began = bound.units;
+    same.layout.begin();
+    if (goesOn || same.frames < same.wait) return;
+    // Builds a new template; at growing intervals if templates did not match before.
+    same.wait = same.shares >= kUnlike * same.frames ? FrameMatcher::kFirst : std::min(same.wait * 2, FrameMatcher::kMost);
+    same.now = Now::Recording;
+    same.keptBytes = packet.size();
+    same.inValue = false;
+    same.layout.clear();
+    same.mark.followed = 0;
+    same.context = stream.context;
+    same.heldChanges = group.heldChanges;
+    same.objectChanges = group.objectChanges;
+    same.begins = bound;
+    same.frames = 0;
+    same.shares = 0;
+}
+
+} // namespace mural::filter

@@ -1,0 +1,54 @@
+#include "streamcodec/snapshot/command_effects.hpp"
+
+#include <string_view>
+#include <vector>
+
+#include "gl_opcodes.hpp"
+#include "streamcodec/command_parameters.hpp"
+#include "streamcodec/command_traits.hpp"
+
+namespace mural::trace {
+namespace {
+
+using enum Family;
+
+bool selects(const ParameterInfo& p, Family family) {
+    const std::string_view name = p.name;
+    if (family == Uniform || family == ProgramUniform) return name == "program" || name == "location" || name == "count";
+    if (family == Attribute || family == Color) return p.element == Element::Enum || name == "index"; // other numbers are the value
+    return p.element == Element::Enum || p.element == Element::U32 || p.element == Element::Bits || name == "level" || name == "count" || name == "first" || name == "n";
+}
+
+void findSelectors(Rule& rule, uint16_t opcode) {
+    // A record with an invalid enum must not replace an earlier record.
+    const bool valueToo = hasTrait(opcode, Trait::EnumAsNumber);
+    size_t word = 0;
+    for (const ParameterInfo& p : parametersOf(opcode).parameters) {
+        if (p.travel != Travel::Scalar || word > 200) break;
+        if ((valueToo || selects(p, rule.family)) && rule.selectors < rule.selectorWords.size()) rule.selectorWords[rule.selectors++] = static_cast<uint8_t>(word);
+        word += bytesOf(p.element) == 8 ? 2 : 1;
+    }
+}
+
+std::vector<Rule> allRules() {
+    std::vector<Rule> rules(op::kLimit);
+    for (uint16_t opcode = 0; opcode < rules.size(); ++opcode) {
+        const CommandEffect& effect = kCommandEffects[opcode];
+        Rule& rule = rules[opcode];
+        rule.family = effect.kind;
+        rule.type = effect.object;
+        rule.attribBits = effect.attribBits;
+        findSelectors(rule, opcode);
+    }
+    return rules;
+}
+
+} // namespace
+
+const Rule& ruleOf(uint16_t opcode) {
+    static const std::vector<Rule> kAll = allRules();
+    static const Rule kNone;
+    return opcode < kAll.size() ? kAll[opcode] : kNone;
+}
+
+} // namespace mural::trace

@@ -1,0 +1,27 @@
+// The effect of each command (streamcodec/command_effects.hpp), and the arguments that select the state it applies to.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "streamcodec/command_effects.hpp"
+
+namespace mural::trace {
+
+using Family = EffectKind;
+using mural::kNoAttribBit;
+using mural::ObjectType;
+
+struct Rule {
+    Family family = Family::Unknown;
+    ObjectType type = ObjectType::None;
+    uint32_t attribBits = 0; // of glPushAttrib: those that certainly save this state; 0: unknown
+    // The words of a record that say which part of the state it is about: scalars that name or count, before the first value of
+    // variable size.
+    uint8_t selectors = 0;
+    std::array<uint8_t, 8> selectorWords{};
+};
+
+const Rule& ruleOf(uint16_t opcode);
+
+} // namespace mural::trace

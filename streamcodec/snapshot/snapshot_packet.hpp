@@ -1,0 +1,15 @@
+// A packet of a snapshot, for a node that resynchronizes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace mural::trace {
+
+struct SnapshotPacket {
+    uint32_t stream = 0;
+    std::vector<std::byte> payload;
+};
+
+} // namespace mural::trace

@@ -1,0 +1,50 @@
+#include "streamcodec/snapshot/stream_snapshot.hpp"
+
+#include <cstring>
+
+#include "streamcodec/snapshot/packet_splitter.hpp"
+
+namespace mural::trace {
+
+void hideFrames(std::span<std::byte> records) {
+    RecordWalk walk(records);
+    RecordView r;
+    while (walk.next(r)) {
+        if ((r.opcode != wire::kOpSwap && r.opcode != wire::kOpFrontPicture) || r.arguments.size() < 8) continue;
+        const uint32_t unseen = wire::kUnseenFrame;
+        std::memcpy(records.data() + r.offset + r.sizeBytes - r.arguments.size() + 4, &unseen, sizeof unseen);
+    }
+}
+
+void StreamSnapshot::append(uint32_t stream, std::span<const std::byte> payload) {
+    if (overrun_ || wire::clientOf(stream) == 0) return;
+    log_.append(stream, payload);
+    // At the limit, sweep once more and require a quarter of it to become free; otherwise every packet would cause a
+    // sweep.
+    if (log_.compactIfGrown() || log_.sizeBytes() <= boundBytes_) return;
+    log_.compact();
+    if (log_.sizeBytes() <= boundBytes_ / 2 + boundBytes_ / 4) return;
+    overrun_ = true;
+    const size_t keptBytes = log_.sizeBytes();
+    log_.clear();
+    say_("what a node that comes late would need has grown to " + std::to_string(keptBytes >> 20) + " MiB: from now on none can come; give more by --store");
+}
+
+void StreamSnapshot::event(const ClientEvent& event) {
+    if (event.kind == Event::ClientGone && !overrun_) log_.clientGone(event.client);
+}
+
+std::vector<SnapshotPacket> StreamSnapshot::snapshot() {
+    std::vector<SnapshotPacket> packets;
+    if (overrun_) return packets;
+    log_.compact();
+    PacketSplitter splitter([&](uint32_t stream, std::span<const std::byte> payload) {
+        packets.push_back({stream, {payload.begin(), payload.end()}});
+        hideFrames(packets.back().payload);
+    });
+    log_.forEach([&](uint32_t stream, std::span<const std::byte> records) { splitter.add(stream, records); });
+    splitter.flush();
+    return packets;
+}
+
+} // namespace mural::trace

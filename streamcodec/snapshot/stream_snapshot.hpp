@@ -1,0 +1,42 @@
+// Produces snapshots for restarted nodes: the stream of all programs so far, without commands that have no remaining
+// effect. Receives every packet in broadcast order. Requires the broadcaster's lock.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "streamcodec/trace/entry.hpp"
+#include "streamcodec/snapshot/live_command_log.hpp"
+#include "streamcodec/snapshot/snapshot_packet.hpp"
+
+namespace mural::trace {
+
+class StreamSnapshot {
+public:
+    // boundBytes: memory limit. If the live state exceeds it, logging stops, and `say` reports it once.
+    StreamSnapshot(size_t boundBytes, std::function<void(const std::string&)> say) : boundBytes_(boundBytes), say_(std::move(say)) {}
+
+    void append(uint32_t stream, std::span<const std::byte> payload); // ignores the head's own stream
+    void event(const ClientEvent& event); // ClientGone: removes everything of the program
+
+    [[nodiscard]] bool serves() const { return !overrun_; } // false: nodes can no longer resynchronize
+    // Returns packets that bring a fresh node to the current state. Swaps in them are unseen (frame 0), and they
+    // contain no requests.
+    [[nodiscard]] std::vector<SnapshotPacket> snapshot();
+    [[nodiscard]] size_t sizeBytes() const { return log_.sizeBytes(); }
+    [[nodiscard]] size_t records() const { return log_.records(); }
+
+private:
+    const size_t boundBytes_;
+    const std::function<void(const std::string&)> say_;
+    LiveCommandLog log_;
+    bool overrun_ = false;
+};
+
+// Turns swaps and front pictures into unseen frames.
+void hideFrames(std::span<std::byte> records);
+
+} // namespace mural::trace

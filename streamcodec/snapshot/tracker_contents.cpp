@@ -1,0 +1,202 @@
+// Contents of objects: buffers, shaders and programs, queries.
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <string_view>
+
+#include "gl_opcodes.hpp"
+#include "streamcodec/snapshot/gl_state_tracker.hpp"
+#include "streamcodec/snapshot/binding_slots.hpp"
+
+namespace mural::trace {
+namespace {
+
+// An integer uniform may be a sampler; its value is a texture unit.
+void noteUnits(Object& program, const RecordView& r, size_t locationWord) {
+    const bool one = r.opcode == op::glUniform1i || r.opcode == op::glProgramUniform1i;
+    const bool several = r.opcode == op::glUniform1iv || r.opcode == op::glProgramUniform1iv;
+    if (one) program.units.insert(argumentWord(r, locationWord + 1));
+    std::vector<uint32_t> values;
+    if (several && !namesAt(r, locationWord + 2, values)) program.anyUnit = true;
+    program.units.insert(values.begin(), values.end());
+    constexpr size_t kMaxUnits = 256; // larger values are no units: all units count
+    if (program.units.size() <= kMaxUnits) return;
+    program.units.clear();
+    program.anyUnit = true;
+}
+
+// Returns true if the shader's source may assign units.
+bool namesUnits(const RecordView& r) {
+    const std::string_view text(reinterpret_cast<const char*>(r.arguments.data()), r.arguments.size());
+    return text.find("binding") != std::string_view::npos || text.find("#include") != std::string_view::npos || text.size() < 64 || argumentWord(r, 2) > record::kInlineBytes || text.find("void") == std::string_view::npos;
+}
+
+} // namespace
+
+// ---- buffers
+
+void GlStateTracker::writeBuffer(At& at, Object* buffer, uint64_t offset, uint64_t sizeBytes) {
+    const Key data = part(part(buffer->key, Part::Storage), Part::Data);
+    if (buffer->opaque && at.context->group->trackingDisabled) at.effect.always = true;
+    if (buffer->sparse) at.effect.read(part(part(buffer->key, Part::Storage), Part::Pages));
+    if (offset == 0 && sizeBytes == buffer->sizeBytes && sizeBytes > 0) at.effect.kill(data);
+    else at.effect.kill(part(data, Part::Box, offset, sizeBytes)); // an upload of the same range replaces it
+}
+
+void GlStateTracker::buffers(At& at, const Rule& rule, const RecordView& r) {
+    const uint32_t first = argumentWord(r, 0);
+    const bool named = rule.type == ObjectType::Buffer;
+    const uint64_t slot = slotOf(Slot::Buffer, first);
+    Object* const buffer = named ? find(at, ObjectType::Buffer, first) : bound(at, slot);
+    if (buffer == nullptr) return named ? unknown(at, false) : void(); // an error
+    use(at, buffer);
+    if (!named && first == GL_ELEMENT_ARRAY_BUFFER) {
+        const uint64_t array = slotOf(Slot::VertexArray);
+        at.effect.read(part(at.context->cells, Part::Binding, array));
+        Object* const current = bound(at, array);
+        Object* const holder = current != nullptr ? current : find(at, ObjectType::VertexArray, 0);
+        if (holder != nullptr) at.effect.read(part(holder->key, Part::Binding, slot));
+    } else if (!named) {
+        at.effect.read(part(at.context->cells, Part::Binding, slot));
+    }
+    if (rule.family == Family::BufferData) {
+        buffer->sizeBytes = argumentWide(r, 1);
+        return at.effect.kill(part(buffer->key, Part::Storage));
+    }
+    writeBuffer(at, buffer, argumentWide(r, 1), argumentWide(r, 3));
+}
+
+// Arguments: buffer, u64 offset, value.
+void GlStateTracker::bufferBytes(At& at, const RecordView& r) {
+    Object* const buffer = find(at, ObjectType::Buffer, argumentWord(r, 0));
+    if (buffer == nullptr) {
+        at.effect.always = true;
+        return readAll(at);
+    }
+    use(at, buffer);
+    const uint64_t offset = argumentWide(r, 1);
+    const uint32_t tag = argumentWord(r, 3);
+    writeBuffer(at, buffer, offset, tag == record::kTagBlob ? at.blobBytes : tag);
+}
+
+// ---- shaders and programs
+
+void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
+    ContextNames& c = *at.context;
+    const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
+    if (rule.family == Family::Uniform) {
+        Object* const program = bound(at, slotOf(Slot::Program));
+            if (program == nullptr) { // of a pipeline's program, or an error
+            if (bound(at, slotOf(Slot::Pipeline)) == nullptr) return;
+            at.effect.always = true;
+            return readAll(at);
+        }
+        at.effect.read(part(c.cells, Part::Binding, slotOf(Slot::Program)));
+        at.effect.read(part(program->key, Part::Linked));
+        if (static_cast<int32_t>(first) < 0) return;
+        noteUnits(*program, r, 0);
+        return at.effect.kill(cell(at, part(program->key, Part::Uniforms), r.opcode, rule, r));
+    }
+    if (rule.family == Family::ArbProgram) {
+        Object* const program = bound(at, slotOf(Slot::ArbProgram, first));
+        at.effect.read(part(c.cells, Part::Binding, slotOf(Slot::ArbProgram, first)));
+        const Key above = program != nullptr ? program->key : part(c.cells, Part::Binding, slotOf(Slot::ArbProgram, first, 1));
+            return at.effect.kill(cell(at, above, r.opcode, rule, r));
+    }
+    if (rule.family == Family::ProgramDelete || rule.family == Family::ShaderDelete) {
+            return deleteOne(at, ObjectType::Program, first);
+    }
+    const ObjectType type = rule.family == Family::NamedSet ? rule.type : rule.family == Family::PipelineSet ? ObjectType::Pipeline : ObjectType::Program;
+    Object* const object = find(at, type, first);
+    if (object == nullptr) return unknown(at, false);
+    use(at, object);
+    switch (rule.family) {
+    case Family::ShaderSet:
+        object->anyUnit = namesUnits(r);
+        return at.effect.kill(part(object->key, Part::Data));
+    case Family::ShaderCompile:
+        at.effect.read(part(object->key, Part::Data));
+        return at.effect.write(part(object->key, Part::Compiled));
+    case Family::ProgramAttach:
+    case Family::ProgramDetach: {
+        Object* const shader = find(at, ObjectType::Program, second);
+        Object* const known = shader != nullptr ? shader : object->holds.contains(second) ? object->holds[second] : nullptr;
+        if (known == nullptr) return unknown(at, false);
+        use(at, known);
+        at.effect.write(part(object->key, Part::Attachments));
+        return hold(at, object->holds[second], rule.family == Family::ProgramAttach ? known : nullptr);
+    }
+    case Family::ProgramLink:
+        at.effect.read(object->key);
+        for (const auto& [name, shader] : object->holds) {
+            if (shader == nullptr) continue;
+            at.effect.read(shader->key);
+            object->anyUnit = object->anyUnit || shader->anyUnit;
+        }
+        return at.effect.write(part(object->key, Part::Linked)); // a failed link replaces nothing
+    case Family::PipelineSet: {
+        Object* const program = find(at, ObjectType::Program, argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1));
+        if (program != nullptr) {
+            use(at, program);
+            program->opaque = true; // lives as long as the pipeline refers to it
+            at.effect.read(program->key);
+        }
+        return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
+    }
+    case Family::ProgramUniform:
+        noteUnits(*object, r, 1);
+        at.effect.read(part(object->key, Part::Linked));
+        return at.effect.kill(cell(at, part(object->key, Part::Uniforms), r.opcode, rule, r));
+    case Family::ProgramSet: // names are texts: each is a separate cell
+        if (r.opcode == op::glBindAttribLocation || r.opcode == op::glBindFragDataLocation || r.opcode == op::glBindFragDataLocationIndexed || r.opcode == op::glTransformFeedbackVaryings)
+            return at.effect.write(part(object->key, Part::Attachments));
+        if (r.opcode != op::glProgramParameteri) at.effect.read(part(object->key, Part::Linked));
+        return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
+    default: return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
+    }
+}
+
+// ---- queries, feedback, conditional rendering
+
+void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
+    ContextNames& c = *at.context;
+    const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
+    const bool indexed = r.opcode == op::glBeginQueryIndexed || r.opcode == op::glEndQueryIndexed;
+    const uint64_t slot = uint64_t{first} << 32 | (indexed ? second : 0);
+    switch (rule.family) {
+    case Family::QueryBegin: {
+        const uint32_t name = argumentWord(r, indexed ? 2 : 1);
+        if (name == 0) return;
+        Object* const query = findOrMake(at, ObjectType::Query, name);
+        use(at, query);
+        at.effect.kill(query->images);
+        return hold(at, c.queries[slot], query);
+    }
+    case Family::QueryEnd: {
+        const auto found = c.queries.find(slot);
+        if (found == c.queries.end() || found->second == nullptr) return;
+        const Key data = found->second->images;
+        at.effect.write(data);
+        at.effect.add(data, Mode::Close);
+        return hold(at, found->second, nullptr);
+    }
+    case Family::QueryCounter: {
+        Object* const query = findOrMake(at, ObjectType::Query, first);
+        use(at, query);
+        return at.effect.kill(query->images);
+    }
+    case Family::FeedbackBegin:
+        c.feedback = true;
+        at.effect.kill(part(c.key, Part::Feedback));
+        return readState(at);
+    case Family::FeedbackEnd:
+        c.feedback = false;
+        at.effect.write(part(c.key, Part::Feedback));
+        return at.effect.add(part(c.key, Part::Feedback), Mode::Close);
+    default: // glEndConditionalRender
+        c.limits.conditional = false;
+        at.effect.add(part(c.key, Part::Conditional), Mode::Forget);
+        at.effect.add(part(c.key, Part::Conditional), Mode::Close);
+    }
+}
+
+} // namespace mural::trace

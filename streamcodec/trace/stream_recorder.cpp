@@ -1,0 +1,126 @@
+#include "streamcodec/trace/stream_recorder.hpp"
+
+#include <chrono>
+
+#include "streamcodec/registry_digest.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural::trace {
+namespace {
+
+std::chrono::nanoseconds leftOf(Deadline deadline) { return std::chrono::nanoseconds(deadline.leftNs(kNsPerS)); }
+
+} // namespace
+
+Result<std::unique_ptr<StreamRecorder>> StreamRecorder::create(const std::string& path, RecorderConfig config) {
+    auto writer = TraceWriter::create(path);
+    if (!writer) return writer.error();
+    return std::unique_ptr<StreamRecorder>(new StreamRecorder(path, std::move(*writer), std::move(config)));
+}
+
+StreamRecorder::StreamRecorder(std::string path, std::unique_ptr<TraceWriter> writer, RecorderConfig config)
+    : path_(std::move(path)), writer_(std::move(writer)), config_(std::move(config)) {}
+
+StreamRecorder::~StreamRecorder() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+        changed_.notify_all();
+    }
+    if (thread_.joinable()) thread_.join();
+}
+
+void StreamRecorder::begin(const About& about) {
+    if (const auto begun = writer_->begin(about, wire::kVersion, registryDigest()); !begun) end(begun.error().message);
+    thread_ = std::thread([this] { work(); });
+}
+
+void StreamRecorder::packet(uint32_t stream, std::span<const std::byte> payload) {
+    if (wire::clientOf(stream) != 0) put(stream, payload);
+}
+
+void StreamRecorder::event(const ClientEvent& event) { put(0, eventBytes(event)); }
+
+void StreamRecorder::put(uint32_t stream, std::span<const std::byte> payload) {
+    if (ended_) return;
+    Deadline patience = Deadline::inMs(config_.patienceMs);
+    std::unique_lock lock(mutex_);
+    while (queue_.size() + entryBytes(payload.size()) > config_.queueBytes && !queue_.empty() && !ended_) {
+        if (patience.passed()) {
+            lock.unlock();
+            return end("nothing was written for " + std::to_string(config_.patienceMs / 1000) + " s; is the disk too slow? Give another place");
+        }
+        changed_.wait_for(lock, leftOf(patience));
+    }
+    if (ended_ || finishing_) return;
+    appendEntry(queue_, {stream, static_cast<uint64_t>(monotonicNowNs() - beganNs_), payload});
+    changed_.notify_all();
+}
+
+void StreamRecorder::end(const std::string& why) {
+    if (ended_.exchange(true)) return;
+    const std::string line = why.starts_with("recording ") ? why : "recording " + path_ + ": " + why;
+    config_.say(line + "; the recording ends after " + std::to_string(wholeFrames_) + " frames, the program goes on");
+}
+
+void StreamRecorder::work() {
+    std::vector<std::byte> batch;
+    Deadline wholeBy = Deadline::never();
+    std::unique_lock lock(mutex_);
+    while (!stop_) {
+        if (queue_.empty() && finishing_) break;
+        if (queue_.empty() && !wholeBy.passed()) {
+            changed_.wait_for(lock, leftOf(wholeBy));
+            continue;
+        }
+        batch.clear();
+        batch.swap(queue_);
+        changed_.notify_all();
+        lock.unlock();
+        Result<void> written = ended_ ? Result<void>() : writeAll(batch);
+        if (written && wholeBy.passed() && !ended_) written = writer_->flush();
+        wholeFrames_ = writer_->totals().frames;
+        if (!writer_->hasUnwritten() || ended_) wholeBy = Deadline::never();
+        else if (wholeBy.atNs() == INT64_MAX || wholeBy.passed()) wholeBy = Deadline::inMs(config_.wholeEveryMs);
+        if (!written) end(written.error().message);
+        lock.lock();
+    }
+    const bool orderly = finishing_;
+    lock.unlock();
+    if (orderly) {
+        Result<void> written = ended_ ? Result<void>() : writer_->flush();
+        if (!written) end(written.error().message);
+        // Complete data is readable with its index, if there is room for it.
+        written = writer_->finish();
+        if (!written) end(written.error().message);
+    }
+    lock.lock();
+    totals_ = writer_->totals();
+    done_ = true;
+    changed_.notify_all();
+}
+
+Result<void> StreamRecorder::writeAll(std::span<const std::byte> entries) {
+    EntryWalk walk(entries);
+    Entry entry;
+    while (walk.next(entry)) {
+        const bool late = config_.lastFrame > 0 && writer_->framesSeen() >= config_.lastFrame && entry.stream != 0;
+        if (late) continue;
+        if (auto r = writer_->append(entry); !r) return r;
+    }
+    return {};
+}
+
+WriterTotals StreamRecorder::finish(Deadline deadline) {
+    std::unique_lock lock(mutex_);
+    finishing_ = true;
+    changed_.notify_all();
+    while (thread_.joinable() && !done_ && !deadline.passed()) changed_.wait_for(lock, leftOf(deadline));
+    if (done_) return totals_;
+    stop_ = true;
+    lock.unlock();
+    end("its last blocks could not be written in time; is the disk too slow?");
+    return {};
+}
+
+} // namespace mural::trace

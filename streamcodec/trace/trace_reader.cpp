@@ -1,0 +1,181 @@
+#include "streamcodec/trace/trace_reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <zstd.h>
+
+#include "streamcodec/trace/checksum.hpp"
+#include "streamcodec/registry_digest.hpp"
+#include "streamcodec/wire/wire.hpp"
+
+namespace mural::trace {
+namespace {
+
+template <class T> std::span<std::byte> bytesOf(T& value) { return std::as_writable_bytes(std::span(&value, 1)); }
+
+bool soundShape(const BlockHeader& h) {
+    return h.magic == kBlockMagic && h.rawBytes <= kMaxBlockBytes && h.packedBytes <= ZSTD_COMPRESSBOUND(kMaxBlockBytes);
+}
+
+constexpr const char* kEndMissing = "its end is missing (was the head killed, or the file cut?)";
+
+} // namespace
+
+Result<std::unique_ptr<TraceReader>> TraceReader::open(const std::string& path) {
+    FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file.valid()) return Error{"recording " + path + ": can't be read: " + std::strerror(errno) + "; check the name"};
+    return open(std::move(file), path);
+}
+
+Result<std::unique_ptr<TraceReader>> TraceReader::open(FileDescriptor file, const std::string& name) {
+    struct stat about {};
+    if (fstat(file.get(), &about) != 0 || !S_ISREG(about.st_mode)) return Error{"recording " + name + ": is not a file; give one that mural run --record has made"};
+    std::unique_ptr<TraceReader> reader(new TraceReader(std::move(file), name));
+    reader->sizeBytes_ = static_cast<uint64_t>(about.st_size);
+    if (auto r = reader->readHeader(); !r) return r.error();
+    auto indexed = reader->readIndex();
+    if (!indexed) return indexed.error();
+    if (indexed.value()) return reader;
+    if (auto r = reader->findBlocks(); !r) return r.error();
+    return reader;
+}
+
+TraceReader::TraceReader(FileDescriptor file, std::string name) : file_(std::move(file)), name_(std::move(name)), unpacker_(ZSTD_createDCtx()) {}
+
+TraceReader::~TraceReader() { ZSTD_freeDCtx(unpacker_); }
+
+Error TraceReader::damaged(uint64_t offset, const std::string& what, const std::string& next) const {
+    return Error{"recording " + name_ + " is damaged at byte " + std::to_string(offset) + ": " + what + "; " + next};
+}
+
+Error TraceReader::damagedBlock(size_t number, const std::string& what) const {
+    int64_t before = 0;
+    for (size_t i = 0; i < number; ++i) before += blocks_[i].framesEnded;
+    const uint64_t offset = blocks_[number].offset;
+    if (before == 0) return damaged(offset, what + ", and no frame ends before it", kElsewhere);
+    const std::string good = before == 1 ? "1" : "1-" + std::to_string(before);
+    return damaged(offset, what, "the frames before it are good (" + good + "): keep them by mural trim " + name_ + " " + good + " -o good.mural, " + kElsewhere);
+}
+
+Error TraceReader::noSuchFrames(int64_t frames) const {
+    if (frames > 0) {
+        return Error{"the recording has " + std::to_string(frames) + " frames" + (notice_.empty() ? "" : std::string(", as ") + kEndMissing) + "; give some of them, such as 1-" + std::to_string(frames)};
+    }
+    if (notice_.empty()) return Error{"recording " + name_ + " has no frame: its program showed no picture; mural dump prints its calls"};
+    return Error{"recording " + name_ + " has no whole frame: " + kEndMissing + ", what is whole ends at byte " + std::to_string(blocksEnd_) + " of " + std::to_string(sizeBytes_) + "; " + kElsewhere};
+}
+
+bool TraceReader::readAt(uint64_t offset, std::span<std::byte> into) const {
+    while (!into.empty()) {
+        const ssize_t n = pread(file_.get(), into.data(), into.size(), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        offset += static_cast<uint64_t>(n);
+        into = into.subspan(static_cast<size_t>(n));
+    }
+    return true;
+}
+
+Result<void> TraceReader::readHeader() {
+    Header header{};
+    const bool read = readAt(0, bytesOf(header));
+    if (!read || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0)
+        return Error{name_ + " is not a recording of Mural; give a file that mural run --record has made"};
+    if (header.version != kVersion) {
+        return Error{"recording " + name_ + " has version " + std::to_string(header.version) + " of the format, this Mural reads version " + std::to_string(kVersion) +
+                     "; use the Mural that it was made with, or a newer one"};
+    }
+    blocksAt_ = sizeof header + header.aboutBytes;
+    if (header.aboutBytes > kMaxAboutBytes || blocksAt_ > sizeBytes_) return damaged(0, "its header is longer than the file");
+    std::string text(header.aboutBytes, '\0');
+    if (!readAt(sizeof header, std::as_writable_bytes(std::span(text)))) return damaged(sizeof header, "its header can't be read");
+    if (checksumOf({beforeChecksum(header), std::as_bytes(std::span(text))}) != header.checksum) return damaged(0, "its header is not as it was written");
+    auto about = aboutFromJson(text);
+    if (!about) return damaged(sizeof header, about.error().message);
+    about_ = std::move(*about);
+    if (header.wireVersion == wire::kVersion && header.registryDigest == registryDigest()) return {};
+    return Error{"recording " + name_ + " was made by a Mural with other commands (version " + about_.version + "); use that one to read it, or record again"};
+}
+
+Result<bool> TraceReader::readIndex() {
+    Trailer trailer{};
+    if (sizeBytes_ < blocksAt_ + sizeof trailer || !readAt(sizeBytes_ - sizeof trailer, bytesOf(trailer))) return false;
+    if (std::memcmp(trailer.magic, kEndMagic, sizeof kEndMagic) != 0) return false;
+    const uint64_t end = sizeBytes_ - sizeof trailer, at = trailer.indexOffset;
+    IndexHeader header{};
+    if (checksumOf({beforeChecksum(trailer)}) != trailer.checksum || at < blocksAt_ || at > end || end - at < sizeof header || !readAt(at, bytesOf(header)))
+        return damaged(end, "its last bytes are not as they were written");
+    if (header.magic != kIndexMagic || (end - at - sizeof header) / sizeof(IndexRow) != header.blocks || (end - at - sizeof header) % sizeof(IndexRow) != 0)
+        return damaged(at, "there is no index");
+    blocks_.resize(header.blocks);
+    const auto rows = std::as_writable_bytes(std::span(blocks_));
+    if (!readAt(at + sizeof header, rows) || checksumOf({beforeChecksum(header), rows}) != header.checksum) return damaged(at, "its index is not as it was written");
+    frames_ = static_cast<int64_t>(header.frames);
+    blocksEnd_ = at;
+    // Rows must be contiguous. Blocks are validated when they are read, so a bad block does not affect earlier ones.
+    uint64_t least = blocksAt_;
+    for (const IndexRow& row : blocks_) {
+        if (row.offset < least || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader)) return damaged(at, "its index is of no blocks");
+        least = row.offset + sizeof(BlockHeader);
+    }
+    if ((blocks_.empty() ? blocksEnd_ : blocks_.front().offset) != blocksAt_) return damaged(at, "its index begins elsewhere");
+    return true;
+}
+
+uint64_t TraceReader::endOf(size_t number) const { return number + 1 < blocks_.size() ? blocks_[number + 1].offset : blocksEnd_; }
+
+Result<void> TraceReader::findBlocks() {
+    uint64_t at = blocksAt_;
+    BlockHeader block{};
+    while (sizeBytes_ - at >= sizeof block && readAt(at, bytesOf(block)) && soundShape(block) && sizeBytes_ - at - sizeof block >= block.packedBytes) {
+        blocks_.push_back({at, block.firstFrame, block.framesEnded, block.entries});
+        frames_ += block.framesEnded;
+        at += sizeof block + block.packedBytes;
+    }
+    blocksEnd_ = at;
+    notice_ = "recording " + name_ + ": its end is missing (was the head killed, or the file cut?); " + std::to_string(frames_) + " whole frames are there, up to byte " +
+              std::to_string(at) + " of " + std::to_string(sizeBytes_);
+    return {};
+}
+
+Result<void> TraceReader::verify() {
+    for (size_t i = 0; i < blocks_.size(); ++i)
+        if (const auto block = readPacked(i); !block) return block.error();
+    return {};
+}
+
+Result<BlockHeader> TraceReader::readPacked(size_t number) {
+    const IndexRow& row = blocks_[number];
+    BlockHeader header{};
+    if (!readAt(row.offset, bytesOf(header)) || !soundShape(header)) return damagedBlock(number, "there is no block");
+    if (row.offset + sizeof header + header.packedBytes != endOf(number)) return damagedBlock(number, "a block does not end where the next one begins");
+    packed_.resize(header.packedBytes);
+    if (!readAt(row.offset + sizeof header, packed_)) return damagedBlock(number, "a block can't be read");
+    const bool same = header.firstFrame == row.firstFrame && header.framesEnded == row.framesEnded && header.entries == row.entries;
+    if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum) return damagedBlock(number, "a block is not as it was written");
+    return header;
+}
+
+Result<std::span<const std::byte>> TraceReader::read(size_t number) {
+    const auto packed = readPacked(number);
+    if (!packed) return packed.error();
+    const BlockHeader& header = packed.value();
+    raw_.resize(header.rawBytes);
+    const size_t rawBytes = ZSTD_decompressDCtx(unpacker_, raw_.data(), raw_.size(), packed_.data(), packed_.size());
+    if (ZSTD_isError(rawBytes) || rawBytes != header.rawBytes) return damagedBlock(number, "a block can't be unpacked");
+    EntryWalk walk(raw_);
+    Entry entry;
+    ClientEvent event;
+    uint32_t entries = 0;
+    while (walk.next(entry)) {
+        ++entries;
+        if (entry.stream == 0 && !parseEvent(entry.payload, event)) return damagedBlock(number, "an event in a block is unknown");
+    }
+    if (walk.malformed() || entries != header.entries) return damagedBlock(number, "the entries of a block are not entries");
+    return std::span<const std::byte>(raw_);
+}
+
+} // namespace mural::trace

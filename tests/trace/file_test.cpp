@@ -1,0 +1,212 @@
+// Trace files: round trips, and truncated, modified or foreign files.
+#include <filesystem>
+#include <gtest/gtest.h>
+
+#include "tests/trace/recorded.hpp"
+
+namespace mural::trace {
+namespace {
+
+class RecordingFile : public testing::Test {
+protected:
+    RecordingFile() : folder_(std::filesystem::temp_directory_path() / ("mural-recording-test." + std::to_string(getpid()))) {
+        std::filesystem::create_directories(folder_);
+    }
+    ~RecordingFile() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] std::string path() const { return (folder_ / "a.mural").string(); }
+
+    // Writes two programs and three frames of the larger window in two blocks; returns the entries.
+    std::vector<Written> writeSmall() {
+        std::vector<Written> put;
+        auto writer = TraceWriter::create(path());
+        EXPECT_TRUE(writer);
+        TraceWriter& w = **writer;
+        EXPECT_TRUE(w.begin({"9.9", {"a GL"}, ""}, wire::kVersion, registryDigest()));
+        const auto add = [&](uint32_t stream, std::span<const std::byte> payload) {
+            put.push_back({stream, 1000 * put.size(), Bytes(payload.begin(), payload.end())});
+            EXPECT_TRUE(w.append({stream, put.back().timeNs, payload}));
+        };
+        add(0, eventBytes({Event::ClientCame, 1, 77, "first"}));
+        add(wire::streamOf(1, 0), PacketBuilder().window(1, 20, 10).swap(1, 1).bytes());
+        add(0, eventBytes({Event::ClientCame, 2, 78, "second"}));
+        add(wire::streamOf(2, 3), PacketBuilder().window(5, 4, 4).swap(5, 1).longRecord(wire::kOpBlobData, {4, 42}).bytes());
+        EXPECT_TRUE(w.flush());
+        add(wire::streamOf(1, 1), PacketBuilder().swap(1, 2).swap(1, 3).bytes());
+        add(0, eventBytes({Event::ClientGone, 1, 0, ""}));
+        EXPECT_TRUE(w.flush());
+        EXPECT_TRUE(w.finish());
+        EXPECT_EQ(w.totals().frames, 3);
+        EXPECT_FALSE(w.hasUnwritten());
+        return put;
+    }
+
+    const std::filesystem::path folder_;
+};
+
+TEST_F(RecordingFile, roundTrips) {
+    const auto put = writeSmall();
+    auto reader = TraceReader::open(path());
+    ASSERT_TRUE(reader) << reader.error().message;
+    EXPECT_EQ((*reader)->notice(), "");
+    EXPECT_EQ((*reader)->about().version, "9.9");
+    EXPECT_EQ((*reader)->about().nodes, std::vector<std::string>{"a GL"});
+    EXPECT_EQ((*reader)->frames(), 3);
+    ASSERT_EQ((*reader)->blocks().size(), 2u);
+    EXPECT_EQ((*reader)->blocks()[1].firstFrame, 2u);
+    EXPECT_EQ((*reader)->blocks()[1].framesEnded, 2u);
+    std::string problem;
+    EXPECT_EQ(entriesOf(**reader, &problem), put);
+    EXPECT_EQ(problem, "");
+}
+
+TEST_F(RecordingFile, isReadableUpToTheLastCompleteBlockWhenTruncated) {
+    const auto put = writeSmall();
+    const Bytes whole = readWhole(path());
+    auto all = readerOf(whole);
+    ASSERT_TRUE(all);
+    const uint64_t second = (*all)->blocks()[1].offset;
+    const size_t inFirst = (*all)->blocks()[0].entries;
+    size_t mostRead = 0;
+    for (size_t bytes = 0; bytes < whole.size(); ++bytes) {
+        auto cut = readerOf(std::span(whole).first(bytes));
+        if (!cut) { // within the header
+            EXPECT_LT(bytes, (*all)->blocks()[0].offset) << cut.error().message;
+            continue;
+        }
+        EXPECT_NE((*cut)->notice().find("its end is missing"), std::string::npos) << bytes;
+        std::string problem;
+        const auto entries = entriesOf(**cut, &problem);
+        EXPECT_EQ(problem, "") << bytes;
+        EXPECT_TRUE(std::equal(entries.begin(), entries.end(), put.begin())) << bytes;
+        EXPECT_EQ(entries.size() >= inFirst, bytes >= second) << bytes;
+        mostRead = std::max(mostRead, entries.size());
+    }
+    EXPECT_EQ(mostRead, put.size()); // only the index is missing
+}
+
+TEST_F(RecordingFile, detectsEveryChangedByte) {
+    const auto put = writeSmall();
+    const Bytes whole = readWhole(path());
+    for (size_t at = 0; at < whole.size(); ++at) {
+        for (const uint8_t change : {0x01, 0x80, 0xff}) {
+            Bytes changed = whole;
+            changed[at] ^= std::byte{change};
+            auto reader = readerOf(changed);
+            std::string problem = reader ? (*reader)->notice() : reader.error().message;
+            if (reader) entriesOf(**reader, &problem);
+            EXPECT_NE(problem, "") << "byte " << at << " of " << whole.size() << ", changed by " << int{change};
+            EXPECT_EQ(problem.find('\n'), std::string::npos);
+        }
+    }
+}
+
+TEST_F(RecordingFile, reportsProblemAndRemedy) {
+    writeSmall();
+    const Bytes whole = readWhole(path());
+    const auto said = [&](size_t at, uint32_t value) {
+        Bytes changed = whole;
+        std::memcpy(changed.data() + at, &value, 4);
+        auto reader = readerOf(changed);
+        return reader ? "" : reader.error().message;
+    };
+    EXPECT_EQ(said(offsetof(Header, version), 2), "recording in memory has version 2 of the format, this Mural reads version 1; use the Mural that it was made with, or a newer one");
+    EXPECT_EQ(said(0, 0x464c457f), "in memory is not a recording of Mural; give a file that mural run --record has made");
+    EXPECT_EQ(said(offsetof(Header, aboutBytes), 0xffffffff), "recording in memory is damaged at byte 0: its header is longer than the file; take another copy of it, or record again");
+    EXPECT_EQ(TraceReader::open("/nowhere.mural").error().message, "recording /nowhere.mural: can't be read: No such file or directory; check the name");
+    EXPECT_EQ(TraceReader::open("/").error().message, "recording /: is not a file; give one that mural run --record has made");
+    EXPECT_EQ(TraceWriter::create("/nowhere/a.mural").error().message, "recording /nowhere/a.mural: can't be written: No such file or directory; give another place");
+}
+
+TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
+    const auto put = writeSmall();
+    const Bytes whole = readWhole(path());
+    const auto blocks = (*TraceReader::open(path()))->blocks();
+    for (uint64_t at = blocks[1].offset; at < blocks[1].offset + sizeof(BlockHeader) + 4; ++at) {
+        Bytes changed = whole;
+        changed[at] ^= std::byte{0xff};
+        auto reader = readerOf(changed);
+        ASSERT_TRUE(reader) << at << ": " << reader.error().message;
+        EXPECT_EQ(entriesOf(**reader).size(), blocks[0].entries) << at;
+        const auto verified = (*reader)->verify();
+        ASSERT_FALSE(verified) << at;
+        EXPECT_TRUE(verified.error().message.starts_with("recording in memory is damaged at byte " + std::to_string(blocks[1].offset) + ": ")) << verified.error().message;
+        EXPECT_TRUE(verified.error().message.ends_with("; the frames before it are good (1): keep them by mural trim in memory 1 -o good.mural, take another copy of it, or record again"))
+            << verified.error().message;
+    }
+    Bytes changed = whole;
+    changed[blocks[0].offset + sizeof(BlockHeader)] ^= std::byte{0xff};
+    EXPECT_EQ((*readerOf(changed))->verify().error().message, "recording in memory is damaged at byte " + std::to_string(blocks[0].offset) +
+                                                                  ": a block is not as it was written, and no frame ends before it; take another copy of it, or record again");
+}
+
+TEST_F(RecordingFile, explainsMissingFrames) {
+    writeSmall();
+    const Bytes whole = readWhole(path());
+    const uint64_t first = (*TraceReader::open(path()))->blocks()[0].offset;
+    const size_t bytes = first + sizeof(BlockHeader) + 1;
+    EXPECT_EQ((*readerOf(std::span(whole).first(bytes)))->noSuchFrames(0).message,
+              "recording in memory has no whole frame: its end is missing (was the head killed, or the file cut?), what is whole ends at byte " + std::to_string(first) + " of " +
+                  std::to_string(bytes) + "; take another copy of it, or record again");
+    EXPECT_EQ((*readerOf(whole))->noSuchFrames(0).message, "recording in memory has no frame: its program showed no picture; mural dump prints its calls");
+    EXPECT_EQ((*readerOf(whole))->noSuchFrames(3).message, "the recording has 3 frames; give some of them, such as 1-3");
+    EXPECT_EQ((*readerOf(std::span(whole).first(whole.size() - 1)))->noSuchFrames(3).message,
+              "the recording has 3 frames, as its end is missing (was the head killed, or the file cut?); give some of them, such as 1-3");
+}
+
+TEST_F(RecordingFile, rejectsOtherCommandTables) {
+    auto writer = TraceWriter::create(path());
+    ASSERT_TRUE((*writer)->begin({"9.9", {}, ""}, wire::kVersion, registryDigest() ^ 1));
+    ASSERT_TRUE((*writer)->finish());
+    auto reader = TraceReader::open(path());
+    ASSERT_FALSE(reader);
+    EXPECT_EQ(reader.error().message, "recording " + path() + " was made by a Mural with other commands (version 9.9); use that one to read it, or record again");
+}
+
+TEST_F(RecordingFile, dividesLargeFramesIntoBoundedBlocks) {
+    auto writer = TraceWriter::create(path());
+    TraceWriter& w = **writer;
+    ASSERT_TRUE(w.begin({}, wire::kVersion, registryDigest()));
+    const std::vector<uint32_t> noise(200'000, 7);
+    PacketBuilder large;
+    large.longRecord(wire::kOpBlobData, noise);
+    for (int i = 0; i < 40; ++i) ASSERT_TRUE(w.append({wire::streamOf(1, 0), 0, large.bytes()})); // 32 MB, one frame
+    ASSERT_TRUE(w.append({wire::streamOf(1, 0), 0, PacketBuilder().swap(1, 1).bytes()}));
+    ASSERT_TRUE(w.flush());
+    ASSERT_TRUE(w.finish());
+    auto reader = TraceReader::open(path());
+    ASSERT_TRUE(reader);
+    EXPECT_GE((*reader)->blocks().size(), 4u);
+    EXPECT_EQ(entriesOf(**reader).size(), 41u);
+    EXPECT_EQ((*reader)->frames(), 1);
+}
+
+TEST(RecordWalk, stopsAtAnInvalidRecord) {
+    const uint32_t endless[] = {wire::kOpFinish | 2u << 16, 0, 99u << 16 | wire::kOpSwap, 0};
+    RecordWalk walk(std::as_bytes(std::span(endless)));
+    RecordView r;
+    EXPECT_TRUE(walk.next(r));
+    EXPECT_EQ(r.opcode, wire::kOpFinish);
+    EXPECT_FALSE(walk.next(r));
+    EXPECT_TRUE(walk.malformed());
+    const uint32_t shortLong[] = {0xffff0000u | wire::kOpSwap, 1};
+    RecordWalk second(std::as_bytes(std::span(shortLong)));
+    EXPECT_FALSE(second.next(r));
+    EXPECT_TRUE(second.malformed());
+    const uint32_t zero[] = {0};
+    RecordWalk third(std::as_bytes(std::span(zero)));
+    EXPECT_FALSE(third.next(r));
+    EXPECT_TRUE(third.malformed());
+}
+
+TEST(RecordedFrames, countTheMainWindowOnly) {
+    WallFrames frames;
+    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().window(1, 10, 10).window(2, 20, 20).swap(1, 1).bytes()), 1u);
+    // the larger one is now the main window
+    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(2, 2).swap(1, 3).bytes()), 1u);
+    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().record(wire::kOpDestroyWindow, {2}).swap(1, 4).bytes()), 1u);
+    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 0).bytes()), 0u); // not shown
+    EXPECT_EQ(frames.frames(), 3);
+}
+
+} // namespace
+} // namespace mural::trace

@@ -1,0 +1,106 @@
+// The recording thread: order, a full disk, a blocked disk, a killed head.
+#include <filesystem>
+#include <gtest/gtest.h>
+
+#include "streamcodec/trace/stream_recorder.hpp"
+#include "tests/trace/recorded.hpp"
+
+namespace mural::trace {
+namespace {
+
+class Recorder : public ::testing::Test {
+protected:
+    Recorder() : path_((std::filesystem::temp_directory_path() / ("mural-recorder-test." + std::to_string(getpid()))).string()) {}
+    ~Recorder() override { std::filesystem::remove(path_); }
+
+    std::unique_ptr<StreamRecorder> recorder(RecorderConfig config = {}, const std::string& path = "") {
+        config.say = [this](const std::string& line) { said_.push_back(line); };
+        auto made = StreamRecorder::create(path.empty() ? path_ : path, std::move(config));
+        EXPECT_TRUE(made);
+        return made ? std::move(*made) : nullptr;
+    }
+
+    const std::string path_;
+    std::vector<std::string> said_;
+};
+
+TEST_F(Recorder, keepsOrderWithASmallQueue) {
+    RecorderConfig config;
+    config.queueBytes = 256;
+    auto r = recorder(config);
+    r->begin({});
+    r->event({Event::ClientCame, 1, 5, "x"});
+    for (uint32_t i = 1; i <= 1000; ++i) r->packet(wire::streamOf(1, i % 3), PacketBuilder().swap(1, i).bytes());
+    r->packet(0, PacketBuilder().record(1, {}).bytes()); // the head's own commands do not belong to programs
+    const WriterTotals totals = r->finish(Deadline::inMs(20'000));
+    EXPECT_EQ(totals.frames, 1000);
+    auto reader = TraceReader::open(path_);
+    ASSERT_TRUE(reader) << reader.error().message;
+    const auto entries = entriesOf(**reader);
+    ASSERT_EQ(entries.size(), 1001u);
+    for (uint32_t i = 1; i <= 1000; ++i) {
+        uint32_t frame = 0;
+        std::memcpy(&frame, entries[i].payload.data() + 8, 4);
+        ASSERT_EQ(frame, i);
+        ASSERT_EQ(entries[i].stream, wire::streamOf(1, i % 3));
+        ASSERT_GE(entries[i].timeNs, entries[i - 1].timeNs);
+    }
+    EXPECT_TRUE(said_.empty());
+}
+
+TEST_F(Recorder, endsWithTheLastFrame) {
+    RecorderConfig config;
+    config.lastFrame = 3;
+    auto r = recorder(config);
+    r->begin({});
+    for (uint32_t i = 1; i <= 10; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
+    r->event({Event::ClientGone, 1, 0, ""});
+    EXPECT_EQ(r->finish(Deadline::inMs(20'000)).frames, 3);
+    auto reader = TraceReader::open(path_);
+    ASSERT_TRUE(reader);
+    EXPECT_EQ(entriesOf(**reader).size(), 4u);
+}
+
+TEST_F(Recorder, stopsWithOneLineOnAFullDisk) {
+    auto r = recorder({}, "/dev/full");
+    r->begin({});
+    for (uint32_t i = 1; i <= 100; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
+    r->finish(Deadline::inMs(20'000));
+    r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 101).bytes());
+    ASSERT_EQ(said_.size(), 1u);
+    EXPECT_EQ(said_[0], "recording /dev/full: can't be written: No space left on device; make room there, or give another place; the recording ends after 0 frames, the program goes on");
+}
+
+TEST_F(Recorder, stopsWithOneLineOnABlockedDisk) {
+    RecorderConfig config;
+    config.queueBytes = 1024;
+    config.patienceMs = 50;
+    auto r = recorder(config); // not started: nothing is written
+    for (uint32_t i = 1; i <= 1000; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
+    ASSERT_EQ(said_.size(), 1u);
+    EXPECT_NE(said_[0].find("nothing was written for"), std::string::npos) << said_[0];
+}
+
+TEST_F(Recorder, preservesDataOlderThanASecondWhenTheHeadIsKilled) {
+    RecorderConfig config;
+    config.wholeEveryMs = 20;
+    {
+        auto r = recorder(config);
+        r->begin({});
+        r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 1).bytes());
+        const Deadline deadline = Deadline::inMs(20'000);
+        while (!deadline.passed()) {
+            auto reader = TraceReader::open(path_);
+            if (reader && (*reader)->frames() == 1) break;
+            usleep(5000);
+        }
+    } // without finish(): as if killed
+    auto reader = TraceReader::open(path_);
+    ASSERT_TRUE(reader) << reader.error().message;
+    EXPECT_EQ((*reader)->frames(), 1);
+    EXPECT_NE((*reader)->notice(), "");
+    EXPECT_EQ(entriesOf(**reader).size(), 1u);
+}
+
+} // namespace
+} // namespace mural::trace

@@ -1,0 +1,62 @@
+// Payload slots are unique, lowest first, so a reader that returns them at once uses few.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <random>
+#include <set>
+
+#include "transport/rsp/protocol/slot_pool.hpp"
+
+namespace mural::rsp {
+namespace {
+
+constexpr uint32_t kPlaces = 256;
+constexpr size_t kBytes = 100;
+
+TEST(SlotPool, providesTheRequestedNumber) {
+    SlotPool places(kBytes, kPlaces);
+    std::set<uint32_t> taken;
+    for (uint32_t i = 0; i < kPlaces; ++i) {
+        const uint32_t place = places.take();
+        EXPECT_LT(place, kPlaces);
+        EXPECT_TRUE(taken.insert(place).second) << place << " came twice";
+        EXPECT_EQ(places.at(place), places.at(0) + place * kBytes);
+    }
+}
+
+TEST(SlotPool, usesFewSlotsWhenTheyAreReturnedAtOnce) {
+    SlotPool places(kBytes, kPlaces);
+    uint32_t highest = 0;
+    std::deque<uint32_t> held;
+    for (int i = 0; i < 10'000; ++i) {
+        held.push_back(places.take());
+        highest = std::max(highest, held.back());
+        if (held.size() == 40) {
+            for (; held.size() > 8; held.pop_front()) places.giveBack(held.front());
+        }
+    }
+    EXPECT_EQ(highest, 39u);
+}
+
+TEST(SlotPool, returnsTheLowestFreeSlotInAnyOrder) {
+    constexpr unsigned kSeed = 7;
+    std::mt19937 random(kSeed);
+    SlotPool places(kBytes, kPlaces);
+    std::set<uint32_t> free, held;
+    for (uint32_t i = 0; i < kPlaces; ++i) free.insert(i);
+    for (int i = 0; i < 20'000; ++i) {
+        if (held.empty() || (!free.empty() && random() % 2 == 0)) {
+            const uint32_t place = places.take();
+            ASSERT_EQ(place, *free.begin()) << "seed " << kSeed << ", step " << i;
+            held.insert(free.extract(free.begin()).value());
+        } else {
+            const auto it = std::next(held.begin(), static_cast<std::ptrdiff_t>(random() % held.size()));
+            places.giveBack(*it);
+            free.insert(held.extract(it).value());
+        }
+    }
+}
+
+} // namespace
+} // namespace mural::rsp

@@ -1,0 +1,109 @@
+#include "tools/mural/netperf/stream_pattern.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "common/base/little_endian.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+// Word n is (n + 1) times an odd number modulo 2^64: all words differ, and the inverse gives their position.
+constexpr size_t kWordBytes = 8;
+constexpr uint64_t kFactor = 0x9e3779b97f4a7c15u;
+
+constexpr uint64_t inverseOf(uint64_t odd) {
+    uint64_t inverse = odd; // 3 correct bits; each Newton step doubles them
+    for (int i = 0; i < 5; ++i) inverse *= 2 - odd * inverse;
+    return inverse;
+}
+static_assert(kFactor * inverseOf(kFactor) == 1);
+
+constexpr uint64_t kMaxWords = uint64_t{1} << 60; // larger results are chance
+
+bool isFilled(std::span<const std::byte> bytes, uint64_t place) {
+    std::array<std::byte, kWordBytes> right;
+    const auto expected = std::span(right).first(bytes.size());
+    fillPattern(expected, place);
+    return std::ranges::equal(bytes, expected);
+}
+
+// Compares without building a copy, whose cost would distort netperf's measurement.
+bool isPattern(std::span<const std::byte> bytes, uint64_t place) {
+    const size_t before = std::min(bytes.size(), (kWordBytes - place % kWordBytes) % kWordBytes);
+    const auto words = bytes.subspan(before, (bytes.size() - before) / kWordBytes * kWordBytes);
+    uint64_t word = ((place + before) / kWordBytes + 1) * kFactor;
+    uint64_t wrong = 0;
+    for (size_t at = 0; at < words.size(); at += kWordBytes, word += kFactor) wrong |= loadLittle<uint64_t>(words.data() + at) ^ word;
+    const size_t behind = before + words.size();
+    return wrong == 0 && isFilled(bytes.first(before), place) && isFilled(bytes.subspan(behind), place + behind);
+}
+
+} // namespace
+
+void fillPattern(std::span<std::byte> into, uint64_t place) {
+    uint64_t word = (place / kWordBytes + 1) * kFactor;
+    const size_t skipped = place % kWordBytes;
+    std::array<std::byte, kWordBytes> cut;
+    if (skipped != 0) {
+        storeLittle(cut.data(), word);
+        const size_t count = std::min(into.size(), kWordBytes - skipped);
+        std::copy_n(cut.begin() + static_cast<std::ptrdiff_t>(skipped), count, into.begin());
+        into = into.subspan(count);
+        word += kFactor;
+    }
+    for (; into.size() >= kWordBytes; into = into.subspan(kWordBytes), word += kFactor) storeLittle(into.data(), word);
+    storeLittle(cut.data(), word);
+    std::copy_n(cut.begin(), into.size(), into.begin());
+}
+
+std::optional<uint64_t> findPattern(std::span<const std::byte> bytes) {
+    if (bytes.size() < kFindBytes) return {};
+    for (size_t skipped = 0; skipped < kWordBytes; ++skipped) {
+        const uint64_t word = loadLittle<uint64_t>(bytes.data() + skipped);
+        const uint64_t place = (word * inverseOf(kFactor) - 1) * kWordBytes;
+        if (place / kWordBytes >= kMaxWords || place < skipped) continue;
+        if (loadLittle<uint64_t>(bytes.data() + skipped + kWordBytes) != word + kFactor) continue;
+        return place - skipped;
+    }
+    return {};
+}
+
+void PatternCheck::take(std::span<const std::byte> bytes) {
+    if (!fault_.empty()) return;
+    if (found_) return compare(bytes);
+    first_.insert(first_.end(), bytes.begin(), bytes.end());
+    if (first_.size() < kFindBytes) return;
+    const auto place = findPattern(first_);
+    if (!place) {
+        fault_ = "the first bytes that came are of no place in the stream";
+        return;
+    }
+    found_ = true;
+    place_ = beganAt_ = *place;
+    compare(first_);
+    first_ = {};
+}
+
+void PatternCheck::compare(std::span<const std::byte> bytes) {
+    constexpr size_t kPieceBytes = 4096;
+    while (!bytes.empty()) {
+        const auto piece = bytes.first(std::min(bytes.size(), kPieceBytes));
+        if (!isPattern(piece, place_)) {
+            std::vector<std::byte> expected(piece.size());
+            fillPattern(expected, place_);
+            const auto wrongAt = static_cast<size_t>(std::ranges::mismatch(piece, expected).in1 - piece.begin());
+            const uint64_t place = place_ + wrongAt;
+            const auto came = findPattern(bytes.subspan(wrongAt));
+            fault_ = came && *came != place ? fmt::format("at byte {} came what belongs at byte {}", place, *came) : fmt::format("byte {} was changed", place);
+            return;
+        }
+        place_ += piece.size();
+        bytes = bytes.subspan(piece.size());
+    }
+}
+
+} // namespace mural::cli

@@ -1,0 +1,66 @@
+// `mural run`: checks everything that can fail before it starts a process, then runs the session.
+#include <cstdio>
+
+#include "nodes/launch/gl_libraries.hpp"
+#include "nodes/launch/program_check.hpp"
+#include "tools/mural/commands.hpp"
+#include "tools/mural/run/prepare_run.hpp"
+#include "tools/mural/run/run_session.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+// A program whose GL library is not GLVND's needs the preloaded front.
+launch::Fronts chooseFronts(const RunOptions& options, const launch::ProgramCheck& program, const launch::Environment& environment) {
+    if (options.front == FrontChoice::Preload) return launch::Fronts::VendorAndPreload;
+    if (options.front == FrontChoice::Glvnd || program.binary.empty()) return launch::Fronts::Vendor;
+    const auto own = launch::ownGlLibraries(program.binary, environment);
+    if (own.empty()) return launch::Fronts::Vendor;
+    if (options.config.explain) Console(true).error("front: preloaded, for " + own.front() + ", which GLVND does not lead to");
+    return launch::Fronts::VendorAndPreload;
+}
+
+int complain(const std::string& text, int status) {
+    Console(true).error(text);
+    return status;
+}
+
+} // namespace
+
+int runCommand(const RunOptions& options) {
+    if (!options.configText.empty()) {
+        std::fputs(options.configText.c_str(), stdout);
+        return 0;
+    }
+    PreparedRun run;
+    run.config = options.config;
+    run.config.session = newSessionName();
+    run.program = options.program;
+    run.reportFile = options.reportFile;
+    run.programEnvironment = launch::Environment::current();
+    run.headEnvironment = run.programEnvironment;
+    launch::removeCapture(run.headEnvironment);
+
+    const launch::ProgramCheck program = launch::checkProgram(options.program.front(), run.programEnvironment.get("PATH").value_or("/usr/bin:/bin"));
+    if (!program.ok()) return complain(program.message, program.exitStatus);
+    run.programPath = program.path;
+    const auto library = launch::findCaptureLibrary(launch::ownBinary());
+    if (!library.ok()) return complain(library.error().message, launch::kExitUsage);
+    const launch::Fronts fronts = chooseFronts(options, program, run.programEnvironment);
+    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, fronts); !r) return complain(r.error().message, launch::kExitUsage);
+    if (auto r = checkOutput(run.config.out); !r) return complain(r.error().message, launch::kExitUsage);
+    if (auto r = checkReport(run.reportFile); !r) return complain(r.error().message, launch::kExitUsage);
+    if (auto r = chooseDisplay(options, true, run); !r) return complain(r.error().message, launch::kExitUsage);
+
+    if (!options.native) createSessionSocket(run);
+
+    run.headCommand = {launch::ownBinary(), "head"};
+    Console console(options.quiet);
+    for (const std::string& notice : options.notices) console.say(notice);
+    for (const std::string& notice : {unseenPictures(options, run), earlierPictures(run.config.out)})
+        if (!notice.empty()) console.say(notice);
+    return options.native ? runNative(run, console) : runSession(run, console);
+}
+
+} // namespace mural::cli

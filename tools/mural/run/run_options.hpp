@@ -1,0 +1,52 @@
+// The command line of `mural run` as a value.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace mural::cli {
+
+// Selects whether GL libraries outside of GLVND are captured as well.
+enum class FrontChoice { Auto, Glvnd, Preload };
+
+struct RunOptions {
+    SessionConfig config; // everything except session and displayName
+    bool displayChosen = false; // --display was given
+    FrontChoice front = FrontChoice::Auto;
+    bool native = false;
+    bool quiet = false;
+    std::string configText; // --print-config: equivalent configuration; empty: not requested
+    std::vector<std::string> notices; // warnings about the configuration file
+    std::string reportFile; // --report; empty: none
+    std::vector<std::string> program; // name and arguments
+};
+
+// Raw texts of the command line, validated by runOptionsFrom().
+struct RunArguments {
+    using Text = std::optional<std::string>;
+    Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front, restartNodes, leastNodes;
+    Text config, canvas, frusta, modelUnit, economy, store;
+    std::vector<std::string> layouts;
+    bool here = false, printConfig = false;
+    Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
+    Text localNodes, frames, latency, report, record;
+    std::string verify; // empty: not given
+    bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;
+    std::vector<std::string> program;
+};
+
+// Adds the options to the subcommand; `arguments` must outlive the parsing.
+void describeRunOptions(CLI::App& command, RunArguments& arguments);
+
+// Returns one error, for the first invalid argument.
+Result<RunOptions> runOptionsFrom(const RunArguments& arguments);
+
+} // namespace mural::cli

@@ -1,0 +1,273 @@
+#include "tools/mural/run/run_session.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <optional>
+
+#include "common/base/pause_watch.hpp"
+#include "nodes/launch/bypass_watch.hpp"
+#include "nodes/launch/program_check.hpp"
+#include "nodes/launch/program_supervisor.hpp"
+#include "tools/mural/head_control.hpp"
+#include "tools/mural/run/program_loop.hpp"
+
+namespace mural::cli {
+
+namespace {
+
+constexpr int64_t kReadyLocalMs = 60'000;
+constexpr int64_t kReadyRemoteMs = 120'000;
+// A launcher may start the program and end. Its children have this time until their first context…
+constexpr int64_t kFirstContextMs = 30'000;
+// …and its remaining processes have this time after the last context has ended.
+constexpr int64_t kAfterLastContextMs = 1'000;
+constexpr int64_t kWaitNoticeMs = 3'000;
+// A program without a context for this time may draw without the capture library. Its libraries are then examined.
+constexpr int64_t kUnseenMs = 10'000;
+// Interval of the check for processes that run without the capture library.
+constexpr int64_t kUncapturedMs = 1'000;
+// Permitted silence of the head after the program's end, while it drains and writes pictures.
+constexpr int64_t kFinishSilenceMs = 120'000;
+constexpr int kWallLost = 1; // exit status, whatever the ended program's status is
+
+class Session {
+public:
+    Session(PreparedRun& run, Console& console, launch::ProgramSupervisor& program, launch::BypassWatch& bypass)
+        : run_(run), console_(console), program_(program), bypass_(bypass) {}
+
+    int perform() {
+        auto head = HeadControl::start(run_.headCommand, run_.headEnvironment);
+        if (!head) return fail(head.error().message);
+        head_ = std::move(head.value());
+        program_.leaveAlone(head_->process().pid());
+        head_->send(toJson(run_.config));
+        if (const auto failed = awaitReady()) return *failed;
+        run_.programEnvironment.set("MURAL_NOTES", bypass_.notesPath());
+        if (!startProgram(run_, program_, console_)) return launch::kExitNotExecutable;
+        lookAt_ = Deadline::inMs(kUnseenMs);
+        uncapturedAt_ = Deadline::inMs(kUncapturedMs);
+        whileRunning();
+        finish();
+        return framesReached_ ? 0 : wallLost_ ? kWallLost : program_.exitStatus();
+    }
+
+private:
+    int fail(const std::string& text) {
+        console_.error(text);
+        return launch::kExitUsage;
+    }
+
+    // Returns nullopt when programs may connect, otherwise the exit status.
+    std::optional<int> awaitReady() {
+        const Deadline deadline = Deadline::inMs(run_.config.hosts.empty() ? kReadyLocalMs : kReadyRemoteMs);
+        while (!ready_) {
+            turn();
+            if (failure_) return fail(*failure_);
+            if (program_.stopSignal() != 0) return 128 + program_.stopSignal();
+            if (!head_->connected() && !ready_) {
+                head_->process().waitUntil(Deadline::inMs(1000));
+                return fail("the head process ended before the session began (" + head_->process().describeEnd() + "); see mural doctor");
+            }
+            if (deadline.passed()) return fail("the render nodes were not ready in time; see mural doctor, or try --local-nodes 1");
+        }
+        return {};
+    }
+
+    void whileRunning() {
+        if (framesReached_) program_.end(kEndGraceMs); // the event arrived before the program was started
+        while (program_.programRunning()) turn();
+        if (framesReached_ || wallLost_ || program_.askedToStop()) {
+            endDescendants();
+            return;
+        }
+        awaitDescendants();
+        if (run_.display) endDescendants(); // their private display ends with this process
+    }
+
+    // Waits for programs that have left their launcher. They are still descendants of this process.
+    void awaitDescendants() {
+        const Deadline noticeAt = Deadline::inMs(kWaitNoticeMs);
+        Deadline until = Deadline::never();
+        bool drawing = true;
+        bool noticed = false;
+        while (program_.anyoneLeft() && !program_.askedToStop()) {
+            if (drawing && clients_ == 0) until = Deadline::inMs(everClients_ ? kAfterLastContextMs : kFirstContextMs);
+            drawing = clients_ > 0;
+            if (!drawing && until.passed()) return;
+            if (!noticed && noticeAt.passed()) {
+                console_.say("the program has left processes behind; waiting for them (Ctrl-C ends this)");
+                noticed = true;
+            }
+            turn();
+            if (framesReached_) return;
+        }
+    }
+
+    void endDescendants() {
+        program_.end(kEndGraceMs);
+        const Deadline deadline = Deadline::inMs(2 * kEndGraceMs);
+        while (program_.anyoneLeft() && !deadline.passed()) turn();
+    }
+
+    void finish() {
+        finishing_ = true;
+        const int signalBefore = program_.stopSignal();
+        if (head_->connected()) head_->send(R"({"command":"finish"})");
+        silenceUntil_ = Deadline::inMs(kFinishSilenceMs);
+        while (head_->connected() && !report_) {
+            turn();
+            if (program_.stopSignal() != signalBefore) break; // the user has requested the end
+            if (silenceUntil_.passed()) {
+                console_.error("the head does not finish; it is ended");
+                break;
+            }
+        }
+        if (report_) tellReport();
+    }
+
+    void tellReport() {
+        writeReport(run_, report_->json, console_);
+        for (const std::string& line : reportLines(*report_)) console_.say(line);
+        tellUnsaved();
+        if (report_->frames > 0 || bypassSaid_) return;
+        console_.error("no frame was captured: " + whyNoFrame());
+    }
+
+    void tellUnsaved() {
+        const auto& wanted = run_.config.saveFrames; // in ascending order
+        if (wanted.empty() || report_->frames == 0 || wanted.back() <= report_->frames) return;
+        const auto first = std::upper_bound(wanted.begin(), wanted.end(), report_->frames);
+        console_.error(fmt::format("--save: frame {} was not saved{}, as the program showed {}", *first, std::next(first) == wanted.end() ? "" : ", nor those behind it", report_->frames));
+    }
+
+    std::string whyNoFrame() {
+        const std::string& name = run_.program.front();
+        if (everClients_) return name + " made a GL context but never showed a picture (no buffer swap)";
+        const bool failed = program_.exitStatus() != 0 && !program_.askedToStop();
+        if (std::string bypass = bypass_.aboutEnded(failed); !bypass.empty()) return bypass;
+        if (failed) return name + " ended before it made a GL context (" + program_.describeEnd() + "); what it said is above. Try it without Mural, or by mural run --native; mural doctor looks at display and GL";
+        return name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its children?";
+    }
+
+    // Reports programs that draw without the capture library: their own notes, and at most one line from an
+    // examination.
+    void watchBypass() {
+        for (const std::string& line : bypass_.news()) {
+            console_.error(line);
+            bypassSaid_ = true;
+        }
+        sayUncaptured();
+        if (!lookAt_.passed()) return;
+        lookAt_ = Deadline::inMs(kUnseenMs);
+        if (everClients_ || bypassSaid_) return;
+        const std::string line = bypass_.lookAt(program_.processes());
+        if (line.empty()) return;
+        console_.error(line);
+        bypassSaid_ = true;
+    }
+
+    // Reports processes that run without the capture library, such as children of a shell whose environment was
+    // cleared.
+    void sayUncaptured() {
+        if (!uncapturedAt_.passed() || finishing_) return;
+        uncapturedAt_ = Deadline::inMs(kUncapturedMs);
+        const std::string line = bypass_.uncaptured(program_.processes());
+        if (line.empty()) return;
+        console_.error(line);
+        bypassSaid_ = true;
+    }
+
+    void turn() {
+        const bool wasConnected = head_->connected();
+        waitTurn(run_, program_, wasConnected ? head_->fd() : -1);
+        for (const std::string& line : head_->receive()) take(line);
+        watchBypass();
+        if (wasConnected && !head_->connected() && ready_ && !report_) tellHeadLost();
+    }
+
+    void tellHeadLost() {
+        clients_ = 0;
+        head_->process().waitUntil(Deadline::inMs(500));
+        console_.error("the head process was lost (" + head_->process().describeEnd() + "); " +
+                       (!finishing_ ? "the program goes on alone, without the wall" : "there is no report"));
+        endUncounted();
+    }
+
+    // Ends the program if --frames was given, because its frames are not counted any more.
+    void endUncounted() {
+        if (finishing_ || wallLost_ || run_.config.frames == 0) return;
+        wallLost_ = true;
+        console_.error("nobody counts its frames any more, which --frames asked for: the program is ended");
+        program_.end(kEndGraceMs);
+    }
+
+    void take(const std::string& line) {
+        silenceUntil_ = Deadline::inMs(kFinishSilenceMs);
+        auto parsed = parseHeadEvent(line);
+        if (!parsed) {
+            console_.error(parsed.error().message);
+            return;
+        }
+        const HeadEvent& event = parsed.value();
+        switch (event.kind) {
+        case HeadEvent::Kind::Ready:
+            ready_ = true;
+            if (run_.config.explain) {
+                for (const std::string& text : event.explain) console_.error(text);
+            }
+            break;
+        case HeadEvent::Kind::Error: failure_ = event.text; break;
+        case HeadEvent::Kind::Clients:
+            clients_ = event.clients;
+            everClients_ = everClients_ || clients_ > 0;
+            break;
+        case HeadEvent::Kind::Frame: console_.progress(event.frame, event.framesPerSecond, event.bytesPerFrame); break;
+        case HeadEvent::Kind::FramesReached:
+            framesReached_ = true;
+            program_.end(kEndGraceMs);
+            break;
+        case HeadEvent::Kind::WallLost: endUncounted(); break;
+        case HeadEvent::Kind::Say: console_.error(event.text); break;
+        case HeadEvent::Kind::Report: report_ = event.report; break;
+        case HeadEvent::Kind::Unknown: break;
+        }
+    }
+
+    PreparedRun& run_;
+    Console& console_;
+    launch::ProgramSupervisor& program_;
+    launch::BypassWatch& bypass_;
+    Deadline lookAt_ = Deadline::never();
+    Deadline uncapturedAt_ = Deadline::never();
+    bool bypassSaid_ = false;
+    std::unique_ptr<HeadControl> head_;
+    bool ready_ = false;
+    bool finishing_ = false;
+    bool framesReached_ = false;
+    bool wallLost_ = false; // lost before the requested frames were shown
+    bool everClients_ = false;
+    int64_t clients_ = 0;
+    std::optional<std::string> failure_;
+    std::optional<SessionReport> report_;
+    Deadline silenceUntil_ = Deadline::never();
+};
+
+} // namespace
+
+int runSession(PreparedRun& run, Console& console) {
+    const PauseWatch pauseWatch;
+    auto program = launch::ProgramSupervisor::create();
+    if (!program) {
+        console.error(program.error().message);
+        return launch::kExitUsage;
+    }
+    auto bypass = launch::BypassWatch::create();
+    if (!bypass) {
+        console.error(bypass.error().message);
+        return launch::kExitUsage;
+    }
+    if (run.display) program.value()->leaveAlone(run.display->pid());
+    return Session(run, console, *program.value(), *bypass.value()).perform();
+}
+
+} // namespace mural::cli

@@ -1,0 +1,123 @@
+// Shared memory between two processes. One inherited descriptor suffices: a Unix socket that transfers the memory's
+// descriptor and then reports liveness.
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/socket.h>
+
+#include "transport/shm/ring_connection.hpp"
+#include "transport/system_error.hpp"
+
+namespace mural {
+
+namespace {
+
+constexpr char kGreeting = 'M'; // SCM_RIGHTS requires at least one byte of data
+
+// Room for exactly one descriptor.
+union DescriptorMessage {
+    cmsghdr alignment;
+    char bytes[CMSG_SPACE(sizeof(int))];
+};
+
+Result<void> sendDescriptor(int socket, int fd) {
+    char greeting = kGreeting;
+    iovec part{&greeting, 1};
+    DescriptorMessage control{};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.bytes;
+    message.msg_controllen = sizeof control.bytes;
+    cmsghdr* header = CMSG_FIRSTHDR(&message);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(sizeof fd);
+    std::memcpy(CMSG_DATA(header), &fd, sizeof fd);
+    ssize_t sent = 0;
+    do {
+        sent = sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+    } while (sent < 0 && errno == EINTR);
+    if (sent != 1)
+        return Error{"shm: can't pass the memory's descriptor: " + errnoText(errno)};
+    return {};
+}
+
+// Never blocks: the offer is in the socket before the other process starts.
+Result<FileDescriptor> receiveDescriptor(int socket) {
+    char greeting = 0;
+    iovec part{&greeting, 1};
+    DescriptorMessage control{};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.bytes;
+    message.msg_controllen = sizeof control.bytes;
+    ssize_t got = 0;
+    do {
+        got = recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+    } while (got < 0 && errno == EINTR);
+    const std::string where = "shm: descriptor " + std::to_string(socket);
+    if (got < 0) {
+        return Error{where + ": " + errnoText(errno) +
+                     "; pass the one that offerSharedMemory gave"};
+    }
+    const cmsghdr* header = CMSG_FIRSTHDR(&message);
+    int fd = -1;
+    if (header != nullptr && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS &&
+        header->cmsg_len == CMSG_LEN(sizeof fd)) {
+        std::memcpy(&fd, CMSG_DATA(header), sizeof fd);
+    }
+    FileDescriptor memfd(fd);
+    if (got != 1 || greeting != kGreeting || !memfd.valid()) {
+        return Error{where +
+                     " carries no shared memory; was it opened before, or is the other end gone?"};
+    }
+    return memfd;
+}
+
+} // namespace
+
+Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes) {
+    FileDescriptor memfd;
+    auto memory = RingMemory::makeShared(capacityBytes, memfd);
+    if (!memory)
+        return memory.error();
+    int ends[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        return Error{"shm: socketpair: " + errnoText(errno) +
+                     "; raise the limit of open files (ulimit -n)"};
+    }
+    FileDescriptor mine(ends[0]);
+    FileDescriptor theirs(ends[1]);
+    const auto sent = sendDescriptor(mine.get(), memfd.get());
+    if (!sent)
+        return sent.error();
+    if (fcntl(theirs.get(), F_SETFD, 0) != 0) { // inherited on purpose
+        return Error{"shm: can't make descriptor inheritable: " + errnoText(errno)};
+    }
+    SharedMemoryOffer offer;
+    offer.connection = std::make_unique<RingConnection>(*memory, 0, std::move(mine), "shm:");
+    offer.peerFd = theirs.release();
+    return offer;
+}
+
+// Takes ownership of fd, even on failure. The child's own children must not inherit it: they would make a dead process
+// look alive.
+Result<std::unique_ptr<Connection>> openSharedMemory(int fd) {
+    FileDescriptor socket(fd);
+    if (fcntl(fd, F_SETFD, FD_CLOEXEC) != 0) {
+        return Error{"shm: descriptor " + std::to_string(fd) + ": " + errnoText(errno) +
+                     "; it must be inherited from the process that offered it"};
+    }
+    auto memfd = receiveDescriptor(fd);
+    if (!memfd)
+        return memfd.error();
+    auto memory = RingMemory::openShared(memfd->get());
+    if (!memory)
+        return memory.error();
+    return std::unique_ptr<Connection>(
+        std::make_unique<RingConnection>(*memory, 1, std::move(socket), "shm:"));
+}
+
+} // namespace mural
