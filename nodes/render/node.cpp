@@ -232,7 +232,7 @@ private:
         outputs.unsound = [this] { unsound(); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
         outputs.news = [this](const wire::DriverEvent& n, const std::string& text) {
-            if (!catchesUp_) tell(wire::NodeMessage::News, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
+            if (!catchesUp_) tell(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
         };
         if (composer_) outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule) { return composer_->compose(part, rule); };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };

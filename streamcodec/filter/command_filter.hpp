@@ -8,7 +8,7 @@
 // - a command whose reads are unknown,
 // - any command of another context of the share group.
 // A flush binds the object, sends the queue, and restores the previous binding. The filter follows bindings only. A
-// command without an effect rule (streamcodec/trace/kept) disables deferral for its share group.
+// command without an effect rule (streamcodec/snapshot) disables deferral for its share group.
 //
 // Assumption: calls that bind something are valid. A rejected upload is rejected at any position.
 #pragma once

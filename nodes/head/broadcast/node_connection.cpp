@@ -176,7 +176,7 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         forgetPictures(message);
         return handle([&] { return events_.nodeWindowGone(place_.node, message); });
     }
-    case NodeMessage::News:
+    case NodeMessage::DriverEvent:
         return readNews(header.sizeBytes);
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;

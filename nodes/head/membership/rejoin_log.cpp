@@ -12,9 +12,9 @@ namespace {
 
 constexpr int64_t kSliceMs = 100;
 
-std::unique_ptr<trace::RejoinLog> emptyStream(uint64_t mostBytes) {
+std::unique_ptr<trace::StreamSnapshot> emptyStream(uint64_t mostBytes) {
     // Drops the message, because another component reports nodes that cannot return.
-    return std::make_unique<trace::RejoinLog>(static_cast<size_t>(mostBytes), [](const std::string&) {});
+    return std::make_unique<trace::StreamSnapshot>(static_cast<size_t>(mostBytes), [](const std::string&) {});
 }
 
 } // namespace

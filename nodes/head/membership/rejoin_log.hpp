@@ -1,5 +1,5 @@
 // The rejoin log, from which restarted nodes receive snapshots: the shortest known stream to the current state
-// (streamcodec/trace/kept). A background thread reduces the log, so that senders never wait for it.
+// (streamcodec/snapshot). A background thread reduces the log, so that senders never wait for it.
 #pragma once
 
 #include <atomic>
@@ -20,7 +20,7 @@
 #include "streamcodec/wire/wire.hpp"
 
 namespace mural::trace {
-class RejoinLog;
+class StreamSnapshot;
 } // namespace mural::trace
 
 namespace mural {
@@ -76,7 +76,7 @@ private:
     bool inHand_ = false; // the thread is processing an entry
     bool stop_ = false;
 
-    std::unique_ptr<trace::RejoinLog> kept_; // owned by the thread; by snapshot() while the thread is paused
+    std::unique_ptr<trace::StreamSnapshot> kept_; // owned by the thread; by snapshot() while the thread is paused
     std::map<uint32_t, uint32_t> frames_; // the same; last frame by program
     std::mutex snapshots_; // serialises snapshot()
     std::thread thread_;

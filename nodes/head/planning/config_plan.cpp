@@ -197,7 +197,7 @@ private:
         // the destination's own picture comes first
         std::stable_partition(draws.begin(), draws.end(), [](const Draw* d) { return d->context.channel == d->context.destination; });
         std::vector<Arrival> arrivals;
-        std::vector<compound::Piece> pieces;
+        std::vector<compound::Rect> pieces;
         for (const Draw* d : draws) {
             if (d->flow.parts.empty()) plan_.explain.push_back(placeOf(d->context.compound) + ": no frame takes what is drawn here to the wall");
             for (const compound::ShownPart& p : d->flow.parts) {
@@ -208,7 +208,7 @@ private:
                 pieces.push_back({static_cast<int>(known - arrivals.begin()), compose(d->area, p.to)});
             }
         }
-        std::vector<compound::Piece> needed;
+        std::vector<compound::Rect> needed;
         for (const compound::Cell& cell : compound::cellsOf(pieces)) {
             std::vector<Range> drawn;
             // of two draws with the same range the first one counts, because a depth test keeps existing pixels

@@ -155,7 +155,7 @@ private:
         if (!behaviour_.news.empty()) {
             const wire::DriverEvent news{client, 7, static_cast<uint32_t>(wire::DriverEventKind::DebugMessage), 1, 2, static_cast<uint32_t>(setup_.node), 4,
                                   static_cast<uint32_t>(behaviour_.news.size())};
-            sendStruct(wire::NodeMessage::News, news, std::as_bytes(std::span(behaviour_.news)));
+            sendStruct(wire::NodeMessage::DriverEvent, news, std::as_bytes(std::span(behaviour_.news)));
         }
         wire::FrameDoneMessage done{};
         done.client = client;
