@@ -232,11 +232,9 @@ void noteFlush(const ThreadState& t, Window& w) {
 bool drewSinceFlush(const ThreadState& t, const Window& w) {
     if (!w.lastFlush || w.lastFlushChunk != chunkUse(t)) return true;
     for (const std::byte* p = w.lastFlush; p < t.cursor;) {
-        uint32_t head[2] = {};
-        std::memcpy(head, p, t.cursor - p >= 8 ? 8 : 4);
-        const uint32_t words = head[0] >> 16 == record::kLongForm ? head[1] : head[0] >> 16;
-        if (words == 0 || drawsIntoWindow(head[0] & 0xffff)) return true;
-        p += size_t{words} * 4;
+        const record::Header header = record::readHeader(p, static_cast<size_t>(t.cursor - p));
+        if (!header || drawsIntoWindow(header.opcode)) return true;
+        p += header.sizeBytes;
     }
     return false;
 }

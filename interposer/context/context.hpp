@@ -12,7 +12,7 @@
 #include "interposer/readback/query_results.hpp"
 #include "interposer/context/thread_state.hpp"
 #include "interposer/memory/vertex_arrays.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 
@@ -98,7 +98,7 @@ struct Context {
     VertexArrayMirror arrays;
     GLenum stashedError = 0; // an error raised by our own queries, for the program's next glGetError
     DebugListener* debug = nullptr; // the program's debug callback and the messages that it has received
-    // number of errors that the program has received; the nodes keep the same count (wire::kOpErrorTold)
+    // number of errors that the program has received; the nodes keep the same count (wire::kOpErrorReported)
     uint32_t errorsTold = 0;
     bool outOfMemoryDue = false;    // reported by a node, not yet by glGetError
     bool keepsUnflushed = false;    // KHR_context_flush_control: releasing it flushes nothing

@@ -89,7 +89,7 @@ void requestFinish(ThreadState& t, uint32_t request) { fixed(t, wire::kOpFinish,
 void beginConditional(ThreadState& t, bool draws) { fixed(t, wire::kOpBeginConditional, uint32_t{draws}); }
 void requestProgram(ThreadState& t, uint32_t request, GLuint program) { fixed(t, wire::kOpRequestProgram, request, program); }
 void drawAll(ThreadState& t) { fixed(t, wire::kOpDrawAll); }
-bool errorTold(ThreadState& t) { return fixed(t, wire::kOpErrorTold); }
+bool errorTold(ThreadState& t) { return fixed(t, wire::kOpErrorReported); }
 void queryKnown(ThreadState& t, GLuint query, bool passed) { fixed(t, wire::kOpQueryKnown, query, uint32_t{passed}); }
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
     fixed(t, wire::kOpRequestBuffer, request, buffer, offset, sizeBytes);

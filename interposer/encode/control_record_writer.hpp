@@ -3,7 +3,7 @@
 
 #include "interposer/encode/encode_support.hpp"
 #include "streamcodec/wire/client_arrays.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::records {
 

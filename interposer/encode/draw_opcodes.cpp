@@ -1,7 +1,7 @@
 #include "interposer/encode/draw_opcodes.hpp"
 
 #include "streamcodec/command_traits.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -7,7 +7,7 @@
 
 #include "common/ipc/capture_ring.hpp"
 #include "interposer/context/thread_state.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

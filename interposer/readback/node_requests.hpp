@@ -13,7 +13,7 @@ struct ThreadState;
 struct Context;
 
 // Returns the rectangle of the current read framebuffer, tightly packed, combined from all nodes. The result is in
-// scratch memory of the thread. Null: no answer. `how`: flags of groupBytes (streamcodec/wire/wire.hpp).
+// scratch memory of the thread. Null: no answer. `how`: flags of groupBytes (streamcodec/wire/control_records.hpp).
 const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t how = 0, const char* by = __builtin_FUNCTION());
 void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const char* by = __builtin_FUNCTION());
 bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by = __builtin_FUNCTION());

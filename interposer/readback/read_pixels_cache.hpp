@@ -16,7 +16,7 @@ public:
     struct Kind {
         GLenum format, type;
         uint32_t groupBytes;
-        uint32_t how; // flags of wire.hpp
+        uint32_t how; // flags of streamcodec/wire/control_records.hpp
         bool operator==(const Kind&) const = default;
     };
     struct Box {

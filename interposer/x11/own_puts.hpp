@@ -6,7 +6,7 @@
 #include <xcb/xcb.h>
 
 #include "common/ipc/capture_ring.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

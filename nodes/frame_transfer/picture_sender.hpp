@@ -19,7 +19,7 @@
 #include "common/geometry/zoom.hpp"
 #include "nodes/frame_transfer/picture_packer.hpp"
 #include "nodes/frame_transfer/picture_read.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -12,7 +12,8 @@
 #include "streamcodec/delta/delta_decoder.hpp"
 #include "nodes/render/staged_multicast_join.hpp"
 #include "nodes/render/node.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "transport/connection.hpp"
 
 namespace mural {

@@ -128,7 +128,7 @@ private:
             line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
         calls_[clientInHand_] += replay_->counts().commands - callsBefore_;
         callsBefore_ = replay_->counts().commands;
-        return !unsound_ && !stuck_;
+        return !invalid_ && !stuck_;
     }
 
     bool headCommand(std::span<const std::byte> payload) {
@@ -151,7 +151,7 @@ private:
             sayWindowGone(client, wire::kAllWindows);
             return true;
         }
-        case wire::HeadCommand::Member: return newMember(rest);
+        case wire::HeadCommand::Activate: return newMember(rest);
         case wire::HeadCommand::ResetDictionary: return unpackBatches();
         case wire::HeadCommand::RequestPhase: return tellTurns(rest);
         case wire::HeadCommand::Turns: return takeTurns(rest);
@@ -225,11 +225,11 @@ private:
         losesPackets_ = config.plant == "rejoin";
         slow_ = config.plant == "slow" && setup_.node == 1;
         ReplayOutputs outputs;
-        outputs.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> bytes) {
-            if (!catchesUp_ && !unsound_) tell(wire::NodeMessage::Answer, std::as_bytes(std::span(&h, 1)), bytes);
+        outputs.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte> bytes) {
+            if (!catchesUp_ && !invalid_) tell(wire::NodeMessage::ReplyPart, std::as_bytes(std::span(&h, 1)), bytes);
         };
         outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
-        outputs.unsound = [this] { unsound(); };
+        outputs.invalid = [this] { invalid(); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
         outputs.news = [this](const wire::DriverEvent& n, const std::string& text) {
             if (!catchesUp_) tell(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
@@ -354,14 +354,14 @@ private:
         if (arguments.size() < sizeof words) return false;
         std::memcpy(words, arguments.data(), sizeof words);
         if (words[1] != 0 && replay_) replay_->drawAgain();
-        const wire::SynchronizedMessage done{words[0], static_cast<uint32_t>(replay_ ? replay_->soundness() : wire::FrameValidity::Sound)};
+        const wire::SynchronizedMessage done{words[0], static_cast<uint32_t>(replay_ ? replay_->validity() : wire::FrameValidity::Valid)};
         tell(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
         return true;
     }
 
     // Ends this node, because it has skipped frames that its pictures depend on. No picture of it is shown from now on.
-    void unsound() {
-        if (catchesUp_ || std::exchange(unsound_, true)) return;
+    void invalid() {
+        if (catchesUp_ || std::exchange(invalid_, true)) return;
         line_->sendText(wire::NodeMessage::Log, "its frames build on earlier ones that it did not draw while it caught up; it ends, to be started again and draw them");
     }
 
@@ -381,7 +381,7 @@ private:
         if (std::exchange(catchesUp_, false)) busyNs_ = 0; // the resync is no frame's work
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
-        tell(wire::NodeMessage::InView, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
+        tell(wire::NodeMessage::ViewReached, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
         return true;
     }
 
@@ -460,8 +460,8 @@ private:
     void frameDone(const ReplayOutputs::Frame& f) {
         uint32_t& latest = frames_[f.client];
         latest = std::max(latest, f.frame);
-        if (!f.sound) unsound();
-        if (catchesUp_ || unsound_) return;
+        if (!f.valid) invalid();
+        if (catchesUp_ || invalid_) return;
         const uint64_t replayedNs = threadCpuNs();
         std::unique_ptr<PictureRead> picture;
         if (f.pixels && !f.region.empty()) {
@@ -557,7 +557,7 @@ private:
         if (const auto numbers = swaps_ && swaps_->barrier() ? swaps_->barrier()->numbers() : std::nullopt)
             bye["swapBarrier"] = {{"members", setup_.swapMembers},          {"swaps", numbers->skew.swaps},       {"medianNs", numbers->skew.medianNs},
                                   {"p99Ns", numbers->skew.p99Ns}, {"mostNs", numbers->skew.mostNs}, {"clockErrorNs", numbers->clockErrorNs}};
-        line_->sendText(wire::NodeMessage::Bye, bye.dump());
+        line_->sendText(wire::NodeMessage::Goodbye, bye.dump());
     }
 
     const std::unique_ptr<HeadConnection> line_;
@@ -576,7 +576,7 @@ private:
     std::map<uint32_t, uint64_t> calls_; // commands by client, in completed packets
     std::map<uint32_t, uint32_t> frames_; // latest frame by client
     std::set<std::pair<uint32_t, uint32_t>> saidEightBits_; // client, window
-    bool unsound_ = false; // this node can't draw the picture of the others
+    bool invalid_ = false; // this node can't draw the picture of the others
     bool losesPackets_ = false; // planted fault
     int packetsGiven_ = 0; // packets received during the resync
     bool catchesUp_ = false; // in resync: replays commands whose messages the head has from other nodes

@@ -113,7 +113,7 @@ struct NodeSetup {
     std::string streamSecret; // secret of that group, in hex
     bool economy = false; // packets arrive in batches (streamcodec/delta/batch_head.hpp)
     int64_t storeBytes = int64_t{1} << 30;
-    // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Member)
+    // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Activate)
     bool isResyncing = false;
     bool skipsFrames = false; // with catchesUp: skips drawing until Synchronize
     uint32_t life = 0; // incarnation: number of restarts

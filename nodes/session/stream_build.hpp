@@ -6,7 +6,7 @@
 #include <string>
 
 #include "streamcodec/registry_digest.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

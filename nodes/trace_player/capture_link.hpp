@@ -11,7 +11,7 @@
 #include "common/ipc/capture_ring.hpp"
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "common/ipc/file_descriptor.hpp"
 
 namespace mural {

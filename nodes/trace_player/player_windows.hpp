@@ -11,7 +11,6 @@
 #include "common/base/result.hpp"
 #include "nodes/output/windows/window_owner.hpp"
 #include "nodes/output/windows/x_connection.hpp"
-#include "streamcodec/wire/wire.hpp"
 
 namespace mural {
 

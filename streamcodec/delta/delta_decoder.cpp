@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "common/base/copy_bytes.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::delta {
 

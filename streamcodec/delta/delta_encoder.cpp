@@ -5,7 +5,7 @@
 #include <xxhash.h>
 
 #include "streamcodec/delta/entropy/pixel_filter.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::delta {
 

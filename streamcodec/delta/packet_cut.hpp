@@ -32,12 +32,9 @@ public:
             at_ += kPageBytes;
             return true;
         }
-        if (packet_.size() - at_ < 4) return false;
-        uint32_t head[2] = {};
-        std::memcpy(head, packet_.data() + at_, packet_.size() - at_ >= 8 ? 8 : 4);
-        const uint32_t words = head[0] >> 16 == record::kLongForm ? head[1] : head[0] >> 16;
-        const size_t sizeBytes = size_t{words} * 4;
-        if (words == 0 || sizeBytes > packet_.size() - at_) return false;
+        const record::Header header = record::readHeader(packet_.data() + at_, packet_.size() - at_);
+        if (!header) return false;
+        const size_t sizeBytes = header.sizeBytes;
         ++records_;
         lastRecord_ = at_;
         recordEnd_ = at_ + sizeBytes;

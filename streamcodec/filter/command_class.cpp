@@ -1,7 +1,7 @@
 #include "streamcodec/filter/command_class.hpp"
 
 #include "streamcodec/command_parameters.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 namespace {

@@ -6,7 +6,8 @@
 
 #include "gl_opcodes.hpp"
 #include "streamcodec/trace/record_values.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::filter {
 

@@ -175,7 +175,7 @@ void CommandFilter::sendQueue(Context& c, Output& output, size_t from, Object& o
         if (object.kind == Kind::Buffer && item.target != 0) {
             uint32_t head = 0;
             std::memcpy(&head, item.bytes.data() + item.recordAt, sizeof head);
-            const size_t headBytes = head >> 16 == record::kLongForm ? 8 : 4;
+            const size_t headBytes = record::headerBytesOf(head);
             std::memcpy(item.bytes.data() + item.recordAt + headBytes, &target, sizeof target);
         }
         output.insert(from, item.bytes);

@@ -7,7 +7,7 @@
 // draws need them no more than before.
 #include "gl_opcodes.hpp"
 #include "streamcodec/filter/command_filter.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 

@@ -8,7 +8,7 @@
 #include "streamcodec/filter/command_filter.hpp"
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/wire/record.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::filter {
 

@@ -10,7 +10,7 @@
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/trace/record_values.hpp"
 #include "streamcodec/wire/record.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 

@@ -57,7 +57,7 @@ bool FrameTemplate::add(Same same, std::span<const std::byte> record) {
         seen_.push_back(static_cast<uint16_t>(head));
         return seen_.size() <= kMaxRecords;
     }
-    const size_t headBytes = head >> 16 == record::kLongForm ? 8 : 4;
+    const size_t headBytes = record::headerBytesOf(head);
     const size_t matterBytes = same == Same::All ? record.size() : headBytes;
     const size_t sameBytes = record.size() - matterBytes <= kShortBytes ? record.size() : matterBytes;
     const auto at = static_cast<uint32_t>(totalBytes_);

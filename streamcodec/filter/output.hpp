@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "streamcodec/trace/record_walk.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::filter {
 

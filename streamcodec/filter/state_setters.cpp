@@ -10,7 +10,7 @@
 #include "gl_opcodes.hpp"
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/command_traits.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 namespace {
@@ -221,7 +221,7 @@ StateRole ofOwn(uint16_t opcode) {
     case wire::kOpFrontPicture:
     case wire::kOpProgramLayout:
     case wire::kOpProgramRecipe:
-    case wire::kOpErrorTold: return StateRole::None;
+    case wire::kOpErrorReported: return StateRole::None;
     default: return StateRole::Use; // requests, other contexts and windows
     }
 }

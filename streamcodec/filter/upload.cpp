@@ -9,7 +9,7 @@
 #include "streamcodec/filter/command_class.hpp"
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/wire/record.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 namespace {

@@ -160,7 +160,7 @@ void GlStateTracker::own(At& at, const RecordView& r) {
         at.effect.kill(part(at.client.state, Part::QueryKnown, first, at.thread.context));
         at.effect.read(at.thread.key);
         return;
-    case wire::kOpErrorTold: // nodes count these records and use no state
+    case wire::kOpErrorReported: // nodes count these records and use no state
         at.effect.always = true;
         return at.effect.read(at.thread.key);
     case wire::kOpCreateImage: {

@@ -14,7 +14,7 @@
 
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/snapshot/key_tree.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::trace {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {

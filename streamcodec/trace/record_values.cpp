@@ -3,7 +3,7 @@
 #include "streamcodec/wire/args.hpp"
 #include "streamcodec/wire/client_arrays.hpp"
 #include "streamcodec/command_parameters.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::trace {
 namespace {

@@ -27,19 +27,13 @@ public:
     bool next(RecordView& record) {
         const size_t left = packet_.size() - at_;
         if (left == 0 || malformed_) return false;
-        uint64_t words = 0;
-        size_t headerBytes = 4;
-        if (left >= 4) words = word(at_) >> 16;
-        if (words == record::kLongForm && left >= 8) {
-            headerBytes = 8;
-            words = word(at_ + 4);
-        }
-        malformed_ = words * 4 < headerBytes || words * 4 > left;
+        const record::Header header = record::readHeader(packet_.data() + at_, left);
+        malformed_ = !header;
         if (malformed_) return false;
-        record.opcode = static_cast<uint16_t>(word(at_));
+        record.opcode = header.opcode;
         record.offset = at_;
-        record.sizeBytes = static_cast<size_t>(words) * 4;
-        record.arguments = packet_.subspan(at_ + headerBytes, record.sizeBytes - headerBytes);
+        record.sizeBytes = header.sizeBytes;
+        record.arguments = packet_.subspan(at_ + header.headerBytes, record.sizeBytes - header.headerBytes);
         at_ += record.sizeBytes;
         walked_.pass(record.offset, record.sizeBytes);
         return true;
@@ -53,7 +47,7 @@ public:
         size_t at = at_, records = 0, lastBytes = 0;
         const auto passOne = [&](uint32_t head) {
             const size_t sizeBytes = (head >> 16) * size_t{4};
-            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head), size_t{1})) return false;
+            if (sizeBytes == 0 || record::isLongForm(head) || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head), size_t{1})) return false;
             if (sizeBytes > kMaxShortRecordBytes) walked_.longAt.push_back(static_cast<uint32_t>(at));
             at += sizeBytes;
             lastBytes = sizeBytes;
@@ -112,7 +106,7 @@ public:
                 if (rounds > 0) continue;
             }
             const size_t sizeBytes = (head >> 16) * size_t{4};
-            if (sizeBytes == 0 || head >> 16 == record::kLongForm || sizeBytes > packet.size() - at) break;
+            if (sizeBytes == 0 || record::isLongForm(head) || sizeBytes > packet.size() - at) break;
             const Interest interest = interestOf(static_cast<uint16_t>(head));
             if (interest == Interest::Stop) break;
             if (interest == Interest::Look) {
@@ -148,12 +142,6 @@ public:
     [[nodiscard]] bool malformed() const { return malformed_; }
 
 private:
-    [[nodiscard]] uint32_t word(size_t at) const {
-        uint32_t value = 0;
-        std::memcpy(&value, packet_.data() + at, sizeof value);
-        return value;
-    }
-
     static constexpr size_t kBeforeRounds = 8;
 
     std::span<const std::byte> packet_;

@@ -7,7 +7,7 @@
 
 #include "streamcodec/trace/record_walk.hpp"
 #include "streamcodec/wire/args.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::trace {
 

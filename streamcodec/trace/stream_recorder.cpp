@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "streamcodec/registry_digest.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {

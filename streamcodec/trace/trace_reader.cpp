@@ -9,7 +9,7 @@
 
 #include "streamcodec/trace/checksum.hpp"
 #include "streamcodec/registry_digest.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {

@@ -8,7 +8,8 @@
 
 #include "common/base/main_window.hpp"
 #include "streamcodec/trace/record_walk.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 

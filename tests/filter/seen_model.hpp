@@ -13,7 +13,7 @@
 #include "gl_opcodes.hpp"
 #include "streamcodec/trace/record_walk.hpp"
 #include "streamcodec/wire/record.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 

@@ -109,7 +109,7 @@ protected:
         f.done.busyNs = 5;
         return sender_->send(std::move(f));
     }
-    bool tell(uint32_t number) { return sender_->tell(NodeMessage::Answer, std::as_bytes(std::span(&number, 1))); }
+    bool tell(uint32_t number) { return sender_->tell(NodeMessage::ReplyPart, std::as_bytes(std::span(&number, 1))); }
     std::vector<NodeMessage> types() {
         const std::lock_guard lock(mutex_);
         std::vector<NodeMessage> all;
@@ -152,10 +152,10 @@ TEST_F(PictureSenderTest, keepsTheOrderOfMessages) {
     ASSERT_TRUE(tell(2));
     ASSERT_TRUE(frame(2));
     ASSERT_TRUE(tell(3));
-    EXPECT_EQ(types(), (std::vector{NodeMessage::Answer})); // everything else waits for the first picture
+    EXPECT_EQ(types(), (std::vector{NodeMessage::ReplyPart})); // everything else waits for the first picture
     gate_.open();
     ASSERT_TRUE(sender_->finish());
-    EXPECT_EQ(types(), (std::vector{NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::Answer}));
+    EXPECT_EQ(types(), (std::vector{NodeMessage::ReplyPart, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::ReplyPart, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::ReplyPart}));
     EXPECT_EQ(sent_[3].as<uint32_t>(), 2u);
     EXPECT_EQ(sent_[6].as<uint32_t>(), 3u);
     ASSERT_TRUE(tell(4));
@@ -177,9 +177,9 @@ TEST_F(PictureSenderTest, limitsMessagesQueuedAfterAPicture) {
     start(config);
     ASSERT_TRUE(frame(1, &gate_));
     const std::vector<std::byte> large(4000);
-    ASSERT_TRUE(sender_->tell(NodeMessage::Answer, large));
-    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::Answer, large); }); // 8000 bytes would be queued
-    ASSERT_TRUE(sender_->tell(NodeMessage::Answer, std::vector<std::byte>(9000))); // above the limit: accepted alone
+    ASSERT_TRUE(sender_->tell(NodeMessage::ReplyPart, large));
+    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::ReplyPart, large); }); // 8000 bytes would be queued
+    ASSERT_TRUE(sender_->tell(NodeMessage::ReplyPart, std::vector<std::byte>(9000))); // above the limit: accepted alone
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 5u);
 }

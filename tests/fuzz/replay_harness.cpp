@@ -27,7 +27,7 @@ void look(std::span<const std::byte> bytes) {
 
 ReplayOutputs outputs() {
     ReplayOutputs out;
-    out.answer = [](const wire::AnswerHeader&, std::span<const std::byte> bytes) { look(bytes); };
+    out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) { look(bytes); };
     out.frameDone = [](const ReplayOutputs::Frame& f) {
         // The node reads its region; a small part is sufficient here and saves time.
         const PixelViewport r = intersect(f.region, {f.region.x, f.region.y, 16, 16});

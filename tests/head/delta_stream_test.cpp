@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "streamcodec/delta/delta_decoder.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 namespace {

@@ -56,7 +56,7 @@ TEST(NodeJoins, includeTheNodeInAnswersFromItsPositionOn) {
     const auto answer = [&](int node, uint32_t request, uint64_t value) {
         ByteBuffer bytes = ByteBuffer::ofSize(sizeof value);
         std::memcpy(bytes.data(), &value, sizeof value);
-        const wire::AnswerHeader header{1, request, static_cast<uint32_t>(wire::AnswerKind::Sum), 0, 0, 0, 0, 0, 0, 1};
+        const wire::ReplyPartHeader header{1, request, static_cast<uint32_t>(wire::ReplyKind::Sum), 0, 0, 0, 0, 0, 0, 1};
         EXPECT_TRUE(assembler.answer(node, header, std::move(bytes)).ok());
     };
     assembler.nodeLost(1);

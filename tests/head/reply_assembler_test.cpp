@@ -9,8 +9,8 @@
 namespace mural {
 namespace {
 
-using wire::AnswerHeader;
-using wire::AnswerKind;
+using wire::ReplyPartHeader;
+using wire::ReplyKind;
 
 ByteBuffer bytesOf(const std::vector<uint8_t>& values) {
     ByteBuffer buffer = ByteBuffer::ofSize(values.size());
@@ -26,11 +26,11 @@ protected:
     std::vector<std::pair<uint32_t, Reply>> replies;
 
     bool rectangle(int node, int32_t x, int32_t w, uint8_t value, bool last = true, bool all = false) {
-        AnswerHeader h{1, 5, static_cast<uint32_t>(AnswerKind::Rectangle), 2, x, 10, w, 1, all, last};
+        ReplyPartHeader h{1, 5, static_cast<uint32_t>(ReplyKind::Rectangle), 2, x, 10, w, 1, all, last};
         return assembler.answer(node, h, bytesOf(std::vector<uint8_t>(static_cast<size_t>(w) * 2, value))).ok();
     }
     bool bytes(int node, const std::vector<uint8_t>& values, bool first, bool last = true) {
-        AnswerHeader h{1, 6, static_cast<uint32_t>(AnswerKind::Bytes), 0, 0, 0, 0, 0, first, last};
+        ReplyPartHeader h{1, 6, static_cast<uint32_t>(ReplyKind::Bytes), 0, 0, 0, 0, 0, first, last};
         return assembler.answer(node, h, bytesOf(values)).ok();
     }
     std::vector<uint8_t> replyBytes() const {
@@ -152,7 +152,7 @@ TEST_F(AnswerAssemblerTest, failsOnlyWithoutAnyAnswer) {
 
 TEST_F(AnswerAssemblerTest, addsSums) {
     for (int node = 0; node < 3; ++node) {
-        AnswerHeader h{1, 7, static_cast<uint32_t>(AnswerKind::Sum), 0, 0, 0, 0, 0, 0, 1};
+        ReplyPartHeader h{1, 7, static_cast<uint32_t>(ReplyKind::Sum), 0, 0, 0, 0, 0, 0, 1};
         std::vector<uint8_t> value(8, 0);
         value[4] = 1; // 2^32
         value[0] = 200;
@@ -167,11 +167,11 @@ TEST_F(AnswerAssemblerTest, addsSums) {
 TEST_F(AnswerAssemblerTest, reportsContradictions) {
     EXPECT_TRUE(rectangle(0, 0, 1, 1));
     EXPECT_FALSE(rectangle(0, 0, 1, 1)) << "after its last";
-    AnswerHeader other{1, 5, static_cast<uint32_t>(AnswerKind::Bytes), 0, 0, 0, 0, 0, 0, 1};
+    ReplyPartHeader other{1, 5, static_cast<uint32_t>(ReplyKind::Bytes), 0, 0, 0, 0, 0, 0, 1};
     EXPECT_FALSE(assembler.answer(1, other, {}).ok());
-    AnswerHeader unknown{1, 8, 77, 0, 0, 0, 0, 0, 0, 1};
+    ReplyPartHeader unknown{1, 8, 77, 0, 0, 0, 0, 0, 0, 1};
     EXPECT_FALSE(assembler.answer(1, unknown, {}).ok());
-    AnswerHeader far{1, 5, static_cast<uint32_t>(AnswerKind::Rectangle), 2, 1 << 20, 1 << 20, 1, 1, 0, 1};
+    ReplyPartHeader far{1, 5, static_cast<uint32_t>(ReplyKind::Rectangle), 2, 1 << 20, 1 << 20, 1, 1, 0, 1};
     EXPECT_FALSE(assembler.answer(1, far, bytesOf({1, 2})).ok()) << "a union beyond all memory";
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "streamcodec/wire/args.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::testing {
 
@@ -63,7 +63,7 @@ private:
         uint32_t words[2] = {};
         std::memcpy(words, rest_.data(), rest_.size() < 8 ? 4 : 8);
         r.opcode = static_cast<uint16_t>(words[0] & 0xffff);
-        r.longForm = words[0] >> 16 == record::kLongForm;
+        r.longForm = record::isLongForm(words[0]);
         const size_t bytes = 4 * size_t{r.longForm ? words[1] : words[0] >> 16}, head = r.longForm ? 8 : 4;
         if (bytes < head || bytes > rest_.size()) {
             broken_ = true;

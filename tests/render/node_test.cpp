@@ -9,7 +9,9 @@
 
 #include "nodes/session/session_config.hpp"
 #include "nodes/session/stream_build.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "transport/connection.hpp"
 
 namespace mural {

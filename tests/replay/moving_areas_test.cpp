@@ -35,7 +35,7 @@ protected:
         ReplayOutputs out;
         out.frameDone = [this](const ReplayOutputs::Frame& f) { frame_ = f; };
         out.log = [](const std::string&) {};
-        out.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte>) { answer_ = h; };
+        out.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte>) { answer_ = h; };
         fuzz::FakeGlOptions options;
         options.drew = [this](bool scissored, const std::array<int, 4>& box) {
             drawn_.push_back(scissored ? PixelViewport{box[0], box[1], box[2], box[3]} : PixelViewport{0, 0, 64, 32});
@@ -75,7 +75,7 @@ protected:
     ThreadState& t_ = encoder_.thread();
     std::unique_ptr<Replay> replay_;
     ReplayOutputs::Frame frame_{};
-    wire::AnswerHeader answer_{};
+    wire::ReplyPartHeader answer_{};
     std::vector<PixelViewport> drawn_; // or cleared
     uint32_t frames_ = 0;
 };

@@ -24,7 +24,7 @@ protected:
         ReplayConfig config;
         config.limits = limits;
         ReplayOutputs out;
-        out.answer = [this](const wire::AnswerHeader& h, std::span<const std::byte> b) {
+        out.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte> b) {
             ++answers_;
             header_ = h;
             answerBytes_ = b.size();
@@ -68,7 +68,7 @@ protected:
     ThreadState& t_ = encoder_.thread();
     std::unique_ptr<Replay> replay_;
     ReplayOutputs::Frame frame_{};
-    wire::AnswerHeader header_{};
+    wire::ReplyPartHeader header_{};
     int64_t pictureBytes_ = 0;
     size_t answerBytes_ = 0;
     int answers_ = 0;

@@ -30,7 +30,7 @@ protected:
         config.eyeBase = 2;
         config.focusDistance = 4;
         ReplayOutputs out;
-        out.answer = [this](const wire::AnswerHeader&, std::span<const std::byte> bytes) { answered_.assign(bytes.begin(), bytes.end()); };
+        out.answer = [this](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) { answered_.assign(bytes.begin(), bytes.end()); };
         out.frameDone = [this](const ReplayOutputs::Frame& f) {
             const std::byte* const pixels = f.pixels ? f.pixels(f.region) : nullptr;
             shown_.clear();

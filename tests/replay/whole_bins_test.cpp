@@ -27,7 +27,7 @@ protected:
         ReplayOutputs out;
         out.frameDone = [this](const ReplayOutputs::Frame& f) { shown_ = f.region; };
         out.log = [](const std::string&) {};
-        out.answer = [](const wire::AnswerHeader&, std::span<const std::byte>) {};
+        out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte>) {};
         fuzz::FakeGlOptions options;
         options.drew = [this](bool scissored, const std::array<int, 4>& box) { drawn_ = scissored ? PixelViewport{box[0], box[1], box[2], box[3]} : kWindow; };
         replay_ = std::make_unique<Replay>(fuzz::makeFakePlatform(options), config, out);

@@ -18,7 +18,7 @@
 #include "streamcodec/command_table.hpp"
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/opcode_names.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 using namespace mural;
 using enum Trait;

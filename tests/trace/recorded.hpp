@@ -11,7 +11,7 @@
 #include "streamcodec/trace/trace_reader.hpp"
 #include "streamcodec/trace/trace_writer.hpp"
 #include "streamcodec/registry_digest.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::trace {
 

@@ -11,7 +11,6 @@
 
 #include "gl_opcodes.hpp"
 #include "streamcodec/trace/record_walk.hpp"
-#include "streamcodec/wire/wire.hpp"
 
 namespace mural::trace {
 

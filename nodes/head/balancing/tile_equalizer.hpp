@@ -15,7 +15,7 @@
 #include "nodes/head/balancing/work_queue.hpp"
 #include "nodes/head/planning/node_plan.hpp"
 #include "nodes/session/viewport_assignment.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

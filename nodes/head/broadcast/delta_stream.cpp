@@ -7,7 +7,8 @@
 #include "common/base/clock.hpp"
 #include "common/memory/malloc_tuning.hpp"
 #include "common/base/quick_clock.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 namespace {

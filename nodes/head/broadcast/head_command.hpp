@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/copy_bytes.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/head_messages.hpp"
 
 namespace mural {
 

@@ -71,7 +71,7 @@ Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(ui
     if (admission.refused) return {};
     std::vector<uint32_t> arguments = {view_, static_cast<uint32_t>(node), admission.first ? 1U : 0U, admission.life};
     arguments.insert(arguments.end(), admission.absent.begin(), admission.absent.end());
-    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Member, std::as_bytes(std::span(arguments))));
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Activate, std::as_bytes(std::span(arguments))));
     to.setMember(true);
     if (history) {
         // The last batch of the old dictionary announces the new one. This node receives batches from here on.

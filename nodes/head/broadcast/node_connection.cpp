@@ -155,9 +155,9 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
     switch (static_cast<NodeMessage>(header.type)) {
     case NodeMessage::Ready:
     case NodeMessage::Log:
-    case NodeMessage::Bye:
+    case NodeMessage::Goodbye:
         return readText(header);
-    case NodeMessage::Answer:
+    case NodeMessage::ReplyPart:
         return readAnswer(header.sizeBytes);
     case NodeMessage::Picture:
         return readPicture(header.sizeBytes);
@@ -181,7 +181,7 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;
         return {};
-    case NodeMessage::InView:
+    case NodeMessage::ViewReached:
         return readInView(header.sizeBytes);
     case NodeMessage::Turns:
         return readTurns(header.sizeBytes);
@@ -248,12 +248,12 @@ Result<void> NodeConnection::readNews(uint32_t sizeBytes) {
 }
 
 Result<void> NodeConnection::readAnswer(uint32_t sizeBytes) {
-    wire::AnswerHeader header{};
+    wire::ReplyPartHeader header{};
     if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes)
         return Error{"it sent an answer of an impossible size"};
     if (auto got = readStruct(header); !got) return got;
     const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
-    const bool rectangle = header.kind == static_cast<uint32_t>(wire::AnswerKind::Rectangle);
+    const bool rectangle = header.kind == static_cast<uint32_t>(wire::ReplyKind::Rectangle);
     const bool fits = !rectangle || (header.groupBytes <= 64 &&
                                      rectangleFits(header.x, header.y, header.w, header.h,
                                                    header.groupBytes, dataBytes));

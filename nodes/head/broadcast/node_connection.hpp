@@ -16,7 +16,8 @@
 #include "nodes/head/membership/node_process.hpp"
 #include "nodes/frame_transfer/picture_unpacker.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "transport/connection.hpp"
 
 namespace mural {
@@ -27,7 +28,7 @@ class NodeEvents {
 public:
     virtual ~NodeEvents() = default;
     virtual Result<void> nodeReady(int node, const std::string& json) = 0;
-    virtual Result<void> nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) = 0;
+    virtual Result<void> nodeAnswer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes) = 0;
     virtual Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) = 0;
     virtual Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) = 0;
     virtual Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) = 0;

@@ -19,7 +19,7 @@
 #include "nodes/head/results/byte_buffer.hpp"
 #include "nodes/head/capture/capture_memory.hpp"
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

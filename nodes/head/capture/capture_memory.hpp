@@ -17,7 +17,7 @@
 #include "common/ipc/capture_ring.hpp"
 #include "common/base/result.hpp"
 #include "nodes/output/pixel_format.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "common/ipc/file_descriptor.hpp"
 
 namespace mural {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

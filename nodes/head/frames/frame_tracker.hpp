@@ -10,7 +10,7 @@
 
 #include "common/base/main_window.hpp"
 #include "common/base/result.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -16,7 +16,7 @@
 #include "nodes/head/results/byte_buffer.hpp"
 #include "nodes/head/results/reply_senders.hpp"
 #include "nodes/output/picture.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -5,7 +5,7 @@
 #include "common/base/result.hpp"
 #include "nodes/head/results/byte_buffer.hpp"
 #include "nodes/head/planning/node_plan.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kLargestSide = 32767; // of a window, and of coordinates in the X protocol
 
-bool isSound(const PixelFormat& format) {
+bool isValid(const PixelFormat& format) {
     const bool pads = format.rowPadBits == 8 || format.rowPadBits == 16 || format.rowPadBits == 32;
     return pads && format.depth >= 1 && format.depth <= format.bitsPerPixel && format.bitsPerPixel <= 32;
 }
@@ -21,7 +21,7 @@ Reply ownPictureReply(uint32_t frame, uint32_t window, const PixelFormat& format
     reply.header.kind = capture::kPictureReply;
     reply.header.x = static_cast<int32_t>(window);
     reply.header.failed = 1;
-    auto converter = isSound(format) ? PixelConverter::make(format) : Result<PixelConverter>(Error{"an impossible format"});
+    auto converter = isValid(format) ? PixelConverter::make(format) : Result<PixelConverter>(Error{"an impossible format"});
     const int width = std::min(picture.width, kLargestSide);
     const int height = std::min(picture.height, kLargestSide);
     if (!converter || width <= 0 || height <= 0) return reply;

@@ -198,7 +198,7 @@ void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
         const std::lock_guard lock(mutex_);
         Node& n = at(node);
         // the loss is caused by skipped frames: does not count as an attempt
-        if (n.catchUp && n.catchUp->unsound() && std::exchange(skipsFrames_, false)) --n.tries;
+        if (n.catchUp && n.catchUp->invalid() && std::exchange(skipsFrames_, false)) --n.tries;
         n.problem.clear();
         again = n.tries < terms_.tries && !stopped_;
         n.phase = again ? Phase::Waiting : Phase::Over;

@@ -38,7 +38,7 @@ void NodeResync::start() {
 void NodeResync::synchronized(const wire::SynchronizedMessage& message) {
     const std::lock_guard lock(mutex_);
     reached_ = message.number;
-    sound_ = message.sound;
+    validity_ = message.validity;
     changed_.notify_all();
 }
 
@@ -124,12 +124,12 @@ bool NodeResync::drawsAgain() {
     while (synchronize(true)) {
         {
             const std::lock_guard lock(mutex_);
-            unsound_ = sound_ == static_cast<uint32_t>(wire::FrameValidity::Unsound);
-            if (sound_ == static_cast<uint32_t>(wire::FrameValidity::Sound)) return true;
+            invalid_ = validity_ == static_cast<uint32_t>(wire::FrameValidity::Invalid);
+            if (validity_ == static_cast<uint32_t>(wire::FrameValidity::Valid)) return true;
         }
         // without draws into the window there is no frame; the node detects a later draw
-        if (deadline.passed() && !unsound_) return true;
-        if (unsound_) {
+        if (deadline.passed() && !invalid_) return true;
+        if (invalid_) {
             link_.lose("its frames build on earlier ones that it did not draw; next time it draws them");
             return false;
         }

@@ -27,7 +27,7 @@ public:
     void start();
 
     void synchronized(const wire::SynchronizedMessage& message); // the node has reached this position; thread-safe
-    [[nodiscard]] bool unsound() const { return unsound_; } // the node's frames depend on frames that it has skipped
+    [[nodiscard]] bool invalid() const { return invalid_; } // the node's frames depend on frames that it has skipped
     void linkLost(); // thread-safe
     void toldTurns(uint32_t number, const std::vector<std::byte>& turns); // thread-safe
     [[nodiscard]] bool done() const { return done_; }
@@ -55,12 +55,12 @@ private:
     const Admitted admitted_;
     uint32_t asked_ = 0; // number of the last Synchronize
     std::atomic<bool> done_{false};
-    std::atomic<bool> unsound_{false};
+    std::atomic<bool> invalid_{false};
     std::atomic<uint64_t> snapshotBytes_{0}, queuedBytes_{0};
     mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     uint32_t reached_ = 0;
-    uint32_t sound_ = 0; // wire::Soundness at that position
+    uint32_t validity_ = 0; // wire::FrameValidity at that position
     bool lost_ = false;
     std::optional<std::vector<std::byte>> told_;
     std::vector<wire::ClientFrame> frames_;

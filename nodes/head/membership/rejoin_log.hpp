@@ -17,7 +17,7 @@
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
 #include "streamcodec/snapshot/snapshot_packet.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural::trace {
 class StreamSnapshot;

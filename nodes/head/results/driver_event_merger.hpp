@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

@@ -6,14 +6,14 @@
 namespace mural {
 namespace {
 
-using wire::AnswerHeader;
-using wire::AnswerKind;
+using wire::ReplyPartHeader;
+using wire::ReplyKind;
 
 constexpr size_t kMaxOpenRequests = 65536;
 constexpr int64_t kMaxReplyBytes = int64_t{1} << 30;
 constexpr size_t kMaxParts = 65536; // per request
 
-Error contradiction(const AnswerHeader& header) {
+Error contradiction(const ReplyPartHeader& header) {
     return Error{"its answer to request " + std::to_string(header.requestId) +
                  " contradicts the other nodes'; are they of one build?"};
 }
@@ -25,7 +25,7 @@ ReplyAssembler::ReplyAssembler(int nodes, Deliver deliver)
     , nodes_(static_cast<size_t>(nodes))
     , views_(static_cast<size_t>(nodes)) {}
 
-Result<void> ReplyAssembler::answer(int node, const AnswerHeader& header, ByteBuffer bytes) {
+Result<void> ReplyAssembler::answer(int node, const ReplyPartHeader& header, ByteBuffer bytes) {
     Request complete;
     {
         const std::lock_guard lock(mutex_);
@@ -49,7 +49,7 @@ Result<void> ReplyAssembler::answer(int node, const AnswerHeader& header, ByteBu
     return {};
 }
 
-Result<void> ReplyAssembler::add(int node, const AnswerHeader& header, ByteBuffer bytes, Request& r) {
+Result<void> ReplyAssembler::add(int node, const ReplyPartHeader& header, ByteBuffer bytes, Request& r) {
     if (header.kind < 1 || header.kind > 3) return Error{"it answered in an unknown kind"};
     if (r.last.empty()) {
         r.awaited = views_.awaited(node);
@@ -62,7 +62,7 @@ Result<void> ReplyAssembler::add(int node, const AnswerHeader& header, ByteBuffe
     if (r.kind != header.kind || r.last[index]) return contradiction(header);
     r.last[index] = header.last != 0;
     if (r.delivered || (bytes.size() == 0 && header.first == 0)) return {};
-    const bool rectangle = r.kind == static_cast<uint32_t>(AnswerKind::Rectangle);
+    const bool rectangle = r.kind == static_cast<uint32_t>(ReplyKind::Rectangle);
     PixelViewport where;
     if (rectangle) {
         where = {header.x, header.y, header.w, header.h};
@@ -85,9 +85,9 @@ bool ReplyAssembler::allAnswered(const Request& request) const {
 }
 
 bool ReplyAssembler::canDeliver(const Request& request) const {
-    const bool bytes = request.kind == static_cast<uint32_t>(AnswerKind::Bytes);
+    const bool bytes = request.kind == static_cast<uint32_t>(ReplyKind::Bytes);
     // A rectangle that lies in one node's part needs no answers of other nodes.
-    const bool rectangle = request.kind == static_cast<uint32_t>(AnswerKind::Rectangle);
+    const bool rectangle = request.kind == static_cast<uint32_t>(ReplyKind::Rectangle);
     if (rectangle && request.firstNode >= 0 && request.last[static_cast<size_t>(request.firstNode)]) return true;
     // All nodes hold the same bytes, except undefined ones. The answer of the first living node is always used, so that
     // two reads agree.
@@ -150,9 +150,9 @@ Reply ReplyAssembler::assemble(uint32_t requestId, const Request& request) {
     reply.header.requestId = requestId;
     reply.header.kind = request.kind;
     reply.header.failed = 1; // set to 0 by the first valid answer
-    if (request.kind == static_cast<uint32_t>(AnswerKind::Rectangle)) assembleRectangle(request, reply);
-    if (request.kind == static_cast<uint32_t>(AnswerKind::Bytes)) assembleBytes(request, reply);
-    if (request.kind == static_cast<uint32_t>(AnswerKind::Sum)) assembleSum(request, reply);
+    if (request.kind == static_cast<uint32_t>(ReplyKind::Rectangle)) assembleRectangle(request, reply);
+    if (request.kind == static_cast<uint32_t>(ReplyKind::Bytes)) assembleBytes(request, reply);
+    if (request.kind == static_cast<uint32_t>(ReplyKind::Sum)) assembleSum(request, reply);
     reply.header.sizeBytes = reply.bytes.size();
     return reply;
 }

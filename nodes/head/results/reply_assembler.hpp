@@ -14,7 +14,7 @@
 #include "nodes/head/results/byte_buffer.hpp"
 #include "nodes/head/capture/capture_client.hpp"
 #include "nodes/head/results/reply_senders.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 
@@ -25,7 +25,7 @@ public:
 
     ReplyAssembler(int nodes, Deliver deliver);
 
-    Result<void> answer(int node, const wire::AnswerHeader& header, ByteBuffer bytes);
+    Result<void> answer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes);
     // Completes pending requests from the answers that have arrived.
     void nodeLost(int node);
 
@@ -51,11 +51,11 @@ private:
         std::vector<Part> parts;
         std::vector<bool> awaited; // per node; false after it is lost
         std::vector<bool> last; // per node: its answer is complete
-        int firstNode = -1; // the node whose answer counts (AnswerKind::Bytes)
+        int firstNode = -1; // the node whose answer counts (ReplyKind::Bytes)
         bool delivered = false; // later answers are discarded
     };
 
-    Result<void> add(int node, const wire::AnswerHeader& header, ByteBuffer bytes, Request& request);
+    Result<void> add(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes, Request& request);
     [[nodiscard]] bool allAnswered(const Request& request) const;
     [[nodiscard]] bool canDeliver(const Request& request) const;
 

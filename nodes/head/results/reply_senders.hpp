@@ -1,5 +1,5 @@
 // Determines the nodes that will answer an item of the stream: those that were members when it was sent. A returning
-// node becomes a member at one position of the stream (HeadCommand::Member), and each node marks that position in its
+// node becomes a member at one position of the stream (HeadCommand::Activate), and each node marks that position in its
 // messages. The set of members (view) that applies to a message is thus known without parsing the stream.
 #pragma once
 

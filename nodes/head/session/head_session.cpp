@@ -234,7 +234,7 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
     return {};
 }
 
-Result<void> HeadSession::nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) {
+Result<void> HeadSession::nodeAnswer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes) {
     dealer_.answered();
     return answers_.answer(node, header, std::move(bytes));
 }

@@ -80,7 +80,7 @@ public:
 
 private:
     Result<void> nodeReady(int node, const std::string& json) override;
-    Result<void> nodeAnswer(int node, const wire::AnswerHeader& header, ByteBuffer bytes) override;
+    Result<void> nodeAnswer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes) override;
     Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) override;
     Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) override;
     Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) override;

@@ -1,6 +1,6 @@
 #include "nodes/head/session/slowdown_advice.hpp"
 
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -78,7 +78,7 @@ void Replay::swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t 
 
 void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front) {
     ReplayOutputs::Frame f{};
-    f.sound = true;
+    f.valid = true;
     f.client = wire::clientOf(stream_);
     f.window = id;
     f.frame = frame;
@@ -97,9 +97,9 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         f.areas = moves() ? w.moving.areas->number : 0;
         f.shares = w.range.drawnBy;
         f.keepsAreas = moves() && w.moving.areas != areas_ && ++w.moving.waits >= kPatientFrames;
-        f.sound = isSound(w, front);
-        if (!front && f.sound) w.frontStaled = false;
-        showedUnsound_ = showedUnsound_ || (!f.sound && !w.skipped && w.begun);
+        f.valid = isValid(w, front);
+        if (!front && f.valid) w.frontStaled = false;
+        showedInvalid_ = showedInvalid_ || (!f.valid && !w.skipped && w.begun);
         if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.format = pictureFormatOf(*bound_, w), f.pixels = [this, &w, front](const PixelViewport& r) {
             ContextState* const own = std::exchange(c_, bound_);
             const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();

@@ -66,7 +66,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpBeginConditional: return onBeginConditional(in);
     case wire::kOpQueryKnown: return onQueryKnown(in);
     case wire::kOpDrawAll: return onDrawAll(in);
-    case wire::kOpErrorTold: return errorTold();
+    case wire::kOpErrorReported: return errorTold();
     case wire::kOpRequestProgram: return onRequestProgram(in);
     case wire::kOpProgramRecipe: return onProgramRecipe(in);
     case wire::kOpRequestBuffer: return onRequestBuffer(in);
@@ -80,7 +80,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
         if (!in.ok()) return false;
         if (gl.glFinish && bound_) gl.glFinish();
         const uint64_t zero = 0;
-        answerBytes(request, wire::AnswerKind::Sum, std::as_bytes(std::span(&zero, 1)));
+        answerBytes(request, wire::ReplyKind::Sum, std::as_bytes(std::span(&zero, 1)));
         return true;
     }
     default: return false;

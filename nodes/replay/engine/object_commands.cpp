@@ -346,7 +346,7 @@ void Replay::runItem(const ListItem& item) {
     const std::span<const std::byte> bytes = item.record;
     ItemBlobs blobs(item.blobs);
     const size_t used = scratchUsed_;
-    execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4), blobs);
+    execute(static_cast<uint16_t>(header & 0xffff), bytes.subspan(record::headerBytesOf(header)), blobs);
     scratchUsed_ = used; // releases this command's temporary names, not the caller's
 }
 void Replay::glCallLists(GLsizei n, GLenum type, const Data& lists) {

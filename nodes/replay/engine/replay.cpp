@@ -28,20 +28,9 @@ bool Replay::packet(uint32_t stream, std::span<const std::byte> payload) {
     counts_.bytes += payload.size();
     size_t at = 0;
     while (at < payload.size()) {
-        uint32_t header = 0;
-        if (payload.size() - at < 4) return false;
-        std::memcpy(&header, payload.data() + at, 4);
-        size_t words = header >> 16;
-        if (words == record::kLongForm) {
-            uint32_t length = 0;
-            if (payload.size() - at < 8) return false;
-            std::memcpy(&length, payload.data() + at + 4, 4);
-            words = length;
-            if (words < 2) return false; // the long header alone has two
-        }
-        if (words == 0 || words * 4 > payload.size() - at) return false;
-        if (!record(payload.subspan(at, words * 4))) return false;
-        at += words * 4;
+        const record::Header header = record::readHeader(payload.data() + at, payload.size() - at);
+        if (!header || !record(payload.subspan(at, header.sizeBytes))) return false;
+        at += header.sizeBytes;
     }
     tellMessages();
     return true;
@@ -51,7 +40,7 @@ bool Replay::record(std::span<const std::byte> bytes) {
     uint32_t header = 0;
     std::memcpy(&header, bytes.data(), 4);
     const auto opcode = static_cast<uint16_t>(header & 0xffff);
-    const auto arguments = bytes.subspan(header >> 16 == record::kLongForm ? 8 : 4);
+    const auto arguments = bytes.subspan(record::headerBytesOf(header));
     ++counts_.commands;
     bool ok = true;
     if (c_->compiling) onPrimitive(opcode, arguments);

@@ -46,7 +46,9 @@
 #include "streamcodec/wire/args.hpp"
 #include "streamcodec/wire/client_arrays.hpp"
 #include "streamcodec/sizes/pixel_format.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 
@@ -85,7 +87,7 @@ public:
     // Called if no node has the areas. Divides all windows by the latest ones.
     void beginAreas();
     // Reports whether the next shown frames depend on skipped draws.
-    [[nodiscard]] wire::FrameValidity soundness() const;
+    [[nodiscard]] wire::FrameValidity validity() const;
     [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
 
     // ---- interface of the generated code
@@ -204,7 +206,7 @@ private:
         bool skipped = false; // its frames are not drawn (replay_catch_up.cpp)
         GLbitfield stale = 0; // buffers with wrong content after skipped frames
         bool frontStaled = false; // the front buffer is stale as well
-        bool unsound = false; // this frame depends on stale buffers
+        bool invalid = false; // this frame depends on stale buffers
         std::vector<int16_t> accumulated; // values of `drawn`, rows bottom first; empty: none yet
     };
     struct ProgramInfo {
@@ -449,7 +451,7 @@ private:
     void readBlocks(bool byName, GLuint which, GLint level);
     bool onRequestBuffer(Args& in);
     void readBuffer(GLuint ours, uint64_t offset);
-    void answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes);
+    void answerBytes(uint32_t request, wire::ReplyKind kind, std::span<const std::byte> bytes);
     enum class Beyond : uint8_t { Black, Nothing }; // pixels outside the framebuffer: returned as black, or impossible
     [[nodiscard]] bool isAnswering();
     const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond = Beyond::Black);
@@ -573,7 +575,7 @@ private:
     // replay_catch_up.cpp
     [[nodiscard]] bool maySkip() const;
     void onSkipped(uint16_t opcode, std::span<const std::byte> arguments);
-    [[nodiscard]] bool isSound(const Window& w, bool front) const;
+    [[nodiscard]] bool isValid(const Window& w, bool front) const;
     [[nodiscard]] bool mayRead(const Window& w, bool deep) const;
     // replay_passes.cpp
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
@@ -747,7 +749,7 @@ private:
     [[nodiscard]] uint64_t returnsTold() const { return returnsTaken_ + returns_.size(); }
     std::shared_ptr<const ViewportAssignment> areas_; // current for new windows, wanted by the others; null: areas never change
     bool knowsAreas_ = true;
-    bool showedUnsound_ = false; // a frame was drawn from its beginning, and still depended on skipped ones
+    bool showedInvalid_ = false; // a frame was drawn from its beginning, and still depended on skipped ones
     std::unique_ptr<GlFunctions> leftOut_; // functions without effect, for skipped draws; null: not created yet
     std::unique_ptr<ContextState> none_; // context of streams without one
 };

@@ -19,7 +19,8 @@
 #include "nodes/session/viewport_assignment.hpp"
 #include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 
@@ -57,7 +58,7 @@ struct ReplayConfig {
 // Outputs of the replay; called on the replay thread.
 struct ReplayOutputs {
     // Part of an answer; `last` closes this node's part.
-    std::function<void(const wire::AnswerHeader&, std::span<const std::byte>)> answer;
+    std::function<void(const wire::ReplyPartHeader&, std::span<const std::byte>)> answer;
     // A frame of the window is complete. `pixels` reads the given rectangle in window coordinates. Rows are bottom
     // first and tightly packed. `pixels` is only valid during the call.
     struct Frame {
@@ -68,7 +69,7 @@ struct ReplayOutputs {
         PixelViewport picture; // the complete picture: the window's size, or every nth pixel of it
         bool drawnWhole; // every node drew the whole window (Shared::allDrawn)
         bool keepsPicture; // each frame builds on its predecessor, so one node draws all of them
-        bool sound; // does not depend on skipped draws (ReplayConfig::skips)
+        bool valid; // does not depend on skipped draws (ReplayConfig::skips)
         bool notSplit; // several ranges exist, but no draws were shared
         uint32_t areas; // number of the Areas that divide the picture
         uint32_t shares; // number of the Shares that divided the draws; 0: the initial ones, or no shared draws
@@ -80,7 +81,7 @@ struct ReplayOutputs {
     };
     std::function<void(const Frame&)> frameDone;
     // Called when an answer about a window depends on skipped draws.
-    std::function<void()> unsound;
+    std::function<void()> invalid;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     std::function<void(const std::string&)> log;
     // Sort-last (replay_range.cpp): composites the parts of all nodes of the picture. Afterwards the collector's part

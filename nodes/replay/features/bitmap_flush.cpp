@@ -25,7 +25,7 @@ bool Replay::leavesBitmaps(uint16_t opcode) {
     case wire::kOpQueryKnown:
     case wire::kOpProgramLayout:
     case wire::kOpBufferBytes:
-    case wire::kOpErrorTold: return true;
+    case wire::kOpErrorReported: return true;
     default: return false;
     }
 }

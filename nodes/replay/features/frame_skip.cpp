@@ -40,25 +40,25 @@ void Replay::onSkipped(uint16_t opcode, std::span<const std::byte> arguments) {
     const GLbitfield clears = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
     const GLbitfield whole = clearedBy(opcode, arguments);
     w.stale &= ~whole;
-    if (whole & GL_COLOR_BUFFER_BIT) w.unsound = false;
+    if (whole & GL_COLOR_BUFFER_BIT) w.invalid = false;
     const GLbitfield needed = use == WindowUse::Clears ? clears & ~whole : opcode == op::glAccum ? GLbitfield{GL_ACCUM_BUFFER_BIT} : needsCleared();
-    if (needed & w.stale) w.unsound = true;
+    if (needed & w.stale) w.invalid = true;
 }
 
-bool Replay::isSound(const Window& w, bool front) const { return !w.skipped && !w.unsound && !(w.stale & GL_COLOR_BUFFER_BIT) && !(front && w.frontStaled); }
+bool Replay::isValid(const Window& w, bool front) const { return !w.skipped && !w.invalid && !(w.stale & GL_COLOR_BUFFER_BIT) && !(front && w.frontStaled); }
 
 bool Replay::mayRead(const Window& w, bool deep) const {
     const bool front = c_->readBuffer0 == GL_FRONT || c_->readBuffer0 == GL_FRONT_LEFT || c_->readBuffer0 == GL_FRONT_RIGHT;
     const GLbitfield read = deep ? GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT : GL_COLOR_BUFFER_BIT;
-    return !w.unsound && !(w.stale & read) && !(front && w.frontStaled);
+    return !w.invalid && !(w.stale & read) && !(front && w.frontStaled);
 }
 
-wire::FrameValidity Replay::soundness() const {
-    if (showedUnsound_) return wire::FrameValidity::Unsound;
+wire::FrameValidity Replay::validity() const {
+    if (showedInvalid_) return wire::FrameValidity::Invalid;
     for (const auto& [id, client] : clients_)
         for (const auto& [name, w] : client.windows)
-            if (!isSound(*w, false)) return wire::FrameValidity::Open;
-    return wire::FrameValidity::Sound;
+            if (!isValid(*w, false)) return wire::FrameValidity::Open;
+    return wire::FrameValidity::Valid;
 }
 
 } // namespace mural

@@ -57,7 +57,7 @@ void Replay::glDeleteObjectARB(GLuint obj) {
 bool Replay::onRequestProgram(Args& in) {
     const auto request = in.get<uint32_t>(), program = in.get<uint32_t>();
     if (!in.ok()) return false;
-    answerBytes(request, wire::AnswerKind::Bytes, c_->shared ? c_->shared->recipes.of(name(Kind::Program, program)) : std::vector<std::byte>{});
+    answerBytes(request, wire::ReplyKind::Bytes, c_->shared ? c_->shared->recipes.of(name(Kind::Program, program)) : std::vector<std::byte>{});
     return true;
 }
 

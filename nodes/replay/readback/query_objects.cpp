@@ -160,14 +160,14 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
     if (info != c_->queries.end()) {
         const std::vector<QueryPiece>& pieces = info->second.pieces;
         added = countsSamples(info->second.target) && std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
-        if (added && info->second.skipped) out_.unsound();
+        if (added && info->second.skipped) out_.invalid();
         for (const QueryPiece& piece : pieces) {
             if (!added || (piece.whole ? config_.node == 0 : config_.answers)) value += queryResult(piece.ours);
         }
     } else if (bound_) {
         value = queryResult(name(Kind::Query, query));
     }
-    answerBytes(request, added ? wire::AnswerKind::Sum : wire::AnswerKind::Bytes, std::as_bytes(std::span(&value, 1)));
+    answerBytes(request, added ? wire::ReplyKind::Sum : wire::ReplyKind::Bytes, std::as_bytes(std::span(&value, 1)));
 }
 
 // ---- conditional rendering with a known result: a query that counts nothing makes GL skip the draws

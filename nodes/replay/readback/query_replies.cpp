@@ -75,12 +75,12 @@ bool Replay::onRequestPixels(Args& in) {
     if ((groupAndFlags & wire::kResolved) && !words) return false;
     const PixelViewport asked{x, y, w, h};
     if (!bound_ || group != sizes::groupBytes(format, type)) {
-        answerBytes(request, wire::AnswerKind::Bytes, {});
+        answerBytes(request, wire::ReplyKind::Bytes, {});
         return true;
     }
     if (c_->readFramebuffer != 0) { // every node has all of it
         const size_t bytes = size_t(w) * size_t(h) * group;
-        answerBytes(request, wire::AnswerKind::Bytes, {readRegion(asked, format, type, bytes), bytes});
+        answerBytes(request, wire::ReplyKind::Bytes, {readRegion(asked, format, type, bytes), bytes});
         return true;
     }
     const bool deep = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
@@ -88,7 +88,7 @@ bool Replay::onRequestPixels(Args& in) {
     const bool repeats = c_->read && interleaves(c_->read) && !c_->read->region.empty();
     const PixelViewport part = c_->read && config_.answers ? intersect(asked, repeats ? c_->read->part : regionOf(*c_->read, readsFront() && !deep)) : PixelViewport{};
     if (c_->read) c_->read->copied = true;
-    if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.unsound();
+    if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.invalid();
     const size_t bytes = static_cast<size_t>(part.area()) * group;
     const std::byte* pixels = nullptr;
     // Erroneous copies request colours while no buffer is selected. In OpenGL ES, Mesa would read through a null
@@ -99,10 +99,10 @@ bool Replay::onRequestPixels(Args& in) {
     else if ((groupAndFlags & wire::kPlainTransfer) && type == GL_FLOAT) withPlainTransfer([&] { withoutReadClamp(read); });
     else if (groupAndFlags & wire::kPlainTransfer) withPlainTransfer(read);
     else read();
-    wire::AnswerHeader header{};
+    wire::ReplyPartHeader header{};
     header.client = wire::clientOf(stream_);
     header.requestId = request;
-    header.kind = static_cast<uint32_t>(wire::AnswerKind::Rectangle);
+    header.kind = static_cast<uint32_t>(wire::ReplyKind::Rectangle);
     header.groupBytes = group;
     header.x = part.x;
     header.y = part.y;
@@ -122,8 +122,8 @@ void Replay::flushIfAsked(Window& w) {
     if (std::exchange(w.asked, false) && gl.glFlush) gl.glFlush();
 }
 
-void Replay::answerBytes(uint32_t request, wire::AnswerKind kind, std::span<const std::byte> bytes) {
-    wire::AnswerHeader header{};
+void Replay::answerBytes(uint32_t request, wire::ReplyKind kind, std::span<const std::byte> bytes) {
+    wire::ReplyPartHeader header{};
     header.client = wire::clientOf(stream_);
     header.requestId = request;
     header.kind = static_cast<uint32_t>(kind);
@@ -171,7 +171,7 @@ bool Replay::onRequestTexImage(Args& in) {
         packTightly(false);
         if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
     }
-    answerBytes(request, wire::AnswerKind::Bytes, pixels_);
+    answerBytes(request, wire::ReplyKind::Bytes, pixels_);
     return true;
 }
 
@@ -182,7 +182,7 @@ bool Replay::onRequestBuffer(Args& in) {
     if (!in.ok() || bytes > config_.limits.answerBytes || offset > uint64_t{INT64_MAX} - bytes) return false;
     pixels_.assign(static_cast<size_t>(bytes), std::byte{0});
     if (bound_ && bytes > 0 && gl.glMapBufferRange && gl.glUnmapBuffer) readBuffer(name(Kind::Buffer, buffer), offset);
-    answerBytes(request, wire::AnswerKind::Bytes, pixels_);
+    answerBytes(request, wire::ReplyKind::Bytes, pixels_);
     return true;
 }
 

@@ -44,7 +44,7 @@ constexpr OwnRecord kOwn[] = {
     {wire::kOpDestroyImage, "DestroyImage", "image:q"},
     {wire::kOpRequestProgram, "RequestProgram", "request:x program"},
     {wire::kOpProgramRecipe, "ProgramSources", "program recipe:v"},
-    {wire::kOpErrorTold, "ErrorTold", ""},
+    {wire::kOpErrorReported, "ErrorTold", ""},
 };
 
 const OwnRecord* ownRecord(uint16_t opcode) {

@@ -11,7 +11,7 @@
 #include "streamcodec/delta/batch_codec.hpp"
 #include "streamcodec/delta/entropy/pixel_filter.hpp"
 #include "streamcodec/delta/delta_decoder.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/fuzz/delta/fuzz_limits.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

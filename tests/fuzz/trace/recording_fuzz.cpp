@@ -7,7 +7,7 @@
 #include "streamcodec/trace/trace_writer.hpp"
 #include "streamcodec/trace/trim/trim.hpp"
 #include "streamcodec/registry_digest.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace mural::fuzz {

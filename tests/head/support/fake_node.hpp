@@ -12,7 +12,10 @@
 #include <vector>
 
 #include "nodes/session/session_config.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "tests/head/support/fake_program.hpp"
 #include "transport/connection.hpp"
 
@@ -112,7 +115,7 @@ private:
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
             sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{words.at(1), wire::kAllWindows}, {});
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {
-            sendText(wire::NodeMessage::Bye, R"({"commands":42,"cpuSeconds":0.5})");
+            sendText(wire::NodeMessage::Goodbye, R"({"commands":42,"cpuSeconds":0.5})");
             saidBye_ = true;
         }
         return true;
@@ -173,10 +176,10 @@ private:
 
     bool answer(uint32_t client, uint32_t verb, const std::vector<uint32_t>& a) {
         if (a[0] == behaviour_.dieAtRequest && !behaviour_.halfAnswer) return false;
-        wire::AnswerHeader header{};
+        wire::ReplyPartHeader header{};
         header.client = client;
         header.requestId = a[0];
-        header.kind = verb - 1; // in the order of AnswerKind
+        header.kind = verb - 1; // in the order of ReplyKind
         header.first = verb == kFakeBytes && setup_.node == 0;
         header.last = 1;
         std::vector<uint32_t> data;
@@ -199,7 +202,7 @@ private:
         if (verb == kFakeBytes) data.assign(a.size() > 1 ? a[1] : 3, 0x01020304);
         if (verb == kFakeSum) data = {10, 0, static_cast<uint32_t>(setup_.node), 0};
         if (a[0] == behaviour_.dieAtRequest) header.last = 0;
-        sendStruct(wire::NodeMessage::Answer, header, std::as_bytes(std::span(data)));
+        sendStruct(wire::NodeMessage::ReplyPart, header, std::as_bytes(std::span(data)));
         return a[0] != behaviour_.dieAtRequest;
     }
 

@@ -15,7 +15,7 @@
 #include "common/ipc/capture_ring.hpp"
 #include "common/base/clock.hpp"
 #include "common/ipc/futex.hpp"
-#include "streamcodec/wire/wire.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "common/ipc/file_descriptor.hpp"
 
 namespace mural {

@@ -6,7 +6,6 @@
 #include "common/base/clock.hpp"
 #include "streamcodec/delta/delta_decoder.hpp"
 #include "nodes/head/broadcast/delta_stream.hpp"
-#include "streamcodec/wire/wire.hpp"
 #include "tools/bench/stream/ways.hpp"
 
 namespace mural::bench {

@@ -1,0 +1,117 @@
+// Messages from a render node to the head.
+#pragma once
+
+#include <cstdint>
+
+namespace mural::wire {
+
+// Node → head.
+enum class NodeMessage : uint32_t {
+    Ready = 1,          // json: host, pid, renderer, glVersion, extensions, threads
+    ReplyPart = 2,      // ReplyPartHeader + bytes
+    FrameDone = 3,      // FrameDoneMessage
+    Picture = 4,        // PictureHeader + rows, if the picture store is not shared memory
+    Log = 5,            // text: one line for the user
+    Goodbye = 6,        // json: totals (commands, GL errors, replay time)
+    WindowGone = 7,     // WindowGoneMessage: the program has destroyed the window, or ended; after its last FrameDone
+    Alive = 8,          // no contents: heartbeat every few seconds, also while the replay is busy
+    DriverEvent = 9,           // DriverEvent + text: a driver event
+    ViewReached = 10,   // u32 view, ClientFrame*: later messages were sent after this Activate
+    Synchronized = 11,  // SynchronizedMessage: the node has reached that Synchronize
+    // u32 number of the RequestPhase, then the state of all windows there: WindowTurn*, or, of nodes whose areas move,
+    // u32 windows, WindowAreas of each, Areas*: the latest first, then all that the windows refer to.
+    Turns = 12,
+    PackedPicture = 13, // PictureHeader + the rows as encoded by PicturePacker
+};
+
+struct MessageHeader {
+    uint32_t type; // NodeMessage
+    uint32_t sizeBytes;
+};
+
+// Completion of a frame. A node sends the Picture of a frame, if any, before its FrameDone.
+struct FrameDoneMessage {
+    uint32_t client;
+    uint32_t window;
+    uint32_t frame;    // number of the frame of this client, from 1
+    uint32_t width;    // of the window, pixels
+    uint32_t height;
+    uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
+    uint32_t areas;    // number of the Areas that divide its picture; 0: those of Setup
+    uint32_t shares;   // number of the Shares that divide its draws; 0: those of Setup
+    uint64_t busyNs;   // work since the previous frame, without waits and sending; CPU time where nodes share cores
+    uint64_t replayNs; // CPU time of the replay thread since the previous frame
+    uint64_t readbackNs;
+    uint64_t calls;    // records of this client since its start, up to this frame
+};
+
+// Flags of FrameDoneMessage.
+//
+// Every node draws everything, because fragment shaders write to memory, or after kOpDrawAll.
+constexpr uint32_t kDrawnWhole = 1;
+// Frames depend on the previous frame: of nodes with phases, one draws all of them.
+constexpr uint32_t kKeepsPicture = 2;
+// No draw of the frame was divided between the nodes that draw ranges.
+constexpr uint32_t kNotSplit = 4;
+// The window has not been cleared completely since Areas were announced long ago.
+constexpr uint32_t kKeepsAreas = 8;
+
+// Progress of a program when a node became a member.
+struct ClientFrame {
+    uint32_t client;
+    uint32_t frame; // the last frame before
+};
+
+// State of a window in time-multiplex: the node whose turn it is, and the progress of the current frame
+// (nodes/replay/features/time_multiplex.cpp).
+struct WindowTurn {
+    uint32_t client;
+    uint32_t window;
+    int64_t frames; // number of frames begun
+    int64_t turn;
+    int64_t kept;      // consecutive frames that depend on their predecessor
+    uint32_t cleared;  // buffers cleared completely in this frame
+    uint32_t state;    // kTurn…
+};
+static_assert(sizeof(WindowTurn) == 40);
+constexpr uint32_t kTurnOver = 1, kTurnUndecided = 2, kTurnFresh = 4, kTurnForGood = 8;
+
+// Numbers of the Areas that divide a window (nodes/replay/features/dynamic_tiles.cpp).
+struct WindowAreas {
+    uint32_t client;
+    uint32_t window;
+    uint32_t areas, wanted, front;
+    uint32_t drawn; // buffers of which each node holds only its own part
+    uint32_t fixed; // 1: the areas no longer change
+};
+static_assert(sizeof(WindowAreas) == 28);
+
+struct SynchronizedMessage {
+    uint32_t number; // of the Synchronize
+    uint32_t validity; // FrameValidity
+};
+// FrameValidity of the frames of a node that has not drawn everything before.
+enum class FrameValidity : uint32_t {
+    Open = 0, // no frame of some window has been drawn yet
+    Valid = 1,
+    Invalid = 2, // frames depend on pixels that were not drawn
+};
+
+struct WindowGoneMessage {
+    uint32_t client;
+    uint32_t window; // kAllWindows: the program has ended, and the node has freed its objects
+};
+constexpr uint32_t kAllWindows = 0;
+
+struct PictureHeader {
+    uint32_t client;
+    uint32_t window;
+    uint32_t frame;
+    int32_t x, y, w, h; // lower left origin, rows bottom first, tightly packed
+    uint32_t windowWidth, windowHeight;
+    uint32_t nativeLow, nativeHigh; // X window id of WindowConfig; 0: none
+    uint32_t format; // PictureFormat (common/base/picture_format.hpp)
+};
+static_assert(sizeof(PictureHeader) == 48);
+
+} // namespace mural::wire
