@@ -9,11 +9,11 @@ namespace mural {
 
 enum class Travel : uint8_t {
     Scalar, // widened to 4 bytes in the record
-    Wide, // 8 bytes: handles, offsets into buffers
-    Fixed, // an array of fixedBytes
-    Value, // a variable-size value (docs/reference/wire-format.md)
-    Text, // a value with text
-    Texts, // a value with a list of strings
+    Wide,   // 8 bytes: handles, offsets into buffers
+    Fixed,  // an array of fixedBytes
+    Value,  // a variable-size value (docs/reference/wire-format.md)
+    Text,   // a value with text
+    Texts,  // a value with a list of strings
 };
 
 // The type of a parameter, or of an array's elements.
@@ -39,12 +39,12 @@ struct ParameterInfo {
     Travel travel;
     Element element;
     uint16_t fixedBytes; // for Fixed
-    uint16_t group; // of enums and bits; 0: not in the registry
+    uint16_t group;      // of enums and bits; 0: not in the registry
 };
 
 struct CommandParameters {
     std::span<const ParameterInfo> parameters; // in record order
-    uint8_t resultBytes = 0; // size of the driver-generated name after the parameters
+    uint8_t resultBytes = 0;                   // size of the driver-generated name after the parameters
 };
 CommandParameters parametersOf(uint16_t opcode);
 

@@ -10,7 +10,7 @@ namespace mural {
 struct CommandInfo {
     const char* name;
     const char* commandClass; // state object draw query sync transfer frame unsupported
-    const char* reason; // why it is unsupported; otherwise empty
+    const char* reason;       // why it is unsupported; otherwise empty
     bool carried;
     uint16_t opcode; // 0: never in a stream
 };

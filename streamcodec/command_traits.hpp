@@ -34,11 +34,11 @@ enum class Trait : uint8_t {
     Barrier,
 
     // State
-    OrderState,        // tests, blending, masks, programs, framebuffers: decides whether the order of opaque draws matters
-    Matrix,            // changes a matrix
-    Viewport,          // changes a viewport
-    RasterPosition,    // a raster position, transformed like a vertex
-    UniformMatrix4,    // square matrices of four rows
+    OrderState,     // tests, blending, masks, programs, framebuffers: decides whether the order of opaque draws matters
+    Matrix,         // changes a matrix
+    Viewport,       // changes a viewport
+    RasterPosition, // a raster position, transformed like a vertex
+    UniformMatrix4, // square matrices of four rows
     FramebufferObject, // binds, changes or deletes framebuffers or attachments
     BufferContents,    // uploads to a buffer
     ImageBinding,      // image units of shaders

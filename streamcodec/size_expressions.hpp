@@ -22,8 +22,10 @@ template <class N> constexpr uint64_t vn(N count, uint32_t bytes) {
 }
 // The same for pointers that may be null.
 template <class P> bool given(const P& p) {
-    if constexpr (requires { p.absent(); }) return !p.absent();
-    else return p != nullptr;
+    if constexpr (requires { p.absent(); })
+        return !p.absent();
+    else
+        return p != nullptr;
 }
 template <class N, class P> uint64_t n4(N count, const P& p) { return given(p) ? vn(count, 4) : 0; }
 template <class N, class P> uint64_t n8(N count, const P& p) { return given(p) ? vn(count, 8) : 0; }
@@ -37,8 +39,10 @@ template <class P> uint64_t labelBytes(const P& p, GLsizei length) {
     constexpr GLsizei kLongest = 1 << 16;
     if (!given(p) || length > kLongest) return 0;
     if (length >= 0) return static_cast<uint64_t>(length);
-    if constexpr (requires { p.absent(); }) return 0;
-    else return std::strlen(p) + 1;
+    if constexpr (requires { p.absent(); })
+        return 0;
+    else
+        return std::strlen(p) + 1;
 }
 constexpr int clearValues(GLenum buffer) { return buffer == GL_COLOR ? 4 : 1; }
 inline uint64_t saturated(uint64_t values, uint32_t bytes) {

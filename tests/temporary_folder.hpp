@@ -32,7 +32,9 @@ public:
     }
 
     // Writes a shell script and returns its path.
-    [[nodiscard]] std::string script(const std::string& name, const std::string& text) const { return file(name, "#!/bin/sh\n" + text, 0755); }
+    [[nodiscard]] std::string script(const std::string& name, const std::string& text) const {
+        return file(name, "#!/bin/sh\n" + text, 0755);
+    }
 
 private:
     std::string path_;

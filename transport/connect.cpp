@@ -11,7 +11,9 @@ namespace mural {
 namespace {
 using Kind = ConnectionDescription::Kind;
 
-Error useless(std::string_view text, const std::string& why) { return Error{"connection \"" + std::string(text) + "\": " + why}; }
+Error useless(std::string_view text, const std::string& why) {
+    return Error{"connection \"" + std::string(text) + "\": " + why};
+}
 } // namespace
 
 Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline deadline) {
@@ -28,7 +30,8 @@ Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline de
     case Kind::Rsp: {
         auto options = rsp::groupOptionsOf(to);
         if (!options) return options.error();
-        if (!to.parameters.contains("control")) return useless(text, "joining needs control=HOST:PORT, where the group's host listens");
+        if (!to.parameters.contains("control"))
+            return useless(text, "joining needs control=HOST:PORT, where the group's host listens");
         return rsp::joinGroup(*options, deadline);
     }
     case Kind::Plugin: {
@@ -38,7 +41,9 @@ Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline de
     }
     case Kind::Pipe: break;
     }
-    return useless(text, "has no other end to connect to; give tcp://host:port, shm:descriptor or rsp://group:port?control=host:port");
+    return useless(
+        text,
+        "has no other end to connect to; give tcp://host:port, shm:descriptor or rsp://group:port?control=host:port");
 }
 
 Result<std::unique_ptr<Listener>> listenAt(std::string_view text) {

@@ -22,7 +22,7 @@
 namespace mural {
 
 struct NetworkPath {
-    std::string ownAddress; // numeric address of this end
+    std::string ownAddress;   // numeric address of this end
     size_t datagramBytes = 0; // largest UDP payload without fragmentation, as far as both ends know
 };
 

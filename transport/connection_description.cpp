@@ -29,8 +29,7 @@ template <class Number> bool parseNumber(std::string_view text, Number& into) {
 // Parses host:port from `rest`.
 Result<ConnectionDescription> parseEndpoint(std::string_view text, std::string_view rest) {
     const size_t colon = rest.rfind(':');
-    if (colon == std::string_view::npos)
-        return invalid(text, "the port is missing");
+    if (colon == std::string_view::npos) return invalid(text, "the port is missing");
     ConnectionDescription result;
     result.kind = ConnectionDescription::Kind::Tcp;
     if (!parseNumber(rest.substr(colon + 1), result.port)) {
@@ -38,8 +37,7 @@ Result<ConnectionDescription> parseEndpoint(std::string_view text, std::string_v
     }
     std::string_view host = rest.substr(0, colon);
     const bool brackets = host.size() >= 2 && host.front() == '[' && host.back() == ']';
-    if (brackets)
-        host = host.substr(1, host.size() - 2);
+    if (brackets) host = host.substr(1, host.size() - 2);
     if (brackets ? host.empty() : host.find_first_of(":[]") != std::string_view::npos) {
         return invalid(text, "an IPv6 address must stand in brackets");
     }
@@ -60,9 +58,11 @@ Result<ConnectionDescription> parseWithParameters(std::string_view text, std::st
         const std::string_view pair = list.substr(0, list.find('&'));
         list.remove_prefix(std::min(list.size(), pair.size() + 1));
         const size_t equals = pair.find('=');
-        if (equals == 0 || equals == std::string_view::npos) return invalid(text, "parameters are written name=value, with & in between");
+        if (equals == 0 || equals == std::string_view::npos)
+            return invalid(text, "parameters are written name=value, with & in between");
         const std::string name(pair.substr(0, equals));
-        if (!result->parameters.emplace(name, pair.substr(equals + 1)).second) return invalid(text, name + " is given twice");
+        if (!result->parameters.emplace(name, pair.substr(equals + 1)).second)
+            return invalid(text, name + " is given twice");
     }
     return result;
 }
@@ -77,7 +77,8 @@ Result<ConnectionDescription> parseRsp(std::string_view text) {
 
 // The scheme becomes part of a file name, so only letters and digits are allowed.
 bool isScheme(std::string_view text) {
-    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+    return !text.empty() && std::all_of(text.begin(), text.end(),
+                                        [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
 }
 
 Result<ConnectionDescription> parsePlugin(std::string_view text, std::string_view scheme) {
@@ -91,10 +92,8 @@ Result<ConnectionDescription> parsePlugin(std::string_view text, std::string_vie
 } // namespace
 
 Result<ConnectionDescription> parseConnectionDescription(std::string_view text) {
-    if (text.starts_with(kTcp))
-        return parseEndpoint(text, text.substr(kTcp.size()));
-    if (text == "pipe:")
-        return ConnectionDescription{};
+    if (text.starts_with(kTcp)) return parseEndpoint(text, text.substr(kTcp.size()));
+    if (text == "pipe:") return ConnectionDescription{};
     if (text.starts_with(kShm)) {
         ConnectionDescription result;
         result.kind = ConnectionDescription::Kind::SharedMemory;
@@ -104,8 +103,7 @@ Result<ConnectionDescription> parseConnectionDescription(std::string_view text) 
         }
         return result;
     }
-    if (text.starts_with(kRsp))
-        return parseRsp(text);
+    if (text.starts_with(kRsp)) return parseRsp(text);
     const std::string_view scheme = text.substr(0, text.find(kAuthority));
     if (scheme.size() < text.size() && isScheme(scheme)) return parsePlugin(text, scheme);
     return invalid(text, "unknown kind");
@@ -113,19 +111,16 @@ Result<ConnectionDescription> parseConnectionDescription(std::string_view text) 
 
 std::string toText(const ConnectionDescription& description) {
     switch (description.kind) {
-    case ConnectionDescription::Kind::Pipe:
-        return "pipe:";
+    case ConnectionDescription::Kind::Pipe: return "pipe:";
     case ConnectionDescription::Kind::SharedMemory:
-        return description.descriptor < 0 ? "shm:"
-                                          : "shm:" + std::to_string(description.descriptor);
-    case ConnectionDescription::Kind::Tcp:
-        return tcpText(description.host, description.port);
+        return description.descriptor < 0 ? "shm:" : "shm:" + std::to_string(description.descriptor);
+    case ConnectionDescription::Kind::Tcp: return tcpText(description.host, description.port);
     case ConnectionDescription::Kind::Rsp:
-    case ConnectionDescription::Kind::Plugin:
-        break;
+    case ConnectionDescription::Kind::Plugin: break;
     }
     const bool plugin = description.kind == ConnectionDescription::Kind::Plugin;
-    std::string text = (plugin ? description.scheme + std::string(kAuthority) : std::string(kRsp)) + endpointText(description.host, description.port);
+    std::string text = (plugin ? description.scheme + std::string(kAuthority) : std::string(kRsp)) +
+                       endpointText(description.host, description.port);
     char separator = '?';
     for (const auto& [name, value] : description.parameters) {
         text += std::exchange(separator, '&') + name + "=" + value;

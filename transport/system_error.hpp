@@ -6,8 +6,6 @@
 
 namespace mural {
 
-inline std::string errnoText(int code) {
-    return std::generic_category().message(code);
-}
+inline std::string errnoText(int code) { return std::generic_category().message(code); }
 
 } // namespace mural

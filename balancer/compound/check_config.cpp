@@ -12,7 +12,9 @@ namespace mural::compound {
 
 namespace {
 
-std::string nameOr(const std::string& name, size_t number) { return name.empty() ? "number " + std::to_string(number) : "\"" + name + "\""; }
+std::string nameOr(const std::string& name, size_t number) {
+    return name.empty() ? "number " + std::to_string(number) : "\"" + name + "\"";
+}
 
 // Returns the number of frames after which the plan repeats, limited to the number that can be checked.
 uint64_t repeatsAfter(const ResolvedConfig& config) {
@@ -40,7 +42,9 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
             for (input.frameNumber = 0; input.frameNumber < repeatsAfter(config); ++input.frameNumber) {
                 tried += config.compounds.size();
                 if (tried > kMaxCompounds) {
-                    diagnostics.warn({}, "there are more layouts and frame numbers than can be tried for frames that wait for each other",
+                    diagnostics.warn({},
+                                     "there are more layouts and frame numbers than can be tried for frames that wait "
+                                     "for each other",
                                      "divide the file, or give shorter periods");
                     return;
                 }
@@ -52,7 +56,8 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
                 for (const std::string& name : names) circle += (circle.empty() ? "\"" : ", \"") + name + "\"";
                 if (!said.insert(circle).second) continue;
                 const PlannedFrame& first = plan.frames[at(plan.deadlock.front())];
-                const std::string who = names.size() == 1 ? "frame " + circle + " waits for itself" : "frames " + circle + " wait for each other";
+                const std::string who = names.size() == 1 ? "frame " + circle + " waits for itself"
+                                                          : "frames " + circle + " wait for each other";
                 diagnostics.error(config.compounds[at(first.compound)].at, who + ": nothing is ever drawn",
                                   "let one of them be read back before it is needed");
             }
@@ -63,12 +68,16 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
 void checkEqualizers(const ResolvedConfig& config, config::Diagnostics& diagnostics) {
     for (const config::ResolvedCompound& c : config.compounds) {
         for (const config::Equalizer& e : c.equalizers) {
-            const bool divides = std::holds_alternative<config::LoadEqualizer>(e) || std::holds_alternative<config::TreeEqualizer>(e);
+            const bool divides =
+                std::holds_alternative<config::LoadEqualizer>(e) || std::holds_alternative<config::TreeEqualizer>(e);
             const config::SourcePosition place = std::visit([](const auto& one) { return one.at; }, e);
-            if (divides && c.children.size() < 2) diagnostics.warn(place,
-                "this equalizer has nothing to divide: its compound has fewer than two children", "put it into the compound whose children it balances");
-            if (divides && c.destination == kNone) diagnostics.warn(place, "this equalizer stands in a compound without a channel",
-                                                                    "put it into the compound that has the destination's channel");
+            if (divides && c.children.size() < 2)
+                diagnostics.warn(place,
+                                 "this equalizer has nothing to divide: its compound has fewer than two children",
+                                 "put it into the compound whose children it balances");
+            if (divides && c.destination == kNone)
+                diagnostics.warn(place, "this equalizer stands in a compound without a channel",
+                                 "put it into the compound that has the destination's channel");
         }
     }
 }
@@ -84,12 +93,16 @@ void checkDisplays(const ResolvedConfig& config, config::Diagnostics& diagnostic
         }
     }
     for (size_t l = 0; l < used.size(); ++l) {
-        if (!used[l]) diagnostics.warn(config.layouts[l].at, "layout " + nameOr(config.layouts[l].name, l) + " is on no canvas and never shown",
-                                       "name it in a canvas, or remove it");
+        if (!used[l])
+            diagnostics.warn(config.layouts[l].at,
+                             "layout " + nameOr(config.layouts[l].name, l) + " is on no canvas and never shown",
+                             "name it in a canvas, or remove it");
     }
     for (size_t v = 0; v < seen.size(); ++v) {
-        if (!seen[v] && used[at(config.views[v].layout)]) diagnostics.warn(config.views[v].at,
-            "view " + nameOr(config.views[v].name, v) + " falls onto no segment and is never shown", "move its viewport over a segment");
+        if (!seen[v] && used[at(config.views[v].layout)])
+            diagnostics.warn(config.views[v].at,
+                             "view " + nameOr(config.views[v].name, v) + " falls onto no segment and is never shown",
+                             "move its viewport over a segment");
     }
 }
 
@@ -98,7 +111,8 @@ void checkNames(const ResolvedConfig& config, config::Diagnostics& diagnostics) 
     std::set<std::string> names;
     for (const config::ResolvedChannel& c : config.channels) {
         if (c.isDestination() || c.name.empty() || names.insert(c.name).second) continue;
-        diagnostics.warn(c.at, "there is a channel \"" + c.name + "\" already, this one can't be named", "give it another name");
+        diagnostics.warn(c.at, "there is a channel \"" + c.name + "\" already, this one can't be named",
+                         "give it another name");
     }
 }
 
@@ -109,7 +123,9 @@ void checkConfig(const ResolvedConfig& config, config::Diagnostics& diagnostics)
     checkDisplays(config, diagnostics);
     checkEqualizers(config, diagnostics);
     checkFrames(config, diagnostics);
-    if (config.channels.empty()) diagnostics.warn({}, "there is no channel, so nothing is drawn", "define a node with a pipe, a window and a channel");
+    if (config.channels.empty())
+        diagnostics.warn({}, "there is no channel, so nothing is drawn",
+                         "define a node with a pipe, a window and a channel");
     if (diagnostics.errors() == 0) checkDeadlocks(config, diagnostics);
 }
 

@@ -19,7 +19,8 @@ struct Known {
     bool readsBack = false;
 };
 
-void gather(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited* above, std::vector<Known>& all) {
+void gather(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited* above,
+            std::vector<Known>& all) {
     const config::ResolvedCompound& c = config.compounds[at(compound)];
     Known known{compound, inherit(config, input, compound, above), false, false};
     const auto tasks = c.tasks.value_or(config::TaskSet{config::Task::Assemble, config::Task::Readback});
@@ -39,8 +40,8 @@ bool everTogether(const Inherited& a, const Inherited& b) {
 
 class TreeCheck {
 public:
-    TreeCheck(const ResolvedConfig& config, const std::vector<Known>& all,
-              config::Diagnostics& diagnostics) : config_(config), all_(all), diagnostics_(diagnostics) {}
+    TreeCheck(const ResolvedConfig& config, const std::vector<Known>& all, config::Diagnostics& diagnostics)
+        : config_(config), all_(all), diagnostics_(diagnostics) {}
 
     void run() {
         for (const Known& k : all_) {
@@ -59,16 +60,22 @@ private:
             const config::ResolvedCompound& c = config_.compounds[at(other.compound)];
             const auto named = [&](const config::ResolvedFrame& f) { return f.name == frame.name; };
             taken = taken || std::any_of(c.inputFrames.begin(), c.inputFrames.end(), named);
-            if (other.compound >= maker.compound || !other.readsBack || !maker.readsBack || !everTogether(other.inherited, maker.inherited)) continue;
+            if (other.compound >= maker.compound || !other.readsBack || !maker.readsBack ||
+                !everTogether(other.inherited, maker.inherited))
+                continue;
             if (std::any_of(c.outputFrames.begin(), c.outputFrames.end(), named)) {
-                diagnostics_.warn(frame.at, "frame \"" + frame.name + "\" is made twice in this tree, only the first one is taken",
-                                  "give them different names");
+                diagnostics_.warn(
+                    frame.at, "frame \"" + frame.name + "\" is made twice in this tree, only the first one is taken",
+                    "give them different names");
             }
         }
-        if (!taken) diagnostics_.warn(frame.at, "nobody in this tree takes frame \"" + frame.name + "\", it is not read back",
-                                      "take it with an inputframe of that name, or remove it");
-        else if (!maker.readsBack) diagnostics_.warn(frame.at,
-            "frame \"" + frame.name + "\" is never made: the tasks of its compound leave out READBACK", "add READBACK to them");
+        if (!taken)
+            diagnostics_.warn(frame.at, "nobody in this tree takes frame \"" + frame.name + "\", it is not read back",
+                              "take it with an inputframe of that name, or remove it");
+        else if (!maker.readsBack)
+            diagnostics_.warn(
+                frame.at, "frame \"" + frame.name + "\" is never made: the tasks of its compound leave out READBACK",
+                "add READBACK to them");
     }
 
     void checkInput(const Known& taker, const config::ResolvedFrame& frame) {
@@ -76,41 +83,61 @@ private:
         bool together = false;
         for (const Known& other : all_) {
             const auto& outputs = config_.compounds[at(other.compound)].outputFrames;
-            const auto found = std::find_if(outputs.begin(), outputs.end(), [&](const config::ResolvedFrame& f) { return f.name == frame.name; });
+            const auto found = std::find_if(outputs.begin(), outputs.end(),
+                                            [&](const config::ResolvedFrame& f) { return f.name == frame.name; });
             if (found == outputs.end()) continue;
             maker = &other;
             if (!everTogether(other.inherited, taker.inherited)) continue;
             together = true;
             checkTexture(taker, other, *found, frame);
         }
-        if (maker == nullptr) diagnostics_.warn(frame.at, "nobody in this tree makes frame \"" + frame.name + "\", it is not waited for",
-                                                "name an outputframe so, or remove it");
-        else if (!together) diagnostics_.warn(frame.at,
-            "frame \"" + frame.name + "\" is never made for the eyes and frame numbers that it is taken for, it is not waited for",
-            "let eyes, periods and phases of both meet");
-        else if (!taker.assembles) diagnostics_.warn(frame.at,
-            "frame \"" + frame.name + "\" is not used: the tasks of this compound leave out ASSEMBLE", "add ASSEMBLE to them");
+        if (maker == nullptr)
+            diagnostics_.warn(frame.at, "nobody in this tree makes frame \"" + frame.name + "\", it is not waited for",
+                              "name an outputframe so, or remove it");
+        else if (!together)
+            diagnostics_.warn(
+                frame.at,
+                "frame \"" + frame.name +
+                    "\" is never made for the eyes and frame numbers that it is taken for, it is not waited for",
+                "let eyes, periods and phases of both meet");
+        else if (!taker.assembles)
+            diagnostics_.warn(frame.at,
+                              "frame \"" + frame.name + "\" is not used: the tasks of this compound leave out ASSEMBLE",
+                              "add ASSEMBLE to them");
     }
 
-    void checkTexture(const Known& taker, const Known& maker, const config::ResolvedFrame& made, const config::ResolvedFrame& frame) {
-        if (made.type != config::FrameType::Texture || taker.inherited.executing == kNone || maker.inherited.executing == kNone) return;
-        const auto pipeOf = [&](const Known& k) { return config_.windows[at(config_.channels[at(k.inherited.executing)].window)].pipe; };
-        if (pipeOf(taker) != pipeOf(maker)) diagnostics_.warn(frame.at,
-            "frame \"" + frame.name + "\" is a texture, and taken by another pipe, it is handed over in memory", "write type memory, or use channels of one pipe");
+    void checkTexture(const Known& taker, const Known& maker, const config::ResolvedFrame& made,
+                      const config::ResolvedFrame& frame) {
+        if (made.type != config::FrameType::Texture || taker.inherited.executing == kNone ||
+            maker.inherited.executing == kNone)
+            return;
+        const auto pipeOf = [&](const Known& k) {
+            return config_.windows[at(config_.channels[at(k.inherited.executing)].window)].pipe;
+        };
+        if (pipeOf(taker) != pipeOf(maker))
+            diagnostics_.warn(frame.at,
+                              "frame \"" + frame.name +
+                                  "\" is a texture, and taken by another pipe, it is handed over in memory",
+                              "write type memory, or use channels of one pipe");
     }
 
     void checkInputQueue(const config::ResolvedQueue& queue) {
         const bool filled = std::any_of(all_.begin(), all_.end(), [&](const Known& k) {
             const auto& queues = config_.compounds[at(k.compound)].outputQueues;
-            return std::any_of(queues.begin(), queues.end(), [&](const config::ResolvedQueue& q) { return q.name == queue.name; });
+            return std::any_of(queues.begin(), queues.end(),
+                               [&](const config::ResolvedQueue& q) { return q.name == queue.name; });
         });
-        if (!filled) diagnostics_.error(queue.at, "nobody in this tree fills the queue \"" + queue.name + "\"", "give a compound outputtiles of that name");
+        if (!filled)
+            diagnostics_.error(queue.at, "nobody in this tree fills the queue \"" + queue.name + "\"",
+                               "give a compound outputtiles of that name");
     }
 
     void checkOutputQueue(const config::ResolvedQueue& queue) {
-        const bool sized = (queue.size.pixels && queue.size.pixels->x > 0 && queue.size.pixels->y > 0) || (queue.size.range && *queue.size.range > 0);
-        if (!sized) diagnostics_.error(queue.at, "the queue \"" + queue.name + "\" has no size",
-                                       "give it size [ width height ] in pixels, or size and a part of the range");
+        const bool sized = (queue.size.pixels && queue.size.pixels->x > 0 && queue.size.pixels->y > 0) ||
+                           (queue.size.range && *queue.size.range > 0);
+        if (!sized)
+            diagnostics_.error(queue.at, "the queue \"" + queue.name + "\" has no size",
+                               "give it size [ width height ] in pixels, or size and a part of the range");
     }
 
     const ResolvedConfig& config_;
@@ -128,8 +155,11 @@ void checkFrames(const ResolvedConfig& config, config::Diagnostics& diagnostics)
         TreeCheck(config, all, diagnostics).run();
         for (const Known& k : all) {
             if (k.inherited.phase >= k.inherited.period && config.compounds[at(k.compound)].phase) {
-                const std::string phase = std::to_string(k.inherited.phase), period = std::to_string(k.inherited.period);
-                diagnostics.warn(config.compounds[at(k.compound)].at, "phase " + phase + " never comes with a period of " + period + ", so this compound never draws",
+                const std::string phase = std::to_string(k.inherited.phase),
+                                  period = std::to_string(k.inherited.period);
+                diagnostics.warn(config.compounds[at(k.compound)].at,
+                                 "phase " + phase + " never comes with a period of " + period +
+                                     ", so this compound never draws",
                                  "give a phase below the period");
             }
         }

@@ -6,19 +6,22 @@ namespace {
 
 PixelViewport within(const PixelViewport& whole, const Viewport& part) {
     if (!config::inPixels(part)) return apply(whole, part);
-    return {whole.x + static_cast<int32_t>(part.x), whole.y + static_cast<int32_t>(part.y), static_cast<int32_t>(part.w), static_cast<int32_t>(part.h)};
+    return {whole.x + static_cast<int32_t>(part.x), whole.y + static_cast<int32_t>(part.y),
+            static_cast<int32_t>(part.w), static_cast<int32_t>(part.h)};
 }
 
 void sizeChannels(const ResolvedConfig& config, Index window, DisplaySizes& sizes) {
     const PixelViewport& w = sizes.windows[ResolvedConfig::at(window)];
     for (const Index c : config.windows[ResolvedConfig::at(window)].channels) {
-        sizes.channels[ResolvedConfig::at(c)] = within({0, 0, w.w, w.h}, config.channels[ResolvedConfig::at(c)].viewport);
+        sizes.channels[ResolvedConfig::at(c)] =
+            within({0, 0, w.w, w.h}, config.channels[ResolvedConfig::at(c)].viewport);
     }
 }
 
 } // namespace
 
-DisplaySizes displaySizes(const ResolvedConfig& config, const std::vector<PixelSize>& machineSizes, PixelSize otherwise) {
+DisplaySizes displaySizes(const ResolvedConfig& config, const std::vector<PixelSize>& machineSizes,
+                          PixelSize otherwise) {
     DisplaySizes sizes;
     sizes.channels.resize(config.channels.size());
     for (size_t p = 0; p < config.pipes.size(); ++p) {
@@ -26,7 +29,8 @@ DisplaySizes displaySizes(const ResolvedConfig& config, const std::vector<PixelS
         sizes.pipes.push_back(config.pipes[p].viewport.value_or(PixelViewport{0, 0, machine.w, machine.h}));
     }
     for (size_t w = 0; w < config.windows.size(); ++w) {
-        sizes.windows.push_back(within(sizes.pipes[ResolvedConfig::at(config.windows[w].pipe)], config.windows[w].viewport));
+        sizes.windows.push_back(
+            within(sizes.pipes[ResolvedConfig::at(config.windows[w].pipe)], config.windows[w].viewport));
         sizeChannels(config, static_cast<Index>(w), sizes);
     }
     return sizes;

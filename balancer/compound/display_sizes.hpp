@@ -12,7 +12,7 @@ using config::ResolvedConfig;
 
 struct DisplaySizes {
     std::vector<PixelViewport> pipes;
-    std::vector<PixelViewport> windows; // relative to the pipe's screen
+    std::vector<PixelViewport> windows;  // relative to the pipe's screen
     std::vector<PixelViewport> channels; // relative to the window
 };
 
@@ -23,7 +23,8 @@ struct PixelSize {
 
 // Returns all sizes. `machineSizes` holds the screen size of each pipe as far as known; pipes without one have the size
 // `otherwise`.
-DisplaySizes displaySizes(const ResolvedConfig& config, const std::vector<PixelSize>& machineSizes = {}, PixelSize otherwise = {});
+DisplaySizes displaySizes(const ResolvedConfig& config, const std::vector<PixelSize>& machineSizes = {},
+                          PixelSize otherwise = {});
 
 // Applies a new window size, chosen by the user, to the window and its channels.
 void resizeWindow(const ResolvedConfig& config, Index window, PixelSize size, DisplaySizes& sizes);

@@ -11,11 +11,14 @@ namespace {
 using config::SplitMode;
 
 // Bisects the children and the area until each child has its own part. Cuts the longer side first.
-void divide(std::span<const Index> children, SplitMode mode, const Viewport& part, const Range& range, PixelSize whole, FrameInput& input) {
+void divide(std::span<const Index> children, SplitMode mode, const Viewport& part, const Range& range, PixelSize whole,
+            FrameInput& input) {
     if (children.size() == 1) {
         CompoundState& state = input.compounds[at(children.front())];
-        if (mode == SplitMode::Db) state.range = range;
-        else state.viewport = part;
+        if (mode == SplitMode::Db)
+            state.range = range;
+        else
+            state.viewport = part;
         return;
     }
     const size_t half = children.size() / 2;

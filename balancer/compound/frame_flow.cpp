@@ -16,7 +16,7 @@ struct Layer {
     Index context = kNone;
     Viewport from; // in pixels of the draw, relative to its corner
     Viewport to;
-    Zoom size; // scale of its pixels here, relative to the drawn pixels
+    Zoom size;  // scale of its pixels here, relative to the drawn pixels
     Zoom least; // smallest scale so far
 };
 
@@ -52,7 +52,9 @@ template <class Goes> void remove(Layers& layers, const Viewport& area, Goes&& g
         }
         const double x0 = l.to.x, x1 = l.to.x + l.to.w, y0 = l.to.y, y1 = l.to.y + l.to.h;
         const double bx1 = both.x + both.w, by1 = both.y + both.h;
-        for (const Viewport& rest : {Viewport{x0, y0, l.to.w, both.y - y0}, Viewport{x0, by1, l.to.w, y1 - by1}, Viewport{x0, both.y, both.x - x0, both.h}, Viewport{bx1, both.y, x1 - bx1, both.h}}) {
+        for (const Viewport& rest :
+             {Viewport{x0, y0, l.to.w, both.y - y0}, Viewport{x0, by1, l.to.w, y1 - by1},
+              Viewport{x0, both.y, both.x - x0, both.h}, Viewport{bx1, both.y, x1 - bx1, both.h}}) {
             constexpr double kNothing = 1e-6; // in pixels
             if (rest.w > kNothing && rest.h > kNothing) left.push_back(cut(l, rest));
         }
@@ -64,7 +66,13 @@ bool isSteered(const config::ResolvedFrame& f) { return !f.viewport.full() || f.
 
 class Walk {
 public:
-    Walk(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) : config_(config), input_(input), plan_(plan), flows_(plan.contexts.size()), frames_(plan.frames.size()), ready_(plan.frames.size(), false) {}
+    Walk(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan)
+        : config_(config),
+          input_(input),
+          plan_(plan),
+          flows_(plan.contexts.size()),
+          frames_(plan.frames.size()),
+          ready_(plan.frames.size(), false) {}
 
     std::vector<Flow> run() {
         for (size_t c = 0; c < flows_.size(); ++c) {
@@ -105,7 +113,8 @@ private:
         while (fresh && !open.empty()) {
             const config::ResolvedCompound& c = config_.compounds[at(open.back())];
             open.pop_back();
-            tree.steers = tree.steers || std::ranges::any_of(c.outputFrames, isSteered) || std::ranges::any_of(c.inputFrames, isSteered);
+            tree.steers = tree.steers || std::ranges::any_of(c.outputFrames, isSteered) ||
+                          std::ranges::any_of(c.inputFrames, isSteered);
             tree.queues = tree.queues || !c.outputQueues.empty() || !c.inputQueues.empty();
             open.insert(open.end(), c.children.begin(), c.children.end());
         }
@@ -128,7 +137,10 @@ private:
         Layers& buffer = bufferOf(c);
         switch (task.kind) {
         case Task::Clear: remove(buffer, rectangle(c.viewport), [](const Layer&) { return true; }); break;
-        case Task::Draw: buffer.push_back({task.context, {0, 0, double(c.viewport.w), double(c.viewport.h)}, rectangle(c.viewport), {}, {}}); break;
+        case Task::Draw:
+            buffer.push_back(
+                {task.context, {0, 0, double(c.viewport.w), double(c.viewport.h)}, rectangle(c.viewport), {}, {}});
+            break;
         case Task::Assemble:
             for (const FrameUse& use : task.inputs)
                 if (plan_.frames[at(use.frame)].channel == c.channel) takeAway(buffer, use);
@@ -148,7 +160,11 @@ private:
         const Zoom smaller{frame.size.w / area.w, frame.size.h / area.h}; // rounded to whole pixels
         Layers& picture = frames_[at(f)];
         picture = within(buffer, area);
-        for (Layer& l : picture) scale(l, {smaller.x * (l.to.x - area.x), smaller.y * (l.to.y - area.y), l.to.w * smaller.x, l.to.h * smaller.y}, smaller);
+        for (Layer& l : picture)
+            scale(
+                l,
+                {smaller.x * (l.to.x - area.x), smaller.y * (l.to.y - area.y), l.to.w * smaller.x, l.to.h * smaller.y},
+                smaller);
         ready_[at(f)] = true;
     }
 
@@ -172,13 +188,16 @@ private:
     // The frame was read back from this buffer and replaces its contents there.
     void takeAway(Layers& buffer, const FrameUse& use) const {
         const Layers& picture = frames_[at(use.frame)];
-        remove(buffer, touched(use), [&](const Layer& l) { return std::ranges::any_of(picture, [&](const Layer& p) { return p.context == l.context; }); });
+        remove(buffer, touched(use), [&](const Layer& l) {
+            return std::ranges::any_of(picture, [&](const Layer& p) { return p.context == l.context; });
+        });
     }
 
     // Whole pictures replace the contents of the buffer. Ranges, samples and pixel kernels are combined with it.
     void assemble(Layers& buffer, const FrameUse& use) const {
         const PlannedFrame& frame = plan_.frames[at(use.frame)];
-        const bool replaces = !frame.buffers.has(config::Buffer::Depth) && frame.range.full() && frame.subPixel.whole() && frame.pixel.whole();
+        const bool replaces = !frame.buffers.has(config::Buffer::Depth) && frame.range.full() &&
+                              frame.subPixel.whole() && frame.pixel.whole();
         if (replaces) remove(buffer, touched(use), [](const Layer&) { return true; });
         Layers moved = frames_[at(use.frame)];
         for (Layer& l : moved) scale(l, placed(use, l.to), use.zoom);
@@ -214,7 +233,8 @@ private:
         constexpr double kArithmetic = .01;
         const double rounded = ((place.axis.scale == 1 ? 0 : (1 + place.axis.scale) / 2) + kArithmetic) / place.width();
         double from1 = from + fromSize, to1 = to + toSize;
-        if (place.axis.step > 1 && place.axis.scale == 1 && std::abs(to - from) * place.pixels < 1 && std::abs(to1 - from1) * place.pixels < 1) {
+        if (place.axis.step > 1 && place.axis.scale == 1 && std::abs(to - from) * place.pixels < 1 &&
+            std::abs(to1 - from1) * place.pixels < 1) {
             settleNth(from, from1, place);
             to = from, to1 = from1;
         }
@@ -229,7 +249,9 @@ private:
     // With a pixel stride only the pixels themselves count, not the blocks that they represent: the last block may
     // extend past the destination.
     static void settleNth(double& from, double& from1, const Place& place) {
-        const auto middle = [&](int32_t pixel) { return place.origin + place.axis.kernel + place.axis.step * pixel + .5; };
+        const auto middle = [&](int32_t pixel) {
+            return place.origin + place.axis.kernel + place.axis.step * pixel + .5;
+        };
         const double begin = place.origin + from * place.width(), end = place.origin + from1 * place.width();
         int32_t first = 0, behind = place.pixels;
         while (first < behind && middle(first) < begin) ++first;
@@ -241,10 +263,13 @@ private:
 
     [[nodiscard]] ShownPart partOf(const Layer& l, const PixelViewport& shown) const {
         const RenderContext& c = plan_.contexts[at(l.context)];
-        const Place x{c.x, shown.x + c.x.origin, c.viewport.w, static_cast<double>(shown.right())}, y{c.y, shown.y + c.y.origin, c.viewport.h, static_cast<double>(shown.top())};
+        const Place x{c.x, shown.x + c.x.origin, c.viewport.w, static_cast<double>(shown.right())},
+            y{c.y, shown.y + c.y.origin, c.viewport.h, static_cast<double>(shown.top())};
         ShownPart part;
-        part.from = {l.from.x / c.viewport.w, l.from.y / c.viewport.h, l.from.w / c.viewport.w, l.from.h / c.viewport.h};
-        part.to = {(l.to.x - x.origin) / x.width(), (l.to.y - y.origin) / y.width(), l.to.w / x.width(), l.to.h / y.width()};
+        part.from = {l.from.x / c.viewport.w, l.from.y / c.viewport.h, l.from.w / c.viewport.w,
+                     l.from.h / c.viewport.h};
+        part.to = {(l.to.x - x.origin) / x.width(), (l.to.y - y.origin) / y.width(), l.to.w / x.width(),
+                   l.to.h / y.width()};
         settle(part.from.x, part.from.w, part.to.x, part.to.w, x);
         settle(part.from.y, part.from.h, part.to.y, part.to.h, y);
         part.way = {wayOf(l.size.x, l.least.x), wayOf(l.size.y, l.least.y)};
@@ -266,6 +291,8 @@ private:
 
 } // namespace
 
-std::vector<Flow> flowOf(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) { return Walk(config, input, plan).run(); }
+std::vector<Flow> flowOf(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) {
+    return Walk(config, input, plan).run();
+}
 
 } // namespace mural::compound

@@ -11,14 +11,14 @@ namespace mural::compound {
 // Parts are relative to the area that the draw represents: 0 0 1 1 is all of it, unmoved.
 struct ShownPart {
     Viewport from; // shown part of the draw
-    Viewport to; // its place; equal to `from` unless a frame's zoom scales it
-    Zoom way; // smallest scale on the path relative to the final scale; at most 1
+    Viewport to;   // its place; equal to `from` unless a frame's zoom scales it
+    Zoom way;      // smallest scale on the path relative to the final scale; at most 1
 };
 
 struct Flow {
     // a frame on the path has a viewport or zoom; otherwise everything is shown where it was drawn
     bool steered = false;
-    bool ignored = false; // a viewport or zoom exists, but a queue of the same tree determines the places
+    bool ignored = false;         // a viewport or zoom exists, but a queue of the same tree determines the places
     std::vector<ShownPart> parts; // of a steered draw; disjoint, except with parts of other draws
 };
 

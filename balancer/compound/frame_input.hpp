@@ -14,7 +14,7 @@ struct Overdraw {
 
 struct ViewState {
     std::optional<config::ViewMode> mode; // empty: the mode of the file
-    double modelUnit = 1; // program units per metre
+    double modelUnit = 1;                 // program units per metre
     Overdraw overdraw;
 };
 

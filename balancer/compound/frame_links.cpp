@@ -8,7 +8,9 @@ namespace mural::compound {
 
 namespace {
 
-Index pipeOf(const ResolvedConfig& config, Index channel) { return config.windows[at(config.channels[at(channel)].window)].pipe; }
+Index pipeOf(const ResolvedConfig& config, Index channel) {
+    return config.windows[at(config.channels[at(channel)].window)].pipe;
+}
 
 int32_t scaled(int32_t size, double by) { return std::max(1, static_cast<int32_t>(std::lround(size * by))); }
 
@@ -47,7 +49,8 @@ void Planner::linkFrames(Eye eye) {
     }
     // Channels that only assemble are not cleared for eyes without an input frame.
     for (size_t i = 0; i < active_.size(); ++i) {
-        const bool shows = active_[i].tasks.has(Task::Assemble) && config_.compounds[at(active_[i].compound)].isGenerated;
+        const bool shows =
+            active_[i].tasks.has(Task::Assemble) && config_.compounds[at(active_[i].compound)].isGenerated;
         if (shows && inputs_[i].empty()) active_[i].tasks = {};
     }
     dropUnused(first);
@@ -118,13 +121,14 @@ void Planner::takeFrames(const ActiveCompound& active) {
         use.exact = wanted.exact && frame.exact;
         placeFrame(active, wanted, active_[offer->second.active], frame, use);
         frame.consumers.push_back(active.inherited.executing);
-        if (pipeOf(config_, frame.channel) != pipeOf(config_, active.inherited.executing)) frame.type = config::FrameType::Memory;
+        if (pipeOf(config_, frame.channel) != pipeOf(config_, active.inherited.executing))
+            frame.type = config::FrameType::Memory;
         inputs_[activeOf_[at(active.compound)]].push_back(std::move(use));
     }
 }
 
-void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver, const PlannedFrame& frame,
-                         FrameUse& use) const {
+void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver,
+                         const PlannedFrame& frame, FrameUse& use) const {
     const RenderContext& to = plan_.contexts[at(taker.context)];
     const RenderContext& from = plan_.contexts[at(giver.context)];
     use.clip = intersect(to.viewport, apply(to.viewport, wanted.viewport));
@@ -132,10 +136,12 @@ void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFram
         // A mirror of another channel: scaled to this channel's size.
         use.x = to.viewport.x;
         use.y = to.viewport.y;
-        use.zoom = wanted.zoom.value_or(Zoom{to.viewport.w / double(frame.size.w), to.viewport.h / double(frame.size.h)});
+        use.zoom =
+            wanted.zoom.value_or(Zoom{to.viewport.w / double(frame.size.w), to.viewport.h / double(frame.size.h)});
         return;
     }
-    const RelativeAxis x = relative(giver.inherited.x, taker.inherited.x), y = relative(giver.inherited.y, taker.inherited.y);
+    const RelativeAxis x = relative(giver.inherited.x, taker.inherited.x),
+                       y = relative(giver.inherited.y, taker.inherited.y);
     use.kernel = {x.kernel, y.kernel, x.step, y.step};
     use.x = to.viewport.x + static_cast<int32_t>(std::lround(placeOf(from.x, frame.area.x - from.viewport.x, to.x)));
     use.y = to.viewport.y + static_cast<int32_t>(std::lround(placeOf(from.y, frame.area.y - from.viewport.y, to.y)));

@@ -18,12 +18,12 @@ struct PlannedFrame {
     std::string codec;
     bool exact = true;
     PixelViewport area; // readback area in the channel's window
-    PixelSize size; // size of the picture: the area scaled by `zoom`
+    PixelSize size;     // size of the picture: the area scaled by `zoom`
     Zoom zoom;
     Range range;
     PixelKernel pixel;
     SubPixel subPixel;
-    bool perTile = false; // one picture per tile taken from a queue
+    bool perTile = false;         // one picture per tile taken from a queue
     std::vector<Index> consumers; // channel indices
 };
 
@@ -35,13 +35,13 @@ struct FrameUse {
     PixelKernel kernel;
     Zoom zoom;
     PixelViewport clip; // assembly changes no pixel outside
-    std::string codec; // empty: the codec of the frame
+    std::string codec;  // empty: the codec of the frame
     bool exact = true;
 };
 
 struct PlannedTask {
     Task kind = Task::Clear;
-    Index context = kNone; // index into FramePlan::contexts
+    Index context = kNone;      // index into FramePlan::contexts
     std::vector<Index> outputs; // Readback only: indices into FramePlan::frames
     // Assemble only. A frame that was read back from this channel replaces the contents of its readback area.
     std::vector<FrameUse> inputs;
@@ -51,8 +51,8 @@ struct PlannedTask {
 // One work item of a tile or chunk queue.
 struct PlannedTile {
     PixelViewport area; // in the destination's window
-    Viewport part; // relative to the context of the queue
-    Range range; // relative to the context of the queue
+    Viewport part;      // relative to the context of the queue
+    Range range;        // relative to the context of the queue
 };
 
 struct PlannedQueue {

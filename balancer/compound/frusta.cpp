@@ -8,7 +8,9 @@ namespace {
 
 using config::Screen;
 
-ViewState unitsOf(const FrameInput& input, Index view) { return view != kNone && at(view) < input.views.size() ? input.views[at(view)] : ViewState{}; }
+ViewState unitsOf(const FrameInput& input, Index view) {
+    return view != kNone && at(view) < input.views.size() ? input.views[at(view)] : ViewState{};
+}
 
 // Least distance between eye and screen, in metres. An eye in the screen's plane has no valid frustum.
 constexpr double kClosest = 1e-4;
@@ -22,7 +24,8 @@ struct OffAxis {
 OffAxis edgesFrom(const Screen& screen, const Vector3& eye, double scale) {
     const bool mirrored = eye.z < 0;
     const double half = screen.width / 2 * (mirrored ? -1 : 1);
-    return {(-half - eye.x) * scale, (half - eye.x) * scale, (-screen.height / 2 - eye.y) * scale, (screen.height / 2 - eye.y) * scale, mirrored};
+    return {(-half - eye.x) * scale, (half - eye.x) * scale, (-screen.height / 2 - eye.y) * scale,
+            (screen.height / 2 - eye.y) * scale, mirrored};
 }
 
 double distanceAlong(const Screen& screen, const Vector3& from, const Vector3& direction) {
@@ -58,7 +61,8 @@ double focusRatio(const ResolvedConfig& config, const FrameInput& input, Index v
         return d > 0 ? observer.focusDistance / d : 1;
     }
     const double d = focusDistanceOf(config, view, {}, {0, 0, -1});
-    return d > 0 && d + eye.z > 0 && observer.focusDistance + eye.z > 0 ? (observer.focusDistance + eye.z) / (d + eye.z) : 1;
+    return d > 0 && d + eye.z > 0 && observer.focusDistance + eye.z > 0 ? (observer.focusDistance + eye.z) / (d + eye.z)
+                                                                        : 1;
 }
 
 } // namespace
@@ -96,11 +100,16 @@ Screen destinationScreen(const ResolvedConfig& config, const FrameInput& input, 
     const config::ResolvedView& view = config.views[at(channel.view)];
     const config::ResolvedSegment& segment = config.segments[at(channel.segment)];
     Screen screen;
-    if (view.surface) screen = config::screenOf(*view.surface).part(coverage(config, channel));
-    else screen = config::screenOf(segment.surface).part(segment.surfacePart).part(relativeTo(intersect(segment.viewport, view.viewport), segment.viewport));
+    if (view.surface)
+        screen = config::screenOf(*view.surface).part(coverage(config, channel));
+    else
+        screen = config::screenOf(segment.surface)
+                     .part(segment.surfacePart)
+                     .part(relativeTo(intersect(segment.viewport, view.viewport), segment.viewport));
     const double ratio = focusRatio(config, input, channel.view);
     if (ratio != 1 && view.observer != kNone) {
-        const Matrix4 head = at(view.observer) < input.observers.size() ? input.observers[at(view.observer)].head : Matrix4{};
+        const Matrix4 head =
+            at(view.observer) < input.observers.size() ? input.observers[at(view.observer)].head : Matrix4{};
         const Vector3 eye = transformPoint(head, config.observers[at(view.observer)].eyeCyclop);
         screen.center = eye + (screen.center - eye) * ratio;
         screen.width *= ratio;
@@ -118,7 +127,8 @@ Frustum partOf(const Frustum& f, const Viewport& part) {
     return cut;
 }
 
-void setFrusta(const Screen& given, const Eyes& eyes, const Inherited& i, const Viewport& shown, const FrameInput& input, RenderContext& context) {
+void setFrusta(const Screen& given, const Eyes& eyes, const Inherited& i, const Viewport& shown,
+               const FrameInput& input, RenderContext& context) {
     Screen screen = given;
     // Overdraw enlarges the screen by the additional pixels around the view.
     const Overdraw& o = i.overdraw;
@@ -136,10 +146,12 @@ void setFrusta(const Screen& given, const Eyes& eyes, const Inherited& i, const 
 
     const OffAxis edges = edgesFrom(screen, eye, input.nearPlane / std::abs(eye.z));
     context.behindScreen = edges.mirrored;
-    context.destinationPerspective = {edges.left, edges.right, edges.bottom, edges.top, input.nearPlane, input.farPlane};
+    context.destinationPerspective = {edges.left, edges.right,     edges.bottom,
+                                      edges.top,  input.nearPlane, input.farPlane};
     context.perspective = partOf(context.destinationPerspective, shown);
     const OffAxis flat = edgesFrom(screen, cyclop, 1);
-    context.orthographic = partOf({flat.left, flat.right, flat.bottom, flat.top, input.nearPlane, input.farPlane}, shown);
+    context.orthographic =
+        partOf({flat.left, flat.right, flat.bottom, flat.top, input.nearPlane, input.farPlane}, shown);
 
     const Matrix4 behindHead = isHmd ? rigidInverse(eyes.head) : Matrix4{};
     context.perspectiveHead = Matrix4::translation(eye * -1) * fromRoom * behindHead;

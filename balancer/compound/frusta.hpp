@@ -23,8 +23,8 @@ config::Screen destinationScreen(const ResolvedConfig& config, const FrameInput&
 Viewport coverage(const ResolvedConfig& config, const config::ResolvedChannel& channel);
 
 // Sets frusta and head transforms of a context that shows the part `shown` of the destination.
-void setFrusta(const config::Screen& screen, const Eyes& eyes, const Inherited& inherited, const Viewport& shown, const FrameInput& input,
-               RenderContext& context);
+void setFrusta(const config::Screen& screen, const Eyes& eyes, const Inherited& inherited, const Viewport& shown,
+               const FrameInput& input, RenderContext& context);
 
 // Returns the frustum of a part of the area that `whole` covers.
 Frustum partOf(const Frustum& whole, const Viewport& part);

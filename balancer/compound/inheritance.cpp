@@ -8,10 +8,13 @@ CompoundState stateOf(const FrameInput& input, Index compound) {
     return at(compound) < input.compounds.size() ? input.compounds[at(compound)] : CompoundState{};
 }
 
-ViewState stateOfView(const FrameInput& input, Index view) { return at(view) < input.views.size() ? input.views[at(view)] : ViewState{}; }
+ViewState stateOfView(const FrameInput& input, Index view) {
+    return at(view) < input.views.size() ? input.views[at(view)] : ViewState{};
+}
 
 // The first channel on the path from the root becomes the destination of the whole subtree.
-void beginDestination(const ResolvedConfig& config, const FrameInput& input, Index channel, const Viewport& own, Inherited& i) {
+void beginDestination(const ResolvedConfig& config, const FrameInput& input, Index channel, const Viewport& own,
+                      Inherited& i) {
     i.destination = channel;
     i.area = input.sizes.channels[at(channel)];
     const Index view = config.channels[at(channel)].view;
@@ -65,9 +68,12 @@ Inherited inherit(const ResolvedConfig& config, const FrameInput& input, Index c
     const Viewport viewport = state.viewport.value_or(c.viewport);
     Inherited i = above != nullptr ? *above : Inherited{};
     if (c.channel != kNone) i.executing = c.channel;
-    if (i.destination != kNone) applyViewport(viewport, i);
-    else if (c.channel != kNone) beginDestination(config, input, c.channel, viewport, i);
-    else i.own = compose(i.own, viewport);
+    if (i.destination != kNone)
+        applyViewport(viewport, i);
+    else if (c.channel != kNone)
+        beginDestination(config, input, c.channel, viewport, i);
+    else
+        i.own = compose(i.own, viewport);
     i.range = compose(i.range, state.range.value_or(c.range));
     i.pixel = compose(i.pixel, c.pixel);
     i.subPixel = compose(i.subPixel, c.subPixel);

@@ -8,11 +8,11 @@ namespace mural::compound {
 
 struct Inherited {
     Index destination = kNone; // first channel on the path from the root
-    Index executing = kNone; // nearest channel
-    PixelViewport area; // in the destination's window, after pixel kernel and zoom
-    Viewport part; // relative to the destination
-    Viewport own; // relative to the destination: the part represented by all of its pixels
-    PixelSize whole; // pixels of the destination including overdraw
+    Index executing = kNone;   // nearest channel
+    PixelViewport area;        // in the destination's window, after pixel kernel and zoom
+    Viewport part;             // relative to the destination
+    Viewport own;              // relative to the destination: the part represented by all of its pixels
+    PixelSize whole;           // pixels of the destination including overdraw
     PixelAxis x, y;
     Range range;
     PixelKernel pixel;
@@ -31,7 +31,8 @@ struct Inherited {
 Inherited inherit(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited* above);
 
 // Returns true if the compound has tasks for this eye.
-bool isActive(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited& inherited, Eye eye);
+bool isActive(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited& inherited,
+              Eye eye);
 
 // Returns the tasks of a compound. `channelAbove`: an ancestor uses the channel that executes this compound.
 config::TaskSet tasksOf(const config::ResolvedCompound& compound, const Inherited& inherited, bool channelAbove);

@@ -26,7 +26,8 @@ LoadedConfig loadConfig(const std::string& path, const config::EnvironmentLookup
     return loaded;
 }
 
-LoadedConfig loadConfig(config::ConfigFile file, const std::string& name, const config::EnvironmentLookup& environment) {
+LoadedConfig loadConfig(config::ConfigFile file, const std::string& name,
+                        const config::EnvironmentLookup& environment) {
     LoadedConfig loaded{std::move(file), {}, config::Diagnostics(name)};
     complete(loaded, environment);
     return loaded;

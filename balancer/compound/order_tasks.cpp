@@ -18,7 +18,8 @@ struct TaskGraph {
     std::vector<size_t> makerOf; // producing task of each frame
 
     // overlaps: pairs of channels that draw into the same pixels; the first finishes before the second begins.
-    TaskGraph(const FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps) : makerOf(plan.frames.size(), SIZE_MAX) {
+    TaskGraph(const FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps)
+        : makerOf(plan.frames.size(), SIZE_MAX) {
         std::vector<size_t> first(plan.channels.size());
         for (size_t c = 0; c < plan.channels.size(); ++c) {
             first[c] = steps.size();
@@ -35,10 +36,13 @@ struct TaskGraph {
                 if (makerOf[at(use.frame)] != SIZE_MAX) addEdge(makerOf[at(use.frame)], i);
             }
         }
-        for (const auto& [one, other] : overlaps) addEdge(first[one] + plan.channels[one].tasks.size() - 1, first[other]);
+        for (const auto& [one, other] : overlaps)
+            addEdge(first[one] + plan.channels[one].tasks.size() - 1, first[other]);
     }
 
-    [[nodiscard]] const PlannedTask& taskOf(const FramePlan& plan, size_t i) const { return plan.channels[steps[i].channel].tasks[steps[i].task]; }
+    [[nodiscard]] const PlannedTask& taskOf(const FramePlan& plan, size_t i) const {
+        return plan.channels[steps[i].channel].tasks[steps[i].task];
+    }
 
 private:
     void addEdge(size_t from, size_t to) {
@@ -73,20 +77,23 @@ std::vector<Index> circleOf(const FramePlan& plan, const TaskGraph& graph, const
     return frames;
 }
 
-std::vector<std::pair<size_t, size_t>> overlapsOf(const ResolvedConfig& config, const FramePlan& plan, const DisplaySizes& sizes) {
+std::vector<std::pair<size_t, size_t>> overlapsOf(const ResolvedConfig& config, const FramePlan& plan,
+                                                  const DisplaySizes& sizes) {
     std::vector<std::pair<size_t, size_t>> pairs;
     const auto channel = [&](size_t c) { return at(plan.channels[c].channel); };
     for (size_t one = 0; one < plan.channels.size(); ++one) {
         for (size_t other = one + 1; other < plan.channels.size(); ++other) {
             if (config.channels[channel(one)].window != config.channels[channel(other)].window) continue;
-            if (!intersect(sizes.channels[channel(one)], sizes.channels[channel(other)]).empty()) pairs.emplace_back(one, other);
+            if (!intersect(sizes.channels[channel(one)], sizes.channels[channel(other)]).empty())
+                pairs.emplace_back(one, other);
         }
     }
     return pairs;
 }
 
 // Returns false if no order exists; `circle` then holds the frames of a cycle.
-bool order(const ResolvedConfig& config, FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps, std::vector<Index>& circle) {
+bool order(const ResolvedConfig& config, FramePlan& plan, const std::vector<std::pair<size_t, size_t>>& overlaps,
+           std::vector<Index>& circle) {
     TaskGraph graph(plan, overlaps);
     // Ready tasks; the one with the lowest index runs first.
     std::priority_queue<size_t, std::vector<size_t>, std::greater<>> ready;
@@ -117,7 +124,8 @@ bool order(const ResolvedConfig& config, FramePlan& plan, const std::vector<std:
 
 void orderTasks(const ResolvedConfig& config, const DisplaySizes& sizes, FramePlan& plan) {
     // Channels of the file precede the destination channels of their window.
-    std::sort(plan.channels.begin(), plan.channels.end(), [](const ChannelPlan& a, const ChannelPlan& b) { return a.channel < b.channel; });
+    std::sort(plan.channels.begin(), plan.channels.end(),
+              [](const ChannelPlan& a, const ChannelPlan& b) { return a.channel < b.channel; });
     std::vector<Index> circle;
     if (order(config, plan, overlapsOf(config, plan, sizes), circle)) return;
     plan.interleaved = order(config, plan, {}, circle);

@@ -40,11 +40,14 @@ void setStereo(const ResolvedConfig& config, const Inherited& i, RenderContext& 
     if (c.eye == Eye::Cyclop) return;
     using config::ColorComponent;
     if (c.stereoMode == StereoMode::Anaglyph)
-        c.eyeColors = c.eye == Eye::Left ? i.attributes.anaglyphLeftMask.value_or(config::ColorMask{ColorComponent::Red})
-                                         : i.attributes.anaglyphRightMask.value_or(config::ColorMask{ColorComponent::Green, ColorComponent::Blue});
+        c.eyeColors = c.eye == Eye::Left
+                          ? i.attributes.anaglyphLeftMask.value_or(config::ColorMask{ColorComponent::Red})
+                          : i.attributes.anaglyphRightMask.value_or(
+                                config::ColorMask{ColorComponent::Green, ColorComponent::Blue});
     if (c.channel != c.destination) return;
     c.colorMask = c.eyeColors;
-    if (c.stereoMode == StereoMode::Quad) c.drawBuffer = c.eye == Eye::Left ? DrawBuffer::BackLeft : DrawBuffer::BackRight;
+    if (c.stereoMode == StereoMode::Quad)
+        c.drawBuffer = c.eye == Eye::Left ? DrawBuffer::BackLeft : DrawBuffer::BackRight;
 }
 
 } // namespace
@@ -82,13 +85,15 @@ void Planner::activate(Index compound, const Inherited* above, Eye eye) {
 void Planner::joinBarrier(const ActiveCompound& active) {
     const auto& barrier = config_.compounds[at(active.compound)].barrier;
     if (!barrier) return;
-    auto found = std::find_if(plan_.barriers.begin(), plan_.barriers.end(), [&](const PlannedBarrier& b) { return b.name == barrier->name; });
+    auto found = std::find_if(plan_.barriers.begin(), plan_.barriers.end(),
+                              [&](const PlannedBarrier& b) { return b.name == barrier->name; });
     if (found == plan_.barriers.end()) {
         plan_.barriers.push_back({barrier->name, barrier->nvGroup, barrier->nvBarrier, {}});
         found = std::prev(plan_.barriers.end());
     }
     const Index window = config_.channels[at(active.inherited.executing)].window;
-    if (std::find(found->windows.begin(), found->windows.end(), window) == found->windows.end()) found->windows.push_back(window);
+    if (std::find(found->windows.begin(), found->windows.end(), window) == found->windows.end())
+        found->windows.push_back(window);
 }
 
 Index Planner::contextOf(const ActiveCompound& active, Eye eye) {
@@ -113,7 +118,8 @@ Index Planner::contextOf(const ActiveCompound& active, Eye eye) {
     c.x = i.x;
     c.y = i.y;
     const double w = i.whole.w, h = i.whole.h;
-    const Viewport sampled = compose(i.own, {i.x.first() / w, i.y.first() / h, (i.x.last(i.area.w) - i.x.first()) / w, (i.y.last(i.area.h) - i.y.first()) / h});
+    const Viewport sampled = compose(i.own, {i.x.first() / w, i.y.first() / h, (i.x.last(i.area.w) - i.x.first()) / w,
+                                             (i.y.last(i.area.h) - i.y.first()) / h});
     c.sampledPart = compose(seen, sampled);
     c.range = i.range;
     c.pixel = i.pixel;
@@ -125,7 +131,8 @@ Index Planner::contextOf(const ActiveCompound& active, Eye eye) {
     c.overdraw = i.overdraw;
     c.buffers = i.buffers;
     setStereo(config_, i, c);
-    const config::Screen screen = i.screen && c.channel != c.destination ? *i.screen : destinationScreen(config_, input_, i);
+    const config::Screen screen =
+        i.screen && c.channel != c.destination ? *i.screen : destinationScreen(config_, input_, i);
     setFrusta(screen, eyesOf(config_, input_, c.view, eye), i, sampled, input_, c);
     plan_.contexts.push_back(c);
     return static_cast<Index>(plan_.contexts.size()) - 1;
@@ -151,7 +158,7 @@ void Planner::add(const ActiveCompound& active, Task kind) {
     if (kind == Task::Readback) task.outputs = outputs_[index];
     if (kind == Task::Assemble) task.inputs = inputs_[index];
     if (kind == Task::Readback && task.outputs.empty()) return; // no consumer
-    if (kind == Task::Assemble && task.inputs.empty()) return; // no producer in this frame
+    if (kind == Task::Assemble && task.inputs.empty()) return;  // no producer in this frame
     if (kind == Task::Draw && !config_.compounds[at(active.compound)].inputQueues.empty()) {
         const auto queue = queues_.find(config_.compounds[at(active.compound)].inputQueues.front().name);
         if (queue == queues_.end()) return; // no queue: no work

@@ -37,14 +37,14 @@ private:
     void linkFrames(Eye eye);
     void offerFrames(const ActiveCompound& active, Eye eye);
     void takeFrames(const ActiveCompound& active);
-    void placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver, const PlannedFrame& frame,
-                    FrameUse& use) const;
+    void placeFrame(const ActiveCompound& taker, const config::ResolvedFrame& wanted, const ActiveCompound& giver,
+                    const PlannedFrame& frame, FrameUse& use) const;
     void dropUnused(size_t first);
     void addQueues();
 
     struct Offer {
         size_t active; // index into active_
-        Index frame; // index into plan_.frames
+        Index frame;   // index into plan_.frames
     };
 
     const ResolvedConfig& config_;
@@ -53,9 +53,9 @@ private:
     std::vector<size_t> channelPlans_; // per channel: index into plan_.channels
     // State of the current pass.
     std::vector<ActiveCompound> active_;
-    std::vector<size_t> activeOf_; // per compound: index into active_, or SIZE_MAX
-    std::map<std::string, Offer> offers_; // output frames by name
-    std::map<std::string, Index> queues_; // indices into plan_.queues by name
+    std::vector<size_t> activeOf_;            // per compound: index into active_, or SIZE_MAX
+    std::map<std::string, Offer> offers_;     // output frames by name
+    std::map<std::string, Index> queues_;     // indices into plan_.queues by name
     std::vector<std::vector<Index>> outputs_; // per entry of active_: indices into plan_.frames
     std::vector<std::vector<FrameUse>> inputs_;
 };

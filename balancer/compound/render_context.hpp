@@ -25,15 +25,15 @@ struct PixelAxis {
 
 struct RenderContext {
     Index compound = kNone;
-    Index channel = kNone; // drawing channel
+    Index channel = kNone;     // drawing channel
     Index destination = kNone; // destination channel
     Index view = kNone;
     Eye eye = Eye::Cyclop;
     uint32_t taskId = 0; // unique within a frame
 
     PixelViewport viewport; // in the channel's window
-    PixelViewport area; // in the destination's window; its corner is the context's offset
-    Viewport part; // part of the view, without pixel kernels
+    PixelViewport area;     // in the destination's window; its corner is the context's offset
+    Viewport part;          // part of the view, without pixel kernels
     // part of the view, moved and widened so that each pixel centre is the centre of the represented pixel
     Viewport sampledPart;
     PixelAxis x, y;
@@ -48,14 +48,16 @@ struct RenderContext {
 
     config::BufferSet buffers; // buffers to read back
     DrawBuffer drawBuffer = DrawBuffer::Back;
-    config::ColorMask colorMask{config::ColorComponent::Red, config::ColorComponent::Green, config::ColorComponent::Blue};
+    config::ColorMask colorMask{config::ColorComponent::Red, config::ColorComponent::Green,
+                                config::ColorComponent::Blue};
     StereoMode stereoMode = StereoMode::Passive;
     // colours of the eye in an anaglyph
-    config::ColorMask eyeColors{config::ColorComponent::Red, config::ColorComponent::Green, config::ColorComponent::Blue};
+    config::ColorMask eyeColors{config::ColorComponent::Red, config::ColorComponent::Green,
+                                config::ColorComponent::Blue};
 
     Frustum perspective;
     Frustum destinationPerspective; // for all pixels of the destination
-    Matrix4 perspectiveHead; // from room to eye, looking at the screen
+    Matrix4 perspectiveHead;        // from room to eye, looking at the screen
     Frustum orthographic;
     Matrix4 orthographicHead;
     bool behindScreen = false; // the eye is behind the screen: the picture is mirrored

@@ -16,7 +16,9 @@ std::vector<PlannedTile> chunksOf(double step) {
     const double size = std::clamp(step, 1. / kMaxTiles, 1.);
     const auto count = static_cast<int64_t>(std::ceil(1 / size - 1e-9));
     std::vector<PlannedTile> chunks;
-    for (int64_t i = 0; i < count; ++i) chunks.push_back({{}, {}, {static_cast<double>(i) * size, i + 1 == count ? 1 : static_cast<double>(i + 1) * size}});
+    for (int64_t i = 0; i < count; ++i)
+        chunks.push_back(
+            {{}, {}, {static_cast<double>(i) * size, i + 1 == count ? 1 : static_cast<double>(i + 1) * size}});
     return chunks;
 }
 

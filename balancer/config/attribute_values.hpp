@@ -33,7 +33,7 @@ inline constexpr int32_t kRelativeToOrigin = -16;
 inline constexpr int32_t kRelativeToObserver = -17;
 inline constexpr int32_t kFastest = 1;
 inline constexpr int32_t kHorizontal = 1;
-inline constexpr int32_t kCore = 1; // CORE n is kCore + n
+inline constexpr int32_t kCore = 1;        // CORE n is kCore + n
 inline constexpr int32_t kSocket = -65536; // SOCKET n is kSocket + n
 
 } // namespace value

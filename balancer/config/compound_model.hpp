@@ -33,7 +33,7 @@ struct Frame {
     std::optional<BufferSet> buffers;
     std::optional<Zoom> zoom;
     std::optional<std::string> codec; // codec name, or "auto"
-    Attribute exact; // OFF allows lossy codecs
+    Attribute exact;                  // OFF allows lossy codecs
     SourcePosition at;
     friend bool operator==(const Frame&, const Frame&) = default;
 };
@@ -107,7 +107,8 @@ struct TileEqualizer {
     friend bool operator==(const TileEqualizer&, const TileEqualizer&) = default;
 };
 
-using Equalizer = std::variant<LoadEqualizer, TreeEqualizer, DfrEqualizer, FramerateEqualizer, MonitorEqualizer, ViewEqualizer, TileEqualizer>;
+using Equalizer = std::variant<LoadEqualizer, TreeEqualizer, DfrEqualizer, FramerateEqualizer, MonitorEqualizer,
+                               ViewEqualizer, TileEqualizer>;
 
 // One step of the path to a destination channel: canvas, segment, layout or view.
 enum class PathStep : uint8_t { Canvas, Segment, Layout, View };

@@ -33,7 +33,7 @@ struct Config {
 };
 
 struct ConfigFile {
-    double version = 0; // version of the format: 1, 1.1, 1.2; 0: not stated
+    double version = 0;               // version of the format: 1, 1.1, 1.2; 0: not stated
     std::vector<std::string> heading; // leading comments without comment marks
     Globals globals;
     std::vector<Connection> serverConnections;

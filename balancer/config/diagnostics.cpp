@@ -15,7 +15,8 @@ void Diagnostics::add(Diagnostic d) {
     if (d.severity == Severity::Error) ++errors_;
     if (all_.size() < kMaxLines) all_.push_back(std::move(d));
     // the first error is always kept
-    else if (d.severity == Severity::Error && errors_ == 1) all_.back() = std::move(d);
+    else if (d.severity == Severity::Error && errors_ == 1)
+        all_.back() = std::move(d);
 }
 
 void Diagnostics::warn(SourcePosition at, std::string what, std::string remedy) {
@@ -27,9 +28,12 @@ void Diagnostics::error(SourcePosition at, std::string what, std::string remedy)
 }
 
 void Diagnostics::given(SourcePosition at, std::string_view section, std::string_view field) {
-    const auto same = std::ranges::find_if(given_, [&](const GivenField& g) { return g.section == section && g.field == field; });
-    if (same != given_.end()) ++same->times;
-    else given_.push_back({std::string(section), std::string(field), at, 1}); // bounded by the vocabulary of the format
+    const auto same =
+        std::ranges::find_if(given_, [&](const GivenField& g) { return g.section == section && g.field == field; });
+    if (same != given_.end())
+        ++same->times;
+    else
+        given_.push_back({std::string(section), std::string(field), at, 1}); // bounded by the vocabulary of the format
 }
 
 std::string Diagnostics::text(const Diagnostic& d) const {

@@ -61,7 +61,8 @@ const std::vector<GlobalAttribute>& table() {
         {"EQ_CHANNEL_SATTR_DUMP_IMAGE", Kind::Text, text("")},
         {"EQ_COMPOUND_IATTR_STEREO_MODE", Kind::Word, {}},
         {"EQ_COMPOUND_IATTR_STEREO_ANAGLYPH_LEFT_MASK", Kind::Mask, ColorMask{ColorComponent::Red}},
-        {"EQ_COMPOUND_IATTR_STEREO_ANAGLYPH_RIGHT_MASK", Kind::Mask, ColorMask{ColorComponent::Green, ColorComponent::Blue}},
+        {"EQ_COMPOUND_IATTR_STEREO_ANAGLYPH_RIGHT_MASK", Kind::Mask,
+         ColorMask{ColorComponent::Green, ColorComponent::Blue}},
         {"EQ_VIEW_SATTR_DEFLECT_HOST", Kind::Text, text("")},
     };
     return kTable;
@@ -127,8 +128,10 @@ Globals globalsOfEnvironment(const EnvironmentLookup& lookup, Diagnostics& diagn
         TokenReader tokens(list.tokens, inside);
         const auto read = readGlobalValue(tokens, g);
         if (!tokens.ended()) tokens.fail({}, "there is more than one value", "give one");
-        if (inside.errors() == 0 && read) globals[name] = *read;
-        else diagnostics.warn({}, inside.firstError(), "it is left out");
+        if (inside.errors() == 0 && read)
+            globals[name] = *read;
+        else
+            diagnostics.warn({}, inside.firstError(), "it is left out");
     }
     return globals;
 }

@@ -29,7 +29,9 @@ double between(double from, double to) { return std::round(1e6 * (to - from)) / 
 class Maker {
 public:
     explicit Maker(const Preset& form) : form_(form) {
-        for (const Level level : {Level{Level::Kind::Frames, form.frames}, {Level::Kind::Ranges, form.ranges}, {Level::Kind::Pixels, form.pixels},
+        for (const Level level : {Level{Level::Kind::Frames, form.frames},
+                                  {Level::Kind::Ranges, form.ranges},
+                                  {Level::Kind::Pixels, form.pixels},
                                   {Level::Kind::Samples, form.samples}}) {
             if (level.count > 1) levels_.push_back(level);
         }
@@ -95,8 +97,10 @@ private:
     }
 
     void addTile(Canvas& canvas, int32_t column, int32_t row) {
-        const std::string name = form_.columns * form_.rows == 1 ? "wall" : "tile." + std::to_string(column) + "." + std::to_string(row);
-        const PixelViewport pixels = tileViewport({form_.columns, form_.rows, 1}, column, row, form_.width, form_.height);
+        const std::string name =
+            form_.columns * form_.rows == 1 ? "wall" : "tile." + std::to_string(column) + "." + std::to_string(row);
+        const PixelViewport pixels =
+            tileViewport({form_.columns, form_.rows, 1}, column, row, form_.width, form_.height);
         const double x = edge(column, form_.columns), y = edge(row, form_.rows);
         const Viewport part{x, y, between(x, edge(column + 1, form_.columns)), between(y, edge(row + 1, form_.rows))};
         const auto addSegment = [&](const std::string& channel, std::optional<EyeSet> eyes) {
@@ -110,7 +114,9 @@ private:
             addChannel(name + ".left", pixels, true, {channelNamed(name + ".left")});
             addChannel(name + ".right", pixels, true, {channelNamed(name + ".right")});
         } else if (form_.stereo == StereoPreset::SideBySide) {
-            addChannel(name, pixels, true, {channelNamed(name + ".left", Viewport{0, 0, .5, 1}), channelNamed(name + ".right", Viewport{.5, 0, .5, 1})});
+            addChannel(name, pixels, true,
+                       {channelNamed(name + ".left", Viewport{0, 0, .5, 1}),
+                        channelNamed(name + ".right", Viewport{.5, 0, .5, 1})});
         } else {
             addChannel(name, pixels, true, {channelNamed(name)});
             return addSegment(name, {});
@@ -146,8 +152,10 @@ private:
                 part.phase = static_cast<uint32_t>(i);
                 break;
             case Level::Kind::Ranges:
-                if (form_.chunks > 0) part.inputTiles.push_back(chunksOf(channel));
-                else part.range = Range{edge(i, level.count), edge(i + 1, level.count)};
+                if (form_.chunks > 0)
+                    part.inputTiles.push_back(chunksOf(channel));
+                else
+                    part.range = Range{edge(i, level.count), edge(i + 1, level.count)};
                 break;
             case Level::Kind::Pixels: part.pixel = PixelKernel{i, 0, level.count, 1}; break;
             case Level::Kind::Samples: part.subPixel = SubPixel{i, level.count}; break;
@@ -206,17 +214,27 @@ private:
 
 Result<ConfigFile> shortForm(const Preset& form) {
     int64_t channels = 1;
-    for (const Named n : {Named{"tiles", form.columns}, {"tiles", form.rows}, {"db", form.ranges}, {"pixel", form.pixels}, {"subpixel", form.samples},
-                          {"dplex", form.frames}, {"local-nodes", form.takers}}) {
-        if (n.value < 1) return Error{std::string("--") + n.option + " can't be " + std::to_string(n.value) + "; give 1 or more"};
+    for (const Named n : {Named{"tiles", form.columns},
+                          {"tiles", form.rows},
+                          {"db", form.ranges},
+                          {"pixel", form.pixels},
+                          {"subpixel", form.samples},
+                          {"dplex", form.frames},
+                          {"local-nodes", form.takers}}) {
+        if (n.value < 1)
+            return Error{std::string("--") + n.option + " can't be " + std::to_string(n.value) + "; give 1 or more"};
         channels = std::min(channels * n.value, kMaxChannels + 1);
     }
-    if (channels > kMaxChannels) return Error{"that makes more than " + std::to_string(kMaxChannels) + " parts of a picture; give smaller numbers"};
+    if (channels > kMaxChannels)
+        return Error{"that makes more than " + std::to_string(kMaxChannels) +
+                     " parts of a picture; give smaller numbers"};
     if (form.width < form.columns || form.height < form.rows || form.width > 1 << 20 || form.height > 1 << 20) {
-        return Error{"a picture of " + std::to_string(form.width) + "x" + std::to_string(form.height) + " pixels can't be divided so; give another size"};
+        return Error{"a picture of " + std::to_string(form.width) + "x" + std::to_string(form.height) +
+                     " pixels can't be divided so; give another size"};
     }
     for (const std::string& host : form.nodes) {
-        if (host.empty() || host.find_first_of("\"\n") != std::string::npos) return Error{"\"" + host + "\" is no host; give names or addresses"};
+        if (host.empty() || host.find_first_of("\"\n") != std::string::npos)
+            return Error{"\"" + host + "\" is no host; give names or addresses"};
     }
     return Maker(form).make();
 }

@@ -10,9 +10,9 @@ namespace mural::config {
 
 enum class StereoPreset : uint8_t {
     None,
-    Anaglyph, // both eyes in one picture, by colour
-    Quad, // both eyes in one window with stereo buffers
-    Passive, // one window per eye
+    Anaglyph,   // both eyes in one picture, by colour
+    Quad,       // both eyes in one window with stereo buffers
+    Passive,    // one window per eye
     SideBySide, // left eye in the left half of each window, right eye in the right half
 };
 
@@ -21,13 +21,13 @@ struct Preset {
     int32_t rows = 1;
     std::vector<std::string> nodes; // host names; empty: this machine only
     int32_t ranges = 1;             // --db
-    std::string composition; // --composition of the ranges; empty: not stated
-    int32_t chunks = 0; // --chunk-queue; 0: static ranges
-    int32_t pixels = 1; // --pixel
-    int32_t samples = 1; // --subpixel
-    int32_t frames = 1; // --dplex
-    Zoom zoom; // --zoom
-    int32_t tileWidth = 0; // --tile-queue, in pixels; 0: none
+    std::string composition;        // --composition of the ranges; empty: not stated
+    int32_t chunks = 0;             // --chunk-queue; 0: static ranges
+    int32_t pixels = 1;             // --pixel
+    int32_t samples = 1;            // --subpixel
+    int32_t frames = 1;             // --dplex
+    Zoom zoom;                      // --zoom
+    int32_t tileWidth = 0;          // --tile-queue, in pixels; 0: none
     int32_t tileHeight = 0;
     int32_t takers = 1; // channels that take tiles, per part of the picture
     StereoPreset stereo = StereoPreset::None;

@@ -12,9 +12,9 @@ inline constexpr Index kNone = -1;
 struct ResolvedNode {
     bool isApplication = false;
     std::string name;
-    std::string host; // empty: this machine
+    std::string host;                    // empty: this machine
     std::vector<Connection> connections; // all fields set
-    NodeAttributes attributes; // all fields set
+    NodeAttributes attributes;           // all fields set
     std::vector<Index> pipes;
     SourcePosition at;
 };
@@ -85,13 +85,13 @@ struct ResolvedBarrier {
 struct ResolvedSegment {
     Index canvas = kNone;
     std::string name;
-    Index channel = kNone; // the channel that the file names
+    Index channel = kNone;     // the channel that the file names
     std::vector<Index> copies; // other channels with the same picture
     EyeSet eyes = kAllEyes;
-    Viewport viewport; // visible part of the canvas, without bezels
-    Viewport outer; // part of the canvas including bezels
+    Viewport viewport;         // visible part of the canvas, without bezels
+    Viewport outer;            // part of the canvas including bezels
     ProjectionSurface surface; // its own, or the canvas'
-    Viewport surfacePart; // the part of the surface that it shows
+    Viewport surfacePart;      // the part of the surface that it shows
     std::optional<ResolvedBarrier> barrier;
     SourcePosition at;
 };
@@ -109,7 +109,7 @@ struct ResolvedFrame {
     FrameType type = FrameType::Memory;
     Viewport viewport;
     std::optional<BufferSet> buffers; // empty: the compound's
-    std::optional<Zoom> zoom; // empty: derived from the compounds
+    std::optional<Zoom> zoom;         // empty: derived from the compounds
     std::string codec = "auto";
     bool exact = true;
     SourcePosition at;
@@ -125,8 +125,8 @@ struct ResolvedCompound {
     Index parent = kNone;
     std::vector<Index> children;
     std::string name;
-    Index channel = kNone; // its own
-    Index executing = kNone; // its own, or the nearest ancestor's
+    Index channel = kNone;     // its own
+    Index executing = kNone;   // its own, or the nearest ancestor's
     Index destination = kNone; // the first channel on the path from the root
     std::optional<TaskSet> tasks;
     std::optional<EyeSet> eyes;
@@ -155,7 +155,7 @@ struct ResolvedConfig {
     double eyeBase = .05; // in metres
     int32_t robustness = value::kAuto;
     std::vector<Connection> serverConnections; // all fields set
-    std::vector<ResolvedNode> nodes; // the application's node first
+    std::vector<ResolvedNode> nodes;           // the application's node first
     std::vector<ResolvedPipe> pipes;
     std::vector<ResolvedWindow> windows;
     std::vector<ResolvedChannel> channels;
@@ -168,7 +168,9 @@ struct ResolvedConfig {
     std::vector<Index> roots; // roots of the compound trees, in drawing order
 
     // Indices are always valid: only resolve() creates them.
-    [[nodiscard]] const ResolvedPipe& pipeOf(const ResolvedChannel& c) const { return pipes[at(windows[at(c.window)].pipe)]; }
+    [[nodiscard]] const ResolvedPipe& pipeOf(const ResolvedChannel& c) const {
+        return pipes[at(windows[at(c.window)].pipe)];
+    }
     [[nodiscard]] static size_t at(Index index) { return static_cast<size_t>(index); }
 };
 

@@ -15,7 +15,7 @@ enum class ConnectionType : uint8_t { Tcp, Pipe, Rsp, Rdma, Udt };
 // An address that a node listens on.
 struct Connection {
     std::optional<ConnectionType> type;
-    std::optional<std::string> hostname; // RSP: the multicast group
+    std::optional<std::string> hostname;   // RSP: the multicast group
     std::optional<std::string> interface_; // RSP: address of the network interface
     std::optional<uint32_t> port;
     std::optional<uint32_t> bandwidth; // in kB/s of 1024 bytes
@@ -39,7 +39,8 @@ struct Channel {
 };
 
 struct WindowAttributes {
-    Attribute hintCoreProfile, hintOpenglMajor, hintOpenglMinor, hintStereo, hintDoublebuffer, hintFullscreen, hintDecoration;
+    Attribute hintCoreProfile, hintOpenglMajor, hintOpenglMinor, hintStereo, hintDoublebuffer, hintFullscreen,
+        hintDecoration;
     Attribute hintSwapsync, hintDrawable, hintStatistics, hintScreensaver, hintGrabPointer;
     Attribute planesColor, planesAlpha, planesDepth, planesStencil, planesAccum, planesAccumAlpha, planesSamples;
     friend bool operator==(const WindowAttributes&, const WindowAttributes&) = default;
@@ -62,8 +63,8 @@ struct PipeAttributes {
 // One GPU and the thread that feeds it.
 struct Pipe {
     std::optional<std::string> name;
-    std::optional<uint32_t> port; // number of the X server
-    std::optional<uint32_t> device; // X screen, or GPU index
+    std::optional<uint32_t> port;     // number of the X server
+    std::optional<uint32_t> device;   // X screen, or GPU index
     std::optional<Viewport> viewport; // in pixels; empty: the machine's screen
     PipeAttributes attributes;
     std::vector<Window> windows;

@@ -27,9 +27,7 @@ bool Screen::usable() const {
     return width > 0 && height > 0 && width < kLargest && height < kLargest && std::abs(dot(right, up)) < kSquare;
 }
 
-Matrix4 Screen::fromRoom() const {
-    return Matrix4::rows(right, up, normal) * Matrix4::translation(center * -1);
-}
+Matrix4 Screen::fromRoom() const { return Matrix4::rows(right, up, normal) * Matrix4::translation(center * -1); }
 
 Screen Screen::part(const Viewport& area) const {
     Screen cut = *this;

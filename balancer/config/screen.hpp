@@ -13,7 +13,7 @@ struct Screen {
     Vector3 right{1, 0, 0}; // unit vectors
     Vector3 up{0, 1, 0};
     Vector3 normal{0, 0, 1}; // towards the viewer
-    double width = 0; // in metres
+    double width = 0;        // in metres
     double height = 0;
     WallType type = WallType::Fixed;
 

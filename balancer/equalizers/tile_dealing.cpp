@@ -13,10 +13,13 @@ TileCosts::TileCosts(int columns, int rows)
     sum();
 }
 
-double TileCosts::below(int column, int row) const { return sums_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1) + static_cast<size_t>(column)]; }
+double TileCosts::below(int column, int row) const {
+    return sums_[static_cast<size_t>(row) * static_cast<size_t>(columns_ + 1) + static_cast<size_t>(column)];
+}
 
 double TileCosts::of(const TileRegion& r) const {
-    return below(r.column + r.columns, r.row + r.rows) - below(r.column, r.row + r.rows) - below(r.column + r.columns, r.row) + below(r.column, r.row);
+    return below(r.column + r.columns, r.row + r.rows) - below(r.column, r.row + r.rows) -
+           below(r.column + r.columns, r.row) + below(r.column, r.row);
 }
 
 void TileCosts::sum() {
@@ -25,7 +28,8 @@ void TileCosts::sum() {
         double before = 0;
         for (int column = 0; column < columns_; ++column) {
             before += tiles_[at(column, row)];
-            sums_[static_cast<size_t>(row + 1) * static_cast<size_t>(columns_ + 1) + static_cast<size_t>(column + 1)] = below(column + 1, row) + before;
+            sums_[static_cast<size_t>(row + 1) * static_cast<size_t>(columns_ + 1) + static_cast<size_t>(column + 1)] =
+                below(column + 1, row) + before;
         }
     }
 }
@@ -49,7 +53,7 @@ using Nodes = std::vector<size_t>;
 // A cut through the grid that crosses no area, and the nodes on either side.
 struct Cut {
     bool columns = true; // true: divides columns; false: rows
-    int at = 0; // first column, or row, after the cut
+    int at = 0;          // first column, or row, after the cut
     Nodes before, behind;
 };
 
@@ -59,7 +63,8 @@ struct Size {
 
 class Dealer {
 public:
-    Dealer(const TileCosts& costs, const std::vector<TileRegion>& areas) : costs_(costs), areas_(areas), dealt_(areas) {}
+    Dealer(const TileCosts& costs, const std::vector<TileRegion>& areas)
+        : costs_(costs), areas_(areas), dealt_(areas) {}
 
     std::vector<TileRegion> deal() {
         Nodes all(areas_.size());
@@ -70,7 +75,9 @@ public:
 
 private:
     [[nodiscard]] int from(size_t node, bool columns) const { return columns ? areas_[node].column : areas_[node].row; }
-    [[nodiscard]] int to(size_t node, bool columns) const { return columns ? areas_[node].column + areas_[node].columns : areas_[node].row + areas_[node].rows; }
+    [[nodiscard]] int to(size_t node, bool columns) const {
+        return columns ? areas_[node].column + areas_[node].columns : areas_[node].row + areas_[node].rows;
+    }
 
     // Returns the cut with the most balanced number of nodes; columns are preferred to rows.
     [[nodiscard]] Cut cutOf(const Nodes& nodes) const {
@@ -79,11 +86,13 @@ private:
         for (const bool columns : {true, false})
             for (const size_t candidate : nodes) {
                 Cut cut{columns, from(candidate, columns), {}, {}};
-                const bool crossed = std::ranges::any_of(nodes, [&](size_t n) { return from(n, columns) < cut.at && to(n, columns) > cut.at; });
+                const bool crossed = std::ranges::any_of(
+                    nodes, [&](size_t n) { return from(n, columns) < cut.at && to(n, columns) > cut.at; });
                 if (crossed) continue;
                 for (const size_t n : nodes) (from(n, columns) < cut.at ? cut.before : cut.behind).push_back(n);
                 if (cut.before.empty()) continue;
-                const size_t uneven = std::max(cut.before.size(), cut.behind.size()) - std::min(cut.before.size(), cut.behind.size());
+                const size_t uneven =
+                    std::max(cut.before.size(), cut.behind.size()) - std::min(cut.before.size(), cut.behind.size());
                 if (uneven >= bestUneven) continue;
                 bestUneven = uneven;
                 best = std::move(cut);
@@ -96,7 +105,8 @@ private:
         if (nodes.size() < 2) return {};
         const Cut cut = cutOf(nodes);
         const Size a = leastOf(cut.before), b = leastOf(cut.behind);
-        return cut.columns ? Size{a.columns + b.columns, std::max(a.rows, b.rows)} : Size{std::max(a.columns, b.columns), a.rows + b.rows};
+        return cut.columns ? Size{a.columns + b.columns, std::max(a.rows, b.rows)}
+                           : Size{std::max(a.columns, b.columns), a.rows + b.rows};
     }
 
     static std::pair<TileRegion, TileRegion> halves(const TileRegion& r, bool columns, int length) {
@@ -121,13 +131,15 @@ private:
         const Cut cut = cutOf(nodes);
         const Size least = leastOf(cut.before), rest = leastOf(cut.behind);
         const int length = cut.columns ? r.columns : r.rows;
-        const int first = cut.columns ? least.columns : least.rows, last = length - (cut.columns ? rest.columns : rest.rows);
+        const int first = cut.columns ? least.columns : least.rows,
+                  last = length - (cut.columns ? rest.columns : rest.rows);
         const int now = cut.at - (cut.columns ? r.column : r.row);
         int best = first;
         double bestLoad = std::numeric_limits<double>::infinity();
         for (int at = first; at <= last; ++at) {
             const auto [a, b] = halves(r, cut.columns, at);
-            const double load = std::max(costs_.of(a) / static_cast<double>(cut.before.size()), costs_.of(b) / static_cast<double>(cut.behind.size()));
+            const double load = std::max(costs_.of(a) / static_cast<double>(cut.before.size()),
+                                         costs_.of(b) / static_cast<double>(cut.behind.size()));
             const bool nearer = load == bestLoad && std::abs(at - now) < std::abs(best - now);
             if (load < bestLoad || nearer) {
                 best = at;
@@ -146,6 +158,8 @@ private:
 
 } // namespace
 
-std::vector<TileRegion> dealTiles(const TileCosts& costs, const std::vector<TileRegion>& areas) { return Dealer(costs, areas).deal(); }
+std::vector<TileRegion> dealTiles(const TileCosts& costs, const std::vector<TileRegion>& areas) {
+    return Dealer(costs, areas).deal();
+}
 
 } // namespace mural::queue

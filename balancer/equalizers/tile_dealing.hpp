@@ -22,13 +22,15 @@ public:
     void learn(const TileRegion& region, double time);
 
 private:
-    [[nodiscard]] size_t at(int column, int row) const { return static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column); }
+    [[nodiscard]] size_t at(int column, int row) const {
+        return static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column);
+    }
     [[nodiscard]] double below(int column, int row) const; // sum over all tiles left of `column` and below `row`
     void sum();
 
     int columns_, rows_;
     std::vector<double> tiles_; // row-major, lowest row first
-    std::vector<double> sums_; // summed-area table, one larger in each direction
+    std::vector<double> sums_;  // summed-area table, one larger in each direction
 };
 
 // Returns areas in which each cut balances the costs of its two sides as evenly as whole tiles allow. Requires `areas`

@@ -10,7 +10,9 @@ TileQueue::TileQueue(int columns, int rows, std::vector<TileRegion> areas, Queue
     : rules_(rules), costs_(columns, rows), areas_(std::move(areas)), best_(areas_) {}
 
 bool TileQueue::drawn(const std::vector<double>& times) {
-    if (times.size() != areas_.size() || areas_.size() < 2 || std::ranges::any_of(times, [](double t) { return !(t >= 0) || !std::isfinite(t); })) return false;
+    if (times.size() != areas_.size() || areas_.size() < 2 ||
+        std::ranges::any_of(times, [](double t) { return !(t >= 0) || !std::isfinite(t); }))
+        return false;
     if (frames_++ == 0) times_ = times;
     for (size_t i = 0; i < times.size(); ++i) times_[i] = (times_[i] + times[i]) / 2;
     if (frames_ < rules_.frames) return false;
@@ -60,7 +62,8 @@ int tilesMoved(const std::vector<TileRegion>& a, const std::vector<TileRegion>& 
     for (size_t i = 0; i < b.size(); ++i) {
         int stayed = 0;
         if (i < a.size()) {
-            const int columns = std::min(a[i].column + a[i].columns, b[i].column + b[i].columns) - std::max(a[i].column, b[i].column);
+            const int columns =
+                std::min(a[i].column + a[i].columns, b[i].column + b[i].columns) - std::max(a[i].column, b[i].column);
             const int rows = std::min(a[i].row + a[i].rows, b[i].row + b[i].rows) - std::max(a[i].row, b[i].row);
             stayed = std::max(0, columns) * std::max(0, rows);
         }

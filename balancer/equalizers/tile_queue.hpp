@@ -17,10 +17,10 @@
 namespace mural::queue {
 
 struct QueueRules {
-    int frames = 2; // frames measured before tiles move; a single one may be an outlier
-    double gain = 0.06; // promised reduction of the longest time, as a fraction
+    int frames = 2;        // frames measured before tiles move; a single one may be an outlier
+    double gain = 0.06;    // promised reduction of the longest time, as a fraction
     double brought = 0.01; // measured reduction that counts as a gain, as a fraction
-    int failures = 3; // consecutive moves without a gain before the best areas are restored
+    int failures = 3;      // consecutive moves without a gain before the best areas are restored
     double changed = 0.15; // relative change of the longest time, without a move, that counts as a load change
 };
 
@@ -44,12 +44,12 @@ private:
     TileCosts costs_;
     std::vector<TileRegion> areas_;
     std::vector<double> times_; // weighted mean since the last move; recent frames count most
-    int frames_ = 0; // number of frames in the mean
-    bool moved_ = false; // the gain of the last move is not measured yet
+    int frames_ = 0;            // number of frames in the mean
+    bool moved_ = false;        // the gain of the last move is not measured yet
     int failures_ = 0;
     std::vector<TileRegion> best_; // best areas for the current load
-    double bestLongest_ = 0; // their longest time; 0: none yet
-    bool kept_ = false; // areas are kept until the load changes
+    double bestLongest_ = 0;       // their longest time; 0: none yet
+    bool kept_ = false;            // areas are kept until the load changes
 };
 
 // Returns the number of tiles that belong to different nodes in `a` and `b`.

@@ -20,8 +20,16 @@ struct Colors {
 
 // Palette for colour-blind readers (Okabe and Ito, "Color Universal Design").
 constexpr auto kColors = std::to_array<Colors>({
-    {"#0072b2", "#d6e8f4"}, {"#d55e00", "#fae0cd"}, {"#009e73", "#d3efe6"}, {"#a5539a", "#f1dfee"}, {"#b8860b", "#f8eccb"},
-    {"#2f9fd8", "#dbf0fb"}, {"#6b6b6b", "#e6e6e6"}, {"#8c564b", "#ecdfdc"}, {"#5b5bd6", "#e1e1fa"}, {"#4f7f1f", "#e2edd5"},
+    {"#0072b2", "#d6e8f4"},
+    {"#d55e00", "#fae0cd"},
+    {"#009e73", "#d3efe6"},
+    {"#a5539a", "#f1dfee"},
+    {"#b8860b", "#f8eccb"},
+    {"#2f9fd8", "#dbf0fb"},
+    {"#6b6b6b", "#e6e6e6"},
+    {"#8c564b", "#ecdfdc"},
+    {"#5b5bd6", "#e1e1fa"},
+    {"#4f7f1f", "#e2edd5"},
 });
 
 const Colors& colors(Index node) { return kColors[static_cast<size_t>(std::max<Index>(0, node)) % kColors.size()]; }
@@ -34,19 +42,25 @@ std::string nodeColor(Index node) { return colors(node).strong; }
 std::string paleNodeColor(Index node) { return colors(node).pale; }
 // Colours distinguish machines, or the GPUs of a single machine.
 Index colorIndex(const ResolvedConfig& config, Index pipe) {
-    const auto drawing = std::count_if(config.nodes.begin(), config.nodes.end(), [](const config::ResolvedNode& n) { return !n.pipes.empty(); });
+    const auto drawing = std::count_if(config.nodes.begin(), config.nodes.end(),
+                                       [](const config::ResolvedNode& n) { return !n.pipes.empty(); });
     return drawing == 1 ? pipe : config.pipes[ResolvedConfig::at(pipe)].node;
 }
 
 Index channelColor(const ResolvedConfig& config, Index channel) {
     if (channel == kNone) return kGrey;
-    return colorIndex(config, config.windows[ResolvedConfig::at(config.channels[ResolvedConfig::at(channel)].window)].pipe);
+    return colorIndex(config,
+                      config.windows[ResolvedConfig::at(config.channels[ResolvedConfig::at(channel)].window)].pipe);
 }
 
 std::string colorOf(const ResolvedConfig& config, Index channel) { return nodeColor(channelColor(config, channel)); }
-std::string paleColorOf(const ResolvedConfig& config, Index channel) { return paleNodeColor(channelColor(config, channel)); }
+std::string paleColorOf(const ResolvedConfig& config, Index channel) {
+    return paleNodeColor(channelColor(config, channel));
+}
 
-std::string nameOr(const std::string& name, std::string_view otherwise, size_t number) { return name.empty() ? fmt::format("{} {}", otherwise, number) : name; }
+std::string nameOr(const std::string& name, std::string_view otherwise, size_t number) {
+    return name.empty() ? fmt::format("{} {}", otherwise, number) : name;
+}
 
 std::string nodeName(const ResolvedConfig& config, Index node) {
     const config::ResolvedNode& n = config.nodes[ResolvedConfig::at(node)];
@@ -55,7 +69,8 @@ std::string nodeName(const ResolvedConfig& config, Index node) {
     return own.empty() ? fmt::format("node {}", node) : n.host.empty() || n.host == own ? own : own + " on " + n.host;
 }
 
-std::string drawConfig(const ResolvedConfig& config, const std::string& title, const std::vector<std::string>& heading) {
+std::string drawConfig(const ResolvedConfig& config, const std::string& title,
+                       const std::vector<std::string>& heading) {
     Svg svg;
     constexpr double kMost = kWidth - 2 * kMargin;
     double y = kMargin + 14, width = 640;

@@ -8,6 +8,7 @@
 
 namespace mural::drawing {
 
-std::string drawConfig(const config::ResolvedConfig& config, const std::string& title, const std::vector<std::string>& heading);
+std::string drawConfig(const config::ResolvedConfig& config, const std::string& title,
+                       const std::vector<std::string>& heading);
 
 } // namespace mural::drawing

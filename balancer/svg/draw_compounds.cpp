@@ -21,19 +21,26 @@ std::string fraction(double value) { return fmt::format("{:.3g}", value); }
 // Returns the attributes that a compound sets itself, one line each.
 std::vector<std::string> wordsOf(const ResolvedCompound& c) {
     std::vector<std::string> words;
-    if (!c.viewport.full()) words.push_back(fmt::format("viewport {} {} {} {}", fraction(c.viewport.x), fraction(c.viewport.y),
-                                                        fraction(c.viewport.w), fraction(c.viewport.h)));
+    if (!c.viewport.full())
+        words.push_back(fmt::format("viewport {} {} {} {}", fraction(c.viewport.x), fraction(c.viewport.y),
+                                    fraction(c.viewport.w), fraction(c.viewport.h)));
     if (!c.range.full()) words.push_back(fmt::format("range {} to {}", fraction(c.range.start), fraction(c.range.end)));
-    if (!c.pixel.whole()) words.push_back(fmt::format("pixel {} {} of {} x {}", c.pixel.x, c.pixel.y, c.pixel.w, c.pixel.h));
+    if (!c.pixel.whole())
+        words.push_back(fmt::format("pixel {} {} of {} x {}", c.pixel.x, c.pixel.y, c.pixel.w, c.pixel.h));
     if (!c.subPixel.whole()) words.push_back(fmt::format("sample {} of {}", c.subPixel.index, c.subPixel.size));
     if (c.period) words.push_back(fmt::format("frames {}, every {}", c.phase.value_or(0), *c.period));
     if (c.eyes && !(*c.eyes == kAllEyes)) {
         std::string eyes = "eyes";
-        for (const Eye eye : kEyes) eyes += c.eyes->has(eye) ? std::string(" ") + (eye == Eye::Left ? "left" : eye == Eye::Right ? "right" : "cyclop") : "";
+        for (const Eye eye : kEyes)
+            eyes += c.eyes->has(eye) ? std::string(" ") + (eye == Eye::Left    ? "left"
+                                                           : eye == Eye::Right ? "right"
+                                                                               : "cyclop")
+                                     : "";
         words.push_back(eyes);
     }
     if (!c.zoom.none()) words.push_back(fmt::format("zoom {} {}", fraction(c.zoom.x), fraction(c.zoom.y)));
-    for (const auto& e : c.equalizers) words.emplace_back(std::visit([](const auto& one) { return std::string(config::sectionName(one)); }, e));
+    for (const auto& e : c.equalizers)
+        words.emplace_back(std::visit([](const auto& one) { return std::string(config::sectionName(one)); }, e));
     for (const auto& q : c.outputQueues) words.push_back("fills " + q.name);
     for (const auto& q : c.inputQueues) words.push_back("works off " + q.name);
     if (c.barrier) words.push_back("waits at " + c.barrier->name);
@@ -66,7 +73,8 @@ std::string titleOf(const ResolvedConfig& config, const ResolvedCompound& c) {
             const config::ResolvedLayout& layout = config.layouts[at(v.layout)];
             std::string where = layout.name;
             if (layout.views.size() > 1) {
-                const auto number = static_cast<size_t>(std::find(layout.views.begin(), layout.views.end(), channel.view) - layout.views.begin());
+                const auto number = static_cast<size_t>(
+                    std::find(layout.views.begin(), layout.views.end(), channel.view) - layout.views.begin());
                 where += (where.empty() ? "" : ", ") + nameOr(v.name, "view", number);
             }
             return channel.name + (where.empty() ? "" : " (" + where + ")");
@@ -149,9 +157,12 @@ private:
         for (const Index child : config_.compounds[at(index)].children) {
             const Box& to = boxes_.at(child);
             const double y = box.bottom() + 14;
-            svg.line({box.x + box.w / 2, box.bottom()}, {box.x + box.w / 2, y}, {.stroke = "#cbd2d9", .strokeWidth = 1.5, .dash = {}});
-            svg.line({box.x + box.w / 2, y}, {to.x + to.w / 2, y}, {.stroke = "#cbd2d9", .strokeWidth = 1.5, .dash = {}});
-            svg.line({to.x + to.w / 2, y}, {to.x + to.w / 2, to.y}, {.stroke = "#cbd2d9", .strokeWidth = 1.5, .dash = {}});
+            svg.line({box.x + box.w / 2, box.bottom()}, {box.x + box.w / 2, y},
+                     {.stroke = "#cbd2d9", .strokeWidth = 1.5, .dash = {}});
+            svg.line({box.x + box.w / 2, y}, {to.x + to.w / 2, y},
+                     {.stroke = "#cbd2d9", .strokeWidth = 1.5, .dash = {}});
+            svg.line({to.x + to.w / 2, y}, {to.x + to.w / 2, to.y},
+                     {.stroke = "#cbd2d9", .strokeWidth = 1.5, .dash = {}});
             drawEdges(svg, child);
         }
     }
@@ -180,20 +191,23 @@ private:
         const Box& to = boxes_.at(taker);
         double incoming = 0; // number of arrows
         for (const auto& f : config_.compounds[at(taker)].inputFrames) {
-            if (const auto all = makers_.find(f.name); all != makers_.end()) incoming += static_cast<double>(all->second.size());
+            if (const auto all = makers_.find(f.name); all != makers_.end())
+                incoming += static_cast<double>(all->second.size());
         }
         const std::string color = colorOf(config_, config_.compounds[at(maker)].executing);
         const Style style{.stroke = color, .strokeWidth = named ? 1.6 : 1, .dash = {}, .opacity = named ? .95 : .6};
         const std::string tip = "frame " + name;
         if (taker == maker || isAbove(taker, maker)) {
-            const double x = from.x + from.w / 2 + 22 + 9 * ports.up[maker], port = to.x + to.w * (.5 + .44 * (ports.in[taker]++ + 1) / (incoming + 1));
+            const double x = from.x + from.w / 2 + 22 + 9 * ports.up[maker],
+                         port = to.x + to.w * (.5 + .44 * (ports.in[taker]++ + 1) / (incoming + 1));
             const double label = from.y - 5 - 10 * ports.up[maker]++;
             const double reach = std::max(22., (from.y - to.bottom()) * .6);
             svg.arrow({x, from.y}, {x, from.y - reach}, {port, to.bottom() + reach}, {port, to.bottom()}, style, tip);
             if (named) svg.text({x + 5, label}, name, {8.5, color, false, Align::Left}, kBoxWidth / 2 - 20);
             return;
         }
-        const double x = from.x + 22 + 11 * ports.down[maker], port = to.x + to.w * (.1 + .35 * (ports.in[taker]++ + 1) / (incoming + 1));
+        const double x = from.x + 22 + 11 * ports.down[maker],
+                     port = to.x + to.w * (.1 + .35 * (ports.in[taker]++ + 1) / (incoming + 1));
         const double label = from.bottom() + 10 + 10 * ports.down[maker]++;
         const double depth = std::clamp(16 + std::abs(port - x) * .12, 20., 80.);
         const double low = std::max(from.bottom(), to.bottom()) + depth;
@@ -203,11 +217,17 @@ private:
 
     void drawBox(Svg& svg, const ResolvedCompound& c, const Box& box) const {
         const std::string color = colorOf(config_, c.executing);
-        svg.rect(box, {.fill = "#ffffff", .stroke = color, .strokeWidth = c.channel != kNone && c.channel == c.destination ? 2.2 : 1.2, .rounding = 5,
-                       .dash = c.isGenerated ? "4 3" : ""},
+        svg.rect(box,
+                 {.fill = "#ffffff",
+                  .stroke = color,
+                  .strokeWidth = c.channel != kNone && c.channel == c.destination ? 2.2 : 1.2,
+                  .rounding = 5,
+                  .dash = c.isGenerated ? "4 3" : ""},
                  c.isGenerated ? "not in the file: it follows from the canvases" : "");
-        svg.rect({box.x, box.y, box.w, kTop - 4}, {.fill = paleColorOf(config_, c.executing), .rounding = 5, .dash = {}});
-        svg.text({box.x + box.w / 2, box.y + 14}, titleOf(config_, c), {11, "#111820", c.channel != kNone, Align::Middle}, box.w - 10);
+        svg.rect({box.x, box.y, box.w, kTop - 4},
+                 {.fill = paleColorOf(config_, c.executing), .rounding = 5, .dash = {}});
+        svg.text({box.x + box.w / 2, box.y + 14}, titleOf(config_, c),
+                 {11, "#111820", c.channel != kNone, Align::Middle}, box.w - 10);
         double y = box.y + kTop + 8;
         for (const std::string& word : wordsOf(c)) {
             svg.text({box.x + 8, y}, word, {9.5, "#3e4c59", false, Align::Left}, box.w - 14);
@@ -219,7 +239,10 @@ private:
     void drawTasks(Svg& svg, const ResolvedCompound& c, Point corner) const {
         const config::TaskSet tasks = tasksOf(config_, c);
         double x = corner.x;
-        for (const auto& [task, word] : {std::pair(Task::Clear, "clear"), {Task::Draw, "draw"}, {Task::Assemble, "join"}, {Task::Readback, "read"}}) {
+        for (const auto& [task, word] : {std::pair(Task::Clear, "clear"),
+                                         {Task::Draw, "draw"},
+                                         {Task::Assemble, "join"},
+                                         {Task::Readback, "read"}}) {
             if (!tasks.has(task)) continue;
             const bool draws = task == Task::Draw;
             const double w = Svg::widthOf(word, 8.5) + 8;
@@ -242,7 +265,10 @@ private:
 Box drawCompounds(Svg& svg, const ResolvedConfig& config, Point corner, double width) {
     constexpr double kTreeGap = 46;
     double x = corner.x, y = corner.y, row = 0, right = corner.x + 780;
-    svg.text({x, y + 2}, "clear, draw, join (assemble), read (back): what a box does; arrows: pictures on their way; thick borders: what is shown; dashed: not in the file", {10, "#7b8794", false, Align::Left});
+    svg.text({x, y + 2},
+             "clear, draw, join (assemble), read (back): what a box does; arrows: pictures on their way; thick "
+             "borders: what is shown; dashed: not in the file",
+             {10, "#7b8794", false, Align::Left});
     y += 18;
     for (const Index root : config.roots) {
         Tree tree(config, root);

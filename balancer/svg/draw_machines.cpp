@@ -22,15 +22,19 @@ std::vector<Index> namedChannels(const ResolvedConfig& config, const config::Res
 std::string windowText(const config::ResolvedWindow& w) {
     std::string text = w.name.empty() ? "window" : w.name;
     if (config::inPixels(w.viewport)) text += fmt::format(" {:.0f}x{:.0f}", w.viewport.w, w.viewport.h);
-    if (w.attributes.hintDrawable == config::value::kFbo) text += " off screen";
-    else if (w.attributes.hintFullscreen == config::value::kOn) text += " full screen";
+    if (w.attributes.hintDrawable == config::value::kFbo)
+        text += " off screen";
+    else if (w.attributes.hintFullscreen == config::value::kOn)
+        text += " full screen";
     return text;
 }
 
 std::string pipeText(const config::ResolvedPipe& p, size_t number) {
     std::string text = nameOr(p.name, "pipe", number);
-    if (p.port) text += fmt::format(", display :{}{}", *p.port, p.device ? fmt::format(".{}", *p.device) : "");
-    else if (p.device) text += fmt::format(", device {}", *p.device);
+    if (p.port)
+        text += fmt::format(", display :{}{}", *p.port, p.device ? fmt::format(".{}", *p.device) : "");
+    else if (p.device)
+        text += fmt::format(", device {}", *p.device);
     return text;
 }
 
@@ -51,15 +55,23 @@ void drawPipe(Svg& svg, const ResolvedConfig& config, Index index, size_t number
     for (const Index w : p.windows) {
         const config::ResolvedWindow& window = config.windows[at(w)];
         const auto channels = namedChannels(config, window);
-        const Box inner{box.x + kPad, y, box.w - 2 * kPad, kWindowHead + static_cast<double>(channels.size()) * (kChannelHeight + 3) + 4};
+        const Box inner{box.x + kPad, y, box.w - 2 * kPad,
+                        kWindowHead + static_cast<double>(channels.size()) * (kChannelHeight + 3) + 4};
         const bool offScreen = window.attributes.hintDrawable == config::value::kFbo;
-        svg.rect(inner, {.fill = offScreen ? "#f5f7fa" : "#e4ecf4", .stroke = "#b8c4d0", .rounding = 3, .dash = offScreen ? "3 2" : ""});
+        svg.rect(inner, {.fill = offScreen ? "#f5f7fa" : "#e4ecf4",
+                         .stroke = "#b8c4d0",
+                         .rounding = 3,
+                         .dash = offScreen ? "3 2" : ""});
         svg.text({inner.x + 6, inner.y + 12}, windowText(window), {9, "#52606d", false, Align::Left}, inner.w - 12);
         double cy = inner.y + kWindowHead;
         for (const Index c : channels) {
             svg.rect({inner.x + 5, cy, inner.w - 10, kChannelHeight - 1},
-                     {.fill = paleNodeColor(colorIndex(config, index)), .stroke = nodeColor(colorIndex(config, index)), .rounding = 3, .dash = {}});
-            svg.text({inner.x + inner.w / 2, cy + 14.5}, nameOr(config.channels[at(c)].name, "channel", static_cast<size_t>(c)),
+                     {.fill = paleNodeColor(colorIndex(config, index)),
+                      .stroke = nodeColor(colorIndex(config, index)),
+                      .rounding = 3,
+                      .dash = {}});
+            svg.text({inner.x + inner.w / 2, cy + 14.5},
+                     nameOr(config.channels[at(c)].name, "channel", static_cast<size_t>(c)),
                      {10.5, "#111820", false, Align::Middle}, inner.w - 18);
             cy += kChannelHeight + 3;
         }
@@ -91,12 +103,18 @@ Box drawMachines(Svg& svg, const ResolvedConfig& config, Point corner, double wi
             y = lowest + kGap;
         }
         const auto index = static_cast<Index>(n);
-        svg.rect({x, y, w, h + 2}, {.fill = paleNodeColor(index), .stroke = nodeColor(index), .strokeWidth = 1.5, .rounding = 6, .dash = {}, .opacity = .55});
+        svg.rect({x, y, w, h + 2}, {.fill = paleNodeColor(index),
+                                    .stroke = nodeColor(index),
+                                    .strokeWidth = 1.5,
+                                    .rounding = 6,
+                                    .dash = {},
+                                    .opacity = .55});
         svg.text({x + 9, y + 16}, nodeName(config, index), {11.5, nodeColor(index), true, Align::Left}, w - 18);
         double py = y + kNodeHead;
         for (size_t p = 0; p < node.pipes.size(); ++p) {
             const double px = x + kPad + static_cast<double>(p % columns) * (kPipeWidth + kPad);
-            drawPipe(svg, config, node.pipes[p], p, {px, py, kPipeWidth, heightOfPipe(config, config.pipes[at(node.pipes[p])])});
+            drawPipe(svg, config, node.pipes[p], p,
+                     {px, py, kPipeWidth, heightOfPipe(config, config.pipes[at(node.pipes[p])])});
             if (p % columns == columns - 1) py += rows[p / columns] + kPad;
         }
         lowest = std::max(lowest, y + h + 2);

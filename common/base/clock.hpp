@@ -24,8 +24,7 @@ inline int64_t monotonicNowNs() {
 // Sleeps until a time of monotonicNowNs(). Returns immediately if it has passed.
 inline void sleepUntilNs(int64_t atNs) {
     const timespec until{static_cast<time_t>(atNs / kNsPerS), static_cast<long>(atNs % kNsPerS)};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-    }
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {}
 }
 
 // Returns the CPU time of the calling thread.
@@ -42,7 +41,9 @@ public:
     static Deadline never() { return Deadline(INT64_MAX); }
     // Converts from a time of monotonicNowNs(), and back as of now. INT64_MAX: never.
     static Deadline at(int64_t ns) { return Deadline(ns == INT64_MAX ? ns : ns - pauses::totalNs(monotonicNowNs())); }
-    [[nodiscard]] int64_t atNs() const { return atNs_ == INT64_MAX ? atNs_ : atNs_ + pauses::totalNs(monotonicNowNs()); }
+    [[nodiscard]] int64_t atNs() const {
+        return atNs_ == INT64_MAX ? atNs_ : atNs_ + pauses::totalNs(monotonicNowNs());
+    }
 
     [[nodiscard]] bool passed() const { return atNs_ != INT64_MAX && runningNowNs() >= atNs_; }
     // Returns the remaining time in ns, 0 after the deadline, capped for callers that wait in slices.

@@ -16,7 +16,8 @@ public:
         const uint64_t area = uint64_t{width} * height; // the window may have been resized
         windows_[key] = {area, client, native};
         const auto now = windows_.find(main_);
-        const bool same = now != windows_.end() && native != 0 && now->second.native == native && now->second.client == client;
+        const bool same =
+            now != windows_.end() && native != 0 && now->second.native == native && now->second.client == client;
         if (key != main_ && !same && now != windows_.end() && area <= now->second.area) return 0;
         main_ = key;
         return ++frames_;

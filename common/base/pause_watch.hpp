@@ -1,5 +1,5 @@
-// Thread that measures how long this process is stopped (common/base/pauses.hpp). Each process has one, from the start of
-// its work to the end.
+// Thread that measures how long this process is stopped (common/base/pauses.hpp). Each process has one, from the start
+// of its work to the end.
 #pragma once
 
 #include <chrono>
@@ -47,7 +47,8 @@ private:
 
     void watch() {
         std::unique_lock lock(mutex_);
-        while (!stopped_.wait_for(lock, std::chrono::nanoseconds(pauses::kTickNs), [this] { return stop_; })) pauses::tick(monotonicNowNs());
+        while (!stopped_.wait_for(lock, std::chrono::nanoseconds(pauses::kTickNs), [this] { return stop_; }))
+            pauses::tick(monotonicNowNs());
     }
 
     std::mutex mutex_;

@@ -13,7 +13,7 @@ namespace mural::pauses {
 constexpr int64_t kTickNs = 250'000'000;
 constexpr int64_t kMinPauseNs = 1'000'000'000; // shorter gaps between two ticks are scheduling delays
 
-inline std::atomic<uint32_t> sequence{0}; // odd while the next two words change
+inline std::atomic<uint32_t> sequence{0};  // odd while the next two words change
 inline std::atomic<int64_t> lastTickNs{0}; // time of monotonicNowNs(); 0: no watch
 inline std::atomic<int64_t> finishedNs{0}; // sum of the pauses that ended before the last tick
 
@@ -22,7 +22,8 @@ inline void tick(int64_t nowNs) {
     const int64_t lastNs = lastTickNs.load(std::memory_order_relaxed);
     const int64_t gapNs = lastNs == 0 ? 0 : nowNs - lastNs;
     sequence.fetch_add(1, std::memory_order_acq_rel);
-    if (gapNs > kMinPauseNs) finishedNs.store(finishedNs.load(std::memory_order_relaxed) + gapNs - kTickNs, std::memory_order_relaxed);
+    if (gapNs > kMinPauseNs)
+        finishedNs.store(finishedNs.load(std::memory_order_relaxed) + gapNs - kTickNs, std::memory_order_relaxed);
     lastTickNs.store(nowNs, std::memory_order_relaxed);
     sequence.fetch_add(1, std::memory_order_release);
 }

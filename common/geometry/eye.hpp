@@ -11,6 +11,8 @@ using EyeSet = EnumSet<Eye>;
 inline constexpr Eye kEyes[] = {Eye::Cyclop, Eye::Left, Eye::Right}; // in drawing order
 inline constexpr EyeSet kAllEyes{Eye::Cyclop, Eye::Left, Eye::Right};
 
-[[nodiscard]] constexpr const char* nameOf(Eye eye) { return eye == Eye::Left ? "LEFT" : eye == Eye::Right ? "RIGHT" : "CYCLOP"; }
+[[nodiscard]] constexpr const char* nameOf(Eye eye) {
+    return eye == Eye::Left ? "LEFT" : eye == Eye::Right ? "RIGHT" : "CYCLOP";
+}
 
 } // namespace mural

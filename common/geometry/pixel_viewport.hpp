@@ -14,9 +14,7 @@ struct PixelViewport {
     int32_t h = 0;
 
     [[nodiscard]] constexpr bool empty() const { return w <= 0 || h <= 0; }
-    [[nodiscard]] constexpr int64_t area() const {
-        return empty() ? 0 : static_cast<int64_t>(w) * h;
-    }
+    [[nodiscard]] constexpr int64_t area() const { return empty() ? 0 : static_cast<int64_t>(w) * h; }
     // Saturates at the range of int32_t, because programs may request any size.
     [[nodiscard]] constexpr int32_t right() const { return end(x, w); }
     [[nodiscard]] constexpr int32_t top() const { return end(y, h); }

@@ -34,7 +34,8 @@ struct TileRegion {
     return edge / alignment * alignment;
 }
 
-[[nodiscard]] constexpr PixelViewport regionViewport(const TileGrid& g, const TileRegion& r, int32_t width, int32_t height) {
+[[nodiscard]] constexpr PixelViewport regionViewport(const TileGrid& g, const TileRegion& r, int32_t width,
+                                                     int32_t height) {
     const int32_t x0 = tileEdge(width, g.columns, r.column, g.alignment);
     const int32_t x1 = tileEdge(width, g.columns, r.column + r.columns, g.alignment);
     const int32_t y0 = tileEdge(height, g.rows, r.row, g.alignment);
@@ -42,7 +43,8 @@ struct TileRegion {
     return {x0, y0, x1 - x0, y1 - y0};
 }
 
-[[nodiscard]] constexpr PixelViewport tileViewport(const TileGrid& g, int column, int row, int32_t width, int32_t height) {
+[[nodiscard]] constexpr PixelViewport tileViewport(const TileGrid& g, int column, int row, int32_t width,
+                                                   int32_t height) {
     return regionViewport(g, {column, row, 1, 1}, width, height);
 }
 

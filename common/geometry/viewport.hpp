@@ -60,7 +60,8 @@ struct Viewport {
 [[nodiscard]] inline PixelViewport apply(const PixelViewport& whole, const Viewport& part) {
     const int32_t x0 = pixelEdge(part.x, whole.w);
     const int32_t y0 = pixelEdge(part.y, whole.h);
-    return {whole.x + x0, whole.y + y0, pixelEdge(part.x + part.w, whole.w) - x0, pixelEdge(part.y + part.h, whole.h) - y0};
+    return {whole.x + x0, whole.y + y0, pixelEdge(part.x + part.w, whole.w) - x0,
+            pixelEdge(part.y + part.h, whole.h) - y0};
 }
 
 // Returns the pixels of `part` relative to `whole`. Requires a non-empty `whole`.

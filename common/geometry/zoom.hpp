@@ -23,7 +23,8 @@ struct Zoom {
 
 [[nodiscard]] inline PixelViewport apply(const PixelViewport& area, const Zoom& zoom) {
     const auto scaled = [](int32_t value, double by) {
-        return static_cast<int32_t>(std::clamp(std::trunc(value * by + .5), double{INT32_MIN / 2}, double{INT32_MAX / 2}));
+        return static_cast<int32_t>(
+            std::clamp(std::trunc(value * by + .5), double{INT32_MIN / 2}, double{INT32_MAX / 2}));
     };
     return {scaled(area.x, zoom.x), scaled(area.y, zoom.y), scaled(area.w, zoom.x), scaled(area.h, zoom.y)};
 }

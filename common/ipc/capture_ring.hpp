@@ -52,7 +52,7 @@ struct Publication {
     uint32_t chunk;
     uint32_t beginBytes;
     uint32_t endBytes;
-    uint16_t stream;    // one per app thread
+    uint16_t stream;      // one per app thread
     uint16_t lastOfChunk; // 1: the chunk is free once this range has been read
 };
 static_assert(sizeof(Publication) == 16);
@@ -97,8 +97,8 @@ enum class Reader : uint32_t {
 constexpr int64_t kNapNs = 100'000;
 
 // A program may exceed the frames of Welcome.latency while its oldest unfinished frame is younger than this. Latency 0
-// allows no such excess. Slower frames are not affected. A program that only shows frames sleeps occasionally instead of
-// in each frame.
+// allows no such excess. Slower frames are not affected. A program that only shows frames sleeps occasionally instead
+// of in each frame.
 constexpr int64_t kAheadNs = 1'000'000;
 constexpr uint32_t kAheadFrames = 64; // a power of two
 
@@ -128,9 +128,9 @@ constexpr uint32_t kPictureReply = 0xffffffff;
 struct alignas(64) CaptureHeader {
     uint32_t magic;
     uint32_t version;
-    uint32_t chunkCount;       // capacity of both index rings, a power of two
-    uint32_t replyCapacity;    // bytes, a power of two
-    uint64_t publicationsAt;   // offsets in bytes from the start of the mapping
+    uint32_t chunkCount;     // capacity of both index rings, a power of two
+    uint32_t replyCapacity;  // bytes, a power of two
+    uint64_t publicationsAt; // offsets in bytes from the start of the mapping
     uint64_t freedAt;
     uint64_t repliesAt;
     uint64_t newsAt;
@@ -145,8 +145,8 @@ struct alignas(64) CaptureHeader {
     alignas(64) std::atomic<uint32_t> replyTail;     // head writes, bytes; futex
     alignas(64) std::atomic<uint32_t> replyHead;     // app writes, bytes; futex: head may wait for room
 
-    alignas(64) std::atomic<uint32_t> newsTail;      // head writes
-    alignas(64) std::atomic<uint32_t> newsHead;      // app writes
+    alignas(64) std::atomic<uint32_t> newsTail; // head writes
+    alignas(64) std::atomic<uint32_t> newsHead; // app writes
 
     // Frames that the nodes have finished, over all windows: the credit of the frame latency. futex.
     alignas(64) std::atomic<uint32_t> framesDone;
@@ -199,9 +199,7 @@ inline Publication* publications(CaptureHeader* h) {
 inline uint32_t* freed(CaptureHeader* h) {
     return reinterpret_cast<uint32_t*>(reinterpret_cast<std::byte*>(h) + h->freedAt);
 }
-inline std::byte* replies(CaptureHeader* h) {
-    return reinterpret_cast<std::byte*>(h) + h->repliesAt;
-}
+inline std::byte* replies(CaptureHeader* h) { return reinterpret_cast<std::byte*>(h) + h->repliesAt; }
 inline DriverEventSlot* news(CaptureHeader* h) {
     return reinterpret_cast<DriverEventSlot*>(reinterpret_cast<std::byte*>(h) + h->newsAt);
 }
@@ -238,12 +236,12 @@ struct Welcome {
     uint32_t version;
     uint32_t clientId;
     uint32_t policy;
-    uint32_t latency;      // frames that the app may be ahead of the nodes
-    uint32_t verifyEvery;  // 0: never; n: compare every n-th frame with the local picture
-    uint32_t nodeCount;    // render nodes; 1: copies need no gathering
-    uint32_t displayApp;   // 1: pictures come back into the app's own window
+    uint32_t latency;       // frames that the app may be ahead of the nodes
+    uint32_t verifyEvery;   // 0: never; n: compare every n-th frame with the local picture
+    uint32_t nodeCount;     // render nodes; 1: copies need no gathering
+    uint32_t displayApp;    // 1: pictures come back into the app's own window
     uint32_t nodeGlVersion; // lowest GL version of the nodes, 10 * major + minor; 0 unknown
-    uint32_t refused;      // not 0: the head rejects the program; a text of extensionBytes follows instead
+    uint32_t refused;       // not 0: the head rejects the program; a text of extensionBytes follows instead
     uint32_t extensionBytes;
     uint32_t reserved;
 };

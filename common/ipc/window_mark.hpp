@@ -18,7 +18,9 @@ constexpr uint32_t kMaxDrawables = 30; // GLX windows and EGL surfaces of one X 
 constexpr uint32_t kMaxWords = kKeyWords + kMaxDrawables;
 
 struct PropertyName {
-    explicit PropertyName(uint32_t client) { length = static_cast<uint16_t>(std::snprintf(text, sizeof text, "_MURAL_WINDOW_%u", client)); }
+    explicit PropertyName(uint32_t client) {
+        length = static_cast<uint16_t>(std::snprintf(text, sizeof text, "_MURAL_WINDOW_%u", client));
+    }
     char text[32];
     uint16_t length;
 };

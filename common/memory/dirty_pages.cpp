@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kPage = WriteWatch::kPageBytes;
 constexpr size_t kComparedBytes = 64 * 1024; // up to this size a comparison costs less than a system call
-constexpr uint8_t kQuietCalls = 16; // number of comparisons of a page that cost as much as a fault
+constexpr uint8_t kQuietCalls = 16;          // number of comparisons of a page that cost as much as a fault
 constexpr size_t kWord = 4, kBlock = 64, kMergedGap = 256;
 
 // Compares whole blocks inline: dense changes spend most of their time here.
@@ -38,7 +38,8 @@ bool MapChanges::begin(void* memory, size_t sizeBytes, bool mayWatch) {
     end();
     const size_t pages = sizeBytes / kPage + 2; // the memory may begin and end within pages
     reservedBytes_ = sizeBytes + pages;
-    void* own = mmap(nullptr, reservedBytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    void* own =
+        mmap(nullptr, reservedBytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (own == MAP_FAILED) return false;
     memory_ = static_cast<std::byte*>(memory);
     known_ = static_cast<std::byte*>(own);
@@ -100,7 +101,8 @@ void MapChanges::lockQuiet(Pass& pass) {
         its.map->compare(its, its.map->memory_, from, end);
     };
     // If the watch is lost here, the next call detects it.
-    if (!watch_.lock(pass.quietFrom, pass.quietEnd, visit, &pass)) compare(pass, memory_, pass.quietFrom, pass.quietEnd);
+    if (!watch_.lock(pass.quietFrom, pass.quietEnd, visit, &pass))
+        compare(pass, memory_, pass.quietFrom, pass.quietEnd);
     pass.quietFrom = pass.quietEnd = 0;
 }
 
@@ -108,7 +110,9 @@ void MapChanges::lockQuiet(Pass& pass) {
 // program may continue to write.
 bool MapChanges::compare(const Pass& pass, const std::byte* with, size_t fromByte, size_t endByte) {
     bool any = false;
-    const auto same = [this, with](size_t from, size_t end) { return sameBytes(known_ + from, with + from, end - from); };
+    const auto same = [this, with](size_t from, size_t end) {
+        return sameBytes(known_ + from, with + from, end - from);
+    };
     size_t runFrom = 0, runEnd = 0;
     const auto tell = [&] {
         if (runEnd == runFrom) return;

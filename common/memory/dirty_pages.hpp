@@ -38,7 +38,7 @@ private:
 
     std::byte* memory_ = nullptr;
     std::byte* known_ = nullptr; // the copy
-    uint8_t* quiet_ = nullptr; // per page: number of calls without a change
+    uint8_t* quiet_ = nullptr;   // per page: number of calls without a change
     size_t sizeBytes_ = 0, reservedBytes_ = 0;
     WriteWatch watch_;
 };

@@ -114,7 +114,9 @@ bool WriteWatch::begin(void* memory, size_t sizeBytes) {
     UffdRegister range = {start, pageCeil(memory_ + sizeBytes) - start, kRegisterWriteProtect, 0};
     if (ioctl(kernel.uffd, kIoctlRegister, &range) != 0) return false;
     sizeBytes_ = sizeBytes;
-    if (lock(0, sizeBytes, [](void*, size_t, size_t) {}, nullptr)) return true;
+    if (lock(
+            0, sizeBytes, [](void*, size_t, size_t) {}, nullptr))
+        return true;
     end();
     return false;
 }
@@ -136,8 +138,18 @@ bool WriteWatch::scan(size_t fromByte, size_t endByte, uint64_t flags, Visit vis
     const uint64_t end = pageCeil(memory_ + endByte);
     PageRegion regions[kRegions];
     for (uint64_t start = pageFloor(memory_ + fromByte); start < end;) {
-        PageScan request = {sizeof request, flags | kScanOnlyWatched, start, end, 0, reinterpret_cast<uint64_t>(regions), kRegions, 0,
-                            0, kPageWritten, 0, kPageWritten};
+        PageScan request = {sizeof request,
+                            flags | kScanOnlyWatched,
+                            start,
+                            end,
+                            0,
+                            reinterpret_cast<uint64_t>(regions),
+                            kRegions,
+                            0,
+                            0,
+                            kPageWritten,
+                            0,
+                            kPageWritten};
         const int count = ioctl(kernel.pagemap, kIoctlScan, &request);
         if (count < 0 || request.walkEnd <= start) return false;
         for (int i = 0; i < count; ++i) {

@@ -11,16 +11,23 @@ namespace mural::compositor {
 
 namespace {
 
-std::string sizeText(const PlaneView& p) { return std::to_string(p.width) + "x" + std::to_string(p.height) + " " + nameOf(p.format); }
+std::string sizeText(const PlaneView& p) {
+    return std::to_string(p.width) + "x" + std::to_string(p.height) + " " + nameOf(p.format);
+}
 std::string orderText(const DrawOrder& o) { return std::to_string(o.first) + " to " + std::to_string(o.end); }
 
 Error mismatch(const char* what, const PlaneView& into, const PlaneView& part, const char* next) {
-    return Error{std::string(what) + ": the part is " + sizeText(part) + ", the picture " + sizeText(into) + "; " + next};
+    return Error{std::string(what) + ": the part is " + sizeText(part) + ", the picture " + sizeText(into) + "; " +
+                 next};
 }
 
 Error misplaced(const char* what, const PixelViewport& into, const PixelViewport& part) {
-    const auto text = [](const PixelViewport& v) { return std::to_string(v.w) + "x" + std::to_string(v.h) + " at " + std::to_string(v.x) + "," + std::to_string(v.y); };
-    return Error{std::string(what) + ": the drawn part " + text(part) + " is not inside the picture " + text(into) + "; give both the same frame of reference"};
+    const auto text = [](const PixelViewport& v) {
+        return std::to_string(v.w) + "x" + std::to_string(v.h) + " at " + std::to_string(v.x) + "," +
+               std::to_string(v.y);
+    };
+    return Error{std::string(what) + ": the drawn part " + text(part) + " is not inside the picture " + text(into) +
+                 "; give both the same frame of reference"};
 }
 
 // The drawn rectangles of `part` in the pixels of `into`, and the inverse mapping.
@@ -55,29 +62,39 @@ Result<void> assembleCopy(Image& into, const Image& part) {
     const auto copy = [&](std::optional<Plane>& to, const std::optional<Plane>& from) {
         if (!to || !from) return true;
         if (to->format() != from->format()) return false;
-        for (const PixelViewport& r : part.drawn.rectangles()) copyPlane(to->view().part(placed->inTarget(r)), from->view().part(r));
+        for (const PixelViewport& r : part.drawn.rectangles())
+            copyPlane(to->view().part(placed->inTarget(r)), from->view().part(r));
         return true;
     };
-    if (!copy(into.colour, part.colour)) return mismatch(what, into.colour->view(), part.colour->view(), "read both back in one format");
-    if (!copy(into.depth, part.depth)) return mismatch(what, into.depth->view(), part.depth->view(), "read both back in one format");
+    if (!copy(into.colour, part.colour))
+        return mismatch(what, into.colour->view(), part.colour->view(), "read both back in one format");
+    if (!copy(into.depth, part.depth))
+        return mismatch(what, into.depth->view(), part.depth->view(), "read both back in one format");
     take(into, part, *placed);
     return {};
 }
 
 Result<void> assembleDepth(Image& into, const Image& part, const DepthAssembly& how) {
     const char* what = "composing by depth";
-    if (!into.depth || !part.depth) return Error{std::string(what) + ": a picture has no depth plane; read depth back for both"};
-    if (into.depth->format() != part.depth->format() || !isDepth(part.depth->format())) return mismatch(what, into.depth->view(), part.depth->view(), "read depth back in one format");
-    if (into.colour.has_value() != part.colour.has_value()) return Error{std::string(what) + ": only one of the pictures has colour; read colour back for both"};
-    if (into.colour && into.colour->format() != part.colour->format()) return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
+    if (!into.depth || !part.depth)
+        return Error{std::string(what) + ": a picture has no depth plane; read depth back for both"};
+    if (into.depth->format() != part.depth->format() || !isDepth(part.depth->format()))
+        return mismatch(what, into.depth->view(), part.depth->view(), "read depth back in one format");
+    if (into.colour.has_value() != part.colour.has_value())
+        return Error{std::string(what) + ": only one of the pictures has colour; read colour back for both"};
+    if (into.colour && into.colour->format() != part.colour->format())
+        return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
     if (!apart(into.order, part.order))
-        return Error{std::string(what) + ": parts " + orderText(part.order) + " of the draw order lie in between " + orderText(into.order) + "; compose only ranges that are apart"};
+        return Error{std::string(what) + ": parts " + orderText(part.order) + " of the draw order lie in between " +
+                     orderText(into.order) + "; compose only ranges that are apart"};
     auto placed = place(what, into, part);
     if (!placed) return placed.error();
     DepthRule rule;
     rule.function = how.function;
     rule.format = part.depth->format() == PlaneFormat::D24S8 ? DepthFormat::D24S8 : DepthFormat::D32F;
-    if (how.coverage == Coverage::Stencil && rule.format != DepthFormat::D24S8) return Error{std::string(what) + ": " + nameOf(part.depth->format()) + " has no stencil to tell what was drawn; use D24S8"};
+    if (how.coverage == Coverage::Stencil && rule.format != DepthFormat::D24S8)
+        return Error{std::string(what) + ": " + nameOf(part.depth->format()) +
+                     " has no stencil to tell what was drawn; use D24S8"};
     rule.sourceIsLater = part.order.first >= into.order.end;
     rule.coverage = how.coverage;
     rule.clearBits = how.clearBits;
@@ -109,17 +126,22 @@ Result<void> assembleDepth(Image& into, const Image& part, const DepthAssembly& 
 
 Result<void> assembleBlended(Image& into, const Image& part) {
     const char* what = "blending";
-    if (!into.colour || !part.colour) return Error{std::string(what) + ": a picture has no colour plane; read colour back for both"};
-    if (into.colour->format() != part.colour->format()) return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
+    if (!into.colour || !part.colour)
+        return Error{std::string(what) + ": a picture has no colour plane; read colour back for both"};
+    if (into.colour->format() != part.colour->format())
+        return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
     if (!adjacent(into.order, part.order))
-        return Error{std::string(what) + ": parts " + orderText(part.order) + " of the draw order are no neighbours of " + orderText(into.order) + "; blend what comes in between first"};
+        return Error{std::string(what) + ": parts " + orderText(part.order) +
+                     " of the draw order are no neighbours of " + orderText(into.order) +
+                     "; blend what comes in between first"};
     auto placed = place(what, into, part);
     if (!placed) return placed.error();
     const SourceSide side = part.order.first == into.order.end ? SourceSide::InFront : SourceSide::Behind;
     for (const PixelViewport& r : part.drawn.rectangles()) {
         const MutablePlaneView to = into.colour->view().part(placed->inTarget(r));
         const PlaneView from = part.colour->view().part(r);
-        for (int32_t y = 0; y < r.h; ++y) blendOverRow(to.format, to.row(y), from.row(y), static_cast<size_t>(r.w), side);
+        for (int32_t y = 0; y < r.h; ++y)
+            blendOverRow(to.format, to.row(y), from.row(y), static_cast<size_t>(r.w), side);
     }
     take(into, part, *placed);
     into.order = joined(into.order, part.order);
@@ -129,16 +151,23 @@ Result<void> assembleBlended(Image& into, const Image& part) {
 namespace {
 
 // Returns the number of a kernel's pixels in a row of `size`: from `first` on, every `step`.
-int32_t countOf(int32_t size, int32_t first, int32_t step) { return first < size ? (size - first + step - 1) / step : 0; }
+int32_t countOf(int32_t size, int32_t first, int32_t step) {
+    return first < size ? (size - first + step - 1) / step : 0;
+}
 
 // Returns the part of `part` that lies within the picture.
 Result<PixelViewport> withinPicture(const PlaneView& picture, const PlaneView& part, const PixelKernel& k) {
     const char* what = "interleaving pixels";
-    if (!k.valid()) return Error{std::string(what) + ": there is no pixel " + std::to_string(k.x) + "," + std::to_string(k.y) + " in a kernel of " + std::to_string(k.w) + "x" + std::to_string(k.h) + "; check the compound"};
+    if (!k.valid())
+        return Error{std::string(what) + ": there is no pixel " + std::to_string(k.x) + "," + std::to_string(k.y) +
+                     " in a kernel of " + std::to_string(k.w) + "x" + std::to_string(k.h) + "; check the compound"};
     const PixelViewport within{0, 0, countOf(picture.width, k.x, k.w), countOf(picture.height, k.y, k.h)};
     const PixelViewport most = apply({0, 0, picture.width, picture.height}, k);
-    if (part.format != picture.format || part.width < within.w || part.height < within.h || part.width > most.w || part.height > most.h)
-        return Error{std::string(what) + ": the part is " + sizeText(part) + " and not " + std::to_string(within.w) + "x" + std::to_string(within.h) + " " + nameOf(picture.format) + "; draw it with its kernel's size"};
+    if (part.format != picture.format || part.width < within.w || part.height < within.h || part.width > most.w ||
+        part.height > most.h)
+        return Error{std::string(what) + ": the part is " + sizeText(part) + " and not " + std::to_string(within.w) +
+                     "x" + std::to_string(within.h) + " " + nameOf(picture.format) +
+                     "; draw it with its kernel's size"};
     return within;
 }
 
@@ -149,7 +178,8 @@ Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& par
     if (!within) return within.error();
     const size_t pixel = bytesPerPixel(into.format);
     for (int32_t y = 0; y < within.value().h && within.value().w > 0; ++y)
-        interleaveRow(into.row(kernel.y + y * kernel.h) + static_cast<size_t>(kernel.x) * pixel, part.row(y), static_cast<size_t>(within.value().w), static_cast<size_t>(kernel.w), pixel);
+        interleaveRow(into.row(kernel.y + y * kernel.h) + static_cast<size_t>(kernel.x) * pixel, part.row(y),
+                      static_cast<size_t>(within.value().w), static_cast<size_t>(kernel.w), pixel);
     return {};
 }
 
@@ -158,7 +188,8 @@ Result<void> deinterleavePixels(const MutablePlaneView& part, const PlaneView& f
     if (!within) return within.error();
     const size_t pixel = bytesPerPixel(from.format);
     for (int32_t y = 0; y < within.value().h && within.value().w > 0; ++y)
-        deinterleaveRow(part.row(y), from.row(kernel.y + y * kernel.h) + static_cast<size_t>(kernel.x) * pixel, static_cast<size_t>(within.value().w), static_cast<size_t>(kernel.w), pixel);
+        deinterleaveRow(part.row(y), from.row(kernel.y + y * kernel.h) + static_cast<size_t>(kernel.x) * pixel,
+                        static_cast<size_t>(within.value().w), static_cast<size_t>(kernel.w), pixel);
     return {};
 }
 
@@ -166,7 +197,8 @@ ChannelMask channelMaskOf(PlaneFormat format, const ColourMask& mask) {
     ChannelMask bytes{};
     const bool taken[4] = {mask.red, mask.green, mask.blue, mask.alpha};
     if (format == PlaneFormat::Rgb10A2) {
-        const uint32_t word = (mask.red ? 0x3ffu : 0) | (mask.green ? 0x3ffu << 10 : 0) | (mask.blue ? 0x3ffu << 20 : 0) | (mask.alpha ? 0x3u << 30 : 0);
+        const uint32_t word = (mask.red ? 0x3ffu : 0) | (mask.green ? 0x3ffu << 10 : 0) |
+                              (mask.blue ? 0x3ffu << 20 : 0) | (mask.alpha ? 0x3u << 30 : 0);
         for (size_t at = 0; at < bytes.size(); at += sizeof word) std::memcpy(bytes.data() + at, &word, sizeof word);
         return bytes;
     }
@@ -176,8 +208,11 @@ ChannelMask channelMaskOf(PlaneFormat format, const ColourMask& mask) {
 }
 
 Result<void> assembleMasked(const MutablePlaneView& into, const PlaneView& part, const ColourMask& mask) {
-    if (!sameShape(into, part)) return mismatch("mixing by colour mask", into, part, "draw both eyes in one size and format");
-    if (isDepth(into.format)) return Error{std::string("mixing by colour mask: ") + nameOf(into.format) + " has no colours; give colour planes"};
+    if (!sameShape(into, part))
+        return mismatch("mixing by colour mask", into, part, "draw both eyes in one size and format");
+    if (isDepth(into.format))
+        return Error{std::string("mixing by colour mask: ") + nameOf(into.format) +
+                     " has no colours; give colour planes"};
     const ChannelMask bytes = channelMaskOf(into.format, mask);
     for (int32_t y = 0; y < into.height; ++y) maskChannelsRow(into.row(y), part.row(y), into.rowBytes(), bytes);
     return {};

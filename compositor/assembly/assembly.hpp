@@ -27,11 +27,13 @@ struct DepthAssembly {
 [[nodiscard]] Result<void> assembleBlended(Image& into, const Image& part);
 
 // Pixel decomposition: writes the part's pixels to the kernel's positions. If the kernel does not divide the picture,
-// the part may have one more column and row outside of it, which are ignored (common/geometry/pixel_kernel.hpp). Planes of one
-// format.
-[[nodiscard]] Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& part, const PixelKernel& kernel);
+// the part may have one more column and row outside of it, which are ignored (common/geometry/pixel_kernel.hpp). Planes
+// of one format.
+[[nodiscard]] Result<void> interleavePixels(const MutablePlaneView& into, const PlaneView& part,
+                                            const PixelKernel& kernel);
 // The inverse: extracts the part. Pixels outside of the picture stay unchanged.
-[[nodiscard]] Result<void> deinterleavePixels(const MutablePlaneView& part, const PlaneView& from, const PixelKernel& kernel);
+[[nodiscard]] Result<void> deinterleavePixels(const MutablePlaneView& part, const PlaneView& from,
+                                              const PixelKernel& kernel);
 
 struct ColourMask {
     bool red = true;

@@ -49,15 +49,20 @@ void Average::widen() {
 
 Result<void> Average::add(const PlaneView& picture) {
     if (!sameShape(shape_, picture) || isDepth(picture.format))
-        return Error{"averaging: a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " " + nameOf(picture.format) + " among " + std::to_string(shape_.width) + "x" +
+        return Error{"averaging: a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                     " " + nameOf(picture.format) + " among " + std::to_string(shape_.width) + "x" +
                      std::to_string(shape_.height) + " " + nameOf(shape_.format) + "; draw all in one size and format"};
-    if (count_ >= most()) return Error{"averaging: " + std::to_string(count_) + " pictures are as many as the sums hold; write the average and begin anew"};
+    if (count_ >= most())
+        return Error{"averaging: " + std::to_string(count_) +
+                     " pictures are as many as the sums hold; write the average and begin anew"};
     if (in16Bits_ == kMaxIn16Bits) widen();
     for (int32_t y = 0; y < picture.height; ++y) {
         const std::byte* from = picture.row(y);
         const size_t at = rowComponents_ * static_cast<size_t>(y);
         switch (picture.format) {
-        case PlaneFormat::Rgba8: addToSums(sums16_.data() + at, reinterpret_cast<const uint8_t*>(from), rowComponents_); break;
+        case PlaneFormat::Rgba8:
+            addToSums(sums16_.data() + at, reinterpret_cast<const uint8_t*>(from), rowComponents_);
+            break;
         case PlaneFormat::Rgb10A2:
             for (size_t i = 0; i < rowComponents_; i += 4) {
                 uint32_t word;
@@ -66,7 +71,8 @@ Result<void> Average::add(const PlaneView& picture) {
             }
             break;
         case PlaneFormat::Rgba16F:
-            for (size_t i = 0; i < rowComponents_; ++i) floats_[at + i] += floatOfHalf(reinterpret_cast<const uint16_t*>(from)[i]);
+            for (size_t i = 0; i < rowComponents_; ++i)
+                floats_[at + i] += floatOfHalf(reinterpret_cast<const uint16_t*>(from)[i]);
             break;
         case PlaneFormat::Rgba32F:
             for (size_t i = 0; i < rowComponents_; ++i) doubles_[at + i] += reinterpret_cast<const float*>(from)[i];
@@ -80,7 +86,8 @@ Result<void> Average::add(const PlaneView& picture) {
 }
 
 Result<void> Average::write(const MutablePlaneView& into) const {
-    if (!sameShape(shape_, into)) return Error{"averaging: the result's size or format is not the pictures'; give it a plane of the same shape"};
+    if (!sameShape(shape_, into))
+        return Error{"averaging: the result's size or format is not the pictures'; give it a plane of the same shape"};
     if (count_ == 0) return Error{"averaging: there is no picture yet; add one before the average is written"};
     std::vector<uint32_t> sums(shape_.format == PlaneFormat::Rgba8 && !wide_.empty() ? rowComponents_ : 0);
     for (int32_t y = 0; y < into.height; ++y) {
@@ -89,8 +96,10 @@ Result<void> Average::write(const MutablePlaneView& into) const {
         switch (into.format) {
         case PlaneFormat::Rgba8:
             for (size_t i = 0; i < sums.size(); ++i) sums[i] = wide_[at + i] + sums16_[at + i];
-            if (sums.empty()) averageOfSums(reinterpret_cast<uint8_t*>(to), sums16_.data() + at, rowComponents_, count_);
-            else averageOfSums(reinterpret_cast<uint8_t*>(to), sums.data(), rowComponents_, count_);
+            if (sums.empty())
+                averageOfSums(reinterpret_cast<uint8_t*>(to), sums16_.data() + at, rowComponents_, count_);
+            else
+                averageOfSums(reinterpret_cast<uint8_t*>(to), sums.data(), rowComponents_, count_);
             break;
         case PlaneFormat::Rgb10A2:
             for (size_t i = 0; i < rowComponents_; i += 4) {
@@ -100,10 +109,12 @@ Result<void> Average::write(const MutablePlaneView& into) const {
             }
             break;
         case PlaneFormat::Rgba16F:
-            for (size_t i = 0; i < rowComponents_; ++i) reinterpret_cast<uint16_t*>(to)[i] = halfOfFloat(floats_[at + i] / static_cast<float>(count_));
+            for (size_t i = 0; i < rowComponents_; ++i)
+                reinterpret_cast<uint16_t*>(to)[i] = halfOfFloat(floats_[at + i] / static_cast<float>(count_));
             break;
         case PlaneFormat::Rgba32F:
-            for (size_t i = 0; i < rowComponents_; ++i) reinterpret_cast<float*>(to)[i] = static_cast<float>(doubles_[at + i] / count_);
+            for (size_t i = 0; i < rowComponents_; ++i)
+                reinterpret_cast<float*>(to)[i] = static_cast<float>(doubles_[at + i] / count_);
             break;
         default: break;
         }

@@ -3,8 +3,9 @@
 namespace mural::compositor {
 
 Error damagedPlane(const std::string& codec, const PlaneView& shape, size_t sizeBytes, const char* what) {
-    return Error{"codec " + codec + ": " + std::to_string(sizeBytes) + " bytes are no plane of " + std::to_string(shape.width) + "x" + std::to_string(shape.height) + " " + nameOf(shape.format) + ": " + what +
-                 "; check that sender and receiver are of one version"};
+    return Error{"codec " + codec + ": " + std::to_string(sizeBytes) + " bytes are no plane of " +
+                 std::to_string(shape.width) + "x" + std::to_string(shape.height) + " " + nameOf(shape.format) + ": " +
+                 what + "; check that sender and receiver are of one version"};
 }
 
 } // namespace mural::compositor

@@ -20,7 +20,9 @@ namespace {
 using bitplane::Predictor;
 using Made = Result<std::unique_ptr<Codec>>;
 
-template <class T, class... A> Made made(A&&... arguments) { return std::unique_ptr<Codec>(std::make_unique<T>(std::forward<A>(arguments)...)); }
+template <class T, class... A> Made made(A&&... arguments) {
+    return std::unique_ptr<Codec>(std::make_unique<T>(std::forward<A>(arguments)...));
+}
 
 // Bit-plane output is small: the fastest level finds the remaining redundancy (repeated rows).
 constexpr int kLevelOfBitplanes = -1;
@@ -46,8 +48,14 @@ CodecRegistry::CodecRegistry(std::string pluginFolder) : pluginFolder_(std::move
     add({"rle-swizzled", true, kAllFormats}, [] { return made<RleComponentsCodec>(true); });
     add({"bitplane", true, kAllFormats}, [] { return made<BitplaneCodec>(Predictor::Above); });
     add({"slope", true, kAllFormats}, [] { return made<BitplaneCodec>(Predictor::Slope); });
-    add({"bitplane-zstd", true, kAllFormats}, [] { return made<CompressedCodec>("bitplane-zstd", std::make_unique<BitplaneCodec>(Predictor::Above), makeZstd(kLevelOfBitplanes)); });
-    add({"slope-zstd", true, kAllFormats}, [] { return made<CompressedCodec>("slope-zstd", std::make_unique<BitplaneCodec>(Predictor::Slope), makeZstd(kLevelOfBitplanes)); });
+    add({"bitplane-zstd", true, kAllFormats}, [] {
+        return made<CompressedCodec>("bitplane-zstd", std::make_unique<BitplaneCodec>(Predictor::Above),
+                                     makeZstd(kLevelOfBitplanes));
+    });
+    add({"slope-zstd", true, kAllFormats}, [] {
+        return made<CompressedCodec>("slope-zstd", std::make_unique<BitplaneCodec>(Predictor::Slope),
+                                     makeZstd(kLevelOfBitplanes));
+    });
     add({"lz4", true, kAllFormats}, [] { return made<CompressedCodec>("lz4", nullptr, makeLz4()); });
     add({"zstd", true, kAllFormats}, [] { return made<CompressedCodec>("zstd", nullptr, makeZstd(kLevelOfRows)); });
     add({"yuv420", false, formatBit(PlaneFormat::Rgba8)}, [] { return made<Yuv420Codec>(); });
@@ -69,10 +77,13 @@ Result<void> CodecRegistry::open(const std::string& name) {
     if (const auto quality = jpegQuality(name)) {
         // Quality from which chroma is not subsampled.
         constexpr int kFullColour = 96;
-        add({name, false, formatBit(PlaneFormat::Rgba8)}, [quality] { return made<JpegCodec>(*quality, *quality < kFullColour); });
+        add({name, false, formatBit(PlaneFormat::Rgba8)},
+            [quality] { return made<JpegCodec>(*quality, *quality < kFullColour); });
         return {};
     }
-    const auto mayBeFile = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
+    const auto mayBeFile = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+    };
     if (pluginFolder_.empty() || name.empty() || !std::ranges::all_of(name, mayBeFile)) {
         std::string names;
         for (const CodecInfo& c : known_) names += c.name + ", ";
@@ -96,7 +107,8 @@ Result<std::unique_ptr<Codec>> CodecRegistry::make(const std::string& name) {
 
 std::vector<CodecInfo> CodecRegistry::losslessFor(PlaneFormat format) const {
     std::vector<CodecInfo> fit;
-    std::ranges::copy_if(known_, std::back_inserter(fit), [&](const CodecInfo& c) { return c.lossless && c.takes(format); });
+    std::ranges::copy_if(known_, std::back_inserter(fit),
+                         [&](const CodecInfo& c) { return c.lossless && c.takes(format); });
     return fit;
 }
 

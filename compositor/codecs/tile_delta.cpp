@@ -10,7 +10,11 @@ namespace mural::compositor {
 namespace {
 
 struct Tiles {
-    Tiles(int32_t w, int32_t h) : width(w), height(h), across((w + kSkippedTileColumns - 1) / kSkippedTileColumns), up((h + kSkippedTileRows - 1) / kSkippedTileRows) {}
+    Tiles(int32_t w, int32_t h)
+        : width(w),
+          height(h),
+          across((w + kSkippedTileColumns - 1) / kSkippedTileColumns),
+          up((h + kSkippedTileRows - 1) / kSkippedTileRows) {}
     [[nodiscard]] size_t count() const { return static_cast<size_t>(across) * static_cast<size_t>(up); }
     [[nodiscard]] size_t headBytes() const { return 8 + (count() + 7) / 8; }
     // Area of tiles first ... end-1 of row y.
@@ -37,7 +41,10 @@ size_t TileDeltaEncoder::boundBytes(const PlaneShape& shape, const Codec& codec)
     if (shape.width <= 0 || shape.height <= 0) return 0;
     const Tiles tiles(shape.width, shape.height);
     // Upper bound: one run per tile.
-    return tiles.headBytes() + tiles.count() * (4 + codec.boundBytes({shape.format, std::min(shape.width, kSkippedTileColumns), std::min(shape.height, kSkippedTileRows)})) + codec.boundBytes(shape);
+    return tiles.headBytes() +
+           tiles.count() * (4 + codec.boundBytes({shape.format, std::min(shape.width, kSkippedTileColumns),
+                                                  std::min(shape.height, kSkippedTileRows)})) +
+           codec.boundBytes(shape);
 }
 
 Result<size_t> TileDeltaEncoder::encode(const PlaneView& plane, Codec& codec, std::span<std::byte> into) {
@@ -86,17 +93,22 @@ Result<void> TileDeltaDecoder::decode(std::span<const std::byte> bytes, Codec& c
     const Tiles tiles(into.width, into.height);
     if (bytes.size() < tiles.headBytes()) return damaged("its head is cut short");
     const uint32_t number = loadLittle<uint32_t>(bytes.data()), before = loadLittle<uint32_t>(bytes.data() + 4);
-    const auto present = [&](size_t t) { return std::to_integer<unsigned>(bytes[8 + t / 8] >> (t % 8) & std::byte{1}) != 0; };
+    const auto present = [&](size_t t) {
+        return std::to_integer<unsigned>(bytes[8 + t / 8] >> (t % 8) & std::byte{1}) != 0;
+    };
     if (number == 0) return damaged("it has no number");
     if (before != 0 && before != number_) return damaged("it changes another plane than the one that is here");
     for (size_t t = 0; t < 8 * (tiles.headBytes() - 8); ++t)
-        if (t < tiles.count() ? before == 0 && !present(t) : present(t)) return damaged("its tiles are not the plane's");
+        if (t < tiles.count() ? before == 0 && !present(t) : present(t))
+            return damaged("its tiles are not the plane's");
     std::span<const std::byte> left = bytes.subspan(tiles.headBytes());
     Result<void> result;
     tiles.forRuns(present, [&](int32_t y, int32_t first, int32_t end) {
         const size_t size = left.size() < 4 ? 0 : loadLittle<uint32_t>(left.data());
-        if (left.size() < 4 || size > left.size() - 4) result = damaged("a run of tiles is cut short");
-        else result = codec.decode(left.subspan(4, size), into.part(tiles.area(y, first, end)));
+        if (left.size() < 4 || size > left.size() - 4)
+            result = damaged("a run of tiles is cut short");
+        else
+            result = codec.decode(left.subspan(4, size), into.part(tiles.area(y, first, end)));
         if (result) left = left.subspan(4 + size);
         return result.ok();
     });

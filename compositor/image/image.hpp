@@ -16,7 +16,7 @@ struct Image {
     int32_t y = 0;
     std::optional<Plane> colour;
     std::optional<Plane> depth; // size equal to colour's
-    Region drawn; // in its own pixels; pixels outside carry no data
+    Region drawn;               // in its own pixels; pixels outside carry no data
     DrawOrder order;
 
     [[nodiscard]] int32_t width() const { return colour ? colour->width() : depth ? depth->width() : 0; }

@@ -10,7 +10,9 @@ namespace {
 constexpr size_t kLineBytes = 64;
 constexpr size_t kMaxOfSmallPages = 2 * kHugePageBytes; // below, alignment would waste too much at both ends
 
-std::align_val_t alignmentOf(size_t sizeBytes) { return std::align_val_t{sizeBytes < kMaxOfSmallPages ? kLineBytes : kHugePageBytes}; }
+std::align_val_t alignmentOf(size_t sizeBytes) {
+    return std::align_val_t{sizeBytes < kMaxOfSmallPages ? kLineBytes : kHugePageBytes};
+}
 
 } // namespace
 

@@ -25,9 +25,12 @@ template <class Byte> struct BasicPlaneView {
     [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
     // Returns a part. Requires `area` to lie inside.
     [[nodiscard]] BasicPlaneView part(const PixelViewport& area) const {
-        return {format, area.w, area.h, strideBytes, row(area.y) + static_cast<ptrdiff_t>(static_cast<size_t>(area.x) * bytesPerPixel(format))};
+        return {format, area.w, area.h, strideBytes,
+                row(area.y) + static_cast<ptrdiff_t>(static_cast<size_t>(area.x) * bytesPerPixel(format))};
     }
-    operator BasicPlaneView<const std::byte>() const { return {format, width, height, strideBytes, pixels}; } // NOLINT(google-explicit-constructor)
+    operator BasicPlaneView<const std::byte>() const {
+        return {format, width, height, strideBytes, pixels};
+    } // NOLINT(google-explicit-constructor)
 };
 using PlaneView = BasicPlaneView<const std::byte>;
 using MutablePlaneView = BasicPlaneView<std::byte>;
@@ -41,7 +44,9 @@ class Plane {
 public:
     Plane() = default;
     Plane(PlaneFormat format, int32_t width, int32_t height)
-        : format_(format), width_(width), height_(height),
+        : format_(format),
+          width_(width),
+          height_(height),
           pixels_(static_cast<size_t>(width) * static_cast<size_t>(height) * bytesPerPixel(format)) {}
 
     [[nodiscard]] MutablePlaneView view() { return {format_, width_, height_, stride(), pixels_.data()}; }
@@ -54,7 +59,9 @@ public:
     friend bool operator==(const Plane&, const Plane&) = default;
 
 private:
-    [[nodiscard]] ptrdiff_t stride() const { return static_cast<ptrdiff_t>(static_cast<size_t>(width_) * bytesPerPixel(format_)); }
+    [[nodiscard]] ptrdiff_t stride() const {
+        return static_cast<ptrdiff_t>(static_cast<size_t>(width_) * bytesPerPixel(format_));
+    }
     PlaneFormat format_ = PlaneFormat::Rgba8;
     int32_t width_ = 0;
     int32_t height_ = 0;

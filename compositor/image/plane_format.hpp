@@ -7,12 +7,12 @@
 namespace mural::compositor {
 
 enum class PlaneFormat : uint8_t {
-    Rgba8 = 0, // GL_RGBA, GL_UNSIGNED_BYTE: red in the first byte
+    Rgba8 = 0,   // GL_RGBA, GL_UNSIGNED_BYTE: red in the first byte
     Rgb10A2 = 1, // GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV: red in the lowest 10 bits, alpha in the highest 2
     Rgba16F = 2, // GL_RGBA, GL_HALF_FLOAT
     Rgba32F = 3, // GL_RGBA, GL_FLOAT
-    D24S8 = 4, // GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8: depth in the upper 24 bits
-    D32F = 5, // GL_DEPTH_COMPONENT, GL_FLOAT
+    D24S8 = 4,   // GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8: depth in the upper 24 bits
+    D32F = 5,    // GL_DEPTH_COMPONENT, GL_FLOAT
 };
 constexpr int kPlaneFormats = 6;
 

@@ -29,7 +29,8 @@ void Region::add(const PixelViewport& area) {
     std::vector<PixelViewport> fresh{area}, next;
     for (const PixelViewport& there : rectangles_) {
         next.clear();
-        for (const PixelViewport& piece : fresh) cutOut(piece, there, [&](const PixelViewport& r) { next.push_back(r); });
+        for (const PixelViewport& piece : fresh)
+            cutOut(piece, there, [&](const PixelViewport& r) { next.push_back(r); });
         fresh.swap(next);
         if (fresh.empty()) return;
     }
@@ -42,7 +43,8 @@ void Region::add(const Region& other) {
 
 void Region::subtract(const PixelViewport& area) {
     std::vector<PixelViewport> left;
-    for (const PixelViewport& r : rectangles_) cutOut(r, area, [&](const PixelViewport& piece) { left.push_back(piece); });
+    for (const PixelViewport& r : rectangles_)
+        cutOut(r, area, [&](const PixelViewport& piece) { left.push_back(piece); });
     rectangles_.swap(left);
 }
 
@@ -59,16 +61,24 @@ void Region::simplify() {
         std::ranges::sort(rectangles_, before);
         std::vector<PixelViewport> joined;
         for (const PixelViewport& r : rectangles_) {
-            if (!joined.empty() && follows(joined.back(), r)) grow(joined.back(), r);
-            else joined.push_back(r);
+            if (!joined.empty() && follows(joined.back(), r))
+                grow(joined.back(), r);
+            else
+                joined.push_back(r);
         }
         rectangles_.swap(joined);
     };
     using R = PixelViewport;
-    join([](const R& a, const R& b) { return a.y != b.y ? a.y < b.y : a.h != b.h ? a.h < b.h : a.x < b.x; },
-         [](const R& a, const R& b) { return a.y == b.y && a.h == b.h && a.right() == b.x; }, [](R& a, const R& b) { a.w += b.w; });
-    join([](const R& a, const R& b) { return a.x != b.x ? a.x < b.x : a.w != b.w ? a.w < b.w : a.y < b.y; },
-         [](const R& a, const R& b) { return a.x == b.x && a.w == b.w && a.top() == b.y; }, [](R& a, const R& b) { a.h += b.h; });
+    join([](const R& a, const R& b) { return a.y != b.y   ? a.y < b.y
+                                             : a.h != b.h ? a.h < b.h
+                                                          : a.x < b.x; },
+         [](const R& a, const R& b) { return a.y == b.y && a.h == b.h && a.right() == b.x; },
+         [](R& a, const R& b) { a.w += b.w; });
+    join([](const R& a, const R& b) { return a.x != b.x   ? a.x < b.x
+                                             : a.w != b.w ? a.w < b.w
+                                                          : a.y < b.y; },
+         [](const R& a, const R& b) { return a.x == b.x && a.w == b.w && a.top() == b.y; },
+         [](R& a, const R& b) { a.h += b.h; });
 }
 
 int64_t Region::area() const {

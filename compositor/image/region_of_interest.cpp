@@ -29,8 +29,12 @@ Pattern patternOf(const PlaneView& plane, const Background& background) {
 class TileMarks {
 public:
     TileMarks(const PlaneView& plane, int32_t tilePixels)
-        : width_(plane.width), height_(plane.height), tile_(tilePixels), columns_((plane.width + tilePixels - 1) / tilePixels),
-          rows_((plane.height + tilePixels - 1) / tilePixels), marks_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_)) {}
+        : width_(plane.width),
+          height_(plane.height),
+          tile_(tilePixels),
+          columns_((plane.width + tilePixels - 1) / tilePixels),
+          rows_((plane.height + tilePixels - 1) / tilePixels),
+          marks_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_)) {}
 
     void markUnlike(const PlaneView& plane, const Pattern& pattern) {
         const size_t wordsPerPixel = bytesPerPixel(plane.format) / 4;
@@ -67,7 +71,8 @@ public:
                 const int32_t from = c;
                 while (c < columns_ && marked(row, c)) ++c;
                 PixelViewport run{from * tile_, y0, std::min(width_, c * tile_) - from * tile_, y1 - y0};
-                const auto below = std::ranges::find_if(open, [&](const PixelViewport& o) { return o.x == run.x && o.w == run.w; });
+                const auto below =
+                    std::ranges::find_if(open, [&](const PixelViewport& o) { return o.x == run.x && o.w == run.w; });
                 if (below != open.end()) {
                     run.y = below->y;
                     run.h += below->h;
@@ -83,7 +88,9 @@ public:
     }
 
 private:
-    [[nodiscard]] bool marked(int32_t row, int32_t column) const { return marks_[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)] != 0; }
+    [[nodiscard]] bool marked(int32_t row, int32_t column) const {
+        return marks_[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)] != 0;
+    }
     int32_t width_, height_, tile_, columns_, rows_;
     std::vector<char> marks_;
 };
@@ -102,7 +109,8 @@ Region findRegionOfInterest(const PlaneView& plane, const Background& background
     return marks.region();
 }
 
-Region findRegionOfInterest(const PlaneView& colour, const Background& colourBackground, const PlaneView& depth, const Background& depthBackground, int32_t tilePixels) {
+Region findRegionOfInterest(const PlaneView& colour, const Background& colourBackground, const PlaneView& depth,
+                            const Background& depthBackground, int32_t tilePixels) {
     TileMarks marks(colour, tilePixels);
     marks.markUnlike(colour, patternOf(colour, colourBackground));
     marks.markUnlike(depth, patternOf(depth, depthBackground));

@@ -18,9 +18,11 @@ struct Background {
 constexpr int32_t kInterestTilePixels = 16;
 
 // Returns the tiles of tilePixels x tilePixels with a non-background pixel, as few rectangles, in pixels of the plane.
-[[nodiscard]] Region findRegionOfInterest(const PlaneView& plane, const Background& background, int32_t tilePixels = kInterestTilePixels);
+[[nodiscard]] Region findRegionOfInterest(const PlaneView& plane, const Background& background,
+                                          int32_t tilePixels = kInterestTilePixels);
 // The same for two planes of equal size: a pixel counts if it is not background in one of them.
-[[nodiscard]] Region findRegionOfInterest(const PlaneView& colour, const Background& colourBackground, const PlaneView& depth, const Background& depthBackground,
+[[nodiscard]] Region findRegionOfInterest(const PlaneView& colour, const Background& colourBackground,
+                                          const PlaneView& depth, const Background& depthBackground,
                                           int32_t tilePixels = kInterestTilePixels);
 
 } // namespace mural::compositor

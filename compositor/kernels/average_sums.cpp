@@ -43,14 +43,22 @@ template <class T> size_t averageVectors(uint8_t* components, const T* sums, siz
     size_t i = 0;
     for (; i + step <= count; i += step) {
         const auto loaded = hn::LoadU(dt, sums + i);
-        if constexpr (sizeof(T) == 2) hn::StoreU(hn::DemoteTo(d8, divided(di, hn::PromoteTo(di, loaded), halfN, static_cast<float>(n))), d8, components + i);
-        else hn::StoreU(hn::DemoteTo(d8, divided(di, hn::BitCast(di, loaded), halfN, static_cast<float>(n))), d8, components + i);
+        if constexpr (sizeof(T) == 2)
+            hn::StoreU(hn::DemoteTo(d8, divided(di, hn::PromoteTo(di, loaded), halfN, static_cast<float>(n))), d8,
+                       components + i);
+        else
+            hn::StoreU(hn::DemoteTo(d8, divided(di, hn::BitCast(di, loaded), halfN, static_cast<float>(n))), d8,
+                       components + i);
     }
     return i;
 }
 
-size_t average16(uint8_t* components, const uint16_t* sums, size_t count, uint32_t n) { return averageVectors(components, sums, count, n); }
-size_t average32(uint8_t* components, const uint32_t* sums, size_t count, uint32_t n) { return averageVectors(components, sums, count, n); }
+size_t average16(uint8_t* components, const uint16_t* sums, size_t count, uint32_t n) {
+    return averageVectors(components, sums, count, n);
+}
+size_t average32(uint8_t* components, const uint32_t* sums, size_t count, uint32_t n) {
+    return averageVectors(components, sums, count, n);
+}
 
 #endif
 
@@ -76,8 +84,12 @@ void addToSumsScalar(uint16_t* sums, const uint8_t* components, size_t count) {
     for (size_t i = 0; i < count; ++i) sums[i] = static_cast<uint16_t>(sums[i] + components[i]);
 }
 
-void averageOfSumsScalar(uint8_t* components, const uint16_t* sums, size_t count, uint32_t n) { averageEach(components, sums, count, n); }
-void averageOfSumsScalar(uint8_t* components, const uint32_t* sums, size_t count, uint32_t n) { averageEach(components, sums, count, n); }
+void averageOfSumsScalar(uint8_t* components, const uint16_t* sums, size_t count, uint32_t n) {
+    averageEach(components, sums, count, n);
+}
+void averageOfSumsScalar(uint8_t* components, const uint32_t* sums, size_t count, uint32_t n) {
+    averageEach(components, sums, count, n);
+}
 
 void addToSums(uint16_t* sums, const uint8_t* components, size_t count) {
     const size_t done = HWY_DYNAMIC_DISPATCH(addVectors)(sums, components, count);

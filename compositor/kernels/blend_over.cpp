@@ -42,15 +42,21 @@ template <class D> hn::Vec<D> over8(D d32, hn::Vec<D> front, hn::Vec<D> back) {
 }
 
 // Rounded x / 3 equals (x + 1) * 43691 / 2^17 for all x below 98304.
-template <class D> hn::Vec<D> thirds(D d, hn::Vec<D> x) { return hn::ShiftRight<17>(hn::Mul(hn::Add(x, hn::Set(d, 1)), hn::Set(d, 43691))); }
+template <class D> hn::Vec<D> thirds(D d, hn::Vec<D> x) {
+    return hn::ShiftRight<17>(hn::Mul(hn::Add(x, hn::Set(d, 1)), hn::Set(d, 43691)));
+}
 
 template <class D> hn::Vec<D> over10(D d, hn::Vec<D> front, hn::Vec<D> back) {
     const auto most = hn::Set(d, 1023);
     const auto alpha = hn::ShiftRight<30>(front);
     const auto left = hn::Sub(hn::Set(d, 3), alpha);
     const auto red = hn::Min(hn::Add(hn::And(front, most), thirds(d, hn::Mul(hn::And(back, most), left))), most);
-    const auto green = hn::Min(hn::Add(hn::And(hn::ShiftRight<10>(front), most), thirds(d, hn::Mul(hn::And(hn::ShiftRight<10>(back), most), left))), most);
-    const auto blue = hn::Min(hn::Add(hn::And(hn::ShiftRight<20>(front), most), thirds(d, hn::Mul(hn::And(hn::ShiftRight<20>(back), most), left))), most);
+    const auto green = hn::Min(hn::Add(hn::And(hn::ShiftRight<10>(front), most),
+                                       thirds(d, hn::Mul(hn::And(hn::ShiftRight<10>(back), most), left))),
+                               most);
+    const auto blue = hn::Min(hn::Add(hn::And(hn::ShiftRight<20>(front), most),
+                                      thirds(d, hn::Mul(hn::And(hn::ShiftRight<20>(back), most), left))),
+                              most);
     const auto cover = hn::Min(hn::Add(alpha, thirds(d, hn::Mul(hn::ShiftRight<30>(back), left))), hn::Set(d, 3));
     return hn::Or(hn::Or(red, hn::ShiftLeft<10>(green)), hn::Or(hn::ShiftLeft<20>(blue), hn::ShiftLeft<30>(cover)));
 }
@@ -77,12 +83,17 @@ template <bool kTen> size_t blendWords(uint32_t* pixels, const uint32_t* source,
         hn::StoreU(blended(first, hn::LoadU(d, pixels + i)), d, pixels + i);
         hn::StoreU(blended(second, hn::LoadU(d, pixels + i + lanes)), d, pixels + i + lanes);
     }
-    for (; i + lanes <= count; i += lanes) hn::StoreU(blended(hn::LoadU(d, source + i), hn::LoadU(d, pixels + i)), d, pixels + i);
+    for (; i + lanes <= count; i += lanes)
+        hn::StoreU(blended(hn::LoadU(d, source + i), hn::LoadU(d, pixels + i)), d, pixels + i);
     return i;
 }
 
-size_t blendRgba8(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) { return blendWords<false>(pixels, source, count, inFront); }
-size_t blendRgb10A2(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) { return blendWords<true>(pixels, source, count, inFront); }
+size_t blendRgba8(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) {
+    return blendWords<false>(pixels, source, count, inFront);
+}
+size_t blendRgb10A2(uint32_t* pixels, const uint32_t* source, size_t count, bool inFront) {
+    return blendWords<true>(pixels, source, count, inFront);
+}
 
 // Whole pixels only: vectors of 4 or more floats.
 size_t blendFloats(float* pixels, const float* source, size_t count, bool inFront) {
@@ -111,7 +122,8 @@ template <class D> hn::Vec<hn::RebindToFloat<D>> floatsOfHalves(D d, hn::Vec<D> 
     const auto denormal = hn::Eq(exponent, hn::Zero(d));
     const auto scale = hn::Set(d, 113u << 23);
     const auto small = hn::BitCast(d, hn::Sub(hn::BitCast(df, hn::Add(rest, scale)), hn::BitCast(df, scale)));
-    const auto usual = hn::Add(rest, hn::IfThenElse(special, hn::Set(d, (255u - 31u) << 23), hn::Set(d, (127u - 15u) << 23)));
+    const auto usual =
+        hn::Add(rest, hn::IfThenElse(special, hn::Set(d, (255u - 31u) << 23), hn::Set(d, (127u - 15u) << 23)));
     return hn::BitCast(df, hn::Or(sign, hn::IfThenElse(denormal, small, usual)));
 }
 
@@ -121,8 +133,11 @@ template <class D> hn::Vec<D> halvesOfFloats(D d, hn::Vec<hn::RebindToFloat<D>> 
     const auto bits = hn::BitCast(d, value);
     const auto sign = hn::And(hn::ShiftRight<16>(bits), hn::Set(d, 0x8000));
     const auto rest = hn::And(bits, hn::Set(d, 0x7fffffff));
-    const auto above = [&](uint32_t limit) { return hn::RebindMask(d, hn::Gt(hn::BitCast(di, rest), hn::Set(di, static_cast<int32_t>(limit)))); };
-    const auto small = hn::Sub(hn::BitCast(d, hn::Add(hn::BitCast(df, rest), hn::Set(df, 0.5f))), hn::Set(d, 0x3f000000u));
+    const auto above = [&](uint32_t limit) {
+        return hn::RebindMask(d, hn::Gt(hn::BitCast(di, rest), hn::Set(di, static_cast<int32_t>(limit))));
+    };
+    const auto small =
+        hn::Sub(hn::BitCast(d, hn::Add(hn::BitCast(df, rest), hn::Set(df, 0.5f))), hn::Set(d, 0x3f000000u));
     const auto odd = hn::And(hn::ShiftRight<13>(rest), hn::Set(d, 1));
     const auto usual = hn::ShiftRight<13>(hn::Add(hn::Sub(rest, hn::Set(d, ((127u - 15u) << 23) - 0xfff)), odd));
     auto result = hn::IfThenElse(above((113u << 23) - 1), usual, small);
@@ -171,10 +186,12 @@ void blendOverRow(PlaneFormat format, std::byte* pixels, const std::byte* source
     case PlaneFormat::Rgba8: done = HWY_DYNAMIC_DISPATCH(blendRgba8)(words(), sourceWords(), count, inFront); break;
     case PlaneFormat::Rgb10A2: done = HWY_DYNAMIC_DISPATCH(blendRgb10A2)(words(), sourceWords(), count, inFront); break;
     case PlaneFormat::Rgba16F:
-        done = HWY_DYNAMIC_DISPATCH(blendHalves)(reinterpret_cast<uint16_t*>(pixels), reinterpret_cast<const uint16_t*>(source), count, inFront);
+        done = HWY_DYNAMIC_DISPATCH(blendHalves)(reinterpret_cast<uint16_t*>(pixels),
+                                                 reinterpret_cast<const uint16_t*>(source), count, inFront);
         break;
     case PlaneFormat::Rgba32F:
-        done = HWY_DYNAMIC_DISPATCH(blendFloats)(reinterpret_cast<float*>(pixels), reinterpret_cast<const float*>(source), count, inFront);
+        done = HWY_DYNAMIC_DISPATCH(blendFloats)(reinterpret_cast<float*>(pixels),
+                                                 reinterpret_cast<const float*>(source), count, inFront);
         break;
     case PlaneFormat::D24S8:
     case PlaneFormat::D32F: return; // depth planes are not blended

@@ -27,6 +27,8 @@ struct DepthRule {
 
 // Returns true if compositing separately drawn parts gives the picture drawn as a whole. Equal and NotEqual depend on
 // depths left by other parts.
-[[nodiscard]] constexpr bool decomposable(DepthFunction f) { return f != DepthFunction::Equal && f != DepthFunction::NotEqual; }
+[[nodiscard]] constexpr bool decomposable(DepthFunction f) {
+    return f != DepthFunction::Equal && f != DepthFunction::NotEqual;
+}
 
 } // namespace mural::compositor

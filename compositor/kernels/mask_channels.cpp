@@ -41,12 +41,15 @@ namespace mural::compositor {
 HWY_EXPORT(maskVectors);
 
 void maskChannelsRowScalar(std::byte* into, const std::byte* source, size_t sizeBytes, const ChannelMask& mask) {
-    for (size_t i = 0; i < sizeBytes; ++i) into[i] = (into[i] & ~mask[i % mask.size()]) | (source[i] & mask[i % mask.size()]);
+    for (size_t i = 0; i < sizeBytes; ++i)
+        into[i] = (into[i] & ~mask[i % mask.size()]) | (source[i] & mask[i % mask.size()]);
 }
 
 void maskChannelsRow(std::byte* into, const std::byte* source, size_t sizeBytes, const ChannelMask& mask) {
     alignas(16) ChannelMask aligned = mask;
-    const size_t done = HWY_DYNAMIC_DISPATCH(maskVectors)(reinterpret_cast<uint8_t*>(into), reinterpret_cast<const uint8_t*>(source), sizeBytes, reinterpret_cast<const uint8_t*>(aligned.data()));
+    const size_t done =
+        HWY_DYNAMIC_DISPATCH(maskVectors)(reinterpret_cast<uint8_t*>(into), reinterpret_cast<const uint8_t*>(source),
+                                          sizeBytes, reinterpret_cast<const uint8_t*>(aligned.data()));
     maskChannelsRowScalar(into + done, source + done, sizeBytes - done, mask); // a vector is a whole number of masks
 }
 

@@ -43,19 +43,29 @@ template <SourceWins W, class D> auto wins24(D du, hn::Vec<D> source, hn::Vec<D>
     const hn::RebindToSigned<D> di; // 24 bits: signed comparisons suffice
     const auto s = hn::BitCast(di, hn::ShiftRight<8>(source));
     const auto t = hn::BitCast(di, hn::ShiftRight<8>(there));
-    if constexpr (W == SourceWins::IfLess) return hn::RebindMask(du, hn::Lt(s, t));
-    else if constexpr (W == SourceWins::IfLessOrEqual) return hn::RebindMask(du, hn::Not(hn::Gt(s, t)));
-    else if constexpr (W == SourceWins::IfGreater) return hn::RebindMask(du, hn::Gt(s, t));
-    else if constexpr (W == SourceWins::IfGreaterOrEqual) return hn::RebindMask(du, hn::Not(hn::Lt(s, t)));
-    else if constexpr (W == SourceWins::IfEqual) return hn::RebindMask(du, hn::Eq(s, t));
-    else return hn::RebindMask(du, hn::Not(hn::Eq(s, t)));
+    if constexpr (W == SourceWins::IfLess)
+        return hn::RebindMask(du, hn::Lt(s, t));
+    else if constexpr (W == SourceWins::IfLessOrEqual)
+        return hn::RebindMask(du, hn::Not(hn::Gt(s, t)));
+    else if constexpr (W == SourceWins::IfGreater)
+        return hn::RebindMask(du, hn::Gt(s, t));
+    else if constexpr (W == SourceWins::IfGreaterOrEqual)
+        return hn::RebindMask(du, hn::Not(hn::Lt(s, t)));
+    else if constexpr (W == SourceWins::IfEqual)
+        return hn::RebindMask(du, hn::Eq(s, t));
+    else
+        return hn::RebindMask(du, hn::Not(hn::Eq(s, t)));
 }
 
 template <SourceWins W, class V> auto ordered(V s, V t) {
-    if constexpr (W == SourceWins::IfLess) return hn::Lt(s, t);
-    else if constexpr (W == SourceWins::IfLessOrEqual) return hn::Le(s, t);
-    else if constexpr (W == SourceWins::IfGreater) return hn::Gt(s, t);
-    else return hn::Ge(s, t);
+    if constexpr (W == SourceWins::IfLess)
+        return hn::Lt(s, t);
+    else if constexpr (W == SourceWins::IfLessOrEqual)
+        return hn::Le(s, t);
+    else if constexpr (W == SourceWins::IfGreater)
+        return hn::Gt(s, t);
+    else
+        return hn::Ge(s, t);
 }
 
 // A later number replaces NaN: it wins unless the negation holds, which is false for NaN. An earlier source replaces
@@ -64,8 +74,10 @@ template <SourceWins W, bool kLater, class D> auto winsFloat(D du, hn::Vec<D> so
     const hn::RebindToFloat<D> df;
     const auto s = hn::BitCast(df, source);
     const auto t = hn::BitCast(df, there);
-    if constexpr (W == SourceWins::IfEqual) return hn::RebindMask(du, hn::Eq(s, t));
-    else if constexpr (W == SourceWins::IfNotEqual) return hn::RebindMask(du, hn::Not(hn::Eq(s, t)));
+    if constexpr (W == SourceWins::IfEqual)
+        return hn::RebindMask(du, hn::Eq(s, t));
+    else if constexpr (W == SourceWins::IfNotEqual)
+        return hn::RebindMask(du, hn::Not(hn::Eq(s, t)));
     else if constexpr (kLater) {
         return hn::RebindMask(du, hn::AndNot(ordered<contraryOf(W)>(s, t), hn::Eq(s, s)));
     } else {
@@ -98,15 +110,20 @@ template <size_t kBytes, class D> void takeWide(D du, std::byte* colour, const s
     }
 }
 
-template <class D> void takeColours(D du, std::byte* colour, const std::byte* source, size_t colourBytes, hn::Mask<D> win) {
-    if (colourBytes == 4) selectWords(du, reinterpret_cast<uint32_t*>(colour), reinterpret_cast<const uint32_t*>(source), win);
-    else if (colourBytes == 8) takeWide<8>(du, colour, source, win);
-    else takeWide<16>(du, colour, source, win);
+template <class D>
+void takeColours(D du, std::byte* colour, const std::byte* source, size_t colourBytes, hn::Mask<D> win) {
+    if (colourBytes == 4)
+        selectWords(du, reinterpret_cast<uint32_t*>(colour), reinterpret_cast<const uint32_t*>(source), win);
+    else if (colourBytes == 8)
+        takeWide<8>(du, colour, source, win);
+    else
+        takeWide<16>(du, colour, source, win);
 }
 
 // Two vectors per step, since a cache line is one vector only with the widest of them; then single vectors, and the
 // rest pixel by pixel.
-template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> void selectRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
+template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords>
+void selectRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
     const size_t colourBytes = kWords ? 4 : area.colourBytes;
     const hn::ScalableTag<uint32_t> du;
     const size_t lanes = hn::Lanes(du), pair = 2 * lanes;
@@ -115,10 +132,13 @@ template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> vo
     const auto zero = hn::Zero(du);
     const auto wins = [&](hn::Vec<decltype(du)> source, hn::Vec<decltype(du)> there) {
         auto win = hn::Eq(zero, zero);
-        if constexpr (W == SourceWins::Never) win = hn::Not(win);
+        if constexpr (W == SourceWins::Never)
+            win = hn::Not(win);
         else if constexpr (W != SourceWins::Always) {
-            if constexpr (kFloat) win = winsFloat<W, kLater>(du, source, there);
-            else win = wins24<W>(du, source, there);
+            if constexpr (kFloat)
+                win = winsFloat<W, kLater>(du, source, there);
+            else
+                win = wins24<W>(du, source, there);
         }
         if constexpr (kCovered) {
             const auto sourceUndrawn = hn::Eq(hn::And(hn::Xor(source, clear), drawnMask), zero);
@@ -127,8 +147,9 @@ template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> vo
         }
         return win;
     };
-    const bool pastCaches = kWords && area.colour && area.rows * area.columns * colourBytes >= kPastCachesBytes &&
-                            (reinterpret_cast<uintptr_t>(area.colour) | static_cast<uintptr_t>(area.colourStride)) % (4 * lanes) == 0;
+    const bool pastCaches =
+        kWords && area.colour && area.rows * area.columns * colourBytes >= kPastCachesBytes &&
+        (reinterpret_cast<uintptr_t>(area.colour) | static_cast<uintptr_t>(area.colourStride)) % (4 * lanes) == 0;
     HWY_ALIGN uint32_t waitingWins[kWaiting * 2 * hn::MaxLanes(du)];
     std::byte* waitingColours[kWaiting];
     const std::byte* waitingSources[kWaiting];
@@ -138,13 +159,16 @@ template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> vo
         std::byte* colour = waitingColours[slot];
         const std::byte* source = waitingSources[slot];
         if (kWords && waitingWhole[slot]) {
-            hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source)), du, reinterpret_cast<uint32_t*>(colour));
-            hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source) + lanes), du, reinterpret_cast<uint32_t*>(colour) + lanes);
+            hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source)), du,
+                       reinterpret_cast<uint32_t*>(colour));
+            hn::Stream(hn::LoadU(du, reinterpret_cast<const uint32_t*>(source) + lanes), du,
+                       reinterpret_cast<uint32_t*>(colour) + lanes);
             return;
         }
         const uint32_t* win = waitingWins + slot * pair;
         takeColours(du, colour, source, colourBytes, hn::MaskFromVec(hn::Load(du, win)));
-        takeColours(du, colour + lanes * colourBytes, source + lanes * colourBytes, colourBytes, hn::MaskFromVec(hn::Load(du, win + lanes)));
+        takeColours(du, colour + lanes * colourBytes, source + lanes * colourBytes, colourBytes,
+                    hn::MaskFromVec(hn::Load(du, win + lanes)));
     };
     for (size_t y = 0; y < area.rows; ++y) {
         const ZArea row = area.row(y);
@@ -187,14 +211,19 @@ template <SourceWins W, bool kLater, bool kFloat, bool kCovered, bool kWords> vo
     if (pastCaches) hwy::FlushStream();
 }
 
-template <SourceWins W, bool kLater, bool kFloat> void chooseRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
-    if (area.colourBytes == 4) return rule.coverage != Coverage::All ? selectRows<W, kLater, kFloat, true, true>(area, rule, c) : selectRows<W, kLater, kFloat, false, true>(area, rule, c);
-    return rule.coverage != Coverage::All ? selectRows<W, kLater, kFloat, true, false>(area, rule, c) : selectRows<W, kLater, kFloat, false, false>(area, rule, c);
+template <SourceWins W, bool kLater, bool kFloat>
+void chooseRows(const ZArea& area, const DepthRule& rule, const Constants& c) {
+    if (area.colourBytes == 4)
+        return rule.coverage != Coverage::All ? selectRows<W, kLater, kFloat, true, true>(area, rule, c)
+                                              : selectRows<W, kLater, kFloat, false, true>(area, rule, c);
+    return rule.coverage != Coverage::All ? selectRows<W, kLater, kFloat, true, false>(area, rule, c)
+                                          : selectRows<W, kLater, kFloat, false, false>(area, rule, c);
 }
 
 // For order functions on floats the draw order matters.
 template <SourceWins W> void choose(const ZArea& area, const DepthRule& rule, const Constants& c) {
-    constexpr bool kOrders = W == SourceWins::IfLess || W == SourceWins::IfLessOrEqual || W == SourceWins::IfGreater || W == SourceWins::IfGreaterOrEqual;
+    constexpr bool kOrders = W == SourceWins::IfLess || W == SourceWins::IfLessOrEqual || W == SourceWins::IfGreater ||
+                             W == SourceWins::IfGreaterOrEqual;
     if (rule.format == DepthFormat::D24S8) return chooseRows<W, true, false>(area, rule, c);
     if constexpr (kOrders) {
         if (!rule.sourceIsLater) return chooseRows<W, false, true>(area, rule, c);
@@ -205,17 +234,29 @@ template <SourceWins W> void choose(const ZArea& area, const DepthRule& rule, co
 void zSelectVectors(const ZArea& area, const DepthRule& rule) {
     Constants c{};
     c.clear = rule.coverage == Coverage::NotClear ? rule.clearBits : 0;
-    c.drawnMask = rule.coverage == Coverage::Stencil ? 0xffu : rule.format == DepthFormat::D32F ? 0xffffffffu : 0xffffff00u;
+    c.drawnMask = rule.coverage == Coverage::Stencil ? 0xffu
+                  : rule.format == DepthFormat::D32F ? 0xffffffffu
+                                                     : 0xffffff00u;
     const bool later = rule.sourceIsLater;
     switch (rule.function) {
-    case DepthFunction::Less: return later ? choose<SourceWins::IfLess>(area, rule, c) : choose<SourceWins::IfLessOrEqual>(area, rule, c);
-    case DepthFunction::LessOrEqual: return later ? choose<SourceWins::IfLessOrEqual>(area, rule, c) : choose<SourceWins::IfLess>(area, rule, c);
-    case DepthFunction::Greater: return later ? choose<SourceWins::IfGreater>(area, rule, c) : choose<SourceWins::IfGreaterOrEqual>(area, rule, c);
-    case DepthFunction::GreaterOrEqual: return later ? choose<SourceWins::IfGreaterOrEqual>(area, rule, c) : choose<SourceWins::IfGreater>(area, rule, c);
-    case DepthFunction::Equal: return later ? choose<SourceWins::IfEqual>(area, rule, c) : choose<SourceWins::IfNotEqual>(area, rule, c);
-    case DepthFunction::NotEqual: return later ? choose<SourceWins::IfNotEqual>(area, rule, c) : choose<SourceWins::IfEqual>(area, rule, c);
-    case DepthFunction::Always: return later ? choose<SourceWins::Always>(area, rule, c) : choose<SourceWins::Never>(area, rule, c);
-    case DepthFunction::Never: return later ? choose<SourceWins::Never>(area, rule, c) : choose<SourceWins::Always>(area, rule, c);
+    case DepthFunction::Less:
+        return later ? choose<SourceWins::IfLess>(area, rule, c) : choose<SourceWins::IfLessOrEqual>(area, rule, c);
+    case DepthFunction::LessOrEqual:
+        return later ? choose<SourceWins::IfLessOrEqual>(area, rule, c) : choose<SourceWins::IfLess>(area, rule, c);
+    case DepthFunction::Greater:
+        return later ? choose<SourceWins::IfGreater>(area, rule, c)
+                     : choose<SourceWins::IfGreaterOrEqual>(area, rule, c);
+    case DepthFunction::GreaterOrEqual:
+        return later ? choose<SourceWins::IfGreaterOrEqual>(area, rule, c)
+                     : choose<SourceWins::IfGreater>(area, rule, c);
+    case DepthFunction::Equal:
+        return later ? choose<SourceWins::IfEqual>(area, rule, c) : choose<SourceWins::IfNotEqual>(area, rule, c);
+    case DepthFunction::NotEqual:
+        return later ? choose<SourceWins::IfNotEqual>(area, rule, c) : choose<SourceWins::IfEqual>(area, rule, c);
+    case DepthFunction::Always:
+        return later ? choose<SourceWins::Always>(area, rule, c) : choose<SourceWins::Never>(area, rule, c);
+    case DepthFunction::Never:
+        return later ? choose<SourceWins::Never>(area, rule, c) : choose<SourceWins::Always>(area, rule, c);
     }
 }
 

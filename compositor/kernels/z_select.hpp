@@ -30,7 +30,8 @@ struct ZArea {
         ZArea one = *this;
         one.rows = 1;
         one.depth = reinterpret_cast<uint32_t*>(reinterpret_cast<std::byte*>(depth) + at * depthStride);
-        one.sourceDepth = reinterpret_cast<const uint32_t*>(reinterpret_cast<const std::byte*>(sourceDepth) + at * sourceDepthStride);
+        one.sourceDepth =
+            reinterpret_cast<const uint32_t*>(reinterpret_cast<const std::byte*>(sourceDepth) + at * sourceDepthStride);
         if (!colour) return one;
         one.colour = colour + at * colourStride;
         one.sourceColour = sourceColour + at * sourceColourStride;

@@ -46,7 +46,8 @@ bool laterWins(const DepthRule& rule, uint32_t later, uint32_t earlier) {
 bool drawn(const DepthRule& rule, uint32_t depth) {
     switch (rule.coverage) {
     case Coverage::All: return true;
-    case Coverage::NotClear: return rule.format == DepthFormat::D24S8 ? depth >> 8 != rule.clearBits >> 8 : depth != rule.clearBits;
+    case Coverage::NotClear:
+        return rule.format == DepthFormat::D24S8 ? depth >> 8 != rule.clearBits >> 8 : depth != rule.clearBits;
     case Coverage::Stencil: return (depth & 0xff) != 0;
     }
     return true;
@@ -66,7 +67,8 @@ void zSelectScalar(const ZArea& area, const DepthRule& rule) {
         for (size_t i = 0; i < row.columns; ++i) {
             if (!sourceWins(rule, row.sourceDepth[i], row.depth[i])) continue;
             row.depth[i] = row.sourceDepth[i];
-            if (row.colour) std::memcpy(row.colour + i * row.colourBytes, row.sourceColour + i * row.colourBytes, row.colourBytes);
+            if (row.colour)
+                std::memcpy(row.colour + i * row.colourBytes, row.sourceColour + i * row.colourBytes, row.colourBytes);
         }
     }
 }

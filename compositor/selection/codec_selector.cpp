@@ -16,16 +16,16 @@ constexpr double kLinkWeight = 0.25;
 // Ratio between recent and earlier pieces of a class that indicates changed content.
 constexpr double kContentChange = 2;
 constexpr double kSizeChange = 0.02; // least relevant size change, relative to the raw size
-constexpr uint64_t kSettled = 16; // pieces before the next change is detected
+constexpr uint64_t kSettled = 16;    // pieces before the next change is detected
 constexpr double kLinkChange = 1.5;
 // At most one piece in kMeasureEvery is measured with another codec; usually the time share is the tighter bound.
 constexpr uint64_t kMeasureEvery = 3;
 constexpr double kStaleShares = 3; // multiple of the time share for stale codecs, which may be best
 constexpr double kStaleWorth = 4;
-constexpr double kNewAge = 1e6; // age of an unmeasured codec, in pieces; exceeds all others
+constexpr double kNewAge = 1e6;     // age of an unmeasured codec, in pieces; exceeds all others
 constexpr double kCreditPieces = 4; // pieces whose time the first measurement may take
-constexpr double kHopefully = 0.5; // optimistic factor: other content may be this much faster
-constexpr double kMaxOff = 4; // factor above the estimate that marks an outlier, unless it repeats
+constexpr double kHopefully = 0.5;  // optimistic factor: other content may be this much faster
+constexpr double kMaxOff = 4;       // factor above the estimate that marks an outlier, unless it repeats
 // Assumed times of an unmeasured codec relative to the best one.
 constexpr double kNewEncode = 8, kNewDecode = 4;
 // Decay of past expenses per piece.
@@ -35,8 +35,12 @@ constexpr double kHiddenShare = 1.0 / 64;
 
 double farther(double a, double b) { return std::max(a, b) / std::max(std::min(a, b), 1e-12); }
 void approach(double& value, double report, double weight) { value += weight * (report - value); }
-double within(double report, double before) { return before > 0 ? std::clamp(report, before / kMaxOff, before * kMaxOff) : report; }
-double perByte(int64_t ns, uint64_t rawBytes) { return static_cast<double>(std::max<int64_t>(ns, 1)) / static_cast<double>(rawBytes); }
+double within(double report, double before) {
+    return before > 0 ? std::clamp(report, before / kMaxOff, before * kMaxOff) : report;
+}
+double perByte(int64_t ns, uint64_t rawBytes) {
+    return static_cast<double>(std::max<int64_t>(ns, 1)) / static_cast<double>(rawBytes);
+}
 
 } // namespace
 
@@ -65,12 +69,16 @@ double CodecSelector::totalNsPerByte(double encode, double transfer, double deco
 
 // Estimates of this class, or the mean ratio to the best codec in other classes; 0 ns: unknown.
 CodecSelector::Times CodecSelector::timesOf(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
-    const auto times = [](const Estimate& e) { return Times{e.encodeNsPerByte, e.decodeKnown ? e.decodeNsPerByte : e.encodeNsPerByte}; };
+    const auto times = [](const Estimate& e) {
+        return Times{e.encodeNsPerByte, e.decodeKnown ? e.decodeNsPerByte : e.encodeNsPerByte};
+    };
     if (s.codecs[codec].reports > 0) return times(s.codecs[codec]);
     Times ratios;
     double classes = 0;
     for (const auto& [tile, state] : classes_) {
-        if (tile.format != format || state.codecs.empty() || state.codecs[codec].reports == 0 || state.codecs[best].reports == 0) continue;
+        if (tile.format != format || state.codecs.empty() || state.codecs[codec].reports == 0 ||
+            state.codecs[best].reports == 0)
+            continue;
         const Times there = times(state.codecs[codec]), bestThere = times(state.codecs[best]);
         ratios.encode += there.encode / bestThere.encode;
         ratios.decode += there.decode / bestThere.decode;
@@ -92,7 +100,8 @@ bool CodecSelector::isHopeless(PlaneFormat format, const ClassState& s, size_t c
 size_t CodecSelector::bestOf(const ClassState& s) const {
     size_t best = s.codecs.size();
     for (size_t i = 0; i < s.codecs.size(); ++i)
-        if (s.codecs[i].reports > 0 && (best == s.codecs.size() || nsPerByte(s.codecs[i]) < nsPerByte(s.codecs[best]))) best = i;
+        if (s.codecs[i].reports > 0 && (best == s.codecs.size() || nsPerByte(s.codecs[i]) < nsPerByte(s.codecs[best])))
+            best = i;
     if (best != s.codecs.size()) return best;
     return raw_ == 0 && s.codecs.size() > 1 ? 1 : 0; // no knowledge: the first codec that compresses
 }
@@ -109,13 +118,15 @@ double CodecSelector::measuringNsPerByte(PlaneFormat format, const ClassState& s
 double CodecSelector::worthMeasuring(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const {
     const Estimate& e = s.codecs[codec];
     const double behind = e.reports > 0 ? nsPerByte(e) / nsPerByte(s.codecs[best]) : 1;
-    const double age = e.reports > 0 ? static_cast<double>(s.pieces - e.measuredAt) * (e.stale ? kStaleWorth : 1) : kNewAge;
+    const double age =
+        e.reports > 0 ? static_cast<double>(s.pieces - e.measuredAt) * (e.stale ? kStaleWorth : 1) : kNewAge;
     return age / (measuringNsPerByte(format, s, codec, best) * behind * behind * behind);
 }
 
 // Returns the most valuable codec once its cost fits the budget. Cheaper, less valuable measurements would otherwise
 // starve it.
-std::optional<size_t> CodecSelector::toMeasure(PlaneFormat format, const ClassState& s, size_t best, uint64_t rawBytes) const {
+std::optional<size_t> CodecSelector::toMeasure(PlaneFormat format, const ClassState& s, size_t best,
+                                               uint64_t rawBytes) const {
     // no reference for the first piece
     if (s.codecs[best].reports == 0 || s.pieces % kMeasureEvery != 0) return std::nullopt;
     std::optional<size_t> found;
@@ -131,7 +142,8 @@ std::optional<size_t> CodecSelector::toMeasure(PlaneFormat format, const ClassSt
     const double limitNs = options_.measureShare * (e.stale ? kStaleShares : 1) * s.spentNs;
     // The first measurement may exceed the budget, once for all classes, and once per class where it is cheap.
     const double costNsPerByte = measuringNsPerByte(format, s, *found, best);
-    const bool onCredit = e.reports == 0 && (timesOf(format, s, *found, best).sum() == 0 || costNsPerByte < kCreditPieces * nsPerByte(s.codecs[best]));
+    const bool onCredit = e.reports == 0 && (timesOf(format, s, *found, best).sum() == 0 ||
+                                             costNsPerByte < kCreditPieces * nsPerByte(s.codecs[best]));
     if (!onCredit && s.measuringNs + costNsPerByte * static_cast<double>(rawBytes) > limitNs) return std::nullopt;
     return found;
 }
@@ -153,7 +165,9 @@ CodecSelector::Choice CodecSelector::choose(const TileClass& tile, uint64_t rawB
 
 // A large change of sizes makes the estimates of all other codecs stale.
 void CodecSelector::noticeChange(ClassState& s, Estimate& e) {
-    if (s.pieces < s.changedAt + kSettled || farther(e.recentPerByte, e.encodedPerByte) < kContentChange || std::abs(e.recentPerByte - e.encodedPerByte) < kSizeChange) return;
+    if (s.pieces < s.changedAt + kSettled || farther(e.recentPerByte, e.encodedPerByte) < kContentChange ||
+        std::abs(e.recentPerByte - e.encodedPerByte) < kSizeChange)
+        return;
     for (Estimate& other : s.codecs) other.stale = true;
     e.stale = false;
     const double before = nsPerByte(e);
@@ -164,7 +178,8 @@ void CodecSelector::noticeChange(ClassState& s, Estimate& e) {
     s.measuringNs = 0;
 }
 
-void CodecSelector::encoded(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs) {
+void CodecSelector::encoded(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes,
+                            int64_t encodeNs) {
     if (rawBytes == 0 || codec >= codecs_.size()) return;
     ClassState& s = stateOf(tile);
     Estimate& e = s.codecs[codec];
@@ -184,7 +199,8 @@ void CodecSelector::encoded(const TileClass& tile, size_t codec, uint64_t rawByt
         for (size_t i = 0; i < s.codecs.size() && codec != raw_ && before > 0; ++i) {
             Estimate& other = s.codecs[i];
             if (i == codec || i == raw_ || other.reports == 0) continue;
-            other.encodedPerByte = other.recentPerByte = std::min(1.0, other.encodedPerByte * e.encodedPerByte / before);
+            other.encodedPerByte = other.recentPerByte =
+                std::min(1.0, other.encodedPerByte * e.encodedPerByte / before);
         }
     }
     e.measuredAt = s.pieces;
@@ -201,21 +217,25 @@ void CodecSelector::decoded(const TileClass& tile, size_t codec, uint64_t rawByt
     e.decodeKnown = true;
 }
 
-void CodecSelector::measured(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs, int64_t decodeNs) {
+void CodecSelector::measured(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes,
+                             int64_t encodeNs, int64_t decodeNs) {
     if (rawBytes == 0 || codec >= codecs_.size()) return;
     ClassState& s = stateOf(tile);
     Estimate& e = s.codecs[codec];
     const Estimate& used = s.codecs[s.used];
     // Normalises by the difficulty of this piece, which affects all codecs.
-    const double ofSize = codec == raw_ || s.used == raw_ || s.usedPerByte <= 0 ? 1 : used.encodedPerByte / s.usedPerByte;
+    const double ofSize =
+        codec == raw_ || s.used == raw_ || s.usedPerByte <= 0 ? 1 : used.encodedPerByte / s.usedPerByte;
     const double size = std::min(1.1, static_cast<double>(encodedBytes) / static_cast<double>(rawBytes) * ofSize);
     const double ofTime = std::clamp(used.encodeNsPerByte / std::max(s.usedEncodeNs, 1e-9), 0.5, 2.0);
     const double weight = e.reports == 0 || e.stale ? 1 : kMeasuredWeight;
     approach(e.encodeNsPerByte, within(perByte(encodeNs, rawBytes) * ofTime, e.encodeNsPerByte), weight);
     // Nearly empty pieces say little about sizes; other pieces load the link.
-    approach(e.encodedPerByte, size, weight == 1 ? 1 : weight * std::clamp(s.usedPerByte / std::max(used.encodedPerByte, 1e-9), 0.05, 1.0));
+    approach(e.encodedPerByte, size,
+             weight == 1 ? 1 : weight * std::clamp(s.usedPerByte / std::max(used.encodedPerByte, 1e-9), 0.05, 1.0));
     e.recentPerByte = e.encodedPerByte;
-    approach(e.decodeNsPerByte, within(perByte(decodeNs, rawBytes) * ofTime, e.decodeNsPerByte), e.decodeKnown ? weight : 1);
+    approach(e.decodeNsPerByte, within(perByte(decodeNs, rawBytes) * ofTime, e.decodeNsPerByte),
+             e.decodeKnown ? weight : 1);
     e.decodeKnown = true;
     e.stale = false;
     ++e.reports;
@@ -229,8 +249,10 @@ void CodecSelector::transferred(uint64_t bytes, int64_t ns) {
     // Two consecutive outliers of equal size: the link has changed.
     const bool again = isFar && lastLinkRate_ > 0 && farther(rate, lastLinkRate_) < kLinkChange;
     lastLinkRate_ = isFar ? rate : 0;
-    if (linkReports_++ == 0 || again) linkBytesPerSec_ = rate;
-    else approach(linkBytesPerSec_, rate, kLinkWeight);
+    if (linkReports_++ == 0 || again)
+        linkBytesPerSec_ = rate;
+    else
+        approach(linkBytesPerSec_, rate, kLinkWeight);
 }
 
 size_t CodecSelector::best(const TileClass& tile) const {

@@ -18,13 +18,13 @@ namespace mural::compositor {
 
 // Combination of a piece's three times.
 enum class Overlap : uint8_t {
-    Serial, // sum: optimises latency
+    Serial,    // sum: optimises latency
     Pipelined, // maximum: pieces are encoded, transferred and decoded concurrently
 };
 
 struct SelectorOptions {
     Overlap overlap = Overlap::Pipelined;
-    double measureShare = 0.01; // fraction of the time for measuring other codecs
+    double measureShare = 0.01;      // fraction of the time for measuring other codecs
     double startBytesPerSec = 125e6; // assumed link rate until it is measured
 };
 
@@ -47,7 +47,8 @@ public:
     void encoded(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs);
     void decoded(const TileClass& tile, size_t codec, uint64_t rawBytes, int64_t decodeNs);
     // Reports the measured codec's result for the piece of the last encoded() call.
-    void measured(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs, int64_t decodeNs);
+    void measured(const TileClass& tile, size_t codec, uint64_t rawBytes, uint64_t encodedBytes, int64_t encodeNs,
+                  int64_t decodeNs);
     // Reports a transfer during which the link was never idle.
     void transferred(uint64_t bytes, int64_t ns);
 
@@ -64,16 +65,16 @@ private:
         double recentPerByte = 1; // over the last few pieces
         uint64_t reports = 0;
         bool decodeKnown = false;
-        bool stale = true; // not measured since the content changed
+        bool stale = true;       // not measured since the content changed
         uint64_t measuredAt = 0; // index of the piece within its class
     };
     struct ClassState {
         std::vector<Estimate> codecs;
         uint64_t pieces = 0;
         uint64_t changedAt = 0; // last change of content
-        double spentNs = 0; // estimated cost of recent pieces
+        double spentNs = 0;     // estimated cost of recent pieces
         double measuringNs = 0; // cost of measurements
-        size_t used = 0; // codec and result of the last piece
+        size_t used = 0;        // codec and result of the last piece
         double usedPerByte = 1;
         double usedEncodeNs = 0; // per byte
     };
@@ -90,7 +91,8 @@ private:
     [[nodiscard]] Times timesOf(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const;
     [[nodiscard]] double measuringNsPerByte(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const;
     [[nodiscard]] double worthMeasuring(PlaneFormat format, const ClassState& s, size_t codec, size_t best) const;
-    [[nodiscard]] std::optional<size_t> toMeasure(PlaneFormat format, const ClassState& s, size_t best, uint64_t rawBytes) const;
+    [[nodiscard]] std::optional<size_t> toMeasure(PlaneFormat format, const ClassState& s, size_t best,
+                                                  uint64_t rawBytes) const;
     void noticeChange(ClassState& s, Estimate& e);
 
     std::vector<std::string> codecs_;

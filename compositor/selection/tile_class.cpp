@@ -20,7 +20,8 @@ uint32_t wordAt(const std::byte* at) {
 
 // Returns true if the residual against the word above is small, as in the bit-plane codecs.
 bool isNear(bitplane::Arithmetic a, uint32_t word, uint32_t above) {
-    const uint32_t residual = bitplane::residualOf(a, bitplane::subtract(a, bitplane::turned(a, word), bitplane::turned(a, above)));
+    const uint32_t residual =
+        bitplane::residualOf(a, bitplane::subtract(a, bitplane::turned(a, word), bitplane::turned(a, above)));
     if (a == bitplane::Arithmetic::Bytes) return (residual & 0xf0f0f0f0u) == 0;
     if (a == bitplane::Arithmetic::Halves) return (residual & 0xff00ff00u) == 0;
     return residual < 1u << 16;
@@ -37,7 +38,9 @@ TileClass classify(const PlaneView& plane) {
         for (int32_t i = 0; i < kSampledAcross; ++i) {
             // Staggered samples: in columns a vertical edge would hit all or none.
             const auto y = static_cast<int32_t>(1 + static_cast<int64_t>(plane.height - 2) * j / (kSampledUp - 1));
-            const auto x = static_cast<int32_t>((static_cast<int64_t>(plane.width) * (i * kSampledUp + j * 5 % kSampledUp)) / (kSampledAcross * kSampledUp));
+            const auto x =
+                static_cast<int32_t>((static_cast<int64_t>(plane.width) * (i * kSampledUp + j * 5 % kSampledUp)) /
+                                     (kSampledAcross * kSampledUp));
             const size_t at = static_cast<size_t>(std::max(x, 1)) * pixelBytes;
             const uint32_t word = wordAt(plane.row(y) + at), above = wordAt(plane.row(y - 1) + at);
             if (word == above) continue;

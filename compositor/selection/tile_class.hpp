@@ -11,13 +11,13 @@ namespace mural::compositor {
 // Fraction of sampled pixels that differ from the pixel above.
 enum class Activity : uint8_t {
     Empty, // none
-    Flat, // fewer than three in eight
+    Flat,  // fewer than three in eight
     Full,
 };
 
 // Kind of the differences: bit planes suit the first kind, match search the others.
 enum class Change : uint8_t {
-    Smooth, // mostly small
+    Smooth,   // mostly small
     Repeated, // half of them equal the pixel to the left
     Sharp,
 };

@@ -12,7 +12,8 @@ constexpr int kLongestChain = 16;
 Strategy chooseStrategy(int ranks) { return ranks <= kLongestChain ? Strategy::Streaming : Strategy::RadixK; }
 
 const char* whyStrategy(int ranks) {
-    if (chooseStrategy(ranks) == Strategy::Streaming) return "each folds into what its neighbour sends, the collector least of all";
+    if (chooseStrategy(ranks) == Strategy::Streaming)
+        return "each folds into what its neighbour sends, the collector least of all";
     return "a chain of so many would be long; each folds a band, in rounds of up to eight";
 }
 

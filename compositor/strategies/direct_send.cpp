@@ -14,7 +14,8 @@ void makeDirectSend(ScheduleMaker& maker) {
     for (int offset = 1; offset < n; ++offset)
         for (int from = 0; from < n; ++from) {
             const int to = (from + offset) % n;
-            swap.push_back({from, to, maker.band(to, n), from < to ? Step::Kind::FoldEarlier : Step::Kind::FoldLater, std::abs(from - to)});
+            swap.push_back({from, to, maker.band(to, n), from < to ? Step::Kind::FoldEarlier : Step::Kind::FoldLater,
+                            std::abs(from - to)});
         }
     for (int rank = 1; rank < n; ++rank) gather.push_back({rank, 0, maker.band(rank, n), Step::Kind::Place, rank});
     maker.round(swap);

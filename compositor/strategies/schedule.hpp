@@ -24,10 +24,10 @@ struct RowRange {
 
 struct Step {
     enum class Kind : uint8_t {
-        Send, // sends these rows to the peer, which owns them afterwards
+        Send,        // sends these rows to the peer, which owns them afterwards
         FoldEarlier, // composites the peer's rows, drawn before those held here
-        FoldLater, // the same, drawn after
-        Place, // replaces the rows held here by the peer's, which contain them
+        FoldLater,   // the same, drawn after
+        Place,       // replaces the rows held here by the peer's, which contain them
     };
     Kind kind = Kind::Send;
     int peer = 0;

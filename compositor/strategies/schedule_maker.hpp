@@ -12,7 +12,7 @@ struct RowTransfer {
     int to = 0;
     RowRange rows;
     Step::Kind kind = Step::Kind::Place; // at the receiver
-    int distance = 0; // the receiver processes near ranks first
+    int distance = 0;                    // the receiver processes near ranks first
 };
 
 class ScheduleMaker {

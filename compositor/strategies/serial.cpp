@@ -6,7 +6,8 @@ namespace mural::compositor {
 
 void makeSerial(ScheduleMaker& maker) {
     std::vector<RowTransfer> all;
-    for (int rank = 1; rank < maker.ranks(); ++rank) all.push_back({rank, 0, maker.band(0, 1), Step::Kind::FoldLater, rank});
+    for (int rank = 1; rank < maker.ranks(); ++rank)
+        all.push_back({rank, 0, maker.band(0, 1), Step::Kind::FoldLater, rank});
     maker.round(all);
 }
 

@@ -18,7 +18,8 @@ constexpr int kMaxBands = 16;
 void makeStreaming(ScheduleMaker& maker) {
     const int bands = std::clamp(static_cast<int>(maker.rows() / kMinRows), 1, kMaxBands);
     for (int b = 0; b < bands; ++b)
-        for (int rank = maker.ranks() - 1; rank > 0; --rank) maker.transfer({rank, rank - 1, maker.band(b, bands), Step::Kind::FoldLater, 0});
+        for (int rank = maker.ranks() - 1; rank > 0; --rank)
+            maker.transfer({rank, rank - 1, maker.band(b, bands), Step::Kind::FoldLater, 0});
 }
 
 } // namespace mural::compositor

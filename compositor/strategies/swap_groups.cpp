@@ -29,7 +29,8 @@ std::vector<Seat> seatsOf(const std::vector<Group>& groups) {
     for (size_t g = 0; g < groups.size(); ++g)
         for (size_t i = 0; i < groups[g].size(); ++i) seats.push_back({static_cast<int>(g), i});
     const auto before = [&](const Seat& a, const Seat& b) {
-        return (2 * a.at + 1) * groups[static_cast<size_t>(b.group)].size() < (2 * b.at + 1) * groups[static_cast<size_t>(a.group)].size();
+        return (2 * a.at + 1) * groups[static_cast<size_t>(b.group)].size() <
+               (2 * b.at + 1) * groups[static_cast<size_t>(a.group)].size();
     };
     std::ranges::stable_sort(seats, before);
     return seats;
@@ -45,9 +46,12 @@ Group merge(ScheduleMaker& maker, const std::vector<Group>& groups) {
         const RowRange band = maker.band(static_cast<int>(s), static_cast<int>(seats.size()));
         for (size_t g = 0; g < groups.size(); ++g) {
             const int distance = static_cast<int>(g) - seat.group;
-            const auto kind = distance == 0 ? Step::Kind::Place : distance < 0 ? Step::Kind::FoldEarlier : Step::Kind::FoldLater;
+            const auto kind = distance == 0  ? Step::Kind::Place
+                              : distance < 0 ? Step::Kind::FoldEarlier
+                                             : Step::Kind::FoldLater;
             for (const CommandFilter& from : groups[g])
-                if (from.rank != to.rank) transfers.push_back({from.rank, to.rank, common(from.band, band), kind, std::abs(distance)});
+                if (from.rank != to.rank)
+                    transfers.push_back({from.rank, to.rank, common(from.band, band), kind, std::abs(distance)});
         }
         merged.push_back({to.rank, band});
     }

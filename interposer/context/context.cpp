@@ -45,9 +45,15 @@ void announce(ThreadState& t, Context& c) {
     if (c.announced) return;
     Guard guard(announceLock); // two threads must not both be the first of a group
     const Context* sharer = known::sharerOf(c);
-    const records::ContextInfo info{c.id, sharer ? sharer->id : 0, static_cast<uint32_t>(c.api),
-                                    static_cast<uint32_t>(c.version / 10), static_cast<uint32_t>(c.version % 10),
-                                    c.profileMask, c.flags | (c.losesOnReset ? wire::kLosesOnReset : 0) | (c.keepsUnflushed ? wire::kKeepsUnflushed : 0), c.config};
+    const records::ContextInfo info{c.id,
+                                    sharer ? sharer->id : 0,
+                                    static_cast<uint32_t>(c.api),
+                                    static_cast<uint32_t>(c.version / 10),
+                                    static_cast<uint32_t>(c.version % 10),
+                                    c.profileMask,
+                                    c.flags | (c.losesOnReset ? wire::kLosesOnReset : 0) |
+                                        (c.keepsUnflushed ? wire::kKeepsUnflushed : 0),
+                                    c.config};
     records::createContext(t, info);
     c.announced = true;
 }
@@ -68,7 +74,8 @@ void learnBuffers(const Context& c, Window& w) {
 void tellReadBuffer(ThreadState& t, const Context& c, const Window& read, uint32_t before) {
     if (!read.config.doubleBuffer || c.api != wire::Api::Desktop || c.compilingList) return;
     GLint framebuffer = 0, buffer = 0;
-    if (gReal.glBindFramebuffer) gReal.glGetIntegerv(c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
+    if (gReal.glBindFramebuffer)
+        gReal.glGetIntegerv(c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
     if (framebuffer != 0) return;
     gReal.glGetIntegerv(GL_READ_BUFFER, &buffer);
     const GLint assumed = before || !c.config.doubleBuffer ? GL_NONE : GL_BACK; // the nodes' state
@@ -94,7 +101,8 @@ uintptr_t lowestIndices(const Context& c) {
 bool feedbackCounts(const Context& c) {
     if (c.api != wire::Api::Es2 || (c.version != 30 && c.version != 31)) return false;
     const auto* extensions = reinterpret_cast<const char*>(gReal.glGetString(GL_EXTENSIONS));
-    return extensions && !std::strstr(extensions, "_geometry_shader") && !std::strstr(extensions, "_tessellation_shader");
+    return extensions && !std::strstr(extensions, "_geometry_shader") &&
+           !std::strstr(extensions, "_tessellation_shader");
 }
 
 // True for Mesa's software drivers: their GLX swaps only in threads with a current context, no matter which
@@ -146,11 +154,13 @@ void freeDestroyed(ThreadState& t) {
 } // namespace
 
 void refreshDrawLocally(ThreadState& t) {
-    t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->drawsPixmap || t.context->renderMode != GL_RENDER || t.context->drawsFeedback;
+    t.drawLocally = swapLocally() || !t.context || t.context->compilingList || t.context->drawsPixmap ||
+                    t.context->renderMode != GL_RENDER || t.context->drawsFeedback;
     t.vertexLocally = t.drawLocally || !t.context->compatible();
 }
 
-PrimitivePause::PrimitivePause(const ThreadState& t) : mode_(t.context && !t.drawLocally ? t.context->openPrimitive : kNoPrimitive) {
+PrimitivePause::PrimitivePause(const ThreadState& t)
+    : mode_(t.context && !t.drawLocally ? t.context->openPrimitive : kNoPrimitive) {
     if (mode_ != kNoPrimitive) gReal.glEnd();
 }
 
@@ -208,7 +218,8 @@ void nativeWindowEnds(uint64_t server, uint64_t native) {
 void nativeWindowsEnd(uint64_t server, uint64_t firstNative, uint64_t mask) {
     bool any = false;
     for (Window* w = nextWindow(nullptr); w; w = nextWindow(w))
-        if (w->native && w->server == server && (w->native & ~mask) == firstNative) any = known::nativeEnds(server, w->native) || any;
+        if (w->native && w->server == server && (w->native & ~mask) == firstNative)
+            any = known::nativeEnds(server, w->native) || any;
     if (any) freeDestroyed(*tThread);
 }
 
@@ -369,8 +380,10 @@ void flushedWindow(ThreadState& t) {
     Window* w = findWindowById(t.context->drawWindow);
     // EGL shows a single-buffered surface at its swap.
     if (!w || t.cursor == w->lastFlush || !(w->config.doubleBuffer ? t.context->frontDue : !w->isEgl)) return;
-    if (w->config.doubleBuffer) showFront(t, *w);
-    else endFrame(w);
+    if (w->config.doubleBuffer)
+        showFront(t, *w);
+    else
+        endFrame(w);
     noteFlush(t, *w);
 }
 
@@ -380,7 +393,9 @@ void beforeMakeCurrent(const Context* next, const Window* draw, const Window* re
     const uint32_t drawWindow = draw ? draw->id : 0, readWindow = read ? read->id : 0;
     if (t.context == next && t.context->drawWindow == drawWindow && t.context->readWindow == readWindow) return;
     const Window* const given = findWindowById(t.context->drawWindow);
-    if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue) || !drewSinceFlush(t, *given)) return;
+    if (!given || given->config.isPbuffer || (given->config.doubleBuffer && !t.context->frontDue) ||
+        !drewSinceFlush(t, *given))
+        return;
     gReal.glFlush(); // so that the driver's front buffer, which lacks the draws, does not cover the picture
     flushedWindow(t);
 }
@@ -413,7 +428,7 @@ namespace {
 // Drivers queue the draws of a list even if they are discarded (llvmpipe up to 36 MiB). Without local swaps only a
 // flush releases them.
 void flushLists(Context& c) {
-    constexpr uint32_t kMaxLists = 32; // about 60 KiB each
+    constexpr uint32_t kMaxLists = 32;                                       // about 60 KiB each
     if (c.listsUnflushed < kMaxLists || swapLocally() || c.frontDue) return; // a flush would show the front buffer
     c.listsUnflushed = 0;
     gReal.glFlush();
@@ -443,7 +458,8 @@ void endFrame(Window* w) {
     if (w && w->inherited) inheritedUsed(w);
     if (s && windowsAsked()) takeGoneWindows();
     // A single-buffered window is shown by flushes of a context that has the window current.
-    const bool shows = w && !w->inherited && !w->nativeGone && hasBuffers(*w) && (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
+    const bool shows = w && !w->inherited && !w->nativeGone && hasBuffers(*w) &&
+                       (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));
     if (!s || !s->alive() || !shows) {
         refreshDrawLocally(t);
         return;

@@ -16,8 +16,9 @@ namespace mural {
 namespace {
 
 // Images of GL objects are available if the nodes support them.
-const char* const kWindowSystemOfNodes[] = {"EGL_KHR_image_base", "EGL_KHR_gl_texture_2D_image", "EGL_KHR_gl_texture_cubemap_image",
-                                            "EGL_KHR_gl_texture_3D_image", "EGL_KHR_gl_renderbuffer_image"};
+const char* const kWindowSystemOfNodes[] = {"EGL_KHR_image_base", "EGL_KHR_gl_texture_2D_image",
+                                            "EGL_KHR_gl_texture_cubemap_image", "EGL_KHR_gl_texture_3D_image",
+                                            "EGL_KHR_gl_renderbuffer_image"};
 
 bool oneOf(const char* const* names, size_t count, const char* name, size_t length) {
     for (size_t i = 0; i < count; ++i) {
@@ -31,7 +32,9 @@ template <size_t N> bool oneOf(const LocalExtension (&extensions)[N], const char
     }
     return false;
 }
-template <size_t N> bool oneOf(const char* const (&names)[N], const char* name, size_t length) { return oneOf(names, N, name, length); }
+template <size_t N> bool oneOf(const char* const (&names)[N], const char* name, size_t length) {
+    return oneOf(names, N, name, length);
+}
 
 // name: surrounded by spaces.
 bool nodesHave(const char* name) {

@@ -31,7 +31,9 @@ bool isCurrentAnywhere(const Context& c) {
 }
 
 // Returns whether the program and the nodes have both released it, so its memory can be reused.
-bool mayBecomeAnother(const Context& c) { return c.destroyed && !c.freeDue && !c.held[0] && !c.held[1] && !isCurrentAnywhere(c); }
+bool mayBecomeAnother(const Context& c) {
+    return c.destroyed && !c.freeDue && !c.held[0] && !c.held[1] && !isCurrentAnywhere(c);
+}
 bool mayBecomeAnother(const Window& w) { return w.drawable == 0 && !w.freeDue && w.holders <= 0 && !w.boundGroup; }
 
 bool isUsed(const ShareGroup* group) {
@@ -175,7 +177,8 @@ Context* idleHolderOf(const Window& w) {
     Guard guard(tableLock);
     for (uint32_t i = 0; i < contextCount; ++i) {
         Context* const c = contexts[i];
-        if (!c->destroyed && c->announced && c->held[0] == &w && (c->held[1] == &w || !c->held[1]) && !isCurrent(*c)) return c;
+        if (!c->destroyed && c->announced && c->held[0] == &w && (c->held[1] == &w || !c->held[1]) && !isCurrent(*c))
+            return c;
     }
     return nullptr;
 }

@@ -16,27 +16,27 @@ namespace mural {
 struct Context; // interposer/context/context.hpp
 
 struct ThreadState {
-    std::byte* cursor = nullptr;    // end of the last complete record; other threads may read it (release)
-    std::byte* limit = nullptr;     // limit of records; null: every call takes the slow path
-    std::byte* chunkEnd = nullptr;  // actual end of the chunk
-    Context* context = nullptr;     // current context; null: none
-    bool drawLocally = true;        // the app's own context executes draws as well
-    bool vertexLocally = true;      // also vertices; true without glBegin, where they are errors
-    bool locked = false;            // the share group's lock is held for the current record
-    bool shared = false;            // several threads use this share group: every record is ordered
-    bool drawingAwaited = false;    // the next draw must call beforeAwaitedDrawing
+    std::byte* cursor = nullptr;   // end of the last complete record; other threads may read it (release)
+    std::byte* limit = nullptr;    // limit of records; null: every call takes the slow path
+    std::byte* chunkEnd = nullptr; // actual end of the chunk
+    Context* context = nullptr;    // current context; null: none
+    bool drawLocally = true;       // the app's own context executes draws as well
+    bool vertexLocally = true;     // also vertices; true without glBegin, where they are errors
+    bool locked = false;           // the share group's lock is held for the current record
+    bool shared = false;           // several threads use this share group: every record is ordered
+    bool drawingAwaited = false;   // the next draw must call beforeAwaitedDrawing
     // the last record may have begun before its fast path was closed; guarded by the group's lock
     bool mayBeWriting = false;
-    uint16_t stream = 0;            // number of this thread in the session, from 1
-    uint32_t chunk = UINT32_MAX;    // index of the chunk; UINT32_MAX: none
-    uint32_t chunksTaken = 0;       // number of chunks so far
-    uint32_t publishedBytes = 0;    // position in the chunk; later records are not visible yet
-    uint32_t publications = 0;      // number of publications so far
+    uint16_t stream = 0;         // number of this thread in the session, from 1
+    uint32_t chunk = UINT32_MAX; // index of the chunk; UINT32_MAX: none
+    uint32_t chunksTaken = 0;    // number of chunks so far
+    uint32_t publishedBytes = 0; // position in the chunk; later records are not visible yet
+    uint32_t publications = 0;   // number of publications so far
     ReadPixelsCache pixels;
-    ThreadState* next = nullptr;    // list of all threads of the process; entries are never removed
-    int endRounds = 0; // rounds of key destructors that this thread has run
-    std::atomic<bool> gone{false};  // the thread has ended; another one may take over its entry
-    void* scratch = nullptr;        // for re-packed images and strings; grows, never shrinks
+    ThreadState* next = nullptr;   // list of all threads of the process; entries are never removed
+    int endRounds = 0;             // rounds of key destructors that this thread has run
+    std::atomic<bool> gone{false}; // the thread has ended; another one may take over its entry
+    void* scratch = nullptr;       // for re-packed images and strings; grows, never shrinks
     size_t scratchBytes = 0;
     void* scratch2 = nullptr;
     size_t scratch2Bytes = 0;

@@ -24,7 +24,8 @@ bool isDue(uint32_t frame) { return (frame & (frame - 1)) == 0; }
 bool canLook(const ThreadState& t, const Window& w) {
     const Context* c = t.context;
     if (!c || !c->isMesa || swapLocally() || c->compilingList || c->renderMode != GL_RENDER) return false;
-    return c->drawWindow == w.id && c->readWindow == w.id && w.config.doubleBuffer && !w.config.isPbuffer && w.config.width > 0;
+    return c->drawWindow == w.id && c->readWindow == w.id && w.config.doubleBuffer && !w.config.isPbuffer &&
+           w.config.width > 0;
 }
 
 // Pixel scales, biases and maps would change the result.
@@ -57,7 +58,8 @@ bool isInside(const BackBufferRead& read, GLint x, GLint y) {
 
 // A driver may resize its buffers long after the window.
 bool hasSize(const BackBufferRead& read, GLint width, GLint height) {
-    return isInside(read, width - 1, height - 1) && !isInside(read, width, height - 1) && !isInside(read, width - 1, height);
+    return isInside(read, width - 1, height - 1) && !isInside(read, width, height - 1) &&
+           !isInside(read, width - 1, height);
 }
 
 uint64_t printOfRow(const uint32_t* pixels, uint32_t count) {
@@ -98,7 +100,8 @@ bool look(ThreadState& t, Window& w, Look& seen) {
     if (seen.drawings != drawingsEnded.load()) return false;
     // Draws of another context may still be in progress.
     if (seen.drawings > 0 && w.holders > 1) return false;
-    if (!askWindowSize(w, seen.width, seen.height) || seen.width != w.config.width || seen.height != w.config.height) return false;
+    if (!askWindowSize(w, seen.width, seen.height) || seen.width != w.config.width || seen.height != w.config.height)
+        return false;
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::Here);
     if (!read.ready() || !plainTransfer(*t.context)) return false;
     if (!hasSize(read, static_cast<GLint>(seen.width), static_cast<GLint>(seen.height))) return false;

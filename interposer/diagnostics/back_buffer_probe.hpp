@@ -22,8 +22,8 @@ struct BackBufferProbe {
     uint32_t width = 0, height = 0;
     uint64_t print = 0;
     uint64_t drawings = 0; // number of our own draws at the sample
-    uint32_t frames = 0; // frames that the window has shown
-    int binds = 0; // bindings since the last frame
+    uint32_t frames = 0;   // frames that the window has shown
+    int binds = 0;         // bindings since the last frame
 };
 
 // Call when the window becomes current.

@@ -54,8 +54,10 @@ int addLibrary(dl_phdr_info* info, size_t, void* into) {
     auto* libraries = static_cast<Libraries*>(into);
     const char* slash = info->dlpi_name ? std::strrchr(info->dlpi_name, '/') : nullptr;
     if (!slash) return 0;
-    for (const char* beginning : {"libGL", "libEGL", "libOSMesa", "libvulkan", "libX11.", "libxcb.", "libmural_front"}) {
-        if (!std::strncmp(slash + 1, beginning, std::strlen(beginning)) && !std::strstr(slash, "libGLX_mural") && libraries->add(info->dlpi_name))
+    for (const char* beginning :
+         {"libGL", "libEGL", "libOSMesa", "libvulkan", "libX11.", "libxcb.", "libmural_front"}) {
+        if (!std::strncmp(slash + 1, beginning, std::strlen(beginning)) && !std::strstr(slash, "libGLX_mural") &&
+            libraries->add(info->dlpi_name))
             libraries->any = true;
     }
     return 0;

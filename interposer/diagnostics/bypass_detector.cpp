@@ -30,7 +30,8 @@ bool stateChanged(const Context& c) {
     if (c.version >= 20) gReal.glGetIntegerv(GL_CURRENT_PROGRAM, &program);
     if (c.version >= 20) gReal.glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &buffer);
     bool enabled = false;
-    for (const GLenum what : {GL_DEPTH_TEST, GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST}) enabled = enabled || gReal.glIsEnabled(what);
+    for (const GLenum what : {GL_DEPTH_TEST, GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST})
+        enabled = enabled || gReal.glIsEnabled(what);
     driverError(); // from a query that this version lacks
     return program || buffer || texture || enabled || clear[0] != 0 || clear[1] != 0 || clear[2] != 0 || clear[3] != 0;
 }
@@ -57,9 +58,10 @@ bool hasPicture(Context& c, const Window& w) {
 void sayInPart() {
     char libraries[700];
     const bool any = librariesPastUs(libraries, sizeof libraries);
-    sayBypass("part of the program's GL calls go past Mural (by names of %s): its window shows its own picture from now on. "
-              "Try LD_PRELOAD=libGL.so.1, which puts GLVND's names before those of a linked library",
-              any ? libraries : "its driver");
+    sayBypass(
+        "part of the program's GL calls go past Mural (by names of %s): its window shows its own picture from now on. "
+        "Try LD_PRELOAD=libGL.so.1, which puts GLVND's names before those of a linked library",
+        any ? libraries : "its driver");
 }
 
 } // namespace
@@ -85,8 +87,10 @@ bool bypassesCapture(ThreadState& t, Window& w) {
     const bool proof = changed || stateChanged(c) || (++c.emptyFrames >= kEmptyFrames && hasPicture(c, w));
     if (!proof) return false;
     const char* library = loadedOwnGl();
-    sayBypass("the program shows pictures, but its GL calls go past Mural%s%s: its window shows its own picture from now on. "
-              "Try --front preload", library ? ", by " : "", library ? library : "");
+    sayBypass(
+        "the program shows pictures, but its GL calls go past Mural%s%s: its window shows its own picture from now on. "
+        "Try --front preload",
+        library ? ", by " : "", library ? library : "");
     return true;
 }
 

@@ -22,7 +22,7 @@ struct DebugListener {
         uint32_t here, nodes;
     };
     static constexpr uint32_t kMessages = 256; // limit of remembered messages; replaces the oldest
-    Lock lock; // drivers call back from their own threads
+    Lock lock;                                 // drivers call back from their own threads
     GLDEBUGPROC callback = nullptr;
     const void* user = nullptr;
     Told told[kMessages] = {};
@@ -61,14 +61,18 @@ uint64_t hashOf(GLenum source, GLenum type, GLenum severity, const char* text, s
     return hash | 1; // 0 marks an empty entry
 }
 
-void APIENTRY heardHere(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* user) {
+void APIENTRY heardHere(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text,
+                        const void* user) {
     auto& listener = *static_cast<DebugListener*>(const_cast<void*>(user));
     GLDEBUGPROC callback = nullptr;
     const void* with = nullptr;
     {
         Guard guard(listener.lock);
         const size_t bytes = !text ? 0 : length < 0 ? std::strlen(text) : static_cast<size_t>(length);
-        ++listener.find(hashOf(source, type, severity, text, bytes < capture::kDriverEventTextBytes ? bytes : capture::kDriverEventTextBytes)).here;
+        ++listener
+              .find(hashOf(source, type, severity, text,
+                           bytes < capture::kDriverEventTextBytes ? bytes : capture::kDriverEventTextBytes))
+              .here;
         callback = listener.callback;
         with = listener.user;
     }
@@ -87,8 +91,10 @@ void tellMessage(Context& c, const wire::DriverEvent& n, const char* text) {
     }
     if (callback) return callback(n.source, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes), text, user);
     // The driver's own log already contains errors and compiler messages.
-    if (n.type == GL_DEBUG_TYPE_ERROR || n.source == GL_DEBUG_SOURCE_SHADER_COMPILER || !gReal.glDebugMessageInsert) return;
-    gReal.glDebugMessageInsert(GL_DEBUG_SOURCE_THIRD_PARTY, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes), text);
+    if (n.type == GL_DEBUG_TYPE_ERROR || n.source == GL_DEBUG_SOURCE_SHADER_COMPILER || !gReal.glDebugMessageInsert)
+        return;
+    gReal.glDebugMessageInsert(GL_DEBUG_SOURCE_THIRD_PARTY, n.type, n.id, n.severity, static_cast<GLsizei>(n.textBytes),
+                               text);
 }
 
 // GL keeps the first error until a query. The local driver executed the same call, and may have run out of memory or
@@ -107,7 +113,8 @@ void tellLost(Context& c, const wire::DriverEvent& n) {
     }
     static bool once = false;
     if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-        say("a node's graphics driver was reset, and this program did not ask to be told: its pictures are incomplete from now on; start it again");
+        say("a node's graphics driver was reset, and this program did not ask to be told: its pictures are incomplete "
+            "from now on; start it again");
 }
 
 void tell(Context& c, const Waiting& w) {
@@ -192,7 +199,8 @@ void listen(Context& c, GLDEBUGPROC callback, const void* user) {
         c.debug->callback = callback;
         c.debug->user = user;
     }
-    gReal.glDebugMessageCallback(callback ? reinterpret_cast<void*>(&heardHere) : nullptr, callback ? c.debug : nullptr);
+    gReal.glDebugMessageCallback(callback ? reinterpret_cast<void*>(&heardHere) : nullptr,
+                                 callback ? c.debug : nullptr);
 }
 
 void forget(DebugListener& listener) {

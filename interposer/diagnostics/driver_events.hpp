@@ -17,7 +17,8 @@ struct ThreadState;
 void takeWaitingNews(ThreadState& t);
 inline void takeDriverEvents(ThreadState& t) {
     const Session* s = Session::current();
-    if (s && s->hasDriverEvents()) [[unlikely]] takeWaitingNews(t);
+    if (s && s->hasDriverEvents()) [[unlikely]]
+        takeWaitingNews(t);
 }
 
 // For a forked child: drops pending events, which concern the parent's contexts.

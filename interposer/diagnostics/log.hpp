@@ -17,10 +17,10 @@ bool writeAll(int fd, const void* data, size_t bytes);
 // Writes "mural: " + text + newline. Formats like printf.
 void say(const char* format, ...) __attribute__((format(printf, 1, 2)));
 // Writes only once per call site.
-#define MURAL_SAY_ONCE(...)                                                                        \
-    do {                                                                                           \
-        static bool said = false;                                                                  \
-        if (!__atomic_exchange_n(&said, true, __ATOMIC_RELAXED)) ::mural::say(__VA_ARGS__);        \
+#define MURAL_SAY_ONCE(...)                                                                                            \
+    do {                                                                                                               \
+        static bool said = false;                                                                                      \
+        if (!__atomic_exchange_n(&said, true, __ATOMIC_RELAXED)) ::mural::say(__VA_ARGS__);                            \
     } while (0)
 
 } // namespace mural

@@ -23,16 +23,15 @@ void writeReport(const char* path, int64_t nowNs) {
     const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     if (fd < 0) return;
     char line[128];
-    const int n = snprintf(line, sizeof line, "%ld %.6f %.6f %ld\n", frames, static_cast<double>(nowNs - firstNs) / 1e9, static_cast<double>(cpuNs) / 1e9, cpuFrames);
+    const int n = snprintf(line, sizeof line, "%ld %.6f %.6f %ld\n", frames, static_cast<double>(nowNs - firstNs) / 1e9,
+                           static_cast<double>(cpuNs) / 1e9, cpuFrames);
     writeAll(fd, line, static_cast<size_t>(n));
     close(fd);
 }
 
 } // namespace
 
-bool nativeRun() {
-    return launchSettings().native != nullptr;
-}
+bool nativeRun() { return launchSettings().native != nullptr; }
 
 void countNativeFrame() {
     const int64_t nowNs = monotonicNowNs();

@@ -80,12 +80,16 @@ void verifyFrame(ThreadState& t, Window& w) {
     const size_t pixels = size_t{w.config.width} * w.config.height;
     const ColourReads reads = colourReadsOf(*t.context, w);
     if (w.config.red > 8 && reads.type == GL_UNSIGNED_BYTE)
-        MURAL_SAY_ONCE("a window has %d bits per channel; --verify compares 8 of them, as OpenGL ES before 3 reads no more", w.config.red);
+        MURAL_SAY_ONCE(
+            "a window has %d bits per channel; --verify compares 8 of them, as OpenGL ES before 3 reads no more",
+            w.config.red);
     auto* mine = static_cast<uint8_t*>(std::calloc(pixels, reads.pixelBytes));
     if (!mine) return countUncompared(Uncompared::NoMemory);
     const WindowBinding binding(t, w);
-    if (binding.ready()) compare(t, w, mine, pixels, reads);
-    else countUncompared(Uncompared::NotBindable);
+    if (binding.ready())
+        compare(t, w, mine, pixels, reads);
+    else
+        countUncompared(Uncompared::NotBindable);
     std::free(mine);
 }
 

@@ -7,8 +7,10 @@ template <class... T> constexpr uint32_t kBytesOf = (0 + ... + (sizeof(T) == 8 ?
 
 template <class... T> void putAll(Writer& w, T... values) {
     [[maybe_unused]] const auto put = [&](auto v) {
-        if constexpr (sizeof(v) == 8) w.put8(v);
-        else w.put4(v);
+        if constexpr (sizeof(v) == 8)
+            w.put8(v);
+        else
+            w.put4(v);
     };
     (put(values), ...);
 }
@@ -36,7 +38,8 @@ template <class... T> void withData(ThreadState& t, uint16_t opcode, const DataA
     endRecord(t, p, size);
 }
 
-void withConfig(ThreadState& t, uint16_t opcode, const uint32_t* words, uint32_t count, const wire::WindowConfig& config) {
+void withConfig(ThreadState& t, uint16_t opcode, const uint32_t* words, uint32_t count,
+                const wire::WindowConfig& config) {
     const uint32_t size = 4 + 4 * count + sizeof config;
     std::byte* p = beginRecord(t, opcode, size);
     if (!p) return;
@@ -76,10 +79,12 @@ void swap(ThreadState& t, uint32_t window, uint32_t frame) { fixed(t, wire::kOpS
 
 void frontPicture(ThreadState& t, uint32_t window, uint32_t frame) { fixed(t, wire::kOpFrontPicture, window, frame); }
 
-void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t groupBytes) {
+void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type,
+                   uint32_t groupBytes) {
     fixed(t, wire::kOpRequestPixels, request, x, y, w, h, format, type, groupBytes);
 }
-void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes) {
+void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level,
+                     GLenum format, GLenum type, uint64_t sizeBytes) {
     fixed(t, wire::kOpRequestTexImage, request, byName, targetOrTexture, level, format, type, sizeBytes);
 }
 void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname) {
@@ -87,7 +92,9 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname) 
 }
 void requestFinish(ThreadState& t, uint32_t request) { fixed(t, wire::kOpFinish, request); }
 void beginConditional(ThreadState& t, bool draws) { fixed(t, wire::kOpBeginConditional, uint32_t{draws}); }
-void requestProgram(ThreadState& t, uint32_t request, GLuint program) { fixed(t, wire::kOpRequestProgram, request, program); }
+void requestProgram(ThreadState& t, uint32_t request, GLuint program) {
+    fixed(t, wire::kOpRequestProgram, request, program);
+}
 void drawAll(ThreadState& t) { fixed(t, wire::kOpDrawAll); }
 bool errorTold(ThreadState& t) { return fixed(t, wire::kOpErrorReported); }
 void queryKnown(ThreadState& t, GLuint query, bool passed) { fixed(t, wire::kOpQueryKnown, query, uint32_t{passed}); }
@@ -95,7 +102,8 @@ void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t off
     fixed(t, wire::kOpRequestBuffer, request, buffer, offset, sizeBytes);
 }
 
-void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, uint32_t planes, const DataArg& pixels) {
+void fillWindow(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, uint32_t planes,
+                const DataArg& pixels) {
     withData(t, wire::kOpFillWindow, pixels, x, y, width, height, planes);
 }
 void bufferBytes(ThreadState& t, GLuint buffer, uint64_t offset, const DataArg& bytes) {
@@ -125,7 +133,8 @@ uint32_t spanLimit(const DataArg* spans, uint32_t spanCount) {
 }
 } // namespace
 
-void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans, uint32_t spanCount) {
+void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans,
+                  uint32_t spanCount) {
     const uint32_t limit = spanLimit(spans, spanCount);
     uint32_t size = 12 + arrayCount * static_cast<uint32_t>(sizeof(client_arrays::ArrayRecord));
     for (uint32_t i = 0; i < spanCount; ++i) {
@@ -140,8 +149,10 @@ void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint
     w.put4(spanCount);
     w.bytes(arrays, arrayCount * static_cast<uint32_t>(sizeof(client_arrays::ArrayRecord)));
     for (uint32_t i = 0; i < spanCount; ++i) {
-        if (spans[i].sizeBytes > limit) w.put4(record::kTagBlob);
-        else w.data(spans[i]);
+        if (spans[i].sizeBytes > limit)
+            w.put4(record::kTagBlob);
+        else
+            w.data(spans[i]);
     }
     endRecord(t, p, size);
 }

@@ -21,8 +21,10 @@ void window(ThreadState& t, uint32_t window, const wire::WindowConfig& config);
 void destroyWindow(ThreadState& t, uint32_t window);
 void swap(ThreadState& t, uint32_t window, uint32_t frame);
 void frontPicture(ThreadState& t, uint32_t window, uint32_t frame);
-void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t groupBytes);
-void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes);
+void requestPixels(ThreadState& t, uint32_t request, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type,
+                   uint32_t groupBytes);
+void requestTexImage(ThreadState& t, uint32_t request, uint32_t byName, GLuint targetOrTexture, GLint level,
+                     GLenum format, GLenum type, uint64_t sizeBytes);
 void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname);
 void requestFinish(ThreadState& t, uint32_t request);
 void beginConditional(ThreadState& t, bool draws);
@@ -42,6 +44,7 @@ struct ImageInfo {
 };
 void createImage(ThreadState& t, const ImageInfo& info);
 void destroyImage(ThreadState& t, uint64_t image);
-void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans, uint32_t spanCount);
+void clientArrays(ThreadState& t, const client_arrays::ArrayRecord* arrays, uint32_t arrayCount, const DataArg* spans,
+                  uint32_t spanCount);
 
 } // namespace mural::records

@@ -19,7 +19,9 @@ void goAlone(ThreadState& t) {
 }
 
 // Commands that EGL and GLX allow without a current context.
-bool needsNoContext(uint32_t opcode) { return opcode == wire::kOpCreateImage || opcode == wire::kOpDestroyImage || opcode == wire::kOpSwap; }
+bool needsNoContext(uint32_t opcode) {
+    return opcode == wire::kOpCreateImage || opcode == wire::kOpDestroyImage || opcode == wire::kOpSwap;
+}
 
 // Takes the lock, because another thread may close the fast path at this moment (group_order::enter).
 void openFastPath(ThreadState& t) {
@@ -69,9 +71,11 @@ void spill(ThreadState& t, const DataArg& d) {
     }
 }
 
-static DataArg imageInMemory(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth, int dimensions) {
+static DataArg imageInMemory(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width,
+                             GLsizei height, GLsizei depth, int dimensions) {
     if (!pixels) return {};
-    const sizes::ImageLayout layout = sizes::layoutOf(unpackStore(*t.context), format, type, width, height, depth, dimensions);
+    const sizes::ImageLayout layout =
+        sizes::layoutOf(unpackStore(*t.context), format, type, width, height, depth, dimensions);
     const size_t tight = layout.known ? sizes::tightBytes(layout) : 0;
     if (tight == 0 || tight == SIZE_MAX) return {}; // the driver reports the error; the nodes receive no data
     if (isTight(layout)) return DataArg::of(static_cast<const std::byte*>(pixels) + layout.firstByte, tight);
@@ -81,7 +85,8 @@ static DataArg imageInMemory(ThreadState& t, const void* pixels, GLenum format, 
     return DataArg::of(packed, tight);
 }
 
-DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth, int dimensions) {
+DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height,
+                    GLsizei depth, int dimensions) {
     if (!t.context) return {};
     if (unpackBufferBound(*t.context)) {
         buffersRead(t);
@@ -108,7 +113,8 @@ DataArg packStrings(ThreadState& t, GLsizei count, const GLchar* const* strings,
     const auto n = static_cast<size_t>(count);
     const auto lengthOf = [&](size_t i) -> uint32_t {
         if (!strings[i]) return 0;
-        return lengths && lengths[i] >= 0 ? static_cast<uint32_t>(lengths[i]) : static_cast<uint32_t>(std::strlen(strings[i]));
+        return lengths && lengths[i] >= 0 ? static_cast<uint32_t>(lengths[i])
+                                          : static_cast<uint32_t>(std::strlen(strings[i]));
     };
     size_t total = 4 * n;
     for (size_t i = 0; i < n; ++i) total += lengthOf(i);

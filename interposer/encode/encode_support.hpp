@@ -37,7 +37,8 @@ inline std::byte* beginRecord(ThreadState& t, uint32_t opcode, uint32_t sizeByte
 // `arguments` is the result of beginRecord; sizeBytes is the same value.
 inline void endRecord(ThreadState& t, std::byte* arguments, uint32_t sizeBytes) {
     __atomic_store_n(&t.cursor, arguments + sizeBytes - 4, __ATOMIC_RELEASE);
-    if (t.locked) [[unlikely]] unlockGroup(t);
+    if (t.locked) [[unlikely]]
+        unlockGroup(t);
 }
 
 // The source of a pointer argument: data, or an offset into the bound buffer.
@@ -61,7 +62,8 @@ inline uint32_t wireBytes(const DataArg& d) {
 void spill(ThreadState& t, const DataArg& d);
 // Sends a value that is too large for a record ahead of it, in pieces.
 inline void spillLarge(ThreadState& t, const DataArg& d) {
-    if (d.sizeBytes > record::kInlineBytes && !d.isOffset) [[unlikely]] spill(t, d);
+    if (d.sizeBytes > record::kInlineBytes && !d.isOffset) [[unlikely]]
+        spill(t, d);
 }
 
 class Writer {
@@ -103,8 +105,8 @@ private:
 
 // Returns the source of an image under the unpack state of the current context: client memory or an offset. Rows with
 // gaps are packed tightly into scratch memory.
-DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width,
-                    GLsizei height, GLsizei depth, int dimensions);
+DataArg imageSource(ThreadState& t, const void* pixels, GLenum format, GLenum type, GLsizei width, GLsizei height,
+                    GLsizei depth, int dimensions);
 // The same for one pixel, which is in client memory regardless of bindings.
 DataArg elementSource(ThreadState& t, const void* element, GLenum format, GLenum type);
 // The same for bytes that the pixel store does not rearrange (compressed images).
@@ -119,7 +121,8 @@ GLsizei readableElements(const void* value, GLsizei count, uint32_t elementBytes
 
 // Returns whether shaders or transform feedback write into buffers bound to the target.
 constexpr bool writesThrough(GLenum target) {
-    return target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER || target == GL_TRANSFORM_FEEDBACK_BUFFER;
+    return target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER ||
+           target == GL_TRANSFORM_FEEDBACK_BUFFER;
 }
 
 void unsupportedCalled(const char* name, const char* reason);

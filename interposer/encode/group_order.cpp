@@ -64,7 +64,8 @@ void takeTurn(ThreadState& t, Session& s) {
     ShareGroup& group = *t.context->group;
     group.lock.lock();
     settle(t);
-    if (group.unsettledThreads > 0) [[unlikely]] publishUnsettled(t, s, group);
+    if (group.unsettledThreads > 0) [[unlikely]]
+        publishUnsettled(t, s, group);
     if (group.lastWriter && group.lastWriter != &t) s.publish(*group.lastWriter, false);
     group.lastWriter = &t;
     t.locked = true;

@@ -58,7 +58,9 @@ void addUniform(LayoutWriter& w, GLuint program, const char* name, GLint size) {
 
 void bindAttributes(ThreadState& t, GLuint program) {
     if (!gReal.glGetActiveAttrib || !t.context) return;
-    const bool fine = raisesNothing(*t.context, [&] { if (!linked(program)) return; });
+    const bool fine = raisesNothing(*t.context, [&] {
+        if (!linked(program)) return;
+    });
     if (!fine || !linked(program)) return;
     GLint count = 0;
     gReal.glGetProgramiv(program, GL_ACTIVE_ATTRIBUTES, &count);

@@ -25,8 +25,8 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kSliceNs = 50 * kNsPerMs;   // interval at which a blocked thread checks whether the head lives
-constexpr int64_t kStuckNs = 60 * kNsPerS;    // limit for a running head that makes no progress
+constexpr int64_t kSliceNs = 50 * kNsPerMs; // interval at which a blocked thread checks whether the head lives
+constexpr int64_t kStuckNs = 60 * kNsPerS;  // limit for a running head that makes no progress
 
 Lock connectLock;
 Lock ringLock;    // makes one producer of publications and one consumer of freed chunks
@@ -127,7 +127,8 @@ void Session::die(const char* why) {
 // (nodes/head/capture/life_mark.hpp).
 bool Session::headAlive() {
     if (!alive()) return false;
-    const bool gone = header_->headGone.load(std::memory_order_acquire) || header_->headLife.load(std::memory_order_acquire) & FUTEX_OWNER_DIED;
+    const bool gone = header_->headGone.load(std::memory_order_acquire) ||
+                      header_->headLife.load(std::memory_order_acquire) & FUTEX_OWNER_DIED;
     if (gone) die(nullptr); // the head or `mural run` has reported the reason
     return !gone;
 }
@@ -147,7 +148,8 @@ void Session::publish(ThreadState& t, bool last, bool hurry) {
 void Session::wakeReader(bool fromNap) {
     std::atomic_thread_fence(std::memory_order_seq_cst);
     const auto reader = static_cast<capture::Reader>(header_->reader.load(std::memory_order_relaxed));
-    if (reader == capture::Reader::Sleeps || (fromNap && reader == capture::Reader::Naps)) futexWakeAll(header_->publishedTail);
+    if (reader == capture::Reader::Sleeps || (fromNap && reader == capture::Reader::Naps))
+        futexWakeAll(header_->publishedTail);
 }
 
 bool Session::publishLocked(ThreadState& t, bool last) {
@@ -157,7 +159,9 @@ bool Session::publishLocked(ThreadState& t, bool last) {
     if (end == t.publishedBytes && !last) return false;
     const uint32_t tail = header_->publishedTail.load(std::memory_order_relaxed);
     // A takeover publishes ranges of one chunk, so publications may outnumber chunks.
-    const auto full = [&] { return tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount; };
+    const auto full = [&] {
+        return tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount;
+    };
     if (full()) {
         Waiting waiting(*header_, capture::Wait::Room);
         do {
@@ -170,8 +174,8 @@ bool Session::publishLocked(ThreadState& t, bool last) {
             syscall(SYS_nanosleep, &nap, nullptr);
         } while (full());
     }
-    capture::publications(header_)[tail % header_->chunkCount] =
-        {t.chunk, t.publishedBytes, end, t.stream, static_cast<uint16_t>(last)};
+    capture::publications(header_)[tail % header_->chunkCount] = {t.chunk, t.publishedBytes, end, t.stream,
+                                                                  static_cast<uint16_t>(last)};
     t.publishedBytes = end;
     ++t.publications;
     if (last) t.chunk = UINT32_MAX;
@@ -222,7 +226,9 @@ void Session::waitForCredit() {
     const int64_t nowNs = monotonicNowNs();
     __atomic_store_n(&submittedNs_[submitted % capture::kAheadFrames], nowNs, __ATOMIC_RELAXED);
     header_->framesSubmitted.store(submitted, std::memory_order_relaxed);
-    const auto tooMany = [&](uint32_t done) { return static_cast<int32_t>(submitted - done) > static_cast<int32_t>(welcome_.latency); };
+    const auto tooMany = [&](uint32_t done) {
+        return static_cast<int32_t>(submitted - done) > static_cast<int32_t>(welcome_.latency);
+    };
     uint32_t done = header_->framesDone.load(std::memory_order_acquire);
     if (!alive() || !tooMany(done) || mayGoAhead(submitted, done, nowNs)) return;
     Waiting waiting(*header_, capture::Wait::Frames);
@@ -386,7 +392,8 @@ bool Session::takeOwed(const wire::ReplyHeader& header) {
 }
 
 bool Session::replyWaits() const {
-    return header_->replyTail.load(std::memory_order_acquire) - header_->replyHead.load(std::memory_order_relaxed) >= sizeof(wire::ReplyHeader);
+    return header_->replyTail.load(std::memory_order_acquire) - header_->replyHead.load(std::memory_order_relaxed) >=
+           sizeof(wire::ReplyHeader);
 }
 
 bool Session::waitOwed(uint32_t request, const char* by) {

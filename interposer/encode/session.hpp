@@ -52,7 +52,9 @@ public:
     bool answerBytes(void* into, uint64_t sizeBytes);
     void endRequest();
     // Returns the id of a request with a deferred reply (interposer/readback/deferred_replies.hpp).
-    uint32_t nextOwed() { return capture::kOwed | (__atomic_add_fetch(&lastOwed_, 1, __ATOMIC_RELAXED) & (capture::kOwed - 1)); }
+    uint32_t nextOwed() {
+        return capture::kOwed | (__atomic_add_fetch(&lastOwed_, 1, __ATOMIC_RELAXED) & (capture::kOwed - 1));
+    }
     // Blocks until the reply has arrived, or the nodes had none. Counts a round trip if the head is not sending it
     // already. Returns false if the head has ended.
     bool waitOwed(uint32_t request, const char* by);
@@ -68,10 +70,11 @@ public:
     uint32_t nextFrame() { return __atomic_add_fetch(&framesSubmitted_, 1, __ATOMIC_RELAXED); }
     // Returns whether the nodes have sent news that no thread has taken yet.
     [[nodiscard]] bool hasDriverEvents() const {
-        return header_ && header_->newsTail.load(std::memory_order_relaxed) != __atomic_load_n(&newsTaken_, __ATOMIC_RELAXED);
+        return header_ &&
+               header_->newsTail.load(std::memory_order_relaxed) != __atomic_load_n(&newsTaken_, __ATOMIC_RELAXED);
     }
-    // Takes the oldest news; false: none. `text` needs room for capture::kDriverEventTextBytes and a terminator. One thread at
-    // a time.
+    // Takes the oldest news; false: none. `text` needs room for capture::kDriverEventTextBytes and a terminator. One
+    // thread at a time.
     bool takeDriverEvents(wire::DriverEvent& news, char* text);
     void die(const char* why);
 
@@ -91,7 +94,7 @@ private:
     const char* extensions_ = "";
     uint64_t nameKey_ = 0;
     bool alive_ = false;
-    uint32_t framesSubmitted_ = 0; // of all threads
+    uint32_t framesSubmitted_ = 0;                    // of all threads
     int64_t submittedNs_[capture::kAheadFrames] = {}; // submission time of frame n at index n modulo kAheadFrames
     uint32_t lastRequest_ = 0;
     uint32_t lastAhead_ = 0;

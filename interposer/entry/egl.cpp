@@ -51,7 +51,8 @@ wire::WindowConfig configOf(EGLDisplay dpy, EGLConfig config) {
     return c;
 }
 
-Window* addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_t native, const EGLint* attributes, bool pbuffer) {
+Window* addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_t native, const EGLint* attributes,
+                   bool pbuffer) {
     if (!surface || nativeRun()) return nullptr;
     wire::WindowConfig c = configOf(dpy, config);
     c.isPbuffer = pbuffer;
@@ -76,11 +77,14 @@ EGLContext createContext(EGLDisplay dpy, EGLConfig config, EGLContext share, con
     const EGLContext made = call(dpy, config, share, attributes);
     if (made && !nativeRun()) {
         const bool desktop = queryApi && queryApi() == EGL_OPENGL_API;
-        Context* c = addContext(made, dpy, findContext(share), desktop ? wire::Api::Desktop : wire::Api::Es2, configOf(dpy, config));
+        Context* c = addContext(made, dpy, findContext(share), desktop ? wire::Api::Desktop : wire::Api::Es2,
+                                configOf(dpy, config));
         for (const EGLint* a = attributes; c && a && *a != EGL_NONE; a += 2) {
-            if (a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY || a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT)
+            if (a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY ||
+                a[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT)
                 c->losesOnReset = a[1] == EGL_LOSE_CONTEXT_ON_RESET;
-            if (a[0] == EGL_CONTEXT_RELEASE_BEHAVIOR_KHR) c->keepsUnflushed = a[1] == EGL_CONTEXT_RELEASE_BEHAVIOR_NONE_KHR;
+            if (a[0] == EGL_CONTEXT_RELEASE_BEHAVIOR_KHR)
+                c->keepsUnflushed = a[1] == EGL_CONTEXT_RELEASE_BEHAVIOR_NONE_KHR;
         }
     }
     return made;
@@ -98,9 +102,11 @@ Window* windowFor(EGLDisplay dpy, EGLSurface surface) {
 
 EGLBoolean makeCurrent(EGLDisplay dpy, EGLSurface draw, EGLSurface read, EGLContext context) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLSurface, EGLContext)>("eglMakeCurrent");
-    if (!nativeRun()) beforeMakeCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
+    if (!nativeRun())
+        beforeMakeCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
     const EGLBoolean ok = call(dpy, draw, read, context);
-    if (ok && !nativeRun()) becameCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
+    if (ok && !nativeRun())
+        becameCurrent(context ? findContext(context) : nullptr, windowFor(dpy, draw), windowFor(dpy, read));
     return ok;
 }
 
@@ -119,8 +125,10 @@ EGLBoolean terminate(EGLDisplay dpy) {
 }
 
 void frameShown(EGLDisplay dpy, EGLSurface surface) {
-    if (nativeRun()) countNativeFrame();
-    else endFrame(windowFor(dpy, surface));
+    if (nativeRun())
+        countNativeFrame();
+    else
+        endFrame(windowFor(dpy, surface));
 }
 
 // EGL 1.5, 3.10.1: only a surface that is current for drawing is shown. The driver reports the error.
@@ -167,7 +175,8 @@ EGLBoolean waitClient() {
 }
 
 EGLSurface createWindowSurface(EGLDisplay dpy, EGLConfig config, EGLNativeWindowType window, const EGLint* attributes) {
-    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, EGLNativeWindowType, const EGLint*)>("eglCreateWindowSurface");
+    static auto* call =
+        real<EGLSurface(EGLDisplay, EGLConfig, EGLNativeWindowType, const EGLint*)>("eglCreateWindowSurface");
     const EGLSurface made = call(dpy, config, window, attributes);
     addSurface(dpy, made, config, static_cast<uint64_t>(window), attributes, false);
     return made;
@@ -188,28 +197,33 @@ struct Narrow {
 
 // Platform surfaces of X11 take a pointer to the window's id (EXT_platform_x11, EXT_platform_xcb).
 EGLSurface createPlatformWindowSurface(EGLDisplay dpy, EGLConfig config, void* window, const EGLAttrib* attributes) {
-    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLAttrib*)>("eglCreatePlatformWindowSurface");
+    static auto* call =
+        real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLAttrib*)>("eglCreatePlatformWindowSurface");
     const EGLSurface made = call(dpy, config, window, attributes);
     const Narrow narrow(attributes);
     addSurface(dpy, made, config, window ? *static_cast<uint32_t*>(window) : 0, narrow.list, false);
     return made;
 }
 EGLSurface createPlatformWindowSurfaceExt(EGLDisplay dpy, EGLConfig config, void* window, const EGLint* attributes) {
-    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLint*)>("eglCreatePlatformWindowSurfaceEXT");
+    static auto* call =
+        real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLint*)>("eglCreatePlatformWindowSurfaceEXT");
     const EGLSurface made = call(dpy, config, window, attributes);
     addSurface(dpy, made, config, window ? *static_cast<uint32_t*>(window) : 0, attributes, false);
     return made;
 }
 EGLSurface createPixmapSurface(EGLDisplay dpy, EGLConfig config, EGLNativePixmapType pixmap, const EGLint* attributes) {
-    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, EGLNativePixmapType, const EGLint*)>("eglCreatePixmapSurface");
+    static auto* call =
+        real<EGLSurface(EGLDisplay, EGLConfig, EGLNativePixmapType, const EGLint*)>("eglCreatePixmapSurface");
     return addPixmap(dpy, call(dpy, config, pixmap, attributes), config, attributes);
 }
 EGLSurface createPlatformPixmapSurface(EGLDisplay dpy, EGLConfig config, void* pixmap, const EGLAttrib* attributes) {
-    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLAttrib*)>("eglCreatePlatformPixmapSurface");
+    static auto* call =
+        real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLAttrib*)>("eglCreatePlatformPixmapSurface");
     return addPixmap(dpy, call(dpy, config, pixmap, attributes), config, Narrow(attributes).list);
 }
 EGLSurface createPlatformPixmapSurfaceExt(EGLDisplay dpy, EGLConfig config, void* pixmap, const EGLint* attributes) {
-    static auto* call = real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLint*)>("eglCreatePlatformPixmapSurfaceEXT");
+    static auto* call =
+        real<EGLSurface(EGLDisplay, EGLConfig, void*, const EGLint*)>("eglCreatePlatformPixmapSurfaceEXT");
     return addPixmap(dpy, call(dpy, config, pixmap, attributes), config, attributes);
 }
 EGLSurface createPbufferSurface(EGLDisplay dpy, EGLConfig config, const EGLint* attributes) {
@@ -257,10 +271,15 @@ EGLDisplay getPlatformDisplay(EGLenum platform, void* native, const EGLAttrib* a
 void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglFront().entryFor(name)); }
 
 const OwnEntry kOwn[] = {
-    ownEntry("eglCreateContext", createContext), ownEntry("eglDestroyContext", destroyedContext),
-    ownEntry("eglMakeCurrent", makeCurrent), ownEntry("eglSwapBuffers", swapBuffers),
-    ownEntry("eglReleaseThread", releaseThread), ownEntry("eglTerminate", terminate),
-    ownEntry("eglPostSubBufferNV", postSubBuffer), ownEntry("eglWaitGL", waitGl), ownEntry("eglWaitClient", waitClient),
+    ownEntry("eglCreateContext", createContext),
+    ownEntry("eglDestroyContext", destroyedContext),
+    ownEntry("eglMakeCurrent", makeCurrent),
+    ownEntry("eglSwapBuffers", swapBuffers),
+    ownEntry("eglReleaseThread", releaseThread),
+    ownEntry("eglTerminate", terminate),
+    ownEntry("eglPostSubBufferNV", postSubBuffer),
+    ownEntry("eglWaitGL", waitGl),
+    ownEntry("eglWaitClient", waitClient),
     ownEntry("eglSwapBuffersWithDamageKHR", swapBuffersWithDamageKhr),
     ownEntry("eglSwapBuffersWithDamageEXT", swapBuffersWithDamageExt),
     ownEntry("eglCreateWindowSurface", createWindowSurface),
@@ -269,13 +288,21 @@ const OwnEntry kOwn[] = {
     ownEntry("eglCreatePixmapSurface", createPixmapSurface),
     ownEntry("eglCreatePlatformPixmapSurface", createPlatformPixmapSurface),
     ownEntry("eglCreatePlatformPixmapSurfaceEXT", createPlatformPixmapSurfaceExt),
-    ownEntry("eglCreatePbufferSurface", createPbufferSurface), ownEntry("eglDestroySurface", destroySurface),
-    ownEntry("eglCreateImage", createImage), ownEntry("eglCreateImageKHR", createImageKhr),
-    ownEntry("eglDestroyImage", destroyImage), ownEntry("eglDestroyImageKHR", destroyImageKhr),
-    ownEntry("eglCreateSync", createSync), ownEntry("eglCreateSyncKHR", createSyncKhr),
-    ownEntry("eglClientWaitSync", clientWaitSync), ownEntry("eglClientWaitSyncKHR", clientWaitSyncKhr),
-    ownEntry("eglSignalSyncKHR", signalSync), ownEntry("eglBindTexImage", bindTexImage), ownEntry("eglReleaseTexImage", releaseTexImage),
-    ownEntry("eglQueryString", queryString), ownEntry("eglGetProcAddress", getProcAddress),
+    ownEntry("eglCreatePbufferSurface", createPbufferSurface),
+    ownEntry("eglDestroySurface", destroySurface),
+    ownEntry("eglCreateImage", createImage),
+    ownEntry("eglCreateImageKHR", createImageKhr),
+    ownEntry("eglDestroyImage", destroyImage),
+    ownEntry("eglDestroyImageKHR", destroyImageKhr),
+    ownEntry("eglCreateSync", createSync),
+    ownEntry("eglCreateSyncKHR", createSyncKhr),
+    ownEntry("eglClientWaitSync", clientWaitSync),
+    ownEntry("eglClientWaitSyncKHR", clientWaitSyncKhr),
+    ownEntry("eglSignalSyncKHR", signalSync),
+    ownEntry("eglBindTexImage", bindTexImage),
+    ownEntry("eglReleaseTexImage", releaseTexImage),
+    ownEntry("eglQueryString", queryString),
+    ownEntry("eglGetProcAddress", getProcAddress),
 };
 constinit Front front("egl", kOwn);
 
@@ -320,7 +347,8 @@ Front& eglFront() { return front; }
 
 bool makeEglCurrent(const Window& draw, const Window& read, const Context& context) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLSurface, EGLContext)>("eglMakeCurrent");
-    return call && call(draw.display, reinterpret_cast<EGLSurface>(draw.drawable), reinterpret_cast<EGLSurface>(read.drawable), context.native);
+    return call && call(draw.display, reinterpret_cast<EGLSurface>(draw.drawable),
+                        reinterpret_cast<EGLSurface>(read.drawable), context.native);
 }
 
 bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
@@ -337,7 +365,10 @@ bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
 
 } // namespace mural
 
-extern "C" __attribute__((visibility("default"))) EGLBoolean __egl_Main(uint32_t version, const __EGLapiExports* exports, __EGLvendorInfo* vendor, __EGLapiImports* imports) {
+extern "C" __attribute__((visibility("default"))) EGLBoolean __egl_Main(uint32_t version,
+                                                                        const __EGLapiExports* exports,
+                                                                        __EGLvendorInfo* vendor,
+                                                                        __EGLapiImports* imports) {
     using Main = EGLBoolean(uint32_t, const __EGLapiExports*, __EGLvendorInfo*, __EGLapiImports*);
     void* handle = mural::openVendor();
     auto* main = handle ? reinterpret_cast<Main*>(mural::loader::symbolIn(handle, "__egl_Main")) : nullptr;

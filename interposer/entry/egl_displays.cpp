@@ -34,7 +34,9 @@ const Known* find(EGLDisplay display) {
     return nullptr;
 }
 
-bool isX(EGLenum platform) { return platform == EGL_NONE || platform == EGL_PLATFORM_X11_KHR || platform == EGL_PLATFORM_XCB_EXT; }
+bool isX(EGLenum platform) {
+    return platform == EGL_NONE || platform == EGL_PLATFORM_X11_KHR || platform == EGL_PLATFORM_XCB_EXT;
+}
 
 } // namespace
 
@@ -69,8 +71,10 @@ void forgetConnection(xcb_connection_t* connection) {
 }
 
 bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height) {
-    static Loaded<xcb_get_geometry_cookie_t(xcb_connection_t*, xcb_drawable_t)> asking{"libxcb.so.1", "xcb_get_geometry"};
-    static Loaded<xcb_get_geometry_reply_t*(xcb_connection_t*, xcb_get_geometry_cookie_t, xcb_generic_error_t**)> answering{"libxcb.so.1", "xcb_get_geometry_reply"};
+    static Loaded<xcb_get_geometry_cookie_t(xcb_connection_t*, xcb_drawable_t)> asking{"libxcb.so.1",
+                                                                                       "xcb_get_geometry"};
+    static Loaded<xcb_get_geometry_reply_t*(xcb_connection_t*, xcb_get_geometry_cookie_t, xcb_generic_error_t**)>
+        answering{"libxcb.so.1", "xcb_get_geometry_reply"};
     auto* ask = asking.get();
     auto* answer = answering.get();
     xcb_connection_t* connection = ask && answer ? xConnectionOf(display) : nullptr;

@@ -14,7 +14,8 @@ namespace {
 template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFront().behind(name)); }
 
 bool ofGlObject(EGLenum target) {
-    return target == EGL_GL_RENDERBUFFER || (target >= EGL_GL_TEXTURE_2D && target <= EGL_GL_TEXTURE_CUBE_MAP_NEGATIVE_Z);
+    return target == EGL_GL_RENDERBUFFER ||
+           (target >= EGL_GL_TEXTURE_2D && target <= EGL_GL_TEXTURE_CUBE_MAP_NEGATIVE_Z);
 }
 
 template <class Attribute> int32_t valueOf(const Attribute* attributes, EGLint name) {
@@ -34,19 +35,23 @@ template <class Write> void tellNodes(Write&& write) {
     s->publish(t, false);
 }
 
-template <class Attribute> void tellCreated(EGLImage image, EGLContext native, EGLenum target, EGLClientBuffer buffer, const Attribute* attributes) {
+template <class Attribute>
+void tellCreated(EGLImage image, EGLContext native, EGLenum target, EGLClientBuffer buffer,
+                 const Attribute* attributes) {
     if (!image || nativeRun()) return;
     const Context* context = native ? findContext(native) : nullptr;
     const uint32_t sharer = context ? announcedSharer(*context) : 0;
     if (!ofGlObject(target) || !sharer) {
         static bool once = false;
         if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-            say("eglCreateImage of target 0x%x is not carried to the wall (such images exist on one machine only)", target);
+            say("eglCreateImage of target 0x%x is not carried to the wall (such images exist on one machine only)",
+                target);
         return;
     }
     const auto name = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(buffer));
-    const records::ImageInfo info{reinterpret_cast<uint64_t>(image), sharer, target, name,
-                                  valueOf(attributes, EGL_GL_TEXTURE_LEVEL), valueOf(attributes, EGL_GL_TEXTURE_ZOFFSET)};
+    const records::ImageInfo info{
+        reinterpret_cast<uint64_t>(image),          sharer, target, name, valueOf(attributes, EGL_GL_TEXTURE_LEVEL),
+        valueOf(attributes, EGL_GL_TEXTURE_ZOFFSET)};
     tellNodes([&](ThreadState& t) { records::createImage(t, info); });
 }
 
@@ -56,15 +61,19 @@ void tellDestroyed(EGLImage image) {
 
 } // namespace
 
-EGLImage createImage(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer, const EGLAttrib* attributes) {
-    static auto* call = real<EGLImage(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer, const EGLAttrib*)>("eglCreateImage");
+EGLImage createImage(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer,
+                     const EGLAttrib* attributes) {
+    static auto* call =
+        real<EGLImage(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer, const EGLAttrib*)>("eglCreateImage");
     const EGLImage made = call(dpy, context, target, buffer, attributes);
     tellCreated(made, context, target, buffer, attributes);
     return made;
 }
 
-EGLImageKHR createImageKhr(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer, const EGLint* attributes) {
-    static auto* call = real<EGLImageKHR(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer, const EGLint*)>("eglCreateImageKHR");
+EGLImageKHR createImageKhr(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer,
+                           const EGLint* attributes) {
+    static auto* call =
+        real<EGLImageKHR(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer, const EGLint*)>("eglCreateImageKHR");
     const EGLImageKHR made = call(dpy, context, target, buffer, attributes);
     tellCreated(made, context, target, buffer, attributes);
     return made;

@@ -7,8 +7,10 @@
 
 namespace mural {
 
-EGLImage createImage(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer, const EGLAttrib* attributes);
-EGLImageKHR createImageKhr(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer, const EGLint* attributes);
+EGLImage createImage(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer,
+                     const EGLAttrib* attributes);
+EGLImageKHR createImageKhr(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClientBuffer buffer,
+                           const EGLint* attributes);
 EGLBoolean destroyImage(EGLDisplay dpy, EGLImage image);
 EGLBoolean destroyImageKhr(EGLDisplay dpy, EGLImageKHR image);
 

@@ -33,12 +33,12 @@ EGLSyncKHR createSyncKhr(EGLDisplay dpy, EGLenum type, const EGLint* attributes)
 }
 EGLint clientWaitSync(EGLDisplay dpy, EGLSync sync, EGLint flags, EGLTime timeout) {
     static auto* call = real<EGLint(EGLDisplay, EGLSync, EGLint, EGLTime)>("eglClientWaitSync");
-    flags & EGL_SYNC_FLUSH_COMMANDS_BIT ? flushOwn() : publishOwn();
+    flags& EGL_SYNC_FLUSH_COMMANDS_BIT ? flushOwn() : publishOwn();
     return call(dpy, sync, flags, timeout);
 }
 EGLint clientWaitSyncKhr(EGLDisplay dpy, EGLSyncKHR sync, EGLint flags, EGLTimeKHR timeout) {
     static auto* call = real<EGLint(EGLDisplay, EGLSyncKHR, EGLint, EGLTimeKHR)>("eglClientWaitSyncKHR");
-    flags & EGL_SYNC_FLUSH_COMMANDS_BIT_KHR ? flushOwn() : publishOwn();
+    flags& EGL_SYNC_FLUSH_COMMANDS_BIT_KHR ? flushOwn() : publishOwn();
     return call(dpy, sync, flags, timeout);
 }
 EGLBoolean signalSync(EGLDisplay dpy, EGLSyncKHR sync, EGLenum mode) {

@@ -13,7 +13,8 @@ int takenWay = static_cast<int>(Way::Open);
 bool claimProgram(Way way) {
     int expected = static_cast<int>(Way::Open);
     const int wanted = static_cast<int>(way);
-    return __atomic_compare_exchange_n(&takenWay, &expected, wanted, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE) || expected == wanted;
+    return __atomic_compare_exchange_n(&takenWay, &expected, wanted, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE) ||
+           expected == wanted;
 }
 
 void Front::attach(Loader library) {

@@ -14,11 +14,15 @@ struct OwnEntry {
     const char* name;
     Entry entry;
 };
-template <class F> OwnEntry ownEntry(const char* name, F* function) { return {name, reinterpret_cast<Entry>(function)}; }
+template <class F> OwnEntry ownEntry(const char* name, F* function) {
+    return {name, reinterpret_cast<Entry>(function)};
+}
 
 class Front {
 public:
-    template <size_t N> constexpr Front(const char* windowSystem, const OwnEntry (&own)[N]) : windowSystem_(windowSystem), own_(own), count_(N) {}
+    template <size_t N>
+    constexpr Front(const char* windowSystem, const OwnEntry (&own)[N])
+        : windowSystem_(windowSystem), own_(own), count_(N) {}
 
     // Sets the wrapped library, from which functions and GL commands are loaded.
     void attach(Loader library);

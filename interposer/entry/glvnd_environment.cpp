@@ -35,7 +35,8 @@ bool isGlvnd(const void* caller) {
     return loader::findObject([&](const loader::LoadedObject& object) {
         if (!object.contains(caller)) return false;
         const char* name = object.soname();
-        return name && (!std::strcmp(name, "libGLX.so.0") || !std::strcmp(name, "libEGL.so.1")) && object.needs(isGlvndDispatch);
+        return name && (!std::strcmp(name, "libGLX.so.0") || !std::strcmp(name, "libEGL.so.1")) &&
+               object.needs(isGlvndDispatch);
     });
 }
 
@@ -53,13 +54,17 @@ char* ourEglFile() {
 
 // Returns whether GLVND queries its vendor. Stores the value for it in `answer`.
 bool answersGlvnd(const char* name, const void* caller, char*& answer) {
-    if (name[0] != '_' || name[1] != '_' || (std::strncmp(name, "__GLX_", 6) && std::strncmp(name, "__EGL_", 6))) return false;
+    if (name[0] != '_' || name[1] != '_' || (std::strncmp(name, "__GLX_", 6) && std::strncmp(name, "__EGL_", 6)))
+        return false;
     static char ourVendor[] = "mural";
     if (!std::strcmp(name, kGlxVendor)) answer = ourVendor;
     // the setting for all screens applies
-    else if (!std::strncmp(name, kGlxScreenVendor, sizeof kGlxScreenVendor - 1)) answer = nullptr;
-    else if (!std::strcmp(name, kEglVendors)) answer = ourEglFile();
-    else return false;
+    else if (!std::strncmp(name, kGlxScreenVendor, sizeof kGlxScreenVendor - 1))
+        answer = nullptr;
+    else if (!std::strcmp(name, kEglVendors))
+        answer = ourEglFile();
+    else
+        return false;
     return isCaptured() && isGlvnd(caller);
 }
 
@@ -111,7 +116,8 @@ extern "C" __attribute__((visibility("default"))) MURAL_BEFORE_SANITIZER char* g
     return mural::valueFor(name, __builtin_return_address(0), mural::nextGetenv);
 }
 
-extern "C" __attribute__((visibility("default"))) MURAL_BEFORE_SANITIZER char* secure_getenv(const char* name) noexcept {
+extern "C" __attribute__((visibility("default"))) MURAL_BEFORE_SANITIZER char* secure_getenv(
+    const char* name) noexcept {
     mural::startSanitizer();
     return mural::valueFor(name, __builtin_return_address(0), mural::nextSecureGetenv);
 }

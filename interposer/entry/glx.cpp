@@ -102,13 +102,16 @@ GLXContext createNewContext(Display* dpy, GLXFBConfig fb, int type, GLXContext s
 }
 
 GLXContext createContextWithConfig(Display* dpy, GLXFBConfig fb, int type, GLXContext share, Bool direct) {
-    static auto* call = real<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>("glXCreateContextWithConfigSGIX");
+    static auto* call =
+        real<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>("glXCreateContextWithConfigSGIX");
     return created(dpy, call(dpy, fb, type, share, direct), share, configOfFb(dpy, fb));
 }
 
 GLXContext createContextAttribs(Display* dpy, GLXFBConfig fb, GLXContext share, Bool direct, const int* attributes) {
-    static auto* call = real<GLXContext(Display*, GLXFBConfig, GLXContext, Bool, const int*)>("glXCreateContextAttribsARB");
-    const GLXContext made = created(dpy, call(dpy, fb, share, direct, attributes), share, fb ? configOfFb(dpy, fb) : defaultConfig());
+    static auto* call =
+        real<GLXContext(Display*, GLXFBConfig, GLXContext, Bool, const int*)>("glXCreateContextAttribsARB");
+    const GLXContext made =
+        created(dpy, call(dpy, fb, share, direct, attributes), share, fb ? configOfFb(dpy, fb) : defaultConfig());
     Context* c = made && !nativeRun() ? findContext(made) : nullptr;
     for (const int* a = attributes; c && a && *a; a += 2) {
         if (a[0] == glx::kResetStrategy) c->losesOnReset = a[1] == glx::kLoseOnReset;
@@ -131,7 +134,9 @@ Bool madeCurrent(Bool ok, Display* dpy, XID draw, XID read, GLXContext native) {
 }
 
 void beforeBinding(Display* dpy, XID draw, XID read, GLXContext native) {
-    if (!nativeRun()) beforeMakeCurrent(native ? findContext(native) : nullptr, draw ? findWindow(draw, dpy) : nullptr, read ? findWindow(read, dpy) : nullptr);
+    if (!nativeRun())
+        beforeMakeCurrent(native ? findContext(native) : nullptr, draw ? findWindow(draw, dpy) : nullptr,
+                          read ? findWindow(read, dpy) : nullptr);
 }
 
 Bool makeCurrent(Display* dpy, XID drawable, GLXContext context) {
@@ -154,15 +159,19 @@ Bool makeCurrentRead(Display* dpy, XID draw, XID read, GLXContext context) {
 
 void swapBuffers(Display* dpy, XID drawable) {
     static auto* call = real<void(Display*, XID)>("glXSwapBuffers");
-    if (nativeRun()) countNativeFrame();
-    else endFrame(findWindow(drawable, dpy));
+    if (nativeRun())
+        countNativeFrame();
+    else
+        endFrame(findWindow(drawable, dpy));
     if (swapsItself(findWindow(drawable, dpy))) call(dpy, drawable);
 }
 
 int64_t swapBuffersMsc(Display* dpy, XID drawable, int64_t target, int64_t divisor, int64_t remainder) {
     static auto* call = real<int64_t(Display*, XID, int64_t, int64_t, int64_t)>("glXSwapBuffersMscOML");
-    if (nativeRun()) countNativeFrame();
-    else endFrame(findWindow(drawable, dpy));
+    if (nativeRun())
+        countNativeFrame();
+    else
+        endFrame(findWindow(drawable, dpy));
     return swapsItself(findWindow(drawable, dpy)) ? call(dpy, drawable, target, divisor, remainder) : 0;
 }
 
@@ -184,7 +193,8 @@ void useXFont(Font font, int first, int count, int listBase) {
     const Context* c = tThread->context;
     const Window* w = c ? findWindowById(c->drawWindow) : nullptr;
     const bool ours = w && !w->isEgl && !nativeRun();
-    if (!ours || !listsFromXFont(static_cast<Display*>(w->display), font, first, count, listBase)) call(font, first, count, listBase);
+    if (!ours || !listsFromXFont(static_cast<Display*>(w->display), font, first, count, listBase))
+        call(font, first, count, listBase);
 }
 
 GLXWindow createWindow(Display* dpy, GLXFBConfig fb, ::Window window, const int* attributes) {
@@ -305,21 +315,36 @@ void* getProcAddress(const GLubyte* name) {
 }
 
 const OwnEntry kOwn[] = {
-    ownEntry("glXCreateContext", createContext), ownEntry("glXCreateNewContext", createNewContext),
-    ownEntry("glXCreateContextWithConfigSGIX", createContextWithConfig), ownEntry("glXCreateContextAttribsARB", createContextAttribs),
-    ownEntry("glXDestroyContext", destroyedContext), ownEntry("glXMakeCurrent", makeCurrent),
-    ownEntry("glXMakeContextCurrent", makeContextCurrent), ownEntry("glXMakeCurrentReadSGI", makeCurrentRead),
-    ownEntry("glXSwapBuffers", swapBuffers), ownEntry("glXSwapBuffersMscOML", swapBuffersMsc),
-    ownEntry("glXCopySubBufferMESA", copySubBuffer), ownEntry("glXWaitGL", waitGl), ownEntry("glXUseXFont", useXFont),
-    ownEntry("glXCreateWindow", createWindow), ownEntry("glXDestroyWindow", destroyGlxWindow),
-    ownEntry("glXCreatePbuffer", createPbuffer), ownEntry("glXDestroyPbuffer", destroyPbuffer),
-    ownEntry("glXCreateGLXPbufferSGIX", createSgixPbuffer), ownEntry("glXDestroyGLXPbufferSGIX", destroySgixPbuffer),
-    ownEntry("glXCreatePixmap", createPixmap), ownEntry("glXDestroyPixmap", destroyPixmap),
-    ownEntry("glXCreateGLXPixmap", createGlxPixmap), ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap),
+    ownEntry("glXCreateContext", createContext),
+    ownEntry("glXCreateNewContext", createNewContext),
+    ownEntry("glXCreateContextWithConfigSGIX", createContextWithConfig),
+    ownEntry("glXCreateContextAttribsARB", createContextAttribs),
+    ownEntry("glXDestroyContext", destroyedContext),
+    ownEntry("glXMakeCurrent", makeCurrent),
+    ownEntry("glXMakeContextCurrent", makeContextCurrent),
+    ownEntry("glXMakeCurrentReadSGI", makeCurrentRead),
+    ownEntry("glXSwapBuffers", swapBuffers),
+    ownEntry("glXSwapBuffersMscOML", swapBuffersMsc),
+    ownEntry("glXCopySubBufferMESA", copySubBuffer),
+    ownEntry("glXWaitGL", waitGl),
+    ownEntry("glXUseXFont", useXFont),
+    ownEntry("glXCreateWindow", createWindow),
+    ownEntry("glXDestroyWindow", destroyGlxWindow),
+    ownEntry("glXCreatePbuffer", createPbuffer),
+    ownEntry("glXDestroyPbuffer", destroyPbuffer),
+    ownEntry("glXCreateGLXPbufferSGIX", createSgixPbuffer),
+    ownEntry("glXDestroyGLXPbufferSGIX", destroySgixPbuffer),
+    ownEntry("glXCreatePixmap", createPixmap),
+    ownEntry("glXDestroyPixmap", destroyPixmap),
+    ownEntry("glXCreateGLXPixmap", createGlxPixmap),
+    ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap),
     ownEntry("glXCreateGLXPixmapWithConfigSGIX", createGlxPixmapWithConfig),
-    ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap), ownEntry("glXBindTexImageEXT", bindTexImage),
-    ownEntry("glXQueryExtensionsString", queryExtensionsString), ownEntry("glXGetClientString", getClientString),
-    ownEntry("glXQueryServerString", queryServerString), ownEntry("glXGetProcAddress", getProcAddress),
+    ownEntry("glXDestroyGLXPixmap", destroyGlxPixmap),
+    ownEntry("glXBindTexImageEXT", bindTexImage),
+    ownEntry("glXQueryExtensionsString", queryExtensionsString),
+    ownEntry("glXGetClientString", getClientString),
+    ownEntry("glXQueryServerString", queryServerString),
+    ownEntry("glXGetProcAddress", getProcAddress),
     ownEntry("glXGetProcAddressARB", getProcAddress),
 };
 constinit Front front("glX", kOwn);
@@ -343,7 +368,8 @@ Front& glxFront() { return front; }
 
 bool makeGlxCurrent(const Window& draw, const Window& read, const Context& context) {
     static auto* call = real<Bool(Display*, XID, XID, GLXContext)>("glXMakeContextCurrent");
-    return call && call(static_cast<Display*>(draw.display), draw.drawable, read.drawable, static_cast<GLXContext>(context.native));
+    return call && call(static_cast<Display*>(draw.display), draw.drawable, read.drawable,
+                        static_cast<GLXContext>(context.native));
 }
 
 bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
@@ -351,7 +377,9 @@ bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
     unsigned int a = 0, b = 0;
     if (w.nativeGone) return false; // an X error would end the program
     if (w.native && !w.config.isPbuffer) {
-        static auto* geometry = xlib<Status(Display*, Drawable, ::Window*, int*, int*, unsigned*, unsigned*, unsigned*, unsigned*)>("XGetGeometry");
+        static auto* geometry =
+            xlib<Status(Display*, Drawable, ::Window*, int*, int*, unsigned*, unsigned*, unsigned*, unsigned*)>(
+                "XGetGeometry");
         ::Window root = 0;
         int x = 0, y = 0;
         unsigned border = 0, depth = 0;
@@ -369,7 +397,8 @@ bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
 
 } // namespace mural
 
-extern "C" __attribute__((visibility("default"))) Bool __glx_Main(uint32_t version, const __GLXapiExports* exports, __GLXvendorInfo* vendor, __GLXapiImports* imports) {
+extern "C" __attribute__((visibility("default"))) Bool __glx_Main(uint32_t version, const __GLXapiExports* exports,
+                                                                  __GLXvendorInfo* vendor, __GLXapiImports* imports) {
     using Main = Bool(uint32_t, const __GLXapiExports*, __GLXvendorInfo*, __GLXapiImports*);
     void* handle = mural::openVendor();
     auto* main = handle ? reinterpret_cast<Main*>(mural::loader::symbolIn(handle, "__glx_Main")) : nullptr;

@@ -34,9 +34,10 @@ template <class F> bool find(F& function, const char* name) {
 }
 
 bool findFontCalls(FontCalls& x) {
-    return find(x.queryFont, "XQueryFont") && find(x.freeFontInfo, "XFreeFontInfo") && find(x.rootWindow, "XDefaultRootWindow") &&
-           find(x.createPixmap, "XCreatePixmap") && find(x.freePixmap, "XFreePixmap") && find(x.createGc, "XCreateGC") &&
-           find(x.freeGc, "XFreeGC") && find(x.setForeground, "XSetForeground") && find(x.fillRectangle, "XFillRectangle") &&
+    return find(x.queryFont, "XQueryFont") && find(x.freeFontInfo, "XFreeFontInfo") &&
+           find(x.rootWindow, "XDefaultRootWindow") && find(x.createPixmap, "XCreatePixmap") &&
+           find(x.freePixmap, "XFreePixmap") && find(x.createGc, "XCreateGC") && find(x.freeGc, "XFreeGC") &&
+           find(x.setForeground, "XSetForeground") && find(x.fillRectangle, "XFillRectangle") &&
            find(x.drawString, "XDrawString16") && find(x.getImage, "XGetImage");
 }
 
@@ -73,8 +74,8 @@ public:
 
 private:
     static constexpr int kCount = 6;
-    static constexpr GLenum kNames[kCount] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH,
-                                              GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_ALIGNMENT};
+    static constexpr GLenum kNames[kCount] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST,   GL_UNPACK_ROW_LENGTH,
+                                              GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS, GL_UNPACK_ALIGNMENT};
     const ListCalls& gl_;
     GLint before_[kCount] = {};
 };
@@ -90,7 +91,8 @@ const XCharStruct* metricsOf(const XFontStruct& font, unsigned character) {
         column = character & 0xFF;
         if (row < font.min_byte1 || row > font.max_byte1) return nullptr;
         if (column < font.min_char_or_byte2 || column > font.max_char_or_byte2) return nullptr;
-        index = (row - font.min_byte1) * (font.max_char_or_byte2 - font.min_char_or_byte2 + 1) + column - font.min_char_or_byte2;
+        index = (row - font.min_byte1) * (font.max_char_or_byte2 - font.min_char_or_byte2 + 1) + column -
+                font.min_char_or_byte2;
     }
     return font.per_char ? font.per_char + index : &font.max_bounds;
 }
@@ -99,11 +101,16 @@ const XCharStruct* metricsOf(const XFontStruct& font, unsigned character) {
 class GlyphReader {
 public:
     GlyphReader(const FontCalls& x, Display* dpy, Font font, const XFontStruct& metrics)
-        : x_(x), dpy_(dpy), width_(metrics.max_bounds.rbearing - metrics.min_bounds.lbearing), height_(metrics.max_bounds.ascent + metrics.max_bounds.descent) {
+        : x_(x),
+          dpy_(dpy),
+          width_(metrics.max_bounds.rbearing - metrics.min_bounds.lbearing),
+          height_(metrics.max_bounds.ascent + metrics.max_bounds.descent) {
         if (width_ <= 0 || height_ <= 0) return;
-        bytes_ = static_cast<GLubyte*>(std::malloc((static_cast<size_t>(width_) + 7) / 8 * static_cast<size_t>(height_)));
+        bytes_ =
+            static_cast<GLubyte*>(std::malloc((static_cast<size_t>(width_) + 7) / 8 * static_cast<size_t>(height_)));
         if (!bytes_) return;
-        pixmap_ = x_.createPixmap(dpy, x_.rootWindow(dpy), static_cast<unsigned>(width_), static_cast<unsigned>(height_), 1);
+        pixmap_ =
+            x_.createPixmap(dpy, x_.rootWindow(dpy), static_cast<unsigned>(width_), static_cast<unsigned>(height_), 1);
         XGCValues values{};
         values.font = font;
         values.graphics_exposures = False;
@@ -121,7 +128,8 @@ public:
     const GLubyte* read(unsigned character, const XCharStruct& metrics, int width, int height) {
         if (!gc_ || width > width_ || height > height_) return nullptr;
         const auto w = static_cast<unsigned>(width), h = static_cast<unsigned>(height);
-        const XChar2b text = {static_cast<unsigned char>(character >> 8 & 0xFF), static_cast<unsigned char>(character & 0xFF)};
+        const XChar2b text = {static_cast<unsigned char>(character >> 8 & 0xFF),
+                              static_cast<unsigned char>(character & 0xFF)};
         x_.setForeground(dpy_, gc_, 0);
         x_.fillRectangle(dpy_, pixmap_, gc_, 0, 0, w, h);
         x_.setForeground(dpy_, gc_, 1);
@@ -156,8 +164,11 @@ void compileGlyph(const ListCalls& gl, GlyphReader& reader, const XFontStruct& f
     const XCharStruct& m = known ? *known : font.max_bounds;
     const int width = m.rbearing - m.lbearing, height = m.ascent + m.descent;
     const GLubyte* bits = known && width > 0 && height > 0 ? reader.read(character, m, width, height) : nullptr;
-    if (bits) gl.bitmap(width, height, static_cast<GLfloat>(-m.lbearing), static_cast<GLfloat>(m.descent - 1), m.width, 0, bits);
-    else gl.bitmap(0, 0, 0, 0, m.width, 0, nullptr);
+    if (bits)
+        gl.bitmap(width, height, static_cast<GLfloat>(-m.lbearing), static_cast<GLfloat>(m.descent - 1), m.width, 0,
+                  bits);
+    else
+        gl.bitmap(0, 0, 0, 0, m.width, 0, nullptr);
 }
 
 } // namespace

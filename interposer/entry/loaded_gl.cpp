@@ -23,7 +23,8 @@ bool isOwnGl(const LoadedObject& object) {
 // object's dependencies.
 bool isPastUs(const LoadedObject& object) {
     const char* path = object.path();
-    return path[0] && !std::strstr(path, "/libGLX_mural.") && !std::strstr(path, "/libmural_front.") && object.function("glClear") && !leadsToGlvnd(object);
+    return path[0] && !std::strstr(path, "/libGLX_mural.") && !std::strstr(path, "/libmural_front.") &&
+           object.function("glClear") && !leadsToGlvnd(object);
 }
 
 } // namespace

@@ -35,7 +35,8 @@ template <size_t N> void keepEntry(char (&into)[N], const char* name, const char
 
 bool endsWith(const char* text, size_t length, const char* end) {
     const size_t bytes = std::strlen(end);
-    return length >= bytes && !std::strncmp(text + length - bytes, end, bytes) && (length == bytes || text[length - bytes - 1] == '/');
+    return length >= bytes && !std::strncmp(text + length - bytes, end, bytes) &&
+           (length == bytes || text[length - bytes - 1] == '/');
 }
 
 const char* nextWord(const char*& at, size_t& length) {
@@ -91,7 +92,8 @@ bool isPreloaded(const char* list) {
     return false;
 }
 
-const char* const kOurEntries[] = {started.session, started.socketPath, started.notes, started.glxVendor, started.eglVendors};
+const char* const kOurEntries[] = {started.session, started.socketPath, started.notes, started.glxVendor,
+                                   started.eglVendors};
 
 } // namespace
 
@@ -106,7 +108,8 @@ CapturedEnvironment::CapturedEnvironment(char* const* environment) : environment
         hasSession = hasSession || isEntry(entry, "MURAL_SESSION");
     }
     if (count_ > kMaxEntries || (hasSession && preload_ && isPreloaded(preload_ + kPreloadBytes))) return;
-    const size_t preloadBytes = (preload_ ? std::strlen(preload_) : kPreloadBytes) + 1 + std::strlen(started.preload) + 1;
+    const size_t preloadBytes =
+        (preload_ ? std::strlen(preload_) : kPreloadBytes) + 1 + std::strlen(started.preload) + 1;
     neededBytes_ = (count_ + 2 + sizeof kOurEntries / sizeof kOurEntries[0]) * sizeof(char*) + preloadBytes;
 }
 

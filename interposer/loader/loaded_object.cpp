@@ -5,9 +5,13 @@
 namespace mural::loader {
 
 LoadedObject::LoadedObject(const dl_phdr_info& info)
-    : base_(info.dlpi_addr), path_(info.dlpi_name ? info.dlpi_name : ""), segments_(info.dlpi_phdr), segmentCount_(info.dlpi_phnum) {
+    : base_(info.dlpi_addr),
+      path_(info.dlpi_name ? info.dlpi_name : ""),
+      segments_(info.dlpi_phdr),
+      segmentCount_(info.dlpi_phnum) {
     for (size_t i = 0; i < segmentCount_; ++i)
-        if (segments_[i].p_type == PT_DYNAMIC) dynamic_ = reinterpret_cast<const ElfW(Dyn)*>(base_ + segments_[i].p_vaddr);
+        if (segments_[i].p_type == PT_DYNAMIC)
+            dynamic_ = reinterpret_cast<const ElfW(Dyn)*>(base_ + segments_[i].p_vaddr);
     for (const ElfW(Dyn)* d = dynamic_; d && d->d_tag != DT_NULL; ++d) {
         if (d->d_un.d_ptr <= base_) continue; // the loader has relocated it to an address, except in the vDSO
         if (d->d_tag == DT_STRTAB) strings_ = reinterpret_cast<const char*>(d->d_un.d_ptr);

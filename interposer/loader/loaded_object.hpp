@@ -1,5 +1,5 @@
-// Reads the dynamic section of a loaded object: its name, its dependencies, its exported functions. It does not use dlsym,
-// dlvsym or dlopen, as another preloaded library may have replaced them.
+// Reads the dynamic section of a loaded object: its name, its dependencies, its exported functions. It does not use
+// dlsym, dlvsym or dlopen, as another preloaded library may have replaced them.
 #pragma once
 
 #include <cstddef>
@@ -33,19 +33,21 @@ private:
 
     ElfW(Addr) base_;
     const char* path_;
-    const ElfW(Phdr)* segments_;
+    const ElfW(Phdr) * segments_;
     size_t segmentCount_;
-    const ElfW(Dyn)* dynamic_ = nullptr;
+    const ElfW(Dyn) * dynamic_ = nullptr;
     const char* strings_ = nullptr;
-    const ElfW(Sym)* symbols_ = nullptr;
-    const ElfW(Half)* versions_ = nullptr;
+    const ElfW(Sym) * symbols_ = nullptr;
+    const ElfW(Half) * versions_ = nullptr;
     const uint32_t* gnuHash_ = nullptr;
     const uint32_t* hash_ = nullptr;
 };
 
 // Calls visit(object) for each loaded object in the loader's order until it returns true. Returns whether it did.
 template <class Visit> bool findObject(Visit visit) {
-    return dl_iterate_phdr([](dl_phdr_info* info, size_t, void* data) { return (*static_cast<Visit*>(data))(LoadedObject(*info)) ? 1 : 0; }, &visit) != 0;
+    return dl_iterate_phdr([](dl_phdr_info* info, size_t,
+                              void* data) { return (*static_cast<Visit*>(data))(LoadedObject(*info)) ? 1 : 0; },
+                           &visit) != 0;
 }
 
 } // namespace mural::loader

@@ -5,7 +5,8 @@
 
 namespace mural {
 
-ArrayWatch::ArrayWatch(const ThreadState& t, GLuint array, uint32_t slot, uint32_t count) : array_(array), first_(slot), end_(slot) {
+ArrayWatch::ArrayWatch(const ThreadState& t, GLuint array, uint32_t slot, uint32_t count)
+    : array_(array), first_(slot), end_(slot) {
     constexpr uint32_t kSlots = client_arrays::kSlots;
     if (!t.context || slot >= kSlots || !t.context->arrays.knows(array)) return;
     end_ = count < kSlots - slot ? slot + count : kSlots;

@@ -25,7 +25,9 @@ struct MappedBuffer {
 
     [[nodiscard]] bool has(GLbitfield bits) const { return (access & bits) != 0; }
     // Written without further GL calls.
-    [[nodiscard]] bool silent() const { return has(GL_MAP_PERSISTENT_BIT) && has(GL_MAP_WRITE_BIT) && !has(GL_MAP_FLUSH_EXPLICIT_BIT); }
+    [[nodiscard]] bool silent() const {
+        return has(GL_MAP_PERSISTENT_BIT) && has(GL_MAP_WRITE_BIT) && !has(GL_MAP_FLUSH_EXPLICIT_BIT);
+    }
 };
 
 namespace {
@@ -34,12 +36,15 @@ constexpr uint64_t kAskedBytes = uint64_t{16} << 20; // per request
 
 // Returns whether the nodes draw and the program's own context does not. Only the nodes then know the content of
 // buffers that shaders write. Also true for contexts that currently select or compile a list.
-bool nodesDraw(const ThreadState& t) { return t.context && !swapLocally() && !t.context->drawsPixmap && !t.context->drawsFeedback; }
+bool nodesDraw(const ThreadState& t) {
+    return t.context && !swapLocally() && !t.context->drawsPixmap && !t.context->drawsFeedback;
+}
 
 // Locks the list of mappings. A request to the nodes ships mappings; the same thread may do so while it holds the lock.
 class MapsHeld {
 public:
-    explicit MapsHeld(ThreadState& t) : group_(*t.context->group), outer_(group_.mapsHolder.load(std::memory_order_relaxed) == &t) {
+    explicit MapsHeld(ThreadState& t)
+        : group_(*t.context->group), outer_(group_.mapsHolder.load(std::memory_order_relaxed) == &t) {
         if (outer_) return;
         group_.mapsLock.lock();
         group_.mapsHolder.store(&t, std::memory_order_relaxed);
@@ -74,10 +79,13 @@ void shipChanges(ThreadState& t, MappedBuffer& m) {
         ThreadState& t;
         MappedBuffer& m;
     } shipping{t, m};
-    m.changes.collect(t.context->group->nodesWriteBuffers, [](void* self, size_t from, const std::byte* bytes, size_t count) {
-        const auto& its = *static_cast<Shipping*>(self);
-        ship(its.t, its.m, from, bytes, count);
-    }, &shipping);
+    m.changes.collect(
+        t.context->group->nodesWriteBuffers,
+        [](void* self, size_t from, const std::byte* bytes, size_t count) {
+            const auto& its = *static_cast<Shipping*>(self);
+            ship(its.t, its.m, from, bytes, count);
+        },
+        &shipping);
 }
 
 bool mayBeWritten(const ShareGroup& group, GLuint buffer) {
@@ -101,7 +109,8 @@ Writable writable(GLenum target) {
 bool clearIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     constexpr uint64_t kCleared = uint64_t{64} << 10;
     if (!gReal.glClearBufferSubData || length > kCleared) return false;
-    constexpr GLenum kPlace[] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES};
+    constexpr GLenum kPlace[] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS,
+                                 GL_UNPACK_SKIP_IMAGES};
     GLint before[4] = {}; // Mesa checks this binding
     for (int i = 0; i < 4; ++i) {
         gReal.glGetIntegerv(kPlace[i], &before[i]);
@@ -111,11 +120,14 @@ bool clearIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
         uint64_t bytes; // alignment of the range
         GLenum internal, format, type;
     };
-    constexpr Element kElements[] = {{16, GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT}, {4, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, {1, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE}};
+    constexpr Element kElements[] = {{16, GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT},
+                                     {4, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT},
+                                     {1, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE}};
     for (uint64_t at = 0; at < length;) {
         const Element* e = kElements;
         while ((offset + at) % e->bytes != 0 || length - at < e->bytes) ++e;
-        gReal.glClearBufferSubData(GL_COPY_WRITE_BUFFER, e->internal, static_cast<GLintptr>(offset + at), static_cast<GLsizeiptr>(e->bytes), e->format, e->type,
+        gReal.glClearBufferSubData(GL_COPY_WRITE_BUFFER, e->internal, static_cast<GLintptr>(offset + at),
+                                   static_cast<GLsizeiptr>(e->bytes), e->format, e->type,
                                    static_cast<const std::byte*>(bytes) + at);
         at += e->bytes;
     }
@@ -133,7 +145,8 @@ void copyIntoBound(uint64_t offset, const void* bytes, uint64_t length) {
     gReal.glGenBuffers(1, &between);
     gReal.glBindBuffer(GL_COPY_READ_BUFFER, between);
     gReal.glBufferData(GL_COPY_READ_BUFFER, static_cast<GLsizeiptr>(length), bytes, GL_STREAM_COPY);
-    gReal.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(length));
+    gReal.glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, static_cast<GLintptr>(offset),
+                              static_cast<GLsizeiptr>(length));
     gReal.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
     gReal.glDeleteBuffers(1, &between);
     gReal.glFinish(); // it may be mapped
@@ -213,7 +226,9 @@ bool readOwnCopy(ThreadState& t, GLuint buffer, uint64_t offset, void* into, uin
 }
 
 void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by) {
-    if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer || nodesLack(t, buffer)) return;
+    if (!nodesDraw(t) || !t.context->group->nodesWriteBuffers || buffer == 0 || !gReal.glBindBuffer ||
+        nodesLack(t, buffer))
+        return;
     if (!gReal.glIsBuffer(buffer)) return; // an unused name: binding it would create a buffer
     for (uint64_t at = 0; at < length; at += kAskedBytes) {
         const uint64_t count = length - at < kAskedBytes ? length - at : kAskedBytes;
@@ -224,7 +239,8 @@ void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t leng
 }
 
 void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access, const char* by) {
-    constexpr GLbitfield kForgets = GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT | GL_MAP_FLUSH_EXPLICIT_BIT;
+    constexpr GLbitfield kForgets =
+        GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT | GL_MAP_FLUSH_EXPLICIT_BIT;
     if (!t.context || !t.context->group->nodesWriteBuffers) return;
     const bool shipsAll = !(access & kForgets) && mayBeWritten(*t.context->group, buffer);
     if (access & GL_MAP_READ_BIT || shipsAll) refreshBuffer(t, buffer, offset, length, by);
@@ -239,10 +255,13 @@ void showInMap(ThreadState& t, MappedBuffer& m, uint64_t from, const std::byte* 
         MappedBuffer& m;
     } showing{t, m};
     if (m.changes.active()) {
-        m.changes.accept(from, bytes, count, [](void* self, size_t at, const std::byte* news, size_t size) {
-            const auto& its = *static_cast<Showing*>(self);
-            writeOwnCopy(its.t, its.m.buffer, its.m.offset + at, news, size);
-        }, &showing);
+        m.changes.accept(
+            from, bytes, count,
+            [](void* self, size_t at, const std::byte* news, size_t size) {
+                const auto& its = *static_cast<Showing*>(self);
+                writeOwnCopy(its.t, its.m.buffer, its.m.offset + at, news, size);
+            },
+            &showing);
     } else if (std::memcmp(m.memory + from, bytes, count) != 0) {
         writeOwnCopy(t, m.buffer, m.offset + from, bytes, count);
     }
@@ -251,7 +270,8 @@ void showInMap(ThreadState& t, MappedBuffer& m, uint64_t from, const std::byte* 
 } // namespace
 
 void refreshMaps(ThreadState& t, const char* by) {
-    if (!t.context || !t.context->group->persistentMaps || !t.context->group->nodesWriteBuffers || !nodesDraw(t)) return;
+    if (!t.context || !t.context->group->persistentMaps || !t.context->group->nodesWriteBuffers || !nodesDraw(t))
+        return;
     const ShareGroup& group = *t.context->group;
     const MapsHeld held(t);
     for (MappedBuffer* m = group.maps; m; m = m->next) {
@@ -272,7 +292,8 @@ void copiedHere(ThreadState& t, GLuint buffer) {
     MappedBuffer* m = findMap(*t.context->group, buffer);
     if (!m || !m->changes.active()) return;
     gReal.glFinish();
-    m->changes.accept(0, m->memory, m->length, [](void*, size_t, const std::byte*, size_t) {}, nullptr);
+    m->changes.accept(
+        0, m->memory, m->length, [](void*, size_t, const std::byte*, size_t) {}, nullptr);
 }
 
 void nodesMayWrite(ThreadState& t, GLuint buffer) {
@@ -288,10 +309,12 @@ void buffersMayBeWritten(ThreadState& t, GLsizei count, const GLuint* buffers) {
 
 namespace {
 
-void begin(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access, bool pinned) {
+void begin(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access,
+           bool pinned) {
     void* place = std::malloc(sizeof(MappedBuffer));
     if (!place) return;
-    auto* m = new (place) MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr, pinned};
+    auto* m =
+        new (place) MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr, pinned};
     // Pinned client memory is not write-protected: other processes may share it, and the program may remap it.
     if (m->silent()) m->changes.begin(memory, length, !pinned);
     ShareGroup& group = *t.context->group;
@@ -315,7 +338,8 @@ void mapBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uin
 }
 
 void pinBegins(ThreadState& t, GLuint buffer, void* memory, uint64_t length) {
-    if (t.context && memory && length > 0) begin(t, buffer, memory, 0, length, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT, true);
+    if (t.context && memory && length > 0)
+        begin(t, buffer, memory, 0, length, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT, true);
 }
 
 void forgetMaps(ShareGroup& group) {
@@ -337,8 +361,10 @@ void mapEnds(ThreadState& t, GLuint buffer, bool shipIt) {
     for (MappedBuffer** p = &group.maps; *p; p = &(*p)->next) {
         MappedBuffer* m = *p;
         if (m->buffer != buffer) continue;
-        if (shipIt && m->silent()) shipChanges(t, *m);
-        else if (shipIt && m->has(GL_MAP_WRITE_BIT) && !m->has(GL_MAP_FLUSH_EXPLICIT_BIT)) ship(t, *m, 0, m->memory, m->length);
+        if (shipIt && m->silent())
+            shipChanges(t, *m);
+        else if (shipIt && m->has(GL_MAP_WRITE_BIT) && !m->has(GL_MAP_FLUSH_EXPLICIT_BIT))
+            ship(t, *m, 0, m->memory, m->length);
         *p = m->next;
         if (m->has(GL_MAP_PERSISTENT_BIT)) --group.persistentMaps;
         m->~MappedBuffer();

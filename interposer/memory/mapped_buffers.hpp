@@ -24,9 +24,11 @@ void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr lengt
 
 // Updates the program's own copy of a buffer that the nodes may have written, before it is read. Round trips are
 // counted under `by`, the wrapper's name (interposer/readback/node_requests.hpp).
-void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, const char* by = __builtin_FUNCTION());
+void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length,
+                   const char* by = __builtin_FUNCTION());
 // The same before a mapping with this access: unwritten bytes must not overwrite the nodes' with outdated values.
-void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access, const char* by = __builtin_FUNCTION());
+void refreshForMap(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t length, GLbitfield access,
+                   const char* by = __builtin_FUNCTION());
 // Call after the program has waited for the GL. Updates persistent mappings with data written by the nodes.
 void refreshMaps(ThreadState& t, const char* by = __builtin_FUNCTION());
 // From now on only the nodes have the current content of buffers. This buffer (0: any) is bound for writes by shaders

@@ -15,7 +15,8 @@ bool hasPixelBuffers(const Context& c) { return c.api == wire::Api::Desktop ? c.
 bool hasRowLength(const Context& c) { return c.api == wire::Api::Desktop || c.version >= 30; }
 
 // Ordered by availability: ES 1 and 2 have only the last one, ES 3 lacks byte swapping.
-constexpr GLenum kPack[6] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT};
+constexpr GLenum kPack[6] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST,   GL_PACK_ROW_LENGTH,
+                             GL_PACK_SKIP_ROWS,  GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT};
 
 GLint get(GLenum name) {
     GLint value = 0;
@@ -70,7 +71,10 @@ sizes::PixelStore compressedPackStore(Context& c) {
     return s;
 }
 
-TightPack::TightPack(const Context& context) : first_(context.api == wire::Api::Desktop ? 0 : context.version >= 30 ? 2 : 5) {
+TightPack::TightPack(const Context& context)
+    : first_(context.api == wire::Api::Desktop ? 0
+             : context.version >= 30           ? 2
+                                               : 5) {
     if (packBufferBound(context)) buffer_ = get(GL_PIXEL_PACK_BUFFER_BINDING);
     // A buffer that another context has deleted may still be bound here.
     ready_ = !buffer_ || gReal.glIsBuffer(static_cast<GLuint>(buffer_));

@@ -42,7 +42,8 @@ void StorageScan::step(char c) {
     endWord();
     if (last_ == '/' && (c == '/' || c == '*')) in_ = c == '/' ? In::LineComment : In::BlockComment;
     // a conditional may remove the text before it
-    else if (c == '#' && lineEmpty_) directive_ = true, readonly_ = false;
+    else if (c == '#' && lineEmpty_)
+        directive_ = true, readonly_ = false;
     if (c == '{' && buffer_ && !readonly_) mayWrite_ = true;
     if (!directive_ && (c == '{' || c == '}' || c == ';')) buffer_ = readonly_ = false;
     if (c != ' ' && c != '\t' && c != '/') lineEmpty_ = false;

@@ -31,7 +31,8 @@ bool fragmentUses(GLuint program, GLenum kind) {
     for (GLint i = 0; i < count; ++i) {
         const GLenum names[2] = {GL_REFERENCED_BY_FRAGMENT_SHADER, GL_TYPE};
         GLint values[2] = {};
-        gReal.glGetProgramResourceiv(program, kind, static_cast<GLuint>(i), uniforms ? 2 : 1, names, 2, nullptr, values);
+        gReal.glGetProgramResourceiv(program, kind, static_cast<GLuint>(i), uniforms ? 2 : 1, names, 2, nullptr,
+                                     values);
         if (values[0] && (!uniforms || isImage(values[1]))) return true;
     }
     return false;
@@ -88,7 +89,8 @@ void noteMemoryWriter(ThreadState& t, GLuint program) {
 void noteMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count, const GLchar* const* strings) {
     note(t, program, [&] {
         StorageScan scan;
-        for (GLsizei i = 0; type == GL_FRAGMENT_SHADER && i < count; ++i) scan.feed(strings[i], std::strlen(strings[i]));
+        for (GLsizei i = 0; type == GL_FRAGMENT_SHADER && i < count; ++i)
+            scan.feed(strings[i], std::strlen(strings[i]));
         return scan.mayWrite();
     });
 }

@@ -47,7 +47,8 @@ void VertexArrayMirror::forgetBuffers(GLsizei n, const GLuint* names) {
     }
 }
 
-bool VertexArrayMirror::setPointer(uint32_t slot, GLint size, GLenum type, GLsizei stride, uint32_t flags, const void* pointer) {
+bool VertexArrayMirror::setPointer(uint32_t slot, GLint size, GLenum type, GLsizei stride, uint32_t flags,
+                                   const void* pointer) {
     VertexArray& va = *current_;
     ArrayPointer& a = va.slots[slot];
     a.pointer = pointer;
@@ -62,7 +63,8 @@ bool VertexArrayMirror::setPointer(uint32_t slot, GLint size, GLenum type, GLsiz
     return client;
 }
 
-void VertexArrayMirror::setFormat(GLuint array, uint32_t slot, GLint size, GLenum type, uint32_t flags, GLuint relative) {
+void VertexArrayMirror::setFormat(GLuint array, uint32_t slot, GLint size, GLenum type, uint32_t flags,
+                                  GLuint relative) {
     ArrayPointer& a = find(array)->slots[slot];
     // keeps the effective stride
     if (a.stride == 0) a.stride = static_cast<GLsizei>(sizes::attributeBytes(a.size, a.type));

@@ -16,9 +16,9 @@ struct ArrayPointer {
     const void* pointer = nullptr;
     GLint size = 4;
     GLenum type = GL_FLOAT;
-    GLsizei stride = 0; // as specified; 0: tightly packed
+    GLsizei stride = 0;        // as specified; 0: tightly packed
     GLsizei bindingStride = 0; // of the binding with the same number, bytes
-    uint32_t flags = 0; // client_arrays::Flags
+    uint32_t flags = 0;        // client_arrays::Flags
     GLuint divisor = 0;
     GLuint relative = 0; // offset from the pointer in bytes: glVertexAttribFormat
 };
@@ -27,7 +27,7 @@ struct ArrayPointer {
 struct VertexArray {
     GLuint name = 0;
     uint64_t enabled[2] = {0, 0}; // one bit per slot
-    uint64_t client[2] = {0, 0}; // the pointer was specified without a bound buffer
+    uint64_t client[2] = {0, 0};  // the pointer was specified without a bound buffer
     ArrayPointer slots[client_arrays::kSlots];
 
     [[nodiscard]] bool anyClient() const { return (enabled[0] & client[0]) | (enabled[1] & client[1]); }

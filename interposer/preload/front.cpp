@@ -59,8 +59,10 @@ int thunkOf(const char* name) {
         const int middle = (low + high) / 2;
         const int order = __builtin_strcmp(name, thunkName(middle));
         if (order == 0) return middle;
-        if (order < 0) high = middle - 1;
-        else low = middle + 1;
+        if (order < 0)
+            high = middle - 1;
+        else
+            low = middle + 1;
     }
     return -1;
 }

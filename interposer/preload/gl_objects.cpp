@@ -12,8 +12,10 @@ GlObject objectOf(const void* address) {
     loader::findObject([&](const LoadedObject& object) {
         if (!object.contains(address)) return false;
         const char* name = object.soname();
-        if (object.needs(isGlvndDispatch)) kind = GlObject::Glvnd;
-        else if (name && isGlLibraryName(name)) kind = GlObject::Own;
+        if (object.needs(isGlvndDispatch))
+            kind = GlObject::Glvnd;
+        else if (name && isGlLibraryName(name))
+            kind = GlObject::Own;
         return true;
     });
     return kind;

@@ -6,7 +6,7 @@ namespace mural {
 enum class GlObject {
     Other, // no GL library: the program's own functions, another tool's hooks
     Glvnd, // dispatches to vendor libraries, so the vendor entry captures it
-    Own, // a GL library without GLVND: old Mesa, a driver, ANGLE
+    Own,   // a GL library without GLVND: old Mesa, a driver, ANGLE
 };
 
 // The kind of the object that contains the address.

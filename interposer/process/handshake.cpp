@@ -57,7 +57,8 @@ public:
         return true;
     }
     bool send(const void* data, size_t bytes) const {
-        return all(const_cast<void*>(data), bytes, POLLOUT, [this](char* at, size_t left) { return ::send(socket_, at, left, MSG_NOSIGNAL | MSG_DONTWAIT); });
+        return all(const_cast<void*>(data), bytes, POLLOUT,
+                   [this](char* at, size_t left) { return ::send(socket_, at, left, MSG_NOSIGNAL | MSG_DONTWAIT); });
     }
     // Stores a descriptor that arrives with the bytes in `passed`.
     bool receive(void* into, size_t bytes, OwnedFd* passed) const {
@@ -86,8 +87,10 @@ private:
             int fd = -1;
             if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_RIGHTS) continue;
             std::memcpy(&fd, CMSG_DATA(c), sizeof fd);
-            if (passed) passed->reset(fd);
-            else close(fd);
+            if (passed)
+                passed->reset(fd);
+            else
+                close(fd);
         }
         return n;
     }
@@ -111,20 +114,25 @@ char* receiveText(const Transfer& transfer, uint32_t bytes) {
 void sayNoDescriptor() {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);
-    say("no descriptor is free for the memory shared with the head (the program may have %llu open): raise ulimit -n; this program draws on its own",
+    say("no descriptor is free for the memory shared with the head (the program may have %llu open): raise ulimit -n; "
+        "this program draws on its own",
         static_cast<unsigned long long>(limit.rlim_cur));
 }
 
 // Maps the shared memory. A forked child must not write there, so the kernel excludes the mapping from children.
 capture::CaptureHeader* mapMemory(int memory) {
     const off_t size = lseek(memory, 0, SEEK_END);
-    void* const mapping = size > 0 ? mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0) : MAP_FAILED;
+    void* const mapping =
+        size > 0 ? mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0) : MAP_FAILED;
     if (mapping == MAP_FAILED) {
-        say("can't map %ld bytes shared with the head (%s): raise ulimit -v or free memory; this program draws on its own", static_cast<long>(size), std::strerror(errno));
+        say("can't map %ld bytes shared with the head (%s): raise ulimit -v or free memory; this program draws on its "
+            "own",
+            static_cast<long>(size), std::strerror(errno));
         return nullptr;
     }
     if (madvise(mapping, static_cast<size_t>(size), MADV_DONTFORK) != 0) {
-        say("can't keep forked children out of the memory shared with the head (%s); this program draws on its own", std::strerror(errno));
+        say("can't keep forked children out of the memory shared with the head (%s); this program draws on its own",
+            std::strerror(errno));
         munmap(mapping, static_cast<size_t>(size));
         return nullptr;
     }
@@ -140,17 +148,22 @@ bool shakeHands(int socket, Handshake& result) {
     OwnedFd memory;
     capture::Welcome& welcome = result.welcome;
     if (!transfer.send(&hello, sizeof hello) || !transfer.receive(&welcome, sizeof welcome, &memory)) {
-        say("the head does not answer (%s); this program draws on its own", errno ? std::strerror(errno) : "it closed the connection");
+        say("the head does not answer (%s); this program draws on its own",
+            errno ? std::strerror(errno) : "it closed the connection");
         return false;
     }
     if (welcome.magic != capture::kMagic || welcome.version != capture::kVersion) {
-        say("the head does not speak this version: run the interposer and mural of one build; this program draws on its own");
+        say("the head does not speak this version: run the interposer and mural of one build; this program draws on "
+            "its own");
         return false;
     }
     result.extensions = receiveText(transfer, welcome.extensionBytes);
-    if (welcome.refused) say("not captured: %s", result.extensions ? result.extensions + 1 : "the head refuses it");
-    else if (memory.get() < 0) sayNoDescriptor();
-    else if (result.extensions) result.header = mapMemory(memory.get());
+    if (welcome.refused)
+        say("not captured: %s", result.extensions ? result.extensions + 1 : "the head refuses it");
+    else if (memory.get() < 0)
+        sayNoDescriptor();
+    else if (result.extensions)
+        result.header = mapMemory(memory.get());
     if (result.header) return true;
     std::free(result.extensions);
     result.extensions = nullptr;

@@ -1,5 +1,5 @@
-// The handshake between a program and the head (common/ipc/capture_ring.hpp). No descriptor stays open: only the mapping
-// connects them afterwards. A program may therefore close or replace every descriptor.
+// The handshake between a program and the head (common/ipc/capture_ring.hpp). No descriptor stays open: only the
+// mapping connects them afterwards. A program may therefore close or replace every descriptor.
 #pragma once
 
 #include <cstddef>

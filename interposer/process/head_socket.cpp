@@ -73,8 +73,8 @@ int openHeadSocket() {
     if (fd < 0 && launch.socketPath) fd = connectByName(launch.socketPath, false);
     if (fd < 0 && launch.socketPath) fd = connectByRoot(launch.session, launch.socketPath);
     if (fd < 0)
-        say("no head answers at session %s (%s): this program draws on its own. A sandbox must show it %s", launch.session, std::strerror(errno),
-            launch.socketPath ? launch.socketPath : "the network of mural run");
+        say("no head answers at session %s (%s): this program draws on its own. A sandbox must show it %s",
+            launch.session, std::strerror(errno), launch.socketPath ? launch.socketPath : "the network of mural run");
     return fd;
 }
 

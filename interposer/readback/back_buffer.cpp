@@ -48,18 +48,23 @@ Context& withErrorsStashed(Context& context) {
 
 } // namespace
 
-BackBufferRead::BackBufferRead(Context& context, const Window& window, Where where) : context_(withErrorsStashed(context)), where_(where), pack_(context) {
+BackBufferRead::BackBufferRead(Context& context, const Window& window, Where where)
+    : context_(withErrorsStashed(context)), where_(where), pack_(context) {
     const bool twoTargets = context.version >= 30;
     target_ = twoTargets ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
-    if (gReal.glBindFramebuffer) gReal.glGetIntegerv(twoTargets ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer_);
+    if (gReal.glBindFramebuffer)
+        gReal.glGetIntegerv(twoTargets ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer_);
     ready_ = pack_.ready() && canBindAgain(framebuffer_) && !isTooLate(context, window);
     if (ready_) bindWindow(window);
 }
 
 BackBufferRead::~BackBufferRead() {
     if (ready_) {
-        if (readBuffer_) (where_ == Where::NodesToo ? mural_glReadBuffer : gReal.glReadBuffer)(static_cast<GLenum>(readBuffer_));
-        if (framebuffer_) (where_ == Where::NodesToo ? mural_glBindFramebuffer : gReal.glBindFramebuffer)(target_, static_cast<GLuint>(framebuffer_));
+        if (readBuffer_)
+            (where_ == Where::NodesToo ? mural_glReadBuffer : gReal.glReadBuffer)(static_cast<GLenum>(readBuffer_));
+        if (framebuffer_)
+            (where_ == Where::NodesToo ? mural_glBindFramebuffer
+                                       : gReal.glBindFramebuffer)(target_, static_cast<GLuint>(framebuffer_));
     }
     driverError(); // discards our own error, if any
 }

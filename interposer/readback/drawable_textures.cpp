@@ -48,7 +48,8 @@ public:
 
 private:
     static constexpr int kCount = 6;
-    static constexpr GLenum kNames[kCount] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST};
+    static constexpr GLenum kNames[kCount] = {GL_PACK_ALIGNMENT,   GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
+                                              GL_PACK_SKIP_PIXELS, GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST};
     static constexpr GLint kTight[kCount] = {4, 0, 0, 0, 0, 0};
     bool buffers_;
     GLint before_[kCount] = {};
@@ -59,7 +60,8 @@ void upload(ThreadState& t, GLenum target, bool alpha, GLint width, GLint height
     const uint64_t bytes = uint64_t(width) * uint64_t(height) * 4;
     const GLint buffer = unpackBufferBound(*t.context) ? get(GL_PIXEL_UNPACK_BUFFER_BINDING) : 0;
     if (buffer) encode_glBindBuffer(t, GL_PIXEL_UNPACK_BUFFER, 0);
-    encode_glTexImage2D(t, target, 0, alpha ? GL_RGBA : GL_RGB, width, height, 0, format, GL_UNSIGNED_BYTE, DataArg::of(pixels, bytes));
+    encode_glTexImage2D(t, target, 0, alpha ? GL_RGBA : GL_RGB, width, height, 0, format, GL_UNSIGNED_BYTE,
+                        DataArg::of(pixels, bytes));
     if (buffer) encode_glBindBuffer(t, GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(buffer));
 }
 
@@ -70,7 +72,8 @@ void textureFromLocal(GLenum target, bool alpha) {
     if (!capturing(t)) return;
     if (t.context->api != wire::Api::Desktop || !gReal.glGetTexImage || !gReal.glGetTexLevelParameteriv) {
         static bool once = false;
-        if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED)) say("pixmaps as textures of OpenGL ES contexts are not carried to the wall");
+        if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
+            say("pixmaps as textures of OpenGL ES contexts are not carried to the wall");
         return;
     }
     GLint width = 0, height = 0;
@@ -96,7 +99,8 @@ const void* asTheDriverHasIt(ThreadState& t, const void* pixels, GLint width, GL
     if (!pixels || !t.context->isMesa) return pixels;
     const size_t row = size_t(width) * 4, rows = size_t(height);
     auto* turned = static_cast<std::byte*>(scratchMemory(t, row * rows));
-    for (size_t y = 0; turned && y < rows; ++y) std::memcpy(turned + y * row, static_cast<const std::byte*>(pixels) + (rows - 1 - y) * row, row);
+    for (size_t y = 0; turned && y < rows; ++y)
+        std::memcpy(turned + y * row, static_cast<const std::byte*>(pixels) + (rows - 1 - y) * row, row);
     return turned;
 }
 
@@ -105,12 +109,14 @@ void textureFromDrawn(ThreadState& t, const Window& w) {
     const Context& c = *t.context;
     const bool separate = c.version >= 30;
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
-    const GLint framebuffer = c.api == wire::Api::Es1 ? 0 : get(separate ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING);
+    const GLint framebuffer =
+        c.api == wire::Api::Es1 ? 0 : get(separate ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING);
     const auto bound = static_cast<GLuint>(get(GL_TEXTURE_BINDING_2D));
     records::makeCurrent(t, c.id, c.drawWindow, w.id);
     if (framebuffer) encode_glBindFramebuffer(t, target, 0);
     const auto width = static_cast<GLint>(w.config.width), height = static_cast<GLint>(w.config.height);
-    const void* pixels = asTheDriverHasIt(t, requestPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, wire::kPlainTransfer), width, height);
+    const void* pixels = asTheDriverHasIt(
+        t, requestPixels(t, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, wire::kPlainTransfer), width, height);
     if (framebuffer) encode_glBindFramebuffer(t, target, static_cast<GLuint>(framebuffer));
     records::makeCurrent(t, c.id, c.drawWindow, c.readWindow);
     if (!pixels) return;
@@ -141,7 +147,8 @@ void releaseDrawn(Window& w) {
 
 void beforeDrawableSwitch(const ThreadState& t) {
     if (boundPbuffers.load(std::memory_order_relaxed) == 0 || !t.context) return;
-    if (Window* drawn = findWindowById(t.context->drawWindow); drawn && drawn->boundGroup) drawn->boundTextureDue = true;
+    if (Window* drawn = findWindowById(t.context->drawWindow); drawn && drawn->boundGroup)
+        drawn->boundTextureDue = true;
 }
 
 void refreshBoundTextures(ThreadState& t) {

@@ -43,7 +43,8 @@ template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&
 
 // The same for an answer of known size. `into` must hold sizeBytes.
 template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
-    return ask(t, by, [=](uint64_t comes) { return comes == sizeBytes ? into : nullptr; }, send);
+    return ask(
+        t, by, [=](uint64_t comes) { return comes == sizeBytes ? into : nullptr; }, send);
 }
 
 } // namespace
@@ -74,7 +75,8 @@ void answerLost(Context& c) {
     stashError(c, GL_OUT_OF_MEMORY);
 }
 
-const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type, uint32_t how, const char* by) {
+const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type,
+                          uint32_t how, const char* by) {
     const uint32_t group = sizes::groupBytes(format, type);
     if (w <= 0 || h <= 0 || group == 0) return nullptr;
     const uint64_t bytes = uint64_t(w) * uint64_t(h) * group;
@@ -88,14 +90,15 @@ const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h
     const uint64_t wideBytes = keeps ? uint64_t(wide.w) * uint64_t(wide.h) * group : bytes;
     void* const answer = keeps ? t.pixels.memory(wideBytes) : into;
     const bool ok = answer && ask(t, by, answer, wideBytes, [&](uint32_t request) {
-        records::requestPixels(t, request, wide.x, wide.y, wide.w, wide.h, format, type, group | how);
-    });
+                        records::requestPixels(t, request, wide.x, wide.y, wide.w, wide.h, format, type, group | how);
+                    });
     if (!ok) return nullptr;
     t.pixels.answered(t, kind, wide, keeps);
     return !keeps || t.pixels.find(t, kind, box, into) ? into : nullptr;
 }
 
-void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const char* by) {
+void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
+                  uint64_t sizeBytes, const char* by) {
     void* into = secondScratch(t, sizeBytes);
     if (!into || sizeBytes == 0) return nullptr;
     const bool ok = ask(t, by, into, sizeBytes, [&](uint32_t request) {
@@ -111,7 +114,10 @@ bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const 
 const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes, const char* by) {
     void* into = sizeBytes ? secondScratch(t, sizeBytes) : nullptr;
     if (!into) return nullptr;
-    return ask(t, by, into, sizeBytes, [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); }) ? into : nullptr;
+    return ask(t, by, into, sizeBytes,
+               [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); })
+               ? into
+               : nullptr;
 }
 
 const void* askProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, const char* by) {
@@ -127,7 +133,8 @@ bool askFinish(ThreadState& t, const char* by) {
     uint64_t nothing = 0;
     if (t.context) stashError(*t.context, driverError());
     const GLenum before = t.context ? t.context->stashedError : GL_NO_ERROR;
-    const bool finished = ask(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
+    const bool finished =
+        ask(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
     if (!finished && t.context) t.context->stashedError = before; // the request has no result that could be wrong
     return finished;
 }

@@ -37,7 +37,9 @@ Session* sessionFor(const ThreadState& t) {
 void put(ThreadState& t, const OwedRead& read) {
     const sizes::ImageLayout& layout = read.place.layout;
     keepPart(read.answer->bytes, read.place.part);
-    if (isTight(layout)) return writeOwnCopy(t, read.buffer, read.place.offset + static_cast<uint64_t>(layout.firstByte), read.answer->bytes, sizes::tightBytes(layout));
+    if (isTight(layout))
+        return writeOwnCopy(t, read.buffer, read.place.offset + static_cast<uint64_t>(layout.firstByte),
+                            read.answer->bytes, sizes::tightBytes(layout));
     const size_t span = sizes::spanBytes(layout);
     void* const whole = scratchMemory(t, span);
     if (!whole || !readOwnCopy(t, read.buffer, read.place.offset, whole, span)) return; // preserves bytes between rows
@@ -57,15 +59,19 @@ void drop(PendingReads& reads, OwedRead*& p) {
 
 // Completes the read at `p` and removes it from the list. Requires the lock, as does settleLocked().
 void settleFirst(ThreadState& t, Session& s, PendingReads& reads, OwedRead*& p, const char* by) {
-    if (!s.waitOwed(p->answer->request, by)) answerLost(*t.context);
-    else if (p->answer->state == OwedAnswer::State::Here) put(t, *p);
+    if (!s.waitOwed(p->answer->request, by))
+        answerLost(*t.context);
+    else if (p->answer->state == OwedAnswer::State::Here)
+        put(t, *p);
     drop(reads, p);
 }
 
 void settleLocked(ThreadState& t, Session& s, PendingReads& reads, GLuint buffer, const char* by) {
     for (OwedRead** p = &reads.first; *p;) {
-        if ((*p)->buffer == buffer) settleFirst(t, s, reads, *p, by);
-        else p = &(*p)->next;
+        if ((*p)->buffer == buffer)
+            settleFirst(t, s, reads, *p, by);
+        else
+            p = &(*p)->next;
     }
 }
 
@@ -119,14 +125,16 @@ bool append(PendingReads& reads, GLuint buffer, const PackPlace& place, OwedAnsw
 // Returns an entry for the reply; null: no memory. Completes the oldest reads first if the limits are reached.
 OwedAnswer* makeRoom(ThreadState& t, Session& s, PendingReads& reads, uint64_t sizeBytes, const char* by) {
     s.takeArrived();
-    while (reads.first && (reads.count.load(std::memory_order_relaxed) >= kMaxOwed || reads.sizeBytes + sizeBytes > kMaxOwedBytes))
+    while (reads.first &&
+           (reads.count.load(std::memory_order_relaxed) >= kMaxOwed || reads.sizeBytes + sizeBytes > kMaxOwedBytes))
         settleFirst(t, s, reads, reads.first, by);
     while (const uint32_t oldest = owed::inTheWayOf(sizeBytes))
         if (!s.waitOwed(oldest, by)) return nullptr;
     return owed::add(s.nextOwed(), sizeBytes);
 }
 
-template <class Send> bool owe(ThreadState& t, const PackPlace& place, uint64_t sizeBytes, const char* by, Send&& send) {
+template <class Send>
+bool owe(ThreadState& t, const PackPlace& place, uint64_t sizeBytes, const char* by, Send&& send) {
     Session* const s = sessionFor(t);
     if (!s || sizeBytes == 0 || sizeBytes > kMaxOwedBytes) return false;
     const GLuint buffer = boundPackBuffer();
@@ -159,9 +167,12 @@ GLuint boundPackBuffer() {
     return static_cast<GLuint>(buffer);
 }
 
-bool owePixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type, const PackPlace& place, const char* by) {
+bool owePixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type, const PackPlace& place,
+               const char* by) {
     const uint32_t group = sizes::groupBytes(format, type);
-    if (area.w <= 0 || area.h <= 0 || group == 0 || t.pixels.inSeries(t, {format, type, group, false}, {area.x, area.y, area.w, area.h})) return false;
+    if (area.w <= 0 || area.h <= 0 || group == 0 ||
+        t.pixels.inSeries(t, {format, type, group, false}, {area.x, area.y, area.w, area.h}))
+        return false;
     const bool owes = owe(t, place, uint64_t(area.w) * uint64_t(area.h) * group, by, [&](uint32_t request) {
         records::requestPixels(t, request, area.x, area.y, area.w, area.h, format, type, group);
     });
@@ -169,7 +180,8 @@ bool owePixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type,
     return owes;
 }
 
-bool deferTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const PackPlace& place, const char* by) {
+bool deferTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
+                   uint64_t sizeBytes, const PackPlace& place, const char* by) {
     return owe(t, place, sizeBytes, by, [&](uint32_t request) {
         records::requestTexImage(t, request, byName, targetOrTexture, level, format, type, sizeBytes);
     });
@@ -195,8 +207,10 @@ void firstUse(ThreadState& t, GLuint buffer, const char* by) {
         Guard guard(reads.lock);
         settleLocked(t, *s, reads, buffer, by);
         if (reads.nodesLack.get(buffer)) {
-            if (tellNodes(t, buffer)) reads.nodesLack.set(buffer, false);
-            else reads.dueAtUnmap.store(true, std::memory_order_relaxed);
+            if (tellNodes(t, buffer))
+                reads.nodesLack.set(buffer, false);
+            else
+                reads.dueAtUnmap.store(true, std::memory_order_relaxed);
         }
         reads.usedElsewhere.set(buffer, true);
     }
@@ -211,14 +225,16 @@ void unmappedHere(ThreadState& t, GLuint buffer) {
     if (!t.context || !t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed) || !sessionFor(t)) return;
     PendingReads& reads = t.context->group->owedReads;
     Guard guard(reads.lock);
-    if (nodesLack(t, buffer) && reads.usedElsewhere.get(buffer) && tellNodes(t, buffer)) reads.nodesLack.set(buffer, false);
+    if (nodesLack(t, buffer) && reads.usedElsewhere.get(buffer) && tellNodes(t, buffer))
+        reads.nodesLack.set(buffer, false);
 }
 
 // After the buffer's first other use the nodes lack the bytes that reads have written into its new storage.
 void newStorage(ThreadState& t, GLuint buffer) {
     if (!t.context) return;
     PendingReads& reads = t.context->group->owedReads;
-    if (reads.dueAtUnmap.load(std::memory_order_relaxed) && reads.usedElsewhere.get(buffer)) reads.nodesLack.set(buffer, false);
+    if (reads.dueAtUnmap.load(std::memory_order_relaxed) && reads.usedElsewhere.get(buffer))
+        reads.nodesLack.set(buffer, false);
 }
 
 void forgetReads(ThreadState& t, GLuint buffer, const char* by) {
@@ -230,8 +246,10 @@ void forgetReads(ThreadState& t, GLuint buffer, const char* by) {
         if (!sessionFor(t)) return;
         Guard guard(reads.lock);
         for (OwedRead** p = &reads.first; *p;) {
-            if ((*p)->buffer == buffer) drop(reads, *p);
-            else p = &(*p)->next;
+            if ((*p)->buffer == buffer)
+                drop(reads, *p);
+            else
+                p = &(*p)->next;
         }
     }
     reads.usedElsewhere.set(buffer, false);

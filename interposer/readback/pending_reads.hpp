@@ -28,8 +28,10 @@ public:
     void set(GLuint name, bool on) {
         if (!known(name)) return;
         const uint64_t bit = uint64_t{1} << name % 64;
-        if (on) bits_[name / 64].fetch_or(bit, std::memory_order_relaxed);
-        else bits_[name / 64].fetch_and(~bit, std::memory_order_relaxed);
+        if (on)
+            bits_[name / 64].fetch_or(bit, std::memory_order_relaxed);
+        else
+            bits_[name / 64].fetch_and(~bit, std::memory_order_relaxed);
     }
     [[nodiscard]] static bool known(GLuint name) { return name < kNames; }
 
@@ -40,15 +42,17 @@ private:
 
 // Per share group.
 struct PendingReads {
-    Lock lock; // for the list, and while waiting for replies
+    Lock lock;                 // for the list, and while waiting for replies
     OwedRead* first = nullptr; // in call order
     std::atomic<int> count{0};
     uint64_t sizeBytes = 0;
     SharedNameBits usedElsewhere; // the buffer was used for other purposes than reads: the nodes have all of its bytes
-    SharedNameBits nodesLack; // the nodes lack some of its bytes
+    SharedNameBits nodesLack;     // the nodes lack some of its bytes
     std::atomic<bool> dueAtUnmap{false}; // a buffer that the nodes lack was mapped at its first other use
 
-    [[nodiscard]] bool onlyReadInto(GLuint buffer) const { return SharedNameBits::known(buffer) && !usedElsewhere.get(buffer); }
+    [[nodiscard]] bool onlyReadInto(GLuint buffer) const {
+        return SharedNameBits::known(buffer) && !usedElsewhere.get(buffer);
+    }
 };
 
 // The image's place in the bound pack buffer, and the part of the reply that goes there.
@@ -59,8 +63,10 @@ struct PackPlace {
 };
 
 // Both defer a read. They return false if it must complete now: the buffer has other uses, or memory is exhausted.
-bool owePixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type, const PackPlace& place, const char* by);
-bool deferTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type, uint64_t sizeBytes, const PackPlace& place, const char* by);
+bool owePixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type, const PackPlace& place,
+               const char* by);
+bool deferTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
+                   uint64_t sizeBytes, const PackPlace& place, const char* by);
 
 // interposer/context/context.hpp has fast paths for the following functions.
 void settle(ThreadState& t, GLuint buffer, const char* by);

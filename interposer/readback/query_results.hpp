@@ -27,7 +27,7 @@ public:
 
 private:
     struct Ended {
-        uint32_t swaps; // swap count of the context at its end, plus 1; 0: never ended
+        uint32_t swaps;   // swap count of the context at its end, plus 1; 0: never ended
         uint32_t request; // 0: not requested
         uint64_t value;
         bool known;

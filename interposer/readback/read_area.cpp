@@ -49,7 +49,9 @@ bool cutToObject(Context& c, GLenum format, GLenum type, ReadArea& area, GLint x
 
 bool readsWindow(const Context& c) {
     GLint framebuffer = 0;
-    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
+    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING
+                                                                       : GL_FRAMEBUFFER_BINDING,
+                        &framebuffer);
     return framebuffer == 0;
 }
 

@@ -12,11 +12,13 @@ namespace mural {
 namespace {
 
 constexpr GLsizei kSmall = 64; // maximum side in pixels for caching
-constexpr GLint kBlock = 256; // alignment of fetched blocks
+constexpr GLint kBlock = 256;  // alignment of fetched blocks
 
 const Window* windowRead(const Context& c) {
     GLint framebuffer = 0;
-    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING : GL_FRAMEBUFFER_BINDING, &framebuffer);
+    gReal.glGetIntegerv(c.api == wire::Api::Desktop || c.version >= 30 ? GL_READ_FRAMEBUFFER_BINDING
+                                                                       : GL_FRAMEBUFFER_BINDING,
+                        &framebuffer);
     return framebuffer == 0 ? findWindowById(c.readWindow) : nullptr;
 }
 
@@ -24,21 +26,26 @@ const Window* windowRead(const Context& c) {
 
 bool ReadPixelsCache::nothingSince(const ThreadState& t, const Kind& kind) const {
     // Draws of other threads do not appear in this thread's stream.
-    return cursor_ && cursor_ == t.cursor && publications_ == t.publications && t.context && context_ == t.context->id && !t.shared && kind_ == kind;
+    return cursor_ && cursor_ == t.cursor && publications_ == t.publications && t.context &&
+           context_ == t.context->id && !t.shared && kind_ == kind;
 }
 
 bool ReadPixelsCache::find(const ThreadState& t, const Kind& kind, const Box& box, void* into) const {
-    const bool inside = box.x >= box_.x && box.y >= box_.y && int64_t{box.x} + box.w <= int64_t{box_.x} + box_.w && int64_t{box.y} + box.h <= int64_t{box_.y} + box_.h;
+    const bool inside = box.x >= box_.x && box.y >= box_.y && int64_t{box.x} + box.w <= int64_t{box_.x} + box_.w &&
+                        int64_t{box.y} + box.h <= int64_t{box_.y} + box_.h;
     if (!holds_ || !inside || !nothingSince(t, kind)) return false;
     const size_t rowBytes = size_t(box.w) * kind.groupBytes, stride = size_t(box_.w) * kind.groupBytes;
     const std::byte* from = bytes_ + size_t(box.y - box_.y) * stride + size_t(box.x - box_.x) * kind.groupBytes;
-    for (GLsizei row = 0; row < box.h; ++row) std::memcpy(static_cast<std::byte*>(into) + size_t(row) * rowBytes, from + size_t(row) * stride, rowBytes);
+    for (GLsizei row = 0; row < box.h; ++row)
+        std::memcpy(static_cast<std::byte*>(into) + size_t(row) * rowBytes, from + size_t(row) * stride, rowBytes);
     return true;
 }
 
 ReadPixelsCache::Box ReadPixelsCache::wider(const ThreadState& t, const Kind& kind, const Box& box) const {
     constexpr GLint kFar = 1 << 20;
-    if (!nothingSince(t, kind) || box.w > kSmall || box.h > kSmall || box.x < 0 || box.y < 0 || box.x > kFar || box.y > kFar) return box;
+    if (!nothingSince(t, kind) || box.w > kSmall || box.h > kSmall || box.x < 0 || box.y < 0 || box.x > kFar ||
+        box.y > kFar)
+        return box;
     const auto begin = [](GLint at) { return at / kBlock * kBlock; };
     const auto end = [](GLint at) { return (at + kBlock - 1) / kBlock * kBlock; };
     Box wide{begin(box.x), begin(box.y), 0, 0};

@@ -12,12 +12,13 @@ namespace {
 // Returns whether the driver accepts the pair. GLX answers a mismatch with an X error, which ends most programs.
 bool goTogether(const Context& c, const Window& w) {
     const wire::WindowConfig &a = c.config, &b = w.config;
-    return a.red == b.red && a.green == b.green && a.blue == b.blue && a.alpha == b.alpha && a.depth == b.depth && a.stencil == b.stencil && a.samples == b.samples &&
-           !a.doubleBuffer == !b.doubleBuffer && a.accum == b.accum && a.stereo == b.stereo && a.srgb == b.srgb;
+    return a.red == b.red && a.green == b.green && a.blue == b.blue && a.alpha == b.alpha && a.depth == b.depth &&
+           a.stencil == b.stencil && a.samples == b.samples && !a.doubleBuffer == !b.doubleBuffer &&
+           a.accum == b.accum && a.stereo == b.stereo && a.srgb == b.srgb;
 }
 
-// Returns whether the window keeps its buffers after the context is bound to another one. GLX frees the buffers of a plain X
-// window with the last context that was bound to it.
+// Returns whether the window keeps its buffers after the context is bound to another one. GLX frees the buffers of a
+// plain X window with the last context that was bound to it.
 bool keepsBuffers(const Window* w, const Context& c) {
     if (!w || w->isEgl || w->drawable != w->native) return true;
     return w->holders > (c.held[0] == w) + (c.held[1] == w);
@@ -35,7 +36,8 @@ WindowBinding::WindowBinding(ThreadState& t, Window& w) : t_(t), before_(*t.cont
 // Returns the thread's own context, or one that is current nowhere and was bound to this window last.
 Context* WindowBinding::contextFor(const Window& w) const {
     if (!before_.drawWindow || !before_.readWindow) return nullptr; // its previous state could not be restored
-    const bool leaves = keepsBuffers(findWindowById(before_.drawWindow), before_) && keepsBuffers(findWindowById(before_.readWindow), before_);
+    const bool leaves = keepsBuffers(findWindowById(before_.drawWindow), before_) &&
+                        keepsBuffers(findWindowById(before_.readWindow), before_);
     if (before_.drawWindow == w.id) return leaves ? &before_ : nullptr;
     if (Context* const idle = known::idleHolderOf(w)) return idle;
     return leaves && !w.isEgl && goTogether(before_, w) ? &before_ : nullptr;

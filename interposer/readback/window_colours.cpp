@@ -16,7 +16,9 @@ constexpr ColourReads kFloats{GL_FLOAT, 16, wire::kFloats};
 // Component k of a pixel, and the distance of two values, for each type.
 struct Bytes {
     using Component = uint8_t;
-    static Component at(const void* colours, size_t pixel, size_t k) { return static_cast<const uint8_t*>(colours)[4 * pixel + k]; }
+    static Component at(const void* colours, size_t pixel, size_t k) {
+        return static_cast<const uint8_t*>(colours)[4 * pixel + k];
+    }
     static uint32_t apart(Component a, Component b, size_t) { return static_cast<uint32_t>(a < b ? b - a : a - b); }
     static uint8_t byte(Component a, size_t) { return a; }
 };
@@ -29,8 +31,12 @@ struct TenBits {
         std::memcpy(&word, static_cast<const uint8_t*>(colours) + 4 * pixel, 4);
         return word >> (10 * k) & largest(k);
     }
-    static uint32_t apart(Component a, Component b, size_t k) { return ((a < b ? b - a : a - b) * 255 + largest(k) - 1) / largest(k); }
-    static uint8_t byte(Component a, size_t k) { return static_cast<uint8_t>((2 * a * 255 + largest(k)) / (2 * largest(k))); }
+    static uint32_t apart(Component a, Component b, size_t k) {
+        return ((a < b ? b - a : a - b) * 255 + largest(k) - 1) / largest(k);
+    }
+    static uint8_t byte(Component a, size_t k) {
+        return static_cast<uint8_t>((2 * a * 255 + largest(k)) / (2 * largest(k)));
+    }
 };
 
 struct Floats {

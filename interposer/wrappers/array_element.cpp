@@ -36,7 +36,8 @@ template <class T> GLfloat number(const Element& e, int k, bool normalized) {
     const T value = e.as<T>()[k];
     if (!normalized) return static_cast<GLfloat>(value);
     constexpr double range = sizeof(T) == 1 ? 255.0 : sizeof(T) == 2 ? 65535.0 : 4294967295.0;
-    return static_cast<GLfloat>(static_cast<T>(-1) < 0 ? (2.0 * static_cast<double>(value) + 1.0) / range : static_cast<double>(value) / range);
+    return static_cast<GLfloat>(static_cast<T>(-1) < 0 ? (2.0 * static_cast<double>(value) + 1.0) / range
+                                                       : static_cast<double>(value) / range);
 }
 
 GLfloat component(const Element& e, int k) {
@@ -84,33 +85,36 @@ void fromBgra(Element& e) {
 
 GLuint packed(const Element& e) { return *e.as<GLuint>(); }
 
-#define MURAL_SEND(suffix, T, command) \
-    case suffix: return encode_##command(t, e.as<T>())
-#define MURAL_SEND_SIFD(name) \
-    switch (e.type) { \
-        MURAL_SEND(GL_SHORT, GLshort, name##sv); \
-        MURAL_SEND(GL_INT, GLint, name##iv); \
-        MURAL_SEND(GL_FLOAT, GLfloat, name##fv); \
-        MURAL_SEND(GL_DOUBLE, GLdouble, name##dv); \
-    default: return; \
+#define MURAL_SEND(suffix, T, command)                                                                                 \
+    case suffix:                                                                                                       \
+        return encode_##command(t, e.as<T>())
+#define MURAL_SEND_SIFD(name)                                                                                          \
+    switch (e.type) {                                                                                                  \
+        MURAL_SEND(GL_SHORT, GLshort, name##sv);                                                                       \
+        MURAL_SEND(GL_INT, GLint, name##iv);                                                                           \
+        MURAL_SEND(GL_FLOAT, GLfloat, name##fv);                                                                       \
+        MURAL_SEND(GL_DOUBLE, GLdouble, name##dv);                                                                     \
+    default: return;                                                                                                   \
     }
-#define MURAL_SEND_COLOR(name) \
-    switch (e.type) { \
-        MURAL_SEND(GL_BYTE, GLbyte, name##bv); \
-        MURAL_SEND(GL_UNSIGNED_BYTE, GLubyte, name##ubv); \
-        MURAL_SEND(GL_SHORT, GLshort, name##sv); \
-        MURAL_SEND(GL_UNSIGNED_SHORT, GLushort, name##usv); \
-        MURAL_SEND(GL_INT, GLint, name##iv); \
-        MURAL_SEND(GL_UNSIGNED_INT, GLuint, name##uiv); \
-        MURAL_SEND(GL_FLOAT, GLfloat, name##fv); \
-        MURAL_SEND(GL_DOUBLE, GLdouble, name##dv); \
-    default: return; \
+#define MURAL_SEND_COLOR(name)                                                                                         \
+    switch (e.type) {                                                                                                  \
+        MURAL_SEND(GL_BYTE, GLbyte, name##bv);                                                                         \
+        MURAL_SEND(GL_UNSIGNED_BYTE, GLubyte, name##ubv);                                                              \
+        MURAL_SEND(GL_SHORT, GLshort, name##sv);                                                                       \
+        MURAL_SEND(GL_UNSIGNED_SHORT, GLushort, name##usv);                                                            \
+        MURAL_SEND(GL_INT, GLint, name##iv);                                                                           \
+        MURAL_SEND(GL_UNSIGNED_INT, GLuint, name##uiv);                                                                \
+        MURAL_SEND(GL_FLOAT, GLfloat, name##fv);                                                                       \
+        MURAL_SEND(GL_DOUBLE, GLdouble, name##dv);                                                                     \
+    default: return;                                                                                                   \
     }
 
 void sendVertex(ThreadState& t, const Element& e) {
     if (sizes::isPackedVertexType(e.type)) {
         const GLuint value = packed(e);
-        return e.size == 2 ? encode_glVertexP2ui(t, e.type, value) : e.size == 3 ? encode_glVertexP3ui(t, e.type, value) : encode_glVertexP4ui(t, e.type, value);
+        return e.size == 2   ? encode_glVertexP2ui(t, e.type, value)
+               : e.size == 3 ? encode_glVertexP3ui(t, e.type, value)
+                             : encode_glVertexP4ui(t, e.type, value);
     }
     if (e.size == 2) MURAL_SEND_SIFD(glVertex2)
     if (e.size == 3) MURAL_SEND_SIFD(glVertex3)
@@ -118,7 +122,8 @@ void sendVertex(ThreadState& t, const Element& e) {
 }
 
 void sendColor(ThreadState& t, const Element& e) {
-    if (sizes::isPackedVertexType(e.type)) return e.size == 3 ? encode_glColorP3ui(t, e.type, packed(e)) : encode_glColorP4ui(t, e.type, packed(e));
+    if (sizes::isPackedVertexType(e.type))
+        return e.size == 3 ? encode_glColorP3ui(t, e.type, packed(e)) : encode_glColorP4ui(t, e.type, packed(e));
     if (e.size == 3) MURAL_SEND_COLOR(glColor3)
     MURAL_SEND_COLOR(glColor4)
 }
@@ -135,13 +140,13 @@ void sendNormal(ThreadState& t, const Element& e) {
 }
 
 void sendTexCoord(ThreadState& t, GLenum unit, const Element& e) {
-#define MURAL_SEND_UNIT(n) \
-    switch (e.type) { \
-    case GL_SHORT: return encode_glMultiTexCoord##n##sv(t, unit, e.as<GLshort>()); \
-    case GL_INT: return encode_glMultiTexCoord##n##iv(t, unit, e.as<GLint>()); \
-    case GL_FLOAT: return encode_glMultiTexCoord##n##fv(t, unit, e.as<GLfloat>()); \
-    case GL_DOUBLE: return encode_glMultiTexCoord##n##dv(t, unit, e.as<GLdouble>()); \
-    default: return encode_glMultiTexCoordP##n##ui(t, unit, e.type, packed(e)); \
+#define MURAL_SEND_UNIT(n)                                                                                             \
+    switch (e.type) {                                                                                                  \
+    case GL_SHORT: return encode_glMultiTexCoord##n##sv(t, unit, e.as<GLshort>());                                     \
+    case GL_INT: return encode_glMultiTexCoord##n##iv(t, unit, e.as<GLint>());                                         \
+    case GL_FLOAT: return encode_glMultiTexCoord##n##fv(t, unit, e.as<GLfloat>());                                     \
+    case GL_DOUBLE: return encode_glMultiTexCoord##n##dv(t, unit, e.as<GLdouble>());                                   \
+    default: return encode_glMultiTexCoordP##n##ui(t, unit, e.type, packed(e));                                        \
     }
     if (e.size == 1) MURAL_SEND_UNIT(1)
     if (e.size == 2) MURAL_SEND_UNIT(2)
@@ -213,21 +218,25 @@ void sendSlot(ThreadState& t, uint32_t slot, Element& e) {
     case kNormal: return sendNormal(t, e);
     case kColor: return sendColor(t, e);
     case kSecondaryColor: return sendSecondaryColor(t, e);
-    case kFogCoord: return e.type == GL_DOUBLE ? encode_glFogCoorddv(t, e.as<GLdouble>()) : encode_glFogCoordfv(t, e.as<GLfloat>());
+    case kFogCoord:
+        return e.type == GL_DOUBLE ? encode_glFogCoorddv(t, e.as<GLdouble>()) : encode_glFogCoordfv(t, e.as<GLfloat>());
     case kIndex: return sendIndex(t, e);
     case kEdgeFlag: return encode_glEdgeFlagv(t, e.as<GLboolean>());
     case kPointSize: return; // ES only
     default: break;
     }
-    if (slot < kGeneric0) sendTexCoord(t, GL_TEXTURE0 + slot - kTexCoord0, e);
-    else sendGeneric(t, slot - kGeneric0, e);
+    if (slot < kGeneric0)
+        sendTexCoord(t, GL_TEXTURE0 + slot - kTexCoord0, e);
+    else
+        sendGeneric(t, slot - kGeneric0, e);
 }
 
 // The buffer of an array. 0: the driver gives no answer, because it draws itself and is between glBegin and glEnd.
 GLint bufferOf(uint32_t slot) {
-    static constexpr GLenum kBindings[] = {GL_VERTEX_ARRAY_BUFFER_BINDING, GL_NORMAL_ARRAY_BUFFER_BINDING, GL_COLOR_ARRAY_BUFFER_BINDING,
-                                           GL_SECONDARY_COLOR_ARRAY_BUFFER_BINDING, GL_FOG_COORDINATE_ARRAY_BUFFER_BINDING,
-                                           GL_INDEX_ARRAY_BUFFER_BINDING, GL_EDGE_FLAG_ARRAY_BUFFER_BINDING};
+    static constexpr GLenum kBindings[] = {
+        GL_VERTEX_ARRAY_BUFFER_BINDING,          GL_NORMAL_ARRAY_BUFFER_BINDING,         GL_COLOR_ARRAY_BUFFER_BINDING,
+        GL_SECONDARY_COLOR_ARRAY_BUFFER_BINDING, GL_FOG_COORDINATE_ARRAY_BUFFER_BINDING, GL_INDEX_ARRAY_BUFFER_BINDING,
+        GL_EDGE_FLAG_ARRAY_BUFFER_BINDING};
     GLint buffer = 0;
     if (slot >= kGeneric0) {
         gReal.glGetVertexAttribiv(slot - kGeneric0, GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING, &buffer);
@@ -265,8 +274,10 @@ void sendArray(ThreadState& t, const VertexArray& va, uint32_t slot, GLint i) {
     e.flags = a.flags;
     const int64_t stride = a.stride > 0 ? a.stride : bytes;
     const auto* at = static_cast<const std::byte*>(a.pointer) + a.relative + stride * i;
-    if (va.isClient(slot)) std::memcpy(e.bytes, at, bytes);
-    else if (!copyFromBuffer(t, slot, at, bytes, e.bytes)) return;
+    if (va.isClient(slot))
+        std::memcpy(e.bytes, at, bytes);
+    else if (!copyFromBuffer(t, slot, at, bytes, e.bytes))
+        return;
     sendSlot(t, slot, e);
 }
 
@@ -279,8 +290,10 @@ void sendElement(ThreadState& t, Context& c, GLint i) {
     for (uint32_t slot = kVertex + 1; slot < kSlots; ++slot) {
         if (enabled(slot) && slot != kGeneric0) sendArray(t, va, slot, i);
     }
-    if (enabled(kGeneric0)) sendArray(t, va, kGeneric0, i); // replaces the vertex
-    else if (enabled(kVertex)) sendArray(t, va, kVertex, i);
+    if (enabled(kGeneric0))
+        sendArray(t, va, kGeneric0, i); // replaces the vertex
+    else if (enabled(kVertex))
+        sendArray(t, va, kVertex, i);
 }
 
 } // namespace mural

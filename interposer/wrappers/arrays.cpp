@@ -16,24 +16,29 @@ namespace {
 bool isUsual(const Context& c, GLint size, GLenum type, GLsizei stride) {
     const bool floats = type == GL_FLOAT && size >= 3 && size <= 4, bytes = type == GL_UNSIGNED_BYTE && size == 4;
     constexpr GLsizei kStride = 2048; // minimum of GL_MAX_VERTEX_ATTRIB_STRIDE
-    return (floats || bytes) && stride >= 0 && stride <= kStride && !c.core && (c.arrays.arrayBuffer() || c.arrays.currentName() == 0);
+    return (floats || bytes) && stride >= 0 && stride <= kStride && !c.core &&
+           (c.arrays.arrayBuffer() || c.arrays.currentName() == 0);
 }
 
 // Calls the program's own context. If it accepts the call, updates the mirror, and calls `send` if the pointer is an
 // offset that the nodes need now.
 template <class Local, class Send>
-void point(uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* pointer, uint32_t flags, Local&& local, Send&& send) {
+void point(uint32_t slot, GLint size, GLenum type, GLsizei stride, const void* pointer, uint32_t flags, Local&& local,
+           Send&& send) {
     ThreadState& t = *tThread;
     if (!t.context) return local();
     const bool fewTypes = slot == kVertex || slot == kNormal || (slot >= kTexCoord0 && slot < kTexCoord0 + kTexCoords);
     const bool refusable = slot == kSecondaryColor || (fewTypes && type == GL_UNSIGNED_BYTE);
-    if (!refusable && isUsual(*t.context, size, type, stride)) local();
-    else if (!raisesNothing(*t.context, local)) return;
+    if (!refusable && isUsual(*t.context, size, type, stride))
+        local();
+    else if (!raisesNothing(*t.context, local))
+        return;
     if (!t.context->arrays.setPointer(slot, size, type, stride, flags, pointer)) send(t);
 }
 
 // For the named array. Returns false if the program's own context rejects the call.
-template <class Local> bool formatOf(GLuint array, GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
+template <class Local>
+bool formatOf(GLuint array, GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
     ThreadState& t = *tThread;
     if (!t.context) return local(), false;
     if (!raisesNothing(*t.context, local)) return false;
@@ -41,12 +46,17 @@ template <class Local> bool formatOf(GLuint array, GLuint index, GLint size, GLe
     if (index < kGenerics) t.context->arrays.setFormat(array, kGeneric0 + index, size, type, flags, offset);
     return true;
 }
-template <class Local> bool format(GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
-    return formatOf(tThread->context ? tThread->context->arrays.currentName() : 0, index, size, type, flags, relative, local);
+template <class Local>
+bool format(GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative, Local&& local) {
+    return formatOf(tThread->context ? tThread->context->arrays.currentName() : 0, index, size, type, flags, relative,
+                    local);
 }
 
-template <class Encode, class Real> void formatNamed(Encode encode, Real real, GLuint array, GLuint index, GLint size, GLenum type, uint32_t flags, GLuint relative) {
-    if (formatOf(array, index, size, type, flags, relative, [=] { real(array, index, size, type, relative); })) encode(*tThread, array, index, size, type, relative);
+template <class Encode, class Real>
+void formatNamed(Encode encode, Real real, GLuint array, GLuint index, GLint size, GLenum type, uint32_t flags,
+                 GLuint relative) {
+    if (formatOf(array, index, size, type, flags, relative, [=] { real(array, index, size, type, relative); }))
+        encode(*tThread, array, index, size, type, relative);
 }
 
 void enableSlot(ThreadState& t, uint32_t slot, bool on) {
@@ -59,7 +69,8 @@ void enableNamed(ThreadState& t, GLuint array, uint32_t slot, bool on) {
     VertexArrayMirror& mirror = t.context->arrays;
     if (mirror.knows(array) || gReal.glIsVertexArray(array)) mirror.enableIn(array, slot, on);
 }
-template <class Encode, class Real> void switchNamed(Encode encode, Real real, GLuint array, GLuint which, uint32_t slot, bool on) {
+template <class Encode, class Real>
+void switchNamed(Encode encode, Real real, GLuint array, GLuint which, uint32_t slot, bool on) {
     ThreadState& t = *tThread;
     if (!t.context) return real(array, which);
     if (!raisesNothing(*t.context, [&] { real(array, which); })) return; // EXT_direct_state_access has no array 0
@@ -88,7 +99,8 @@ template <class Call> void withUnit(GLenum unit, Call&& call) {
 
 // Mesa accepts client arrays in glEnable and glDisable, with the effect of glEnableClientState.
 bool isClientArray(GLenum cap) {
-    return (cap >= GL_VERTEX_ARRAY && cap <= GL_EDGE_FLAG_ARRAY) || cap == GL_FOG_COORD_ARRAY || cap == GL_SECONDARY_COLOR_ARRAY;
+    return (cap >= GL_VERTEX_ARRAY && cap <= GL_EDGE_FLAG_ARRAY) || cap == GL_FOG_COORD_ARRAY ||
+           cap == GL_SECONDARY_COLOR_ARRAY;
 }
 void switchClientArray(ThreadState& t, GLenum array, bool on) {
     const auto local = [=] { on ? gReal.glEnable(array) : gReal.glDisable(array); };
@@ -104,78 +116,109 @@ extern "C" {
 
 void mural_glEnable(GLenum cap) {
     ThreadState& t = *tThread;
-    if (isClientArray(cap)) [[unlikely]] return switchClientArray(t, cap, true);
+    if (isClientArray(cap)) [[unlikely]]
+        return switchClientArray(t, cap, true);
     encode_glEnable(t, cap);
     gReal.glEnable(cap);
 }
 void mural_glDisable(GLenum cap) {
     ThreadState& t = *tThread;
-    if (isClientArray(cap)) [[unlikely]] return switchClientArray(t, cap, false);
+    if (isClientArray(cap)) [[unlikely]]
+        return switchClientArray(t, cap, false);
     encode_glDisable(t, cap);
     gReal.glDisable(cap);
 }
 
 void mural_glVertexPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    point(kVertex, size, type, stride, pointer, 0, [=] { gReal.glVertexPointer(size, type, stride, pointer); },
-          [=](ThreadState& t) { encode_glVertexPointer(t, size, type, stride, pointer); });
+    point(
+        kVertex, size, type, stride, pointer, 0, [=] { gReal.glVertexPointer(size, type, stride, pointer); },
+        [=](ThreadState& t) { encode_glVertexPointer(t, size, type, stride, pointer); });
 }
 void mural_glNormalPointer(GLenum type, GLsizei stride, const void* pointer) {
-    point(kNormal, 3, type, stride, pointer, 0, [=] { gReal.glNormalPointer(type, stride, pointer); },
-          [=](ThreadState& t) { encode_glNormalPointer(t, type, stride, pointer); });
+    point(
+        kNormal, 3, type, stride, pointer, 0, [=] { gReal.glNormalPointer(type, stride, pointer); },
+        [=](ThreadState& t) { encode_glNormalPointer(t, type, stride, pointer); });
 }
 void mural_glColorPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    point(kColor, size, type, stride, pointer, 0, [=] { gReal.glColorPointer(size, type, stride, pointer); },
-          [=](ThreadState& t) { encode_glColorPointer(t, size, type, stride, pointer); });
+    point(
+        kColor, size, type, stride, pointer, 0, [=] { gReal.glColorPointer(size, type, stride, pointer); },
+        [=](ThreadState& t) { encode_glColorPointer(t, size, type, stride, pointer); });
 }
 void mural_glSecondaryColorPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    point(kSecondaryColor, size, type, stride, pointer, 0, [=] { gReal.glSecondaryColorPointer(size, type, stride, pointer); },
-          [=](ThreadState& t) { encode_glSecondaryColorPointer(t, size, type, stride, pointer); });
+    point(
+        kSecondaryColor, size, type, stride, pointer, 0,
+        [=] { gReal.glSecondaryColorPointer(size, type, stride, pointer); },
+        [=](ThreadState& t) { encode_glSecondaryColorPointer(t, size, type, stride, pointer); });
 }
 void mural_glTexCoordPointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
     const ThreadState& thread = *tThread;
     const uint32_t slot = thread.context ? thread.context->arrays.texCoordSlot() : kTexCoord0;
-    point(slot, size, type, stride, pointer, 0, [=] { gReal.glTexCoordPointer(size, type, stride, pointer); },
-          [=](ThreadState& t) { encode_glTexCoordPointer(t, size, type, stride, pointer); });
+    point(
+        slot, size, type, stride, pointer, 0, [=] { gReal.glTexCoordPointer(size, type, stride, pointer); },
+        [=](ThreadState& t) { encode_glTexCoordPointer(t, size, type, stride, pointer); });
 }
 void mural_glFogCoordPointer(GLenum type, GLsizei stride, const void* pointer) {
-    point(kFogCoord, 1, type, stride, pointer, 0, [=] { gReal.glFogCoordPointer(type, stride, pointer); },
-          [=](ThreadState& t) { encode_glFogCoordPointer(t, type, stride, pointer); });
+    point(
+        kFogCoord, 1, type, stride, pointer, 0, [=] { gReal.glFogCoordPointer(type, stride, pointer); },
+        [=](ThreadState& t) { encode_glFogCoordPointer(t, type, stride, pointer); });
 }
 void mural_glIndexPointer(GLenum type, GLsizei stride, const void* pointer) {
-    point(kIndex, 1, type, stride, pointer, 0, [=] { gReal.glIndexPointer(type, stride, pointer); },
-          [=](ThreadState& t) { encode_glIndexPointer(t, type, stride, pointer); });
+    point(
+        kIndex, 1, type, stride, pointer, 0, [=] { gReal.glIndexPointer(type, stride, pointer); },
+        [=](ThreadState& t) { encode_glIndexPointer(t, type, stride, pointer); });
 }
 void mural_glEdgeFlagPointer(GLsizei stride, const void* pointer) {
-    point(kEdgeFlag, 1, GL_UNSIGNED_BYTE, stride, pointer, 0, [=] { gReal.glEdgeFlagPointer(stride, pointer); },
-          [=](ThreadState& t) { encode_glEdgeFlagPointer(t, stride, pointer); });
+    point(
+        kEdgeFlag, 1, GL_UNSIGNED_BYTE, stride, pointer, 0, [=] { gReal.glEdgeFlagPointer(stride, pointer); },
+        [=](ThreadState& t) { encode_glEdgeFlagPointer(t, stride, pointer); });
 }
 void mural_glPointSizePointerOES(GLenum type, GLsizei stride, const void* pointer) {
-    point(kPointSize, 1, type, stride, pointer, 0, [=] { gReal.glPointSizePointerOES(type, stride, pointer); },
-          [=](ThreadState& t) { encode_glPointSizePointerOES(t, type, stride, pointer); });
+    point(
+        kPointSize, 1, type, stride, pointer, 0, [=] { gReal.glPointSizePointerOES(type, stride, pointer); },
+        [=](ThreadState& t) { encode_glPointSizePointerOES(t, type, stride, pointer); });
 }
-void mural_glVertexAttribPointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride, const void* pointer) {
+void mural_glVertexAttribPointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
+                                 const void* pointer) {
     if (index >= kGenerics) return gReal.glVertexAttribPointer(index, size, type, normalized, stride, pointer);
-    point(kGeneric0 + index, size, type, stride, pointer, normalized ? uint32_t{kNormalized} : 0, [=] { gReal.glVertexAttribPointer(index, size, type, normalized, stride, pointer); },
-          [=](ThreadState& t) { encode_glVertexAttribPointer(t, index, size, type, normalized, stride, pointer); });
+    point(
+        kGeneric0 + index, size, type, stride, pointer, normalized ? uint32_t{kNormalized} : 0,
+        [=] { gReal.glVertexAttribPointer(index, size, type, normalized, stride, pointer); },
+        [=](ThreadState& t) { encode_glVertexAttribPointer(t, index, size, type, normalized, stride, pointer); });
 }
 void mural_glVertexAttribIPointer(GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
     if (index >= kGenerics) return gReal.glVertexAttribIPointer(index, size, type, stride, pointer);
-    point(kGeneric0 + index, size, type, stride, pointer, kInteger, [=] { gReal.glVertexAttribIPointer(index, size, type, stride, pointer); },
-          [=](ThreadState& t) { encode_glVertexAttribIPointer(t, index, size, type, stride, pointer); });
+    point(
+        kGeneric0 + index, size, type, stride, pointer, kInteger,
+        [=] { gReal.glVertexAttribIPointer(index, size, type, stride, pointer); },
+        [=](ThreadState& t) { encode_glVertexAttribIPointer(t, index, size, type, stride, pointer); });
 }
 void mural_glVertexAttribLPointer(GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
     if (index >= kGenerics) return gReal.glVertexAttribLPointer(index, size, type, stride, pointer);
-    point(kGeneric0 + index, size, type, stride, pointer, kLong, [=] { gReal.glVertexAttribLPointer(index, size, type, stride, pointer); },
-          [=](ThreadState& t) { encode_glVertexAttribLPointer(t, index, size, type, stride, pointer); });
+    point(
+        kGeneric0 + index, size, type, stride, pointer, kLong,
+        [=] { gReal.glVertexAttribLPointer(index, size, type, stride, pointer); },
+        [=](ThreadState& t) { encode_glVertexAttribLPointer(t, index, size, type, stride, pointer); });
 }
 
 // EXT_vertex_array: the same with an unused count.
-void mural_glVertexPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glVertexPointer(size, type, stride, pointer); }
-void mural_glNormalPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glNormalPointer(type, stride, pointer); }
-void mural_glColorPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glColorPointer(size, type, stride, pointer); }
-void mural_glTexCoordPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glTexCoordPointer(size, type, stride, pointer); }
-void mural_glIndexPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) { mural_glIndexPointer(type, stride, pointer); }
-void mural_glEdgeFlagPointerEXT(GLsizei stride, GLsizei, const GLboolean* pointer) { mural_glEdgeFlagPointer(stride, pointer); }
+void mural_glVertexPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) {
+    mural_glVertexPointer(size, type, stride, pointer);
+}
+void mural_glNormalPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) {
+    mural_glNormalPointer(type, stride, pointer);
+}
+void mural_glColorPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) {
+    mural_glColorPointer(size, type, stride, pointer);
+}
+void mural_glTexCoordPointerEXT(GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) {
+    mural_glTexCoordPointer(size, type, stride, pointer);
+}
+void mural_glIndexPointerEXT(GLenum type, GLsizei stride, GLsizei, const void* pointer) {
+    mural_glIndexPointer(type, stride, pointer);
+}
+void mural_glEdgeFlagPointerEXT(GLsizei stride, GLsizei, const GLboolean* pointer) {
+    mural_glEdgeFlagPointer(stride, pointer);
+}
 
 // GL 4.6 compatibility, table 10.5 defines the command by its equivalents.
 void mural_glInterleavedArrays(GLenum format, GLsizei stride, const void* pointer) {
@@ -214,7 +257,9 @@ void mural_glInterleavedArrays(GLenum format, GLsizei stride, const void* pointe
     }
     const GLsizei step = stride ? stride : row->total;
     const auto* p = static_cast<const std::byte*>(pointer);
-    const auto part = [&](bool on, GLenum array) { on ? mural_glEnableClientState(array) : mural_glDisableClientState(array); };
+    const auto part = [&](bool on, GLenum array) {
+        on ? mural_glEnableClientState(array) : mural_glDisableClientState(array);
+    };
     part(false, GL_EDGE_FLAG_ARRAY);
     part(false, GL_INDEX_ARRAY);
     part(false, GL_SECONDARY_COLOR_ARRAY);
@@ -267,16 +312,36 @@ void mural_glDisableVertexAttribArray(GLuint index) {
     encode_glDisableVertexAttribArray(t, index);
     gReal.glDisableVertexAttribArray(index);
 }
-void mural_glEnableVertexArrayAttrib(GLuint vaobj, GLuint index) { switchNamed(encode_glEnableVertexArrayAttrib, gReal.glEnableVertexArrayAttrib, vaobj, index, genericSlot(index), true); }
-void mural_glDisableVertexArrayAttrib(GLuint vaobj, GLuint index) { switchNamed(encode_glDisableVertexArrayAttrib, gReal.glDisableVertexArrayAttrib, vaobj, index, genericSlot(index), false); }
-void mural_glEnableVertexArrayAttribEXT(GLuint vaobj, GLuint index) { switchNamed(encode_glEnableVertexArrayAttribEXT, gReal.glEnableVertexArrayAttribEXT, vaobj, index, genericSlot(index), true); }
-void mural_glDisableVertexArrayAttribEXT(GLuint vaobj, GLuint index) { switchNamed(encode_glDisableVertexArrayAttribEXT, gReal.glDisableVertexArrayAttribEXT, vaobj, index, genericSlot(index), false); }
-void mural_glEnableVertexArrayEXT(GLuint vaobj, GLenum array) { switchNamed(encode_glEnableVertexArrayEXT, gReal.glEnableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array), true); }
-void mural_glDisableVertexArrayEXT(GLuint vaobj, GLenum array) { switchNamed(encode_glDisableVertexArrayEXT, gReal.glDisableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array), false); }
+void mural_glEnableVertexArrayAttrib(GLuint vaobj, GLuint index) {
+    switchNamed(encode_glEnableVertexArrayAttrib, gReal.glEnableVertexArrayAttrib, vaobj, index, genericSlot(index),
+                true);
+}
+void mural_glDisableVertexArrayAttrib(GLuint vaobj, GLuint index) {
+    switchNamed(encode_glDisableVertexArrayAttrib, gReal.glDisableVertexArrayAttrib, vaobj, index, genericSlot(index),
+                false);
+}
+void mural_glEnableVertexArrayAttribEXT(GLuint vaobj, GLuint index) {
+    switchNamed(encode_glEnableVertexArrayAttribEXT, gReal.glEnableVertexArrayAttribEXT, vaobj, index,
+                genericSlot(index), true);
+}
+void mural_glDisableVertexArrayAttribEXT(GLuint vaobj, GLuint index) {
+    switchNamed(encode_glDisableVertexArrayAttribEXT, gReal.glDisableVertexArrayAttribEXT, vaobj, index,
+                genericSlot(index), false);
+}
+void mural_glEnableVertexArrayEXT(GLuint vaobj, GLenum array) {
+    switchNamed(encode_glEnableVertexArrayEXT, gReal.glEnableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array),
+                true);
+}
+void mural_glDisableVertexArrayEXT(GLuint vaobj, GLenum array) {
+    switchNamed(encode_glDisableVertexArrayEXT, gReal.glDisableVertexArrayEXT, vaobj, array, namedSlot(*tThread, array),
+                false);
+}
 void mural_glClientActiveTexture(GLenum texture) {
     ThreadState& t = *tThread;
-    if (!t.context || (texture - GL_TEXTURE0 < kUnitsOfAll && !t.context->core)) gReal.glClientActiveTexture(texture);
-    else if (!raisesNothing(*t.context, [=] { gReal.glClientActiveTexture(texture); })) return;
+    if (!t.context || (texture - GL_TEXTURE0 < kUnitsOfAll && !t.context->core))
+        gReal.glClientActiveTexture(texture);
+    else if (!raisesNothing(*t.context, [=] { gReal.glClientActiveTexture(texture); }))
+        return;
     if (t.context) t.context->arrays.activeTexture(texture);
     encode_glClientActiveTexture(t, texture);
 }
@@ -309,8 +374,10 @@ void mural_glPopClientAttrib() {
 }
 void mural_glBindVertexArray(GLuint array) {
     ThreadState& t = *tThread;
-    if (!t.context || t.context->arrays.knows(array)) gReal.glBindVertexArray(array);
-    else if (!raisesNothing(*t.context, [=] { gReal.glBindVertexArray(array); })) return;
+    if (!t.context || t.context->arrays.knows(array))
+        gReal.glBindVertexArray(array);
+    else if (!raisesNothing(*t.context, [=] { gReal.glBindVertexArray(array); }))
+        return;
     if (t.context) t.context->arrays.bind(array);
     encode_glBindVertexArray(t, array);
 }
@@ -323,29 +390,47 @@ void mural_glDeleteVertexArrays(GLsizei n, const GLuint* arrays) {
 
 // Formats also apply to client memory.
 void mural_glVertexAttribFormat(GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
-    if (format(index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexAttribFormat(index, size, type, normalized, relative); }))
+    if (format(index, size, type, normalized ? uint32_t{kNormalized} : 0, relative,
+               [=] { gReal.glVertexAttribFormat(index, size, type, normalized, relative); }))
         encode_glVertexAttribFormat(*tThread, index, size, type, normalized, relative);
 }
 void mural_glVertexAttribIFormat(GLuint index, GLint size, GLenum type, GLuint relative) {
-    if (format(index, size, type, kInteger, relative, [=] { gReal.glVertexAttribIFormat(index, size, type, relative); }))
+    if (format(index, size, type, kInteger, relative,
+               [=] { gReal.glVertexAttribIFormat(index, size, type, relative); }))
         encode_glVertexAttribIFormat(*tThread, index, size, type, relative);
 }
 void mural_glVertexAttribLFormat(GLuint index, GLint size, GLenum type, GLuint relative) {
     if (format(index, size, type, kLong, relative, [=] { gReal.glVertexAttribLFormat(index, size, type, relative); }))
         encode_glVertexAttribLFormat(*tThread, index, size, type, relative);
 }
-void mural_glVertexArrayAttribFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
-    if (formatOf(vaobj, index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexArrayAttribFormat(vaobj, index, size, type, normalized, relative); }))
+void mural_glVertexArrayAttribFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLboolean normalized,
+                                     GLuint relative) {
+    if (formatOf(vaobj, index, size, type, normalized ? uint32_t{kNormalized} : 0, relative,
+                 [=] { gReal.glVertexArrayAttribFormat(vaobj, index, size, type, normalized, relative); }))
         encode_glVertexArrayAttribFormat(*tThread, vaobj, index, size, type, normalized, relative);
 }
-void mural_glVertexArrayAttribIFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayAttribIFormat, gReal.glVertexArrayAttribIFormat, vaobj, index, size, type, kInteger, relative); }
-void mural_glVertexArrayAttribLFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayAttribLFormat, gReal.glVertexArrayAttribLFormat, vaobj, index, size, type, kLong, relative); }
-void mural_glVertexArrayVertexAttribFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLboolean normalized, GLuint relative) {
-    if (formatOf(vaobj, index, size, type, normalized ? uint32_t{kNormalized} : 0, relative, [=] { gReal.glVertexArrayVertexAttribFormatEXT(vaobj, index, size, type, normalized, relative); }))
+void mural_glVertexArrayAttribIFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) {
+    formatNamed(encode_glVertexArrayAttribIFormat, gReal.glVertexArrayAttribIFormat, vaobj, index, size, type, kInteger,
+                relative);
+}
+void mural_glVertexArrayAttribLFormat(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) {
+    formatNamed(encode_glVertexArrayAttribLFormat, gReal.glVertexArrayAttribLFormat, vaobj, index, size, type, kLong,
+                relative);
+}
+void mural_glVertexArrayVertexAttribFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLboolean normalized,
+                                              GLuint relative) {
+    if (formatOf(vaobj, index, size, type, normalized ? uint32_t{kNormalized} : 0, relative,
+                 [=] { gReal.glVertexArrayVertexAttribFormatEXT(vaobj, index, size, type, normalized, relative); }))
         encode_glVertexArrayVertexAttribFormatEXT(*tThread, vaobj, index, size, type, normalized, relative);
 }
-void mural_glVertexArrayVertexAttribIFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayVertexAttribIFormatEXT, gReal.glVertexArrayVertexAttribIFormatEXT, vaobj, index, size, type, kInteger, relative); }
-void mural_glVertexArrayVertexAttribLFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) { formatNamed(encode_glVertexArrayVertexAttribLFormatEXT, gReal.glVertexArrayVertexAttribLFormatEXT, vaobj, index, size, type, kLong, relative); }
+void mural_glVertexArrayVertexAttribIFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) {
+    formatNamed(encode_glVertexArrayVertexAttribIFormatEXT, gReal.glVertexArrayVertexAttribIFormatEXT, vaobj, index,
+                size, type, kInteger, relative);
+}
+void mural_glVertexArrayVertexAttribLFormatEXT(GLuint vaobj, GLuint index, GLint size, GLenum type, GLuint relative) {
+    formatNamed(encode_glVertexArrayVertexAttribLFormatEXT, gReal.glVertexArrayVertexAttribLFormatEXT, vaobj, index,
+                size, type, kLong, relative);
+}
 void mural_glBindBuffer(GLenum target, GLuint buffer) {
     ThreadState& t = *tThread;
     if (target != GL_PIXEL_PACK_BUFFER) bufferUsed(t, buffer);

@@ -101,7 +101,8 @@ const void* elementBufferContent(ThreadState& t, const Context& c, GLintptr offs
         return copy;
     }
     if (!gReal.glMapBufferRange || !gReal.glUnmapBuffer) return nullptr;
-    const void* mapped = gReal.glMapBufferRange(GL_ELEMENT_ARRAY_BUFFER, offset, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT);
+    const void* mapped =
+        gReal.glMapBufferRange(GL_ELEMENT_ARRAY_BUFFER, offset, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT);
     if (!mapped) return nullptr;
     std::memcpy(copy, mapped, bytes);
     gReal.glUnmapBuffer(GL_ELEMENT_ARRAY_BUFFER);
@@ -116,7 +117,8 @@ int64_t restartIndexOf(const Context& c) {
     return static_cast<uint32_t>(index);
 }
 
-VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices, GLint baseVertex) {
+VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices,
+                         GLint baseVertex) {
     const uint32_t bytes = sizes::typeBytes(type);
     if (count <= 0 || bytes == 0 || bytes > 4) return {};
     const auto n = static_cast<size_t>(count);

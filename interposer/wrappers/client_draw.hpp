@@ -20,7 +20,8 @@ void sendClientArrays(ThreadState& t, Context& c, const VertexRange& range);
 
 // The range of the `count` indices at `indices` (client memory, or an offset into the element buffer), with baseVertex
 // added.
-VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices, GLint baseVertex);
+VertexRange indexedRange(ThreadState& t, const Context& c, GLsizei count, GLenum type, const void* indices,
+                         GLint baseVertex);
 
 // The program's primitive restart index, or kNoRestart; without GL_PRIMITIVE_RESTART_FIXED_INDEX.
 int64_t restartIndexOf(const Context& c);

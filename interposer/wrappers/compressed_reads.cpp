@@ -38,24 +38,31 @@ Image imageByName(ThreadState& t, GLuint texture, GLint level) {
 }
 
 sizes::ImageLayout layoutOf(ThreadState& t, GLenum format, const Level& size, int dimensions) {
-    return sizes::compressedLayoutOf(compressedPackStore(*t.context), format, size.width, size.height, size.depth, dimensions);
+    return sizes::compressedLayoutOf(compressedPackStore(*t.context), format, size.width, size.height, size.depth,
+                                     dimensions);
 }
 
-void read(ThreadState& t, bool byName, GLuint which, GLint level, const Image& image, void* pixels, const char* by = __builtin_FUNCTION()) {
-    askAndDeliver(t, {byName, which, level, 0, 0, image.bytes()}, pixels, layoutOf(t, image.format, image.size, image.dimensions), by);
+void read(ThreadState& t, bool byName, GLuint which, GLint level, const Image& image, void* pixels,
+          const char* by = __builtin_FUNCTION()) {
+    askAndDeliver(t, {byName, which, level, 0, 0, image.bytes()}, pixels,
+                  layoutOf(t, image.format, image.size, image.dimensions), by);
 }
 
 Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
-    const auto along = [](GLint count, uint32_t per) { return (count + static_cast<GLint>(per) - 1) / static_cast<GLint>(per); };
+    const auto along = [](GLint count, uint32_t per) {
+        return (count + static_cast<GLint>(per) - 1) / static_cast<GLint>(per);
+    };
     return {along(texels.width, block.width), along(texels.height, block.height), along(texels.depth, block.depth)};
 }
 
 // Executes the driver's own call first. It raises errors, and returns data in case the nodes have no answer.
-template <class Local> void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
+template <class Local>
+void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
     if (!packsAhead(t, local)) return;
-    const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
+    const Image image = imageOf(
+        target, [=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
     read(t, false, target, level, image, pixels, by);
 }
 
@@ -81,16 +88,22 @@ void mural_glGetCompressedTextureImage(GLuint texture, GLint level, GLsizei bufS
 }
 
 // Reads a part: requests the whole level and copies the part's blocks.
-void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLsizei width, GLsizei height, GLsizei depth, GLsizei bufSize, void* pixels) {
+void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset,
+                                          GLsizei width, GLsizei height, GLsizei depth, GLsizei bufSize, void* pixels) {
     ThreadState& t = *tThread;
-    const auto local = [&] { gReal.glGetCompressedTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, bufSize, pixels); };
+    const auto local = [&] {
+        gReal.glGetCompressedTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, bufSize,
+                                             pixels);
+    };
     if (!capturing(t)) return local();
     if (!packsAhead(t, local) || width <= 0 || height <= 0 || depth <= 0) return;
     const Image image = imageByName(t, texture, level);
     const sizes::CompressedBlock block = sizes::compressedBlock(image.format);
     const Level size{width, height, depth};
-    const ImagePart part{inBlocks(image.size, block), inBlocks({xoffset, yoffset, zoffset}, block), inBlocks(size, block), block.bytes};
-    askAndDeliver(t, {true, texture, level, 0, 0, image.bytes(), part}, pixels, layoutOf(t, image.format, size, image.dimensions), __func__);
+    const ImagePart part{inBlocks(image.size, block), inBlocks({xoffset, yoffset, zoffset}, block),
+                         inBlocks(size, block), block.bytes};
+    askAndDeliver(t, {true, texture, level, 0, 0, image.bytes(), part}, pixels,
+                  layoutOf(t, image.format, size, image.dimensions), __func__);
 }
 
 void mural_glGetCompressedTextureImageEXT(GLuint texture, GLenum target, GLint lod, void* img) {
@@ -98,7 +111,9 @@ void mural_glGetCompressedTextureImageEXT(GLuint texture, GLenum target, GLint l
     const auto local = [&] { gReal.glGetCompressedTextureImageEXT(texture, target, lod, img); };
     if (!capturing(t) || t.context->compilingList) return local();
     if (!packsAhead(t, local)) return;
-    const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, lod, pname, value); });
+    const Image image = imageOf(target, [=](GLenum pname, GLint* value) {
+        gReal.glGetTextureLevelParameterivEXT(texture, target, lod, pname, value);
+    });
     whileBound(t, target, texture, [&] { read(t, false, target, lod, image, img, "glGetCompressedTextureImageEXT"); });
 }
 
@@ -107,7 +122,9 @@ void mural_glGetCompressedMultiTexImageEXT(GLenum texunit, GLenum target, GLint 
     const auto local = [&] { gReal.glGetCompressedMultiTexImageEXT(texunit, target, lod, img); };
     if (!capturing(t) || t.context->compilingList) return local();
     if (!packsAhead(t, local)) return;
-    const Image image = imageOf(target, [=](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, lod, pname, value); });
+    const Image image = imageOf(target, [=](GLenum pname, GLint* value) {
+        gReal.glGetMultiTexLevelParameterivEXT(texunit, target, lod, pname, value);
+    });
     whileActive(t, texunit, [&] { read(t, false, target, lod, image, img, "glGetCompressedMultiTexImageEXT"); });
 }
 

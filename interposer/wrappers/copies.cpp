@@ -35,7 +35,8 @@ namespace mural::copies {
 namespace {
 
 // Requires that the read framebuffer of the nodes is the window.
-void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, bool forCopy, const char* by) {
+void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, bool forCopy,
+               const char* by) {
     const Window* window = findWindowById(t.context->readWindow);
     if (!window) return;
     const int64_t x0 = x < 0 ? 0 : x, y0 = y < 0 ? 0 : y;
@@ -57,9 +58,12 @@ void gatherNow(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfiel
     for (const Plane& p : kinds) {
         if (!(planes & p.bit) || p.bits == 0) continue;
         const bool resolves = p.bit == GL_COLOR_BUFFER_BIT && window->config.samples > 0;
-        const void* pixels = requestPixels(t, gx, gy, gw, gh, p.format, p.type, wire::kPlainTransfer | (resolves ? wire::kResolved : 0), by);
+        const void* pixels = requestPixels(t, gx, gy, gw, gh, p.format, p.type,
+                                           wire::kPlainTransfer | (resolves ? wire::kResolved : 0), by);
         const uint32_t flags = (forCopy ? wire::kForCopy : 0) | (p.bit == GL_COLOR_BUFFER_BIT ? colours.fillFlag : 0);
-        if (pixels) records::fillWindow(t, gx, gy, gw, gh, p.bit | flags, DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
+        if (pixels)
+            records::fillWindow(t, gx, gy, gw, gh, p.bit | flags,
+                                DataArg::of(pixels, uint64_t(gw) * uint64_t(gh) * p.bytes));
     }
 }
 
@@ -82,8 +86,10 @@ bool severalNodes(const ThreadState& t) {
 void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
     if (!severalNodes(t)) return;
     if (t.context->listPrimitive) return; // a list accepts no copies there
-    if (t.context->compilingList) drawAll(t, by);
-    else if (readsWindow(*t.context)) gatherNow(t, x, y, w, h, planes, true, by);
+    if (t.context->compilingList)
+        drawAll(t, by);
+    else if (readsWindow(*t.context))
+        gatherNow(t, x, y, w, h, planes, true, by);
 }
 
 // Within a multisampled window, drivers copy all samples. A node has only the samples that it has drawn itself.
@@ -92,8 +98,10 @@ void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLb
     const Window* const read = readsWindow(*t.context) ? findWindowById(t.context->readWindow) : nullptr;
     GLint drawn = 0;
     if (read && read->config.samples > 0) gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
-    if (read && read->config.samples > 0 && drawn == 0 && !t.context->compilingList) drawAll(t, by);
-    else gather(t, x, y, w, h, planes, by);
+    if (read && read->config.samples > 0 && drawn == 0 && !t.context->compilingList)
+        drawAll(t, by);
+    else
+        gather(t, x, y, w, h, planes, by);
 }
 
 void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by) {
@@ -127,16 +135,23 @@ GLbitfield planesOf(GLenum internalFormat) {
 }
 GLbitfield planesOfBound(ThreadState& t, GLenum target, GLint level) {
     if (!gReal.glGetTexLevelParameteriv) return GL_COLOR_BUFFER_BIT;
-    return planesInto(t, [=](GLint* format) { gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
+    return planesInto(
+        t, [=](GLint* format) { gReal.glGetTexLevelParameteriv(target, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
 }
 GLbitfield planesOfTexture(ThreadState& t, GLuint texture, GLint level) {
-    return planesInto(t, [=](GLint* format) { gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
+    return planesInto(t, [=](GLint* format) {
+        gReal.glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_INTERNAL_FORMAT, format);
+    });
 }
 GLbitfield planesOfTextureTarget(ThreadState& t, GLuint texture, GLenum target, GLint level) {
-    return planesInto(t, [=](GLint* format) { gReal.glGetTextureLevelParameterivEXT(texture, target, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
+    return planesInto(t, [=](GLint* format) {
+        gReal.glGetTextureLevelParameterivEXT(texture, target, level, GL_TEXTURE_INTERNAL_FORMAT, format);
+    });
 }
 GLbitfield planesOfUnit(ThreadState& t, GLenum unit, GLenum target, GLint level) {
-    return planesInto(t, [=](GLint* format) { gReal.glGetMultiTexLevelParameterivEXT(unit, target, level, GL_TEXTURE_INTERNAL_FORMAT, format); });
+    return planesInto(t, [=](GLint* format) {
+        gReal.glGetMultiTexLevelParameterivEXT(unit, target, level, GL_TEXTURE_INTERNAL_FORMAT, format);
+    });
 }
 
 } // namespace mural::copies
@@ -145,49 +160,69 @@ extern "C" {
 
 void mural_glCopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum type) {
     ThreadState& t = *tThread;
-    const GLbitfield planes = type == GL_COLOR ? GL_COLOR_BUFFER_BIT : type == GL_DEPTH ? GL_DEPTH_BUFFER_BIT
-                              : type == GL_STENCIL ? GL_STENCIL_BUFFER_BIT : GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    const GLbitfield planes = type == GL_COLOR     ? GL_COLOR_BUFFER_BIT
+                              : type == GL_DEPTH   ? GL_DEPTH_BUFFER_BIT
+                              : type == GL_STENCIL ? GL_STENCIL_BUFFER_BIT
+                                                   : GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
     copies::gatherForPixels(t, x, y, width, height, planes);
     encode_glCopyPixels(t, x, y, width, height, type);
-    if (t.drawLocally || width < 0 || height < 0) gReal.glCopyPixels(x, y, width, height, type);
-    else gReal.glCopyPixels(x, y, 0, 0, type);
+    if (t.drawLocally || width < 0 || height < 0)
+        gReal.glCopyPixels(x, y, width, height, type);
+    else
+        gReal.glCopyPixels(x, y, 0, 0, type);
 }
-void mural_glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
+void mural_glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1,
+                             GLint dstY1, GLbitfield mask, GLenum filter) {
     ThreadState& t = *tThread;
     const GLint x = srcX0 < srcX1 ? srcX0 : srcX1, y = srcY0 < srcY1 ? srcY0 : srcY1;
     const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
     copies::gather(t, x - 1, y - 1, w + 2, h + 2, mask); // linear filters read one pixel further
     encode_glBlitFramebuffer(t, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
-    if (t.drawLocally) return gReal.glBlitFramebuffer(srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
-    quiet::blit({srcX0, srcY0, srcX1, srcY1}, {dstX0, dstY0, dstX1, dstY1}, [&](const quiet::Area& from, const quiet::Area& to) {
-        gReal.glBlitFramebuffer(from.x0, from.y0, from.x1, from.y1, to.x0, to.y0, to.x1, to.y1, mask, filter);
-    });
+    if (t.drawLocally)
+        return gReal.glBlitFramebuffer(srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+    quiet::blit({srcX0, srcY0, srcX1, srcY1}, {dstX0, dstY0, dstX1, dstY1},
+                [&](const quiet::Area& from, const quiet::Area& to) {
+                    gReal.glBlitFramebuffer(from.x0, from.y0, from.x1, from.y1, to.x0, to.y0, to.x1, to.y1, mask,
+                                            filter);
+                });
 }
-void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
+void mural_glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1,
+                                  GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask,
+                                  GLenum filter) {
     ThreadState& t = *tThread;
     if (readFramebuffer == 0) {
         const GLint x = srcX0 < srcX1 ? srcX0 : srcX1, y = srcY0 < srcY1 ? srcY0 : srcY1;
-        const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1, h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
+        const GLint w = srcX0 < srcX1 ? srcX1 - srcX0 : srcX0 - srcX1,
+                    h = srcY0 < srcY1 ? srcY1 - srcY0 : srcY0 - srcY1;
         copies::gatherNamed(t, x - 1, y - 1, w + 2, h + 2, mask);
     }
-    encode_glBlitNamedFramebuffer(t, readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
-    if (t.drawLocally) return gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
-    quiet::blit({srcX0, srcY0, srcX1, srcY1}, {dstX0, dstY0, dstX1, dstY1}, [&](const quiet::Area& from, const quiet::Area& to) {
-        gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, from.x0, from.y0, from.x1, from.y1, to.x0, to.y0, to.x1, to.y1, mask, filter);
-    });
+    encode_glBlitNamedFramebuffer(t, readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1,
+                                  dstY1, mask, filter);
+    if (t.drawLocally)
+        return gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, srcX0, srcY0, srcX1, srcY1, dstX0, dstY0,
+                                            dstX1, dstY1, mask, filter);
+    quiet::blit({srcX0, srcY0, srcX1, srcY1}, {dstX0, dstY0, dstX1, dstY1},
+                [&](const quiet::Area& from, const quiet::Area& to) {
+                    gReal.glBlitNamedFramebuffer(readFramebuffer, drawFramebuffer, from.x0, from.y0, from.x1, from.y1,
+                                                 to.x0, to.y0, to.x1, to.y1, mask, filter);
+                });
 }
-void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
+void mural_glBitmap(GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove,
+                    const GLubyte* bitmap) {
     ThreadState& t = *tThread;
     buffersRead(t);
-    encode_glBitmap(t, width, height, xorig, yorig, xmove, ymove, imageSource(t, bitmap, GL_COLOR_INDEX, GL_BITMAP, width, height, 1, 2));
+    encode_glBitmap(t, width, height, xorig, yorig, xmove, ymove,
+                    imageSource(t, bitmap, GL_COLOR_INDEX, GL_BITMAP, width, height, 1, 2));
     // The raster position also moves in the program's own context, because an empty bitmap moves it as well.
     if (t.context && t.context->compilingList) {
         t.context->group->listsMoveRaster = true;
         t.context->group->listMovesRaster.set(t.context->compiledList, true);
     }
     const bool isError = width < 0 || height < 0;
-    if (t.drawLocally || isError) gReal.glBitmap(width, height, xorig, yorig, xmove, ymove, bitmap);
-    else gReal.glBitmap(0, 0, 0, 0, xmove, ymove, nullptr);
+    if (t.drawLocally || isError)
+        gReal.glBitmap(width, height, xorig, yorig, xmove, ymove, bitmap);
+    else
+        gReal.glBitmap(0, 0, 0, 0, xmove, ymove, nullptr);
 }
 
 } // extern "C"

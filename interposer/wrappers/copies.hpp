@@ -8,13 +8,16 @@
 namespace mural::copies {
 
 // If a window is read, collects the planes of the rectangle from all nodes and sends them to all. Samples are resolved.
-void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
+void gather(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes,
+            const char* by = __builtin_FUNCTION());
 
 // For glCopyPixels.
-void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
+void gatherForPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes,
+                     const char* by = __builtin_FUNCTION());
 
 // The same for a command that names the window, independent of the read binding. Not available in display lists.
-void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes, const char* by = __builtin_FUNCTION());
+void gatherNamed(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLbitfield planes,
+                 const char* by = __builtin_FUNCTION());
 
 // Makes every node draw the whole window from now on. Display lists that copy from a window or contain conditional
 // rendering need this, because no request can interrupt them. Fragment shaders that write to memory and copies of

@@ -23,8 +23,10 @@ extern "C" {
 
 void mural_glDebugMessageCallback(void* callback, const void* userParam) {
     ThreadState& t = *tThread;
-    if (t.context) listen(*t.context, reinterpret_cast<GLDEBUGPROC>(callback), userParam);
-    else gReal.glDebugMessageCallback(callback, userParam);
+    if (t.context)
+        listen(*t.context, reinterpret_cast<GLDEBUGPROC>(callback), userParam);
+    else
+        gReal.glDebugMessageCallback(callback, userParam);
 }
 
 void mural_glGetPointerv(GLenum pname, void** params) {

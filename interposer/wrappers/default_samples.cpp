@@ -1,4 +1,5 @@
-// Wrappers that set the sample count of framebuffer objects without attachments (interposer/context/default_samples.hpp).
+// Wrappers that set the sample count of framebuffer objects without attachments
+// (interposer/context/default_samples.hpp).
 #include "interposer/context/default_samples.hpp"
 
 #include "custom_wrappers.hpp"
@@ -26,7 +27,8 @@ void fitDefaultSamples(const ThreadState& t) {
     if (t.drawLocally || t.context->openPrimitive != kNoPrimitive) return;
     GLint framebuffer = 0;
     gReal.glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
-    if (framebuffer != 0 && gReal.glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) gReal.glClear(0);
+    if (framebuffer != 0 && gReal.glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
+        gReal.glClear(0);
 }
 
 } // namespace mural

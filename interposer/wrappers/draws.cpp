@@ -29,7 +29,8 @@ inline void prepareArrays(ThreadState& t, GLint first, GLsizei count, GLsizei in
     Context* c = t.context;
     if (!c) return;
     beforeDraw(t, *c);
-    if (c->arrays.anyClient()) [[unlikely]] sendClientArrays(t, *c, arraysRange(first, count, instances, baseInstance));
+    if (c->arrays.anyClient()) [[unlikely]]
+        sendClientArrays(t, *c, arraysRange(first, count, instances, baseInstance));
 }
 
 // Whether indices are in client memory.
@@ -38,7 +39,8 @@ bool inMemory(const Context& c, const void* indices) {
 }
 
 // The same for a draw with indices; returns their source.
-DataArg prepareElements(ThreadState& t, GLsizei count, GLenum type, const void* indices, GLint baseVertex = 0, GLsizei instances = 1, GLuint baseInstance = 0) {
+DataArg prepareElements(ThreadState& t, GLsizei count, GLenum type, const void* indices, GLint baseVertex = 0,
+                        GLsizei instances = 1, GLuint baseInstance = 0) {
     Context* c = t.context;
     if (!c) return {};
     beforeDraw(t, *c);
@@ -64,7 +66,8 @@ DataArg indirectSource(ThreadState& t, const void* indirect, bool withElements, 
     return DataArg::of(indirect, sizes::indirectBytes(withElements, drawCount, stride));
 }
 
-void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElements, GLenum indexType, GLsizei drawCount, GLsizei stride) {
+void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElements, GLenum indexType, GLsizei drawCount,
+                          GLsizei stride) {
     Context* c = t.context;
     if (!c || !c->arrays.anyClient() || drawCount <= 0) return;
     const size_t bytes = sizes::indirectBytes(withElements, drawCount, stride);
@@ -72,18 +75,23 @@ void indirectClientArrays(ThreadState& t, const DataArg& source, bool withElemen
     if (source.isOffset) {
         void* copy = scratchMemory(t, bytes);
         if (!copy) return;
-        gReal.glGetBufferSubData(GL_DRAW_INDIRECT_BUFFER, reinterpret_cast<GLintptr>(source.pointer), static_cast<GLsizeiptr>(bytes), copy);
+        gReal.glGetBufferSubData(GL_DRAW_INDIRECT_BUFFER, reinterpret_cast<GLintptr>(source.pointer),
+                                 static_cast<GLsizeiptr>(bytes), copy);
         commands = copy;
     }
-    const size_t step = stride > 0 ? static_cast<size_t>(stride) : withElements ? sizes::kDrawElementsCommandBytes : sizes::kDrawArraysCommandBytes;
+    const size_t step = stride > 0     ? static_cast<size_t>(stride)
+                        : withElements ? sizes::kDrawElementsCommandBytes
+                                       : sizes::kDrawArraysCommandBytes;
     VertexRange all{INT64_MAX, -1, 0, 0};
     for (GLsizei i = 0; i < drawCount; ++i) {
         GLuint word[5] = {};
-        std::memcpy(word, static_cast<const std::byte*>(commands) + static_cast<size_t>(i) * step, withElements ? 20 : 16);
+        std::memcpy(word, static_cast<const std::byte*>(commands) + static_cast<size_t>(i) * step,
+                    withElements ? 20 : 16);
         VertexRange one = arraysRange(static_cast<GLint>(word[2]), static_cast<GLsizei>(word[0]));
         if (withElements)
             one = indexedRange(t, *c, static_cast<GLsizei>(word[0]), indexType,
-                               reinterpret_cast<const void*>(uintptr_t{word[2]} * sizes::typeBytes(indexType)), static_cast<GLint>(word[3]));
+                               reinterpret_cast<const void*>(uintptr_t{word[2]} * sizes::typeBytes(indexType)),
+                               static_cast<GLint>(word[3]));
         if (one.last < one.first) continue;
         if (one.first < all.first) all.first = one.first;
         if (one.last > all.last) all.last = one.last;
@@ -121,7 +129,9 @@ void mural_glDrawArrays(GLenum mode, GLint first, GLsizei count) {
         prepareArrays(t, first, count);
         encode_glDrawArrays(t, mode, first, count);
     };
-    if (drawnCounted(t, [&] { gReal.glDrawArrays(mode, first, count); }, send)) return;
+    if (drawnCounted(
+            t, [&] { gReal.glDrawArrays(mode, first, count); }, send))
+        return;
     send();
     gReal.glDrawArrays(mode, first, quiet::count(t, count));
 }
@@ -131,11 +141,14 @@ void mural_glDrawArraysInstanced(GLenum mode, GLint first, GLsizei count, GLsize
         prepareArrays(t, first, first < 0 ? 0 : count, instancecount);
         encode_glDrawArraysInstanced(t, mode, first, count, instancecount);
     };
-    if (drawnCounted(t, [&] { gReal.glDrawArraysInstanced(mode, first, count, instancecount); }, send)) return;
+    if (drawnCounted(
+            t, [&] { gReal.glDrawArraysInstanced(mode, first, count, instancecount); }, send))
+        return;
     send();
     gReal.glDrawArraysInstanced(mode, first, quiet::count(t, count), instancecount);
 }
-void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei count, GLsizei instancecount, GLuint baseinstance) {
+void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei count, GLsizei instancecount,
+                                             GLuint baseinstance) {
     ThreadState& t = *tThread;
     prepareArrays(t, first, first < 0 ? 0 : count, instancecount, baseinstance);
     encode_glDrawArraysInstancedBaseInstance(t, mode, first, count, instancecount, baseinstance);
@@ -144,34 +157,49 @@ void mural_glDrawArraysInstancedBaseInstance(GLenum mode, GLint first, GLsizei c
 void mural_glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
     ThreadState& t = *tThread;
     const auto send = [&] { encode_glDrawElements(t, mode, count, type, prepareElements(t, count, type, indices)); };
-    if (drawnCounted(t, [&] { gReal.glDrawElements(mode, count, type, indices); }, send)) return;
+    if (drawnCounted(
+            t, [&] { gReal.glDrawElements(mode, count, type, indices); }, send))
+        return;
     send();
     gReal.glDrawElements(mode, quiet::count(t, count), type, indices);
 }
 void mural_glDrawElementsBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices, GLint basevertex) {
     ThreadState& t = *tThread;
-    encode_glDrawElementsBaseVertex(t, mode, count, type, prepareElements(t, count, type, indices, basevertex), basevertex);
+    encode_glDrawElementsBaseVertex(t, mode, count, type, prepareElements(t, count, type, indices, basevertex),
+                                    basevertex);
     gReal.glDrawElementsBaseVertex(mode, quiet::count(t, count), type, indices, basevertex);
 }
-void mural_glDrawElementsInstanced(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount) {
+void mural_glDrawElementsInstanced(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                   GLsizei instancecount) {
     ThreadState& t = *tThread;
-    encode_glDrawElementsInstanced(t, mode, count, type, prepareElements(t, count, type, indices, 0, instancecount), instancecount);
+    encode_glDrawElementsInstanced(t, mode, count, type, prepareElements(t, count, type, indices, 0, instancecount),
+                                   instancecount);
     gReal.glDrawElementsInstanced(mode, quiet::count(t, count), type, indices, instancecount);
 }
-void mural_glDrawElementsInstancedBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLint basevertex) {
+void mural_glDrawElementsInstancedBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                             GLsizei instancecount, GLint basevertex) {
     ThreadState& t = *tThread;
-    encode_glDrawElementsInstancedBaseVertex(t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount), instancecount, basevertex);
+    encode_glDrawElementsInstancedBaseVertex(t, mode, count, type,
+                                             prepareElements(t, count, type, indices, basevertex, instancecount),
+                                             instancecount, basevertex);
     gReal.glDrawElementsInstancedBaseVertex(mode, quiet::count(t, count), type, indices, instancecount, basevertex);
 }
-void mural_glDrawElementsInstancedBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLuint baseinstance) {
+void mural_glDrawElementsInstancedBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                               GLsizei instancecount, GLuint baseinstance) {
     ThreadState& t = *tThread;
-    encode_glDrawElementsInstancedBaseInstance(t, mode, count, type, prepareElements(t, count, type, indices, 0, instancecount, baseinstance), instancecount, baseinstance);
+    encode_glDrawElementsInstancedBaseInstance(t, mode, count, type,
+                                               prepareElements(t, count, type, indices, 0, instancecount, baseinstance),
+                                               instancecount, baseinstance);
     gReal.glDrawElementsInstancedBaseInstance(mode, quiet::count(t, count), type, indices, instancecount, baseinstance);
 }
-void mural_glDrawElementsInstancedBaseVertexBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instancecount, GLint basevertex, GLuint baseinstance) {
+void mural_glDrawElementsInstancedBaseVertexBaseInstance(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                                         GLsizei instancecount, GLint basevertex, GLuint baseinstance) {
     ThreadState& t = *tThread;
-    encode_glDrawElementsInstancedBaseVertexBaseInstance(t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount, baseinstance), instancecount, basevertex, baseinstance);
-    gReal.glDrawElementsInstancedBaseVertexBaseInstance(mode, quiet::count(t, count), type, indices, instancecount, basevertex, baseinstance);
+    encode_glDrawElementsInstancedBaseVertexBaseInstance(
+        t, mode, count, type, prepareElements(t, count, type, indices, basevertex, instancecount, baseinstance),
+        instancecount, basevertex, baseinstance);
+    gReal.glDrawElementsInstancedBaseVertexBaseInstance(mode, quiet::count(t, count), type, indices, instancecount,
+                                                        basevertex, baseinstance);
 }
 // Programs violate the promised range start … end, so the actual indices count.
 void mural_glDrawRangeElements(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
@@ -179,19 +207,23 @@ void mural_glDrawRangeElements(GLenum mode, GLuint start, GLuint end, GLsizei co
     encode_glDrawRangeElements(t, mode, start, end, count, type, prepareElements(t, count, type, indices));
     gReal.glDrawRangeElements(mode, start, end, quiet::count(t, count), type, indices);
 }
-void mural_glDrawRangeElementsBaseVertex(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices, GLint basevertex) {
+void mural_glDrawRangeElementsBaseVertex(GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
+                                         const void* indices, GLint basevertex) {
     ThreadState& t = *tThread;
-    encode_glDrawRangeElementsBaseVertex(t, mode, start, end, count, type, prepareElements(t, count, type, indices, basevertex), basevertex);
+    encode_glDrawRangeElementsBaseVertex(t, mode, start, end, count, type,
+                                         prepareElements(t, count, type, indices, basevertex), basevertex);
     gReal.glDrawRangeElementsBaseVertex(mode, start, end, quiet::count(t, count), type, indices, basevertex);
 }
 
 // Sent as separate draws, each with its own mode.
-void mural_glMultiModeDrawArraysIBM(const GLenum* mode, const GLint* first, const GLsizei* count, GLsizei primcount, GLint modestride) {
+void mural_glMultiModeDrawArraysIBM(const GLenum* mode, const GLint* first, const GLsizei* count, GLsizei primcount,
+                                    GLint modestride) {
     for (GLsizei i = 0; i < primcount; ++i) {
         if (count[i] > 0) mural_glDrawArrays(modeAt(mode, i, modestride), first[i], count[i]);
     }
 }
-void mural_glMultiModeDrawElementsIBM(const GLenum* mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei primcount, GLint modestride) {
+void mural_glMultiModeDrawElementsIBM(const GLenum* mode, const GLsizei* count, GLenum type, const void* const* indices,
+                                      GLsizei primcount, GLint modestride) {
     for (GLsizei i = 0; i < primcount; ++i) {
         if (count[i] > 0) mural_glDrawElements(modeAt(mode, i, modestride), count[i], type, indices[i]);
     }
@@ -221,7 +253,8 @@ namespace {
 
 // Indices of glMultiDrawElements: u32 kind, u32 0, then offsets (kind 1, u64 each) or the concatenated index lists
 // (kind 0).
-DataArg multiIndices(ThreadState& t, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount, const GLint* basevertex) {
+DataArg multiIndices(ThreadState& t, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount,
+                     const GLint* basevertex) {
     Context* c = t.context;
     if (!c || drawcount <= 0) return {};
     beforeDraw(t, *c);
@@ -263,17 +296,21 @@ DataArg multiIndices(ThreadState& t, const GLsizei* count, GLenum type, const vo
 
 extern "C" {
 
-void mural_glMultiDrawElements(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount) {
+void mural_glMultiDrawElements(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                               GLsizei drawcount) {
     ThreadState& t = *tThread;
     const DataArg data = multiIndices(t, count, type, indices, drawcount, nullptr);
-    encode_glMultiDrawElements(t, mode, DataArg::of(count, drawcount > 0 ? 4 * uint64_t(drawcount) : 0), type, data, drawcount);
+    encode_glMultiDrawElements(t, mode, DataArg::of(count, drawcount > 0 ? 4 * uint64_t(drawcount) : 0), type, data,
+                               drawcount);
     gReal.glMultiDrawElements(mode, count, type, indices, quietDraws(t, count, drawcount));
 }
-void mural_glMultiDrawElementsBaseVertex(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei drawcount, const GLint* basevertex) {
+void mural_glMultiDrawElementsBaseVertex(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                                         GLsizei drawcount, const GLint* basevertex) {
     ThreadState& t = *tThread;
     const uint64_t bytes = drawcount > 0 ? 4 * uint64_t(drawcount) : 0;
     const DataArg data = multiIndices(t, count, type, indices, drawcount, basevertex);
-    encode_glMultiDrawElementsBaseVertex(t, mode, DataArg::of(count, bytes), type, data, drawcount, DataArg::of(basevertex, bytes));
+    encode_glMultiDrawElementsBaseVertex(t, mode, DataArg::of(count, bytes), type, data, drawcount,
+                                         DataArg::of(basevertex, bytes));
     gReal.glMultiDrawElementsBaseVertex(mode, count, type, indices, quietDraws(t, count, drawcount), basevertex);
 }
 void mural_glDrawArraysIndirect(GLenum mode, const void* indirect) {
@@ -281,37 +318,50 @@ void mural_glDrawArraysIndirect(GLenum mode, const void* indirect) {
     const DataArg source = indirectSource(t, indirect, false, 1, 0);
     indirectClientArrays(t, source, false, 0, 1, 0);
     encode_glDrawArraysIndirect(t, mode, source);
-    if (t.drawLocally || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(false, 1, 0))) gReal.glDrawArraysIndirect(mode, indirect);
-    else quiet::drawIndirect(t, mode, indirect, 0);
+    if (t.drawLocally || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(false, 1, 0)))
+        gReal.glDrawArraysIndirect(mode, indirect);
+    else
+        quiet::drawIndirect(t, mode, indirect, 0);
 }
 void mural_glDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect) {
     ThreadState& t = *tThread;
     const DataArg source = indirectSource(t, indirect, true, 1, 0);
     indirectClientArrays(t, source, true, type, 1, 0);
     encode_glDrawElementsIndirect(t, mode, type, source);
-    if (t.drawLocally || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(true, 1, 0))) gReal.glDrawElementsIndirect(mode, type, indirect);
-    else quiet::drawElementsIndirect(t, mode, type, indirect, 0);
+    if (t.drawLocally || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(true, 1, 0)))
+        gReal.glDrawElementsIndirect(mode, type, indirect);
+    else
+        quiet::drawElementsIndirect(t, mode, type, indirect, 0);
 }
 void mural_glMultiDrawArraysIndirect(GLenum mode, const void* indirect, GLsizei drawcount, GLsizei stride) {
     ThreadState& t = *tThread;
     const DataArg source = indirectSource(t, indirect, false, drawcount, stride);
     indirectClientArrays(t, source, false, 0, drawcount, stride);
     encode_glMultiDrawArraysIndirect(t, mode, source, drawcount, stride);
-    if (t.drawLocally || drawcount < 0 || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(false, drawcount, stride))) gReal.glMultiDrawArraysIndirect(mode, indirect, drawcount, stride);
-    else quiet::drawIndirect(t, mode, indirect, stride);
+    if (t.drawLocally || drawcount < 0 ||
+        quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(false, drawcount, stride)))
+        gReal.glMultiDrawArraysIndirect(mode, indirect, drawcount, stride);
+    else
+        quiet::drawIndirect(t, mode, indirect, stride);
 }
-void mural_glMultiDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect, GLsizei drawcount, GLsizei stride) {
+void mural_glMultiDrawElementsIndirect(GLenum mode, GLenum type, const void* indirect, GLsizei drawcount,
+                                       GLsizei stride) {
     ThreadState& t = *tThread;
     const DataArg source = indirectSource(t, indirect, true, drawcount, stride);
     indirectClientArrays(t, source, true, type, drawcount, stride);
     encode_glMultiDrawElementsIndirect(t, mode, type, source, drawcount, stride);
-    if (t.drawLocally || drawcount < 0 || quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(true, drawcount, stride))) gReal.glMultiDrawElementsIndirect(mode, type, indirect, drawcount, stride);
-    else quiet::drawElementsIndirect(t, mode, type, indirect, stride);
+    if (t.drawLocally || drawcount < 0 ||
+        quiet::indirectIsWrong(t, indirect, sizes::indirectBytes(true, drawcount, stride)))
+        gReal.glMultiDrawElementsIndirect(mode, type, indirect, drawcount, stride);
+    else
+        quiet::drawElementsIndirect(t, mode, type, indirect, stride);
 }
 void mural_glArrayElement(GLint i) {
     ThreadState& t = *tThread;
-    if (Context* c = t.context; c && c->arrays.anyClient()) sendElement(t, *c, i);
-    else encode_glArrayElement(t, i);
+    if (Context* c = t.context; c && c->arrays.anyClient())
+        sendElement(t, *c, i);
+    else
+        encode_glArrayElement(t, i);
     if (t.vertexLocally) gReal.glArrayElement(i);
 }
 

@@ -9,7 +9,8 @@ GLfloat fromFixed(GLfixed value) { return static_cast<GLfloat>(value) / 65536; }
 
 extern "C" {
 
-void mural_glBitmapxOES(GLsizei width, GLsizei height, GLfixed xorig, GLfixed yorig, GLfixed xmove, GLfixed ymove, const GLubyte* bitmap) {
+void mural_glBitmapxOES(GLsizei width, GLsizei height, GLfixed xorig, GLfixed yorig, GLfixed xmove, GLfixed ymove,
+                        const GLubyte* bitmap) {
     mural_glBitmap(width, height, fromFixed(xorig), fromFixed(yorig), fromFixed(xmove), fromFixed(ymove), bitmap);
 }
 

@@ -12,9 +12,14 @@ namespace mural::image_reads {
 
 namespace {
 
-constexpr Target kTargets[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D}, {GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BINDING_CUBE_MAP}, {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY},
-                               {GL_TEXTURE_3D, GL_TEXTURE_BINDING_3D}, {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY}, {GL_TEXTURE_1D, GL_TEXTURE_BINDING_1D},
-                               {GL_TEXTURE_1D_ARRAY, GL_TEXTURE_BINDING_1D_ARRAY}, {GL_TEXTURE_RECTANGLE, GL_TEXTURE_BINDING_RECTANGLE}};
+constexpr Target kTargets[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
+                               {GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BINDING_CUBE_MAP},
+                               {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY},
+                               {GL_TEXTURE_3D, GL_TEXTURE_BINDING_3D},
+                               {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY},
+                               {GL_TEXTURE_1D, GL_TEXTURE_BINDING_1D},
+                               {GL_TEXTURE_1D_ARRAY, GL_TEXTURE_BINDING_1D_ARRAY},
+                               {GL_TEXTURE_RECTANGLE, GL_TEXTURE_BINDING_RECTANGLE}};
 
 // The target of a texture. Mesa's query exists in core contexts only; elsewhere trial bindings find the target.
 GLenum targetOf(Context& c, GLuint texture) {
@@ -55,10 +60,12 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
     records::bufferBytes(t, buffer, offset, DataArg::of(whole, span));
 }
 
-void askAndDeliver(ThreadState& t, const ImageQuestion& q, void* pixels, const sizes::ImageLayout& layout, const char* by) {
+void askAndDeliver(ThreadState& t, const ImageQuestion& q, void* pixels, const sizes::ImageLayout& layout,
+                   const char* by) {
     if (q.sizeBytes == 0) return;
     const bool owes = layout.known && packBufferBound(*t.context) &&
-                      deferTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, {reinterpret_cast<uint64_t>(pixels), layout, q.part}, by);
+                      deferTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes,
+                                    {reinterpret_cast<uint64_t>(pixels), layout, q.part}, by);
     if (owes) return;
     settleBound(t, GL_PIXEL_PACK_BUFFER, by);
     void* const image = askTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, by);
@@ -71,7 +78,8 @@ void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes) {
     void* const written = bytes ? scratchMemory(t, bytes) : nullptr;
     const GLuint buffer = boundPackBuffer();
     const auto at = reinterpret_cast<uint64_t>(offset);
-    if (written && readOwnCopy(t, buffer, at, written, bytes)) records::bufferBytes(t, buffer, at, DataArg::of(written, bytes));
+    if (written && readOwnCopy(t, buffer, at, written, bytes))
+        records::bufferBytes(t, buffer, at, DataArg::of(written, bytes));
 }
 
 int imageDimensions(GLenum target) {
@@ -87,7 +95,8 @@ int imageDimensions(GLenum target) {
 int dimensionsByName(GLenum target) { return target == GL_TEXTURE_CUBE_MAP ? 3 : imageDimensions(target); }
 
 Level levelOf(Context& c, GLuint texture, GLint level, GLenum& target) {
-    Level size = levelOf([=](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameteriv(texture, level, pname, value); });
+    Level size =
+        levelOf([=](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameteriv(texture, level, pname, value); });
     target = targetOf(c, texture);
     if (target == GL_TEXTURE_CUBE_MAP) size.depth = 6;
     return size;

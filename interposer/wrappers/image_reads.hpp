@@ -21,11 +21,12 @@ struct ImageQuestion {
     GLuint targetOrTexture;
     GLint level;
     GLenum format, type; // 0: compressed blocks
-    size_t sizeBytes; // of the tight image; 0: it cannot be requested
-    ImagePart part{}; // the requested part
+    size_t sizeBytes;    // of the tight image; 0: it cannot be requested
+    ImagePart part{};    // the requested part
 };
 // Requests a texture image from the nodes and delivers it, or a part. Delivery into a pack buffer is deferred.
-void askAndDeliver(ThreadState& t, const ImageQuestion& question, void* pixels, const sizes::ImageLayout& layout, const char* by);
+void askAndDeliver(ThreadState& t, const ImageQuestion& question, void* pixels, const sizes::ImageLayout& layout,
+                   const char* by);
 
 // Runs `local`, which packs data in the program's own context, and saves its errors; returns true without errors.
 // Deferred replies for the bound pack buffer are delivered first.

@@ -38,7 +38,8 @@ GLuint boundBuffer(GLenum target) {
 // Client memory becomes a buffer. The nodes create one with a copy, without changing bindings.
 void pin(ThreadState& t, GLsizeiptr size, const void* data, GLenum usage) {
     const GLenum target = GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD;
-    if (!raisesNothing(*t.context, [&] { gReal.glBufferData(target, size, data, usage); }) || size <= 0 || !data) return;
+    if (!raisesNothing(*t.context, [&] { gReal.glBufferData(target, size, data, usage); }) || size <= 0 || !data)
+        return;
     GLint before = 0;
     gReal.glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &before);
     encode_glBindBuffer(t, GL_COPY_WRITE_BUFFER, t.context->pinnedBuffer);
@@ -50,7 +51,9 @@ void pin(ThreadState& t, GLsizeiptr size, const void* data, GLenum usage) {
 bool mapsLast(const ThreadState& t) { return t.context && t.context->group->persistentMaps > 0; }
 
 GLbitfield accessBits(GLenum access) {
-    return access == GL_READ_ONLY ? GL_MAP_READ_BIT : access == GL_WRITE_ONLY ? GL_MAP_WRITE_BIT : GL_MAP_READ_BIT | GL_MAP_WRITE_BIT;
+    return access == GL_READ_ONLY    ? GL_MAP_READ_BIT
+           : access == GL_WRITE_ONLY ? GL_MAP_WRITE_BIT
+                                     : GL_MAP_READ_BIT | GL_MAP_WRITE_BIT;
 }
 
 uint64_t sizeOf(GLenum target) {
@@ -65,7 +68,8 @@ template <class Get> uint64_t sizeOfNamed(Get&& get, GLuint buffer) {
 }
 
 // Fetches data written by the nodes first if the mapping can be read or partially written.
-template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Size&& size, Map&& map, const char* by = __builtin_FUNCTION()) {
+template <class Size, class Map>
+void* mapWhole(GLuint buffer, GLenum access, Size&& size, Map&& map, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const GLbitfield bits = accessBits(access);
     settleReads(t, buffer, by);
@@ -74,7 +78,9 @@ template <class Size, class Map> void* mapWhole(GLuint buffer, GLenum access, Si
     if (memory && t.context) mapBegins(t, buffer, memory, 0, size(), bits);
     return memory;
 }
-template <class Map> void* mapRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access, Map&& map, const char* by = __builtin_FUNCTION()) {
+template <class Map>
+void* mapRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access, Map&& map,
+               const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     const bool valid = offset >= 0 && length > 0;
     if (access & GL_MAP_PERSISTENT_BIT) bufferUsed(t, buffer, by); // the program accesses it without further GL calls
@@ -90,16 +96,21 @@ template <class Map> void* mapRange(GLuint buffer, GLintptr offset, GLsizeiptr l
 extern "C" {
 
 void* mural_glMapBuffer(GLenum target, GLenum access) {
-    return mapWhole(boundBuffer(target), access, [=] { return sizeOf(target); }, [=] { return gReal.glMapBuffer(target, access); });
+    return mapWhole(
+        boundBuffer(target), access, [=] { return sizeOf(target); }, [=] { return gReal.glMapBuffer(target, access); });
 }
 void* mural_glMapBufferRange(GLenum target, GLintptr offset, GLsizeiptr length, GLbitfield access) {
-    return mapRange(boundBuffer(target), offset, length, access, [=] { return gReal.glMapBufferRange(target, offset, length, access); });
+    return mapRange(boundBuffer(target), offset, length, access,
+                    [=] { return gReal.glMapBufferRange(target, offset, length, access); });
 }
 void* mural_glMapNamedBuffer(GLuint buffer, GLenum access) {
-    return mapWhole(buffer, access, [=] { return sizeOfNamed(gReal.glGetNamedBufferParameteriv, buffer); }, [=] { return gReal.glMapNamedBuffer(buffer, access); });
+    return mapWhole(
+        buffer, access, [=] { return sizeOfNamed(gReal.glGetNamedBufferParameteriv, buffer); },
+        [=] { return gReal.glMapNamedBuffer(buffer, access); });
 }
 void* mural_glMapNamedBufferRange(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) {
-    return mapRange(buffer, offset, length, access, [=] { return gReal.glMapNamedBufferRange(buffer, offset, length, access); });
+    return mapRange(buffer, offset, length, access,
+                    [=] { return gReal.glMapNamedBufferRange(buffer, offset, length, access); });
 }
 void mural_glGetBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
     ThreadState& t = *tThread;
@@ -118,7 +129,8 @@ GLboolean mural_glUnmapBuffer(GLenum target) {
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) unmaps(t, boundBuffer(target));
     const GLboolean kept = gReal.glUnmapBuffer(target);
-    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]] unmappedHere(t, boundBuffer(target));
+    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]]
+        unmappedHere(t, boundBuffer(target));
     return kept;
 }
 GLboolean mural_glUnmapNamedBuffer(GLuint buffer) {
@@ -143,7 +155,8 @@ void mural_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) mapEnds(t, boundBuffer(target), false);
     settleBound(t, target);
-    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]] newStorage(t, boundBuffer(target));
+    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]]
+        newStorage(t, boundBuffer(target));
     if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return pin(t, size, data, usage);
     encode_glBufferData(t, target, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), usage);
     gReal.glBufferData(target, size, data, usage);
@@ -160,7 +173,8 @@ void mural_glBufferSubData(GLenum target, GLintptr offset, GLsizeiptr size, cons
     ThreadState& t = *tThread;
     settleBound(t, target);
     // writes client memory
-    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return gReal.glBufferSubData(target, offset, size, data);
+    if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD)
+        return gReal.glBufferSubData(target, offset, size, data);
     encode_glBufferSubData(t, target, offset, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0));
     gReal.glBufferSubData(target, offset, size, data);
 }
@@ -171,7 +185,8 @@ void mural_glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size,
     gReal.glNamedBufferSubData(buffer, offset, size, data);
 }
 // The program's own context may copy outdated data. That copy does not count as a write of the program.
-void mural_glCopyBufferSubData(GLenum readTarget, GLenum writeTarget, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
+void mural_glCopyBufferSubData(GLenum readTarget, GLenum writeTarget, GLintptr readOffset, GLintptr writeOffset,
+                               GLsizeiptr size) {
     ThreadState& t = *tThread;
     boundUsed(t, readTarget);
     boundUsed(t, writeTarget);
@@ -180,7 +195,8 @@ void mural_glCopyBufferSubData(GLenum readTarget, GLenum writeTarget, GLintptr r
     gReal.glCopyBufferSubData(readTarget, writeTarget, readOffset, writeOffset, size);
     if (mapsLast(t)) copiedHere(t, boundBuffer(writeTarget));
 }
-void mural_glCopyNamedBufferSubData(GLuint readBuffer, GLuint writeBuffer, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
+void mural_glCopyNamedBufferSubData(GLuint readBuffer, GLuint writeBuffer, GLintptr readOffset, GLintptr writeOffset,
+                                    GLsizeiptr size) {
     ThreadState& t = *tThread;
     bufferUsed(t, readBuffer);
     bufferUsed(t, writeBuffer);
@@ -189,7 +205,8 @@ void mural_glCopyNamedBufferSubData(GLuint readBuffer, GLuint writeBuffer, GLint
     gReal.glCopyNamedBufferSubData(readBuffer, writeBuffer, readOffset, writeOffset, size);
     if (mapsLast(t)) copiedHere(t, writeBuffer);
 }
-void mural_glNamedCopyBufferSubDataEXT(GLuint readBuffer, GLuint writeBuffer, GLintptr readOffset, GLintptr writeOffset, GLsizeiptr size) {
+void mural_glNamedCopyBufferSubDataEXT(GLuint readBuffer, GLuint writeBuffer, GLintptr readOffset, GLintptr writeOffset,
+                                       GLsizeiptr size) {
     ThreadState& t = *tThread;
     bufferUsed(t, readBuffer);
     bufferUsed(t, writeBuffer);
@@ -243,10 +260,13 @@ void mural_glGetNamedBufferSubDataEXT(GLuint buffer, GLintptr offset, GLsizeiptr
     gReal.glGetNamedBufferSubDataEXT(buffer, offset, size, data);
 }
 void* mural_glMapNamedBufferEXT(GLuint buffer, GLenum access) {
-    return mapWhole(buffer, access, [=] { return sizeOfNamed(gReal.glGetNamedBufferParameterivEXT, buffer); }, [=] { return gReal.glMapNamedBufferEXT(buffer, access); });
+    return mapWhole(
+        buffer, access, [=] { return sizeOfNamed(gReal.glGetNamedBufferParameterivEXT, buffer); },
+        [=] { return gReal.glMapNamedBufferEXT(buffer, access); });
 }
 void* mural_glMapNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) {
-    return mapRange(buffer, offset, length, access, [=] { return gReal.glMapNamedBufferRangeEXT(buffer, offset, length, access); });
+    return mapRange(buffer, offset, length, access,
+                    [=] { return gReal.glMapNamedBufferRangeEXT(buffer, offset, length, access); });
 }
 GLboolean mural_glUnmapNamedBufferEXT(GLuint buffer) {
     unmaps(*tThread, buffer);

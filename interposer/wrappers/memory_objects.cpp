@@ -14,7 +14,8 @@ using namespace mural;
 
 namespace {
 
-constexpr GLubyte kUuid[GL_UUID_SIZE_EXT] = {0xb9, 0x1f, 0x6c, 0x4e, 0x72, 0x0a, 0x4d, 0x35, 0x8e, 0xc3, 0x1d, 0x58, 0xa7, 0x60, 0xf2, 0x94};
+constexpr GLubyte kUuid[GL_UUID_SIZE_EXT] = {0xb9, 0x1f, 0x6c, 0x4e, 0x72, 0x0a, 0x4d, 0x35,
+                                             0x8e, 0xc3, 0x1d, 0x58, 0xa7, 0x60, 0xf2, 0x94};
 
 bool capturing(const ThreadState& t) {
     Session* s = Session::current();
@@ -42,9 +43,11 @@ void mural_glGetUnsignedBytei_vEXT(GLenum target, GLuint index, GLubyte* data) {
 // The program keeps ownership of the descriptor, as after every failed import.
 void mural_glImportMemoryFdEXT(GLuint memory, GLuint64 size, GLenum handleType, GLint fd) {
     const ThreadState& t = *tThread;
-    if (!capturing(t) || handleType != GL_HANDLE_TYPE_OPAQUE_FD_EXT) return gReal.glImportMemoryFdEXT(memory, size, handleType, fd);
+    if (!capturing(t) || handleType != GL_HANDLE_TYPE_OPAQUE_FD_EXT)
+        return gReal.glImportMemoryFdEXT(memory, size, handleType, fd);
     static bool once = false;
-    if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED)) say("memory of other APIs (glImportMemoryFdEXT) cannot be on the wall: the program gets an error");
+    if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
+        say("memory of other APIs (glImportMemoryFdEXT) cannot be on the wall: the program gets an error");
     stashError(*t.context, driverError());
     stashError(*t.context, GL_INVALID_OPERATION);
 }

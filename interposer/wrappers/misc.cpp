@@ -41,8 +41,10 @@ template <class Call> void callBetweenBeginAndEnd(Context& c, bool closes, Call&
         if (!closes) gReal.glEnd();
     });
     if (!discards) gReal.glDisable(GL_RASTERIZER_DISCARD);
-    if (closes) c.openPrimitive = kNoPrimitive;
-    else gReal.glBegin(mode);
+    if (closes)
+        c.openPrimitive = kNoPrimitive;
+    else
+        gReal.glBegin(mode);
 }
 
 // Call after a list with an unmatched glBegin. The mode of the local primitive is irrelevant, because nothing is drawn.
@@ -59,7 +61,8 @@ template <class Call> void callWithoutDrawing(ThreadState& t, bool movesRaster, 
         if (opens) primitiveOpened(t, true);
         return;
     }
-    if (t.context && t.context->openPrimitive != kNoPrimitive && t.context->version >= 30) return callBetweenBeginAndEnd(*t.context, closes, call);
+    if (t.context && t.context->openPrimitive != kNoPrimitive && t.context->version >= 30)
+        return callBetweenBeginAndEnd(*t.context, closes, call);
     const PrimitivePause pause(t); // otherwise the list's vertices would join the primitive
     if (movesRaster || !t.context || t.context->version < 30) {
         ownDrawingBegins();
@@ -117,10 +120,13 @@ bool takesModules(Context& c) {
     }
     return false;
 }
-GLint textBytes(const GLchar* text, GLint length) { return length < 0 ? static_cast<GLint>(std::strlen(text)) : length; }
+GLint textBytes(const GLchar* text, GLint length) {
+    return length < 0 ? static_cast<GLint>(std::strlen(text)) : length;
+}
 
 bool isFront(GLenum buffer) {
-    return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
+    return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK ||
+           buffer == GL_LEFT || buffer == GL_RIGHT;
 }
 } // namespace
 
@@ -164,7 +170,8 @@ void mural_glCallList(GLuint list) {
     const bool moves = group && group->listsMoveRaster && (group->listMovesRaster.get(list) || !NameBits::known(list));
     if (t.context) notePrimitives(*t.context, list);
     const bool live = group && !t.context->compilingList;
-    callWithoutDrawing(t, moves, live && group->listOpens.get(list), live && group->listCloses.get(list), [&] { gReal.glCallList(list); });
+    callWithoutDrawing(t, moves, live && group->listOpens.get(list), live && group->listCloses.get(list),
+                       [&] { gReal.glCallList(list); });
 }
 void mural_glCallLists(GLsizei n, GLenum type, const void* lists) {
     ThreadState& t = *tThread;
@@ -295,10 +302,12 @@ GLuint mural_glCreateShaderProgramv(GLenum type, GLsizei count, const GLchar* co
     return program;
 }
 // SPIR-V modules are portable. Other formats are driver-specific and not advertised.
-void mural_glShaderBinary(GLsizei count, const GLuint* shaders, GLenum binaryFormat, const void* binary, GLsizei length) {
+void mural_glShaderBinary(GLsizei count, const GLuint* shaders, GLenum binaryFormat, const void* binary,
+                          GLsizei length) {
     ThreadState& t = *tThread;
     if (binaryFormat == GL_SHADER_BINARY_FORMAT_SPIR_V || !capturing(t)) {
-        encode_glShaderBinary(t, count, DataArg::of(shaders, n4(count, shaders)), binaryFormat, DataArg::of(binary, vn(length, 1)), length);
+        encode_glShaderBinary(t, count, DataArg::of(shaders, n4(count, shaders)), binaryFormat,
+                              DataArg::of(binary, vn(length, 1)), length);
         return gReal.glShaderBinary(count, shaders, binaryFormat, binary, length);
     }
     stashError(*t.context, driverError());
@@ -312,7 +321,8 @@ void mural_glNamedStringARB(GLenum type, GLint namelen, const GLchar* name, GLin
     if (!capturing(t)) return local();
     if (!raisesNothing(*t.context, local)) return;
     const GLint nameBytes = textBytes(name, namelen), stringBytes = textBytes(string, stringlen);
-    encode_glNamedStringARB(t, type, nameBytes, DataArg::of(name, vn(nameBytes, 1)), stringBytes, DataArg::of(string, vn(stringBytes, 1)));
+    encode_glNamedStringARB(t, type, nameBytes, DataArg::of(name, vn(nameBytes, 1)), stringBytes,
+                            DataArg::of(string, vn(stringBytes, 1)));
 }
 void mural_glDeleteNamedStringARB(GLint namelen, const GLchar* name) {
     ThreadState& t = *tThread;
@@ -328,19 +338,24 @@ void mural_glBegin(GLenum mode) {
     ThreadState& t = *tThread;
     buffersRead(t);
     encode_glBegin(t, mode);
-    if (Context* c = t.context; c && c->openPrimitive == kNoPrimitive) c->restartElement = c->arrays.anyClient() ? restartIndexOf(*c) : kNoRestart;
+    if (Context* c = t.context; c && c->openPrimitive == kNoPrimitive)
+        c->restartElement = c->arrays.anyClient() ? restartIndexOf(*c) : kNoRestart;
     gReal.glBegin(mode);
     if (!t.context || mode > GL_PATCHES) return; // invalid mode
-    if (t.context->compilingList) t.context->listPrimitive = true;
-    else if (t.context->openPrimitive == kNoPrimitive && t.context->compatible()) t.context->openPrimitive = mode;
+    if (t.context->compilingList)
+        t.context->listPrimitive = true;
+    else if (t.context->openPrimitive == kNoPrimitive && t.context->compatible())
+        t.context->openPrimitive = mode;
 }
 void mural_glEnd() {
     ThreadState& t = *tThread;
     encode_glEnd(t);
     gReal.glEnd();
     if (!t.context) return;
-    if (t.context->compilingList) listEndsPrimitive(*t.context);
-    else t.context->openPrimitive = kNoPrimitive;
+    if (t.context->compilingList)
+        listEndsPrimitive(*t.context);
+    else
+        t.context->openPrimitive = kNoPrimitive;
 }
 
 // Primitives are empty in the program's own context. Mesa may apply attributes of an empty primitive only after the
@@ -387,8 +402,10 @@ void mural_glGetIntegerv(GLenum pname, GLint* data) {
     }
     gReal.glGetIntegerv(pname, data);
     if (!capturing(t) || !data || t.context->openPrimitive != kNoPrimitive) return;
-    if (pname == GL_NUM_EXTENSIONS) *data = extensionCount(*t.context) < 0 ? *data : extensionCount(*t.context);
-    else if (pname == GL_NUM_SHADER_BINARY_FORMATS) *data = *data > 0 && takesModules(*t.context) ? 1 : 0;
+    if (pname == GL_NUM_EXTENSIONS)
+        *data = extensionCount(*t.context) < 0 ? *data : extensionCount(*t.context);
+    else if (pname == GL_NUM_SHADER_BINARY_FORMATS)
+        *data = *data > 0 && takesModules(*t.context) ? 1 : 0;
 }
 
 } // extern "C"

@@ -17,16 +17,26 @@ template <class Local, class Span> void packed(const void* values, Local&& local
     if (packsHere(t, local, by)) tellPackBuffer(t, values, span());
 }
 
-template <class Value, class Local> void pixelMap(GLenum map, const Value* values, Local&& local, const char* by = __builtin_FUNCTION()) {
-    packed(values, local, [=] {
-        GLint count = 0;
-        gReal.glGetIntegerv(GL_PIXEL_MAP_I_TO_I_SIZE + (map - GL_PIXEL_MAP_I_TO_I), &count);
-        return static_cast<size_t>(count) * sizeof(Value);
-    }, by);
+template <class Value, class Local>
+void pixelMap(GLenum map, const Value* values, Local&& local, const char* by = __builtin_FUNCTION()) {
+    packed(
+        values, local,
+        [=] {
+            GLint count = 0;
+            gReal.glGetIntegerv(GL_PIXEL_MAP_I_TO_I_SIZE + (map - GL_PIXEL_MAP_I_TO_I), &count);
+            return static_cast<size_t>(count) * sizeof(Value);
+        },
+        by);
 }
 
 template <class Local> void stipple(const void* pattern, Local&& local, const char* by = __builtin_FUNCTION()) {
-    packed(pattern, local, [] { return sizes::spanBytes(sizes::layoutOf(packStore(*tThread->context), GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2)); }, by);
+    packed(
+        pattern, local,
+        [] {
+            return sizes::spanBytes(
+                sizes::layoutOf(packStore(*tThread->context), GL_COLOR_INDEX, GL_BITMAP, 32, 32, 1, 2));
+        },
+        by);
 }
 
 } // namespace

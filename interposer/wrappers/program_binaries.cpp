@@ -46,7 +46,6 @@ bool isOurs(const void* binary, GLsizei length, Footer& footer) {
            checksumOf(bytes + footer.driverBytes, footer.recipeBytes) == footer.checksum;
 }
 
-
 void append(std::byte* binary, uint32_t driverBytes, const void* recipe, uint32_t recipeBytes) {
     Footer footer;
     footer.driverBytes = driverBytes;
@@ -78,7 +77,9 @@ void mural_glGetProgramiv(GLuint program, GLenum pname, GLint* params) {
 
 void mural_glGetProgramBinary(GLuint program, GLsizei bufSize, GLsizei* length, GLenum* binaryFormat, void* binary) {
     ThreadState& t = *tThread;
-    const auto local = [&](GLsizei room, GLsizei* written) { gReal.glGetProgramBinary(program, room, written, binaryFormat, binary); };
+    const auto local = [&](GLsizei room, GLsizei* written) {
+        gReal.glGetProgramBinary(program, room, written, binaryFormat, binary);
+    };
     if (!capturing(t) || bufSize < 0) return local(bufSize, length);
     uint64_t recipeBytes = 0;
     const void* recipe = askProgram(t, program, recipeBytes);
@@ -91,7 +92,8 @@ void mural_glGetProgramBinary(GLuint program, GLsizei bufSize, GLsizei* length, 
         if (length) *length = own;
         return;
     }
-    if (own > 0) append(static_cast<std::byte*>(binary), static_cast<uint32_t>(own), recipe, static_cast<uint32_t>(recipeBytes));
+    if (own > 0)
+        append(static_cast<std::byte*>(binary), static_cast<uint32_t>(own), recipe, static_cast<uint32_t>(recipeBytes));
     if (length) *length = own > 0 ? own + more : own;
 }
 
@@ -99,7 +101,9 @@ void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* bina
     ThreadState& t = *tThread;
     Footer footer;
     const bool ours = isOurs(binary, length, footer);
-    if (!capturing(t)) return gReal.glProgramBinary(program, binaryFormat, binary, ours ? static_cast<GLsizei>(footer.driverBytes) : length);
+    if (!capturing(t))
+        return gReal.glProgramBinary(program, binaryFormat, binary,
+                                     ours ? static_cast<GLsizei>(footer.driverBytes) : length);
     const bool loads = ours && footer.recipeBytes > 0;
     const GLsizei driverBytes = length < 0 ? length : loads ? static_cast<GLsizei>(footer.driverBytes) : 0;
     if (!raisesNothing(*t.context, [&] { gReal.glProgramBinary(program, binaryFormat, binary, driverBytes); })) return;

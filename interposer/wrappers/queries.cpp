@@ -65,7 +65,8 @@ bool result(ThreadState& t, const char* by, GLuint id, uint64_t& value) {
 }
 
 template <class T> T held(uint64_t value) {
-    const uint64_t largest = static_cast<uint64_t>(sizeof(T) == 4 ? (static_cast<T>(-1) < 0 ? INT32_MAX : UINT32_MAX) : UINT64_MAX);
+    const uint64_t largest =
+        static_cast<uint64_t>(sizeof(T) == 4 ? (static_cast<T>(-1) < 0 ? INT32_MAX : UINT32_MAX) : UINT64_MAX);
     return static_cast<T>(value < largest ? value : largest);
 }
 
@@ -74,14 +75,16 @@ template <class T> T held(uint64_t value) {
 bool drawsAllItself(const ThreadState& t) { return swapLocally() || t.context->drawsPixmap; }
 
 // Executes the driver's own call first. It raises errors, and returns values that do not depend on rendering.
-template <class T, class Local> void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
+template <class T, class Local>
+void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
     if (drawsAllItself(t) || !params || !isResult(pname)) return local();
     uint64_t value = 0;
     if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = held<T>(value);
 }
 
 // The same into a buffer, in the program's own context and on the nodes.
-template <class T, class Local> void intoBuffer(ThreadState& t, const char* by, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
+template <class T, class Local>
+void intoBuffer(ThreadState& t, const char* by, GLuint id, GLenum pname, GLuint buffer, GLintptr offset, Local local) {
     if (!raisesNothing(*t.context, local)) return;
     T written{};
     GLint before = 0;
@@ -97,14 +100,17 @@ template <class T, class Local> void intoBuffer(ThreadState& t, const char* by, 
     records::bufferBytes(t, buffer, static_cast<uint64_t>(offset), DataArg::of(&written, sizeof written));
 }
 
-template <class T, class Local> void queryObject(GLuint id, GLenum pname, T* params, Local local, const char* by = __builtin_FUNCTION()) {
+template <class T, class Local>
+void queryObject(GLuint id, GLenum pname, T* params, Local local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
     if (t.context->queryBuffer == 0) return intoMemory(t, by, id, pname, params, local);
     intoBuffer<T>(t, by, id, pname, t.context->queryBuffer, reinterpret_cast<GLintptr>(params), local);
 }
 
-template <class T, class Local> void queryBufferObject(GLuint id, GLuint buffer, GLenum pname, GLintptr offset, Local local, const char* by = __builtin_FUNCTION()) {
+template <class T, class Local>
+void queryBufferObject(GLuint id, GLuint buffer, GLenum pname, GLintptr offset, Local local,
+                       const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
     bufferUsed(t, buffer, by);
@@ -112,8 +118,8 @@ template <class T, class Local> void queryBufferObject(GLuint id, GLuint buffer,
 }
 
 bool isInverted(GLenum mode) {
-    return mode == GL_QUERY_WAIT_INVERTED || mode == GL_QUERY_NO_WAIT_INVERTED || mode == GL_QUERY_BY_REGION_WAIT_INVERTED ||
-           mode == GL_QUERY_BY_REGION_NO_WAIT_INVERTED;
+    return mode == GL_QUERY_WAIT_INVERTED || mode == GL_QUERY_NO_WAIT_INVERTED ||
+           mode == GL_QUERY_BY_REGION_WAIT_INVERTED || mode == GL_QUERY_BY_REGION_NO_WAIT_INVERTED;
 }
 
 } // namespace
@@ -121,7 +127,9 @@ bool isInverted(GLenum mode) {
 extern "C" {
 
 void mural_glBeginQuery(GLenum target, GLuint id) {
-    beginQuery(target, 0, id, [=] { gReal.glBeginQuery(target, id); }, [=](ThreadState& t) { encode_glBeginQuery(t, target, id); });
+    beginQuery(
+        target, 0, id, [=] { gReal.glBeginQuery(target, id); },
+        [=](ThreadState& t) { encode_glBeginQuery(t, target, id); });
 }
 void mural_glEndQuery(GLenum target) {
     ThreadState& t = *tThread;
@@ -136,8 +144,9 @@ void mural_glEndQueryIndexed(GLenum target, GLuint index) {
     ends(t, target, index);
 }
 void mural_glBeginQueryIndexed(GLenum target, GLuint index, GLuint id) {
-    beginQuery(target, index, id, [=] { gReal.glBeginQueryIndexed(target, index, id); },
-               [=](ThreadState& t) { encode_glBeginQueryIndexed(t, target, index, id); });
+    beginQuery(
+        target, index, id, [=] { gReal.glBeginQueryIndexed(target, index, id); },
+        [=](ThreadState& t) { encode_glBeginQueryIndexed(t, target, index, id); });
 }
 void mural_glDeleteQueries(GLsizei n, const GLuint* ids) {
     ThreadState& t = *tThread;
@@ -217,16 +226,20 @@ void mural_glGetQueryObjectui64v(GLuint id, GLenum pname, GLuint64* params) {
     queryObject(id, pname, params, [=] { gReal.glGetQueryObjectui64v(id, pname, params); });
 }
 void mural_glGetQueryBufferObjectiv(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
-    queryBufferObject<GLint>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjectiv(id, buffer, pname, offset); });
+    queryBufferObject<GLint>(id, buffer, pname, offset,
+                             [=] { gReal.glGetQueryBufferObjectiv(id, buffer, pname, offset); });
 }
 void mural_glGetQueryBufferObjectuiv(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
-    queryBufferObject<GLuint>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjectuiv(id, buffer, pname, offset); });
+    queryBufferObject<GLuint>(id, buffer, pname, offset,
+                              [=] { gReal.glGetQueryBufferObjectuiv(id, buffer, pname, offset); });
 }
 void mural_glGetQueryBufferObjecti64v(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
-    queryBufferObject<GLint64>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjecti64v(id, buffer, pname, offset); });
+    queryBufferObject<GLint64>(id, buffer, pname, offset,
+                               [=] { gReal.glGetQueryBufferObjecti64v(id, buffer, pname, offset); });
 }
 void mural_glGetQueryBufferObjectui64v(GLuint id, GLuint buffer, GLenum pname, GLintptr offset) {
-    queryBufferObject<GLuint64>(id, buffer, pname, offset, [=] { gReal.glGetQueryBufferObjectui64v(id, buffer, pname, offset); });
+    queryBufferObject<GLuint64>(id, buffer, pname, offset,
+                                [=] { gReal.glGetQueryBufferObjectui64v(id, buffer, pname, offset); });
 }
 
 } // extern "C"

@@ -28,10 +28,12 @@ bool readsOwnPixmap(Context& c) {
 bool outOfPackBuffer(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* offset) {
     if (!packBufferBound(c) || width == 0 || height == 0) return false;
     const sizes::ImageLayout layout = sizes::layoutOf(packStore(c), format, type, width, height, 1, 2);
-    return layout.known && !quiet::withinBuffer(GL_PIXEL_PACK_BUFFER, GL_PIXEL_PACK_BUFFER_BINDING, reinterpret_cast<uint64_t>(offset), sizes::spanBytes(layout));
+    return layout.known && !quiet::withinBuffer(GL_PIXEL_PACK_BUFFER, GL_PIXEL_PACK_BUFFER_BINDING,
+                                                reinterpret_cast<uint64_t>(offset), sizes::spanBytes(layout));
 }
 
-void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels, const char* by = __builtin_FUNCTION()) {
+void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
+                void* pixels, const char* by = __builtin_FUNCTION()) {
     Context& c = *t.context;
     if (readsOwnPixmap(c)) {
         gReal.glReadPixels(x, y, width, height, format, type, pixels);
@@ -59,18 +61,23 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
     if (layout.known) deliver(t, tight, pixels, layout);
 }
 
-void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels, const Level& size, int dimensions, const char* by = __builtin_FUNCTION()) {
+void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum format, GLenum type, void* pixels,
+                 const Level& size, int dimensions, const char* by = __builtin_FUNCTION()) {
     const size_t bytes = sizes::tightBytes(format, type, size.width, size.height, size.depth);
-    const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, size.width, size.height, size.depth, dimensions);
+    const sizes::ImageLayout layout =
+        sizes::layoutOf(packStore(*t.context), format, type, size.width, size.height, size.depth, dimensions);
     askAndDeliver(t, {byName, which, level, format, type, bytes}, pixels, layout, by);
 }
 
 // Executes the driver's own call first. It raises errors, and returns data in case the nodes have no answer.
-template <class Local> void readBound(GLenum target, GLint level, GLenum format, GLenum type, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
+template <class Local>
+void readBound(GLenum target, GLint level, GLenum format, GLenum type, void* pixels, Local&& local,
+               const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return local();
     if (!packsAhead(t, local)) return;
-    const Level size = levelOf([=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
+    const Level size =
+        levelOf([=](GLenum pname, GLint* value) { gReal.glGetTexLevelParameteriv(target, level, pname, value); });
     readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), by);
 }
 
@@ -82,11 +89,13 @@ void mural_glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum 
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glReadPixels(x, y, width, height, format, type, pixels);
     const bool isError = width < 0 || height < 0 || outOfPackBuffer(*t.context, width, height, format, type, pixels);
-    const bool valid = raisesNothing(*t.context, [&] { gReal.glReadPixels(x, y, isError ? width : 0, isError ? height : 0, format, type, pixels); });
+    const bool valid = raisesNothing(
+        *t.context, [&] { gReal.glReadPixels(x, y, isError ? width : 0, isError ? height : 0, format, type, pixels); });
     if (valid) readPixels(t, x, y, width, height, format, type, pixels);
 }
 
-void mural_glReadnPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, GLsizei bufSize, void* data) {
+void mural_glReadnPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, GLsizei bufSize,
+                         void* data) {
     ThreadState& t = *tThread;
     if (!capturing(t)) return gReal.glReadnPixels(x, y, width, height, format, type, bufSize, data);
     // The driver's own read checks bufSize. Its pixels are overwritten.
@@ -98,10 +107,12 @@ void mural_glGetTexImage(GLenum target, GLint level, GLenum format, GLenum type,
     readBound(target, level, format, type, pixels, [=] { gReal.glGetTexImage(target, level, format, type, pixels); });
 }
 void mural_glGetnTexImage(GLenum target, GLint level, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
-    readBound(target, level, format, type, pixels, [=] { gReal.glGetnTexImage(target, level, format, type, bufSize, pixels); });
+    readBound(target, level, format, type, pixels,
+              [=] { gReal.glGetnTexImage(target, level, format, type, bufSize, pixels); });
 }
 void mural_glGetnTexImageARB(GLenum target, GLint level, GLenum format, GLenum type, GLsizei bufSize, void* img) {
-    readBound(target, level, format, type, img, [=] { gReal.glGetnTexImageARB(target, level, format, type, bufSize, img); });
+    readBound(target, level, format, type, img,
+              [=] { gReal.glGetnTexImageARB(target, level, format, type, bufSize, img); });
 }
 
 void mural_glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
@@ -118,8 +129,13 @@ void mural_glGetTextureImageEXT(GLuint texture, GLenum target, GLint level, GLen
     const auto local = [&] { gReal.glGetTextureImageEXT(texture, target, level, format, type, pixels); };
     if (!capturing(t) || t.context->compilingList) return local();
     if (!packsAhead(t, local)) return;
-    const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetTextureLevelParameterivEXT(texture, target, level, pname, value); });
-    whileBound(t, target, texture, [&] { readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), "glGetTextureImageEXT"); });
+    const Level size = levelOf([&](GLenum pname, GLint* value) {
+        gReal.glGetTextureLevelParameterivEXT(texture, target, level, pname, value);
+    });
+    whileBound(t, target, texture, [&] {
+        readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target),
+                    "glGetTextureImageEXT");
+    });
 }
 
 void mural_glGetMultiTexImageEXT(GLenum texunit, GLenum target, GLint level, GLenum format, GLenum type, void* pixels) {
@@ -127,21 +143,32 @@ void mural_glGetMultiTexImageEXT(GLenum texunit, GLenum target, GLint level, GLe
     const auto local = [&] { gReal.glGetMultiTexImageEXT(texunit, target, level, format, type, pixels); };
     if (!capturing(t) || t.context->compilingList) return local();
     if (!packsAhead(t, local)) return;
-    const Level size = levelOf([&](GLenum pname, GLint* value) { gReal.glGetMultiTexLevelParameterivEXT(texunit, target, level, pname, value); });
-    whileActive(t, texunit, [&] { readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target), "glGetMultiTexImageEXT"); });
+    const Level size = levelOf([&](GLenum pname, GLint* value) {
+        gReal.glGetMultiTexLevelParameterivEXT(texunit, target, level, pname, value);
+    });
+    whileActive(t, texunit, [&] {
+        readTexture(t, false, target, level, format, type, pixels, size, imageDimensions(target),
+                    "glGetMultiTexImageEXT");
+    });
 }
 
 // Reads a part: requests the whole level and copies the part out of it.
-void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLsizei width, GLsizei height, GLsizei depth, GLenum format, GLenum type, GLsizei bufSize, void* pixels) {
+void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLint yoffset, GLint zoffset, GLsizei width,
+                                GLsizei height, GLsizei depth, GLenum format, GLenum type, GLsizei bufSize,
+                                void* pixels) {
     ThreadState& t = *tThread;
-    const auto local = [&] { gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type, bufSize, pixels); };
+    const auto local = [&] {
+        gReal.glGetTextureSubImage(texture, level, xoffset, yoffset, zoffset, width, height, depth, format, type,
+                                   bufSize, pixels);
+    };
     if (!capturing(t)) return local();
     if (!packsAhead(t, local)) return;
     if (width <= 0 || height <= 0 || depth <= 0) return;
     GLenum target = 0;
     const Level size = levelOf(*t.context, texture, level, target);
     const size_t whole = sizes::tightBytes(format, type, size.width, size.height, size.depth);
-    const sizes::ImageLayout layout = sizes::layoutOf(packStore(*t.context), format, type, width, height, depth, dimensionsByName(target));
+    const sizes::ImageLayout layout =
+        sizes::layoutOf(packStore(*t.context), format, type, width, height, depth, dimensionsByName(target));
     const ImagePart part{size, {xoffset, yoffset, zoffset}, {width, height, depth}, sizes::groupBytes(format, type)};
     askAndDeliver(t, {true, texture, level, format, type, whole, part}, pixels, layout, __func__);
 }

@@ -21,7 +21,8 @@ bool isDesktop(const ThreadState& t, int version) {
 bool outOfUnpackBuffer(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* offset) {
     if (!unpackBufferBound(c) || width == 0 || height == 0) return false;
     const sizes::ImageLayout layout = sizes::layoutOf(unpackStore(c), format, type, width, height, 1, 2);
-    return layout.known && !withinBuffer(GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_UNPACK_BUFFER_BINDING, reinterpret_cast<uint64_t>(offset), sizes::spanBytes(layout));
+    return layout.known && !withinBuffer(GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_UNPACK_BUFFER_BINDING,
+                                         reinterpret_cast<uint64_t>(offset), sizes::spanBytes(layout));
 }
 
 } // namespace
@@ -32,7 +33,8 @@ bool withinBuffer(GLenum target, GLenum binding, uint64_t offset, uint64_t sizeB
     if (buffer == 0) return false;
     gReal.glGetBufferParameteriv(target, GL_BUFFER_SIZE, &size);
     gReal.glGetBufferParameteriv(target, GL_BUFFER_MAPPED, &mapped);
-    return mapped == GL_FALSE && size >= 0 && offset <= static_cast<uint64_t>(size) && sizeBytes <= static_cast<uint64_t>(size) - offset;
+    return mapped == GL_FALSE && size >= 0 && offset <= static_cast<uint64_t>(size) &&
+           sizeBytes <= static_cast<uint64_t>(size) - offset;
 }
 
 bool clearsBuffer(GLenum buffer, GLint drawBuffer, bool color, GLenum plane) {
@@ -42,8 +44,10 @@ bool clearsBuffer(GLenum buffer, GLint drawBuffer, bool color, GLenum plane) {
 
 void clearDepthStencil(GLuint framebuffer, GLenum buffer, GLint drawBuffer, GLfloat depth, GLint stencil) {
     discarded([&] { // Mesa checks completeness only before an actual clear, or for one plane
-        if (clearsBuffer(buffer, drawBuffer, false, GL_DEPTH_STENCIL)) gReal.glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &depth);
-        else gReal.glClearNamedFramebufferfi(framebuffer, buffer, drawBuffer, depth, stencil);
+        if (clearsBuffer(buffer, drawBuffer, false, GL_DEPTH_STENCIL))
+            gReal.glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &depth);
+        else
+            gReal.glClearNamedFramebufferfi(framebuffer, buffer, drawBuffer, depth, stencil);
     });
 }
 
@@ -66,13 +70,16 @@ void evalMesh2(GLenum mode, GLint i1, GLint i2, GLint j1, GLint j2) {
 }
 
 void drawPixels(const ThreadState& t, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
-    const bool isError = width < 0 || height < 0 || (t.context && outOfUnpackBuffer(*t.context, width, height, format, type, pixels));
+    const bool isError =
+        width < 0 || height < 0 || (t.context && outOfUnpackBuffer(*t.context, width, height, format, type, pixels));
     gReal.glDrawPixels(isError ? width : 0, isError ? height : 0, format, type, pixels);
 }
 
 void accumulate(GLenum op, GLfloat value) {
-    if (op == GL_ACCUM || op == GL_LOAD || op == GL_ADD || op == GL_MULT || op == GL_RETURN) gReal.glAccum(GL_MULT, 1);
-    else gReal.glAccum(op, value);
+    if (op == GL_ACCUM || op == GL_LOAD || op == GL_ADD || op == GL_MULT || op == GL_RETURN)
+        gReal.glAccum(GL_MULT, 1);
+    else
+        gReal.glAccum(op, value);
 }
 
 // The driver reports counts above its limit.
@@ -86,7 +93,8 @@ void dispatch(GLuint x, GLuint y, GLuint z) {
     const GLuint count[3] = {x, y, z};
     for (GLuint i = 0; i < 3; ++i) {
         GLint most = static_cast<GLint>(kSureGroups);
-        if (count[i] > kSureGroups && gReal.glGetIntegeri_v) gReal.glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, i, &most);
+        if (count[i] > kSureGroups && gReal.glGetIntegeri_v)
+            gReal.glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, i, &most);
         if (count[i] > static_cast<GLuint>(most)) return gReal.glDispatchCompute(x, y, z);
     }
     gReal.glDispatchCompute(0, 0, 0);
@@ -95,19 +103,26 @@ void dispatch(GLuint x, GLuint y, GLuint z) {
 void dispatchIndirect(GLintptr indirect) {
     constexpr uint64_t kCommandBytes = 12;
     const bool right = indirect >= 0 && indirect % 4 == 0 &&
-                       withinBuffer(GL_DISPATCH_INDIRECT_BUFFER, GL_DISPATCH_INDIRECT_BUFFER_BINDING, static_cast<uint64_t>(indirect), kCommandBytes);
-    if (right) gReal.glDispatchCompute(0, 0, 0);
-    else gReal.glDispatchComputeIndirect(indirect);
+                       withinBuffer(GL_DISPATCH_INDIRECT_BUFFER, GL_DISPATCH_INDIRECT_BUFFER_BINDING,
+                                    static_cast<uint64_t>(indirect), kCommandBytes);
+    if (right)
+        gReal.glDispatchCompute(0, 0, 0);
+    else
+        gReal.glDispatchComputeIndirect(indirect);
 }
 
 void drawFeedback(const ThreadState& t, GLenum mode, GLuint id) {
-    if (isDesktop(t, 42)) gReal.glDrawTransformFeedbackInstanced(mode, id, 0);
-    else gReal.glDrawArrays(mode, 0, 0);
+    if (isDesktop(t, 42))
+        gReal.glDrawTransformFeedbackInstanced(mode, id, 0);
+    else
+        gReal.glDrawArrays(mode, 0, 0);
 }
 
 void drawFeedbackStream(const ThreadState& t, GLenum mode, GLuint id, GLuint stream) {
-    if (isDesktop(t, 42)) gReal.glDrawTransformFeedbackStreamInstanced(mode, id, stream, 0);
-    else gReal.glDrawArrays(mode, 0, 0);
+    if (isDesktop(t, 42))
+        gReal.glDrawTransformFeedbackStreamInstanced(mode, id, stream, 0);
+    else
+        gReal.glDrawArrays(mode, 0, 0);
 }
 
 bool indirectIsWrong(const ThreadState& t, const void* indirect, uint64_t sizeBytes) {
@@ -116,22 +131,26 @@ bool indirectIsWrong(const ThreadState& t, const void* indirect, uint64_t sizeBy
     GLint buffer = 0, array = 1;
     gReal.glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
     const bool compatible = t.context && t.context->compatible();
-    if (buffer == 0) return !compatible; // client memory
+    if (buffer == 0) return !compatible;                                        // client memory
     if (!isDesktop(t, 0)) gReal.glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &array); // ES requires a vertex array
     return array == 0 || !withinBuffer(GL_DRAW_INDIRECT_BUFFER, GL_DRAW_INDIRECT_BUFFER_BINDING, offset, sizeBytes);
 }
 
 void drawIndirect(const ThreadState& t, GLenum mode, const void* indirect, GLsizei stride) {
-    if (isDesktop(t, 43)) gReal.glMultiDrawArraysIndirect(mode, indirect, 0, stride);
-    else gReal.glDrawArrays(mode, 0, 0);
+    if (isDesktop(t, 43))
+        gReal.glMultiDrawArraysIndirect(mode, indirect, 0, stride);
+    else
+        gReal.glDrawArrays(mode, 0, 0);
 }
 
 void drawElementsIndirect(const ThreadState& t, GLenum mode, GLenum type, const void* indirect, GLsizei stride) {
     const bool isIndex = type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
     if (isDesktop(t, 43)) gReal.glMultiDrawElementsIndirect(mode, type, indirect, 0, stride);
     // drivers differ in the error that they raise first
-    else if (!isIndex) gReal.glDrawElementsIndirect(mode, type, indirect);
-    else gReal.glDrawElements(mode, 0, type, nullptr);
+    else if (!isIndex)
+        gReal.glDrawElementsIndirect(mode, type, indirect);
+    else
+        gReal.glDrawElements(mode, 0, type, nullptr);
 }
 
 } // namespace mural::quiet

@@ -17,7 +17,9 @@ inline GLsizei none(GLsizei count) { return count < 0 ? count : 0; }
 // Returns the count for the local call of a draw.
 inline GLsizei count(const ThreadState& t, GLsizei count) { return t.drawLocally ? count : none(count); }
 
-inline void clear(GLbitfield mask) { gReal.glClear(mask & ~GLbitfield{GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT}); }
+inline void clear(GLbitfield mask) {
+    gReal.glClear(mask & ~GLbitfield{GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT});
+}
 
 // Returns whether glClearBuffer* and similar commands accept these arguments. `plane` is the buffer of the command's
 // type.

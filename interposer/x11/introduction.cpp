@@ -31,7 +31,8 @@ Mark markOf(const Window& w, const Session& s) {
     const uint64_t key = s.nameKey();
     mark.words[0] = static_cast<uint32_t>(key);
     mark.words[1] = static_cast<uint32_t>(key >> 32);
-    mark.count += known::drawablesOf(w.server, w.native, mark.words + window_mark::kKeyWords, window_mark::kMaxDrawables);
+    mark.count +=
+        known::drawablesOf(w.server, w.native, mark.words + window_mark::kKeyWords, window_mark::kMaxDrawables);
     return mark;
 }
 
@@ -46,7 +47,8 @@ void introduceByXlib(Window& w, Session& s, Display* dpy) {
     static auto* socket = xlib<int(Display*)>("XConnectionNumber");
     static auto* name = xlib<char*(Display*)>("XDisplayString");
     static auto* intern = xlib<::Atom(Display*, const char*, Bool)>("XInternAtom");
-    static auto* change = xlib<int(Display*, ::Window, ::Atom, ::Atom, int, int, const unsigned char*, int)>("XChangeProperty");
+    static auto* change =
+        xlib<int(Display*, ::Window, ::Atom, ::Atom, int, int, const unsigned char*, int)>("XChangeProperty");
     if (!socket || !name || !intern || !change) return;
     describe(w, s, socket(dpy), name(dpy));
     if (!s.welcome().displayApp) return;
@@ -66,16 +68,21 @@ struct Xcb {
     decltype(&xcb_get_file_descriptor) socket = get<decltype(xcb_get_file_descriptor)>("xcb_get_file_descriptor");
     decltype(&xcb_intern_atom) intern = get<decltype(xcb_intern_atom)>("xcb_intern_atom");
     decltype(&xcb_intern_atom_reply) interned = get<decltype(xcb_intern_atom_reply)>("xcb_intern_atom_reply");
-    decltype(&xcb_change_property_checked) change = get<decltype(xcb_change_property_checked)>("xcb_change_property_checked");
+    decltype(&xcb_change_property_checked) change =
+        get<decltype(xcb_change_property_checked)>("xcb_change_property_checked");
     decltype(&xcb_request_check) check = get<decltype(xcb_request_check)>("xcb_request_check");
-    [[nodiscard]] bool complete() const { return connect && hasError && disconnect && socket && intern && interned && change && check; }
+    [[nodiscard]] bool complete() const {
+        return connect && hasError && disconnect && socket && intern && interned && change && check;
+    }
 };
 
 // Returns false if the server has no such window.
 bool putMark(const Xcb& xcb, xcb_connection_t* c, const Window& w, const Mark& mark) {
-    xcb_intern_atom_reply_t* atom = xcb.interned(c, xcb.intern(c, 0, mark.property.length, mark.property.text), nullptr);
+    xcb_intern_atom_reply_t* atom =
+        xcb.interned(c, xcb.intern(c, 0, mark.property.length, mark.property.text), nullptr);
     if (!atom) return true;
-    const auto request = xcb.change(c, XCB_PROP_MODE_REPLACE, static_cast<xcb_window_t>(w.native), atom->atom, XCB_ATOM_CARDINAL, 32, mark.count, mark.words);
+    const auto request = xcb.change(c, XCB_PROP_MODE_REPLACE, static_cast<xcb_window_t>(w.native), atom->atom,
+                                    XCB_ATOM_CARDINAL, 32, mark.count, mark.words);
     std::free(atom);
     xcb_generic_error_t* error = xcb.check(c, request);
     const bool found = !error;
@@ -104,8 +111,10 @@ void introduceWindow(Window& w) {
     Session* s = Session::current();
     if (w.introduced || w.nativeGone || !w.native || !s || !s->alive()) return;
     w.introduced = true;
-    if (w.isEgl) introduceByXcb(w, *s);
-    else introduceByXlib(w, *s, static_cast<Display*>(w.display));
+    if (w.isEgl)
+        introduceByXcb(w, *s);
+    else
+        introduceByXlib(w, *s, static_cast<Display*>(w.display));
 }
 
 } // namespace mural

@@ -12,10 +12,10 @@ namespace mural {
 namespace {
 
 // Calls a function of the libxcb that the program has loaded.
-#define XCB(function, ...)                                \
-    ([&] {                                                \
-        static NextFunction next{#function, kXcb};        \
-        return MURAL_CALL_OF(next, function, __VA_ARGS__); \
+#define XCB(function, ...)                                                                                             \
+    ([&] {                                                                                                             \
+        static NextFunction next{#function, kXcb};                                                                     \
+        return MURAL_CALL_OF(next, function, __VA_ARGS__);                                                             \
     }())
 
 struct Target {
@@ -30,8 +30,10 @@ uint32_t nextSlot = 0;
 
 const xcb_visualtype_t* visualOf(const xcb_setup_t* setup, xcb_visualid_t id) {
     for (auto screen = XCB(xcb_setup_roots_iterator, setup); screen.rem > 0; XCB(xcb_screen_next, &screen))
-        for (auto depth = XCB(xcb_screen_allowed_depths_iterator, screen.data); depth.rem > 0; XCB(xcb_depth_next, &depth))
-            for (auto visual = XCB(xcb_depth_visuals_iterator, depth.data); visual.rem > 0; XCB(xcb_visualtype_next, &visual))
+        for (auto depth = XCB(xcb_screen_allowed_depths_iterator, screen.data); depth.rem > 0;
+             XCB(xcb_depth_next, &depth))
+            for (auto visual = XCB(xcb_depth_visuals_iterator, depth.data); visual.rem > 0;
+                 XCB(xcb_visualtype_next, &visual))
                 if (visual.data->visual_id == id) return visual.data;
     return nullptr;
 }
@@ -110,19 +112,23 @@ void putOwnPicture(const wire::ReplyHeader& picture, const std::byte* pixels) {
         const Target* const found = find(static_cast<xcb_window_t>(picture.x));
         if (found) target = *found;
     }
-    if (!target.connection || picture.w <= 0 || picture.h <= 0 || picture.w > UINT16_MAX || picture.h > INT16_MAX) return;
-    const size_t rowBits = (size_t(picture.w) * target.bitsPerPixel + target.padBits - 1) / target.padBits * target.padBits;
+    if (!target.connection || picture.w <= 0 || picture.h <= 0 || picture.w > UINT16_MAX || picture.h > INT16_MAX)
+        return;
+    const size_t rowBits =
+        (size_t(picture.w) * target.bitsPerPixel + target.padBits - 1) / target.padBits * target.padBits;
     const size_t rowBytes = rowBits / 8;
     if (rowBytes * size_t(picture.h) != picture.sizeBytes) return;
     xcb_connection_t* const c = target.connection;
     const xcb_gcontext_t gc = XCB(xcb_generate_id, c);
     const uint32_t values[] = {XCB_SUBWINDOW_MODE_CLIP_BY_CHILDREN, 0 /* no exposure events */};
-    send(c, XCB(xcb_create_gc_checked, c, gc, target.window, XCB_GC_SUBWINDOW_MODE | XCB_GC_GRAPHICS_EXPOSURES, values));
+    send(c,
+         XCB(xcb_create_gc_checked, c, gc, target.window, XCB_GC_SUBWINDOW_MODE | XCB_GC_GRAPHICS_EXPOSURES, values));
     const int rows = static_cast<int>(kRequestBytes / rowBytes > 0 ? kRequestBytes / rowBytes : 1);
     for (int top = 0; top < picture.h; top += rows) {
         const int height = picture.h - top < rows ? picture.h - top : rows;
-        send(c, XCB(xcb_put_image_checked, c, XCB_IMAGE_FORMAT_Z_PIXMAP, target.window, gc, static_cast<uint16_t>(picture.w), static_cast<uint16_t>(height), 0,
-                    static_cast<int16_t>(top), 0, static_cast<uint8_t>(target.depth), static_cast<uint32_t>(rowBytes * size_t(height)),
+        send(c, XCB(xcb_put_image_checked, c, XCB_IMAGE_FORMAT_Z_PIXMAP, target.window, gc,
+                    static_cast<uint16_t>(picture.w), static_cast<uint16_t>(height), 0, static_cast<int16_t>(top), 0,
+                    static_cast<uint8_t>(target.depth), static_cast<uint32_t>(rowBytes * size_t(height)),
                     reinterpret_cast<const uint8_t*>(pixels + rowBytes * size_t(top))));
     }
     send(c, XCB(xcb_free_gc_checked, c, gc));

@@ -91,7 +91,9 @@ struct Peer {
     explicit Peer(int descriptor) {
         if (descriptor < 0 || getpeername(descriptor, reinterpret_cast<sockaddr*>(&address), &bytes) != 0) bytes = 0;
     }
-    [[nodiscard]] bool isAs(const Peer& other) const { return bytes > 0 && bytes == other.bytes && std::memcmp(&address, &other.address, bytes) == 0; }
+    [[nodiscard]] bool isAs(const Peer& other) const {
+        return bytes > 0 && bytes == other.bytes && std::memcmp(&address, &other.address, bytes) == 0;
+    }
     // Returns whether this is the server of DISPLAY. EGL opens its own connection there if the program names no
     // display.
     [[nodiscard]] bool isDefault() const {
@@ -148,10 +150,10 @@ bool askSizeDuringGrab(const Window& w, uint32_t& width, uint32_t& height) {
 
 using namespace mural;
 
-#define GRAB(library, function, connection)       \
-    static NextFunction next{#function, library}; \
-    grabBegins(connection);                       \
-    waitWindowsShown();                           \
+#define GRAB(library, function, connection)                                                                            \
+    static NextFunction next{#function, library};                                                                      \
+    grabBegins(connection);                                                                                            \
+    waitWindowsShown();                                                                                                \
     return callNext(next, function, connection)
 
 MURAL_SHOWN int XGrabServer(Display* dpy) { GRAB(kXlib, XGrabServer, dpy); }
@@ -166,11 +168,11 @@ MURAL_SHOWN int XUngrabServer(Display* dpy) {
     return done;
 }
 
-#define UNGRAB(function, c)                                             \
-    static NextFunction next{#function, kXcb}, flush{"xcb_flush", kXcb}; \
-    const xcb_void_cookie_t sent = callNext(next, function, c);         \
-    MURAL_CALL_OF(flush, xcb_flush, c);                                  \
-    grabEnds(descriptorOf(c));                                          \
+#define UNGRAB(function, c)                                                                                            \
+    static NextFunction next{#function, kXcb}, flush{"xcb_flush", kXcb};                                               \
+    const xcb_void_cookie_t sent = callNext(next, function, c);                                                        \
+    MURAL_CALL_OF(flush, xcb_flush, c);                                                                                \
+    grabEnds(descriptorOf(c));                                                                                         \
     return sent
 
 MURAL_SHOWN xcb_void_cookie_t xcb_ungrab_server(xcb_connection_t* c) { UNGRAB(xcb_ungrab_server, c); }

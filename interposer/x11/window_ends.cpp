@@ -36,18 +36,20 @@ void windowEnds(auto* connection, uint64_t window) {
 
 } // namespace
 
-#define PASS_ON_AND_ASK(library, function, connection, resource)          \
-    static NextFunction next{#function, library};                        \
-    const auto result = callNext(next, function, connection, resource); \
-    askForWindows(connection);                                           \
+#define PASS_ON_AND_ASK(library, function, connection, resource)                                                       \
+    static NextFunction next{#function, library};                                                                      \
+    const auto result = callNext(next, function, connection, resource);                                                \
+    askForWindows(connection);                                                                                         \
     return result
 
-#define END_AND_PASS_ON(library, function, connection, window) \
-    windowEnds(connection, window);                            \
+#define END_AND_PASS_ON(library, function, connection, window)                                                         \
+    windowEnds(connection, window);                                                                                    \
     PASS_ON_AND_ASK(library, function, connection, window)
 
 MURAL_SHOWN int XDestroyWindow(Display* dpy, ::Window window) { END_AND_PASS_ON(kXlib, XDestroyWindow, dpy, window); }
-MURAL_SHOWN int XDestroySubwindows(Display* dpy, ::Window window) { PASS_ON_AND_ASK(kXlib, XDestroySubwindows, dpy, window); }
+MURAL_SHOWN int XDestroySubwindows(Display* dpy, ::Window window) {
+    PASS_ON_AND_ASK(kXlib, XDestroySubwindows, dpy, window);
+}
 MURAL_SHOWN int XKillClient(Display* dpy, XID resource) { PASS_ON_AND_ASK(kXlib, XKillClient, dpy, resource); }
 MURAL_SHOWN int XCloseDisplay(Display* dpy) {
     static NextFunction next{"XCloseDisplay", kXlib};
@@ -67,7 +69,9 @@ MURAL_SHOWN xcb_void_cookie_t xcb_destroy_subwindows(xcb_connection_t* c, xcb_wi
 MURAL_SHOWN xcb_void_cookie_t xcb_destroy_subwindows_checked(xcb_connection_t* c, xcb_window_t window) {
     PASS_ON_AND_ASK(kXcb, xcb_destroy_subwindows_checked, c, window);
 }
-MURAL_SHOWN xcb_void_cookie_t xcb_kill_client(xcb_connection_t* c, uint32_t resource) { PASS_ON_AND_ASK(kXcb, xcb_kill_client, c, resource); }
+MURAL_SHOWN xcb_void_cookie_t xcb_kill_client(xcb_connection_t* c, uint32_t resource) {
+    PASS_ON_AND_ASK(kXcb, xcb_kill_client, c, resource);
+}
 MURAL_SHOWN xcb_void_cookie_t xcb_kill_client_checked(xcb_connection_t* c, uint32_t resource) {
     PASS_ON_AND_ASK(kXcb, xcb_kill_client_checked, c, resource);
 }

@@ -61,7 +61,8 @@ bool displayNameOf(int socket, char* name, size_t bytes) {
     const bool v4 = a.any.sa_family == AF_INET;
     const int port = ntohs(v4 ? a.v4.sin_port : a.v6.sin6_port);
     if ((!v4 && a.any.sa_family != AF_INET6) || port < kFirstPort) return false;
-    if (!inet_ntop(a.any.sa_family, v4 ? static_cast<const void*>(&a.v4.sin_addr) : &a.v6.sin6_addr, host, sizeof host)) return false;
+    if (!inet_ntop(a.any.sa_family, v4 ? static_cast<const void*>(&a.v4.sin_addr) : &a.v6.sin6_addr, host, sizeof host))
+        return false;
     std::snprintf(name, bytes, v4 ? "%s:%d" : "[%s]:%d", host, port - kFirstPort);
     return true;
 }

@@ -20,7 +20,8 @@ std::set<unsigned> toSet(hwloc_const_bitmap_t bitmap) {
 
 std::string busIdOf(const hwloc_obj_attr_u::hwloc_pcidev_attr_s& pci) {
     std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%01x", static_cast<unsigned>(pci.domain), static_cast<unsigned>(pci.bus), static_cast<unsigned>(pci.dev), static_cast<unsigned>(pci.func));
+    std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%01x", static_cast<unsigned>(pci.domain),
+                  static_cast<unsigned>(pci.bus), static_cast<unsigned>(pci.dev), static_cast<unsigned>(pci.func));
     return text.data();
 }
 
@@ -56,7 +57,8 @@ MachineView viewOf(hwloc_topology_t topology, const DeviceFacts& facts) {
     for (hwloc_obj_t o = nullptr; (o = hwloc_get_next_pcidev(topology, o)) != nullptr;) {
         if (o->attr->pcidev.class_id >> 8 != kPciDisplayClass) continue;
         const std::string busId = busIdOf(o->attr->pcidev);
-        machine.devices.push_back({DeviceKind::Gpu, "PCI " + busId, facts.canRender(busId) ? 1 : 0, true, cpusNear(topology, o)});
+        machine.devices.push_back(
+            {DeviceKind::Gpu, "PCI " + busId, facts.canRender(busId) ? 1 : 0, true, cpusNear(topology, o)});
     }
     for (hwloc_obj_t o = nullptr; (o = hwloc_get_next_osdev(topology, o)) != nullptr;) {
         if (o->attr->osdev.type != HWLOC_OBJ_OSDEV_NETWORK || o->name == nullptr) continue;

@@ -18,13 +18,13 @@ struct DeviceView {
     // The device with the highest rank is selected. GPUs: 1 if it can render (not a management card's display). Network
     // interfaces: Mbit/s.
     int rank = 0;
-    bool usable = true; // false for interfaces that are down
+    bool usable = true;      // false for interfaces that are down
     std::set<unsigned> cpus; // CPUs near it, by the operating system's numbers
 };
 
 struct MachineView {
     int numaNodes = 1;
-    std::set<unsigned> allowedCpus; // of the calling thread
+    std::set<unsigned> allowedCpus;  // of the calling thread
     std::vector<DeviceView> devices; // in the order of their bus addresses
 };
 

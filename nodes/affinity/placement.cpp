@@ -21,7 +21,8 @@ Topology loadTopology() {
     hwloc_topology_t topology = nullptr;
     if (hwloc_topology_init(&topology) != 0) return {nullptr, hwloc_topology_destroy};
     Topology owned(topology, hwloc_topology_destroy);
-    for (const char* name : kDriverComponents) hwloc_topology_set_components(topology, HWLOC_TOPOLOGY_COMPONENTS_FLAG_BLACKLIST, name);
+    for (const char* name : kDriverComponents)
+        hwloc_topology_set_components(topology, HWLOC_TOPOLOGY_COMPONENTS_FLAG_BLACKLIST, name);
     hwloc_topology_set_io_types_filter(topology, HWLOC_TYPE_FILTER_KEEP_IMPORTANT);
     if (hwloc_topology_load(topology) != 0) owned.reset();
     return owned;

@@ -48,7 +48,8 @@ Result<void> ChannelSocket::open(Deadline deadline) {
     while (true) {
         if (auto r = flush(deadline); !r) return r;
         if (channel_.open()) return {};
-        if (waitForSocket(socket_.get(), POLLIN, deadline) == 0) return Error{"the peer does not show that it knows the secret"};
+        if (waitForSocket(socket_.get(), POLLIN, deadline) == 0)
+            return Error{"the peer does not show that it knows the secret"};
         if (auto r = fetch(); !r) return r;
     }
 }

@@ -14,7 +14,8 @@ namespace mural {
 class ChannelSocket {
 public:
     // The socket must be non-blocking.
-    ChannelSocket(FileDescriptor socket, SecureChannel channel) : socket_(std::move(socket)), channel_(std::move(channel)) {}
+    ChannelSocket(FileDescriptor socket, SecureChannel channel)
+        : socket_(std::move(socket)), channel_(std::move(channel)) {}
 
     // Waits for the peer's proof of the secret.
     Result<void> open(Deadline deadline);

@@ -25,15 +25,18 @@ Result<FileDescriptor> connectTo(const DaemonClient& call) {
     std::vector<TcpAddress> addresses;
     for (const std::string& host : call.addresses) {
         auto resolved = resolveTcp(host, call.port, TcpRole::Connect, Deadline::inMs(kConnectMs));
-        if (resolved) addresses.insert(addresses.end(), resolved->begin(), resolved->end());
-        else why = resolved.error().message;
+        if (resolved)
+            addresses.insert(addresses.end(), resolved->begin(), resolved->end());
+        else
+            why = resolved.error().message;
     }
     if (!addresses.empty()) {
         auto socket = connectRacing(addresses, Deadline::inMs(kConnectMs));
         if (socket && prepareTcpSocket(socket->get())) return socket;
         why = socket ? "the connection was lost at once" : socket.error().message;
     }
-    return Error{"no connection to port " + std::to_string(call.port) + ": " + why + "; does `mural node --wait` run there?"};
+    return Error{"no connection to port " + std::to_string(call.port) + ": " + why +
+                 "; does `mural node --wait` run there?"};
 }
 
 Result<void> writeAll(int fd, std::span<const std::byte> bytes) {
@@ -60,16 +63,19 @@ Result<int> callNode(const DaemonClient& call) {
             if (m->kind == NodeMessageKind::Refused) return Error{"the node there refused: " + textOf(m->body)};
             if (m->kind == NodeMessageKind::Ended) return m->body.empty() ? 1 : std::to_integer<int>(m->body.front());
             if (m->kind != NodeMessageKind::Output && m->kind != NodeMessageKind::Errors) continue;
-            if (auto r = writeAll(m->kind == NodeMessageKind::Output ? STDOUT_FILENO : STDERR_FILENO, m->body); !r) return r.error();
+            if (auto r = writeAll(m->kind == NodeMessageKind::Output ? STDOUT_FILENO : STDERR_FILENO, m->body); !r)
+                return r.error();
         }
         // A session has no time limit. TCP keepalive detects a lost head within 14 s.
         std::array<pollfd, 2> look{{{channel.descriptor(), POLLIN, 0}, {input ? STDIN_FILENO : -1, POLLIN, 0}}};
-        if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR) return Error{"can't wait for the node: " + errnoText(errno)};
+        if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR)
+            return Error{"can't wait for the node: " + errnoText(errno)};
         if (look[0].revents != 0) {
             if (auto r = channel.fetch(); !r) {
                 // Reads the queued messages first, because the process may have ended normally.
                 for (auto m = channel.next(); m; m = channel.next())
-                    if (m->kind == NodeMessageKind::Ended && !m->body.empty()) return std::to_integer<int>(m->body.front());
+                    if (m->kind == NodeMessageKind::Ended && !m->body.empty())
+                        return std::to_integer<int>(m->body.front());
                 return Error{"the node there is lost: " + r.error().message};
             }
         }
@@ -78,7 +84,8 @@ Result<int> callNode(const DaemonClient& call) {
             const ssize_t n = ::read(STDIN_FILENO, piece.data(), piece.size());
             if (n < 0 && errno == EINTR) continue;
             input = n > 0;
-            const NodeMessage m = n > 0 ? NodeMessage{NodeMessageKind::Input, {piece.begin(), piece.begin() + n}} : NodeMessage{NodeMessageKind::InputEnd, {}};
+            const NodeMessage m = n > 0 ? NodeMessage{NodeMessageKind::Input, {piece.begin(), piece.begin() + n}}
+                                        : NodeMessage{NodeMessageKind::InputEnd, {}};
             if (auto r = channel.send(m, Deadline::inMs(kSendMs)); !r) return r.error();
         }
     }

@@ -37,7 +37,9 @@ Result<FileDescriptor> listenAt(const std::string& text) {
         const int yes = 1, no = 0;
         (void)setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
         if (address->family() == AF_INET6) (void)setsockopt(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, &no, sizeof no);
-        if (fd.valid() && ::bind(fd.get(), address->get(), address->sizeBytes) == 0 && ::listen(fd.get(), kBacklog) == 0) return fd;
+        if (fd.valid() && ::bind(fd.get(), address->get(), address->sizeBytes) == 0 &&
+            ::listen(fd.get(), kBacklog) == 0)
+            return fd;
         why = errnoText(errno);
     }
     return Error{"can't listen at " + text + ": " + why + "; give another --listen ADDRESS:PORT"};
@@ -79,7 +81,8 @@ void NodeDaemon::leave(const std::string& peer) {
 // Serves one connection on its own thread. The process that it starts ends with this thread.
 void NodeDaemon::take(FileDescriptor socket, const std::string& peer) {
     const ChannelSecret secret = options_.secret;
-    ChannelSocket channel(std::move(socket), SecureChannel::accepting([secret](const std::string&) { return std::optional(secret); }));
+    ChannelSocket channel(std::move(socket),
+                          SecureChannel::accepting([secret](const std::string&) { return std::optional(secret); }));
     if (auto r = channel.open(Deadline::inMs(kProofMs)); !r) return say(peer + " was sent away: " + r.error().message);
     const auto refuse = [&](const std::string& why) {
         (void)channel.send(textMessage(NodeMessageKind::Refused, why), Deadline::inMs(kAnswerMs));
@@ -88,7 +91,8 @@ void NodeDaemon::take(FileDescriptor socket, const std::string& peer) {
     auto order = channel.receive(Deadline::inMs(kProofMs));
     if (!order) return say(peer + " ordered nothing: " + order.error().message);
     auto arguments = orderArguments(*order);
-    if (!arguments || !isAllowedCommand(*arguments)) return refuse("only render nodes can be ordered here; do both run the same version?");
+    if (!arguments || !isAllowedCommand(*arguments))
+        return refuse("only render nodes can be ordered here; do both run the same version?");
     completeOrder(*arguments, peer);
     if (!enter(peer)) return refuse("another head has its nodes here; try again when it has ended");
     say(peer + " has a " + arguments->front() + " here now");

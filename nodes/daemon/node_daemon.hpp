@@ -32,7 +32,8 @@ public:
     Result<void> serve(int stopFd);
 
 private:
-    NodeDaemon(DaemonOptions options, FileDescriptor socket, uint16_t port) : options_(std::move(options)), socket_(std::move(socket)), port_(port) {}
+    NodeDaemon(DaemonOptions options, FileDescriptor socket, uint16_t port)
+        : options_(std::move(options)), socket_(std::move(socket)), port_(port) {}
     void take(FileDescriptor socket, const std::string& peer);
     bool enter(const std::string& peer);
     void leave(const std::string& peer);

@@ -14,7 +14,9 @@ std::vector<std::byte> encode(const NodeMessage& m) {
 }
 
 std::optional<NodeMessage> decodeNodeMessage(std::span<const std::byte> bytes) {
-    if (bytes.empty() || bytes.size() > 1 + kMaxNodeMessageBytes || bytes[0] > std::byte{static_cast<uint8_t>(NodeMessageKind::Refused)}) return {};
+    if (bytes.empty() || bytes.size() > 1 + kMaxNodeMessageBytes ||
+        bytes[0] > std::byte{static_cast<uint8_t>(NodeMessageKind::Refused)})
+        return {};
     return NodeMessage{static_cast<NodeMessageKind>(bytes[0]), {bytes.begin() + 1, bytes.end()}};
 }
 
@@ -28,7 +30,9 @@ NodeMessage orderMessage(const std::vector<std::string>& arguments) {
 }
 
 std::optional<std::vector<std::string>> orderArguments(const NodeMessage& m) {
-    if (m.kind != NodeMessageKind::Order || m.body.empty() || m.body.size() > kMaxOrderBytes || m.body.back() != std::byte{0}) return {};
+    if (m.kind != NodeMessageKind::Order || m.body.empty() || m.body.size() > kMaxOrderBytes ||
+        m.body.back() != std::byte{0})
+        return {};
     std::vector<std::string> arguments;
     for (auto at = m.body.begin(); at != m.body.end();) {
         const auto end = std::find(at, m.body.end(), std::byte{0});
@@ -44,6 +48,8 @@ NodeMessage textMessage(NodeMessageKind kind, const std::string& text) {
     return {kind, {bytes.begin(), bytes.end()}};
 }
 
-std::string textOf(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string textOf(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 } // namespace mural

@@ -13,9 +13,9 @@ enum class NodeMessageKind : uint8_t {
     Order = 0, // to the daemon: run mural with these zero-terminated arguments
     Input = 1, // data for standard input
     InputEnd = 2,
-    Output = 3, // to the head: data of standard output
-    Errors = 4, // data of standard error
-    Ended = 5, // exit status (a byte), then a description
+    Output = 3,  // to the head: data of standard output
+    Errors = 4,  // data of standard error
+    Ended = 5,   // exit status (a byte), then a description
     Refused = 6, // the reason; then the channel closes
 };
 

@@ -19,19 +19,21 @@ namespace {
 
 constexpr int kSliceMs = 50;
 constexpr int64_t kSendMs = 10'000;
-constexpr int64_t kEndMs = 2'000; // limit for a process whose head is gone
+constexpr int64_t kEndMs = 2'000;       // limit for a process whose head is gone
 constexpr size_t kMaxWaiting = 1 << 20; // buffered bytes for standard input
 
 // Sockets instead of pipes at this end: writes raise no signal and do not block.
 struct Streams {
-    FileDescriptor input, output, errors; // ends of this process
+    FileDescriptor input, output, errors;          // ends of this process
     FileDescriptor itsInput, itsOutput, itsErrors; // the process's ends
 
     static Result<Streams> make() {
         Streams s;
-        for (const auto& [ours, its] : {std::pair(&s.input, &s.itsInput), std::pair(&s.output, &s.itsOutput), std::pair(&s.errors, &s.itsErrors)}) {
+        for (const auto& [ours, its] : {std::pair(&s.input, &s.itsInput), std::pair(&s.output, &s.itsOutput),
+                                        std::pair(&s.errors, &s.itsErrors)}) {
             int ends[2];
-            if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return Error{"no socket for a process: " + errnoText(errno)};
+            if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+                return Error{"no socket for a process: " + errnoText(errno)};
             *ours = FileDescriptor(ends[0]);
             *its = FileDescriptor(ends[1]);
             (void)fcntl(ends[0], F_SETFL, O_NONBLOCK);
@@ -42,7 +44,8 @@ struct Streams {
 
 class Relay {
 public:
-    Relay(launch::ChildProcess process, Streams streams, ChannelSocket& channel) : process_(std::move(process)), s_(std::move(streams)), channel_(channel) {}
+    Relay(launch::ChildProcess process, Streams streams, ChannelSocket& channel)
+        : process_(std::move(process)), s_(std::move(streams)), channel_(channel) {}
     ~Relay() {
         s_.input = FileDescriptor();
         if (!process_.waitUntil(Deadline::inMs(kEndMs))) process_.signalGroup(SIGKILL);
@@ -51,8 +54,10 @@ public:
 
     Result<std::string> run(const std::atomic<bool>& stop) {
         while (!stop) {
-            std::array<pollfd, 4> look{{{channel_.descriptor(), POLLIN, 0}, {s_.output.get(), POLLIN, 0}, {s_.errors.get(), POLLIN, 0},
-                {waiting_.empty() ? -1 : s_.input.get(), POLLOUT, 0}}};
+            std::array<pollfd, 4> look{{{channel_.descriptor(), POLLIN, 0},
+                                        {s_.output.get(), POLLIN, 0},
+                                        {s_.errors.get(), POLLIN, 0},
+                                        {waiting_.empty() ? -1 : s_.input.get(), POLLOUT, 0}}};
             (void)poll(look.data(), look.size(), kSliceMs);
             auto came = look[0].revents != 0 ? channel_.fetch() : Result<void>();
             // Input may have arrived with the order.
@@ -72,7 +77,8 @@ private:
     Result<void> takeInput() {
         while (auto message = channel_.next()) {
             if (message->kind == NodeMessageKind::InputEnd) inputEnded_ = true;
-            if (message->kind == NodeMessageKind::Input) waiting_.insert(waiting_.end(), message->body.begin(), message->body.end());
+            if (message->kind == NodeMessageKind::Input)
+                waiting_.insert(waiting_.end(), message->body.begin(), message->body.end());
             if (waiting_.size() > kMaxWaiting) return Error{"the head sends more than the process reads"};
         }
         return {};
@@ -81,8 +87,10 @@ private:
         if (!s_.input.valid()) return;
         if (!waiting_.empty()) {
             const ssize_t n = ::send(s_.input.get(), waiting_.data(), waiting_.size(), MSG_NOSIGNAL);
-            if (n > 0) waiting_.erase(waiting_.begin(), waiting_.begin() + n);
-            else if (n < 0 && errno != EAGAIN && errno != EINTR) waiting_.clear(); // the process no longer reads
+            if (n > 0)
+                waiting_.erase(waiting_.begin(), waiting_.begin() + n);
+            else if (n < 0 && errno != EAGAIN && errno != EINTR)
+                waiting_.clear(); // the process no longer reads
         }
         if (inputEnded_ && waiting_.empty()) s_.input = FileDescriptor();
     }
@@ -96,7 +104,8 @@ private:
                 from = FileDescriptor();
                 return {};
             }
-            if (auto r = channel_.send({kind, {piece.begin(), piece.begin() + n}}, Deadline::inMs(kSendMs)); !r) return r;
+            if (auto r = channel_.send({kind, {piece.begin(), piece.begin() + n}}, Deadline::inMs(kSendMs)); !r)
+                return r;
         }
         return {};
     }
@@ -119,14 +128,17 @@ private:
 
 bool isAllowedCommand(const std::vector<std::string>& a) {
     if (a.size() == 1) return a[0] == "network-member";
-    return a.size() == 5 && a[0] == "node" && a[1] == "--as" && !a[2].starts_with("-") && a[3] == "--connect" && !a[4].starts_with("-");
+    return a.size() == 5 && a[0] == "node" && a[1] == "--as" && !a[2].starts_with("-") && a[3] == "--connect" &&
+           !a[4].starts_with("-");
 }
 
 void completeOrder(std::vector<std::string>& a, const std::string& peer) {
-    if (a.size() == 5 && a[4].starts_with(":")) a[4] = (peer.find(':') == std::string::npos ? peer : "[" + peer + "]") + a[4];
+    if (a.size() == 5 && a[4].starts_with(":"))
+        a[4] = (peer.find(':') == std::string::npos ? peer : "[" + peer + "]") + a[4];
 }
 
-Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments, ChannelSocket& channel, const std::atomic<bool>& stop) {
+Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments,
+                               ChannelSocket& channel, const std::atomic<bool>& stop) {
     auto streams = Streams::make();
     if (!streams) return streams.error();
     launch::Environment environment = launch::Environment::current();

@@ -16,6 +16,7 @@ bool isAllowedCommand(const std::vector<std::string>& arguments);
 void completeOrder(std::vector<std::string>& arguments, const std::string& peer);
 
 // Runs until the process ends, the head is gone, or `stop`. Returns how the process ended; it no longer runs.
-Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments, ChannelSocket& channel, const std::atomic<bool>& stop);
+Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments,
+                               ChannelSocket& channel, const std::atomic<bool>& stop);
 
 } // namespace mural

@@ -11,11 +11,14 @@ using compositor::DepthFunction;
 // OpenGL returns depths of up to 24 bits as 32-bit values. The upper 24 bits are distinct and in depth order.
 constexpr unsigned kSpareBits = 8;
 
-template <class Passes> void foldWith(const CompositeRow& r, LayerOrder side, const CompositeRule& rule, const Passes& passes) {
+template <class Passes>
+void foldWith(const CompositeRow& r, LayerOrder side, const CompositeRule& rule, const Passes& passes) {
     for (size_t i = 0; i < r.count; ++i) {
         if (r.otherDepth[i] == rule.clearedDepth && r.otherColour[i] == rule.clearedColour) continue;
         const bool own = r.depth[i] != rule.clearedDepth || r.colour[i] != rule.clearedColour;
-        if (own && !(side == LayerOrder::Later ? passes(r.otherDepth[i], r.depth[i]) : !passes(r.depth[i], r.otherDepth[i]))) continue;
+        if (own &&
+            !(side == LayerOrder::Later ? passes(r.otherDepth[i], r.depth[i]) : !passes(r.depth[i], r.otherDepth[i])))
+            continue;
         r.colour[i] = r.otherColour[i];
         r.depth[i] = r.otherDepth[i];
     }
@@ -25,10 +28,14 @@ template <class Passes> void foldWith(const CompositeRow& r, LayerOrder side, co
 // 32-bit depths are floats).
 void foldDeep(const CompositeRow& r, LayerOrder side, const CompositeRule& rule) {
     switch (rule.function) {
-    case DepthFunction::Less: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later < earlier; });
-    case DepthFunction::LessOrEqual: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later <= earlier; });
-    case DepthFunction::Greater: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later > earlier; });
-    case DepthFunction::GreaterOrEqual: return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later >= earlier; });
+    case DepthFunction::Less:
+        return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later < earlier; });
+    case DepthFunction::LessOrEqual:
+        return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later <= earlier; });
+    case DepthFunction::Greater:
+        return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later > earlier; });
+    case DepthFunction::GreaterOrEqual:
+        return foldWith(r, side, rule, [](uint32_t later, uint32_t earlier) { return later >= earlier; });
     default: return; // draws with these functions are not divided
     }
 }
@@ -38,7 +45,9 @@ void foldDeep(const CompositeRow& r, LayerOrder side, const CompositeRule& rule)
 void foldAtClearDepth(const CompositeRow& r, LayerOrder side, const CompositeRule& rule) {
     const uint32_t clear = rule.clearedDepth >> kSpareBits;
     for (size_t i = 0; i < r.count; ++i) {
-        if (r.otherDepth[i] >> kSpareBits != clear || r.otherColour[i] == rule.clearedColour || r.depth[i] >> kSpareBits != clear) continue;
+        if (r.otherDepth[i] >> kSpareBits != clear || r.otherColour[i] == rule.clearedColour ||
+            r.depth[i] >> kSpareBits != clear)
+            continue;
         if (side == LayerOrder::Later || r.colour[i] == rule.clearedColour) r.colour[i] = r.otherColour[i];
     }
 }
@@ -60,7 +69,8 @@ void compositeRow(const CompositeRow& row, LayerOrder side, const CompositeRule&
     how.coverage = compositor::Coverage::NotClear;
     how.clearBits = rule.clearedDepth;
     compositor::zSelect(z, how);
-    const bool equalPasses = rule.function == DepthFunction::LessOrEqual || rule.function == DepthFunction::GreaterOrEqual;
+    const bool equalPasses =
+        rule.function == DepthFunction::LessOrEqual || rule.function == DepthFunction::GreaterOrEqual;
     if (equalPasses) foldAtClearDepth(row, side, rule);
 }
 

@@ -33,32 +33,40 @@ void put64(std::vector<std::byte>& into, uint64_t value) {
     put32(into, static_cast<int64_t>(value & 0xffffffffu));
     put32(into, static_cast<int64_t>(value >> 32));
 }
-int32_t int32At(std::span<const std::byte> bytes, size_t at) { return static_cast<int32_t>(loadLittle<uint32_t>(bytes.data() + at)); }
+int32_t int32At(std::span<const std::byte> bytes, size_t at) {
+    return static_cast<int32_t>(loadLittle<uint32_t>(bytes.data() + at));
+}
 
 PlaneView viewOf(const std::vector<uint32_t>& words, const PicturePart& part, PlaneFormat format) {
-    return {format, part.id.box.w, part.id.box.h, static_cast<ptrdiff_t>(part.id.box.w) * 4, reinterpret_cast<const std::byte*>(words.data())};
+    return {format, part.id.box.w, part.id.box.h, static_cast<ptrdiff_t>(part.id.box.w) * 4,
+            reinterpret_cast<const std::byte*>(words.data())};
 }
 
 std::vector<PixelViewport> piecesOf(const compositor::Region& drawn) {
     std::vector<PixelViewport> pieces;
     for (const PixelViewport& r : drawn.rectangles())
         for (int32_t y = 0; y < r.h; y += kPieceRows)
-            for (int32_t x = 0; x < r.w; x += kPieceColumns) pieces.push_back({r.x + x, r.y + y, std::min(kPieceColumns, r.w - x), std::min(kPieceRows, r.h - y)});
+            for (int32_t x = 0; x < r.w; x += kPieceColumns)
+                pieces.push_back({r.x + x, r.y + y, std::min(kPieceColumns, r.w - x), std::min(kPieceRows, r.h - y)});
     return pieces;
 }
 
 } // namespace
 
-std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const CompositeRule& rule, PartState state, PlaneEncoder& encoder) {
+std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, const CompositeRule& rule,
+                                PartState state, PlaneEncoder& encoder) {
     const PixelViewport band{0, rows.first, part.id.box.w, rows.count()};
-    const PlaneView colour = viewOf(part.colour, part, PlaneFormat::Rgba8).part(band), depth = viewOf(part.depth, part, depthFormatOf(rule)).part(band);
+    const PlaneView colour = viewOf(part.colour, part, PlaneFormat::Rgba8).part(band),
+                    depth = viewOf(part.depth, part, depthFormatOf(rule)).part(band);
     const compositor::Region drawn =
-        findRegionOfInterest(colour, compositor::Background::ofWord(rule.clearedColour), depth, compositor::Background::ofWord(rule.clearedDepth), kTilePixels);
+        findRegionOfInterest(colour, compositor::Background::ofWord(rule.clearedColour), depth,
+                             compositor::Background::ofWord(rule.clearedDepth), kTilePixels);
     const std::vector<PixelViewport> pieces = piecesOf(drawn);
     std::vector<std::byte> message;
     put32(message, part.id.client);
     put64(message, part.id.serial);
-    for (const int32_t v : {part.id.box.x, part.id.box.y, part.id.box.w, part.id.box.h, rows.first, rows.end}) put32(message, v);
+    for (const int32_t v : {part.id.box.x, part.id.box.y, part.id.box.w, part.id.box.h, rows.first, rows.end})
+        put32(message, v);
     put32(message, static_cast<int64_t>(state));
     put32(message, static_cast<int64_t>(pieces.size()));
     for (const PixelViewport& r : pieces) {
@@ -77,15 +85,20 @@ std::vector<std::byte> packPart(const PicturePart& part, const RowRange& rows, c
 
 size_t boundBytesOf(const PixelViewport& box, const RowRange& rows) {
     const auto tiles = [](int32_t pixels) { return static_cast<size_t>((pixels + kTilePixels - 1) / kTilePixels); };
-    return kHeadBytes + tiles(box.w) * tiles(rows.count()) * kPieceBytes + static_cast<size_t>(box.w) * static_cast<size_t>(rows.count()) * 8;
+    return kHeadBytes + tiles(box.w) * tiles(rows.count()) * kPieceBytes +
+           static_cast<size_t>(box.w) * static_cast<size_t>(rows.count()) * 8;
 }
 
-Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows, const CompositeRule& rule, PlaneDecoder& decoder,
+Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows,
+                             const CompositeRule& rule, PlaneDecoder& decoder,
                              const std::function<void(const ArrivedPiece&)>& each) {
     const auto damaged = [](const std::string& what) { return Error{"a damaged part of a picture came: " + what}; };
     if (message.size() < kHeadBytes) return damaged("it is cut short");
-    const PictureId came{loadLittle<uint32_t>(message.data()), loadLittle<uint64_t>(message.data() + 4), {int32At(message, 12), int32At(message, 16), int32At(message, 20), int32At(message, 24)}};
-    if (came != id || RowRange{int32At(message, 28), int32At(message, 32)} != rows) return Error{"parts of different pictures came together: this one is incomplete"};
+    const PictureId came{loadLittle<uint32_t>(message.data()),
+                         loadLittle<uint64_t>(message.data() + 4),
+                         {int32At(message, 12), int32At(message, 16), int32At(message, 20), int32At(message, 24)}};
+    if (came != id || RowRange{int32At(message, 28), int32At(message, 32)} != rows)
+        return Error{"parts of different pictures came together: this one is incomplete"};
     const PartState state = int32At(message, 36) == 0 ? PartState::Complete : PartState::Incomplete;
     const uint32_t pieces = loadLittle<uint32_t>(message.data() + 40);
     const PixelViewport band{0, rows.first, id.box.w, rows.count()};
@@ -95,19 +108,27 @@ Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId
     for (uint32_t i = 0; i < pieces; ++i) {
         if (rest.size() < kPieceBytes) return damaged("it ends before its last piece");
         const PixelViewport area{int32At(rest, 0), int32At(rest, 4), int32At(rest, 8), int32At(rest, 12)};
-        const auto colourCodec = std::to_integer<CodecNumber>(rest[16]), depthCodec = std::to_integer<CodecNumber>(rest[17]);
-        const size_t colourBytes = loadLittle<uint32_t>(rest.data() + 20), depthBytes = loadLittle<uint32_t>(rest.data() + 24);
+        const auto colourCodec = std::to_integer<CodecNumber>(rest[16]),
+                   depthCodec = std::to_integer<CodecNumber>(rest[17]);
+        const size_t colourBytes = loadLittle<uint32_t>(rest.data() + 20),
+                     depthBytes = loadLittle<uint32_t>(rest.data() + 24);
         rest = rest.subspan(kPieceBytes);
         if (area.empty() || !band.contains(area) || area.area() > left) return damaged("a piece does not lie in it");
-        if (colourBytes > rest.size() || depthBytes > rest.size() - colourBytes) return damaged("it ends before its last piece");
+        if (colourBytes > rest.size() || depthBytes > rest.size() - colourBytes)
+            return damaged("it ends before its last piece");
         left -= area.area();
         colour.resize(static_cast<size_t>(area.area()));
         depth.resize(colour.size());
-        const auto unpack = [&](CodecNumber codec, size_t from, size_t bytes, PlaneFormat format, std::vector<uint32_t>& into) {
-            return decoder.decode(codec, rest.subspan(from, bytes), {format, area.w, area.h, static_cast<ptrdiff_t>(area.w) * 4, reinterpret_cast<std::byte*>(into.data())});
+        const auto unpack = [&](CodecNumber codec, size_t from, size_t bytes, PlaneFormat format,
+                                std::vector<uint32_t>& into) {
+            return decoder.decode(codec, rest.subspan(from, bytes),
+                                  {format, area.w, area.h, static_cast<ptrdiff_t>(area.w) * 4,
+                                   reinterpret_cast<std::byte*>(into.data())});
         };
-        if (auto r = unpack(colourCodec, 0, colourBytes, PlaneFormat::Rgba8, colour); !r) return damaged(r.error().message);
-        if (auto r = unpack(depthCodec, colourBytes, depthBytes, depthFormatOf(rule), depth); !r) return damaged(r.error().message);
+        if (auto r = unpack(colourCodec, 0, colourBytes, PlaneFormat::Rgba8, colour); !r)
+            return damaged(r.error().message);
+        if (auto r = unpack(depthCodec, colourBytes, depthBytes, depthFormatOf(rule), depth); !r)
+            return damaged(r.error().message);
         each({area, colour.data(), depth.data()});
         rest = rest.subspan(colourBytes + depthBytes);
     }

@@ -17,7 +17,8 @@ namespace mural {
 enum class PartState : uint8_t { Complete, Incomplete };
 
 // Encodes the rectangles of these rows that differ from the clear values.
-std::vector<std::byte> packPart(const PicturePart& part, const compositor::RowRange& rows, const CompositeRule& rule, PartState state, PlaneEncoder& encoder);
+std::vector<std::byte> packPart(const PicturePart& part, const compositor::RowRange& rows, const CompositeRule& rule,
+                                PartState state, PlaneEncoder& encoder);
 
 // Upper bound of the size of packPart's result.
 [[nodiscard]] size_t boundBytesOf(const PixelViewport& box, const compositor::RowRange& rows);
@@ -30,7 +31,8 @@ struct ArrivedPiece {
 };
 // Accepts arbitrary bytes. Errors: a malformed message; another picture or other rows. Pieces before the damage have
 // been delivered.
-Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const compositor::RowRange& rows, const CompositeRule& rule, PlaneDecoder& decoder,
+Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const compositor::RowRange& rows,
+                             const CompositeRule& rule, PlaneDecoder& decoder,
                              const std::function<void(const ArrivedPiece&)>& each);
 
 } // namespace mural

@@ -12,8 +12,8 @@ namespace {
 // In one composition a node sends at most two parts to another. Room for two compositions prevents a deadlock: the
 // slowest node always has room.
 constexpr size_t kMaxWaiting = 4;
-constexpr int64_t kWriteMs = 60'000; // the reader gives up the whole picture earlier
-constexpr int64_t kLingerMs = 5'000; // limit for the destructor
+constexpr int64_t kWriteMs = 60'000;        // the reader gives up the whole picture earlier
+constexpr int64_t kLingerMs = 5'000;        // limit for the destructor
 constexpr uint64_t kTellingBytes = 1 << 16; // smaller transfers only measure socket buffers
 
 } // namespace
@@ -25,7 +25,8 @@ PartSender::~PartSender() {
         std::unique_lock lock(mutex_);
         stop_ = true;
         changed_.notify_all();
-        changed_.wait_for(lock, std::chrono::milliseconds(kLingerMs), [this] { return waiting_.empty() || !failure_.empty(); });
+        changed_.wait_for(lock, std::chrono::milliseconds(kLingerMs),
+                          [this] { return waiting_.empty() || !failure_.empty(); });
     }
     over_.close();
     thread_.join();
@@ -34,7 +35,8 @@ PartSender::~PartSender() {
 Result<void> PartSender::send(std::vector<std::byte> message, Deadline deadline) {
     std::unique_lock lock(mutex_);
     const auto ready = [this] { return waiting_.size() < kMaxWaiting || !failure_.empty(); };
-    if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(3600 * kNsPerS)), ready)) return Error{"it takes no pictures"};
+    if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(3600 * kNsPerS)), ready))
+        return Error{"it takes no pictures"};
     if (!failure_.empty()) return Error{failure_};
     waiting_.push_back(std::move(message));
     changed_.notify_all();

@@ -8,13 +8,16 @@ namespace mural {
 using compositor::Step;
 using compositor::Strategy;
 
-PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes, Log log) : config_(std::move(config)), strategy_(config_.strategy), routes_(routes), log_(std::move(log)) {}
+PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes, Log log)
+    : config_(std::move(config)), strategy_(config_.strategy), routes_(routes), log_(std::move(log)) {}
 
 // Receives the collector's decision for this picture: one byte, 1 for the serial strategy.
 void PictureComposer::agree() {
-    if (std::exchange(agreed_, false) || strategy_ == Strategy::Serial || config_.rank == 0 || lost_.contains(0)) return;
+    if (std::exchange(agreed_, false) || strategy_ == Strategy::Serial || config_.rank == 0 || lost_.contains(0))
+        return;
     auto word = routes_.receive(0, 1, Deadline::inMs(config_.wordMs));
-    if (!word || word->size() != 1) return lost(0, word ? "range 1 said how to go on in a way that is none" : word.error().message);
+    if (!word || word->size() != 1)
+        return lost(0, word ? "range 1 said how to go on in a way that is none" : word.error().message);
     if (word->front() != std::byte{0}) serially();
 }
 
@@ -48,15 +51,19 @@ PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& r
     const int64_t beganNs = monotonicNowNs();
     if (rows_ != part.id.box.h) {
         rows_ = part.id.box.h;
-        steps_ = std::move(compositor::makeSchedule(strategy_, config_.ranks, rows_)[static_cast<size_t>(config_.rank)]);
+        steps_ =
+            std::move(compositor::makeSchedule(strategy_, config_.ranks, rows_)[static_cast<size_t>(config_.rank)]);
     }
     CompositeRule used = rule;
     using compositor::DepthFunction;
-    if (config_.plant == "tie") used.function = rule.function == DepthFunction::Less ? DepthFunction::LessOrEqual : DepthFunction::Less;
+    if (config_.plant == "tie")
+        used.function = rule.function == DepthFunction::Less ? DepthFunction::LessOrEqual : DepthFunction::Less;
     changed_ = {};
     for (const Step& step : steps_) {
-        if (step.receives()) take(part, step, used, beganNs);
-        else send(part, step, used);
+        if (step.receives())
+            take(part, step, used, beganNs);
+        else
+            send(part, step, used);
     }
     tellNext();
     return changed_;
@@ -66,7 +73,12 @@ void PictureComposer::send(const PicturePart& part, const Step& step, const Comp
     if (lost_.contains(step.peer)) return;
     PlaneEncoder& encoder = encoders_.try_emplace(step.peer, config_.codec).first->second;
     if (const LinkTransfer t = routes_.takeTransfer(step.peer); t.bytes > 0) encoder.transferred(t.bytes, t.ns);
-    if (auto sent = routes_.send(step.peer, packPart(part, step.rows, rule, incomplete_ ? PartState::Incomplete : PartState::Complete, encoder), Deadline::inMs(config_.partMs)); !sent) lost(step.peer, sent.error().message);
+    if (auto sent = routes_.send(
+            step.peer,
+            packPart(part, step.rows, rule, incomplete_ ? PartState::Incomplete : PartState::Complete, encoder),
+            Deadline::inMs(config_.partMs));
+        !sent)
+        lost(step.peer, sent.error().message);
 }
 
 void PictureComposer::take(PicturePart& part, const Step& step, const CompositeRule& rule, int64_t beganNs) {
@@ -76,9 +88,13 @@ void PictureComposer::take(PicturePart& part, const Step& step, const CompositeR
     if (!message) return lost(step.peer, message.error().message);
     Step::Kind kind = step.kind;
     // Fault injection: drops the contributions of others, drops a band, or swaps the draw order.
-    if (config_.plant == "range" || (config_.plant == "band" && kind == Step::Kind::Place && step.peer == config_.ranks - 1)) return;
-    if (config_.plant == "order" && kind != Step::Kind::Place) kind = kind == Step::Kind::FoldLater ? Step::Kind::FoldEarlier : Step::Kind::FoldLater;
-    auto done = unpackPart(*message, part.id, step.rows, rule, decoder_, [&](const ArrivedPiece& piece) { put(part, piece, kind, rule); });
+    if (config_.plant == "range" ||
+        (config_.plant == "band" && kind == Step::Kind::Place && step.peer == config_.ranks - 1))
+        return;
+    if (config_.plant == "order" && kind != Step::Kind::Place)
+        kind = kind == Step::Kind::FoldLater ? Step::Kind::FoldEarlier : Step::Kind::FoldLater;
+    auto done = unpackPart(*message, part.id, step.rows, rule, decoder_,
+                           [&](const ArrivedPiece& piece) { put(part, piece, kind, rule); });
     if (done) {
         incomplete_ = incomplete_ || *done == PartState::Incomplete;
         return;
@@ -95,7 +111,9 @@ void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Ki
             std::copy_n(piece.colour + from, width, part.colour.data() + to);
             std::copy_n(piece.depth + from, width, part.depth.data() + to);
         } else {
-            compositeRow({part.colour.data() + to, part.depth.data() + to, piece.colour + from, piece.depth + from, width}, kind == Step::Kind::FoldLater ? LayerOrder::Later : LayerOrder::Earlier, rule);
+            compositeRow(
+                {part.colour.data() + to, part.depth.data() + to, piece.colour + from, piece.depth + from, width},
+                kind == Step::Kind::FoldLater ? LayerOrder::Later : LayerOrder::Earlier, rule);
         }
     }
     changed_ = unite(changed_, piece.area);

@@ -22,10 +22,10 @@ namespace mural {
 struct ComposerConfig {
     compositor::Strategy strategy = compositor::Strategy::Serial;
     int rank = 0, ranks = 1;
-    int64_t partMs = 20'000; // limit for a part of another node; equals the head's limit for silent nodes
-    int64_t wordMs = 60'000; // limit for the collector's decision, which may wait for lost nodes
-    int64_t stageMs = 5'000; // added per earlier stage, so that one lost node does not make others seem lost
-    std::string plant; // MURAL_PLANT: fault injection for tests
+    int64_t partMs = 20'000;            // limit for a part of another node; equals the head's limit for silent nodes
+    int64_t wordMs = 60'000;            // limit for the collector's decision, which may wait for lost nodes
+    int64_t stageMs = 5'000;            // added per earlier stage, so that one lost node does not make others seem lost
+    std::string plant;                  // MURAL_PLANT: fault injection for tests
     std::string codec = kQuickestCodec; // see PlaneEncoder
 };
 
@@ -55,13 +55,13 @@ private:
     PartRoutes& routes_;
     const Log log_;
     int32_t rows_ = -1;
-    std::vector<compositor::Step> steps_; // of this rank, for the current number of rows
+    std::vector<compositor::Step> steps_;  // of this rank, for the current number of rows
     std::map<int, PlaneEncoder> encoders_; // per link
     PlaneDecoder decoder_;
     PixelViewport changed_;
     std::set<int> lost_;
     bool incomplete_ = false; // some contribution is missing
-    bool agreed_ = true; // the first picture needs no decision
+    bool agreed_ = true;      // the first picture needs no decision
 };
 
 } // namespace mural

@@ -28,7 +28,9 @@ std::vector<std::byte> welcomeOf(uint32_t life) {
 
 } // namespace
 
-std::string PictureExchange::textOf(const Name& name) { return kName + std::to_string(name.rank) + "." + std::to_string(name.life); }
+std::string PictureExchange::textOf(const Name& name) {
+    return kName + std::to_string(name.rank) + "." + std::to_string(name.life);
+}
 
 std::optional<PictureExchange::Name> PictureExchange::nameOf(const std::string& text) {
     Name name;
@@ -56,7 +58,8 @@ Result<void> PictureExchange::connectTo(int rank, const std::string& host, uint1
     if (!secure) return secure.error();
     std::array<std::byte, 4 + kWelcomeBytes> welcome; // after the length prefix
     if (auto came = (*secure)->read(welcome, deadline); !came) return came.error();
-    if (loadLittle<uint32_t>(welcome.data()) != kWelcomeBytes) return Error{"it does not greet; head and nodes must be of one build"};
+    if (loadLittle<uint32_t>(welcome.data()) != kWelcomeBytes)
+        return Error{"it does not greet; head and nodes must be of one build"};
     add({rank, loadLittle<uint32_t>(welcome.data() + 4)}, std::move(*secure), Side::Connected);
     return {};
 }
@@ -96,10 +99,12 @@ void PictureExchange::renew(int rank, uint32_t life) {
         Peer& peer = peers_[rank];
         if (!peer.link.connection || peer.link.life != life) {
             before.push_back(std::exchange(peer.link, {}));
-            if (const auto found = peer.next.find(life); found != peer.next.end()) peer.link = std::exchange(found->second, {});
+            if (const auto found = peer.next.find(life); found != peer.next.end())
+                peer.link = std::exchange(found->second, {});
         }
         peer.gone = !peer.link.connection;
-        while (!peer.next.empty() && peer.next.begin()->first <= life) before.push_back(std::move(peer.next.extract(peer.next.begin()).mapped()));
+        while (!peer.next.empty() && peer.next.begin()->first <= life)
+            before.push_back(std::move(peer.next.extract(peer.next.begin()).mapped()));
     }
     for (Link& link : before) link.end();
 }
@@ -112,8 +117,11 @@ void PictureExchange::letIn() {
     while (!stopped()) {
         auto connection = listener_->accept(Deadline::inMs(kAcceptSliceMs));
         if (!connection) continue;
-        const auto find = [&](const std::string& name) { return nameOf(name).value_or(own_).rank != own_.rank ? std::optional(secret_) : std::nullopt; };
-        auto shown = SecureConnection::accepting(std::move(*connection), find, Deadline::inMs(kProofPatienceMs), stopped);
+        const auto find = [&](const std::string& name) {
+            return nameOf(name).value_or(own_).rank != own_.rank ? std::optional(secret_) : std::nullopt;
+        };
+        auto shown =
+            SecureConnection::accepting(std::move(*connection), find, Deadline::inMs(kProofPatienceMs), stopped);
         if (!shown) continue;
         const Name name = *nameOf((*shown)->name());
         add(name, std::move(*shown), Side::Accepted);
@@ -124,8 +132,10 @@ Result<PictureExchange::Peer*> PictureExchange::peerOf(int rank, Deadline deadli
     std::unique_lock lock(mutex_);
     Peer& peer = peers_[rank];
     while (!peer.link.connection && !peer.gone) {
-        if (rank < own_.rank || own_.life > 0) peer.gone = true; // the peer should have connected before
-        else if (deadline.passed()) peer.gone = true;
+        if (rank < own_.rank || own_.life > 0)
+            peer.gone = true; // the peer should have connected before
+        else if (deadline.passed())
+            peer.gone = true;
         else {
             arrived_.wait_for(lock, std::chrono::milliseconds(kAcceptSliceMs));
             continue;
@@ -160,7 +170,9 @@ Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t mostByt
         std::array<std::byte, 4> size;
         if (auto r = c.read(size, deadline); !r) return r.error();
         const size_t bytes = loadLittle<uint32_t>(size.data());
-        if (bytes > mostBytes) return Error{"a picture of " + std::to_string(bytes) + " bytes came where " + std::to_string(mostBytes) + " are the most"};
+        if (bytes > mostBytes)
+            return Error{"a picture of " + std::to_string(bytes) + " bytes came where " + std::to_string(mostBytes) +
+                         " are the most"};
         std::vector<std::byte> message(bytes);
         if (auto r = c.read(message, deadline); !r) return r.error();
         return message;
@@ -174,7 +186,8 @@ Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t mostByt
 LinkTransfer PictureExchange::takeTransfer(int rank) {
     const std::lock_guard lock(mutex_);
     const auto peer = peers_.find(rank);
-    return peer == peers_.end() || !peer->second.link.sender ? LinkTransfer{} : peer->second.link.sender->takeTransfer();
+    return peer == peers_.end() || !peer->second.link.sender ? LinkTransfer{}
+                                                             : peer->second.link.sender->takeTransfer();
 }
 
 } // namespace mural

@@ -22,7 +22,7 @@ namespace mural {
 class PictureExchange final : public PartRoutes {
 public:
     struct Name {
-        int rank = 0; // from 0
+        int rank = 0;      // from 0
         uint32_t life = 0; // incarnation: number of restarts
         friend bool operator==(const Name&, const Name&) = default;
     };
@@ -53,7 +53,7 @@ private:
     struct Link {
         std::unique_ptr<Connection> connection;
         std::unique_ptr<PartSender> sender; // destroyed before its connection
-        uint32_t life = 0; // incarnation of the peer
+        uint32_t life = 0;                  // incarnation of the peer
         void end();
     };
     struct Peer {

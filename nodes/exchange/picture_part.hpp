@@ -12,7 +12,7 @@ namespace mural {
 struct PictureId {
     uint32_t client = 0;
     uint64_t serial = 0; // number of the window's composition, equal on all nodes
-    PixelViewport box; // in the window
+    PixelViewport box;   // in the window
 
     friend bool operator==(const PictureId&, const PictureId&) = default;
 };
@@ -22,7 +22,9 @@ struct PicturePart {
     std::vector<uint32_t> colour; // [y][x], bytes R G B A; rows bottom first
     std::vector<uint32_t> depth;  // [y][x], 0 to 2^32 - 1
 
-    [[nodiscard]] size_t at(int32_t x, int32_t y) const { return static_cast<size_t>(y) * static_cast<size_t>(id.box.w) + static_cast<size_t>(x); }
+    [[nodiscard]] size_t at(int32_t x, int32_t y) const {
+        return static_cast<size_t>(y) * static_cast<size_t>(id.box.w) + static_cast<size_t>(x);
+    }
 };
 
 } // namespace mural

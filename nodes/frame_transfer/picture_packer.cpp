@@ -4,9 +4,11 @@
 
 namespace mural {
 
-PicturePacker::PicturePacker(const std::string& codec, PictureAlpha alpha) : codec_(codec), asColours_(mayLose(codec)), alpha_(alpha) {}
+PicturePacker::PicturePacker(const std::string& codec, PictureAlpha alpha)
+    : codec_(codec), asColours_(mayLose(codec)), alpha_(alpha) {}
 
-Result<std::span<const std::byte>> PicturePacker::pack(uint32_t client, uint32_t window, int32_t width, int32_t height, const std::byte* bgra) {
+Result<std::span<const std::byte>> PicturePacker::pack(uint32_t client, uint32_t window, int32_t width, int32_t height,
+                                                       const std::byte* bgra) {
     const compositor::PlaneShape shape{compositor::PlaneFormat::Rgba8, width, height};
     const std::byte* pixels = bgra;
     if (asColours_) {
@@ -17,7 +19,8 @@ Result<std::span<const std::byte>> PicturePacker::pack(uint32_t client, uint32_t
     compositor::TileDeltaEncoder& tiles = windows_[{client, window}];
     const size_t most = tiles.boundBytes(shape, codec_);
     if (packed_.size() < most) packed_.resize(most);
-    auto size = tiles.encode({shape.format, width, height, static_cast<ptrdiff_t>(shape.rowBytes()), pixels}, codec_, packed_);
+    auto size =
+        tiles.encode({shape.format, width, height, static_cast<ptrdiff_t>(shape.rowBytes()), pixels}, codec_, packed_);
     if (!size) return size.error();
     rawBytes_ += shape.sizeBytes();
     packedBytes_ += *size;

@@ -1,6 +1,6 @@
 // The sending end of transferred pictures. Encodes only the tiles of a window that differ from its previous picture.
-// Each run of tiles uses the codec that delivers it soonest, or the user's codec. Format: docs/reference/wire-format.md, "Packed
-// pictures".
+// Each run of tiles uses the codec that delivers it soonest, or the user's codec. Format:
+// docs/reference/wire-format.md, "Packed pictures".
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@
 
 namespace mural {
 
-// Alpha in lossy codecs, which store it separately and take Bgra8 only. Lossless codecs keep all bits of any PictureFormat.
+// Alpha in lossy codecs, which store it separately and take Bgra8 only. Lossless codecs keep all bits of any
+// PictureFormat.
 enum class PictureAlpha { Kept, Dropped };
 
 // Used by one thread. The receiver must decode all packed pictures in the same order.
@@ -27,7 +28,8 @@ public:
 
     // Encodes rows bottom first, 4 bytes per pixel, B G R A. Requires width and height above 0. The bytes are valid
     // until the next call. Errors: out of memory.
-    [[nodiscard]] Result<std::span<const std::byte>> pack(uint32_t client, uint32_t window, int32_t width, int32_t height, const std::byte* bgra);
+    [[nodiscard]] Result<std::span<const std::byte>> pack(uint32_t client, uint32_t window, int32_t width,
+                                                          int32_t height, const std::byte* bgra);
     // Reports a measurement of the link: bytes sent in a time without idle periods.
     void transferred(uint64_t bytes, int64_t ns) { codec_.transferred(bytes, ns); }
     void windowGone(uint32_t client, uint32_t window) { windows_.erase({client, window}); }

@@ -45,13 +45,16 @@ private:
 // A picture that is already in memory.
 class ReadPicture final : public PictureRead {
 public:
-    ReadPicture(std::vector<std::byte> bytes, std::shared_ptr<PictureMemory> memory) : bytes_(std::move(bytes)), memory_(std::move(memory)) {}
+    ReadPicture(std::vector<std::byte> bytes, std::shared_ptr<PictureMemory> memory)
+        : bytes_(std::move(bytes)), memory_(std::move(memory)) {}
     ~ReadPicture() override {
         if (memory_) memory_->give(std::move(bytes_));
     }
     ReadPicture(const ReadPicture&) = delete;
     ReadPicture& operator=(const ReadPicture&) = delete;
-    [[nodiscard]] Result<std::span<const std::byte>> bytes(Deadline) override { return std::span<const std::byte>(bytes_); }
+    [[nodiscard]] Result<std::span<const std::byte>> bytes(Deadline) override {
+        return std::span<const std::byte>(bytes_);
+    }
 
 private:
     std::vector<std::byte> bytes_;

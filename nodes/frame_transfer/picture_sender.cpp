@@ -11,7 +11,7 @@ namespace mural {
 
 namespace {
 
-constexpr size_t kMaxFrames = 2; // one in encoding and one waiting
+constexpr size_t kMaxFrames = 2;          // one in encoding and one waiting
 constexpr size_t kTellingBytes = 1 << 16; // smaller transfers measure socket buffers instead of the link
 
 std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
@@ -21,7 +21,11 @@ std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
 } // namespace
 
 PictureSender::PictureSender(PictureSenderConfig config, Send send, Log log)
-    : config_(std::move(config)), send_(std::move(send)), log_(std::move(log)), packer_(packerFor(config_)), thread_([this] { run(); }) {
+    : config_(std::move(config)),
+      send_(std::move(send)),
+      log_(std::move(log)),
+      packer_(packerFor(config_)),
+      thread_([this] { run(); }) {
     if (pthread_getcpuclockid(thread_.native_handle(), &clock_) != 0) clock_ = CLOCK_THREAD_CPUTIME_ID;
 }
 
@@ -56,9 +60,13 @@ template <class Condition> bool PictureSender::await(std::unique_lock<std::mutex
 // A message larger than mostBytes waits until no other message is queued.
 bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
     std::unique_lock lock(mutex_);
-    const auto room = [&] { return isFrame ? frames_ < kMaxFrames : waitingBytes_ == 0 || waitingBytes_ + bytes <= config_.mostBytes; };
+    const auto room = [&] {
+        return isFrame ? frames_ < kMaxFrames : waitingBytes_ == 0 || waitingBytes_ + bytes <= config_.mostBytes;
+    };
     if (stuck_ || !await(lock, room)) {
-        if (!std::exchange(stuck_, true)) log_("its pictures do not get away: none has gone for " + std::to_string(config_.roomMs / 1000) + " s; it ends");
+        if (!std::exchange(stuck_, true))
+            log_("its pictures do not get away: none has gone for " + std::to_string(config_.roomMs / 1000) +
+                 " s; it ends");
         return false;
     }
     frames_ += isFrame ? 1 : 0;
@@ -145,8 +153,10 @@ void PictureSender::work(Job& job) {
 
 void PictureSender::forget(const Forgotten& forgotten) {
     if (!packer_) return;
-    if (forgotten.window) packer_->windowGone(forgotten.client, *forgotten.window);
-    else packer_->clientGone(forgotten.client);
+    if (forgotten.window)
+        packer_->windowGone(forgotten.client, *forgotten.window);
+    else
+        packer_->clientGone(forgotten.client);
 }
 
 // Sends a black picture if the readback fails, so that the frame still completes.
@@ -154,7 +164,8 @@ void PictureSender::sendFrame(Frame& frame) {
     const wire::PictureHeader& h = frame.header;
     const int64_t beganCpuNs = threadCpuNowNs();
     auto read = frame.picture->bytes(Deadline::inMs(config_.readMs));
-    if (!read && !std::exchange(saidLost_, true)) log_("a picture is black, as are all that are lost like it: " + read.error().message);
+    if (!read && !std::exchange(saidLost_, true))
+        log_("a picture is black, as are all that are lost like it: " + read.error().message);
     if (!read) black_.assign(static_cast<size_t>(h.w) * static_cast<size_t>(h.h) * 4, std::byte{0});
     std::span<const std::byte> pixels = read ? *read : black_;
     const int64_t beganNs = monotonicNowNs();
@@ -179,8 +190,10 @@ void PictureSender::sendFrame(Frame& frame) {
     }
     const int64_t tookCpuNs = threadCpuNowNs() - beganCpuNs;
     frame.done.readbackNs += static_cast<uint64_t>(tookCpuNs);
-    if (config_.addsCpu) frame.done.busyNs += static_cast<uint64_t>(tookCpuNs);
-    else frame.done.busyNs = std::max(frame.done.busyNs, static_cast<uint64_t>(packedNs - beganNs));
+    if (config_.addsCpu)
+        frame.done.busyNs += static_cast<uint64_t>(tookCpuNs);
+    else
+        frame.done.busyNs = std::max(frame.done.busyNs, static_cast<uint64_t>(packedNs - beganNs));
     send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&frame.done, 1)), {});
 }
 

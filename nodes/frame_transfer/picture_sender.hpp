@@ -31,8 +31,8 @@ struct PictureSenderConfig {
     // because both run in parallel
     bool addsCpu = false;
     size_t mostBytes = size_t{64} << 20; // limit of messages queued after pictures
-    int64_t readMs = 60'000; // limit for GL to complete a picture
-    int64_t roomMs = 120'000; // limit of the wait for queue space, without sending time; must exceed readMs
+    int64_t readMs = 60'000;             // limit for GL to complete a picture
+    int64_t roomMs = 120'000;            // limit of the wait for queue space, without sending time; must exceed readMs
 };
 
 // Thread safety: all calls must come from one thread.

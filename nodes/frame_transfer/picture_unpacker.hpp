@@ -21,7 +21,8 @@ public:
 
     // Inverse of PicturePacker::pack; `into` has the picture's size in bytes. Accepts arbitrary bytes. Errors: not an
     // encoded picture of this size; the picture that it depends on is missing.
-    [[nodiscard]] Result<void> unpack(uint32_t client, uint32_t window, int32_t width, int32_t height, std::span<const std::byte> packed, std::span<std::byte> into);
+    [[nodiscard]] Result<void> unpack(uint32_t client, uint32_t window, int32_t width, int32_t height,
+                                      std::span<const std::byte> packed, std::span<std::byte> into);
     void windowGone(uint32_t client, uint32_t window) { windows_.erase({client, window}); }
     void clientGone(uint32_t client);
 

@@ -10,14 +10,18 @@ class LinkEncoder final : public compositor::Codec {
 public:
     explicit LinkEncoder(const std::string& codec) : encoder_(codec) {}
 
-    [[nodiscard]] size_t boundBytes(const compositor::PlaneShape& shape) const override { return 1 + shape.sizeBytes(); }
+    [[nodiscard]] size_t boundBytes(const compositor::PlaneShape& shape) const override {
+        return 1 + shape.sizeBytes();
+    }
     [[nodiscard]] Result<size_t> encode(const compositor::PlaneView& plane, std::span<std::byte> into) override {
         packed_.clear();
         into[0] = std::byte{encoder_.encode(plane, packed_)};
         copyBytes(packed_, into.subspan(1));
         return packed_.size() + 1;
     }
-    [[nodiscard]] Result<void> decode(std::span<const std::byte>, const compositor::MutablePlaneView&) override { return Error{"this end packs"}; }
+    [[nodiscard]] Result<void> decode(std::span<const std::byte>, const compositor::MutablePlaneView&) override {
+        return Error{"this end packs"};
+    }
 
     void transferred(uint64_t bytes, int64_t ns) { encoder_.transferred(bytes, ns); }
 
@@ -30,9 +34,14 @@ class LinkDecoder final : public compositor::Codec {
 public:
     explicit LinkDecoder(const std::string& codec) : decoder_(codec) {}
 
-    [[nodiscard]] size_t boundBytes(const compositor::PlaneShape& shape) const override { return 1 + shape.sizeBytes(); }
-    [[nodiscard]] Result<size_t> encode(const compositor::PlaneView&, std::span<std::byte>) override { return Error{"this end unpacks"}; }
-    [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes, const compositor::MutablePlaneView& into) override {
+    [[nodiscard]] size_t boundBytes(const compositor::PlaneShape& shape) const override {
+        return 1 + shape.sizeBytes();
+    }
+    [[nodiscard]] Result<size_t> encode(const compositor::PlaneView&, std::span<std::byte>) override {
+        return Error{"this end unpacks"};
+    }
+    [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes,
+                                      const compositor::MutablePlaneView& into) override {
         if (bytes.empty()) return Error{"a plane without its codec"};
         return decoder_.decode(static_cast<CodecNumber>(bytes.front()), bytes.subspan(1), into);
     }

@@ -17,7 +17,8 @@ using compositor::PlaneView;
 
 // The index in this list is the codec number. The user's codec follows after the list. Run-length coding is omitted,
 // because it is only a baseline for measurements.
-constexpr const char* kCodecs[] = {"raw", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd", "yuv420", "jpeg-90"};
+constexpr const char* kCodecs[] = {"raw", "bitplane", "slope",  "bitplane-zstd", "slope-zstd",
+                                   "lz4", "zstd",     "yuv420", "jpeg-90"};
 constexpr CodecNumber kRaw = 0;
 
 CodecNumber numberOf(const std::string& name) {
@@ -65,7 +66,9 @@ bool mayLose(const std::string& codec) {
 }
 
 PlaneEncoder::PlaneEncoder(const std::string& codec)
-    : codecs_(makeCodecs(codec)), colour_(coloursBy(codec), latencyCounts()), depth_({"raw", "slope", "slope-zstd", "lz4", "zstd"}, latencyCounts()) {
+    : codecs_(makeCodecs(codec)),
+      colour_(coloursBy(codec), latencyCounts()),
+      depth_({"raw", "slope", "slope-zstd", "lz4", "zstd"}, latencyCounts()) {
     if (!isName(codec)) return;
     auto info = compositor::CodecRegistry().find(codec);
     const CodecNumber number = numberOf(codec);
@@ -114,11 +117,13 @@ CodecNumber PlaneEncoder::encode(const PlaneView& plane, std::vector<std::byte>&
     return codec;
 }
 
-void PlaneEncoder::measure(compositor::CodecSelector& selector, size_t index, const compositor::TileClass& tile, const PlaneView& plane) {
+void PlaneEncoder::measure(compositor::CodecSelector& selector, size_t index, const compositor::TileClass& tile,
+                           const PlaneView& plane) {
     const CodecNumber codec = numberOf(selector.name(index));
     int64_t encodeNs = 0;
     const size_t size = tryCodec(codec, plane, encodeNs);
-    if (decoded_.format() != plane.format || decoded_.width() != plane.width || decoded_.height() != plane.height) decoded_ = {plane.format, plane.width, plane.height};
+    if (decoded_.format() != plane.format || decoded_.width() != plane.width || decoded_.height() != plane.height)
+        decoded_ = {plane.format, plane.width, plane.height};
     const int64_t beganNs = threadCpuNowNs();
     (void)codecs_[codec]->decode({scratch_.data(), size}, decoded_.view());
     selector.measured(tile, index, plane.sizeBytes(), size, encodeNs, threadCpuNowNs() - beganNs);
@@ -133,7 +138,8 @@ PlaneDecoder::PlaneDecoder(const std::string& codec) : codecs_(makeCodecs(codec)
 PlaneDecoder::~PlaneDecoder() = default;
 
 Result<void> PlaneDecoder::decode(CodecNumber codec, std::span<const std::byte> bytes, const MutablePlaneView& into) {
-    if (codec >= codecs_.size() || !codecs_[codec]) return Error{"a plane by codec " + std::to_string(codec) + ", which there is not"};
+    if (codec >= codecs_.size() || !codecs_[codec])
+        return Error{"a plane by codec " + std::to_string(codec) + ", which there is not"};
     return codecs_[codec]->decode(bytes, into);
 }
 

@@ -46,10 +46,11 @@ public:
 private:
     CodecNumber encodeBy(CodecNumber codec, const compositor::PlaneView& plane, std::vector<std::byte>& into);
     size_t tryCodec(CodecNumber codec, const compositor::PlaneView& plane, int64_t& tookNs);
-    void measure(compositor::CodecSelector& selector, size_t index, const compositor::TileClass& tile, const compositor::PlaneView& plane);
+    void measure(compositor::CodecSelector& selector, size_t index, const compositor::TileClass& tile,
+                 const compositor::PlaneView& plane);
 
     std::vector<std::unique_ptr<compositor::Codec>> codecs_; // by number
-    std::optional<CodecNumber> named_; // for all planes in its formats
+    std::optional<CodecNumber> named_;                       // for all planes in its formats
     uint32_t namedFormats_ = 0;
     compositor::CodecSelector colour_, depth_;
     std::vector<std::byte> scratch_;

@@ -18,8 +18,10 @@ public:
     Weights(int32_t begin, int32_t end, double zoom, int32_t from, int32_t count) : from_(from), count_(count) {
         for (int32_t shown = begin; shown < end; ++shown) {
             first_.push_back(parts_.size());
-            if (zoom <= 1) between(shown, zoom);
-            else within(shown, zoom);
+            if (zoom <= 1)
+                between(shown, zoom);
+            else
+                within(shown, zoom);
         }
         first_.push_back(parts_.size());
     }
@@ -35,7 +37,9 @@ public:
 private:
     // Extends edge pixels.
     void add(int64_t pixel, int64_t weight) {
-        if (weight > 0) parts_.push_back({static_cast<int32_t>(std::clamp<int64_t>(pixel, 0, count_ - 1)), static_cast<uint32_t>(weight)});
+        if (weight > 0)
+            parts_.push_back(
+                {static_cast<int32_t>(std::clamp<int64_t>(pixel, 0, count_ - 1)), static_cast<uint32_t>(weight)});
     }
     void between(int32_t shown, double zoom) {
         constexpr int64_t kSteps = 256;
@@ -47,7 +51,9 @@ private:
     // Weights follow from rounded edges, so that they sum to one.
     void within(int32_t shown, double zoom) {
         const double begin = shown * zoom - from_, end = (shown + 1.0) * zoom - from_;
-        const auto edge = [&](double at) { return static_cast<int64_t>(std::lround((std::clamp(at, begin, end) - begin) / zoom * kOne)); };
+        const auto edge = [&](double at) {
+            return static_cast<int64_t>(std::lround((std::clamp(at, begin, end) - begin) / zoom * kOne));
+        };
         for (auto pixel = static_cast<int64_t>(std::floor(begin)); static_cast<double>(pixel) < end; ++pixel)
             add(pixel, edge(static_cast<double>(pixel) + 1) - edge(static_cast<double>(pixel)));
     }
@@ -59,19 +65,25 @@ private:
 
 } // namespace
 
-void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewport& r, std::byte* into, const PixelViewport& box) {
+void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewport& r, std::byte* into,
+                  const PixelViewport& box) {
     if (from.area.empty() || r.empty()) return;
-    const Weights columns(r.x, r.right(), zoom.x, from.area.x, from.area.w), rows(r.y, r.top(), zoom.y, from.area.y, from.area.h);
+    const Weights columns(r.x, r.right(), zoom.x, from.area.x, from.area.w),
+        rows(r.y, r.top(), zoom.y, from.area.y, from.area.h);
     const auto* const pixels = reinterpret_cast<const uint8_t*>(from.pixels);
     const auto width = static_cast<size_t>(from.area.w);
     for (size_t y = 0; y < rows.size(); ++y) {
-        auto* to = reinterpret_cast<uint8_t*>(into) + (static_cast<size_t>(r.y - box.y + static_cast<int32_t>(y)) * static_cast<size_t>(box.w) + static_cast<size_t>(r.x - box.x)) * 4;
+        auto* to = reinterpret_cast<uint8_t*>(into) +
+                   (static_cast<size_t>(r.y - box.y + static_cast<int32_t>(y)) * static_cast<size_t>(box.w) +
+                    static_cast<size_t>(r.x - box.x)) *
+                       4;
         for (size_t x = 0; x < columns.size(); ++x) {
             uint32_t sums[4] = {1 << 23, 1 << 23, 1 << 23, 1 << 23}; // fixed point: 2^24 is one
             for (const auto* row = rows.begin(y); row != rows.end(y); ++row) {
                 const uint8_t* const line = pixels + static_cast<size_t>(row->pixel) * width * 4;
                 for (const auto* column = columns.begin(x); column != columns.end(x); ++column)
-                    for (size_t c = 0; c < 4; ++c) sums[c] += line[static_cast<size_t>(column->pixel) * 4 + c] * (row->weight * column->weight);
+                    for (size_t c = 0; c < 4; ++c)
+                        sums[c] += line[static_cast<size_t>(column->pixel) * 4 + c] * (row->weight * column->weight);
             }
             for (const uint32_t sum : sums) *to++ = static_cast<uint8_t>(sum >> 24);
         }

@@ -10,11 +10,12 @@ namespace mural {
 
 struct DrawnPicture {
     const std::byte* pixels; // 4 bytes each
-    PixelViewport area; // of the whole picture, in its own pixels
+    PixelViewport area;      // of the whole picture, in its own pixels
 };
 
 // Writes pixels `r` of the shown picture. Interpolates linearly between pixel centres to enlarge, and averages the
 // covered area to shrink, per direction. `into` holds the pixels `box`, which contains r. Identical on all machines.
-void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewport& r, std::byte* into, const PixelViewport& box);
+void scalePicture(const DrawnPicture& from, const Zoom& zoom, const PixelViewport& r, std::byte* into,
+                  const PixelViewport& box);
 
 } // namespace mural

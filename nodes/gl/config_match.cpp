@@ -62,8 +62,7 @@ Error noMatch(const std::string& backend, size_t failed, const SurfaceConfig& wi
 
 } // namespace
 
-Result<size_t> matchConfig(const std::string& backend,
-                           const std::vector<ConfigCandidate>& candidates,
+Result<size_t> matchConfig(const std::string& backend, const std::vector<ConfigCandidate>& candidates,
                            const SurfaceConfig& wish) {
     if (candidates.empty()) return Error{backend + " offers no framebuffer to draw into: see mural doctor"};
     std::vector<size_t> left(candidates.size());
@@ -96,7 +95,8 @@ std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish) {
     std::string text;
     for (const Attribute& a : kAttributes) {
         if (a.value(there) == a.value(wish)) continue;
-        text += (text.empty() ? "" : ", ") + std::string(a.name) + " " + std::to_string(a.value(there)) + " instead of " + std::to_string(a.value(wish));
+        text += (text.empty() ? "" : ", ") + std::string(a.name) + " " + std::to_string(a.value(there)) +
+                " instead of " + std::to_string(a.value(wish));
     }
     return text;
 }

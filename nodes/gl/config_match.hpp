@@ -26,8 +26,7 @@ struct ConfigCandidate {
 // Returns an index into `candidates`. Attributes without the requested value get the next larger value, or the largest
 // one if none is larger. Errors: no candidate is acceptable; the text names the first attribute that fails and the
 // values on offer.
-Result<size_t> matchConfig(const std::string& backend,
-                           const std::vector<ConfigCandidate>& candidates,
+Result<size_t> matchConfig(const std::string& backend, const std::vector<ConfigCandidate>& candidates,
                            const SurfaceConfig& wish);
 
 // Returns the bits of a candidate with the size of the wish.

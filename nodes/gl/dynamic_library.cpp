@@ -7,15 +7,14 @@ namespace mural::gl {
 Result<DynamicLibrary> DynamicLibrary::open(const std::vector<std::string>& names, const std::string& package) {
     std::string reason;
     for (const std::string& name : names) {
-        if (void* handle = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE)) return DynamicLibrary(handle, name);
+        if (void* handle = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE))
+            return DynamicLibrary(handle, name);
         const char* said = dlerror();
         if (reason.empty()) reason = said ? said : "the loader gave no reason";
     }
     return Error{"can't load " + names.front() + " (" + reason + "): install the package " + package};
 }
 
-void* DynamicLibrary::symbol(const char* name) const {
-    return dlsym(handle_, name);
-}
+void* DynamicLibrary::symbol(const char* name) const { return dlsym(handle_, name); }
 
 } // namespace mural::gl

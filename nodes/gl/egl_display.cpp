@@ -28,13 +28,11 @@ Result<EglFunctions> loadEgl() {
         library->load(egl.createPbufferSurface, "eglCreatePbufferSurface") &&
         library->load(egl.destroyContext, "eglDestroyContext") &&
         library->load(egl.destroySurface, "eglDestroySurface") &&
-        library->load(egl.getConfigAttrib, "eglGetConfigAttrib") &&
-        library->load(egl.getConfigs, "eglGetConfigs") &&
+        library->load(egl.getConfigAttrib, "eglGetConfigAttrib") && library->load(egl.getConfigs, "eglGetConfigs") &&
         library->load(egl.getCurrentContext, "eglGetCurrentContext") &&
         library->load(egl.getCurrentSurface, "eglGetCurrentSurface") && library->load(egl.getError, "eglGetError") &&
-        library->load(egl.getProcAddress, "eglGetProcAddress") &&
-        library->load(egl.initialize, "eglInitialize") && library->load(egl.makeCurrent, "eglMakeCurrent") &&
-        library->load(egl.queryString, "eglQueryString") &&
+        library->load(egl.getProcAddress, "eglGetProcAddress") && library->load(egl.initialize, "eglInitialize") &&
+        library->load(egl.makeCurrent, "eglMakeCurrent") && library->load(egl.queryString, "eglQueryString") &&
         library->load(egl.querySurface, "eglQuerySurface");
     if (!complete) return Error{library->name() + " lacks functions of EGL 1.4: install the package libegl1"};
     const char* client = egl.queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -56,9 +54,7 @@ bool isSoftware(const EglFunctions& egl, EGLDeviceEXT device) {
 }
 
 // Returns null, with the reason in `why`, if this display can't be initialized or lacks a necessary feature.
-std::shared_ptr<EglDisplayState> initialize(const EglFunctions& egl,
-                                            EGLDisplay display,
-                                            std::string where,
+std::shared_ptr<EglDisplayState> initialize(const EglFunctions& egl, EGLDisplay display, std::string where,
                                             std::string& why) {
     EGLint major = 0, minor = 0;
     if (display == EGL_NO_DISPLAY || !egl.initialize(display, &major, &minor)) {
@@ -140,9 +136,7 @@ void EglLeftOvers::destroy(const EglFunctions& egl, EGLDisplay display) {
     for (const EGLSurface surface : std::exchange(surfaces_, {})) egl.destroySurface(display, surface);
 }
 
-bool EglDisplayState::has(const char* extension) const {
-    return hasWord(extensions.c_str(), extension);
-}
+bool EglDisplayState::has(const char* extension) const { return hasWord(extensions.c_str(), extension); }
 
 Result<std::shared_ptr<EglDisplayState>> openEglDisplay() {
     auto egl = loadEgl();
@@ -170,7 +164,8 @@ EglConfigs listEglConfigs(const EglDisplayState& display, bool srgb) {
     for (EGLint i = 0; i < count; i++) {
         auto attribute = [&](EGLint name) {
             EGLint value = 0;
-            return display.egl.getConfigAttrib(display.display, handles[static_cast<size_t>(i)], name, &value) ? value : 0;
+            return display.egl.getConfigAttrib(display.display, handles[static_cast<size_t>(i)], name, &value) ? value
+                                                                                                               : 0;
         };
         if (!(attribute(EGL_SURFACE_TYPE) & EGL_PBUFFER_BIT)) continue;
         if (attribute(EGL_COLOR_BUFFER_TYPE) != EGL_RGB_BUFFER) continue;

@@ -42,9 +42,9 @@ struct EglFunctions {
 };
 
 // Keeps unused surfaces and contexts until others are current. NVIDIA's driver (580.159) accesses the previous surfaces
-// and contexts in the next eglMakeCurrent. After their release and destruction, their memory held another object's data,
-// and half of all starting nodes crashed. For the same reason Mural releases nothing on that driver before others are
-// current.
+// and contexts in the next eglMakeCurrent. After their release and destruction, their memory held another object's
+// data, and half of all starting nodes crashed. For the same reason Mural releases nothing on that driver before others
+// are current.
 class EglLeftOvers {
 public:
     void addSurface(EGLSurface surface);

@@ -82,15 +82,19 @@ private:
 // The bound API and the current context are per thread.
 class EglReader final : public SharedReader {
 public:
-    EglReader(SharedDisplay display, std::unique_ptr<Context> context) : display_(std::move(display)), context_(std::move(context)) {}
+    EglReader(SharedDisplay display, std::unique_ptr<Context> context)
+        : display_(std::move(display)), context_(std::move(context)) {}
 
     Result<void> enter() override {
         auto& context = static_cast<EglContext&>(*context_);
         display_->egl.bindApi(context.api());
         if (display_->egl.makeCurrent(display_->display, context.dummy(), context.dummy(), context.handle())) return {};
-        return Error{"EGL can't make the context of a second thread current: " + takeEglError(display_->egl) + "; use --readback direct"};
+        return Error{"EGL can't make the context of a second thread current: " + takeEglError(display_->egl) +
+                     "; use --readback direct"};
     }
-    void leave() override { display_->egl.makeCurrent(display_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+    void leave() override {
+        display_->egl.makeCurrent(display_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
 
 private:
     SharedDisplay display_;
@@ -104,13 +108,13 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
     if (request.profile)
         list.insert(list.end(),
                     {EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                     config.core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
-                                 : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT});
+                     config.core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT});
     if (display.version >= 15) {
         if (config.forwardCompatible) list.insert(list.end(), {EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE, EGL_TRUE});
         if (config.debug) list.insert(list.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
         if (config.robust) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE});
-        if (config.tellsReset) list.insert(list.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+        if (config.tellsReset)
+            list.insert(list.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     } else {
         EGLint flags = 0;
         if (config.forwardCompatible) flags |= EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
@@ -119,9 +123,12 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
         if (flags) list.insert(list.end(), {EGL_CONTEXT_FLAGS_KHR, flags});
         if (config.robust && !desktop) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS_EXT, EGL_TRUE});
         if (config.tellsReset)
-            list.insert(list.end(), {desktop ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_KHR});
+            list.insert(list.end(), {desktop ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR
+                                             : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT,
+                                     EGL_LOSE_CONTEXT_ON_RESET_KHR});
     }
-    if (display.flushControl) list.insert(list.end(), {EGL_CONTEXT_RELEASE_BEHAVIOR_KHR, EGL_CONTEXT_RELEASE_BEHAVIOR_NONE_KHR});
+    if (display.flushControl)
+        list.insert(list.end(), {EGL_CONTEXT_RELEASE_BEHAVIOR_KHR, EGL_CONTEXT_RELEASE_BEHAVIOR_NONE_KHR});
     list.push_back(EGL_NONE);
     return list;
 }
@@ -155,7 +162,9 @@ public:
         const int mesa = parseMesaVersion(version_);
         return display_->software && mesa > 0 && mesa <= 22;
     }
-    [[nodiscard]] bool drawsAs(const EglPlatform& other) const { return renderer_ == other.renderer_ && version_ == other.version_; }
+    [[nodiscard]] bool drawsAs(const EglPlatform& other) const {
+        return renderer_ == other.renderer_ && version_ == other.version_;
+    }
 
 private:
     struct Chosen {
@@ -189,8 +198,8 @@ Result<std::unique_ptr<EglSurface>> EglPlatform::createPbuffer(const SurfaceConf
     if (wish.srgb) list.insert(list.end(), {EGL_GL_COLORSPACE_KHR, EGL_GL_COLORSPACE_SRGB_KHR});
     list.push_back(EGL_NONE);
     const EglFunctions& egl = display_->egl;
-    const std::string what = std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels" +
-                             (wish.srgb ? " in sRGB" : "");
+    const std::string what =
+        std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels" + (wish.srgb ? " in sRGB" : "");
     EGLSurface handle = egl.createPbufferSurface(display_->display, config->handle, list.data());
     if (handle == EGL_NO_SURFACE)
         return Error{"EGL can't make a pbuffer of " + what + ": " + takeEglError(egl) +
@@ -200,13 +209,14 @@ Result<std::unique_ptr<EglSurface>> EglPlatform::createPbuffer(const SurfaceConf
     egl.querySurface(display_->display, handle, EGL_WIDTH, &width);
     egl.querySurface(display_->display, handle, EGL_HEIGHT, &height);
     if (width != wish.width || height != wish.height)
-        return Error{"EGL made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) +
-                     " instead of " + what + ": draw a smaller picture"};
+        return Error{"EGL made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) + " instead of " +
+                     what + ": draw a smaller picture"};
     return surface;
 }
 
 Result<void> EglPlatform::clear(const EglSurface& surface) {
-    auto context = clearing_.find(surface.config(), display_->noConfigContext, [this](const ContextConfig& c) { return createContext(c, nullptr); });
+    auto context = clearing_.find(surface.config(), display_->noConfigContext,
+                                  [this](const ContextConfig& c) { return createContext(c, nullptr); });
     if (!context) return context.error();
     const EglFunctions& egl = display_->egl;
     auto* clearing = static_cast<EglContext*>(*context);
@@ -227,7 +237,8 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
     // A release acts on the bound API.
     if (before != EGL_NO_CONTEXT) egl.bindApi(currentApi_);
     if (!egl.makeCurrent(display_->display, draw, read, before))
-        return Error{"EGL can't make the context current again after clearing a pbuffer: " + takeEglError(egl) + "; see mural doctor"};
+        return Error{"EGL can't make the context current again after clearing a pbuffer: " + takeEglError(egl) +
+                     "; see mural doctor"};
     egl.bindApi(currentApi_);
     return {};
 }
@@ -260,7 +271,8 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
         with.tellsReset = tellsReset;
         const std::vector<EGLint> attributes = contextAttributes(with, *display_);
         EGLContext made = EGL_NO_CONTEXT;
-        if (display_->noConfigContext) made = egl.createContext(display_->display, EGL_NO_CONFIG_KHR, share, attributes.data());
+        if (display_->noConfigContext)
+            made = egl.createContext(display_->display, EGL_NO_CONFIG_KHR, share, attributes.data());
         if (made != EGL_NO_CONTEXT || (display_->noConfigContext && display_->mesa)) return made;
         if (display_->noConfigContext) (void)egl.getError(); // NVIDIA requires a configuration for ES 1 contexts
         return egl.createContext(display_->display, config->handle, share, attributes.data());
@@ -291,8 +303,10 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
     const EglFunctions& egl = display_->egl;
     auto* wanted = static_cast<EglContext*>(context);
     if (egl.getCurrentContext() != EGL_NO_CONTEXT) {
-        if (wanted && draw && read && draw != read) finishDrawing(*this);
-        else if (display_->flushControl && heldBack == HeldBack::Flushed) flushDrawing(*this);
+        if (wanted && draw && read && draw != read)
+            finishDrawing(*this);
+        else if (display_->flushControl && heldBack == HeldBack::Flushed)
+            flushDrawing(*this);
     }
     // the context stays current until others are (EglLeftOvers); no draw of the caller is deferred
     if (!wanted && !display_->mesa) {
@@ -356,7 +370,8 @@ Result<std::unique_ptr<Platform>> openEgl() {
     if (!display) return display.error();
     auto platform = std::make_unique<EglPlatform>(display.value());
     if (auto measured = platform->measure(); !measured) return measured.error();
-    if (platform->isKnownToShowSamples() || showsSamples(*platform)) return std::unique_ptr<Platform>(std::move(platform));
+    if (platform->isKnownToShowSamples() || showsSamples(*platform))
+        return std::unique_ptr<Platform>(std::move(platform));
     // The same driver has them on another EGL platform (Mesa 25.0, software).
     if (auto other = openOtherEglDisplay(**display)) {
         auto device = std::make_unique<EglPlatform>(std::move(other));

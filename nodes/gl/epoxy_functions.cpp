@@ -27,11 +27,13 @@ constexpr Command kCommands[] = {
 };
 
 // The platform's own function of each command. Process-wide, like libepoxy's state.
-std::array<std::atomic<Proc>, std::size(kCommands)> ownFunctions; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+std::array<std::atomic<Proc>, std::size(kCommands)>
+    ownFunctions; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 const Command* commandOf(const char* name) {
-    const auto* found = std::lower_bound(std::begin(kCommands), std::end(kCommands), name,
-                                         [](const Command& c, const char* wanted) { return std::strcmp(c.name, wanted) < 0; });
+    const auto* found =
+        std::lower_bound(std::begin(kCommands), std::end(kCommands), name,
+                         [](const Command& c, const char* wanted) { return std::strcmp(c.name, wanted) < 0; });
     return found != std::end(kCommands) && std::strcmp(found->name, name) == 0 ? found : nullptr;
 }
 

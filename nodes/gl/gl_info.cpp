@@ -88,7 +88,9 @@ Result<GlInfo> readGlInfo(Platform& platform) {
         gl.getIntegerv(GL_DOUBLEBUFFER, &doubled);
         gl.getIntegerv(GL_DRAW_BUFFER, &drawn);
         const bool back = drawn == GL_BACK || drawn == GL_BACK_LEFT;
-        info.colorBuffers = doubled ? ColorBuffers::FrontAndBack : back ? ColorBuffers::OneNamedBack : ColorBuffers::OneNamedFront;
+        info.colorBuffers = doubled ? ColorBuffers::FrontAndBack
+                            : back  ? ColorBuffers::OneNamedBack
+                                    : ColorBuffers::OneNamedFront;
     }
     // Clears the errors of unsupported queries. Bounded, because a lost context reports errors forever.
     for (int i = 0; i < 16 && gl.getError() != GL_NO_ERROR; i++) {}
@@ -106,7 +108,8 @@ Result<GlInfo> measureGl(Platform& platform, bool embedded) {
         context = platform.createContext(es, nullptr);
     }
     if (!context) return context.error();
-    if (auto current = platform.makeCurrent(context->get(), surface->get(), surface->get()); !current) return current.error();
+    if (auto current = platform.makeCurrent(context->get(), surface->get(), surface->get()); !current)
+        return current.error();
     auto info = readGlInfo(platform);
     auto released = platform.makeCurrent(nullptr, nullptr, nullptr);
     if (info && !released) return released.error();

@@ -12,8 +12,8 @@ struct GlInfo {
     std::string vendor, renderer, version;
     int glVersion = 0; // 10 * major + minor, e.g. 45
     bool es = false;
-    std::vector<std::string> extensions; // sorted
-    int maxSurfaceSize = 0; // the smaller side of GL_MAX_VIEWPORT_DIMS
+    std::vector<std::string> extensions;                     // sorted
+    int maxSurfaceSize = 0;                                  // the smaller side of GL_MAX_VIEWPORT_DIMS
     ColorBuffers colorBuffers = ColorBuffers::OneNamedFront; // desktop GL only; of the current surface in a new context
 };
 

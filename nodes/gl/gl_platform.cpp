@@ -16,8 +16,7 @@ Result<std::unique_ptr<Platform>> openPlatform(const std::string& name) {
     if (name == "egl") return openEgl();
     if (name == "osmesa") return openOsmesa();
     if (name == "glx") return openGlx();
-    if (name != "auto")
-        return Error{"no GL backend is named '" + name + "': use auto, egl, osmesa or glx"};
+    if (name != "auto") return Error{"no GL backend is named '" + name + "': use auto, egl, osmesa or glx"};
     auto egl = openEgl();
     if (egl) return egl;
     auto osmesa = openOsmesa();

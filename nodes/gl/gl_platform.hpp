@@ -36,7 +36,7 @@ struct ContextConfig {
     bool debug = false;
     bool robust = false;
     bool tellsReset = false; // glGetGraphicsResetStatus reports a lost context, if the driver can
-    SurfaceConfig surface; // kind of surface that the context draws to
+    SurfaceConfig surface;   // kind of surface that the context draws to
 };
 
 // Colour buffers of a default framebuffer, and the GL name of a single one. EGL pbuffers have one buffer. Mesa names it
@@ -107,7 +107,8 @@ public:
     // Null context: release. Null surfaces: none, or a dummy of 1×1 if the driver requires one. A surface that is bound
     // for reading only contains everything that contexts of this thread have drawn there. HeldBack::Kept has no effect
     // with drivers that flush at each change: OSMesa, and those without KHR_context_flush_control.
-    virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack = HeldBack::Flushed) = 0;
+    virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read,
+                                     HeldBack heldBack = HeldBack::Flushed) = 0;
     // Returns whether a context can draw to one surface and read from another.
     [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }
     // Returns whether surfaces can have an accumulation buffer.

@@ -22,15 +22,14 @@ Result<void> loadFunctions(GlxFunctions& f) {
                            x11->load(f.setErrorHandler, "XSetErrorHandler") && x11->load(f.sync, "XSync");
     const bool glxComplete =
         glx->load(f.createPbuffer, "glXCreatePbuffer") && glx->load(f.destroyContext, "glXDestroyContext") &&
-        glx->load(f.destroyPbuffer, "glXDestroyPbuffer") &&
-        glx->load(f.getFbConfigAttrib, "glXGetFBConfigAttrib") && glx->load(f.getFbConfigs, "glXGetFBConfigs") &&
-        glx->load(f.getCurrentContext, "glXGetCurrentContext") && glx->load(f.getCurrentDrawable, "glXGetCurrentDrawable") &&
+        glx->load(f.destroyPbuffer, "glXDestroyPbuffer") && glx->load(f.getFbConfigAttrib, "glXGetFBConfigAttrib") &&
+        glx->load(f.getFbConfigs, "glXGetFBConfigs") && glx->load(f.getCurrentContext, "glXGetCurrentContext") &&
+        glx->load(f.getCurrentDrawable, "glXGetCurrentDrawable") &&
         glx->load(f.getCurrentReadDrawable, "glXGetCurrentReadDrawable") &&
         glx->load(f.getProcAddress, "glXGetProcAddressARB") &&
-        glx->load(f.makeContextCurrent, "glXMakeContextCurrent") &&
-        glx->load(f.queryDrawable, "glXQueryDrawable") && glx->load(f.queryExtension, "glXQueryExtension") &&
-        glx->load(f.queryExtensionsString, "glXQueryExtensionsString") &&
-        glx->load(f.queryVersion, "glXQueryVersion");
+        glx->load(f.makeContextCurrent, "glXMakeContextCurrent") && glx->load(f.queryDrawable, "glXQueryDrawable") &&
+        glx->load(f.queryExtension, "glXQueryExtension") &&
+        glx->load(f.queryExtensionsString, "glXQueryExtensionsString") && glx->load(f.queryVersion, "glXQueryVersion");
     if (xComplete && glxComplete) return {};
     return Error{(xComplete ? glx->name() : x11->name()) +
                  " lacks functions of GLX 1.3: install the packages libx11-6 and libglx0"};
@@ -61,8 +60,8 @@ void listConfigs(GlxDisplayState& state) {
         candidate.bits.srgb = srgb && attribute(GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB) != 0;
         candidate.bits.stereo = attribute(GLX_STEREO) != 0;
         const bool window = (attribute(GLX_DRAWABLE_TYPE) & GLX_WINDOW_BIT) != 0;
-        candidate.rank = (renderType & GLX_RGBA_BIT ? 0 : 4) + (window ? 0 : 2) +
-                         (attribute(GLX_CONFIG_CAVEAT) == GLX_NONE ? 0 : 1);
+        candidate.rank =
+            (renderType & GLX_RGBA_BIT ? 0 : 4) + (window ? 0 : 2) + (attribute(GLX_CONFIG_CAVEAT) == GLX_NONE ? 0 : 1);
         state.configs.push_back(all[i]);
         state.candidates.push_back(candidate);
     }

@@ -53,11 +53,11 @@ struct GlxDisplayState {
     bool noConfigContext = false;
     bool esProfile = false;
     bool robust = false;
-    bool flushControl = false; // contexts can be created without a flush when another becomes current
-    bool tellsResets = true; // false after the driver has refused once
-    std::vector<GLXFBConfig> configs; // configurations for double-buffered pbuffers
+    bool flushControl = false;               // contexts can be created without a flush when another becomes current
+    bool tellsResets = true;                 // false after the driver has refused once
+    std::vector<GLXFBConfig> configs;        // configurations for double-buffered pbuffers
     std::vector<ConfigCandidate> candidates; // same order
-    int maxSurfaceSize = kMaxSurfaceSize; // measured when the platform opens
+    int maxSurfaceSize = kMaxSurfaceSize;    // measured when the platform opens
 
     [[nodiscard]] bool has(const char* extension) const;
 };

@@ -115,8 +115,15 @@ Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConf
     if (auto size = checkSize("GLX", wish, display_->maxSurfaceSize); !size) return size.error();
     auto config = chooseConfig(wish);
     if (!config) return config.error();
-    const int list[] = {GLX_PBUFFER_WIDTH, wish.width, GLX_PBUFFER_HEIGHT, wish.height,
-                        GLX_PRESERVED_CONTENTS, 1, GLX_LARGEST_PBUFFER, 0, 0};
+    const int list[] = {GLX_PBUFFER_WIDTH,
+                        wish.width,
+                        GLX_PBUFFER_HEIGHT,
+                        wish.height,
+                        GLX_PRESERVED_CONTENTS,
+                        1,
+                        GLX_LARGEST_PBUFFER,
+                        0,
+                        0};
     const GlxFunctions& glx = display_->glx;
     const std::string what = std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels";
     XErrorTrap trap(*display_);
@@ -129,8 +136,8 @@ Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConf
     glx.queryDrawable(display_->display, handle, GLX_WIDTH, &width);
     glx.queryDrawable(display_->display, handle, GLX_HEIGHT, &height);
     if (static_cast<int>(width) != wish.width || static_cast<int>(height) != wish.height)
-        return Error{"GLX made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) +
-                     " instead of " + what + ": draw a smaller picture"};
+        return Error{"GLX made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) + " instead of " +
+                     what + ": draw a smaller picture"};
     return surface;
 }
 
@@ -142,14 +149,19 @@ Result<std::unique_ptr<Surface>> GlxPlatform::createSurface(const SurfaceConfig&
 }
 
 Result<void> GlxPlatform::clear(const GlxSurface& surface) {
-    auto context = clearing_.find(surface.config(), display_->noConfigContext, [this](const ContextConfig& c) { return createContext(c, nullptr); });
+    auto context = clearing_.find(surface.config(), display_->noConfigContext,
+                                  [this](const ContextConfig& c) { return createContext(c, nullptr); });
     if (!context) return context.error();
     const GlxFunctions& glx = display_->glx;
     const GLXContext before = glx.getCurrentContext();
     const GLXDrawable draw = glx.getCurrentDrawable(), read = glx.getCurrentReadDrawable();
-    const auto failed = [](const std::string& why) { return Error{"GLX can't clear a new pbuffer: " + (why.empty() ? "no reason given" : why) + "; use --gl egl"}; };
+    const auto failed = [](const std::string& why) {
+        return Error{"GLX can't clear a new pbuffer: " + (why.empty() ? "no reason given" : why) + "; use --gl egl"};
+    };
     XErrorTrap trap(*display_);
-    if (!glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(), static_cast<GlxContext*>(*context)->handle())) return failed(trap.take());
+    if (!glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(),
+                                static_cast<GlxContext*>(*context)->handle()))
+        return failed(trap.take());
     clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
     if (!glx.makeContextCurrent(display_->display, draw, read, before)) return failed(trap.take());
     // Ignores the X error of a flush of the front into a pixmap of another depth: the front is cleared nevertheless. It
@@ -160,8 +172,10 @@ Result<void> GlxPlatform::clear(const GlxSurface& surface) {
 
 Result<void> GlxPlatform::checkSupport(const ContextConfig& wish) const {
     const char* missing = nullptr;
-    if (wish.api != Api::Desktop && !display_->esProfile) missing = "GLX_EXT_create_context_es_profile";
-    else if (wish.robust && !display_->robust) missing = "GLX_ARB_create_context_robustness";
+    if (wish.api != Api::Desktop && !display_->esProfile)
+        missing = "GLX_EXT_create_context_es_profile";
+    else if (wish.robust && !display_->robust)
+        missing = "GLX_ARB_create_context_robustness";
     if (!missing) return {};
     return Error{"GLX on '" + display_->name + "' has no " + describeContext(wish) + " contexts (" + missing +
                  " is missing): use --gl egl"};
@@ -173,16 +187,17 @@ std::vector<int> GlxPlatform::contextAttributes(const ContextConfig& wish) const
     if (wish.api != Api::Desktop)
         list.insert(list.end(), {GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_ES_PROFILE_BIT_EXT});
     else if (request.profile)
-        list.insert(list.end(),
-                    {GLX_CONTEXT_PROFILE_MASK_ARB,
-                     wish.core ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB});
+        list.insert(list.end(), {GLX_CONTEXT_PROFILE_MASK_ARB, wish.core ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB
+                                                                         : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB});
     int flags = 0;
     if (wish.forwardCompatible) flags |= GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
     if (wish.debug) flags |= GLX_CONTEXT_DEBUG_BIT_ARB;
     if (wish.robust) flags |= GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
     if (flags) list.insert(list.end(), {GLX_CONTEXT_FLAGS_ARB, flags});
-    if (wish.tellsReset) list.insert(list.end(), {GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB, GLX_LOSE_CONTEXT_ON_RESET_ARB});
-    if (display_->flushControl) list.insert(list.end(), {GLX_CONTEXT_RELEASE_BEHAVIOR_ARB, GLX_CONTEXT_RELEASE_BEHAVIOR_NONE_ARB});
+    if (wish.tellsReset)
+        list.insert(list.end(), {GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB, GLX_LOSE_CONTEXT_ON_RESET_ARB});
+    if (display_->flushControl)
+        list.insert(list.end(), {GLX_CONTEXT_RELEASE_BEHAVIOR_ARB, GLX_CONTEXT_RELEASE_BEHAVIOR_NONE_ARB});
     if (display_->noConfigContext) list.insert(list.end(), {GLX_SCREEN, display_->screen});
     list.push_back(0);
     return list;
@@ -202,7 +217,9 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
         ContextConfig with = wish;
         with.tellsReset = tellsReset;
         XErrorTrap trap(*display_);
-        GLXContext made = display_->glx.createContextAttribs(display_->display, display_->noConfigContext ? nullptr : config->handle, share, 1, contextAttributes(with).data());
+        GLXContext made =
+            display_->glx.createContextAttribs(display_->display, display_->noConfigContext ? nullptr : config->handle,
+                                               share, 1, contextAttributes(with).data());
         why = trap.take();
         if (!made || why.empty()) return made;
         display_->glx.destroyContext(display_->display, made);
@@ -219,7 +236,8 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
         return Error{"GLX can't make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " +
                      (why.empty() ? "the driver does not have it" : why) + "; see mural doctor"};
-    return std::unique_ptr<Context>(std::make_unique<GlxContext>(display_, handle, tellsReset, std::move(dummy.value())));
+    return std::unique_ptr<Context>(
+        std::make_unique<GlxContext>(display_, handle, tellsReset, std::move(dummy.value())));
 }
 
 Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) {
@@ -228,12 +246,14 @@ Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
     GLXDrawable drawHandle = draw && wanted ? static_cast<GlxSurface*>(draw)->handle() : none;
     GLXDrawable readHandle = read && wanted ? static_cast<GlxSurface*>(read)->handle() : drawHandle;
     if (display_->glx.getCurrentContext()) {
-        if (wanted && draw && read && draw != read) finishDrawing(*this);
-        else if (display_->flushControl && heldBack == HeldBack::Flushed) flushDrawing(*this);
+        if (wanted && draw && read && draw != read)
+            finishDrawing(*this);
+        else if (display_->flushControl && heldBack == HeldBack::Flushed)
+            flushDrawing(*this);
     }
     XErrorTrap trap(*display_);
-    const Bool made = display_->glx.makeContextCurrent(
-        display_->display, drawHandle, readHandle, wanted ? wanted->handle() : nullptr);
+    const Bool made = display_->glx.makeContextCurrent(display_->display, drawHandle, readHandle,
+                                                       wanted ? wanted->handle() : nullptr);
     const std::string why = trap.take();
     if (made && why.empty()) return {};
     return Error{"GLX can't make the context current: " + (why.empty() ? "no reason given" : why) +

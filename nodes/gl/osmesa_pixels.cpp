@@ -21,11 +21,15 @@ PlaneFormat colorFormat(const SurfaceConfig& c) {
 
 PlaneFormat depthStencilFormat(const SurfaceConfig& c) {
     if (c.depth && c.stencil)
-        return {GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL,
-                GL_UNSIGNED_INT_24_8, GL_DEPTH_STENCIL_ATTACHMENT, 4};
+        return {GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT,
+                GL_DEPTH24_STENCIL8,
+                GL_DEPTH_STENCIL,
+                GL_UNSIGNED_INT_24_8,
+                GL_DEPTH_STENCIL_ATTACHMENT,
+                4};
     if (c.depth == 16)
-        return {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT,
-                GL_DEPTH_ATTACHMENT, 2};
+        return {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT,
+                GL_UNSIGNED_SHORT,   GL_DEPTH_ATTACHMENT,  2};
     return {GL_DEPTH_BUFFER_BIT, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_DEPTH_ATTACHMENT, 4};
 }
 
@@ -33,16 +37,35 @@ using Setting = std::pair<GLenum, GLint>;
 
 // Rows without gaps, nothing skipped or swapped.
 constexpr std::array<Setting, 12> kPixelStore{{
-    {GL_PACK_ALIGNMENT, 1}, {GL_PACK_ROW_LENGTH, 0}, {GL_PACK_SKIP_ROWS, 0}, {GL_PACK_SKIP_PIXELS, 0},
-    {GL_PACK_SWAP_BYTES, 0}, {GL_PACK_LSB_FIRST, 0},
-    {GL_UNPACK_ALIGNMENT, 1}, {GL_UNPACK_ROW_LENGTH, 0}, {GL_UNPACK_SKIP_ROWS, 0}, {GL_UNPACK_SKIP_PIXELS, 0},
-    {GL_UNPACK_SWAP_BYTES, 0}, {GL_UNPACK_LSB_FIRST, 0},
+    {GL_PACK_ALIGNMENT, 1},
+    {GL_PACK_ROW_LENGTH, 0},
+    {GL_PACK_SKIP_ROWS, 0},
+    {GL_PACK_SKIP_PIXELS, 0},
+    {GL_PACK_SWAP_BYTES, 0},
+    {GL_PACK_LSB_FIRST, 0},
+    {GL_UNPACK_ALIGNMENT, 1},
+    {GL_UNPACK_ROW_LENGTH, 0},
+    {GL_UNPACK_SKIP_ROWS, 0},
+    {GL_UNPACK_SKIP_PIXELS, 0},
+    {GL_UNPACK_SWAP_BYTES, 0},
+    {GL_UNPACK_LSB_FIRST, 0},
 }};
 
 constexpr std::array<Setting, 14> kPixelTransfer{{
-    {GL_RED_SCALE, 1}, {GL_RED_BIAS, 0}, {GL_GREEN_SCALE, 1}, {GL_GREEN_BIAS, 0}, {GL_BLUE_SCALE, 1},
-    {GL_BLUE_BIAS, 0}, {GL_ALPHA_SCALE, 1}, {GL_ALPHA_BIAS, 0}, {GL_DEPTH_SCALE, 1}, {GL_DEPTH_BIAS, 0},
-    {GL_MAP_COLOR, 0}, {GL_MAP_STENCIL, 0}, {GL_INDEX_SHIFT, 0}, {GL_INDEX_OFFSET, 0},
+    {GL_RED_SCALE, 1},
+    {GL_RED_BIAS, 0},
+    {GL_GREEN_SCALE, 1},
+    {GL_GREEN_BIAS, 0},
+    {GL_BLUE_SCALE, 1},
+    {GL_BLUE_BIAS, 0},
+    {GL_ALPHA_SCALE, 1},
+    {GL_ALPHA_BIAS, 0},
+    {GL_DEPTH_SCALE, 1},
+    {GL_DEPTH_BIAS, 0},
+    {GL_MAP_COLOR, 0},
+    {GL_MAP_STENCIL, 0},
+    {GL_INDEX_SHIFT, 0},
+    {GL_INDEX_OFFSET, 0},
 }};
 
 template <class Function> void load(decltype(&OSMesaGetProcAddress) find, Function& function, const char* name) {
@@ -171,7 +194,8 @@ void OsmesaPixels::clearNew(const SurfaceConfig& config, bool compatibility, GLf
     const GLfloat black[4] = {0, 0, 0, alpha};
     gl_.clearBufferfv(GL_COLOR, 0, black);
     gl_.colorMaski(0, mask[0], mask[1], mask[2], mask[3]);
-    const GLint deep = get(GL_DEPTH_WRITEMASK), front = get(GL_STENCIL_WRITEMASK), back = get(GL_STENCIL_BACK_WRITEMASK);
+    const GLint deep = get(GL_DEPTH_WRITEMASK), front = get(GL_STENCIL_WRITEMASK),
+                back = get(GL_STENCIL_BACK_WRITEMASK);
     const GLfloat nearest = 0;
     const GLint zero = 0;
     if (config.depth > 0) {
@@ -187,8 +211,7 @@ void OsmesaPixels::clearNew(const SurfaceConfig& config, bool compatibility, GLf
     }
 }
 
-void OsmesaPixels::restorePlane(const SurfaceConfig& config,
-                                GLbitfield mask,
+void OsmesaPixels::restorePlane(const SurfaceConfig& config, GLbitfield mask,
                                 const std::vector<std::byte>& pixels) const {
     const PlaneFormat plane = mask == GL_COLOR_BUFFER_BIT ? colorFormat(config) : depthStencilFormat(config);
     const GLint boundTexture = get(GL_TEXTURE_BINDING_2D);

@@ -58,8 +58,8 @@ Candidates listCandidates() {
     for (const ColorFormat& format : kColorFormats)
         for (const DepthStencil& ds : kDepthStencils) {
             ConfigCandidate candidate;
-            candidate.bits = {1, 1, format.red, format.green, format.blue, format.alpha,
-                              ds.depth, ds.stencil, 0, 0, false, false};
+            candidate.bits = {1,          1, format.red, format.green, format.blue, format.alpha, ds.depth,
+                              ds.stencil, 0, 0,          false,        false};
             all.list.push_back(candidate);
             all.formats.push_back(format);
         }
@@ -140,7 +140,7 @@ private:
     OSMesaContext handle_;
     ContextConfig config_;
     ColorFormat format_;
-    OsmesaSurface* resident_ = nullptr; // surface that this context's buffers hold
+    OsmesaSurface* resident_ = nullptr;  // surface that this context's buffers hold
     std::shared_ptr<std::byte[]> bound_; // memory that OSMesa writes to, even after its surface is destroyed
     std::shared_ptr<std::byte[]> dummy_{new std::byte[16]};
 };
@@ -242,13 +242,20 @@ Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConf
     config.surface = chosen->bits;
     const VersionRequest request = versionRequest(wish);
     const bool core = request.profile && wish.core;
-    const int list[] = {OSMESA_FORMAT, static_cast<int>(chosen->format.format),
-                        OSMESA_DEPTH_BITS, config.surface.depth,
-                        OSMESA_STENCIL_BITS, config.surface.stencil,
-                        OSMESA_PROFILE, core ? OSMESA_CORE_PROFILE : OSMESA_COMPAT_PROFILE,
-                        OSMESA_CONTEXT_MAJOR_VERSION, request.major,
-                        OSMESA_CONTEXT_MINOR_VERSION, request.minor,
-                        0, 0};
+    const int list[] = {OSMESA_FORMAT,
+                        static_cast<int>(chosen->format.format),
+                        OSMESA_DEPTH_BITS,
+                        config.surface.depth,
+                        OSMESA_STENCIL_BITS,
+                        config.surface.stencil,
+                        OSMESA_PROFILE,
+                        core ? OSMESA_CORE_PROFILE : OSMESA_COMPAT_PROFILE,
+                        OSMESA_CONTEXT_MAJOR_VERSION,
+                        request.major,
+                        OSMESA_CONTEXT_MINOR_VERSION,
+                        request.minor,
+                        0,
+                        0};
     OSMesaContext share = shareWith ? static_cast<OsmesaContext*>(shareWith)->handle() : nullptr;
     OSMesaContext handle = state_->osmesa.createContextAttribs(list, share);
     if (!handle)
@@ -263,8 +270,7 @@ Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surfac
         if (state_->osmesa.makeCurrent(nullptr, nullptr, 0, 0, 0)) return {};
         return Error{"OSMesa can't release the context: install a newer libosmesa6"};
     }
-    if (read && read != draw)
-        return Error{"OSMesa can't draw to one surface and read from another: use --gl egl"};
+    if (read && read != draw) return Error{"OSMesa can't draw to one surface and read from another: use --gl egl"};
     return static_cast<OsmesaContext*>(context)->bind(static_cast<OsmesaSurface*>(draw));
 }
 

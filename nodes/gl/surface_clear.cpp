@@ -48,16 +48,18 @@ void clearCurrentSurface(Platform& platform, const SurfaceConfig& bits, ColorBuf
     void (*clearDepthf)(GLfloat) = nullptr;
     void (*drawBuffer)(GLenum) = nullptr;
     load(platform, clear, "glClear");
-    if (isEmbedded(platform)) load(platform, clearDepthf, "glClearDepthf");
-    else load(platform, clearDepth, "glClearDepth");
+    if (isEmbedded(platform))
+        load(platform, clearDepthf, "glClearDepthf");
+    else
+        load(platform, clearDepth, "glClearDepth");
     if (buffers == ColorBuffers::FrontAndBack) load(platform, drawBuffer, "glDrawBuffer");
     if (!clear) return;
     // The other clear values are initially 0.
     if (clearDepth) clearDepth(0);
     if (clearDepthf) clearDepthf(0);
     if (drawBuffer) drawBuffer(GL_FRONT_AND_BACK);
-    clear(GL_COLOR_BUFFER_BIT | (bits.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0U) | (bits.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0U) |
-          (bits.accum > 0 ? GL_ACCUM_BUFFER_BIT : 0U));
+    clear(GL_COLOR_BUFFER_BIT | (bits.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0U) |
+          (bits.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0U) | (bits.accum > 0 ? GL_ACCUM_BUFFER_BIT : 0U));
     finishDrawing(platform);
 }
 

@@ -68,15 +68,18 @@ Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const Sess
 // Returns the output path of a further canvas: a folder inside --out, or a video next to the video of --out.
 std::string outOfCanvas(const std::string& out, const std::string& name) {
     std::string plain;
-    for (const char c : name) plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
+    for (const char c : name)
+        plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
     const auto kind = outputKindOf(out);
     const size_t dot = out.rfind('.');
     if (kind && kind.value() == OutputKind::Video) return out.substr(0, dot) + "." + plain + out.substr(dot);
     return out + (out.back() == '/' ? "" : "/") + "canvas." + plain;
 }
 
-Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, ControlChannel& control, HeadOptions& options) {
-    options.openWindow = [display = config.displayName, key = window_mark::sessionKey(config.session.c_str())](const NativeWindow& window) {
+Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, ControlChannel& control,
+                        HeadOptions& options) {
+    options.openWindow = [display = config.displayName,
+                          key = window_mark::sessionKey(config.session.c_str())](const NativeWindow& window) {
         AppWindowConfig target;
         target.displayName = window.display.empty() ? display : window.display;
         target.window = window.id;
@@ -91,7 +94,9 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, Co
         wall.positionX = config.windowX + offsetX;
         wall.positionY = config.windowY;
         wall.fullScreen = config.fullScreen;
-        return Result<std::unique_ptr<PictureSink>>(std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1}, [&control](const std::string& text) { control.say(text); }));
+        return Result<std::unique_ptr<PictureSink>>(
+            std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1},
+                                       [&control](const std::string& text) { control.say(text); }));
     };
     if (config.out.empty()) return {};
     OutputOptions output;
@@ -114,7 +119,8 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& hos
     if (config.configFile.empty()) return planSession(config, host);
     const auto loaded = compound::loadConfig(config.configFile, compound::processEnvironment);
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
-    auto plan = planOf(loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit, config.width});
+    auto plan = planOf(
+        loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit, config.width});
     if (plan) chooseComposition(*plan, config.composition);
     if (plan) chooseCodecs(*plan, config.codec);
     if (plan) settleQueues(*plan, config);
@@ -145,7 +151,9 @@ Result<int> runSession(ControlChannel& control) {
     if (!nodes) return nodes.error();
     for (const LaunchedNode& node : *nodes) // swap barriers do not include an absent node
         if (!node.connection) plan.nodes[static_cast<size_t>(node.plan.node)].swapBarrier.clear();
-    options.startNode = [options = launchOptionsOf(*config)](const NodePlan& node) { return startNode(node, options, Deadline::inMs(kLaunchPatienceMs)); };
+    options.startNode = [options = launchOptionsOf(*config)](const NodePlan& node) {
+        return startNode(node, options, Deadline::inMs(kLaunchPatienceMs));
+    };
     HeadSession session(*config, std::move(plan), std::move(*nodes), control, std::move(options));
     return session.run();
 }

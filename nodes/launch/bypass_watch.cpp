@@ -49,14 +49,18 @@ UnseenProgram runningProgram(pid_t pid) {
 struct Finding {
     Drawing drawing = Drawing::None;
     std::string program, path; // path: the library that draws
-    bool glvnd = false; // the program also has GLVND
+    bool glvnd = false;        // the program also has GLVND
 };
 
 // Returns the program's way of drawing outside GLVND. Of several, returns the most specific one.
 Finding findingOf(const UnseenProgram& program) {
     Finding found{Drawing::None, std::string(baseName(program.program)), {}};
     const auto rank = [](Drawing d) {
-        return d == Drawing::OwnGl ? 4 : d == Drawing::OffScreen ? 3 : d == Drawing::Vulkan ? 2 : d == Drawing::X11 ? 1 : 0;
+        return d == Drawing::OwnGl       ? 4
+               : d == Drawing::OffScreen ? 3
+               : d == Drawing::Vulkan    ? 2
+               : d == Drawing::X11       ? 1
+                                         : 0;
     };
     bool fronted = false;
     for (const std::string& path : program.libraries) fronted = fronted || baseName(path) == kFrontLibraryName;
@@ -74,17 +78,21 @@ Finding findingOf(const UnseenProgram& program) {
 std::string describe(const Finding& f) {
     switch (f.drawing) {
     case Drawing::OwnGl:
-        return f.program + " draws by " + f.path + ", which GLVND does not lead to, and so past Mural; its window shows its own picture. "
+        return f.program + " draws by " + f.path +
+               ", which GLVND does not lead to, and so past Mural; its window shows its own picture. "
                "Run it with --front preload, or without that library (LD_LIBRARY_PATH)";
     case Drawing::OffScreen:
-        return f.program + " draws by OSMesa (" + f.path + ") into its own memory, where Mural sees nothing; "
+        return f.program + " draws by OSMesa (" + f.path +
+               ") into its own memory, where Mural sees nothing; "
                "its window shows its own picture. Run a build of it that uses GLX or EGL";
     case Drawing::Vulkan:
-        return f.program + " seems to draw by Vulkan (" + f.path + "), which Mural does not carry; "
+        return f.program + " seems to draw by Vulkan (" + f.path +
+               "), which Mural does not carry; "
                "its window shows its own picture. Choose OpenGL in its options";
     case Drawing::X11:
         if (f.glvnd) return {};
-        return f.program + " has a window but loads no GL library: it draws by X11 itself, which Mural does not carry. Choose OpenGL in its options";
+        return f.program + " has a window but loads no GL library: it draws by X11 itself, which Mural does not carry. "
+                           "Choose OpenGL in its options";
     default: return {};
     }
 }
@@ -99,7 +107,8 @@ std::string describeBypass(const std::vector<UnseenProgram>& programs, bool fail
         if (failed && found.drawing == Drawing::X11) continue;
         const std::string text = describe(found);
         // Prefers other programs to one that draws with X11 only, which may be the launcher's dialog.
-        if (text.empty() || (!line.empty() && (found.drawing == Drawing::X11 || best.drawing == Drawing::OwnGl))) continue;
+        if (text.empty() || (!line.empty() && (found.drawing == Drawing::X11 || best.drawing == Drawing::OwnGl)))
+            continue;
         best = found;
         line = text;
     }
@@ -114,7 +123,8 @@ std::string describeUncaptured(const UnseenProgram& program) {
         if (drawing == Drawing::Glvnd || drawing == Drawing::OwnGl) gl = path;
     }
     if (gl.empty()) return {};
-    return std::string(baseName(program.program)) + " uses GL (" + gl + ") without Mural's library: what started it left LD_PRELOAD out of its environment, "
+    return std::string(baseName(program.program)) + " uses GL (" + gl +
+           ") without Mural's library: what started it left LD_PRELOAD out of its environment, "
            "or a sandbox hides the library's folder. What it draws stays in its own window";
 }
 
@@ -126,13 +136,16 @@ Result<std::unique_ptr<BypassWatch>> BypassWatch::create() {
 
 BypassWatch::~BypassWatch() { close(fd_); }
 
-std::string BypassWatch::notesPath() const { return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_); }
+std::string BypassWatch::notesPath() const {
+    return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_);
+}
 
 // Notes are lines of fields between tabs: "say" and a text, or "ended", the program and its libraries.
 void BypassWatch::readNotes() {
     char part[16384];
     std::string text;
-    for (ssize_t n = 0; (n = pread(fd_, part, sizeof part, static_cast<off_t>(read_ + text.size()))) > 0;) text.append(part, static_cast<size_t>(n));
+    for (ssize_t n = 0; (n = pread(fd_, part, sizeof part, static_cast<off_t>(read_ + text.size()))) > 0;)
+        text.append(part, static_cast<size_t>(n));
     const auto whole = text.rfind('\n');
     if (whole == std::string::npos) return;
     read_ += whole + 1;

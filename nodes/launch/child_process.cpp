@@ -32,7 +32,8 @@ std::vector<char*> pointers(const std::vector<std::string>& strings) {
 bool redirect(int from, int to) { return from < 0 || dup2(from, to) >= 0; }
 
 // Runs in the child, between fork and exec, with async-signal-safe calls only.
-[[noreturn]] void becomeProgram(const SpawnRequest& request, char** arguments, char** environment, pid_t parent, int reportFd) {
+[[noreturn]] void becomeProgram(const SpawnRequest& request, char** arguments, char** environment, pid_t parent,
+                                int reportFd) {
     if (request.ownSession) setsid();
     if (request.signalWhenWeDie != 0) {
         prctl(PR_SET_PDEATHSIG, request.signalWhenWeDie);

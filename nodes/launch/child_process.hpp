@@ -13,15 +13,15 @@
 namespace mural::launch {
 
 struct SpawnRequest {
-    std::string file; // path to execute
-    std::vector<std::string> arguments; // including argv[0]
+    std::string file;                     // path to execute
+    std::vector<std::string> arguments;   // including argv[0]
     std::vector<std::string> environment; // NAME=value
-    std::vector<int> keptFds; // descriptors inherited under the same number
-    int inputFd = -1; // becomes standard input; -1: inherited
-    int outputFd = -1; // becomes standard output; -1: inherited
-    int errorFd = -1; // becomes standard error; -1: inherited
-    bool ownSession = false; // setsid: detaches it from the terminal's signals
-    int signalWhenWeDie = 0; // PR_SET_PDEATHSIG; 0: none
+    std::vector<int> keptFds;             // descriptors inherited under the same number
+    int inputFd = -1;                     // becomes standard input; -1: inherited
+    int outputFd = -1;                    // becomes standard output; -1: inherited
+    int errorFd = -1;                     // becomes standard error; -1: inherited
+    bool ownSession = false;              // setsid: detaches it from the terminal's signals
+    int signalWhenWeDie = 0;              // PR_SET_PDEATHSIG; 0: none
 };
 
 class ChildProcess {
@@ -40,8 +40,8 @@ public:
     [[nodiscard]] int exitStatus() const { return exitStatus_; }
     // "exit status 1", "signal 9 (Killed)".
     [[nodiscard]] std::string describeEnd() const;
-    void signal(int number); // no effect after the end
-    void signalGroup(int number); // with ownSession: reaches all descendants, even after the child's end
+    void signal(int number);           // no effect after the end
+    void signalGroup(int number);      // with ownSession: reaches all descendants, even after the child's end
     bool waitUntil(Deadline deadline); // true: it has ended
     // Sends SIGTERM, and SIGKILL after the deadline.
     void end(Deadline deadline);

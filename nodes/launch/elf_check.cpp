@@ -33,8 +33,8 @@ public:
     size_t readAt(void* into, size_t sizeBytes, uint64_t at) const {
         size_t done = 0;
         while (done < sizeBytes) {
-            const ssize_t n = pread(fd_, static_cast<char*>(into) + done, sizeBytes - done,
-                                    static_cast<off_t>(at + done));
+            const ssize_t n =
+                pread(fd_, static_cast<char*>(into) + done, sizeBytes - done, static_cast<off_t>(at + done));
             if (n < 0 && errno == EINTR) continue;
             if (n <= 0) break;
             done += static_cast<size_t>(n);
@@ -73,7 +73,8 @@ template <class T> std::vector<T> readTable(const File& file, uint64_t at, uint6
 // Converts an address to a file offset. UINT64_MAX: not in the file.
 uint64_t offsetOf(const std::vector<Elf64_Phdr>& programs, uint64_t address) {
     for (const Elf64_Phdr& p : programs) {
-        if (p.p_type == PT_LOAD && address >= p.p_vaddr && address - p.p_vaddr < p.p_filesz) return address - p.p_vaddr + p.p_offset;
+        if (p.p_type == PT_LOAD && address >= p.p_vaddr && address - p.p_vaddr < p.p_filesz)
+            return address - p.p_vaddr + p.p_offset;
     }
     return UINT64_MAX;
 }

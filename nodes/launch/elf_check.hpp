@@ -11,20 +11,20 @@
 namespace mural::launch {
 
 enum class FileKind {
-    Elf, // a program for some machine
-    Script, // "#!": an interpreter runs it
+    Elf,         // a program for some machine
+    Script,      // "#!": an interpreter runs it
     PlainScript, // text without "#!": /bin/sh runs it, as in a shell
-    Unknown, // not executable
+    Unknown,     // not executable
 };
 
 struct ExecutableFacts {
     FileKind kind = FileKind::Unknown;
-    int bits = 0; // ELF: 32 or 64
-    uint16_t machine = 0; // ELF: e_machine
-    bool hasInterpreter = false; // ELF: dynamically linked (PT_INTERP)
-    std::string interpreter; // ELF: path of the loader
+    int bits = 0;                  // ELF: 32 or 64
+    uint16_t machine = 0;          // ELF: e_machine
+    bool hasInterpreter = false;   // ELF: dynamically linked (PT_INTERP)
+    std::string interpreter;       // ELF: path of the loader
     std::string scriptInterpreter; // Script: path after "#!"
-    std::string scriptArgument; // Script: the argument after the path, may be empty
+    std::string scriptArgument;    // Script: the argument after the path, may be empty
 };
 
 Result<ExecutableFacts> readExecutable(const std::string& path);

@@ -38,7 +38,8 @@ bool isOurEglList(std::string_view list) {
 }
 
 // Replaces a vendor variable and saves the user's value for the interposer.
-void replaceVendor(Environment& environment, std::string_view name, std::string_view keptName, std::string_view ours, bool alreadyOurs) {
+void replaceVendor(Environment& environment, std::string_view name, std::string_view keptName, std::string_view ours,
+                   bool alreadyOurs) {
     const auto before = environment.get(name);
     if (!alreadyOurs) {
         if (before && !before->empty()) {
@@ -125,10 +126,12 @@ std::string withCapture(std::string_view preload, std::string_view entries) {
     return all += entries;
 }
 
-Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session, Fronts fronts) {
+Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session,
+                        Fronts fronts) {
     const std::string folder = library.path.substr(0, library.path.rfind('/'));
     if (folder.find_first_of(":;") != std::string::npos) {
-        return Error{"the folder " + folder + " has a ':' or ';' in its name, which the loader cannot take; move Mural elsewhere"};
+        return Error{"the folder " + folder +
+                     " has a ':' or ';' in its name, which the loader cannot take; move Mural elsewhere"};
     }
     std::string place = folder + "/";
     if (place.find_first_of(" \t\n") != std::string::npos) {

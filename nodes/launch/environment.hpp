@@ -28,7 +28,7 @@ private:
 
 // The location of the capture library, relative to the mural binary.
 struct CaptureLibrary {
-    std::string path; // …/libGLX_mural.so.0
+    std::string path;          // …/libGLX_mural.so.0
     std::string eglVendorFile; // …/mural_egl_vendor.json
 };
 constexpr std::string_view kCaptureLibraryName = "libGLX_mural.so.0";
@@ -51,7 +51,8 @@ std::string withCapture(std::string_view preload, std::string_view entries);
 enum class Fronts { Vendor, VendorAndPreload };
 
 // Adds the preload and vendor variables. Their previous values are saved in MURAL_REAL_*. Idempotent.
-Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session, Fronts fronts = Fronts::Vendor);
+Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session,
+                        Fronts fronts = Fronts::Vendor);
 
 // For head and nodes: removes the capture and all preloaded libraries. Clock fakers and frame grabbers are meant for
 // the program.

@@ -32,7 +32,8 @@ std::string readAll(int fd, Deadline deadline) {
 }
 
 // Returns the loader's list of libraries, one per line: "\tNAME => PATH (ADDRESS)". Does not run the program.
-std::string askLoader(const std::string& loader, const std::string& executable, const Environment& environment, bool openedToo) {
+std::string askLoader(const std::string& loader, const std::string& executable, const Environment& environment,
+                      bool openedToo) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return {};
     const int silent = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -61,9 +62,11 @@ std::vector<std::string> glLibrariesIn(std::string_view list) {
         std::string_view line = list.substr(at, end - at);
         at = end + 1;
         const auto arrow = line.find(" => ");
-        line.remove_prefix(arrow == std::string_view::npos ? std::min(line.find_first_not_of(" \t"), line.size()) : arrow + 4);
+        line.remove_prefix(arrow == std::string_view::npos ? std::min(line.find_first_not_of(" \t"), line.size())
+                                                           : arrow + 4);
         line = line.substr(0, line.rfind(" ("));
-        if (!line.starts_with('/') || !(baseName(line).starts_with("libGL") || baseName(line).starts_with("libEGL"))) continue;
+        if (!line.starts_with('/') || !(baseName(line).starts_with("libGL") || baseName(line).starts_with("libEGL")))
+            continue;
         const Drawing drawing = drawingOf(std::string(line));
         if (drawing == Drawing::Glvnd || drawing == Drawing::OwnGl) found.emplace_back(line);
     }

@@ -12,8 +12,8 @@ namespace mural::launch {
 // The kind of a library, judged by its soname and its dependencies.
 enum class Drawing {
     None,
-    Glvnd, // OpenGL through GLVND
-    OwnGl, // OpenGL without GLVND
+    Glvnd,     // OpenGL through GLVND
+    OwnGl,     // OpenGL without GLVND
     OffScreen, // OSMesa: OpenGL into the program's memory
     Vulkan,
     X11, // window system only

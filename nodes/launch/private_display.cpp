@@ -66,13 +66,16 @@ std::string lastLine(int logFd) {
     return at == std::string::npos ? text : text.substr(at + 1);
 }
 
-SpawnRequest serverRequest(const std::string& binary, int width, int height, const std::string& authority, int numberFd, int logFd) {
+SpawnRequest serverRequest(const std::string& binary, int width, int height, const std::string& authority, int numberFd,
+                           int logFd) {
     SpawnRequest request;
     request.file = binary;
-    request.arguments = {"Xvfb", "-displayfd", std::to_string(numberFd), "-screen", "0",
-                         std::to_string(width) + "x" + std::to_string(height) + "x24",
-                         "-nolisten", "tcp", "-noreset", "-auth", authority,
-                         "+extension", "GLX", "+extension", "RANDR", "-s", "0"};
+    request.arguments = {"Xvfb",      "-displayfd", std::to_string(numberFd),
+                         "-screen",   "0",          std::to_string(width) + "x" + std::to_string(height) + "x24",
+                         "-nolisten", "tcp",        "-noreset",
+                         "-auth",     authority,    "+extension",
+                         "GLX",       "+extension", "RANDR",
+                         "-s",        "0"};
     Environment environment = Environment::current();
     removeCapture(environment);
     request.environment = environment.entries();
@@ -89,7 +92,8 @@ SpawnRequest serverRequest(const std::string& binary, int width, int height, con
 Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int height) {
     const ProgramCheck binary = findProgram("Xvfb", Environment::current().get("PATH").value_or("/usr/bin:/bin"));
     if (!binary.ok()) {
-        return Error{"Xvfb is needed to run a program without a display of its own size, and was not found; install Debian's package xvfb"};
+        return Error{"Xvfb is needed to run a program without a display of its own size, and was not found; install "
+                     "Debian's package xvfb"};
     }
     auto authority = XAuthority::create();
     if (!authority) return authority.error();
@@ -101,7 +105,8 @@ Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int hei
 
     std::unique_ptr<PrivateDisplay> display(new PrivateDisplay);
     display->authority_ = std::move(authority.value());
-    auto server = ChildProcess::start(serverRequest(binary.path, width, height, display->authority_->path(), writeEnd.get(), log.get()));
+    auto server = ChildProcess::start(
+        serverRequest(binary.path, width, height, display->authority_->path(), writeEnd.get(), log.get()));
     if (!server) return server.error();
     display->server_ = std::move(server.value());
     writeEnd.reset();
@@ -109,7 +114,8 @@ Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int hei
     if (text.empty()) {
         const std::string words = lastLine(log.get());
         return Error{"Xvfb gave no private display of " + std::to_string(width) + "x" + std::to_string(height) +
-                     " pixels" + (words.empty() ? std::string() : ": " + words) + "; check free memory and /tmp/.X11-unix"};
+                     " pixels" + (words.empty() ? std::string() : ": " + words) +
+                     "; check free memory and /tmp/.X11-unix"};
     }
     display->name_ = ":" + text;
     return display;

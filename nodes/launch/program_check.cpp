@@ -52,11 +52,13 @@ std::string loaderObstacle(const std::string& path, const ExecutableFacts& facts
         return path + " has file capabilities, and the loader ignores LD_PRELOAD for those; run a copy without them";
     }
     if (facts.bits != ownBits()) {
-        return path + " is a " + std::to_string(facts.bits) + "-bit program and this is the " + std::to_string(ownBits()) +
-               "-bit Mural; install the program's " + std::to_string(ownBits()) + "-bit build";
+        return path + " is a " + std::to_string(facts.bits) + "-bit program and this is the " +
+               std::to_string(ownBits()) + "-bit Mural; install the program's " + std::to_string(ownBits()) +
+               "-bit build";
     }
     if (facts.machine != ownMachine()) {
-        return path + " is built for another processor (ELF machine " + std::to_string(facts.machine) + "); install this machine's build";
+        return path + " is built for another processor (ELF machine " + std::to_string(facts.machine) +
+               "); install this machine's build";
     }
     if (!facts.hasInterpreter) {
         return path + " is statically linked, so no library can be loaded into it; use a dynamically linked build";
@@ -102,7 +104,8 @@ ProgramCheck checkProgram(const std::string& name, const std::string& searchPath
         }
         case FileKind::Script: {
             const ProgramCheck next = verifyFile(facts.value().scriptInterpreter, facts.value().scriptInterpreter);
-            if (!next.ok()) return failure(found.path, next.exitStatus, path + " asks for the interpreter " + next.message);
+            if (!next.ok())
+                return failure(found.path, next.exitStatus, path + " asks for the interpreter " + next.message);
             path = next.path;
             break;
         }
@@ -111,7 +114,8 @@ ProgramCheck checkProgram(const std::string& name, const std::string& searchPath
             return failure(found.path, kExitNotExecutable, path + " is neither a program nor a script; check the file");
         }
     }
-    return failure(found.path, kExitNotExecutable, name + " is a chain of more than " + std::to_string(kMaxScriptDepth) + " scripts; run the last one");
+    return failure(found.path, kExitNotExecutable,
+                   name + " is a chain of more than " + std::to_string(kMaxScriptDepth) + " scripts; run the last one");
 }
 
 } // namespace mural::launch

@@ -12,9 +12,9 @@ constexpr int kExitNotExecutable = 126;
 constexpr int kExitNotFound = 127;
 
 struct ProgramCheck {
-    std::string path; // path of the executable
-    std::string binary; // the file that the loader starts: for a script, its interpreter
-    int exitStatus = 0; // 0: can be captured
+    std::string path;    // path of the executable
+    std::string binary;  // the file that the loader starts: for a script, its interpreter
+    int exitStatus = 0;  // 0: can be captured
     std::string message; // one line, if exitStatus is not 0
     [[nodiscard]] bool ok() const { return exitStatus == 0; }
 };

@@ -42,7 +42,8 @@ bool isDeserted(const std::string& path) {
 
 } // namespace
 
-Result<std::unique_ptr<SessionSocket>> SessionSocket::create(const std::string& session, const std::string& runtimeFolder) {
+Result<std::unique_ptr<SessionSocket>> SessionSocket::create(const std::string& session,
+                                                             const std::string& runtimeFolder) {
     struct stat facts {};
     std::vector<std::string> places{kTemporary};
     if (isOwnFolder(runtimeFolder, facts)) places.insert(places.begin(), runtimeFolder);
@@ -75,7 +76,8 @@ void removeStaleSockets(const std::string& folder) {
     for (const std::string& name : found) {
         struct stat facts {};
         const std::string path = name + kFileName;
-        if (isOwnFolder(name, facts) && facts.st_mtime + kMinAgeS <= time(nullptr) && isDeserted(path)) removeSessionSocket(path);
+        if (isOwnFolder(name, facts) && facts.st_mtime + kMinAgeS <= time(nullptr) && isDeserted(path))
+            removeSessionSocket(path);
     }
 }
 

@@ -20,8 +20,9 @@ template <class T> using Reply = std::unique_ptr<T, Freed<T>>;
 
 } // namespace
 
-Result<std::unique_ptr<WallWindowManager>>
-WallWindowManager::open(const std::string& display, const XAuthority::Cookie& cookie, int width, int height) {
+Result<std::unique_ptr<WallWindowManager>> WallWindowManager::open(const std::string& display,
+                                                                   const XAuthority::Cookie& cookie, int width,
+                                                                   int height) {
     auto protocol = std::string(kXAuthorityProtocol);
     auto key = cookie;
     xcb_auth_info_t authority{};
@@ -32,10 +33,12 @@ WallWindowManager::open(const std::string& display, const XAuthority::Cookie& co
     xcb_connection_t* connection = xcb_connect_to_display_with_auth_info(display.c_str(), &authority, nullptr);
     if (xcb_connection_has_error(connection) != 0) {
         xcb_disconnect(connection);
-        return Error{"the private display " + display + " takes no connection; try again, and without --size if it stays so"};
+        return Error{"the private display " + display +
+                     " takes no connection; try again, and without --size if it stays so"};
     }
     std::unique_ptr<WallWindowManager> manager(new WallWindowManager(connection, width, height));
-    if (!manager->takeRoot()) return Error{"the private display " + display + " already has a window manager; try again"};
+    if (!manager->takeRoot())
+        return Error{"the private display " + display + " already has a window manager; try again"};
     return manager;
 }
 
@@ -109,8 +112,13 @@ void WallWindowManager::configureRequested(const xcb_configure_request_event_t& 
         fillScreen(main_); // no-op if it fills the screen already; replies in both cases
         return;
     }
-    const uint32_t all[] = {static_cast<uint32_t>(event.x), static_cast<uint32_t>(event.y), event.width, event.height,
-                            event.border_width, event.sibling, event.stack_mode};
+    const uint32_t all[] = {static_cast<uint32_t>(event.x),
+                            static_cast<uint32_t>(event.y),
+                            event.width,
+                            event.height,
+                            event.border_width,
+                            event.sibling,
+                            event.stack_mode};
     uint32_t values[7];
     int count = 0;
     for (int bit = 0; bit < 7; ++bit) {

@@ -21,8 +21,8 @@ namespace mural::launch {
 class WallWindowManager {
 public:
     // Fails if the display has another window manager.
-    static Result<std::unique_ptr<WallWindowManager>>
-    open(const std::string& display, const XAuthority::Cookie& cookie, int width, int height);
+    static Result<std::unique_ptr<WallWindowManager>> open(const std::string& display, const XAuthority::Cookie& cookie,
+                                                           int width, int height);
     WallWindowManager(const WallWindowManager&) = delete;
     WallWindowManager& operator=(const WallWindowManager&) = delete;
     ~WallWindowManager();

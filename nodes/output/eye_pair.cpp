@@ -11,7 +11,8 @@ void halveInto(OwnedPicture& into, const Picture& eye, int x0, int y0, int width
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const int ax = columns ? 2 * x : x, ay = columns ? y : 2 * y;
-            const int bx = std::min(columns ? ax + 1 : ax, eye.width - 1), by = std::min(columns ? ay : ay + 1, eye.height - 1);
+            const int bx = std::min(columns ? ax + 1 : ax, eye.width - 1),
+                      by = std::min(columns ? ay : ay + 1, eye.height - 1);
             const std::byte* a = eye.row(ay) + static_cast<size_t>(ax) * kPictureBytesPerPixel;
             const std::byte* b = eye.row(by) + static_cast<size_t>(bx) * kPictureBytesPerPixel;
             std::byte* to = into.row(y0 + y) + static_cast<size_t>(x0 + x) * kPictureBytesPerPixel;

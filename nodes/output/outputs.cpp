@@ -16,27 +16,21 @@ namespace {
 constexpr std::array kOtherSuffixes = {"png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp",
                                        "ppm", "mpg", "mpeg", "wmv", "flv", "m4v", "ogv",  "ts"};
 
-template <class Sink>
-Result<std::unique_ptr<PictureSink>> asSink(Result<std::unique_ptr<Sink>> opened) {
-    if (!opened)
-        return opened.error();
+template <class Sink> Result<std::unique_ptr<PictureSink>> asSink(Result<std::unique_ptr<Sink>> opened) {
+    if (!opened) return opened.error();
     return std::unique_ptr<PictureSink>(std::move(opened.value()));
 }
 
 } // namespace
 
 Result<OutputKind> outputKindOf(const std::string& out) {
-    if (out.empty())
-        return Error{"--out needs a folder or a video file, e.g. --out pictures or --out run.mp4"};
+    if (out.empty()) return Error{"--out needs a folder or a video file, e.g. --out pictures or --out run.mp4"};
     std::error_code error;
-    if (out.back() == '/' || std::filesystem::is_directory(out, error))
-        return OutputKind::Folder;
+    if (out.back() == '/' || std::filesystem::is_directory(out, error)) return OutputKind::Folder;
     const std::string suffix = suffixOf(out);
-    if (isVideoSuffix(suffix))
-        return OutputKind::Video;
+    if (isVideoSuffix(suffix)) return OutputKind::Video;
     for (const char* other : kOtherSuffixes) {
-        if (suffix != other)
-            continue;
+        if (suffix != other) continue;
         return Error{fmt::format("--out {}: .{} files are not written; give a folder for PNG "
                                  "files, or a video as .mp4, .mkv, .avi, .webm or .mov",
                                  out, suffix)};
@@ -44,13 +38,10 @@ Result<OutputKind> outputKindOf(const std::string& out) {
     return OutputKind::Folder;
 }
 
-Result<std::unique_ptr<PictureSink>> openOutput(const std::string& out,
-                                                const OutputOptions& options) {
+Result<std::unique_ptr<PictureSink>> openOutput(const std::string& out, const OutputOptions& options) {
     Result<OutputKind> kind = outputKindOf(out);
-    if (!kind)
-        return kind.error();
-    if (kind.value() == OutputKind::Folder)
-        return asSink(PngFiles::open(out));
+    if (!kind) return kind.error();
+    if (kind.value() == OutputKind::Folder) return asSink(PngFiles::open(out));
     VideoConfig config;
     config.path = out;
     config.framesPerSecond = options.framesPerSecond;

@@ -11,7 +11,7 @@
 namespace mural {
 
 struct OutputOptions {
-    int framesPerSecond = 30; // of videos
+    int framesPerSecond = 30;                    // of videos
     std::function<void(const std::string&)> say; // one line for the user; may be empty
 };
 
@@ -22,7 +22,6 @@ enum class OutputKind { Folder, Video };
 // folders.
 Result<OutputKind> outputKindOf(const std::string& out);
 
-Result<std::unique_ptr<PictureSink>> openOutput(const std::string& out,
-                                                const OutputOptions& options = {});
+Result<std::unique_ptr<PictureSink>> openOutput(const std::string& out, const OutputOptions& options = {});
 
 } // namespace mural

@@ -42,7 +42,8 @@ constexpr uint32_t toTenBits(uint32_t pixel) {
 
 } // namespace
 
-void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureFormat toFormat, std::byte* to, size_t pixels) {
+void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureFormat toFormat, std::byte* to,
+                   size_t pixels) {
     if (fromFormat == toFormat) {
         std::memcpy(to, from, pixels * kPictureBytesPerPixel);
         return;
@@ -57,17 +58,14 @@ void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureForma
 }
 
 void copyInto(OwnedPicture& target, int x, int y, const Picture& source) {
-    if (source.empty())
-        return;
-    const PixelViewport part =
-        intersect({x, y, source.width, source.height}, {0, 0, target.width(), target.height()});
-    if (part.empty())
-        return;
+    if (source.empty()) return;
+    const PixelViewport part = intersect({x, y, source.width, source.height}, {0, 0, target.width(), target.height()});
+    if (part.empty()) return;
     const size_t targetSkip = static_cast<size_t>(part.x) * kPictureBytesPerPixel;
     const size_t sourceSkip = static_cast<size_t>(part.x - x) * kPictureBytesPerPixel;
     for (int line = part.y; line < part.top(); ++line)
-        convertPixels(source.format, source.row(line - y) + sourceSkip, target.format(),
-                      target.row(line) + targetSkip, static_cast<size_t>(part.w));
+        convertPixels(source.format, source.row(line - y) + sourceSkip, target.format(), target.row(line) + targetSkip,
+                      static_cast<size_t>(part.w));
 }
 
 OwnedPicture cutOut(const Picture& source, const PixelViewport& rectangle) {
@@ -79,8 +77,7 @@ OwnedPicture cutOut(const Picture& source, const PixelViewport& rectangle) {
 
 void flipRows(OwnedPicture& picture) {
     for (int low = 0, high = picture.height() - 1; low < high; ++low, --high)
-        std::swap_ranges(picture.row(low), picture.row(low) + picture.rowBytes(),
-                         picture.row(high));
+        std::swap_ranges(picture.row(low), picture.row(low) + picture.rowBytes(), picture.row(high));
 }
 
 namespace {
@@ -95,16 +92,15 @@ uint32_t colourAt(const std::byte* row, int x) {
 int largestChannelDifference(uint32_t a, uint32_t b) {
     int largest = 0;
     for (int shift = 0; shift < 24; shift += 8)
-        largest = std::max(largest, std::abs(static_cast<int>(a >> shift & 0xffU) -
-                                             static_cast<int>(b >> shift & 0xffU)));
+        largest =
+            std::max(largest, std::abs(static_cast<int>(a >> shift & 0xffU) - static_cast<int>(b >> shift & 0xffU)));
     return largest;
 }
 
 // Most rows of most comparisons are equal: one pass without branches that the compiler vectorises.
 bool sameColours(const std::byte* a, const std::byte* b, int width) {
     uint32_t difference = 0;
-    for (int x = 0; x < width; ++x)
-        difference |= colourAt(a, x) ^ colourAt(b, x);
+    for (int x = 0; x < width; ++x) difference |= colourAt(a, x) ^ colourAt(b, x);
     return difference == 0;
 }
 
@@ -113,17 +109,14 @@ bool sameColours(const std::byte* a, const std::byte* b, int width) {
 PictureDifference comparePictures(const Picture& expected, const Picture& actual) {
     PictureDifference result;
     result.sizesDiffer = expected.width != actual.width || expected.height != actual.height;
-    if (result.sizesDiffer)
-        return result;
+    if (result.sizesDiffer) return result;
     for (int y = 0; y < expected.height; ++y) {
         const std::byte* a = expected.row(y);
         const std::byte* b = actual.row(y);
-        if (sameColours(a, b, expected.width))
-            continue;
+        if (sameColours(a, b, expected.width)) continue;
         for (int x = 0; x < expected.width; ++x) {
             const int difference = largestChannelDifference(colourAt(a, x), colourAt(b, x));
-            if (difference == 0)
-                continue;
+            if (difference == 0) continue;
             if (result.differingPixels++ == 0) {
                 result.firstX = x;
                 result.firstY = y;
@@ -134,17 +127,14 @@ PictureDifference comparePictures(const Picture& expected, const Picture& actual
     return result;
 }
 
-std::string
-describe(const PictureDifference& difference, const Picture& expected, const Picture& actual) {
+std::string describe(const PictureDifference& difference, const Picture& expected, const Picture& actual) {
     if (difference.sizesDiffer)
-        return fmt::format("sizes differ: {}x{} expected, {}x{} found", expected.width,
-                           expected.height, actual.width, actual.height);
+        return fmt::format("sizes differ: {}x{} expected, {}x{} found", expected.width, expected.height, actual.width,
+                           actual.height);
     const int64_t pixels = static_cast<int64_t>(expected.width) * expected.height;
-    if (difference.differingPixels == 0)
-        return fmt::format("0 of {} pixels differ", pixels);
-    return fmt::format("{} of {} pixels differ, by at most {}, first at x {}, y {}",
-                       difference.differingPixels, pixels, difference.largestDifference,
-                       difference.firstX, difference.firstY);
+    if (difference.differingPixels == 0) return fmt::format("0 of {} pixels differ", pixels);
+    return fmt::format("{} of {} pixels differ, by at most {}, first at x {}, y {}", difference.differingPixels, pixels,
+                       difference.largestDifference, difference.firstX, difference.firstY);
 }
 
 } // namespace mural

@@ -22,13 +22,9 @@ struct Picture {
     PictureFormat format = PictureFormat::Bgra8;
 
     [[nodiscard]] bool empty() const { return width <= 0 || height <= 0 || bgra == nullptr; }
-    [[nodiscard]] size_t rowBytes() const {
-        return static_cast<size_t>(width) * kPictureBytesPerPixel;
-    }
+    [[nodiscard]] size_t rowBytes() const { return static_cast<size_t>(width) * kPictureBytesPerPixel; }
     [[nodiscard]] size_t sizeBytes() const { return rowBytes() * static_cast<size_t>(height); }
-    [[nodiscard]] const std::byte* row(int y) const {
-        return bgra + rowBytes() * static_cast<size_t>(y);
-    }
+    [[nodiscard]] const std::byte* row(int y) const { return bgra + rowBytes() * static_cast<size_t>(y); }
 };
 
 class OwnedPicture {
@@ -43,9 +39,7 @@ public:
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
-    [[nodiscard]] size_t rowBytes() const {
-        return static_cast<size_t>(width_) * kPictureBytesPerPixel;
-    }
+    [[nodiscard]] size_t rowBytes() const { return static_cast<size_t>(width_) * kPictureBytesPerPixel; }
     std::byte* row(int y) { return bytes_.data() + rowBytes() * static_cast<size_t>(y); }
     std::byte* data() { return bytes_.data(); }
     [[nodiscard]] PictureFormat format() const { return format_; }
@@ -58,9 +52,10 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-// Converts pixels and rounds to the nearest value, as OpenGL does. The colours of 8 bits survive a conversion to 10 bits and
-// back; alpha keeps 2 bits.
-void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureFormat toFormat, std::byte* to, size_t pixels);
+// Converts pixels and rounds to the nearest value, as OpenGL does. The colours of 8 bits survive a conversion to 10
+// bits and back; alpha keeps 2 bits.
+void convertPixels(PictureFormat fromFormat, const std::byte* from, PictureFormat toFormat, std::byte* to,
+                   size_t pixels);
 
 // Copies all of `source` in the format of `target` with its lower left corner at (x, y) of `target`; pixels outside
 // are dropped.
@@ -73,9 +68,9 @@ OwnedPicture cutOut(const Picture& source, const PixelViewport& rectangle);
 void flipRows(OwnedPicture& picture);
 
 struct PictureDifference {
-    bool sizesDiffer = false; // true: the pixels are not compared
-    int64_t differingPixels = 0; // pixels with a difference in B, G or R
-    int largestDifference = 0; // in one channel, 0 to 255
+    bool sizesDiffer = false;     // true: the pixels are not compared
+    int64_t differingPixels = 0;  // pixels with a difference in B, G or R
+    int largestDifference = 0;    // in one channel, 0 to 255
     int firstX = -1, firstY = -1; // lowest row first, then from the left; -1: no difference
 
     [[nodiscard]] bool same() const { return !sizesDiffer && differingPixels == 0; }
@@ -85,7 +80,6 @@ struct PictureDifference {
 PictureDifference comparePictures(const Picture& expected, const Picture& actual);
 
 // Returns a line such as "12 of 307200 pixels differ, by at most 3, first at x 10, y 20".
-std::string
-describe(const PictureDifference& difference, const Picture& expected, const Picture& actual);
+std::string describe(const PictureDifference& difference, const Picture& expected, const Picture& actual);
 
 } // namespace mural

@@ -12,8 +12,7 @@ static_assert(std::endian::native == std::endian::little, "pixels are written as
 namespace {
 
 bool contiguous(uint32_t mask) {
-    if (mask == 0)
-        return false;
+    if (mask == 0) return false;
     const uint32_t low = mask >> std::countr_zero(mask);
     return (low & (low + 1)) == 0;
 }
@@ -23,8 +22,7 @@ bool contiguous(uint32_t mask) {
 std::vector<uint32_t> channelTable(int sourceBits, uint32_t mask) {
     const uint64_t largest = (uint64_t{1} << sourceBits) - 1;
     std::vector<uint32_t> table(largest + 1);
-    if (mask == 0)
-        return table;
+    if (mask == 0) return table;
     const int shift = std::countr_zero(mask);
     const uint64_t newLargest = mask >> shift;
     for (uint64_t value = 0; value <= largest; ++value)
@@ -39,10 +37,9 @@ bool hasMasks(const PixelFormat& format, uint32_t red, uint32_t green, uint32_t 
 } // namespace
 
 Result<PixelConverter> PixelConverter::make(const PixelFormat& format) {
-    if (!contiguous(format.redMask) || !contiguous(format.greenMask) ||
-        !contiguous(format.blueMask)) {
-        return Error{fmt::format("pixels with the channel masks {:#x} {:#x} {:#x} are not known",
-                                 format.redMask, format.greenMask, format.blueMask)};
+    if (!contiguous(format.redMask) || !contiguous(format.greenMask) || !contiguous(format.blueMask)) {
+        return Error{fmt::format("pixels with the channel masks {:#x} {:#x} {:#x} are not known", format.redMask,
+                                 format.greenMask, format.blueMask)};
     }
     if (format.bitsPerPixel % 8 != 0 || format.bitsPerPixel < 8 || format.bitsPerPixel > 32 ||
         format.rowPadBits % 8 != 0 || format.rowPadBits < 8)
@@ -54,7 +51,8 @@ Result<PixelConverter> PixelConverter::make(const PixelFormat& format) {
     const uint32_t depthMask = format.depth >= 32 ? ~0U : (1U << format.depth) - 1;
     const uint32_t rest = depthMask & ~(format.redMask | format.greenMask | format.blueMask);
     const uint32_t alphaMask = contiguous(rest) ? rest : 0;
-    converter.tables_ = {tablesOf(PictureFormat::Bgra8, format, alphaMask), tablesOf(PictureFormat::Bgr10A2, format, alphaMask)};
+    converter.tables_ = {tablesOf(PictureFormat::Bgra8, format, alphaMask),
+                         tablesOf(PictureFormat::Bgr10A2, format, alphaMask)};
     return converter;
 }
 
@@ -78,18 +76,10 @@ void PixelConverter::convertRow(PictureFormat format, const std::byte* source, i
     }
     const Tables& tables = tables_[index];
     switch (bytesPerPixel_) {
-    case 1:
-        convertByTable<1>(tables, source, pixels, target);
-        break;
-    case 2:
-        convertByTable<2>(tables, source, pixels, target);
-        break;
-    case 3:
-        convertByTable<3>(tables, source, pixels, target);
-        break;
-    default:
-        convertByTable<4>(tables, source, pixels, target);
-        break;
+    case 1: convertByTable<1>(tables, source, pixels, target); break;
+    case 2: convertByTable<2>(tables, source, pixels, target); break;
+    case 3: convertByTable<3>(tables, source, pixels, target); break;
+    default: convertByTable<4>(tables, source, pixels, target); break;
     }
 }
 

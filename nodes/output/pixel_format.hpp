@@ -12,9 +12,9 @@
 namespace mural {
 
 struct PixelFormat {
-    int depth = 24; // significant bits
+    int depth = 24;        // significant bits
     int bitsPerPixel = 32; // stored bits
-    int rowPadBits = 32; // rows start at multiples of this
+    int rowPadBits = 32;   // rows start at multiples of this
     uint32_t redMask = 0xff0000;
     uint32_t greenMask = 0x00ff00;
     uint32_t blueMask = 0x0000ff;

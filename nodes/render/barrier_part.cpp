@@ -18,7 +18,8 @@ Result<uint16_t> BarrierPart::open() {
     const auto secret = sessionSecretFromHex(secretHex_);
     if (!secret) return Error{"the head gave no secret for the swap barrier: " + secret.error().message};
     auto leader = std::make_unique<BarrierLeader>(members_, secret.value(), log_);
-    if (auto listening = leader->listen(here_); !listening) return Error{"no node can be let in to the swap barrier: " + listening.error().message};
+    if (auto listening = leader->listen(here_); !listening)
+        return Error{"no node can be let in to the swap barrier: " + listening.error().message};
     const uint16_t port = leader->port();
     barrier_ = std::move(leader);
     return port;
@@ -27,10 +28,15 @@ Result<uint16_t> BarrierPart::open() {
 void BarrierPart::follow(const std::string& host, uint16_t port) {
     if (rank_ == 0 || barrier_) return;
     const auto secret = sessionSecretFromHex(secretHex_);
-    if (!secret) return log_("the head gave no secret for the swap barrier: " + secret.error().message + "; windows of this node show frames when they are drawn");
+    if (!secret)
+        return log_("the head gave no secret for the swap barrier: " + secret.error().message +
+                    "; windows of this node show frames when they are drawn");
     auto follower = BarrierFollower::connect(rank_, secret.value(), host, port, Deadline::inMs(kConnectMs), log_);
-    if (follower) barrier_ = std::move(*follower);
-    else log_("the leader of the swap barrier is not reached at " + endpointText(host, port) + ": " + follower.error().message + "; windows of this node show frames when they are drawn");
+    if (follower)
+        barrier_ = std::move(*follower);
+    else
+        log_("the leader of the swap barrier is not reached at " + endpointText(host, port) + ": " +
+             follower.error().message + "; windows of this node show frames when they are drawn");
 }
 
 } // namespace mural

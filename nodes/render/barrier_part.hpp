@@ -12,7 +12,12 @@ namespace mural {
 
 class BarrierPart {
 public:
-    BarrierPart(const NodeSetup& setup, SwapBarrier::Log log) : rank_(setup.swapRank), members_(setup.swapMembers), here_(setup.swapHere), secretHex_(setup.exchangeSecret), log_(std::move(log)) {}
+    BarrierPart(const NodeSetup& setup, SwapBarrier::Log log)
+        : rank_(setup.swapRank),
+          members_(setup.swapMembers),
+          here_(setup.swapHere),
+          secretHex_(setup.exchangeSecret),
+          log_(std::move(log)) {}
 
     // Leader only: listens for the other members. Returns the port; 0: not the leader.
     Result<uint16_t> open();

@@ -21,7 +21,8 @@ constexpr int64_t kJoinMs = 10'000;
 // head.
 Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options) {
     auto where = splitHostPort(options.connect);
-    if (!where || where->host.empty() || where->port == 0) return Error{"--connect " + options.connect + ": give it as HOST:PORT, with a port from 1 to 65535"};
+    if (!where || where->host.empty() || where->port == 0)
+        return Error{"--connect " + options.connect + ": give it as HOST:PORT, with a port from 1 to 65535"};
     std::string line;
     std::getline(std::cin, line);
     const auto secret = sessionSecretFromHex(line);
@@ -45,7 +46,8 @@ Result<std::unique_ptr<HeadConnection>> HeadConnection::open(const NodeOptions& 
 }
 
 // Uses the network interface and the address that reach the head.
-Result<rsp::GroupOptions> HeadConnection::groupOptions(const std::string& stream, const std::string& secretHex, const std::string& name) const {
+Result<rsp::GroupOptions> HeadConnection::groupOptions(const std::string& stream, const std::string& secretHex,
+                                                       const std::string& name) const {
     auto description = parseConnectionDescription(stream);
     if (!description) return description.error();
     auto options = rsp::groupOptionsOf(*description);
@@ -72,7 +74,8 @@ Result<void> HeadConnection::follow(const std::string& stream, const std::string
 
 void HeadConnection::joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name) {
     const auto failed = [this](const std::string& why) {
-        sendText(wire::NodeMessage::Log, "its stream goes on through its own connection (TCP), not by multicast: " + why + "; mural doctor --network may say why");
+        sendText(wire::NodeMessage::Log, "its stream goes on through its own connection (TCP), not by multicast: " +
+                                             why + "; mural doctor --network may say why");
     };
     auto options = groupOptions(stream, secretHex, name);
     if (!options) return failed(options.error().message);
@@ -101,7 +104,8 @@ Result<void> HeadConnection::endBatch() {
     uint32_t stream = 0;
     std::span<const std::byte> payload;
     const auto more = unpacker_->next(stream, payload);
-    if (!more || more.value()) return Error{"the head sent more in a batch than its last command; head and nodes must be of one build"};
+    if (!more || more.value())
+        return Error{"the head sent more in a batch than its last command; head and nodes must be of one build"};
     inBatch_ = false;
     return {};
 }
@@ -113,7 +117,9 @@ Result<void> HeadConnection::unpackBatches(uint64_t storeBytes, const std::strin
     unpacker_.reset(); // frees the old memory before the new allocation
     batchDecoder_ = std::make_unique<delta::BatchDecoder>();
     unpacker_ = std::make_unique<delta::DeltaDecoder>(limits);
-    if (!unpacker_->ready()) return Error{"no memory for a store of " + std::to_string(storeBytes >> 20) + " MiB; give a smaller one by --store"};
+    if (!unpacker_->ready())
+        return Error{"no memory for a store of " + std::to_string(storeBytes >> 20) +
+                     " MiB; give a smaller one by --store"};
     if (plant == "economy") unpacker_->loseWords();
     return {};
 }
@@ -174,7 +180,8 @@ Result<delta::BatchHead> HeadConnection::readBatch() {
 }
 
 Result<void> HeadConnection::readPayload(uint32_t sizeBytes, uint32_t mostBytes) {
-    if (sizeBytes > mostBytes) return Error{"the head sent a packet of " + std::to_string(sizeBytes) + " bytes: it is of another build"};
+    if (sizeBytes > mostBytes)
+        return Error{"the head sent a packet of " + std::to_string(sizeBytes) + " bytes: it is of another build"};
     payload_.resize(sizeBytes);
     // no deadline: the head may pause in the middle; its end closes the connection
     return line().read(payload_, Deadline::never());

@@ -51,13 +51,14 @@ public:
     [[nodiscard]] std::string ownAddress() const { return connection_->path().ownAddress; }
 
 private:
-    [[nodiscard]] Result<rsp::GroupOptions> groupOptions(const std::string& stream, const std::string& secretHex, const std::string& name) const;
+    [[nodiscard]] Result<rsp::GroupOptions> groupOptions(const std::string& stream, const std::string& secretHex,
+                                                         const std::string& name) const;
     Result<void> endBatch();
     void sendLocked(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b);
     explicit HeadConnection(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
     const std::unique_ptr<Connection> connection_;
-    std::string headHost_; // empty: shared memory
+    std::string headHost_;               // empty: shared memory
     std::unique_ptr<Connection> stream_; // null: packets arrive on connection_
     [[nodiscard]] Connection& line() { return stream_ ? *stream_ : *connection_; } // the source of packets
     Result<wire::PacketHeader> readPacket(std::span<const std::byte>& payload);
@@ -68,7 +69,7 @@ private:
 
     std::vector<std::byte> payload_;
     std::unique_ptr<delta::BatchDecoder> batchDecoder_; // set together with the unpacker
-    std::unique_ptr<delta::DeltaDecoder> unpacker_; // null: no batches
+    std::unique_ptr<delta::DeltaDecoder> unpacker_;     // null: no batches
     bool inBatch_ = false;
     std::mutex sending_;
     std::atomic<bool> broken_{false};

@@ -41,7 +41,8 @@ uint64_t threadCpuNs() { return static_cast<uint64_t>(threadCpuNowNs()); }
 double processCpuSeconds() {
     rusage r{};
     getrusage(RUSAGE_SELF, &r);
-    return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
+    return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) +
+           1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
 // Places the replay thread near the GPU. Not with software rendering, because the driver's threads then need all cores.
@@ -59,7 +60,8 @@ std::string hostName() {
 
 std::vector<Viewport> areasOf(const std::vector<double>& numbers) {
     std::vector<Viewport> areas;
-    for (size_t i = 0; i + 4 <= numbers.size(); i += 4) areas.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]});
+    for (size_t i = 0; i + 4 <= numbers.size(); i += 4)
+        areas.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]});
     return areas;
 }
 
@@ -70,7 +72,7 @@ int64_t processCpuNowNs() {
 }
 
 constexpr int64_t kMeetMs = 10'000;
-constexpr int64_t kSlower = 2; // planted fault: additional time, as a multiple of the work's time
+constexpr int64_t kSlower = 2;  // planted fault: additional time, as a multiple of the work's time
 constexpr int kLostPacket = 10; // planted fault: index of the packet that a node in resync drops
 
 class Node {
@@ -110,7 +112,9 @@ private:
     // Returns the CPU time of this process if nodes share the cores of a machine, otherwise the time. Nodes on the same
     // cores delay each other regardless of their tiles, so only their own work counts there. The CPU time of the
     // picture thread is excluded, because PictureSender adds it to the frames.
-    [[nodiscard]] int64_t workNowNs() const { return countsCpu_ ? processCpuNowNs() - (sender_ ? sender_->cpuNs() : 0) : monotonicNowNs(); }
+    [[nodiscard]] int64_t workNowNs() const {
+        return countsCpu_ ? processCpuNowNs() - (sender_ ? sender_->cpuNs() : 0) : monotonicNowNs();
+    }
 
     // Sends a message to the head, in order with pictures.
     void tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {}) {
@@ -137,7 +141,8 @@ private:
         std::memcpy(&command, payload.data(), 4);
         const auto rest = payload.subspan(4);
         switch (static_cast<wire::HeadCommand>(command)) {
-        case wire::HeadCommand::Setup: return setUp(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
+        case wire::HeadCommand::Setup:
+            return setUp(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::ClientGone: {
             uint32_t client = 0;
             if (rest.size() < 4) return false;
@@ -159,9 +164,9 @@ private:
         case wire::HeadCommand::SwitchToMulticast: return changeOver(rest);
         case wire::HeadCommand::ViewportAssignment: return moveAreas(rest);
         case wire::HeadCommand::RangeAssignment: return moveShares(rest);
-        case wire::HeadCommand::Synchronize:
-            return synchronize(rest);
-        case wire::HeadCommand::Exchange: return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
+        case wire::HeadCommand::Synchronize: return synchronize(rest);
+        case wire::HeadCommand::Exchange:
+            return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::Finish:
             sayBye();
             finished_ = true;
@@ -176,7 +181,8 @@ private:
         setup_ = setup.value();
         catchesUp_ = setup_.isResyncing;
         if (setup_.build != streamBuild())
-            return fail("the head speaks another stream (" + (setup_.build.empty() ? "unnamed" : setup_.build) + ") than this node (" + streamBuild() + "): install the same version of mural on both machines");
+            return fail("the head speaks another stream (" + (setup_.build.empty() ? "unnamed" : setup_.build) +
+                        ") than this node (" + streamBuild() + "): install the same version of mural on both machines");
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
         nlohmann::json ready = probe(**platform);
@@ -215,7 +221,8 @@ private:
         if (setup_.hasArea) config.area = setup_.area;
         if (!setup_.areas.empty()) config.areas.emplace(ViewportAssignment{0, areasOf(setup_.areas)});
         config.pass = setup_.pass;
-        config.readback = setup_.sendPictures ? readbackBy(ready.value("renderer", ""), setup_.readback) : Readback::Direct;
+        config.readback =
+            setup_.sendPictures ? readbackBy(ready.value("renderer", ""), setup_.readback) : Readback::Direct;
         config.deepPictures = setup_.deepPictures;
         config.answers = setup_.answers;
         config.screen = setup_.screen;
@@ -232,9 +239,13 @@ private:
         outputs.invalid = [this] { invalid(); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
         outputs.news = [this](const wire::DriverEvent& n, const std::string& text) {
-            if (!catchesUp_) tell(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
+            if (!catchesUp_)
+                tell(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
         };
-        if (composer_) outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule) { return composer_->compose(part, rule); };
+        if (composer_)
+            outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule) {
+                return composer_->compose(part, rule);
+            };
         outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, std::move(outputs));
         lastCpuNs_ = threadCpuNs();
@@ -243,7 +254,8 @@ private:
     }
 
     Result<void> openBarrier(nlohmann::json& ready) {
-        swaps_ = std::make_unique<BarrierPart>(setup_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        swaps_ = std::make_unique<BarrierPart>(
+            setup_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
         auto port = swaps_->open();
         if (!port) return port.error();
         if (*port != 0) ready["swapBarrier"] = endpointText(setup_.swapHere ? "127.0.0.1" : line_->ownAddress(), *port);
@@ -263,16 +275,21 @@ private:
         if (!secret) return Error{"the head gave no secret for pictures between nodes: " + secret.error().message};
         ComposerConfig composer;
         const auto strategy = compositor::strategyNamed(setup_.composition);
-        if (!strategy) return Error{"the head names a composition that there is not, \"" + setup_.composition + "\": install the same version of mural on both machines"};
+        if (!strategy)
+            return Error{"the head names a composition that there is not, \"" + setup_.composition +
+                         "\": install the same version of mural on both machines"};
         composer.strategy = *strategy;
         composer.rank = setup_.pass.range;
         composer.ranks = setup_.pass.ranges;
         composer.codec = setup_.partCodec;
         if (const char* plant = std::getenv("MURAL_PLANT")) composer.plant = plant;
-        exchange_ = std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.life}, secret.value());
-        composer_ = std::make_unique<PictureComposer>(composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        exchange_ =
+            std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.life}, secret.value());
+        composer_ = std::make_unique<PictureComposer>(
+            composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
         // Every node listens, even one without initial peers: a restarted node connects to those present.
-        if (auto listening = exchange_->listen(setup_.exchangeHere); !listening) return Error{"no pictures of other nodes can be taken: " + listening.error().message};
+        if (auto listening = exchange_->listen(setup_.exchangeHere); !listening)
+            return Error{"no pictures of other nodes can be taken: " + listening.error().message};
         ready["exchange"] = endpointText(setup_.exchangeHere ? "127.0.0.1" : line_->ownAddress(), exchange_->port());
         return {};
     }
@@ -293,13 +310,21 @@ private:
             if (!goesTo(rank)) continue;
             const auto where = addressIn(json, "pictures", setup_.collector + rank);
             if (!where && setup_.isResyncing) continue; // that node is lost or not ready
-            if (!where) return fail("the head named no node to send pictures to: install the same version of mural on all machines");
+            if (!where)
+                return fail(
+                    "the head named no node to send pictures to: install the same version of mural on all machines");
             const auto connected = exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kMeetMs));
-            if (!connected) line_->sendText(wire::NodeMessage::Log, "the node with range " + std::to_string(rank + 1) + " is not reached at " + endpointText(where->host, where->port) + ": " + connected.error().message + "; what nodes would send each other there is missing");
+            if (!connected)
+                line_->sendText(wire::NodeMessage::Log,
+                                "the node with range " + std::to_string(rank + 1) + " is not reached at " +
+                                    endpointText(where->host, where->port) + ": " + connected.error().message +
+                                    "; what nodes would send each other there is missing");
         }
         if (!swaps_ || setup_.swapRank == 0) return true;
         const auto leader = addressIn(json, "swaps", setup_.swapLeader);
-        if (!leader) return fail("the head named no leader of the swap barrier: install the same version of mural on all machines");
+        if (!leader)
+            return fail(
+                "the head named no leader of the swap barrier: install the same version of mural on all machines");
         swaps_->follow(leader->host, leader->port);
         return true;
     }
@@ -334,7 +359,8 @@ private:
             if (api == gl::Api::Desktop && p.value().glVersion > best) best = p.value().glVersion;
             if (mostPixels == 0 || p.value().maxSurfaceSize < mostPixels) mostPixels = p.value().maxSurfaceSize;
             const std::string &renderer = p.value().renderer, &backend = p.value().backend;
-            if (!ready.contains("renderer")) ready["renderer"] = backend.find(renderer) != std::string::npos ? backend : renderer + ", " + backend;
+            if (!ready.contains("renderer"))
+                ready["renderer"] = backend.find(renderer) != std::string::npos ? backend : renderer + ", " + backend;
         };
         add(gl::Api::Desktop, false);
         add(gl::Api::Desktop, true);
@@ -342,7 +368,9 @@ private:
         add(gl::Api::Es1, false);
         const std::vector<std::string> images = platform.imageExtensions();
         extensions.insert(images.begin(), images.end());
-        if (images.empty()) std::erase_if(extensions, [](const std::string& name) { return name.find("_EGL_image") != std::string::npos; });
+        if (images.empty())
+            std::erase_if(extensions,
+                          [](const std::string& name) { return name.find("_EGL_image") != std::string::npos; });
         ready["glVersion"] = best;
         ready["mostPixels"] = mostPixels;
         ready["extensions"] = std::vector<std::string>(extensions.begin(), extensions.end());
@@ -354,7 +382,8 @@ private:
         if (arguments.size() < sizeof words) return false;
         std::memcpy(words, arguments.data(), sizeof words);
         if (words[1] != 0 && replay_) replay_->drawAgain();
-        const wire::SynchronizedMessage done{words[0], static_cast<uint32_t>(replay_ ? replay_->validity() : wire::FrameValidity::Valid)};
+        const wire::SynchronizedMessage done{
+            words[0], static_cast<uint32_t>(replay_ ? replay_->validity() : wire::FrameValidity::Valid)};
         tell(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
         return true;
     }
@@ -362,7 +391,8 @@ private:
     // Ends this node, because it has skipped frames that its pictures depend on. No picture of it is shown from now on.
     void invalid() {
         if (catchesUp_ || std::exchange(invalid_, true)) return;
-        line_->sendText(wire::NodeMessage::Log, "its frames build on earlier ones that it did not draw while it caught up; it ends, to be started again and draw them");
+        line_->sendText(wire::NodeMessage::Log, "its frames build on earlier ones that it did not draw while it caught "
+                                                "up; it ends, to be started again and draw them");
     }
 
     // A node becomes a member. If it is this node, other nodes have sent all earlier messages.
@@ -388,7 +418,10 @@ private:
     // Composes with `node` from now on, and without the ranks of `absent`. No effect unless it draws a range of the
     // same picture.
     void shareWith(int node, uint32_t life, std::span<const std::byte> absent) {
-        const auto rankOf = [this](int other) { return other >= setup_.collector && other < setup_.collector + setup_.pass.ranges ? other - setup_.collector : -1; };
+        const auto rankOf = [this](int other) {
+            return other >= setup_.collector && other < setup_.collector + setup_.pass.ranges ? other - setup_.collector
+                                                                                              : -1;
+        };
         if (!composer_ || !replay_ || rankOf(node) < 0) return;
         std::set<int> absentRanks;
         for (; absent.size() >= sizeof(uint32_t); absent = absent.subspan(sizeof(uint32_t))) {
@@ -396,7 +429,9 @@ private:
             std::memcpy(&other, absent.data(), sizeof other);
             if (const int rank = rankOf(static_cast<int>(other)); rank >= 0) absentRanks.insert(rank);
         }
-        replay_->shareAnew(node == setup_.node, [this, rank = rankOf(node), life, absentRanks] { composer_->returned(rank, life, absentRanks); });
+        replay_->shareAnew(node == setup_.node, [this, rank = rankOf(node), life, absentRanks] {
+            composer_->returned(rank, life, absentRanks);
+        });
     }
 
     bool tellTurns(std::span<const std::byte> number) {
@@ -453,8 +488,12 @@ private:
     // Reports a window whose picture loses bits, once, on the first node.
     void sayEightBits(const ReplayOutputs::Frame& f) {
         const bool shows = setup_.node == 0 && (sender_ || windows_);
-        if (!shows || f.config.red <= 8 || f.format != PictureFormat::Bgra8 || !saidEightBits_.insert({f.client, f.window}).second) return;
-        line_->sendText(wire::NodeMessage::Log, "the program's window has " + std::to_string(f.config.red) + " bits per channel; its picture is shown and saved with 8, and what the program reads of it keeps all bits");
+        if (!shows || f.config.red <= 8 || f.format != PictureFormat::Bgra8 ||
+            !saidEightBits_.insert({f.client, f.window}).second)
+            return;
+        line_->sendText(wire::NodeMessage::Log, "the program's window has " + std::to_string(f.config.red) +
+                                                    " bits per channel; its picture is shown and saved with 8, and "
+                                                    "what the program reads of it keeps all bits");
     }
 
     void frameDone(const ReplayOutputs::Frame& f) {
@@ -478,7 +517,8 @@ private:
         done.frame = f.frame;
         done.width = f.config.width;
         done.height = f.config.height;
-        done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0) | (f.notSplit ? wire::kNotSplit : 0) | (f.keepsAreas ? wire::kKeepsAreas : 0);
+        done.flags = (f.drawnWhole ? wire::kDrawnWhole : 0) | (f.keepsPicture ? wire::kKeepsPicture : 0) |
+                     (f.notSplit ? wire::kNotSplit : 0) | (f.keepsAreas ? wire::kKeepsAreas : 0);
         done.areas = f.areas;
         done.shares = f.shares;
         done.busyNs = static_cast<uint64_t>(std::exchange(busyNs_, 0));
@@ -527,8 +567,11 @@ private:
         config.addsCpu = countsCpu_;
         config.way = setup_.way;
         config.alpha = setup_.windowPixels ? PictureAlpha::Kept : PictureAlpha::Dropped;
-        const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) { line_->send(type, a, b); };
-        sender_ = std::make_unique<PictureSender>(config, send, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+            line_->send(type, a, b);
+        };
+        sender_ = std::make_unique<PictureSender>(
+            config, send, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
         beganNs_ = workNowNs(); // the sender's clock starts now
     }
 
@@ -555,8 +598,9 @@ private:
             bye["pictureRawBytes"] = sender_->rawBytes();
         }
         if (const auto numbers = swaps_ && swaps_->barrier() ? swaps_->barrier()->numbers() : std::nullopt)
-            bye["swapBarrier"] = {{"members", setup_.swapMembers},          {"swaps", numbers->skew.swaps},       {"medianNs", numbers->skew.medianNs},
-                                  {"p99Ns", numbers->skew.p99Ns}, {"mostNs", numbers->skew.mostNs}, {"clockErrorNs", numbers->clockErrorNs}};
+            bye["swapBarrier"] = {{"members", setup_.swapMembers},      {"swaps", numbers->skew.swaps},
+                                  {"medianNs", numbers->skew.medianNs}, {"p99Ns", numbers->skew.p99Ns},
+                                  {"mostNs", numbers->skew.mostNs},     {"clockErrorNs", numbers->clockErrorNs}};
         line_->sendText(wire::NodeMessage::Goodbye, bye.dump());
     }
 
@@ -567,21 +611,21 @@ private:
     std::unique_ptr<TileWindows> windows_;
     std::unique_ptr<Replay> replay_;
     std::unique_ptr<PictureSender> sender_; // null: the head requests no pictures
-    bool stuck_ = false; // the sender failed: no message leaves this node
+    bool stuck_ = false;                    // the sender failed: no message leaves this node
     uint64_t lastCpuNs_ = 0;
     bool countsCpu_ = false;
-    int64_t beganNs_ = 0; // workNowNs() at the start of the current work
-    int64_t busyNs_ = 0; // completed work since the last frame
-    bool slow_ = false; // planted fault
-    std::map<uint32_t, uint64_t> calls_; // commands by client, in completed packets
-    std::map<uint32_t, uint32_t> frames_; // latest frame by client
+    int64_t beganNs_ = 0;                                   // workNowNs() at the start of the current work
+    int64_t busyNs_ = 0;                                    // completed work since the last frame
+    bool slow_ = false;                                     // planted fault
+    std::map<uint32_t, uint64_t> calls_;                    // commands by client, in completed packets
+    std::map<uint32_t, uint32_t> frames_;                   // latest frame by client
     std::set<std::pair<uint32_t, uint32_t>> saidEightBits_; // client, window
-    bool invalid_ = false; // this node can't draw the picture of the others
-    bool losesPackets_ = false; // planted fault
-    int packetsGiven_ = 0; // packets received during the resync
-    bool catchesUp_ = false; // in resync: replays commands whose messages the head has from other nodes
+    bool invalid_ = false;                                  // this node can't draw the picture of the others
+    bool losesPackets_ = false;                             // planted fault
+    int packetsGiven_ = 0;                                  // packets received during the resync
+    bool catchesUp_ = false;    // in resync: replays commands whose messages the head has from other nodes
     uint32_t clientInHand_ = 0; // client of the current or latest packet
-    uint64_t callsBefore_ = 0; // commands of all clients before that packet
+    uint64_t callsBefore_ = 0;  // commands of all clients before that packet
     bool finished_ = false;
     std::unique_ptr<PictureExchange> exchange_; // null: this node draws all ranges of its picture
     std::unique_ptr<PictureComposer> composer_; // by it

@@ -6,9 +6,9 @@
 namespace mural {
 
 struct NodeOptions {
-    int connectFd = -1; // shared memory, inherited from the head
+    int connectFd = -1;  // shared memory, inherited from the head
     std::string connect; // or host:port; the session's secret arrives on standard input
-    std::string name; // with `connect`: identifies the secret to the head
+    std::string name;    // with `connect`: identifies the secret to the head
 };
 
 // Runs until the session ends or the head is gone. Returns the exit status of the process.

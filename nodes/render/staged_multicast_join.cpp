@@ -8,16 +8,14 @@ namespace mural {
 namespace {
 
 constexpr int64_t kJoinMs = 10'000;
-constexpr int64_t kSliceMs = 50; // interval of the check for goOn()
+constexpr int64_t kSliceMs = 50;               // interval of the check for goOn()
 constexpr size_t kMaxBytes = size_t{64} << 20; // far above the head's output before goOn()
 constexpr size_t kReadBytes = size_t{64} << 10;
 
 } // namespace
 
 StagedMulticastJoin::StagedMulticastJoin(rsp::GroupOptions options, std::function<void(const std::string&)> failed)
-    : options_(std::move(options))
-    , failed_(std::move(failed))
-    , thread_([this] { work(); }) {}
+    : options_(std::move(options)), failed_(std::move(failed)), thread_([this] { work(); }) {}
 
 StagedMulticastJoin::~StagedMulticastJoin() {
     stop_ = true;

@@ -35,7 +35,7 @@ private:
     const rsp::GroupOptions options_;
     const std::function<void(const std::string&)> failed_;
     std::unique_ptr<rsp::Group> group_; // owned by work(), then by goOn()
-    std::vector<std::byte> come_; // the same
+    std::vector<std::byte> come_;       // the same
     std::atomic<bool> stop_{false};
     std::thread thread_; // declared last: uses the members above
 };

@@ -20,7 +20,8 @@ std::vector<TileWindow> TileWindows::windowsFor(int width, int height) const {
         return windows;
     }
     const TileGrid grid{setup_.columns, setup_.rows, setup_.tiling == Tiling::Lean ? 2 : 1};
-    return windowsOfTiles(grid, {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows}, width, height);
+    return windowsOfTiles(grid, {setup_.regionColumn, setup_.regionRow, setup_.regionColumns, setup_.regionRows}, width,
+                          height);
 }
 
 Result<void> TileWindows::reopen(int width, int height) {
@@ -43,7 +44,8 @@ Result<void> TileWindows::reopen(int width, int height) {
 
 Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barrier) {
     const bool other = !setup_.pass.shown.none(); // the canvas has its own resolution
-    const int width = other ? f.picture.w : static_cast<int>(f.config.width), height = other ? f.picture.h : static_cast<int>(f.config.height);
+    const int width = other ? f.picture.w : static_cast<int>(f.config.width),
+              height = other ? f.picture.h : static_cast<int>(f.config.height);
     const uint64_t native = uint64_t{f.config.nativeHigh} << 32 | f.config.nativeLow;
     if (mainWindow_.swapped(f.client, f.window, f.config.width, f.config.height, native) == 0) return {};
     if (!windows_ || width != width_ || height != height_) {

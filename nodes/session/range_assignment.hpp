@@ -12,7 +12,7 @@
 namespace mural {
 
 struct RangeAssignment {
-    uint32_t number = 0; // 0: the initial shares; increases
+    uint32_t number = 0;        // 0: the initial shares; increases
     std::vector<Range> ofNodes; // per node; neighbours share bit-identical edges
 
     friend bool operator==(const RangeAssignment&, const RangeAssignment&) = default;

@@ -36,7 +36,8 @@ std::vector<RenderPass> passesOf(const PassCounts& counts) {
 
 int pictureOf(const PassCounts& counts, const RenderPass& pass) {
     const int eye = pass.eye == Eye::Right && eyesOf(counts.stereo).size() > 1 ? 1 : 0;
-    return ((eye * counts.kernelHeight + pass.kernelY) * counts.kernelWidth + pass.kernelX) * counts.samples + pass.sample;
+    return ((eye * counts.kernelHeight + pass.kernelY) * counts.kernelWidth + pass.kernelX) * counts.samples +
+           pass.sample;
 }
 
 int picturesOf(const PassCounts& counts) {
@@ -53,9 +54,11 @@ std::string describe(const RenderPass& pass) {
     const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
     if (pass.eye != Eye::Cyclop) add(pass.eye == Eye::Left ? "left eye" : "right eye");
     if (pass.kernelWidth * pass.kernelHeight > 1)
-        add("pixel " + std::to_string(pass.kernelX) + "," + std::to_string(pass.kernelY) + " of each " + std::to_string(pass.kernelWidth) + "x" + std::to_string(pass.kernelHeight));
+        add("pixel " + std::to_string(pass.kernelX) + "," + std::to_string(pass.kernelY) + " of each " +
+            std::to_string(pass.kernelWidth) + "x" + std::to_string(pass.kernelHeight));
     if (pass.samples > 1) add("sample " + std::to_string(pass.sample + 1) + " of " + std::to_string(pass.samples));
-    if (pass.period > 1) add("frames " + std::to_string(pass.phase) + ", " + std::to_string(pass.phase + pass.period) + ", …");
+    if (pass.period > 1)
+        add("frames " + std::to_string(pass.phase) + ", " + std::to_string(pass.phase + pass.period) + ", …");
     if (pass.zoom != pass.shown) { // drawing at the canvas's own resolution is no zoom
         char zoom[48];
         std::snprintf(zoom, sizeof zoom, "zoom %.4g %.4g", pass.zoom.x / pass.shown.x, pass.zoom.y / pass.shown.y);

@@ -15,23 +15,23 @@ namespace mural {
 
 enum class StereoMode {
     Off,
-    Anaglyph, // left eye in red, right eye in green and blue
+    Anaglyph,   // left eye in red, right eye in green and blue
     SideBySide, // eyes side by side at half width
-    TopBottom, // left above right at half height
-    Left, // one eye only, for two sessions or for inspection
+    TopBottom,  // left above right at half height
+    Left,       // one eye only, for two sessions or for inspection
     Right,
     Quad // both eyes at full size: quad-buffered windows
 };
 
 struct RenderPass {
     Eye eye = Eye::Cyclop;
-    int kernelX = 0, kernelY = 0; // the pixel within the kernel
+    int kernelX = 0, kernelY = 0;          // the pixel within the kernel
     int kernelWidth = 1, kernelHeight = 1; // size of the kernel; row 0 is the lowest
-    int sample = 0, samples = 1; // index and number of the averaged samples
-    int phase = 0, period = 1; // draws frames n with n mod period == phase
-    int range = 0, ranges = 1; // index and number of the ranges of a frame's draws (sort-last)
-    Range share; // this node's part of the draws
-    Zoom zoom; // drawn at this scale and resized before it is shown; at most kMaxZoom
+    int sample = 0, samples = 1;           // index and number of the averaged samples
+    int phase = 0, period = 1;             // draws frames n with n mod period == phase
+    int range = 0, ranges = 1;             // index and number of the ranges of a frame's draws (sort-last)
+    Range share;                           // this node's part of the draws
+    Zoom zoom;                             // drawn at this scale and resized before it is shown; at most kMaxZoom
 
     Zoom shown; // scale of another canvas relative to the program's picture
 

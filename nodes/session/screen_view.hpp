@@ -7,7 +7,7 @@
 namespace mural {
 
 struct ScreenView {
-    Viewport area; // region of its picture on the wall
+    Viewport area;                                     // region of its picture on the wall
     double left = -1, right = 1, bottom = -1, top = 1; // edges of the screen on the plane at distance 1 from the eye
     // Transforms eye coordinates of the program to eye coordinates of the screen's view, whose axis is -z.
     Matrix4 fromProgram;

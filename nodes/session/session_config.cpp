@@ -14,39 +14,45 @@ using Json = nlohmann::json;
 
 template <class E> struct EnumNames;
 template <> struct EnumNames<Tiling> {
-    static constexpr std::pair<Tiling, const char*> kAll[] = {{Tiling::Exact, "exact"},
-                                                              {Tiling::Culled, "culled"},
-                                                              {Tiling::Lean, "lean"}};
+    static constexpr std::pair<Tiling, const char*> kAll[] = {
+        {Tiling::Exact, "exact"}, {Tiling::Culled, "culled"}, {Tiling::Lean, "lean"}};
 };
 template <> struct EnumNames<Display> {
     static constexpr std::pair<Display, const char*> kAll[] = {
         {Display::None, "none"}, {Display::App, "app"}, {Display::Windows, "windows"}};
 };
 template <> struct EnumNames<CapturePolicy> {
-    static constexpr std::pair<CapturePolicy, const char*> kAll[] = {
-        {CapturePolicy::State, "state"}, {CapturePolicy::Full, "full"}};
+    static constexpr std::pair<CapturePolicy, const char*> kAll[] = {{CapturePolicy::State, "state"},
+                                                                     {CapturePolicy::Full, "full"}};
 };
 template <> struct EnumNames<Frusta> {
-    static constexpr std::pair<Frusta, const char*> kAll[] = {{Frusta::Auto, "auto"}, {Frusta::Program, "program"}, {Frusta::Room, "room"}};
+    static constexpr std::pair<Frusta, const char*> kAll[] = {
+        {Frusta::Auto, "auto"}, {Frusta::Program, "program"}, {Frusta::Room, "room"}};
 };
 template <> struct EnumNames<Economy> {
-    static constexpr std::pair<Economy, const char*> kAll[] = {{Economy::Auto, "auto"}, {Economy::On, "on"}, {Economy::Off, "off"}};
+    static constexpr std::pair<Economy, const char*> kAll[] = {
+        {Economy::Auto, "auto"}, {Economy::On, "on"}, {Economy::Off, "off"}};
 };
 template <> struct EnumNames<Readback> {
-    static constexpr std::pair<Readback, const char*> kAll[] = {{Readback::Auto, "auto"}, {Readback::Direct, "direct"}, {Readback::Buffer, "buffer"}};
+    static constexpr std::pair<Readback, const char*> kAll[] = {
+        {Readback::Auto, "auto"}, {Readback::Direct, "direct"}, {Readback::Buffer, "buffer"}};
 };
 template <> struct EnumNames<Eye> {
-    static constexpr std::pair<Eye, const char*> kAll[] = {{Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
+    static constexpr std::pair<Eye, const char*> kAll[] = {
+        {Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
 };
 template <> struct EnumNames<StereoMode> {
-    static constexpr std::pair<StereoMode, const char*> kAll[] = {
-        {StereoMode::Off, "off"},          {StereoMode::Anaglyph, "anaglyph"}, {StereoMode::SideBySide, "side-by-side"},
-        {StereoMode::TopBottom, "top-bottom"}, {StereoMode::Left, "left"},     {StereoMode::Right, "right"},
-        {StereoMode::Quad, "quad"}};
+    static constexpr std::pair<StereoMode, const char*> kAll[] = {{StereoMode::Off, "off"},
+                                                                  {StereoMode::Anaglyph, "anaglyph"},
+                                                                  {StereoMode::SideBySide, "side-by-side"},
+                                                                  {StereoMode::TopBottom, "top-bottom"},
+                                                                  {StereoMode::Left, "left"},
+                                                                  {StereoMode::Right, "right"},
+                                                                  {StereoMode::Quad, "quad"}};
 };
 
 template <class Config, class Visitor>
-    requires std::is_same_v<std::remove_const_t<Config>, SessionConfig>
+requires std::is_same_v<std::remove_const_t<Config>, SessionConfig>
 void visitFields(Config& c, Visitor&& visit) {
     visit("session", c.session);
     visit("socketPath", c.socketPath);
@@ -104,7 +110,7 @@ void visitFields(Config& c, Visitor&& visit) {
 }
 
 template <class Setup, class Visitor>
-    requires std::is_same_v<std::remove_const_t<Setup>, NodeSetup>
+requires std::is_same_v<std::remove_const_t<Setup>, NodeSetup>
 void visitFields(Setup& s, Visitor&& visit) {
     visit("node", s.node, 0);
     visit("nodeCount", s.nodeCount, 1);
@@ -182,7 +188,9 @@ void visitFields(Setup& s, Visitor&& visit) {
 Json valueToJson(const std::optional<ScreenView>& screen) {
     Json numbers = Json::array();
     if (!screen) return numbers;
-    for (const double n : {screen->area.x, screen->area.y, screen->area.w, screen->area.h, screen->left, screen->right, screen->bottom, screen->top}) numbers.push_back(n);
+    for (const double n : {screen->area.x, screen->area.y, screen->area.w, screen->area.h, screen->left, screen->right,
+                           screen->bottom, screen->top})
+        numbers.push_back(n);
     for (size_t row = 0; row < 3; ++row)
         for (const double n : screen->fromProgram.m[row]) numbers.push_back(n);
     return numbers;
@@ -218,12 +226,10 @@ std::string readValue(const Json& j, bool& into, int64_t) {
 }
 
 template <class Int>
-    requires std::is_integral_v<Int>
-std::string readValue(const Json& j, Int& into, int64_t least) {
+requires std::is_integral_v<Int> std::string readValue(const Json& j, Int& into, int64_t least) {
     const int64_t lowest = std::max<int64_t>(least, std::numeric_limits<Int>::min());
     const int64_t highest = std::numeric_limits<Int>::max();
-    const std::string wanted =
-        "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+    const std::string wanted = "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
     if (!j.is_number_integer()) return wanted;
     if (j.is_number_unsigned() && j.get<uint64_t>() > static_cast<uint64_t>(highest)) return wanted;
     const auto value = j.get<int64_t>();
@@ -233,8 +239,7 @@ std::string readValue(const Json& j, Int& into, int64_t least) {
 }
 
 template <class E>
-    requires std::is_enum_v<E>
-std::string readValue(const Json& j, E& into, int64_t) {
+requires std::is_enum_v<E> std::string readValue(const Json& j, E& into, int64_t) {
     std::string wanted = "one of";
     for (const auto& [e, name] : EnumNames<E>::kAll) {
         if (j.is_string() && j.get_ref<const std::string&>() == name) {
@@ -273,9 +278,7 @@ std::string readValue(const Json& j, std::optional<ScreenView>& into, int64_t le
 
 template <class Config> std::string write(const Config& config) {
     Json json = Json::object();
-    visitFields(config, [&](const char* name, const auto& value, int64_t = 0) {
-        json[name] = valueToJson(value);
-    });
+    visitFields(config, [&](const char* name, const auto& value, int64_t = 0) { json[name] = valueToJson(value); });
     // Paths need not be UTF-8; a replaced character is better than an exception.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -292,14 +295,12 @@ template <class Config> Result<Config> read(const std::string& line, const std::
         const auto found = json.find(name);
         if (found == json.end()) return;
         const std::string wanted = readValue(*found, value, least);
-        if (!wanted.empty() && error.empty())
-            error = what + ": field " + name + " must be " + wanted;
+        if (!wanted.empty() && error.empty()) error = what + ": field " + name + " must be " + wanted;
         json.erase(found);
     });
     if (!error.empty()) return Error{error};
     if (!json.empty()) {
-        return Error{what + ": unknown field " + json.begin().key() +
-                     "; both ends must be of one build of Mural"};
+        return Error{what + ": unknown field " + json.begin().key() + "; both ends must be of one build of Mural"};
     }
     return config;
 }
@@ -315,7 +316,9 @@ const char* nameOf(Display display) {
 namespace {
 
 bool isPossible(const Zoom& zoom) { return zoom.x > 0 && zoom.x <= kMaxZoom && zoom.y > 0 && zoom.y <= kMaxZoom; }
-Error noSuchZoom(const std::string& of) { return Error{of + ": its zoom is not above 0, or above " + std::to_string(static_cast<int>(kMaxZoom))}; }
+Error noSuchZoom(const std::string& of) {
+    return Error{of + ": its zoom is not above 0, or above " + std::to_string(static_cast<int>(kMaxZoom))};
+}
 
 } // namespace
 
@@ -337,10 +340,12 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
                         setup->regionRows <= setup->rows - setup->regionRow;
     if (!inside) return Error{"node setup: the region lies outside of the tile grid"};
     const RenderPass& p = setup->pass;
-    if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period || p.range >= p.ranges)
+    if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period ||
+        p.range >= p.ranges)
         return Error{"node setup: its pass is none of the session's"};
     if (!isPossible(p.zoom) || !isPossible(p.shown)) return noSuchZoom("node setup");
-    if (!isPossible(setup->way) || setup->way.x > 1 || setup->way.y > 1) return Error{"node setup: the size of its pictures on their way is not above 0, or above 1"};
+    if (!isPossible(setup->way) || setup->way.x > 1 || setup->way.y > 1)
+        return Error{"node setup: the size of its pictures on their way is not above 0, or above 1"};
     return setup;
 }
 

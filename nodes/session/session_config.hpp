@@ -20,54 +20,54 @@ enum class Display { None, App, Windows };
 enum class CapturePolicy { State, Full };
 // The viewpoint of walls that a configuration file describes.
 enum class Frusta {
-    Auto, // Room if screens stand at angles, otherwise Program
+    Auto,    // Room if screens stand at angles, otherwise Program
     Program, // all screens form one flat picture with the program's view
-    Room // each screen is seen from the observer's eyes
+    Room     // each screen is seen from the observer's eyes
 };
 enum class Economy { Auto, On, Off };
 
 struct SessionConfig {
-    std::string session;          // abstract Unix socket name that programs connect to
-    std::string socketPath;       // the same socket's path, for programs in other network namespaces; empty: none
-    int columns = 1;              // --tiles CxR
+    std::string session;    // abstract Unix socket name that programs connect to
+    std::string socketPath; // the same socket's path, for programs in other network namespaces; empty: none
+    int columns = 1;        // --tiles CxR
     int rows = 1;
     int tileWidth = 0, tileHeight = 0; // --tile-queue: tile size in pixels, replaces columns and rows; 0: no queue
-    int chunks = 0; // --chunk-queue: number of chunks of a picture's draws, for nodes of --db; 0: fixed shares
+    int chunks = 0;     // --chunk-queue: number of chunks of a picture's draws, for nodes of --db; 0: fixed shares
     int localNodes = 0; // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
-    std::vector<std::string> hosts; // --nodes
+    std::vector<std::string> hosts;                     // --nodes
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
-    std::string stream = "auto"; // --stream: transport to other machines: auto, tcp, rsp://…
-    Economy economy = Economy::Auto; // --economy: delta coding
-    int64_t storeBytes = int64_t{1} << 30; // --store: dictionary size, in each node and in the head
-    int restartNodes = 3; // --restart-nodes: consecutive restarts of a lost node
-    int leastNodes = 0; // --least-nodes: number of nodes for the start, others may join later; 0: all
-    std::string remoteMural; // --remote-mural: path of mural on the hosts; empty: the local path
-    std::string configFile; // --config; empty: the other options describe the wall
-    bool here = false; // --here: all nodes of the file run on this machine
-    std::string canvas;           // --canvas
+    std::string stream = "auto";                        // --stream: transport to other machines: auto, tcp, rsp://…
+    Economy economy = Economy::Auto;                    // --economy: delta coding
+    int64_t storeBytes = int64_t{1} << 30;              // --store: dictionary size, in each node and in the head
+    int restartNodes = 3;                               // --restart-nodes: consecutive restarts of a lost node
+    int leastNodes = 0;               // --least-nodes: number of nodes for the start, others may join later; 0: all
+    std::string remoteMural;          // --remote-mural: path of mural on the hosts; empty: the local path
+    std::string configFile;           // --config; empty: the other options describe the wall
+    bool here = false;                // --here: all nodes of the file run on this machine
+    std::string canvas;               // --canvas
     std::vector<std::string> layouts; // --layout: layouts of the file's canvases
-    Frusta frusta = Frusta::Auto; // --frusta
-    double modelUnit = 1; // --model-unit: program units per metre of the file
-    PassCounts passes;            // --stereo, --pixel, --subpixel, --dplex, --db, --zoom
+    Frusta frusta = Frusta::Auto;     // --frusta
+    double modelUnit = 1;             // --model-unit: program units per metre of the file
+    PassCounts passes;                // --stereo, --pixel, --subpixel, --dplex, --db, --zoom
     std::string codec = "auto"; // --codec: encoding of transferred pictures: a name for PlaneEncoder (nodes/pictures)
     Readback readback = Readback::Auto; // --readback: transfer from GL to memory
-    std::string composition = "auto"; // --composition: auto, or the name of a compositor::Strategy
-    double eyeBase = 0.05; // --eye-base: distance between the eyes, in the program's units
-    double focusDistance = 1; // --focus: distance at which both eyes converge, in the program's units
+    std::string composition = "auto";   // --composition: auto, or the name of a compositor::Strategy
+    double eyeBase = 0.05;              // --eye-base: distance between the eyes, in the program's units
+    double focusDistance = 1;           // --focus: distance at which both eyes converge, in the program's units
     Tiling tiling = Tiling::Exact;
     Display display = Display::None;
     CapturePolicy policy = CapturePolicy::State;
-    std::string glBackend = "auto"; // --gl: auto, egl, osmesa, glx
-    int latency = 1; // credit: frames that the program may be ahead of the wall
-    int verifyEvery = 0;          // --verify[=n]
-    int64_t frames = 0;           // --frames; 0: until the program ends
-    std::string out;              // --out: folder (PNG) or video file; empty: none
+    std::string glBackend = "auto";  // --gl: auto, egl, osmesa, glx
+    int latency = 1;                 // credit: frames that the program may be ahead of the wall
+    int verifyEvery = 0;             // --verify[=n]
+    int64_t frames = 0;              // --frames; 0: until the program ends
+    std::string out;                 // --out: folder (PNG) or video file; empty: none
     std::vector<int64_t> saveFrames; // --save 1,30,90: saved frames; empty: all
-    std::string record;           // --record: file of the programs' streams; empty: none
-    int width = 0, height = 0; // --size; 0: the program's size
-    bool fullScreen = false;      // --fullscreen: wall windows without borders, one per monitor
-    int windowX = 0, windowY = 0; // --position of the wall's upper left corner
-    bool placeThreads = true;     // --no-placement turns it off
+    std::string record;              // --record: file of the programs' streams; empty: none
+    int width = 0, height = 0;       // --size; 0: the program's size
+    bool fullScreen = false;         // --fullscreen: wall windows without borders, one per monitor
+    int windowX = 0, windowY = 0;    // --position of the wall's upper left corner
+    bool placeThreads = true;        // --no-placement turns it off
     bool explain = false;
     std::string displayName; // X display of the wall windows and of the program's window
 };
@@ -84,49 +84,49 @@ struct NodeSetup {
     int columns = 1, rows = 1;
     int regionColumn = 0, regionRow = 0, regionColumns = 1, regionRows = 1;
     bool hasArea = false; // the node draws `area` instead of tiles
-    Viewport area; // region of the picture
+    Viewport area;        // region of the picture
     // x, y, width, height of every node's area, if areas move (HeadCommand::Areas); empty: fixed areas
     std::vector<double> areas;
     RenderPass pass;
-    bool sharesMachine = false; // other nodes of the session run on the same machine
+    bool sharesMachine = false;       // other nodes of the session run on the same machine
     std::optional<ScreenView> screen; // view of a screen in a room; null: a part of a flat wall with the program's view
-    bool answers = true; // programs read the window pixels of this pass
+    bool answers = true;              // programs read the window pixels of this pass
     double eyeBase = 0.05, focusDistance = 1; // see SessionConfig
     Tiling tiling = Tiling::Exact;
     std::string glBackend = "auto";
-    bool sendPictures = false; // sends Picture messages to the head at every swap…
+    bool sendPictures = false;        // sends Picture messages to the head at every swap…
     std::string pictureCodec = "raw"; // …or PackedPicture messages, unless raw: a name for PlaneEncoder
-    bool windowPixels = false; // pictures go to the program's own window, so lossy codecs keep the alpha
-    bool deepPictures = false;    // pictures keep 10 bits per channel; requires windowPixels
-    Zoom way; // reduction for the transfer, at most 1 (nodes/frame_transfer/transfer_scale.hpp)
+    bool windowPixels = false;        // pictures go to the program's own window, so lossy codecs keep the alpha
+    bool deepPictures = false;        // pictures keep 10 bits per channel; requires windowPixels
+    Zoom way;                         // reduction for the transfer, at most 1 (nodes/frame_transfer/transfer_scale.hpp)
     Readback readback = Readback::Auto; // transfer from GL to memory
-    std::string partCodec = "auto"; // codec for parts of pictures between nodes
-    bool wallWindows = false; // opens one window per tile
-    std::string windowTitle; // title of the window that shows `area`
+    std::string partCodec = "auto";     // codec for parts of pictures between nodes
+    bool wallWindows = false;           // opens one window per tile
+    std::string windowTitle;            // title of the window that shows `area`
     // window position: the place on the wall plus windowX and windowY; false: windowX and windowY only
     bool windowAsOnWall = true;
     bool fullScreen = false;
     int windowX = 0, windowY = 0;
     bool placeThreads = true;
     std::string displayName;
-    std::string stream; // rsp://…: group that carries the packets; empty: this connection does
+    std::string stream;       // rsp://…: group that carries the packets; empty: this connection does
     std::string streamSecret; // secret of that group, in hex
-    bool economy = false; // packets arrive in batches (streamcodec/delta/batch_head.hpp)
+    bool economy = false;     // packets arrive in batches (streamcodec/delta/batch_head.hpp)
     int64_t storeBytes = int64_t{1} << 30;
     // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Activate)
     bool isResyncing = false;
     bool skipsFrames = false; // with catchesUp: skips drawing until Synchronize
-    uint32_t life = 0; // incarnation: number of restarts
+    uint32_t life = 0;        // incarnation: number of restarts
     int collector = 0; // node that composes this node's picture; the nodes of the ranges follow it, one per range
     std::string composition = "serial"; // name of the compositor::Strategy for that picture
     // in hex; for nodes that exchange parts of a picture or share a swap barrier; empty: none
     std::string exchangeSecret;
     bool exchangeHere = false; // all nodes with ranges of the picture run on this machine
-    int swapMembers = 0; // members of the swap barrier of its windows; 0: none
-    int swapRank = 0; // rank of this node in it; 0: the leader
-    int swapLeader = 0; // node number of the leader
-    bool swapHere = false;        // all members run on this machine
-    std::string build;            // streamBuild() of the head
+    int swapMembers = 0;       // members of the swap barrier of its windows; 0: none
+    int swapRank = 0;          // rank of this node in it; 0: the leader
+    int swapLeader = 0;        // node number of the leader
+    bool swapHere = false;     // all members run on this machine
+    std::string build;         // streamBuild() of the head
 };
 
 std::string toJson(const NodeSetup& setup);

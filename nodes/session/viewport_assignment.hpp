@@ -12,7 +12,7 @@
 namespace mural {
 
 struct ViewportAssignment {
-    uint32_t number = 0; // 0: the initial areas; increases
+    uint32_t number = 0;           // 0: the initial areas; increases
     std::vector<Viewport> ofNodes; // per node; neighbours share bit-identical edges
 
     friend bool operator==(const ViewportAssignment&, const ViewportAssignment&) = default;

@@ -19,6 +19,7 @@ inline constexpr const char* kCullUniform = "muralCullPlanes";
 // es: in an ES context. `sources`: all texts of the stage; one contains main(). Returns as many texts, patched where
 // necessary. Returns nothing if the stage must not change (gl_ClipVertex, own cull distances, several viewports or
 // streams, names from macros, ES 1.00).
-std::optional<std::vector<std::string>> withCullDistances(const std::vector<std::string>& sources, LastStage stage, bool es);
+std::optional<std::vector<std::string>> withCullDistances(const std::vector<std::string>& sources, LastStage stage,
+                                                          bool es);
 
 } // namespace mural::shaders

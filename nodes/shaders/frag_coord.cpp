@@ -28,10 +28,12 @@ std::string windowCoordinate(const GlslText& text, const std::string& ending) {
     const std::string from = text.uses("origin_upper_left") ? "xz" : "xy";
     const std::string counted = text.uses("pixel_center_integer") ? "(p.xy + 0.5)" : "p.xy";
     const std::string made = !text.es ? "vec4" : text.version < 300 ? "mediump vec4" : "highp vec4";
-    return " " + made + " muralWindow" + ending + "(" + (text.es ? "highp " : "") + "vec4 p) { return p + vec4(" + counted + " * muralPlace[1].xy + muralPlace[0]." + from + ", 0.0, 0.0); }";
+    return " " + made + " muralWindow" + ending + "(" + (text.es ? "highp " : "") + "vec4 p) { return p + vec4(" +
+           counted + " * muralPlace[1].xy + muralPlace[0]." + from + ", 0.0, 0.0); }";
 }
 
-constexpr std::string_view kDerivatives[] = {"dFdx", "dFdy", "fwidth", "dFdxFine", "dFdyFine", "fwidthFine", "dFdxCoarse", "dFdyCoarse", "fwidthCoarse"};
+constexpr std::string_view kDerivatives[] = {"dFdx",       "dFdy",       "fwidth",     "dFdxFine",    "dFdyFine",
+                                             "fwidthFine", "dFdxCoarse", "dFdyCoarse", "fwidthCoarse"};
 
 // GLSL's derivative is between neighbours in this framebuffer; the division converts it to neighbours in the window.
 std::string perPixelOfWindow(const std::string& name) {
@@ -76,7 +78,11 @@ std::optional<std::string> withWindowPlace(std::string_view source, const Fragme
     if (placed) declarations += windowCoordinate(text, ending);
     for (const std::string& name : used) declarations += functionsFor(name, text, ending);
     declarations += lookups.declarations;
-    if (!lookups.extension.empty()) edits.insert(text.extensionsAt(), (text.extensionsAt() > 0 && source[text.extensionsAt() - 1] != '\n' ? "\n#extension " : "#extension ") + lookups.extension + " : enable\n");
+    if (!lookups.extension.empty())
+        edits.insert(
+            text.extensionsAt(),
+            (text.extensionsAt() > 0 && source[text.extensionsAt() - 1] != '\n' ? "\n#extension " : "#extension ") +
+                lookups.extension + " : enable\n");
     const size_t at = text.declarationsAt();
     edits.insert(at, onItsLine(text, at, declarations));
     return edits.apply(source);

@@ -21,7 +21,9 @@ std::vector<GlslToken> scanArb(std::string_view s) {
             ++at;
         } else {
             size_t end = at + 1;
-            const auto word = [&](char ch) { return std::isalnum(static_cast<unsigned char>(ch)) || ch == '_' || ch == '$'; };
+            const auto word = [&](char ch) {
+                return std::isalnum(static_cast<unsigned char>(ch)) || ch == '_' || ch == '$';
+            };
             while (word(s[at]) && end < s.size() && word(s[end])) ++end;
             tokens.push_back({s.substr(at, end - at), at, false});
             at = end;
@@ -32,8 +34,12 @@ std::vector<GlslToken> scanArb(std::string_view s) {
 
 struct Arb {
     std::vector<GlslToken> tokens;
-    [[nodiscard]] std::string_view at(size_t i) const { return i < tokens.size() ? tokens[i].text : std::string_view{}; }
-    [[nodiscard]] bool position(size_t i) const { return at(i) == "fragment" && at(i + 1) == "." && at(i + 2) == "position"; }
+    [[nodiscard]] std::string_view at(size_t i) const {
+        return i < tokens.size() ? tokens[i].text : std::string_view{};
+    }
+    [[nodiscard]] bool position(size_t i) const {
+        return at(i) == "fragment" && at(i + 1) == "." && at(i + 2) == "position";
+    }
 };
 
 bool namesEnv(const Arb& arb, int index) {
@@ -82,9 +88,10 @@ std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIn
     if (edits.empty()) return std::nullopt;
     const std::string from = "program.env[" + std::to_string(envIndex) + "]." + (upper ? "xzzz" : "xyyy");
     const std::string more = "program.env[" + std::to_string(envIndex - 1) + "]";
-    edits.insert(first, "TEMP muralPosition; MAD muralPosition.xy, fragment.position, " + more + ", " + from + "; " +
-                            (whole ? "MAD muralPosition.xy, " + more + ", 0.5, muralPosition; " : "") +
-                            "ADD muralPosition.xy, muralPosition, fragment.position; MOV muralPosition.zw, fragment.position; ");
+    edits.insert(
+        first, "TEMP muralPosition; MAD muralPosition.xy, fragment.position, " + more + ", " + from + "; " +
+                   (whole ? "MAD muralPosition.xy, " + more + ", 0.5, muralPosition; " : "") +
+                   "ADD muralPosition.xy, muralPosition, fragment.position; MOV muralPosition.zw, fragment.position; ");
     return edits.apply(source);
 }
 

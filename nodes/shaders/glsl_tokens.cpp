@@ -89,7 +89,8 @@ private:
             if (!out_.tokens[i].directive || out_.tokens[i].text != "version") continue;
             const std::string_view number = out_.tokens[i + 1].text;
             std::from_chars(number.data(), number.data() + number.size(), out_.version);
-            out_.es = out_.version == 100 || (i + 2 < out_.tokens.size() && out_.tokens[i + 2].directive && out_.tokens[i + 2].text == "es");
+            out_.es = out_.version == 100 ||
+                      (i + 2 < out_.tokens.size() && out_.tokens[i + 2].directive && out_.tokens[i + 2].text == "es");
             return;
         }
     }
@@ -111,7 +112,8 @@ bool GlslText::uses(std::string_view name) const {
 }
 
 bool GlslText::usesPrefix(std::string_view prefix) const {
-    return std::any_of(tokens.begin(), tokens.end(), [&](const GlslToken& t) { return t.text.substr(0, prefix.size()) == prefix; });
+    return std::any_of(tokens.begin(), tokens.end(),
+                       [&](const GlslToken& t) { return t.text.substr(0, prefix.size()) == prefix; });
 }
 
 size_t GlslText::extensionsAt() const {
@@ -138,7 +140,8 @@ size_t GlslText::declarationsAt() const {
 
 std::string TextEdits::apply(std::string_view source) const {
     std::vector<Edit> sorted = edits_;
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Edit& a, const Edit& b) { return a.at != b.at ? a.at < b.at : a.length < b.length; });
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const Edit& a, const Edit& b) { return a.at != b.at ? a.at < b.at : a.length < b.length; });
     std::string out;
     size_t at = 0;
     for (const Edit& e : sorted) {

@@ -10,16 +10,16 @@
 namespace mural::shaders {
 
 struct GlslToken {
-    std::string_view text; // in the source
-    size_t at = 0; // offset of its first character
+    std::string_view text;  // in the source
+    size_t at = 0;          // offset of its first character
     bool directive = false; // on a preprocessor line
 };
 
 struct GlslDirective {
     std::string_view name; // "version", "extension", …; empty: a lone #
-    size_t begin = 0; // of the #
-    size_t end = 0; // after the end of the line
-    int depth = 0; // number of enclosing conditionals; an #if and its #endif have the same depth
+    size_t begin = 0;      // of the #
+    size_t end = 0;        // after the end of the line
+    int depth = 0;         // number of enclosing conditionals; an #if and its #endif have the same depth
 };
 
 struct GlslText {

@@ -15,8 +15,10 @@ MainPlaces findMain(const GlslText& t) {
     MainPlaces places;
     for (size_t i = 0; i + 1 < t.tokens.size(); ++i) {
         if (t.tokens[i].text != "main") continue;
-        if (t.tokens[i].directive) places.byMacro = true;
-        else if (t.tokens[i + 1].text == "(") places.at.push_back(t.tokens[i].at);
+        if (t.tokens[i].directive)
+            places.byMacro = true;
+        else if (t.tokens[i + 1].text == "(")
+            places.at.push_back(t.tokens[i].at);
     }
     return places;
 }
@@ -43,10 +45,13 @@ std::string patchMain(const GlslText& t, const MainPlaces& main, LastStage stage
 
 } // namespace
 
-std::optional<std::vector<std::string>> withVertexCode(const std::vector<std::string>& sources, LastStage stage, bool es, const VertexCode& code) {
+std::optional<std::vector<std::string>> withVertexCode(const std::vector<std::string>& sources, LastStage stage,
+                                                       bool es, const VertexCode& code) {
     std::vector<GlslText> texts;
     for (const std::string& s : sources) texts.push_back(scanGlsl(s, es));
-    const auto any = [&](const char* name) { return std::any_of(texts.begin(), texts.end(), [&](const GlslText& t) { return t.uses(name); }); };
+    const auto any = [&](const char* name) {
+        return std::any_of(texts.begin(), texts.end(), [&](const GlslText& t) { return t.uses(name); });
+    };
     if (!std::all_of(texts.begin(), texts.end(), code.allowed)) return std::nullopt;
     if (any("EmitStreamVertex") || any("muralMain")) return std::nullopt;
     if (!any("gl_Position")) return std::nullopt; // draws nothing, or uses names from macros

@@ -18,11 +18,12 @@ struct VertexCode {
     std::function<std::string(const GlslText&)> declarations;
     std::function<std::string(const GlslText&, bool sized)> body;
     std::function<void(const GlslText&, TextEdits&)> more; // further edits; may be empty
-    std::function<bool(const GlslText&)> allowed; // false: do not change the stage
+    std::function<bool(const GlslText&)> allowed;          // false: do not change the stage
 };
 
 // es: in an ES context. `sources`: all texts of the stage; one contains main(). Returns as many texts, or nothing if
 // the stage must not change (not allowed, several streams, names from macros).
-std::optional<std::vector<std::string>> withVertexCode(const std::vector<std::string>& sources, LastStage stage, bool es, const VertexCode& code);
+std::optional<std::vector<std::string>> withVertexCode(const std::vector<std::string>& sources, LastStage stage,
+                                                       bool es, const VertexCode& code);
 
 } // namespace mural::shaders

@@ -18,6 +18,7 @@ namespace mural::shaders {
 inline constexpr const char* kMoveUniform = "muralMove";
 
 // As withVertexCode. Returns nothing for texts with transform feedback, whose positions must not change.
-std::optional<std::vector<std::string>> withMovedPosition(const std::vector<std::string>& sources, LastStage stage, bool es);
+std::optional<std::vector<std::string>> withMovedPosition(const std::vector<std::string>& sources, LastStage stage,
+                                                          bool es);
 
 } // namespace mural::shaders

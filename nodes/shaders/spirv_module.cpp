@@ -24,7 +24,9 @@ bool moduleReadsFragCoord(std::span<const std::byte> module) {
         const uint32_t length = word(at) >> 16, op = word(at) & 0xFFFF;
         if (length == 0 || length > words - at) return true;
         const size_t decoration = op == kDecorate ? at + 2 : op == kMemberDecorate ? at + 3 : 0;
-        if (decoration && decoration + 1 < at + length && word(decoration) == kBuiltIn && word(decoration + 1) == kFragCoord) return true;
+        if (decoration && decoration + 1 < at + length && word(decoration) == kBuiltIn &&
+            word(decoration + 1) == kFragCoord)
+            return true;
         at += length;
     }
     return false;

@@ -11,7 +11,7 @@ namespace mural::shaders {
 
 struct TextureLookups {
     std::string declarations; // added functions, which read kPlaceUniform; empty: no lookups
-    std::string extension; // required extension; empty: none
+    std::string extension;    // required extension; empty: none
 };
 
 // Replaces the names of lookups in `edits`, except lookups without level selection or with explicit gradients. ending:

@@ -10,12 +10,14 @@ namespace mural {
 namespace {
 
 constexpr int64_t kSendMs = 2000;
-constexpr int64_t kMaxSleepNs = 20 * kNsPerMs; // upper bound, whatever time the leader sends
+constexpr int64_t kMaxSleepNs = 20 * kNsPerMs;              // upper bound, whatever time the leader sends
 constexpr int64_t kAnswerMs = 4 * SwapBarrier::kPatienceMs; // longer than the leader waits for any member
 
 } // namespace
 
-Result<std::unique_ptr<SwapBarrier>> BarrierFollower::connect(int rank, const ChannelSecret& secret, const std::string& host, uint16_t port, Deadline deadline, Log log) {
+Result<std::unique_ptr<SwapBarrier>> BarrierFollower::connect(int rank, const ChannelSecret& secret,
+                                                              const std::string& host, uint16_t port, Deadline deadline,
+                                                              Log log) {
     auto connection = connectTcp(host, port, deadline);
     if (!connection) return connection.error();
     auto secure = SecureConnection::connecting(std::move(*connection), barrierNameOf(rank), secret, deadline);
@@ -43,7 +45,8 @@ int64_t BarrierFollower::await(const SwapKey& key) {
     auto go = ask(key);
     if (go && go->showNs == 0) return 0; // released alone: there is no common time to wait for
     if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMaxSleepNs);
-    log_("the swap barrier is broken: its leader is gone: " + go.error().message + "; windows of this node show frames when they are drawn");
+    log_("the swap barrier is broken: its leader is gone: " + go.error().message +
+         "; windows of this node show frames when they are drawn");
     leader_.reset();
     return 0;
 }

@@ -15,7 +15,8 @@ namespace mural {
 class BarrierFollower final : public SwapBarrier {
 public:
     // rank: from 1.
-    static Result<std::unique_ptr<SwapBarrier>> connect(int rank, const ChannelSecret& secret, const std::string& host, uint16_t port, Deadline deadline, Log log);
+    static Result<std::unique_ptr<SwapBarrier>> connect(int rank, const ChannelSecret& secret, const std::string& host,
+                                                        uint16_t port, Deadline deadline, Log log);
     BarrierFollower(std::unique_ptr<Connection> leader, Log log) : leader_(std::move(leader)), log_(std::move(log)) {}
 
     int64_t await(const SwapKey& key) override;

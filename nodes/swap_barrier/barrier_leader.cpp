@@ -16,14 +16,19 @@ constexpr int64_t kProofPatienceMs = 5000;
 constexpr int64_t kSendMs = 1000;
 constexpr int64_t kRestMs = 1000; // for the rest of a message
 constexpr int64_t kWakeNs = 50'000;
-constexpr int64_t kMaxLeadNs = 4 * kNsPerMs; // longest time from release to show; members with a higher latency show later
+constexpr int64_t kMaxLeadNs =
+    4 * kNsPerMs; // longest time from release to show; members with a higher latency show later
 
 std::string memberText(int rank) { return "member " + std::to_string(rank + 1) + " of the swap barrier"; }
 
 } // namespace
 
 BarrierLeader::BarrierLeader(int members, const ChannelSecret& secret, Log log, int64_t patienceMs)
-    : count_(members), secret_(secret), log_(std::move(log)), patienceMs_(patienceMs), rounds_(members, patienceMs * kNsPerMs) {}
+    : count_(members),
+      secret_(secret),
+      log_(std::move(log)),
+      patienceMs_(patienceMs),
+      rounds_(members, patienceMs * kNsPerMs) {}
 
 BarrierLeader::~BarrierLeader() {
     stop_ = true;
@@ -51,7 +56,8 @@ void BarrierLeader::letIn() {
             const int rank = barrierRankOf(name);
             return rank > 0 && rank < count_ ? std::optional(secret_) : std::nullopt;
         };
-        auto shown = SecureConnection::accepting(std::move(*connection), find, Deadline::inMs(kProofPatienceMs), [this] { return stop_.load(); });
+        auto shown = SecureConnection::accepting(std::move(*connection), find, Deadline::inMs(kProofPatienceMs),
+                                                 [this] { return stop_.load(); });
         if (!shown) continue;
         const int rank = barrierRankOf((*shown)->name());
         const std::lock_guard lock(mutex_);
@@ -94,19 +100,23 @@ void BarrierLeader::take(int rank, const BarrierReady& ready, int64_t arrivedNs)
 int64_t BarrierLeader::worstClockNs(Whose whose) const {
     int64_t worst = 0;
     for (const auto& [rank, member] : members_)
-        if ((whose == Whose::All || !rounds_.isGone(rank)) && member.errorNs != INT64_MAX) worst = std::max(worst, member.errorNs);
+        if ((whose == Whose::All || !rounds_.isGone(rank)) && member.errorNs != INT64_MAX)
+            worst = std::max(worst, member.errorNs);
     return worst;
 }
 
 void BarrierLeader::apply(const BarrierRounds::Step& step) {
     for (const int rank : step.late) {
         const std::string who = rank == 0 ? "the leader of the swap barrier" : memberText(rank);
-        log_(who + " has not come for " + std::to_string(patienceMs_) + " ms: the others swap without it until it comes again");
+        log_(who + " has not come for " + std::to_string(patienceMs_) +
+             " ms: the others swap without it until it comes again");
     }
     for (const BarrierRounds::Release& release : step.releases) {
         skew_.released(release.key, release.members.size());
         // The estimated time at which all members have received the release.
-        const int64_t showNs = release.members.size() < 2 ? 0 : monotonicNowNs() + std::min(worstClockNs(Whose::Waiting) + kWakeNs, kMaxLeadNs);
+        const int64_t showNs = release.members.size() < 2
+                                   ? 0
+                                   : monotonicNowNs() + std::min(worstClockNs(Whose::Waiting) + kWakeNs, kMaxLeadNs);
         for (const int rank : release.members) {
             if (rank == 0) {
                 waiting_ = false;
@@ -116,8 +126,10 @@ void BarrierLeader::apply(const BarrierRounds::Step& step) {
             }
             Member& member = members_.at(rank);
             const BarrierGo go{release.key, member.readySentNs, member.arrivedNs, monotonicNowNs(), showNs};
-            if (member.connection->write(encode(go), Deadline::inMs(kSendMs))) member.connection->flush();
-            else member.connection->close(); // its thread reports the loss
+            if (member.connection->write(encode(go), Deadline::inMs(kSendMs)))
+                member.connection->flush();
+            else
+                member.connection->close(); // its thread reports the loss
         }
     }
 }
@@ -127,7 +139,8 @@ int64_t BarrierLeader::await(const SwapKey& key) {
     waiting_ = true;
     apply(rounds_.arrive(0, key, monotonicNowNs()));
     while (waiting_) {
-        if (went_.wait_for(lock, std::chrono::milliseconds(kSliceMs)) == std::cv_status::timeout) apply(rounds_.tick(monotonicNowNs()));
+        if (went_.wait_for(lock, std::chrono::milliseconds(kSliceMs)) == std::cv_status::timeout)
+            apply(rounds_.tick(monotonicNowNs()));
     }
     return showNs_;
 }

@@ -13,9 +13,9 @@ namespace mural {
 // To the leader: the picture of `key` is drawn.
 struct BarrierReady {
     SwapKey key;
-    SwapKey shownKey; // the previous swap
+    SwapKey shownKey;    // the previous swap
     int64_t shownNs = 0; // when it was shown, by the leader's clock; 0: not reported
-    int64_t sentNs = 0; // by its own clock
+    int64_t sentNs = 0;  // by its own clock
     int64_t errorNs = 0; // error of its estimate of the leader's clock; INT64_MAX: no estimate yet
 };
 
@@ -23,7 +23,7 @@ struct BarrierReady {
 struct BarrierGo {
     SwapKey key;
     int64_t readySentNs = 0; // copied from BarrierReady
-    int64_t arrivedNs = 0; // by the leader's clock, as the times below
+    int64_t arrivedNs = 0;   // by the leader's clock, as the times below
     int64_t leftNs = 0;
     int64_t showNs = 0;
 };

@@ -8,7 +8,7 @@
 namespace mural {
 
 struct ClockSample {
-    int64_t sentNs = 0; // local clock
+    int64_t sentNs = 0;         // local clock
     int64_t arrivedThereNs = 0; // remote clock
     int64_t leftThereNs = 0;
     int64_t cameBackNs = 0; // local clock

@@ -28,8 +28,10 @@ void SkewMeter::shown(const SwapKey& key, int64_t atNs) {
     open_.erase(found);
     ++swaps_;
     mostNs_ = std::max(mostNs_, skewNs);
-    if (last_.size() < kKept) last_.push_back(skewNs);
-    else last_[next_++ % kKept] = skewNs;
+    if (last_.size() < kKept)
+        last_.push_back(skewNs);
+    else
+        last_[next_++ % kKept] = skewNs;
 }
 
 SkewNumbers SkewMeter::numbers() const {

@@ -11,7 +11,7 @@
 namespace mural {
 
 struct SkewNumbers {
-    int64_t swaps = 0; // shown by at least two members
+    int64_t swaps = 0;               // shown by at least two members
     int64_t medianNs = 0, p99Ns = 0; // over the last 4096 swaps
     int64_t mostNs = 0;
 };

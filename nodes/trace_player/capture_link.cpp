@@ -14,12 +14,15 @@
 namespace mural {
 namespace {
 
-Error linkError(const std::string& session, const std::string& what) { return Error{"session @" + session + ": " + what}; }
+Error linkError(const std::string& session, const std::string& what) {
+    return Error{"session @" + session + ": " + what};
+}
 
 Result<FileDescriptor> connectAbstract(const std::string& session) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    if (session.empty() || session.size() >= sizeof address.sun_path) return linkError(session, "is no session's name; start the player by mural replay");
+    if (session.empty() || session.size() >= sizeof address.sun_path)
+        return linkError(session, "is no session's name; start the player by mural replay");
     std::memcpy(address.sun_path + 1, session.data(), session.size()); // [0] = 0: abstract
     const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + session.size());
     FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -61,21 +64,31 @@ Result<std::unique_ptr<CaptureLink>> CaptureLink::connect(const std::string& ses
     auto socket = connectAbstract(session);
     if (!socket) return socket.error();
     const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), 0};
-    if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello) return linkError(session, "takes nothing; start it again");
+    if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello)
+        return linkError(session, "takes nothing; start it again");
     capture::Welcome welcome{};
     FileDescriptor memory;
-    if (!receiveWhole(socket->get(), std::as_writable_bytes(std::span(&welcome, 1)), &memory, deadline)) return linkError(session, "does not answer; start it again");
+    if (!receiveWhole(socket->get(), std::as_writable_bytes(std::span(&welcome, 1)), &memory, deadline))
+        return linkError(session, "does not answer; start it again");
     std::string text(std::min<uint32_t>(welcome.extensionBytes, 1u << 20), '\0');
-    if (!receiveWhole(socket->get(), std::as_writable_bytes(std::span(text)), nullptr, deadline)) return linkError(session, "does not answer; start it again");
+    if (!receiveWhole(socket->get(), std::as_writable_bytes(std::span(text)), nullptr, deadline))
+        return linkError(session, "does not answer; start it again");
     if (welcome.refused != 0) return linkError(session, "refuses: " + text);
-    if (!memory.valid() || welcome.version != capture::kVersion) return linkError(session, "is of another build; start it again");
+    if (!memory.valid() || welcome.version != capture::kVersion)
+        return linkError(session, "is of another build; start it again");
     const off_t size = lseek(memory.get(), 0, SEEK_END);
-    void* base = size > 0 ? mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory.get(), 0) : MAP_FAILED;
-    if (base == MAP_FAILED) return linkError(session, std::string("its memory can't be mapped: ") + std::strerror(errno) + "; is memory short?");
-    return std::unique_ptr<CaptureLink>(new CaptureLink(std::move(*socket), welcome, static_cast<capture::CaptureHeader*>(base), static_cast<size_t>(size)));
+    void* base = size > 0
+                     ? mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory.get(), 0)
+                     : MAP_FAILED;
+    if (base == MAP_FAILED)
+        return linkError(session,
+                         std::string("its memory can't be mapped: ") + std::strerror(errno) + "; is memory short?");
+    return std::unique_ptr<CaptureLink>(new CaptureLink(
+        std::move(*socket), welcome, static_cast<capture::CaptureHeader*>(base), static_cast<size_t>(size)));
 }
 
-CaptureLink::CaptureLink(FileDescriptor socket, const capture::Welcome& welcome, capture::CaptureHeader* header, size_t sizeBytes)
+CaptureLink::CaptureLink(FileDescriptor socket, const capture::Welcome& welcome, capture::CaptureHeader* header,
+                         size_t sizeBytes)
     : socket_(std::move(socket)), welcome_(welcome), header_(header), sizeBytes_(sizeBytes) {}
 
 CaptureLink::~CaptureLink() { leave(); }
@@ -88,21 +101,26 @@ bool CaptureLink::publish(uint16_t thread, std::span<const std::byte> packet) {
     header_->freedHead.store(head + 1, std::memory_order_release);
     std::memcpy(capture::chunk(header_, chunk), packet.data(), packet.size());
     const uint32_t tail = header_->publishedTail.load(std::memory_order_relaxed);
-    capture::publications(header_)[tail & (header_->chunkCount - 1)] = {chunk, 0, static_cast<uint32_t>(packet.size()), thread, 1};
+    capture::publications(header_)[tail & (header_->chunkCount - 1)] = {chunk, 0, static_cast<uint32_t>(packet.size()),
+                                                                        thread, 1};
     header_->publishedTail.store(tail + 1, std::memory_order_release);
     // either the reader sees the publication, or the check below sees that it sleeps
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    if (header_->reader.load(std::memory_order_relaxed) != static_cast<uint32_t>(capture::Reader::Reads)) futexWakeAll(header_->publishedTail);
+    if (header_->reader.load(std::memory_order_relaxed) != static_cast<uint32_t>(capture::Reader::Reads))
+        futexWakeAll(header_->publishedTail);
     return true;
 }
 
 bool CaptureLink::allTaken() const {
-    return header_->freedTail.load(std::memory_order_acquire) - header_->freedHead.load(std::memory_order_relaxed) == header_->chunkCount;
+    return header_->freedTail.load(std::memory_order_acquire) - header_->freedHead.load(std::memory_order_relaxed) ==
+           header_->chunkCount;
 }
 
 bool CaptureLink::mayGoOn(uint32_t submittedFrame) {
     const uint32_t wanted = submittedFrame - welcome_.latency;
-    const auto done = [&] { return static_cast<int32_t>(header_->framesDone.load(std::memory_order_acquire) - wanted) >= 0; };
+    const auto done = [&] {
+        return static_cast<int32_t>(header_->framesDone.load(std::memory_order_acquire) - wanted) >= 0;
+    };
     if (done()) return true;
     header_->framesWanted.store(capture::kFramesWanted | wanted, std::memory_order_relaxed);
     std::atomic_thread_fence(std::memory_order_seq_cst);
@@ -127,7 +145,8 @@ void CaptureLink::takeAnswers() {
             head += n;
         } else {
             const uint32_t slot = head & (header_->replyCapacity - 1);
-            const auto n = std::min({static_cast<uint32_t>(sizeof reply_ - replyHeaderBytes_), there, header_->replyCapacity - slot});
+            const auto n = std::min(
+                {static_cast<uint32_t>(sizeof reply_ - replyHeaderBytes_), there, header_->replyCapacity - slot});
             std::memcpy(reinterpret_cast<std::byte*>(&reply_) + replyHeaderBytes_, capture::replies(header_) + slot, n);
             replyHeaderBytes_ += n;
             head += n;

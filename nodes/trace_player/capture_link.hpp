@@ -45,7 +45,8 @@ public:
     bool gone(int64_t sliceMs);
 
 private:
-    CaptureLink(FileDescriptor socket, const capture::Welcome& welcome, capture::CaptureHeader* header, size_t sizeBytes);
+    CaptureLink(FileDescriptor socket, const capture::Welcome& welcome, capture::CaptureHeader* header,
+                size_t sizeBytes);
     void takeAnswers();
 
     FileDescriptor socket_; // closed by the head after it has detected the end
@@ -56,7 +57,7 @@ private:
     uint64_t answered_ = 0;
     wire::ReplyHeader reply_{};
     size_t replyHeaderBytes_ = 0; // received bytes of reply_
-    uint64_t replyBytes_ = 0; // missing bytes after the header
+    uint64_t replyBytes_ = 0;     // missing bytes after the header
 };
 
 } // namespace mural

@@ -40,7 +40,8 @@ bool asksForReply(uint16_t opcode) {
 
 class Player {
 public:
-    explicit Player(const PlayOptions& options) : options_(options), windows_("Mural: " + options.file, options.session) {}
+    explicit Player(const PlayOptions& options)
+        : options_(options), windows_("Mural: " + options.file, options.session) {}
 
     Result<void> play(trace::TraceReader& reader, bool& unreadable) {
         beganNs_ = monotonicNowNs();
@@ -61,14 +62,18 @@ public:
 
 private:
     // Waits on the word until done() holds. Drops the replies to all programs meanwhile.
-    template <class Done> Result<void> await(CaptureLink& link, const std::atomic<uint32_t>& word, int64_t patienceMs, const char* what, Done done) {
+    template <class Done>
+    Result<void> await(CaptureLink& link, const std::atomic<uint32_t>& word, int64_t patienceMs, const char* what,
+                       Done done) {
         const Deadline deadline = Deadline::inMs(patienceMs);
         while (true) {
             const uint32_t value = word.load(std::memory_order_acquire);
             if (done()) return {};
             dropAnswers();
             if (link.headGone() || link.gone(0)) return Error{"the session has ended before the recording"};
-            if (deadline.passed()) return Error{std::string("the session ") + what + " for " + std::to_string(patienceMs / 1000) + " s; mural stat says what it waits for"};
+            if (deadline.passed())
+                return Error{std::string("the session ") + what + " for " + std::to_string(patienceMs / 1000) +
+                             " s; mural stat says what it waits for"};
             futexWait(word, value, deadline.leftNs(kSliceNs));
         }
     }
@@ -113,20 +118,32 @@ private:
     }
 
     Result<void> send(CaptureLink& link, uint32_t stream, std::span<const std::byte> packet) {
-        if (packet.size() > capture::kChunkBytes) return Error{"the recording has a packet of " + std::to_string(packet.size()) + " bytes, which no program can send; record again"};
+        if (packet.size() > capture::kChunkBytes)
+            return Error{"the recording has a packet of " + std::to_string(packet.size()) +
+                         " bytes, which no program can send; record again"};
         // Waits until the previous program's packets are taken, so that nodes receive all packets in the recorded
         // order.
         if (last_ != nullptr && last_ != &link)
-            if (auto r = await(*last_, last_->chunkWord(), kRoomPatienceMs, "took nothing", [&] { return last_->allTaken(); }); !r) return r;
+            if (auto r = await(*last_, last_->chunkWord(), kRoomPatienceMs, "took nothing",
+                               [&] { return last_->allTaken(); });
+                !r)
+                return r;
         last_ = &link;
         uint32_t frame = wire::kUnseenFrame;
-        if (auto r = await(link, link.answersWord(), kRoomPatienceMs, "gave no answer", [&] { return link.unanswered() <= kMaxUnanswered; }); !r) return r;
+        if (auto r = await(link, link.answersWord(), kRoomPatienceMs, "gave no answer",
+                           [&] { return link.unanswered() <= kMaxUnanswered; });
+            !r)
+            return r;
         if (auto r = prepare(link, stream, packet, frame); !r) return r;
         const auto thread = static_cast<uint16_t>(stream);
-        if (auto r = await(link, link.chunkWord(), kRoomPatienceMs, "took nothing", [&] { return link.publish(thread, packet_); }); !r) return r;
+        if (auto r = await(link, link.chunkWord(), kRoomPatienceMs, "took nothing",
+                           [&] { return link.publish(thread, packet_); });
+            !r)
+            return r;
         if (frame == wire::kUnseenFrame) return {};
         link.submitted(frame);
-        return await(link, link.framesWord(), kFramePatienceMs, "finished no frame", [&] { return link.mayGoOn(frame); });
+        return await(link, link.framesWord(), kFramePatienceMs, "finished no frame",
+                     [&] { return link.mayGoOn(frame); });
     }
 
     // Copies the recorded packet to packet_ and replaces its windows by existing ones. frame: the last frame that it
@@ -137,10 +154,14 @@ private:
         RecordView r;
         while (walk.next(r)) {
             const uint32_t first = trace::argumentWord(r, 0);
-            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) frame = std::max(frame, trace::argumentWord(r, 1));
-            else if (asksForReply(r.opcode) && !(first & capture::kAskedAhead)) link.asked();
-            else if (!link.welcome().displayApp) continue;
-            else if (r.opcode == wire::kOpDestroyWindow) windows_.destroy(wire::clientOf(stream), first);
+            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
+                frame = std::max(frame, trace::argumentWord(r, 1));
+            else if (asksForReply(r.opcode) && !(first & capture::kAskedAhead))
+                link.asked();
+            else if (!link.welcome().displayApp)
+                continue;
+            else if (r.opcode == wire::kOpDestroyWindow)
+                windows_.destroy(wire::clientOf(stream), first);
             else if (r.opcode == wire::kOpWindow)
                 if (auto shown = showWindow(link, stream, r); !shown) return shown;
         }
@@ -152,7 +173,8 @@ private:
         if (r.arguments.size() < 4 + sizeof config) return {};
         std::memcpy(&config, r.arguments.data() + 4, sizeof config);
         if ((config.nativeLow == 0 && config.nativeHigh == 0) || config.isPbuffer) return {};
-        auto shown = windows_.show(wire::clientOf(stream), link.welcome().clientId, trace::argumentWord(r, 0), config.width, config.height);
+        auto shown = windows_.show(wire::clientOf(stream), link.welcome().clientId, trace::argumentWord(r, 0),
+                                   config.width, config.height);
         if (!shown) return shown.error();
         config.nativeLow = *shown;
         config.nativeHigh = 0;
@@ -164,7 +186,8 @@ private:
         const auto found = links_.find(client);
         if (found == links_.end()) return {};
         CaptureLink& link = *found->second;
-        const auto taken = await(link, link.chunkWord(), kRoomPatienceMs, "took nothing", [&] { return link.allTaken(); });
+        const auto taken =
+            await(link, link.chunkWord(), kRoomPatienceMs, "took nothing", [&] { return link.allTaken(); });
         link.leave();
         // Waits for the head, so that the next program's packets follow the end of this one.
         const Deadline deadline = Deadline::inMs(kLeavePatienceMs);
@@ -177,7 +200,7 @@ private:
     const PlayOptions& options_;
     PlayerWindows windows_;
     std::map<uint32_t, std::unique_ptr<CaptureLink>> links_; // key: the client's recorded number
-    CaptureLink* last_ = nullptr; // link of the last packet
+    CaptureLink* last_ = nullptr;                            // link of the last packet
     std::vector<std::byte> packet_;
     int64_t beganNs_ = 0;
     int64_t firstNs_ = -1; // recorded time of the first entry
@@ -197,7 +220,8 @@ int playRecording(const PlayOptions& options) {
     Player player(options);
     do {
         bool unreadable = false;
-        if (const auto played = player.play(**reader, unreadable); !played) return complain(played.error().message, unreadable ? kUnreadable : kFailed);
+        if (const auto played = player.play(**reader, unreadable); !played)
+            return complain(played.error().message, unreadable ? kUnreadable : kFailed);
     } while (options.loop && !(*reader)->blocks().empty());
     return 0;
 }

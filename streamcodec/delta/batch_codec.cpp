@@ -11,7 +11,8 @@ constexpr auto kPages = static_cast<size_t>(Section::Pages);
 
 } // namespace
 
-Result<std::span<const std::byte>> BatchEncoder::encode(const SectionBytes& sections, double linkNsPerByte, bool plain) {
+Result<std::span<const std::byte>> BatchEncoder::encode(const SectionBytes& sections, double linkNsPerByte,
+                                                        bool plain) {
     const auto control = sections[static_cast<size_t>(Section::Control)];
     bool others = false;
     for (size_t i = kFirst; i < kSections; ++i) others = others || !sections[i].empty();
@@ -32,14 +33,17 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
     body_.assign(1, std::byte{0});
     for (size_t i = kFirst; i < kSections; ++i) {
         const auto bytes = sections[i];
-        const bool frames = plain && i == static_cast<size_t>(Section::Texts) && bytes.size() >= SectionCodecSelector::kMinBytes;
+        const bool frames =
+            plain && i == static_cast<size_t>(Section::Texts) && bytes.size() >= SectionCodecSelector::kMinBytes;
         const Coding coding = frames ? Coding::Zstd : choices_[i].choose(bytes.size(), linkNsPerByte);
         coded_[i].clear();
         if (coding == Coding::Lz4 || coding == Coding::Zstd) {
             const bool timed = !frames && choices_[i].wantsTime(coding, bytes.size());
             const int64_t beganNs = timed ? nowNs_(bytes.size()) : 0;
             if (!compress(i, coding, bytes)) return Error{"the stream can't be compressed: no memory"};
-            if (!frames) choices_[i].measured(coding, bytes.size(), coded_[i].size(), timed ? std::optional(nowNs_(bytes.size()) - beganNs) : std::nullopt);
+            if (!frames)
+                choices_[i].measured(coding, bytes.size(), coded_[i].size(),
+                                     timed ? std::optional(nowNs_(bytes.size()) - beganNs) : std::nullopt);
         }
         if (const size_t sample = choices_[i].sampleBytes(bytes.size()); sample != 0) {
             const int64_t beganNs = nowNs_(sample);
@@ -60,16 +64,19 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
 
 bool BatchEncoder::compress(size_t section, Coding coding, std::span<const std::byte> bytes) {
     auto& into = coded_[section];
-    return section == kPages ? pages_.compress(coding, bytes, into) : compressors_[section].compress(coding, bytes, into);
+    return section == kPages ? pages_.compress(coding, bytes, into)
+                             : compressors_[section].compress(coding, bytes, into);
 }
 
 bool BatchDecoder::decompress(size_t section, Coding coding, std::span<const std::byte> bytes) {
     auto& into = sections_[section];
-    return section == kPages ? pages_.decompress(coding, bytes, into) : decompressors_[section].decompress(coding, bytes, into);
+    return section == kPages ? pages_.decompress(coding, bytes, into)
+                             : decompressors_[section].decompress(coding, bytes, into);
 }
 
 Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::byte> body) {
-    const Error broken{"the head's stream can't be unpacked: a batch of impossible sizes; head and nodes must be of one build"};
+    const Error broken{
+        "the head's stream can't be unpacked: a batch of impossible sizes; head and nodes must be of one build"};
     SectionBytes result;
     auto left = body;
     if (head.sections) {
@@ -94,7 +101,9 @@ Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::b
             result[i] = bytes;
             if (codingOf(i) != Coding::Lz4 && codingOf(i) != Coding::Zstd) continue;
             sections_[i].resize(sizes[i]);
-            if (!decompress(i, codingOf(i), bytes)) return Error{"the head's stream can't be unpacked: compressed bytes that are none; head and nodes must be of one build"};
+            if (!decompress(i, codingOf(i), bytes))
+                return Error{"the head's stream can't be unpacked: compressed bytes that are none; head and nodes must "
+                             "be of one build"};
             result[i] = sections_[i];
         }
     }

@@ -22,7 +22,8 @@ class BatchEncoder {
 public:
     // `nowNs`: clock that times the compression of the given number of bytes; the selection of codings uses it.
     explicit BatchEncoder(std::function<int64_t(size_t sizeBytes)> nowNs) : nowNs_(std::move(nowNs)) {
-        for (const Section section : {Section::Texts, Section::Words, Section::Spans}) compressors_[static_cast<size_t>(section)].prepare();
+        for (const Section section : {Section::Texts, Section::Words, Section::Spans})
+            compressors_[static_cast<size_t>(section)].prepare();
         pages_.prepare();
     }
 
@@ -40,7 +41,8 @@ private:
 
     // The entries for Control and Pages are unused. Texts use the fastest level, which finds equal frames and records
     // as well.
-    std::array<SectionCompressor, kSections> compressors_{SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(), SectionCompressor()};
+    std::array<SectionCompressor, kSections> compressors_{
+        SectionCompressor(), SectionCompressor(), SectionCompressor(-1), SectionCompressor(), SectionCompressor()};
     PageCompressor pages_;
     std::array<SectionCodecSelector, kSections> choices_;
     std::array<std::vector<std::byte>, kSections> coded_;

@@ -11,22 +11,22 @@
 namespace mural::delta {
 
 enum class DeltaOp : uint8_t {
-    Run = 0, // n entries follow in the previous order
-    Patch = 1, // the expected entry with n spans of changed words
-    NewText = 2, // new short entry of n words
-    NewPage = 3, // new page of n words; 0: a whole page
-    Skip = 4, // n expected entries are omitted
-    Seek = 5, // the next entry occurred n entries ago
-    Pages = 6, // n consecutive pages of the store, from the slot that follows
+    Run = 0,       // n entries follow in the previous order
+    Patch = 1,     // the expected entry with n spans of changed words
+    NewText = 2,   // new short entry of n words
+    NewPage = 3,   // new page of n words; 0: a whole page
+    Skip = 4,      // n expected entries are omitted
+    Seek = 5,      // the next entry occurred n entries ago
+    Pages = 6,     // n consecutive pages of the store, from the slot that follows
     ControlOp = 7, // n selects the operation below
 };
 
 enum class ControlOp : uint32_t {
-    End = 1, // end of the packet
-    Stream = 2, // the stream of the packet follows; otherwise it is the previous packet's
-    Bytes = 3, // plain bytes; their number follows
-    Done = 4, // end of the batch
-    KeptBytes = 5, // as Bytes, and cached in the slot that follows
+    End = 1,          // end of the packet
+    Stream = 2,       // the stream of the packet follows; otherwise it is the previous packet's
+    Bytes = 3,        // plain bytes; their number follows
+    Done = 4,         // end of the batch
+    KeptBytes = 5,    // as Bytes, and cached in the slot that follows
     ChangedBytes = 6, // the bytes of the slot that follows, with spans of changed words; their number follows
 };
 

@@ -23,7 +23,10 @@ uint32_t opcodeOf(std::span<const std::byte> record) {
 
 } // namespace
 
-DeltaDecoder::DeltaDecoder(const Limits& limits) : history_(limits), packet_(std::make_unique_for_overwrite<std::byte[]>(wire::kMaxPacketBytes)), words_(limits.modelWords) {}
+DeltaDecoder::DeltaDecoder(const Limits& limits)
+    : history_(limits),
+      packet_(std::make_unique_for_overwrite<std::byte[]>(wire::kMaxPacketBytes)),
+      words_(limits.modelWords) {}
 
 void DeltaDecoder::begin(const SectionBytes& sections) {
     sections_ = sections;
@@ -44,7 +47,9 @@ Result<bool> DeltaDecoder::next(uint32_t& stream, std::span<const std::byte>& pa
         Problem problem = control_.bad() ? nullptr : step(what, n);
         if (control_.bad()) problem = "its control bytes end in the middle of a packet";
         if (!problem && ++steps_ > kMaxSteps) problem = "more steps than a batch needs";
-        if (problem) return Error{std::string("the head's stream can't be unpacked: ") + problem + "; head and nodes must be of one build"};
+        if (problem)
+            return Error{std::string("the head's stream can't be unpacked: ") + problem +
+                         "; head and nodes must be of one build"};
     }
     stream = stream_;
     packet = {packet_.get(), packetBytes_};
@@ -57,8 +62,11 @@ DeltaDecoder::Problem DeltaDecoder::step(DeltaOp what, uint32_t n) {
     switch (what) {
     case DeltaOp::Run: return run(n);
     case DeltaOp::Patch: return patch(n);
-    case DeltaOp::NewText: return n >= 1 && n <= kMaxTextBytes / 4 ? fresh(n * 4, false) : "a new text of an impossible size";
-    case DeltaOp::NewPage: return n == 0 || (n > kMaxTextBytes / 4 && n < kPageBytes / 4) ? fresh(n == 0 ? kPageBytes : n * 4, true) : "a new page of an impossible size";
+    case DeltaOp::NewText:
+        return n >= 1 && n <= kMaxTextBytes / 4 ? fresh(n * 4, false) : "a new text of an impossible size";
+    case DeltaOp::NewPage:
+        return n == 0 || (n > kMaxTextBytes / 4 && n < kPageBytes / 4) ? fresh(n == 0 ? kPageBytes : n * 4, true)
+                                                                       : "a new page of an impossible size";
     case DeltaOp::Skip: log_->cursor += n; return nullptr;
     case DeltaOp::Seek:
         if (n == 0 || n > log_->end()) return "a place before the first item";
@@ -97,15 +105,19 @@ DeltaDecoder::Problem DeltaDecoder::patch(uint32_t spans) {
     const auto bytes = put(history_.bytesOf(item));
     std::vector<std::byte> old;
     if (loseWords_ && opcodeOf(bytes) >= wire::kFirstGlOpcode) old.assign(bytes.begin(), bytes.end());
-    if (const Problem problem = item.page != 0 ? changeSpans(bytes, spans) : changeItem(item, bytes, spans)) return problem;
+    if (const Problem problem = item.page != 0 ? changeSpans(bytes, spans) : changeItem(item, bytes, spans))
+        return problem;
     ++log_->cursor;
-    log_->append(item.page != 0 ? history_.addPage(history_.pages().changed(item.where), bytes) : keep(bytes, false, item.model));
+    log_->append(item.page != 0 ? history_.addPage(history_.pages().changed(item.where), bytes)
+                                : keep(bytes, false, item.model));
     copyBytes(old, bytes);
     return nullptr;
 }
 
 // Calls `change(where, words)` for each span. Returns an error if the bytes have fewer words.
-template <class Reader, class Change> DeltaDecoder::Problem DeltaDecoder::eachSpan(Reader& reader, std::span<std::byte> bytes, uint32_t spans, Change&& change) {
+template <class Reader, class Change>
+DeltaDecoder::Problem DeltaDecoder::eachSpan(Reader& reader, std::span<std::byte> bytes, uint32_t spans,
+                                             Change&& change) {
     uint64_t at = 0;
     for (; spans > 0; --spans) {
         uint32_t kept = 0, changed = 0;
@@ -153,11 +165,13 @@ DeltaDecoder::Problem DeltaDecoder::pages(uint32_t n) {
     const uint32_t from = control_.number();
     for (uint32_t i = 0; i < n; ++i) {
         const uint64_t slot = uint64_t{from} + i;
-        const auto page = slot < history_.pages().slots() ? history_.pages().at(static_cast<uint32_t>(slot)) : std::span<const std::byte>();
+        const auto page = slot < history_.pages().slots() ? history_.pages().at(static_cast<uint32_t>(slot))
+                                                          : std::span<const std::byte>();
         if (page.empty()) return "a page that is not in the store";
         if (!room(page.size())) return "a packet or batch that is too large";
         put(page);
-        const DictionaryEntry item = history_.fromStore(static_cast<uint32_t>(slot), static_cast<uint32_t>(page.size()));
+        const DictionaryEntry item =
+            history_.fromStore(static_cast<uint32_t>(slot), static_cast<uint32_t>(page.size()));
         log_->replaces(item);
         log_->append(item);
     }
@@ -216,7 +230,8 @@ void DeltaDecoder::loseChanges(std::span<const std::byte> old, std::span<std::by
         std::memcpy(&head, run.data() + at, sizeof head);
         const size_t sizeBytes = size_t{head >> 16} * 4;
         if (sizeBytes == 0 || sizeBytes > run.size() - at) return;
-        if ((head & 0xffff) >= wire::kFirstGlOpcode && std::memcmp(old.data() + at, &head, sizeof head) == 0) copyBytes(old.subspan(at, sizeBytes), run.subspan(at, sizeBytes));
+        if ((head & 0xffff) >= wire::kFirstGlOpcode && std::memcmp(old.data() + at, &head, sizeof head) == 0)
+            copyBytes(old.subspan(at, sizeBytes), run.subspan(at, sizeBytes));
         at += sizeBytes;
     }
 }

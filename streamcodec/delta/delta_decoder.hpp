@@ -42,7 +42,8 @@ private:
     Problem plain(std::optional<uint32_t> slot);
     Problem changedRun(uint32_t slot);
     static void loseChanges(std::span<const std::byte> old, std::span<std::byte> run);
-    template <class Reader, class Change> static Problem eachSpan(Reader& reader, std::span<std::byte> bytes, uint32_t spans, Change&& change);
+    template <class Reader, class Change>
+    static Problem eachSpan(Reader& reader, std::span<std::byte> bytes, uint32_t spans, Change&& change);
     Problem changeItem(DictionaryEntry& item, std::span<std::byte> bytes, uint32_t spans);
     Problem changeSpans(std::span<std::byte> bytes, uint32_t spans);
     void changeWords(size_t at, std::span<std::byte> words);

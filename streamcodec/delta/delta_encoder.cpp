@@ -59,8 +59,10 @@ bool DeltaEncoder::next() {
     }
     if (restPlain_) {
         const size_t from = cut_.at();
-        if (walked_ != nullptr && cut_.atRecord()) passTold();
-        else cut_.passShort();
+        if (walked_ != nullptr && cut_.atRecord())
+            passTold();
+        else
+            cut_.passShort();
         if (!plain_) batchLeftOutBytes_ += cut_.at() - from;
         asBytes(from, cut_.at());
     }
@@ -85,7 +87,8 @@ void DeltaEncoder::add(uint32_t stream, std::span<const std::byte> packet, const
     }
     const Dictionary::Opened opened = history_.open(stream);
     if (opened.place == streams_.size()) streams_.emplace_back();
-    if (opened.fresh) streams_[opened.place] = firstIndex_ ? std::move(firstIndex_) : std::make_unique<StreamIndex>(limits_.logItems);
+    if (opened.fresh)
+        streams_[opened.place] = firstIndex_ ? std::move(firstIndex_) : std::make_unique<StreamIndex>(limits_.logItems);
     log_ = &history_.log(opened.place);
     index_ = &streams_[opened.place]->items;
     runs_ = &streams_[opened.place]->runs;
@@ -96,7 +99,8 @@ void DeltaEncoder::add(uint32_t stream, std::span<const std::byte> packet, const
     first_ = true;
     cut_ = PacketCut(packet);
     // A damaged packet may end a record that it did not begin.
-    const bool isTold = walked != nullptr && walked->lastBytes <= packet.size() && (walked->longAt.empty() || walked->longAt.back() < packet.size());
+    const bool isTold = walked != nullptr && walked->lastBytes <= packet.size() &&
+                        (walked->longAt.empty() || walked->longAt.back() < packet.size());
     walked_ = isTold ? walked : nullptr;
     news_->packetBegins(frames_, log_->end(), packet.size() >= kLongPacketBytes);
     const uint64_t pagesBefore = batchPageBytes_;
@@ -167,7 +171,8 @@ bool DeltaEncoder::runKnown() {
     if (equal < run.sizeBytes) {
         const uint64_t from = run.position;
         uint32_t items = 0, sizeBytes = 0;
-        for (; sizeBytes + log.at(from + items).sizeBytes <= equal; ++items) sizeBytes += log.at(from + items).sizeBytes;
+        for (; sizeBytes + log.at(from + items).sizeBytes <= equal; ++items)
+            sizeBytes += log.at(from + items).sizeBytes;
         run.items = items, run.sizeBytes = sizeBytes;
     }
     if (run.items == 0) return false;
@@ -177,7 +182,8 @@ bool DeltaEncoder::runKnown() {
     uint32_t done = 0;
     const uint64_t position = log.end();
     for (; done < run.items && indexed(); ++done) this->run();
-    index_->appendAllAgain(log.end(), from + done, run.items - done, [&](size_t i) { return uint32_t{log.at(from + done + i).sizeBytes}; });
+    index_->appendAllAgain(log.end(), from + done, run.items - done,
+                           [&](size_t i) { return uint32_t{log.at(from + done + i).sizeBytes}; });
     history_.againAll(log, run.items - done);
     run_ += run.items - done;
     news_->found(from, run.items - done);
@@ -224,8 +230,10 @@ bool DeltaEncoder::place() {
 
 // Counts a coded short record.
 void DeltaEncoder::count(bool isNew) {
-    if (isNew) news_->isNew();
-    else news_->found(log_->cursor - 1, 1);
+    if (isNew)
+        news_->isNew();
+    else
+        news_->found(log_->cursor - 1, 1);
 }
 
 // New pixels take fewer bytes than changed pixels.
@@ -242,7 +250,8 @@ size_t DeltaEncoder::cheapPatchOfPage(const Piece& piece) {
 }
 
 bool DeltaEncoder::same(DictionaryEntry item, const Piece& piece) const {
-    return item.sizeBytes == piece.sizeBytes && sameWords(history_.bytesOf(item).data(), packet_.data() + piece.at, piece.sizeBytes);
+    return item.sizeBytes == piece.sizeBytes &&
+           sameWords(history_.bytesOf(item).data(), packet_.data() + piece.at, piece.sizeBytes);
 }
 
 bool DeltaEncoder::expects(size_t ahead, const Piece& piece) const {
@@ -307,8 +316,10 @@ bool DeltaEncoder::patch(const Piece& piece, size_t mostBytes) {
     ++log_->cursor;
     const DictionaryEntry after = keep(piece, changed.model);
     const auto hash = static_cast<uint32_t>(hashOf(piece));
-    if (expected.model == 0) append(after, hash);
-    else appendUnfound(after, hash);
+    if (expected.model == 0)
+        append(after, hash);
+    else
+        appendUnfound(after, hash);
     return true;
 }
 
@@ -356,8 +367,10 @@ bool DeltaEncoder::seek() {
     }
     if (seekAt(hash, index_->find(hash, next, log_->end()))) return true;
     // An entry that changes every time occurred before at this position only, unless a pair matches.
-    const bool changes = log_->holds(log_->cursor) && log_->at(log_->cursor).model != 0 && log_->at(log_->cursor).sizeBytes == piece_.sizeBytes;
-    return !changes && piece_.sizeBytes >= MatchIndex::kTellingBytes && seekAt(hash, index_->find(hash, MatchIndex::kAnything, log_->end()));
+    const bool changes = log_->holds(log_->cursor) && log_->at(log_->cursor).model != 0 &&
+                         log_->at(log_->cursor).sizeBytes == piece_.sizeBytes;
+    return !changes && piece_.sizeBytes >= MatchIndex::kTellingBytes &&
+           seekAt(hash, index_->find(hash, MatchIndex::kAnything, log_->end()));
 }
 
 // Most candidates are other entries: comparing the contiguous hashes first avoids cache misses on their bytes.
@@ -376,12 +389,15 @@ bool DeltaEncoder::fromStore(bool inPlace) {
     if (inPlace) {
         PacketCut ahead = cut_;
         Piece behind;
-        if (!(ahead.next(behind) && log_->holds(log_->cursor) && log_->at(log_->cursor).sizeBytes == piece.sizeBytes && expects(1, behind))) return false;
+        if (!(ahead.next(behind) && log_->holds(log_->cursor) && log_->at(log_->cursor).sizeBytes == piece.sizeBytes &&
+              expects(1, behind)))
+            return false;
     }
     PageStore& pages = history_.pages();
     const uint32_t slot = pageIndex_.find(hashOf(piece), [&](uint32_t s) {
         const auto page = pages.at(s);
-        return page.size() == piece.sizeBytes && std::memcmp(page.data(), packet_.data() + piece.at, piece.sizeBytes) == 0;
+        return page.size() == piece.sizeBytes &&
+               std::memcmp(page.data(), packet_.data() + piece.at, piece.sizeBytes) == 0;
     });
     if (slot == PageIndex::kNone) return false;
     if (run_ != 0 || pagesRun_ == 0 || slot != pagesFrom_ + pagesRun_) {
@@ -399,8 +415,10 @@ bool DeltaEncoder::fromStore(bool inPlace) {
 void DeltaEncoder::send(const Piece& piece) {
     settle();
     const uint32_t words = piece.sizeBytes / 4;
-    if (piece.page()) control_.put(DeltaOp::NewPage, piece.sizeBytes == kPageBytes ? 0 : words);
-    else control_.put(DeltaOp::NewText, words);
+    if (piece.page())
+        control_.put(DeltaOp::NewPage, piece.sizeBytes == kPageBytes ? 0 : words);
+    else
+        control_.put(DeltaOp::NewText, words);
     literal(piece.page() ? Section::Pages : Section::Texts, bytesOf(piece));
     const DictionaryEntry item = keep(piece);
     log_->replaces(item);

@@ -30,14 +30,18 @@ struct DeltaEncoderCounts {
     uint64_t records = 0;
     uint64_t rawBytes = 0;
     uint64_t stagedBytes = 0; // after delta coding, before compression
-    uint64_t storeHits = 0; // pages that the nodes had
-    uint64_t newPages = 0; // pages that the nodes did not have
-    uint64_t patches = 0; // entries sent as changed words
+    uint64_t storeHits = 0;   // pages that the nodes had
+    uint64_t newPages = 0;    // pages that the nodes did not have
+    uint64_t patches = 0;     // entries sent as changed words
 };
 
 class DeltaEncoder {
 public:
-    explicit DeltaEncoder(const Limits& limits) : limits_(limits), history_(limits), firstIndex_(std::make_unique<StreamIndex>(limits.logItems)), words_(limits.modelWords) {}
+    explicit DeltaEncoder(const Limits& limits)
+        : limits_(limits),
+          history_(limits),
+          firstIndex_(std::make_unique<StreamIndex>(limits.logItems)),
+          words_(limits.modelWords) {}
 
     // Returns false if there was no memory for the store.
     [[nodiscard]] bool ready() const { return history_.ready(); }
@@ -99,8 +103,12 @@ private:
     void asBytes(size_t from, size_t to);
     bool asChanged(uint32_t slot, std::span<const std::byte> bytes);
     [[nodiscard]] uint64_t hashOf(const Piece& piece); // of the current piece
-    [[nodiscard]] std::span<const std::byte> bytesOf(const Piece& piece) const { return packet_.subspan(piece.at, piece.sizeBytes); }
-    void literal(Section section, std::span<const std::byte> bytes) { literals_[static_cast<size_t>(section)].add(bytes); }
+    [[nodiscard]] std::span<const std::byte> bytesOf(const Piece& piece) const {
+        return packet_.subspan(piece.at, piece.sizeBytes);
+    }
+    void literal(Section section, std::span<const std::byte> bytes) {
+        literals_[static_cast<size_t>(section)].add(bytes);
+    }
 
     const Limits limits_;
     Dictionary history_;
@@ -112,7 +120,7 @@ private:
         NoveltyDetector news;
     };
     std::vector<std::unique_ptr<StreamIndex>> streams_; // by index of the log
-    std::unique_ptr<StreamIndex> firstIndex_; // allocated in advance for the first stream
+    std::unique_ptr<StreamIndex> firstIndex_;           // allocated in advance for the first stream
 
     RangeWriter coder_; // of control_ and words_
     ControlWriter control_{coder_};
@@ -124,7 +132,7 @@ private:
     bool plain_ = false;
     uint64_t frames_ = 0;
     RawRunSlots runPlaces_;
-    uint32_t run_ = 0; // expected entries that are not in control_ yet
+    uint32_t run_ = 0;                      // expected entries that are not in control_ yet
     uint32_t pagesFrom_ = 0, pagesRun_ = 0; // stored pages that are not in control_ yet
 
     // The current packet.
@@ -135,12 +143,12 @@ private:
     MatchIndex* index_ = nullptr;
     RunCache* runs_ = nullptr;
     NoveltyDetector* news_ = nullptr;
-    bool restPlain_ = false; // short records are sent plain from here on
+    bool restPlain_ = false;                // short records are sent plain from here on
     const RecordOffsets* walked_ = nullptr; // record offsets of the current packet, if known
-    size_t nextLong_ = 0; // index into walked_->longAt
-    RunCache::Run open_; // the open run of short records, without its bytes
-    uint32_t openBytesAt_ = 0; // its offset in the packet
-    bool openIsKnown_ = false; // all of it matches one of runs_
+    size_t nextLong_ = 0;                   // index into walked_->longAt
+    RunCache::Run open_;                    // the open run of short records, without its bytes
+    uint32_t openBytesAt_ = 0;              // its offset in the packet
+    bool openIsKnown_ = false;              // all of it matches one of runs_
     bool first_ = true;
     uint64_t hash_ = 0; // hash of the current piece, if computed
     bool hashed_ = false;

@@ -12,8 +12,10 @@ Dictionary::Opened Dictionary::open(uint32_t stream) {
         return {place, false};
     }
     size_t place = streams_.size();
-    if (place < limits_.streams) streams_.emplace_back();
-    else place = static_cast<size_t>(std::ranges::min_element(streams_, {}, &Stream::usedAt) - streams_.begin());
+    if (place < limits_.streams)
+        streams_.emplace_back();
+    else
+        place = static_cast<size_t>(std::ranges::min_element(streams_, {}, &Stream::usedAt) - streams_.begin());
     streams_[place] = {stream, opened_, first_ ? std::move(first_) : std::make_unique<EntryLog>(limits_.logItems)};
     return {place, true};
 }

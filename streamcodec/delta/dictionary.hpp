@@ -19,7 +19,11 @@ namespace mural::delta {
 
 class Dictionary {
 public:
-    explicit Dictionary(const Limits& limits) : limits_(limits), text_(limits.textBytes), pages_(limits.storeBytes), first_(std::make_unique<EntryLog>(limits.logItems)) {}
+    explicit Dictionary(const Limits& limits)
+        : limits_(limits),
+          text_(limits.textBytes),
+          pages_(limits.storeBytes),
+          first_(std::make_unique<EntryLog>(limits.logItems)) {}
 
     [[nodiscard]] bool ready() const { return pages_.ready(); }
 
@@ -31,8 +35,8 @@ public:
         log.appendCopies(log.cursor, items);
         log.cursor += items;
     }
-    // The longest run of short entries after the cursor with contiguous bytes that are not old. The bytes are contiguous
-    // where the entries were new one after the other.
+    // The longest run of short entries after the cursor with contiguous bytes that are not old. The bytes are
+    // contiguous where the entries were new one after the other.
     struct Stretch {
         std::span<const std::byte> bytes;
         size_t items = 0;
@@ -40,7 +44,8 @@ public:
     [[nodiscard]] Stretch stretch(const EntryLog& log, size_t mostItems) const {
         size_t items = 0, sizeBytes = 0;
         const uint32_t where = log.at(log.cursor).where;
-        for (const auto most = static_cast<size_t>(std::min<uint64_t>(mostItems, log.end() - log.cursor)); items < most; ++items) {
+        for (const auto most = static_cast<size_t>(std::min<uint64_t>(mostItems, log.end() - log.cursor)); items < most;
+             ++items) {
             const DictionaryEntry item = log.at(log.cursor + items);
             if (item.page || item.where != where + sizeBytes || text_.old(item.where)) break;
             sizeBytes += item.sizeBytes;
@@ -50,8 +55,10 @@ public:
     [[nodiscard]] const RecordRing& text() const { return text_; }
     // Returns the repeated entry as its log stores it.
     [[nodiscard]] DictionaryEntry again(DictionaryEntry item) {
-        if (item.page) pages_.use(item.where);
-        else if (text_.old(item.where)) item.where = text_.add(text_.at(item.where, item.sizeBytes));
+        if (item.page)
+            pages_.use(item.where);
+        else if (text_.old(item.where))
+            item.where = text_.add(text_.at(item.where, item.sizeBytes));
         return item;
     }
     // Returns an entry for a stored page that takes another page's place.
@@ -59,7 +66,9 @@ public:
         pages_.useElsewhere(slot);
         return {slot, sizeBytes, 1};
     }
-    [[nodiscard]] DictionaryEntry addText(std::span<const std::byte> bytes, uint32_t model) { return {text_.add(bytes), static_cast<uint32_t>(bytes.size()), 0, model}; }
+    [[nodiscard]] DictionaryEntry addText(std::span<const std::byte> bytes, uint32_t model) {
+        return {text_.add(bytes), static_cast<uint32_t>(bytes.size()), 0, model};
+    }
     [[nodiscard]] DictionaryEntry addPage(uint32_t slot, std::span<const std::byte> bytes) {
         pages_.fill(slot, bytes);
         return {slot, static_cast<uint32_t>(bytes.size()), 1, 0};

@@ -19,8 +19,10 @@ public:
     // Appends copies of entries from `from` on. Requires that the log holds all of them.
     void appendCopies(uint64_t from, size_t count) {
         while (count > 0) {
-            const size_t source = from & mask_, target = end_ & mask_, part = std::min({count, size_t{mask_} + 1 - source, size_t{mask_} + 1 - target});
-            std::memmove(static_cast<void*>(items_.data() + target), items_.data() + source, part * sizeof(DictionaryEntry));
+            const size_t source = from & mask_, target = end_ & mask_,
+                         part = std::min({count, size_t{mask_} + 1 - source, size_t{mask_} + 1 - target});
+            std::memmove(static_cast<void*>(items_.data() + target), items_.data() + source,
+                         part * sizeof(DictionaryEntry));
             from += part, end_ += part, count -= part;
         }
     }
@@ -28,7 +30,9 @@ public:
     void replaces(DictionaryEntry item) {
         if (holds(cursor) && at(cursor).like(item)) ++cursor;
     }
-    [[nodiscard]] bool holds(uint64_t position) const { return position < end_ && end_ - position <= uint64_t{mask_} + 1; }
+    [[nodiscard]] bool holds(uint64_t position) const {
+        return position < end_ && end_ - position <= uint64_t{mask_} + 1;
+    }
     [[nodiscard]] DictionaryEntry at(uint64_t position) const { return items_[position & mask_]; }
     [[nodiscard]] uint64_t end() const { return end_; }
 

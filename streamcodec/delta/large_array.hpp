@@ -22,7 +22,8 @@ public:
     static LargeArray tryMake(size_t size, size_t readyBytes = kHugePageBytes) {
         LargeArray array;
         const size_t sizeBytes = size * sizeof(T), spare = sizeBytes >= kHugePageBytes ? kHugePageBytes : 0;
-        void* const mapped = mmap(nullptr, sizeBytes + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        void* const mapped = mmap(nullptr, sizeBytes + spare, PROT_READ | PROT_WRITE,
+                                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (mapped == MAP_FAILED) return array;
         array.mapped_ = {static_cast<std::byte*>(mapped), Unmap{sizeBytes + spare}};
         std::byte* from = array.mapped_.get();

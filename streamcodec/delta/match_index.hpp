@@ -1,6 +1,6 @@
 // Finds positions in a stream's log by the hashes of two consecutive entries, so the encoder resynchronizes after moved
-// or inserted entries. A short entry alone, such as glEnd, does not determine its successor. A longer entry does, and is
-// used if the pair is not found. Results are hints: the encoder compares.
+// or inserted entries. A short entry alone, such as glEnd, does not determine its successor. A longer entry does, and
+// is used if the pair is not found. Results are hints: the encoder compares.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,12 @@ namespace mural::delta {
 
 class MatchIndex {
 public:
-    explicit MatchIndex(uint32_t logItems) : mask_(logItems - 1), againBits_(static_cast<uint32_t>(std::bit_width((logItems + 1) / 2)) - 1), mostPositions_(logItems / 8), hashes_(LargeArray<uint32_t>::make(logItems)), positions_(kFirstPositions) {}
+    explicit MatchIndex(uint32_t logItems)
+        : mask_(logItems - 1),
+          againBits_(static_cast<uint32_t>(std::bit_width((logItems + 1) / 2)) - 1),
+          mostPositions_(logItems / 8),
+          hashes_(LargeArray<uint32_t>::make(logItems)),
+          positions_(kFirstPositions) {}
 
     // Adds the entry appended at `position`. `first`: it is the first of its packet.
     void append(uint64_t position, uint32_t hash, uint32_t sizeBytes, bool first) {
@@ -27,8 +32,10 @@ public:
     // is half a log behind.
     void appendAgain(uint64_t position, uint64_t from, uint32_t sizeBytes) {
         const uint32_t hash = hashes_[from & mask_];
-        if (half(position) == half(from)) hashes_[position & mask_] = hash;
-        else append(position, hash, sizeBytes, false);
+        if (half(position) == half(from))
+            hashes_[position & mask_] = hash;
+        else
+            append(position, hash, sizeBytes, false);
     }
     // The same for a run. `sizeAt(i)` returns the size of the entry at `from + i`.
     void appendAllAgain(uint64_t position, uint64_t from, size_t count, const auto& sizeAt) {
@@ -38,8 +45,10 @@ public:
                 ++i;
                 continue;
             }
-            const size_t source = (from + i) & mask_, target = (position + i) & mask_, halfEnds = (size_t{1} << againBits_) - 1;
-            const size_t most = std::min(halfEnds + 1 - (source & halfEnds), halfEnds + 1 - (target & halfEnds)), part = std::min(count - i, most);
+            const size_t source = (from + i) & mask_, target = (position + i) & mask_,
+                         halfEnds = (size_t{1} << againBits_) - 1;
+            const size_t most = std::min(halfEnds + 1 - (source & halfEnds), halfEnds + 1 - (target & halfEnds)),
+                         part = std::min(count - i, most);
             std::memmove(hashes_.data() + target, hashes_.data() + source, part * sizeof(uint32_t));
             i += part;
         }
@@ -55,7 +64,7 @@ public:
         return end - static_cast<uint32_t>(static_cast<uint32_t>(end) - position);
     }
 
-    static constexpr uint32_t kNothing = 0; // predecessor of a packet's first entry
+    static constexpr uint32_t kNothing = 0;  // predecessor of a packet's first entry
     static constexpr uint32_t kAnything = 1; // any successor
     static constexpr uint32_t kTellingBytes = 32;
 

@@ -22,8 +22,8 @@ public:
         ++batches_;
         isFirst_ = false;
     }
-    // Reports a delta-coded batch whose short records were mostly sent plain after many new ones (NoveltyDetector). It does
-    // not reveal the cost of delta mode.
+    // Reports a delta-coded batch whose short records were mostly sent plain after many new ones (NoveltyDetector). It
+    // does not reveal the cost of delta mode.
     void leftOut();
     // Reports a batch. pageBytes: the part of rawBytes in long records, which are coded in either mode.
     void measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte);
@@ -44,14 +44,14 @@ private:
     std::array<Cost, 2> costs_;
     bool plain_ = false;
     bool trying_ = false;
-    bool cheap_ = false; // a recent batch was cheap
-    uint32_t batches_ = 0; // since the mode was selected
+    bool cheap_ = false;         // a recent batch was cheap
+    uint32_t batches_ = 0;       // since the mode was selected
     uint32_t until_ = kFirstTry; // number of batches after which the other mode is tried
-    double decidedBy_ = 0; // cost per byte at the last decision
-    bool isFirst_ = true; // no batch so far
-    double firstNsPerByte_ = 0; // of the first batch, which is mostly new
-    bool isByOne_ = false; // the cost of delta mode is known from a single early batch
-    bool isByLeftOut_ = false; // plain mode without knowledge of the cost of delta mode
+    double decidedBy_ = 0;       // cost per byte at the last decision
+    bool isFirst_ = true;        // no batch so far
+    double firstNsPerByte_ = 0;  // of the first batch, which is mostly new
+    bool isByOne_ = false;       // the cost of delta mode is known from a single early batch
+    bool isByLeftOut_ = false;   // plain mode without knowledge of the cost of delta mode
 };
 
 } // namespace mural::delta

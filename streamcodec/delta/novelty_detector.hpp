@@ -36,13 +36,18 @@ public:
     void packetEnds(bool mostIsPages) { hadPages_ = mostIsPages; }
     // Reports records that repeat from `position` on, in this frame or an earlier one.
     void found(uint64_t position, size_t records) {
-        if (position >= frameBegan_) late_ += static_cast<uint32_t>(std::min<size_t>(records, kMany));
-        else late_ -= static_cast<uint32_t>(std::min<size_t>(late_, records * kFoundCounts));
+        if (position >= frameBegan_)
+            late_ += static_cast<uint32_t>(std::min<size_t>(records, kMany));
+        else
+            late_ -= static_cast<uint32_t>(std::min<size_t>(late_, records * kFoundCounts));
     }
     void isNew() { ++late_; }
     // Reports a record that differs from the log at `cursor`. Detects whether records were sent plain there in an
     // earlier frame.
-    void another(uint64_t cursor) { again_ = again_ || (next_ != 0 && cursor <= frameBegan_ && std::ranges::find(leftOutAt_, cursor) != leftOutAt_.end()); }
+    void another(uint64_t cursor) {
+        again_ = again_ ||
+                 (next_ != 0 && cursor <= frameBegan_ && std::ranges::find(leftOutAt_, cursor) != leftOutAt_.end());
+    }
 
     [[nodiscard]] bool many() const { return late_ >= kMany && !again_; }
     // The rest is sent plain; `position`: where it would have been in the log.
@@ -54,16 +59,16 @@ public:
 private:
     static constexpr uint32_t kMany = 64;
     static constexpr uint32_t kAtLeast = 32, kFew = 4; // threshold within a packet; threshold after many packets
-    static constexpr uint32_t kMaxHalved = 3; // halvings of the threshold, to four; then zero
-    static constexpr uint32_t kFoundCounts = 3; // one repeated record outweighs this number of new ones
+    static constexpr uint32_t kMaxHalved = 3;          // halvings of the threshold, to four; then zero
+    static constexpr uint32_t kFoundCounts = 3;        // one repeated record outweighs this number of new ones
     static constexpr uint64_t kNever = UINT64_MAX;
     static constexpr size_t kPlaces = 16; // approximate number of packets of a frame
 
-    uint32_t late_ = 0; // new records, less repeated ones
+    uint32_t late_ = 0;      // new records, less repeated ones
     bool isLeftOut_ = false; // the rest of the packet is sent plain
-    bool hadPages_ = false; // pages dominated the previous packet
-    uint32_t packets_ = 0; // packets of this frame with a plain rest
-    bool again_ = false; // a record that was sent plain before has repeated in this frame
+    bool hadPages_ = false;  // pages dominated the previous packet
+    uint32_t packets_ = 0;   // packets of this frame with a plain rest
+    bool again_ = false;     // a record that was sent plain before has repeated in this frame
     uint64_t frame_ = kNever, frameBegan_ = kNever;
     bool isFirstFrame_ = true;
     std::array<uint64_t, kPlaces> leftOutAt_ = nowhere();

@@ -22,7 +22,8 @@ public:
     }
     // Sets the hash of the slot's new page.
     void set(uint32_t slot, uint64_t hash) {
-        if (slot < pages_.size()) remove(slot);
+        if (slot < pages_.size())
+            remove(slot);
         else {
             pages_.resize(slot + 1);
             if (pages_.size() > heads_.size()) grow();
@@ -61,7 +62,7 @@ private:
     }
 
     std::vector<uint32_t> heads_; // size is a power of two
-    std::vector<Page> pages_; // by slot
+    std::vector<Page> pages_;     // by slot
 };
 
 } // namespace mural::delta

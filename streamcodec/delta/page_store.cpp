@@ -8,7 +8,9 @@ namespace {
 constexpr size_t kReadyBytes = size_t{8} << 20; // most programs load no more before their first frame
 }
 
-PageStore::PageStore(uint64_t sizeBytes) : capacity_(static_cast<uint32_t>(sizeBytes / kPageBytes)), bytes_(LargeArray<std::byte>::tryMake(size_t{capacity_} * kPageBytes, kReadyBytes)) {}
+PageStore::PageStore(uint64_t sizeBytes)
+    : capacity_(static_cast<uint32_t>(sizeBytes / kPageBytes)),
+      bytes_(LargeArray<std::byte>::tryMake(size_t{capacity_} * kPageBytes, kReadyBytes)) {}
 
 uint32_t PageStore::take() {
     if (slots_.size() < capacity_) {

@@ -48,7 +48,9 @@ public:
         return slot < slots_.size() ? bytes(slot, slots_[slot].sizeBytes) : std::span<const std::byte>();
     }
     // Returns the bytes of a valid slot with any contents.
-    [[nodiscard]] std::span<const std::byte> bytes(uint32_t slot, size_t sizeBytes) const { return {bytes_.data() + size_t{slot} * kPageBytes, sizeBytes}; }
+    [[nodiscard]] std::span<const std::byte> bytes(uint32_t slot, size_t sizeBytes) const {
+        return {bytes_.data() + size_t{slot} * kPageBytes, sizeBytes};
+    }
     [[nodiscard]] uint32_t slots() const { return static_cast<uint32_t>(slots_.size()); }
 
 private:
@@ -56,8 +58,8 @@ private:
 
     struct Slot {
         uint16_t sizeBytes = 0;
-        bool used = false; // since the last pass of the hand
-        bool left = false; // the page has changed and continues in another slot
+        bool used = false;   // since the last pass of the hand
+        bool left = false;   // the page has changed and continues in another slot
         uint8_t changes = 0; // consecutive changes without a recurrence
     };
     void begin(uint32_t slot) { slots_[slot].changes = 0, slots_[slot].left = false; }

@@ -1,6 +1,6 @@
-// Selects the slot (RawRunCache) in which to expect each run of plain records: the run of the previous frame with the same
-// stream, size, and index among runs of this size. Caching a run copies it on both sides, so only runs that occur twice
-// are cached. Encoder only.
+// Selects the slot (RawRunCache) in which to expect each run of plain records: the run of the previous frame with the
+// same stream, size, and index among runs of this size. Caching a run copies it on both sides, so only runs that occur
+// twice are cached. Encoder only.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,8 @@ public:
     // Returns the slot for a run of this frame.
     [[nodiscard]] Place expect(uint32_t stream, size_t sizeBytes, uint64_t frame) {
         if (sizeBytes < RawRunCache::kMinBytes || sizeBytes > RawRunCache::kMaxBytes || sizeBytes % 4 != 0) return {};
-        const auto found = std::ranges::find_if(runs_, [&](const Run& r) { return r.sizeBytes == sizeBytes && r.stream == stream && r.frame != frame; });
+        const auto found = std::ranges::find_if(
+            runs_, [&](const Run& r) { return r.sizeBytes == sizeBytes && r.stream == stream && r.frame != frame; });
         if (found == runs_.end()) {
             runs_[next_] = {stream, static_cast<uint32_t>(sizeBytes), frame};
             next_ = (next_ + 1) % RawRunCache::kSlots;

@@ -30,12 +30,16 @@ public:
         return where;
     }
 
-    [[nodiscard]] std::span<const std::byte> at(uint32_t where, size_t sizeBytes) const { return {bytes_.data() + where, sizeBytes}; }
+    [[nodiscard]] std::span<const std::byte> at(uint32_t where, size_t sizeBytes) const {
+        return {bytes_.data() + where, sizeBytes};
+    }
 
     // Returns the number of bytes written since the start, including skipped ones at the end of the ring, now and
     // before a given entry.
     [[nodiscard]] uint64_t written() const { return written_; }
-    [[nodiscard]] uint64_t writtenBefore(uint32_t where) const { return written_ - ((head_ - where) & (sizeBytes_ - 1)); }
+    [[nodiscard]] uint64_t writtenBefore(uint32_t where) const {
+        return written_ - ((head_ - where) & (sizeBytes_ - 1));
+    }
     // Returns true if the entry is in the older half of the ring and must be appended again before it is overwritten.
     [[nodiscard]] bool old(uint32_t where) const { return ((head_ - where) & (sizeBytes_ - 1)) > sizeBytes_ / 2; }
     [[nodiscard]] bool oldSince(uint64_t writtenBefore) const { return written_ - writtenBefore > sizeBytes_ / 2; }

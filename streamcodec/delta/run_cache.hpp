@@ -19,8 +19,8 @@ public:
     static constexpr size_t kMinItems = 16; // shorter runs are compared as fast entry by entry
 
     struct Run {
-        uint64_t position = 0; // position of the first entry in the log
-        uint64_t bytesAt = 0; // offset of its bytes, counted from the start of the stream
+        uint64_t position = 0;   // position of the first entry in the log
+        uint64_t bytesAt = 0;    // offset of its bytes, counted from the start of the stream
         uint64_t oldestText = 0; // RecordRing::written() at the time of its oldest entry
         uint32_t items = 0, sizeBytes = 0;
     };
@@ -40,7 +40,8 @@ public:
         const auto at = [this](uint64_t i) -> const Run& { return runs_[i % runs_.size()]; };
         const uint64_t position = log.cursor;
         const auto behind = [&](uint64_t i) { return at(i).position + at(i).items > position; };
-        if (position < seen_ || end_ - next_ > runs_.size() || (end_ - next_ > kMaxSteps && !behind(next_ + kMaxSteps))) {
+        if (position < seen_ || end_ - next_ > runs_.size() ||
+            (end_ - next_ > kMaxSteps && !behind(next_ + kMaxSteps))) {
             uint64_t first = end_ < runs_.size() ? 0 : end_ - runs_.size();
             for (uint64_t last = end_; first < last;) { // first run after the cursor
                 const uint64_t middle = first + (last - first) / 2;
@@ -54,8 +55,10 @@ public:
         if (next_ == end_ || at(next_).position > position) return {};
         Run run = at(next_);
         if (run.bytesAt + kMaxBytes < bytesEnd_ || !log.holds(run.position)) return {};
-        for (; run.position + within_.items < position; ++within_.items) within_.sizeBytes += log.at(run.position + within_.items).sizeBytes;
-        return {position, run.bytesAt + within_.sizeBytes, run.oldestText, run.items - within_.items, run.sizeBytes - within_.sizeBytes};
+        for (; run.position + within_.items < position; ++within_.items)
+            within_.sizeBytes += log.at(run.position + within_.items).sizeBytes;
+        return {position, run.bytesAt + within_.sizeBytes, run.oldestText, run.items - within_.items,
+                run.sizeBytes - within_.sizeBytes};
     }
     [[nodiscard]] const std::byte* bytesOf(const Run& run) const { return bytes_.data() + run.bytesAt % kMaxBytes; }
 
@@ -68,7 +71,7 @@ private:
     };
     std::array<Run, 1024> runs_; // a ring
     uint64_t end_ = 0, next_ = 0, seen_ = 0;
-    Within within_; // part of runs_[next_] before the cursor
+    Within within_;                                                        // part of runs_[next_] before the cursor
     LargeArray<std::byte> bytes_ = LargeArray<std::byte>::make(kMaxBytes); // a ring
     uint64_t bytesEnd_ = 0;
 };

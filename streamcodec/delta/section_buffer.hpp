@@ -33,7 +33,9 @@ public:
         own();
         return own_;
     }
-    [[nodiscard]] std::span<const std::byte> bytes() const { return lent_.empty() ? std::span<const std::byte>(own_) : lent_; }
+    [[nodiscard]] std::span<const std::byte> bytes() const {
+        return lent_.empty() ? std::span<const std::byte>(own_) : lent_;
+    }
     [[nodiscard]] size_t size() const { return bytes().size(); }
 
 private:

@@ -156,16 +156,22 @@ CommandClass ownClass(uint16_t opcode) {
 }
 
 // Returns true for requests that do not depend on bindings.
-bool asksForPictures(uint16_t opcode) { return opcode == wire::kOpSwap || opcode == wire::kOpFrontPicture || opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestQuery || opcode == wire::kOpFinish; }
+bool asksForPictures(uint16_t opcode) {
+    return opcode == wire::kOpSwap || opcode == wire::kOpFrontPicture || opcode == wire::kOpRequestPixels ||
+           opcode == wire::kOpRequestQuery || opcode == wire::kOpFinish;
+}
 
 constexpr uint8_t kBufferBytesValue = 3; // after buffer and u64 offset
 
 uint8_t findValue(uint16_t opcode) {
     size_t word = 0;
     for (const ParameterInfo& p : parametersOf(opcode).parameters) {
-        if (p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts) return word < kNoValue ? static_cast<uint8_t>(word) : kNoValue;
-        if (p.travel == Travel::Fixed) word += (size_t{p.fixedBytes} + 3) / 4;
-        else word += p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
+        if (p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts)
+            return word < kNoValue ? static_cast<uint8_t>(word) : kNoValue;
+        if (p.travel == Travel::Fixed)
+            word += (size_t{p.fixedBytes} + 3) / 4;
+        else
+            word += p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
     }
     return kNoValue;
 }
@@ -192,11 +198,16 @@ FrameRole frameRoleOf(const CommandKind& kind) {
     case CommandClass::End: return FrameRole::Binds;
     case CommandClass::Bind:
         if (kind.family == Family::UseProgram) return FrameRole::Draws;
-        return kind.family == Family::Gen || kind.family == Family::Create || kind.family == Family::Delete || kind.family == Family::ProgramDelete ? FrameRole::Ends : FrameRole::Binds;
-    case CommandClass::List: return kind.family == Family::CallList || kind.family == Family::CallLists ? FrameRole::Binds : FrameRole::Ends;
+        return kind.family == Family::Gen || kind.family == Family::Create || kind.family == Family::Delete ||
+                       kind.family == Family::ProgramDelete
+                   ? FrameRole::Ends
+                   : FrameRole::Binds;
+    case CommandClass::List:
+        return kind.family == Family::CallList || kind.family == Family::CallLists ? FrameRole::Binds : FrameRole::Ends;
     case CommandClass::Object: // on an object without deferred uploads
         if (kind.small) return FrameRole::Draws;
-        return kind.family == Family::TexParameter || kind.family == Family::NamedSet ? FrameRole::Binds : FrameRole::SeenBound;
+        return kind.family == Family::TexParameter || kind.family == Family::NamedSet ? FrameRole::Binds
+                                                                                      : FrameRole::SeenBound;
     case CommandClass::Upload: return kind.small ? FrameRole::Draws : FrameRole::SeenBound;
     case CommandClass::Blob:
     case CommandClass::Own:
@@ -230,11 +241,15 @@ CommandKinds::CommandKinds() {
         kind.deeper = deeperOf(kind);
         kind.frame = asksForPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
         const bool passes = kind.about == CommandClass::Pass;
-        const bool looked = kind.about == CommandClass::Bind || kind.about == CommandClass::Use || kind.family == Family::CallList || kind.family == Family::CallLists;
+        const bool looked = kind.about == CommandClass::Bind || kind.about == CommandClass::Use ||
+                            kind.family == Family::CallList || kind.family == Family::CallLists;
         const auto of = [&](Walk walk) -> Interest& { return interests_[static_cast<size_t>(walk)][opcode]; };
         of(Walk::State) = passes && kind.state == StateRole::None ? Interest::None : Interest::Stop;
-        of(Walk::Bindings) = passes || kind.small || kind.family == Family::UseProgram ? Interest::None : looked ? Interest::Look : Interest::Stop;
-        of(Walk::Untracked) = kind.about == CommandClass::Own || kind.about == CommandClass::Blob ? Interest::Stop : Interest::None;
+        of(Walk::Bindings) = passes || kind.small || kind.family == Family::UseProgram ? Interest::None
+                             : looked                                                  ? Interest::Look
+                                                                                       : Interest::Stop;
+        of(Walk::Untracked) =
+            kind.about == CommandClass::Own || kind.about == CommandClass::Blob ? Interest::Stop : Interest::None;
     }
 }
 

@@ -1,6 +1,6 @@
 // Classes of commands for the command filter: one table entry per opcode, so most records pass without examination.
-// Derived from the effects of commands (streamcodec/snapshot/command_effects.hpp). A command without an effect ends the deferral of its
-// share group.
+// Derived from the effects of commands (streamcodec/snapshot/command_effects.hpp). A command without an effect ends the
+// deferral of its share group.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 namespace mural::filter {
 
 enum class CommandClass : uint8_t {
-    Pass,    // reads no deferred object and does not change the target of uploads
-    Blob,    // a piece of a value that precedes its record
-    Use,     // draw: may read all bound objects
-    Begin,   // glBegin: no record may be inserted until glEnd
+    Pass,  // reads no deferred object and does not change the target of uploads
+    Blob,  // a piece of a value that precedes its record
+    Use,   // draw: may read all bound objects
+    Begin, // glBegin: no record may be inserted until glEnd
     End,
     Arrays,  // belongs to the following draw: no record may be inserted in between
     Bind,    // changes bindings, or creates or deletes objects
@@ -57,11 +57,11 @@ enum class Binding : uint8_t {
 
 // Role of a record in frame matching (holder_frames.cpp), where a frame repeats the previous one.
 enum class FrameRole : uint8_t {
-    Draws, // changes no binding, independently of its arguments
-    Binds, // changes bindings or depends on them; its arguments have to match
-    Seen,  // examined in each frame
+    Draws,     // changes no binding, independently of its arguments
+    Binds,     // changes bindings or depends on them; its arguments have to match
+    Seen,      // examined in each frame
     SeenBound, // examined in each frame with the current bindings
-    Ends,  // creates or deletes objects: the frame has no template
+    Ends,      // creates or deletes objects: the frame has no template
 };
 
 // Special value of CommandKind::valueWord: no value of variable size.
@@ -74,7 +74,7 @@ struct CommandKind {
     StateRole state = StateRole::Change;
     trace::Family family = trace::Family::Unknown;
     uint8_t valueWord = kNoValue; // argument word in which the first value of variable size begins
-    bool small = false; // sets uniforms, which are examined together with redundant state
+    bool small = false;           // sets uniforms, which are examined together with redundant state
     // Change of the glBegin nesting depth, for commands without another effect in a list that is compiled. kLooked: the
     // command has to be examined.
     int8_t deeper = kLooked;

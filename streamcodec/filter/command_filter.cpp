@@ -20,7 +20,8 @@ constexpr uint64_t kMaxValueBytes = uint64_t{96} << 20; // longer blobs are not 
 } // namespace
 
 CommandFilter::CommandFilter(uint64_t mostBytes, Take take)
-    : mostBytes_(mostBytes), take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes, const RecordOffsets* walked) {
+    : mostBytes_(mostBytes),
+      take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes, const RecordOffsets* walked) {
           counts_.outBytes += bytes.size();
           take(to, bytes, walked);
       }) {}
@@ -66,7 +67,8 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
             continue;
         }
         const size_t from = valueFrom == kNone ? r.offset : valueFrom;
-        const bool done = looksAtState && kind.state != StateRole::None && stream.context != nullptr && smallState(stream, output, r, kind.state, from, payload);
+        const bool done = looksAtState && kind.state != StateRole::None && stream.context != nullptr &&
+                          smallState(stream, output, r, kind.state, from, payload);
         if (!done) record(stream, output, r, kind, from, payload);
         if (stream.values > 0 && kind.about != CommandClass::Upload) stream.waiting.lost();
         if (!stream.pending.empty()) sendPending(stream, output, from);
@@ -86,19 +88,24 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
 
 // Skips records of no interest. In most programs these are nearly all records but bindings, which are followed here,
 // and draws, most of which need nothing deferred.
-void CommandFilter::passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet, bool looksAtState) {
+void CommandFilter::passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet,
+                               bool looksAtState) {
     using Walk = CommandKinds::Walk;
     const bool isUntracked = stream.context != nullptr && stream.context->group->untracked;
-    const CommandKinds::Interests& interests = kinds_.interests(looksAtState ? Walk::State : isUntracked ? Walk::Untracked : Walk::Bindings);
+    const CommandKinds::Interests& interests = kinds_.interests(looksAtState  ? Walk::State
+                                                                : isUntracked ? Walk::Untracked
+                                                                              : Walk::Bindings);
     const auto interestOf = [&](uint16_t opcode) { return interests[CommandKinds::placeOf(opcode)]; };
     const bool looks = !looksAtState && stream.same.now != FrameMatcher::Now::Following && bindsHere(stream);
-    if (!looks) return walk.skip([&](uint16_t opcode, size_t) { return interestOf(opcode) == CommandKinds::Interest::None; });
+    if (!looks)
+        return walk.skip([&](uint16_t opcode, size_t) { return interestOf(opcode) == CommandKinds::Interest::None; });
     walk.pass(interestOf, [&](const RecordView& r) {
         if (stream.context->group->untracked) return false;
         const CommandKind& kind = kinds_[r.opcode];
         Group& group = *stream.context->group;
         if (kind.about != CommandClass::Bind) // a draw, or a display list that may draw
-            return (group.held.empty() || !stream.context->needs) && (kind.about == CommandClass::Use || !group.listsBind);
+            return (group.held.empty() || !stream.context->needs) &&
+                   (kind.about == CommandClass::Use || !group.listsBind);
         At at{stream, *stream.context, group, output, r, kind, r.offset, packet};
         bind(at);
         return true;
@@ -109,8 +116,11 @@ void CommandFilter::passOthers(Stream& stream, Output& output, trace::RecordWalk
 void CommandFilter::keepPending(Stream& stream, Output& output, size_t from, const Packet& packet) {
     Context* const c = stream.context;
     const bool holds = c != nullptr && !c->group->held.empty();
-    const bool wanted = c != nullptr && !c->group->untracked && stream.list == 0 && !stream.inPrimitive && stream.valueBytes <= std::min(kMaxValueBytes, mostBytes_ / 2) && (holds || !stream.waiting.vain() || stream.waiting.tries());
-    if (wanted && makeRoom(stream, output, from, stream.valueBytes - std::min<uint64_t>(stream.valueBytes, stream.pending.size()))) {
+    const bool wanted = c != nullptr && !c->group->untracked && stream.list == 0 && !stream.inPrimitive &&
+                        stream.valueBytes <= std::min(kMaxValueBytes, mostBytes_ / 2) &&
+                        (holds || !stream.waiting.vain() || stream.waiting.tries());
+    if (wanted && makeRoom(stream, output, from,
+                           stream.valueBytes - std::min<uint64_t>(stream.valueBytes, stream.pending.size()))) {
         const auto rest = packet.subspan(from);
         stream.pending.reserve(stream.valueBytes + stream.valueBytes / 1024 + rest.size());
         stream.pending.insert(stream.pending.end(), rest.begin(), rest.end());
@@ -130,7 +140,8 @@ void CommandFilter::sendPending(Stream& stream, Output& output, size_t from) {
     std::vector<std::byte>().swap(stream.pending);
 }
 
-void CommandFilter::record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, const Packet& packet) {
+void CommandFilter::record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from,
+                           const Packet& packet) {
     if (kind.about == CommandClass::Own) return own(stream, output, r, from);
     if (stream.context == nullptr || kind.about == CommandClass::Pass) return;
     Group& group = *stream.context->group;
@@ -175,7 +186,8 @@ void CommandFilter::arrays(At& at) {
     if (at.group.held.empty()) return;
     trace::RecordWalk behind(at.packet.subspan(at.r.offset + at.r.sizeBytes));
     RecordView next;
-    const bool draws = at.r.opcode == wire::kOpClientArrays && behind.next(next) && kinds_[next.opcode].about == CommandClass::Use;
+    const bool draws =
+        at.r.opcode == wire::kOpClientArrays && behind.next(next) && kinds_[next.opcode].about == CommandClass::Use;
     if (draws) return use(at);
     releaseGroup(at.stream, at.output, at.from);
 }

@@ -27,10 +27,10 @@ namespace mural::filter {
 
 struct CommandFilterCounts {
     uint64_t inBytes = 0, outBytes = 0;
-    uint64_t heldRecords = 0; // total deferred
+    uint64_t heldRecords = 0;    // total deferred
     uint64_t leftOutRecords = 0; // dropped: overwritten, redundant, or deleted with their object
     uint64_t leftOutBytes = 0;
-    uint64_t heldBytes = 0; // currently deferred
+    uint64_t heldBytes = 0;    // currently deferred
     uint64_t alikeRecords = 0; // equal to the previous frame, and therefore not followed
 };
 
@@ -43,7 +43,7 @@ public:
     CommandFilter& operator=(const CommandFilter&) = delete;
 
     void add(uint32_t stream, std::span<const std::byte> payload);
-    void releaseAll(); // flushes everything
+    void releaseAll();                // flushes everything
     void clientGone(uint32_t client); // drops everything of the program
     // Sets whether redundant state setters, bindings and uniforms are dropped. Initially off. Call between packets.
     void leaveOutSmall(bool leavesOut);
@@ -65,12 +65,18 @@ private:
         const Packet& packet;
     };
 
-    void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from, const Packet& packet);
+    void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from,
+                const Packet& packet);
     void passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet, bool looksAtState);
     void keepPending(Stream& stream, Output& output, size_t from, const Packet& packet);
     void sendPending(Stream& stream, Output& output, size_t from);
-    static bool bindsHere(const Stream& stream) { return stream.context != nullptr && !stream.context->group->untracked && !stream.inPrimitive; }
-    static bool compilesList(const Stream& stream) { return stream.list != 0 && stream.context != nullptr && !stream.context->group->untracked && stream.same.now != FrameMatcher::Now::Following; }
+    static bool bindsHere(const Stream& stream) {
+        return stream.context != nullptr && !stream.context->group->untracked && !stream.inPrimitive;
+    }
+    static bool compilesList(const Stream& stream) {
+        return stream.list != 0 && stream.context != nullptr && !stream.context->group->untracked &&
+               stream.same.now != FrameMatcher::Now::Following;
+    }
     void gl(At& at);
     void arrays(At& at);
 
@@ -88,14 +94,14 @@ private:
     void endSame(Stream& stream, const Packet& packet);
 
     // Redundant state.
-    bool smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, const Packet& packet);
+    bool smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from,
+                    const Packet& packet);
     void countFate(const SetResult& outcome, size_t sizeBytes);
     [[nodiscard]] bool setsNothing(const Group& group, uint32_t list) const;
     void sendState(Stream& stream, Output& output, size_t from);
     void sendStateOf(Stream& stream);
     void sendUniformsOf(Group& group);
-    template <size_t Words>
-    void dropWaiting(const StateCache<Words>& cells) {
+    template <size_t Words> void dropWaiting(const StateCache<Words>& cells) {
         counts_.heldBytes -= cells.waitingBytes();
         countLeftOut(cells.waitingRecords(), cells.waitingBytes());
     }
@@ -153,7 +159,8 @@ private:
     // Flushing: inserts records before byte `from` of the output's packet.
     void use(At& at);
     enum class Because : uint8_t { Needed, NoRoom };
-    void release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects, Because because = Because::Needed);
+    void release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects,
+                 Because because = Because::Needed);
     void releaseOne(At& at, Object& object);
     static bool deferrable(Group& group, Object& object);
     bool makeRoom(Stream& stream, Output& output, size_t from, uint64_t sizeBytes);
@@ -171,7 +178,7 @@ private:
     std::unordered_map<uint32_t, Stream> streams_;
     std::map<uint32_t, std::map<uint32_t, std::unique_ptr<Context>>> clients_;
     std::vector<std::byte> scratch_, otherScratch_;
-    std::vector<Object*> used_; // objects that the draw uses
+    std::vector<Object*> used_;   // objects that the draw uses
     std::vector<uint32_t> names_; // names in the current record
     uint64_t pendingBytes_ = 0;
     bool leavesOutSmall_ = false;

@@ -23,7 +23,10 @@ bool needs(const VertexArray& array) {
 constexpr size_t kMaxUnits = 256, kMaxSaved = 16, kMaxArrayBuffers = 256;
 
 // Targets that no draw reads or writes.
-bool onlyForUploads(uint32_t target) { return target == GL_ARRAY_BUFFER || target == GL_COPY_READ_BUFFER || target == GL_COPY_WRITE_BUFFER || target == GL_UNIFORM_BUFFER || target == GL_TEXTURE_BUFFER; }
+bool onlyForUploads(uint32_t target) {
+    return target == GL_ARRAY_BUFFER || target == GL_COPY_READ_BUFFER || target == GL_COPY_WRITE_BUFFER ||
+           target == GL_UNIFORM_BUFFER || target == GL_TEXTURE_BUFFER;
+}
 
 } // namespace
 
@@ -74,7 +77,9 @@ void CommandFilter::bind(At& at) {
         return bindTexture(at, first, c.unit, object);
     }
     case Binding::Buffer:
-        if (first == GL_ARRAY_BUFFER && second != 0 && bufferAt(c, first) != nullptr && bufferAt(c, first)->name == second) return isRedundantBind(at);
+        if (first == GL_ARRAY_BUFFER && second != 0 && bufferAt(c, first) != nullptr &&
+            bufferAt(c, first)->name == second)
+            return isRedundantBind(at);
         return bindBuffer(at, first, second);
     case Binding::VertexArray: return bindVertexArray(at, first);
     case Binding::Framebuffer:
@@ -187,7 +192,8 @@ void CommandFilter::useProgram(At& at, uint32_t name) {
     if (c.programSure && object == c.program && (object == nullptr || object->target != 0)) return isRedundantBind(at);
     if (object != nullptr && object->target == 0) {
         std::vector<Object*> programs;
-        std::ranges::copy_if(at.group.held, std::back_inserter(programs), [](const Object* o) { return o->kind == Kind::Program; });
+        std::ranges::copy_if(at.group.held, std::back_inserter(programs),
+                             [](const Object* o) { return o->kind == Kind::Program; });
         if (!programs.empty()) release(at.stream, at.output, at.from, programs);
         c.programSure = false;
     } else {
@@ -200,7 +206,8 @@ void CommandFilter::useProgram(At& at, uint32_t name) {
 void CommandFilter::arrayPointer(At& at) {
     Context& c = at.context;
     const RecordView& r = at.r;
-    const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer || r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
+    const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer ||
+                         r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
     Object* object = bufferAt(c, GL_ARRAY_BUFFER);
     if (r.opcode == op::glBindVertexBuffer) {
         object = named(at, Kind::Buffer, argumentWord(r, 1));

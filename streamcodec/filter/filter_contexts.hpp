@@ -25,18 +25,18 @@ struct Context;
 struct ListNames {
     bool binds = false; // changes bindings, or is not understood: calling it disables deferral
     bool calls = false; // calls other lists
-    bool sets = false; // sets state, or is not understood
+    bool sets = false;  // sets state, or is not understood
 };
 
 // A share group. Deferred commands belong to one of its contexts; a command of another context flushes them.
 struct Group {
     std::array<std::unordered_map<uint32_t, std::unique_ptr<Object>>, 3> objects; // by Kind
-    std::array<NameIndex<Object>, 3> named; // by Kind
+    std::array<NameIndex<Object>, 3> named;                                       // by Kind
     std::unordered_map<uint32_t, ListNames> lists;
-    bool listsBind = false; // some display lists change bindings
+    bool listsBind = false;    // some display lists change bindings
     std::vector<Object*> held; // objects with a queue, oldest first
     SoonUsed soonUsed;
-    uint64_t heldChanges = 0; // number of changes of the set of deferred objects
+    uint64_t heldChanges = 0;   // number of changes of the set of deferred objects
     uint64_t objectChanges = 0; // number of changes of the set of objects
     Context* holder = nullptr;
     uint32_t holderStream = 0;
@@ -62,8 +62,9 @@ struct Bindings {
     uint32_t drawFramebuffer = 0;
     bool operator==(const Bindings&) const = default;
     [[nodiscard]] bool equalButTextures(const Bindings& other) const {
-        return units.size() == other.units.size() && unit == other.unit && clientUnit == other.clientUnit && buffers == other.buffers && arrays == other.arrays && array == other.array &&
-               program == other.program && programSure == other.programSure && drawFramebuffer == other.drawFramebuffer;
+        return units.size() == other.units.size() && unit == other.unit && clientUnit == other.clientUnit &&
+               buffers == other.buffers && arrays == other.arrays && array == other.array && program == other.program &&
+               programSure == other.programSure && drawFramebuffer == other.drawFramebuffer;
     }
     // Restores the bindings of a state with the same number of vertex arrays.
     void takeOver(const Bindings& before) {
@@ -92,43 +93,43 @@ struct Context : Bindings {
     uint32_t id = 0;
     std::shared_ptr<Group> group;
     bool madeByBinding = false; // first use of a name creates the object
-    bool destroyed = false; // but still current
+    bool destroyed = false;     // but still current
     NameIndex<VertexArray> arraysNamed;
     // recycled nodes: some programs recreate vertex arrays for each draw
     std::vector<decltype(arrays)::node_type> sparedArrays;
     std::vector<SavedAttribs> attribs;
     std::vector<SavedClientAttribs> clientAttribs;
-    bool needs = true; // a deferred object may have been bound or deferred since the last draw
+    bool needs = true;             // a deferred object may have been bound or deferred since the last draw
     StateCache<kStateWords> state; // state cells, by StateSet
 };
 
 // Detects frames of a stream with the bindings of the previous frame.
 struct FrameMatcher {
     enum class Now : uint8_t {
-        Apart, // every record is followed
+        Apart,     // every record is followed
         Recording, // the same, and a template is built
         Following, // matching records are skipped: the bindings are those of the frame's start, or of layout.follow()
     };
     Now now = Now::Apart;
     FrameTemplate layout;
-    size_t keptBytes = 0; // bytes of the packet in the template that is being built
-    bool inValue = false; // the last record in the template was a piece of a blob
+    size_t keptBytes = 0;             // bytes of the packet in the template that is being built
+    bool inValue = false;             // the last record in the template was a piece of a blob
     const Context* context = nullptr; // context of the template
     uint64_t heldChanges = 0, objectChanges = 0;
     // Bindings at the start and the end of the template. Textures may differ: a frame binds every texture whose binding
     // it changes, and so does every matching frame.
     Bindings begins, ends;
     std::vector<TextureUnit> began; // at the start of this frame
-    struct Mark { // bindings within the template, slightly before the usual point of difference
-        size_t followed = 0; // number of records before it; 0: no mark
-        uint32_t frame = 0; // frame in which it was made
+    struct Mark {                   // bindings within the template, slightly before the usual point of difference
+        size_t followed = 0;        // number of records before it; 0: no mark
+        uint32_t frame = 0;         // frame in which it was made
         std::vector<TextureUnit> began;
         Bindings bound;
         bool inPrimitive = false;
     } mark;
-    uint32_t frames = 0; // frames since the template was built
+    uint32_t frames = 0;    // frames since the template was built
     uint32_t wait = kFirst; // frames until the next template
-    double shares = 0; // sum of the matched fractions
+    double shares = 0;      // sum of the matched fractions
     static constexpr uint32_t kFirst = 4, kMost = 1024;
 };
 

@@ -43,7 +43,8 @@ void CommandFilter::use(At& at) {
     std::vector<Object*>& used = used_;
     used.clear();
     const auto take = [&](Object* object) {
-        if (object != nullptr && object->waits() && std::ranges::find(used, object) == used.end()) used.push_back(object);
+        if (object != nullptr && object->waits() && std::ranges::find(used, object) == used.end())
+            used.push_back(object);
     };
     for (const TextureUnit& unit : c.units)
         for (Object* const object : unit) take(object);
@@ -95,7 +96,9 @@ void CommandFilter::releaseOf(Group& group, Stream& stream, Output& output, size
 }
 
 void CommandFilter::releaseElsewhere(Stream& stream) {
-    if (stream.context == nullptr || stream.context->group->held.empty() || stream.context->group->holder == stream.context) return;
+    if (stream.context == nullptr || stream.context->group->held.empty() ||
+        stream.context->group->holder == stream.context)
+        return;
     Output none(stream.id, {}, scratch_, take_);
     releaseOf(*stream.context->group, stream, none, 0);
     none.finish();
@@ -130,7 +133,8 @@ void CommandFilter::emptyQueue(Group& group, Object& object) {
     std::erase(group.held, &object);
 }
 
-void CommandFilter::release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects, Because because) {
+void CommandFilter::release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects,
+                            Because because) {
     Context& c = *stream.context;
     Group& group = *c.group;
     const bool textures = std::ranges::any_of(objects, [](const Object* o) { return o->kind == Kind::Texture; });
@@ -138,11 +142,15 @@ void CommandFilter::release(Stream& stream, Output& output, size_t from, std::sp
     if (unpack != nullptr) put<2>(output, from, op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, 0});
     for (Object* const object : objects) {
         counts_.heldBytes -= object->uniforms.waitingBytes();
-        if (!loses_) sendQueue(c, output, from, *object);
-        else object->uniforms.send([](std::span<const std::byte>) {});
+        if (!loses_)
+            sendQueue(c, output, from, *object);
+        else
+            object->uniforms.send([](std::span<const std::byte>) {});
         const bool soon = group.frame - object->heldSince <= kSoonFrames && !object->gained;
-        if (soon && because == Because::Needed) object->holding.lost();
-        else object->holding.won();
+        if (soon && because == Because::Needed)
+            object->holding.lost();
+        else
+            object->holding.won();
         if (object->kind != Kind::Program && because == Because::Needed) group.soonUsed.was(soon);
         emptyQueue(group, *object);
     }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kMaxCompared = 1024; // vertex arrays and their bindings, which are compared or copied once per frame
 constexpr double kLike = 0.9, kUnlike = 0.5;
-constexpr size_t kWorthAMark = 64; // records that would be followed in every frame
+constexpr size_t kWorthAMark = 64;   // records that would be followed in every frame
 constexpr uint32_t kMarkFrames = 16; // frames between two marks
 
 bool fewEnough(const Bindings& b) {
@@ -48,7 +48,8 @@ bool othersWait(const Textures& now, const Textures& begins) {
 
 // Returns true if a frame that begins with these bindings can match the template.
 bool mayBegin(const FrameMatcher& same, const Bindings& now) {
-    return now.equalButTextures(same.begins) && leadsTo(now.units, same.begins.units, same.ends.units) && !othersWait(now.units, same.begins.units);
+    return now.equalButTextures(same.begins) && leadsTo(now.units, same.begins.units, same.ends.units) &&
+           !othersWait(now.units, same.begins.units);
 }
 
 bool nothingSaved(const Context& c) { return c.attribs.empty() && c.clientAttribs.empty(); }
@@ -100,16 +101,19 @@ void CommandFilter::followSame(Stream& stream) {
     FrameMatcher& same = stream.same;
     const size_t passed = same.layout.passed();
     FrameMatcher::Mark& mark = same.mark;
-    if (mark.followed > same.layout.followed() && mark.followed <= passed && leadsTo(same.began, mark.began, mark.bound.units)) {
+    if (mark.followed > same.layout.followed() && mark.followed <= passed &&
+        leadsTo(same.began, mark.began, mark.bound.units)) {
         stream.context->takeOver(mark.bound);
         stream.inPrimitive = mark.inPrimitive;
         same.layout.followFrom(mark.followed);
     }
     // The next frame may differ a little earlier.
     const size_t marked = passed - passed / 16;
-    if (marked >= same.layout.followed() + kWorthAMark && (mark.followed == 0 || same.frames - mark.frame >= kMarkFrames)) {
+    if (marked >= same.layout.followed() + kWorthAMark &&
+        (mark.followed == 0 || same.frames - mark.frame >= kMarkFrames)) {
         followSameTo(stream, marked);
-        if (nothingSaved(*stream.context)) mark = {marked, same.frames, same.began, *stream.context, stream.inPrimitive};
+        if (nothingSaved(*stream.context))
+            mark = {marked, same.frames, same.began, *stream.context, stream.inPrimitive};
     }
     followSameTo(stream, passed);
 }
@@ -131,7 +135,8 @@ void CommandFilter::leaveSameOf(const Group& group) {
 // Called after an examined record.
 void CommandFilter::keepSame(Stream& stream, const RecordView& r, const Packet& packet) {
     if (stream.same.now == FrameMatcher::Now::Following && !repeats(stream)) leaveSame(stream);
-    if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) endSame(stream, packet.first(r.offset + r.sizeBytes));
+    if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
+        endSame(stream, packet.first(r.offset + r.sizeBytes));
 }
 
 // Appends records to the template that is being built. They have been followed.
@@ -144,7 +149,11 @@ void CommandFilter::keepRecords(Stream& stream, const Packet& packet) {
         const CommandKind& kind = kinds_[r.opcode];
         const bool takesValue = same.inValue && kind.about != CommandClass::Blob;
         same.inValue = kind.about == CommandClass::Blob;
-        const FrameRole role = kind.frame == FrameRole::Ends || (r.opcode == wire::kOpMakeCurrent && trace::argumentWord(r, 0) != stream.context->id) ? FrameRole::Ends : takesValue ? FrameRole::SeenBound : kind.frame;
+        const FrameRole role = kind.frame == FrameRole::Ends || (r.opcode == wire::kOpMakeCurrent &&
+                                                                 trace::argumentWord(r, 0) != stream.context->id)
+                                   ? FrameRole::Ends
+                               : takesValue ? FrameRole::SeenBound
+                                            : kind.frame;
         const Same how = role == FrameRole::Draws ? Same::Head : role == FrameRole::Binds ? Same::All : Same::Seen;
         keeps = role != FrameRole::Ends && same.layout.add(how, packet.subspan(same.keptBytes + r.offset, r.sizeBytes));
     }
@@ -166,7 +175,8 @@ void CommandFilter::endSame(Stream& stream, const Packet& packet) {
         stream.context->needs = true;
         stream.inPrimitive = false;
     }
-    if (!mayRepeat(stream) || stream.inPrimitive || !nothingSaved(*stream.context) || (same.now != Now::Following && !fewEnough(*stream.context))) {
+    if (!mayRepeat(stream) || stream.inPrimitive || !nothingSaved(*stream.context) ||
+        (same.now != Now::Following && !fewEnough(*stream.context))) {
         same.now = Now::Apart;
         return;
     }
@@ -180,14 +190,16 @@ void CommandFilter::endSame(Stream& stream, const Packet& packet) {
     ++same.frames;
     same.shares += share;
     if (group.held.empty()) same.heldChanges = group.heldChanges; // no draw can need anything deferred
-    const bool isLike = same.now == Now::Following || (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
+    const bool isLike = same.now == Now::Following ||
+                        (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
     const bool goesOn = isLike && mayBegin(same, bound);
     same.now = goesOn ? Now::Following : Now::Apart;
     if (goesOn) same.began = bound.units;
     same.layout.begin();
     if (goesOn || same.frames < same.wait) return;
     // Builds a new template; at growing intervals if templates did not match before.
-    same.wait = same.shares >= kUnlike * same.frames ? FrameMatcher::kFirst : std::min(same.wait * 2, FrameMatcher::kMost);
+    same.wait =
+        same.shares >= kUnlike * same.frames ? FrameMatcher::kFirst : std::min(same.wait * 2, FrameMatcher::kMost);
     same.now = Now::Recording;
     same.keptBytes = packet.size();
     same.inValue = false;

@@ -60,7 +60,8 @@ void CommandFilter::compiled(At& at) {
         return;
     case CommandClass::Upload:
     case CommandClass::Object: // buffer commands are not part of lists
-        if (Object* const object = objectOf(at); object != nullptr && object->kind == Kind::Buffer) return object->known.clear();
+        if (Object* const object = objectOf(at); object != nullptr && object->kind == Kind::Buffer)
+            return object->known.clear();
         [[fallthrough]];
     default: at.stream.compiled.binds = true; return;
     }
@@ -74,9 +75,7 @@ void CommandFilter::compiled(At& at) {
     case Family::ClientActiveTexture:
     case Family::ClientPush:
     case Family::ClientPop: return bind(at);
-    case Family::Cap:
-        at.stream.compiled.binds = at.stream.compiled.binds || hearsDriver(argumentWord(at.r, 0));
-        return;
+    case Family::Cap: at.stream.compiled.binds = at.stream.compiled.binds || hearsDriver(argumentWord(at.r, 0)); return;
     case Family::Bind:
         if (at.r.opcode == op::glBindBuffer || at.r.opcode == op::glBindVertexArray) return bind(at);
         [[fallthrough]];

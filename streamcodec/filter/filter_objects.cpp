@@ -131,7 +131,9 @@ void CommandFilter::deleteNames(At& at) {
             c.needs = true;
         }
         if (rule.type != ObjectType::Texture && rule.type != ObjectType::Buffer) continue;
-        if (Object* const object = find(at.group, rule.type == ObjectType::Texture ? Kind::Texture : Kind::Buffer, name)) deleteObject(at, object);
+        if (Object* const object =
+                find(at.group, rule.type == ObjectType::Texture ? Kind::Texture : Kind::Buffer, name))
+            deleteObject(at, object);
     }
 }
 
@@ -141,10 +143,12 @@ void CommandFilter::deleteObject(At& at, Object* object) {
     bool elsewhere = !c.attribs.empty() || !c.clientAttribs.empty();
     for (const auto& [id, other] : clients_[wire::clientOf(at.stream.id)]) {
         if (other.get() == &c || other->group.get() != &at.group) continue;
-        for (const TextureUnit& unit : other->units) elsewhere = elsewhere || std::ranges::find(unit, object) != unit.end();
+        for (const TextureUnit& unit : other->units)
+            elsewhere = elsewhere || std::ranges::find(unit, object) != unit.end();
         for (const auto& [target, there] : other->buffers) elsewhere = elsewhere || there == object;
         for (const auto& [name, array] : other->arrays)
-            elsewhere = elsewhere || array.indices == object || std::ranges::any_of(array.buffers, [&](const auto& b) { return b.second == object; });
+            elsewhere = elsewhere || array.indices == object ||
+                        std::ranges::any_of(array.buffers, [&](const auto& b) { return b.second == object; });
     }
     if (elsewhere) return untrack(at);
     for (TextureUnit& unit : c.units) std::ranges::replace(unit, object, nullptr);
@@ -171,6 +175,8 @@ void CommandFilter::openUp(At& at, Object* object) {
     object->forget();
 }
 
-void CommandFilter::openNamed(At& at, Kind kind, size_t word) { openUp(at, find(at.group, kind, argumentWord(at.r, word))); }
+void CommandFilter::openNamed(At& at, Kind kind, size_t word) {
+    openUp(at, find(at.group, kind, argumentWord(at.r, word)));
+}
 
 } // namespace mural::filter

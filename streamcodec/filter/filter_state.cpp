@@ -29,7 +29,8 @@ void CommandFilter::leaveOutSmall(bool leavesOut) {
 // Called between two packets of the stream that owns the uniforms.
 void CommandFilter::sendUniformsOf(Group& group) {
     std::vector<Object*> programs;
-    std::ranges::copy_if(group.held, std::back_inserter(programs), [](const Object* o) { return o->kind == Kind::Program; });
+    std::ranges::copy_if(group.held, std::back_inserter(programs),
+                         [](const Object* o) { return o->kind == Kind::Program; });
     Stream& holder = streams_[group.holderStream];
     if (programs.empty() || holder.context == nullptr) return;
     Output other(holder.id, {}, otherScratch_, take_);
@@ -38,7 +39,8 @@ void CommandFilter::sendUniformsOf(Group& group) {
 }
 
 // Returns true if the record is handled: deferred or dropped.
-bool CommandFilter::smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from, const Packet& packet) {
+bool CommandFilter::smallState(Stream& stream, Output& output, const RecordView& r, StateRole role, size_t from,
+                               const Packet& packet) {
     Context& c = *stream.context;
     const bool sets = role == StateRole::Set, changes = sets || role == StateRole::Change;
     if (stream.list != 0) { // nothing is deferred: glNewList flushed it
@@ -46,13 +48,14 @@ bool CommandFilter::smallState(Stream& stream, Output& output, const RecordView&
         return false;
     }
     if (!leavesOutSmall_) return false; // then nothing is deferred
-    if (stream.inPrimitive) { // an error, unless glBegin was rejected
+    if (stream.inPrimitive) {           // an error, unless glBegin was rejected
         if (changes) c.state.forgetAll();
         return false;
     }
     if (!sets) {
         sendState(stream, output, from);
-        if (changes && !(r.opcode == op::glCallList && setsNothing(*c.group, trace::argumentWord(r, 0)))) c.state.forgetAll();
+        if (changes && !(r.opcode == op::glCallList && setsNothing(*c.group, trace::argumentWord(r, 0))))
+            c.state.forgetAll();
         return false;
     }
     const StateSet set = stateSetOf(r, c.unit);

@@ -21,7 +21,7 @@ namespace {
 
 // Smaller uploads cost more to defer than to send.
 constexpr size_t kMinBytes = 512;
-constexpr size_t kMaxItems = 4096; // per object
+constexpr size_t kMaxItems = 4096;     // per object
 constexpr size_t kMaxLocations = 1024; // of uniforms
 
 // Returns true if no uniform type can reject these values. Samplers accept unit numbers only, so a larger value may be
@@ -43,7 +43,8 @@ bool refusedByNone(const trace::RecordView& r, size_t firstValueWord) {
 // Returns true if the record sets one whole uniform at that location, with the value inline.
 bool isOneUniform(const trace::RecordView& r, const CommandKind& kind, size_t locationWord) {
     const bool counted = kind.valueWord != kNoValue;
-    return argumentWord(r, locationWord) < kMaxLocations && r.sizeBytes <= StateCache<kUniformWords>::kMaxBytes && (!counted || argumentWord(r, locationWord + 1) == 1);
+    return argumentWord(r, locationWord) < kMaxLocations && r.sizeBytes <= StateCache<kUniformWords>::kMaxBytes &&
+           (!counted || argumentWord(r, locationWord + 1) == 1);
 }
 
 } // namespace
@@ -51,19 +52,24 @@ bool isOneUniform(const trace::RecordView& r, const CommandKind& kind, size_t lo
 // Returns the object of an upload, or of a command of class Object.
 Object* CommandFilter::objectOf(At& at) {
     const uint32_t first = argumentWord(at.r, 0);
-    if (at.r.opcode == wire::kOpBufferBytes || at.r.opcode == op::glInvalidateBufferData || at.r.opcode == op::glInvalidateBufferSubData) return find(at.group, Kind::Buffer, first);
+    if (at.r.opcode == wire::kOpBufferBytes || at.r.opcode == op::glInvalidateBufferData ||
+        at.r.opcode == op::glInvalidateBufferSubData)
+        return find(at.group, Kind::Buffer, first);
     if (at.kind.family == Family::Uniform) return at.context.programSure ? at.context.program : nullptr;
     const trace::Rule& rule = trace::ruleOf(at.r.opcode);
     switch (rule.family) {
     case Family::BufferData:
-    case Family::BufferSubData: return rule.type == trace::ObjectType::Buffer ? find(at.group, Kind::Buffer, first) : bufferAt(at.context, first);
+    case Family::BufferSubData:
+        return rule.type == trace::ObjectType::Buffer ? find(at.group, Kind::Buffer, first)
+                                                      : bufferAt(at.context, first);
     case Family::ShaderDelete:
     case Family::ProgramAttach:
     case Family::ProgramDetach:
     case Family::ProgramSet:
     case Family::ProgramLink:
     case Family::ProgramUniform: return find(at.group, Kind::Program, first);
-    default: return rule.type == trace::ObjectType::Texture ? find(at.group, Kind::Texture, first) : textureAt(at, first);
+    default:
+        return rule.type == trace::ObjectType::Texture ? find(at.group, Kind::Texture, first) : textureAt(at, first);
     }
 }
 
@@ -91,7 +97,8 @@ void CommandFilter::upload(At& at) {
     // waiting for its blob would be in vain
     const bool inVain = (object->holding.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first);
     // For a texture addressed by name, the cube face is one of the arguments.
-    const bool anyFace = trace::ruleOf(at.r.opcode).type == trace::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
+    const bool anyFace =
+        trace::ruleOf(at.r.opcode).type == trace::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
     const bool fromBuffer = object->kind == Kind::Texture && bufferAt(at.context, GL_PIXEL_UNPACK_BUFFER) != nullptr;
     if (!u || at.stream.passing || fromBuffer || anyFace || (at.stream.values > 0 && blobBytes == 0)) {
         releaseOne(at, *object);
@@ -106,7 +113,8 @@ void CommandFilter::upload(At& at) {
         if (news == Object::News::Same) {
             object->comparing.won();
             at.stream.waiting.won();
-            countLeftOut(1 + at.stream.pendingRecords, at.r.sizeBytes + (at.r.offset - at.from) + at.stream.pending.size());
+            countLeftOut(1 + at.stream.pendingRecords,
+                         at.r.sizeBytes + (at.r.offset - at.from) + at.stream.pending.size());
             pendingBytes_ -= at.stream.pending.size();
             std::vector<std::byte>().swap(at.stream.pending);
             return at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
@@ -118,7 +126,8 @@ void CommandFilter::upload(At& at) {
     const Object::Replaced gone = object->replaces(*u);
     countLeftOut(gone.records, gone.sizeBytes);
     counts_.heldBytes -= gone.sizeBytes;
-    if (object->queue.empty() && gone.records == 0 && (small || !u->given || u->kind == UploadKind::Storage || (!uniform && !deferrable(at.group, *object)))) {
+    if (object->queue.empty() && gone.records == 0 &&
+        (small || !u->given || u->kind == UploadKind::Storage || (!uniform && !deferrable(at.group, *object)))) {
         if (at.stream.values > 0) inVain ? at.stream.waiting.lost() : at.stream.waiting.won();
         return;
     }
@@ -129,7 +138,8 @@ void CommandFilter::upload(At& at) {
 void CommandFilter::oneUniform(At& at, Object& program, size_t locationWord) {
     const size_t location = argumentWord(at.r, locationWord);
     const auto record = at.packet.subspan(at.r.offset, at.r.sizeBytes);
-    const bool certain = refusedByNone(at.r, at.kind.valueWord == kNoValue ? locationWord + 1 : at.kind.valueWord + size_t{1});
+    const bool certain =
+        refusedByNone(at.r, at.kind.valueWord == kNoValue ? locationWord + 1 : at.kind.valueWord + size_t{1});
     // Another thread may set it in an unknown order, or the program to restore after a flush is unknown.
     if (at.context.group.use_count() > 1 || !at.context.programSure) {
         releaseOne(at, program);
@@ -161,7 +171,8 @@ void CommandFilter::hold(At& at, Object& object, const Upload* upload, bool barr
     item.bytes.insert(item.bytes.end(), here.begin(), here.end());
     item.records = 1 + at.stream.pendingRecords;
     const trace::Rule& rule = trace::ruleOf(at.r.opcode);
-    const bool named = at.r.opcode == wire::kOpBufferBytes || rule.type == trace::ObjectType::Texture || rule.type == trace::ObjectType::Buffer;
+    const bool named = at.r.opcode == wire::kOpBufferBytes || rule.type == trace::ObjectType::Texture ||
+                       rule.type == trace::ObjectType::Buffer;
     item.target = named ? 0 : 1;
     item.barrier = barrier;
     if (upload != nullptr) {
@@ -200,11 +211,14 @@ void CommandFilter::waitsFor(At& at, Object& object) {
 // Handles a command on an object after its uploads.
 void CommandFilter::objectCommand(At& at) {
     const trace::Rule& rule = trace::ruleOf(at.r.opcode);
-    if (rule.family == Family::ProgramLink || rule.family == Family::ProgramSet || rule.family == Family::ProgramUniform || rule.family == Family::ProgramAttach ||
+    if (rule.family == Family::ProgramLink || rule.family == Family::ProgramSet ||
+        rule.family == Family::ProgramUniform || rule.family == Family::ProgramAttach ||
         rule.family == Family::ProgramDetach || rule.family == Family::ShaderDelete) {
         Object* const program = objectOf(at);
         if (program == nullptr || (at.kind.small && !leavesOutSmall_)) return;
-        if (rule.family == Family::ProgramUniform && !program->open && at.stream.values == 0 && isOneUniform(at.r, at.kind, 1)) return oneUniform(at, *program, 1);
+        if (rule.family == Family::ProgramUniform && !program->open && at.stream.values == 0 &&
+            isOneUniform(at.r, at.kind, 1))
+            return oneUniform(at, *program, 1);
         releaseOne(at, *program);
         program->forget();
         if (rule.family == Family::ProgramLink) program->target = 0; // until the link is known to have succeeded
@@ -233,11 +247,14 @@ Sum CommandFilter::sumOfValue(At& at, const Upload& upload) {
         return sum.sum();
     }
     // independent of the division into pieces
-    for (const auto pieces : {std::span<const std::byte>(at.stream.pending), at.packet.subspan(at.from, at.r.offset - at.from)}) {
+    for (const auto pieces :
+         {std::span<const std::byte>(at.stream.pending), at.packet.subspan(at.from, at.r.offset - at.from)}) {
         trace::RecordWalk walk(pieces);
         RecordView piece;
         while (walk.next(piece))
-            if (piece.opcode == wire::kOpBlobData && piece.arguments.size() > 4) sum.add(piece.arguments.subspan(4, std::min<size_t>(argumentWord(piece, 0), piece.arguments.size() - 4)));
+            if (piece.opcode == wire::kOpBlobData && piece.arguments.size() > 4)
+                sum.add(
+                    piece.arguments.subspan(4, std::min<size_t>(argumentWord(piece, 0), piece.arguments.size() - 4)));
     }
     return sum.sum();
 }

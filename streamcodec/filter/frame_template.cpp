@@ -25,7 +25,8 @@ inline Vector vectorAt(const void* from) {
 
 inline bool isOther(const std::byte* now, const uint32_t* same, const uint32_t* matters) {
     Vector other{};
-    for (size_t i = 0; i < kBlockWords; i += kVectorWords) other |= (vectorAt(now + i * 4) ^ vectorAt(same + i)) & vectorAt(matters + i);
+    for (size_t i = 0; i < kBlockWords; i += kVectorWords)
+        other |= (vectorAt(now + i * 4) ^ vectorAt(same + i)) & vectorAt(matters + i);
     return (other[0] | other[1] | other[2] | other[3]) != 0;
 }
 
@@ -62,7 +63,8 @@ bool FrameTemplate::add(Same same, std::span<const std::byte> record) {
     const size_t sameBytes = record.size() - matterBytes <= kShortBytes ? record.size() : matterBytes;
     const auto at = static_cast<uint32_t>(totalBytes_);
     starts_.push_back(at);
-    if (same == Same::All) whole_.push_back({at, static_cast<uint32_t>(same_.size()), static_cast<uint32_t>(record.size())});
+    if (same == Same::All)
+        whole_.push_back({at, static_cast<uint32_t>(same_.size()), static_cast<uint32_t>(record.size())});
     keep(record.data(), matterBytes, ~0U);
     keep(record.data() + matterBytes, sameBytes - matterBytes, 0);
     range.sameBytes += static_cast<uint32_t>(sameBytes);
@@ -96,7 +98,8 @@ FrameTemplate::Stop FrameTemplate::pass(std::span<const std::byte> packet, size_
     const auto record = static_cast<size_t>(std::ranges::lower_bound(starts_, at_) - starts_.begin());
     if (record > record_) {
         walked = {record - record_, static_cast<size_t>(at_ - starts_[record - 1]), {}};
-        for (auto next = std::ranges::lower_bound(long_, from); next != long_.end() && *next < at_; ++next) walked.longAt.push_back(static_cast<uint32_t>(packetFrom + (*next - from)));
+        for (auto next = std::ranges::lower_bound(long_, from); next != long_.end() && *next < at_; ++next)
+            walked.longAt.push_back(static_cast<uint32_t>(packetFrom + (*next - from)));
     }
     record_ = record;
     return stop;
@@ -140,7 +143,9 @@ void FrameTemplate::passWhole(std::span<const std::byte> packet, size_t& at) {
     const Range* const last = ranges_.data() + ranges_.size();
     for (; range != last; ++range, done = 0) {
         const size_t wanted = range->sameBytes - done, whole = wanted + range->otherBytes;
-        if (range->otherBytes == kSeen || whole > static_cast<size_t>(end - now) || likeBytes(now, same, wanted) < wanted) break;
+        if (range->otherBytes == kSeen || whole > static_cast<size_t>(end - now) ||
+            likeBytes(now, same, wanted) < wanted)
+            break;
         now += whole;
         same += wanted;
     }
@@ -152,7 +157,9 @@ void FrameTemplate::passWhole(std::span<const std::byte> packet, size_t& at) {
 }
 
 bool FrameTemplate::passSeen(uint16_t opcode) {
-    if (atEnd() || ranges_[range_].otherBytes != kSeen || doneBytes_ != ranges_[range_].sameBytes || seen_[seenAt_] != opcode) return false;
+    if (atEnd() || ranges_[range_].otherBytes != kSeen || doneBytes_ != ranges_[range_].sameBytes ||
+        seen_[seenAt_] != opcode)
+        return false;
     ++seenAt_;
     ++range_;
     doneBytes_ = 0;
@@ -160,15 +167,18 @@ bool FrameTemplate::passSeen(uint16_t opcode) {
 }
 
 size_t FrameTemplate::passed() const {
-    if (atEnd() || followed_ == whole_.size() || whole_[followed_].at >= at_) return atEnd() ? whole_.size() : followed_;
+    if (atEnd() || followed_ == whole_.size() || whole_[followed_].at >= at_)
+        return atEnd() ? whole_.size() : followed_;
     return static_cast<size_t>(std::ranges::lower_bound(whole_, at_, {}, &Whole::at) - whole_.begin());
 }
 
 // Returns to the start of the differing record.
 void FrameTemplate::backToRecord(uint64_t differsAt, size_t& at) {
     const uint64_t start = *(std::ranges::upper_bound(starts_, differsAt) - 1);
-    if (start >= at_) at += start - at_; // earlier records match
-    else at -= std::min<uint64_t>(at_ - start, at); // exceeded only by a damaged packet
+    if (start >= at_)
+        at += start - at_; // earlier records match
+    else
+        at -= std::min<uint64_t>(at_ - start, at); // exceeded only by a damaged packet
     at_ = start;
 }
 

@@ -34,14 +34,17 @@ public:
     bool passSeen(uint16_t opcode);
     [[nodiscard]] bool atEnd() const { return range_ == ranges_.size(); }
     // matched fraction
-    [[nodiscard]] double share() const { return totalBytes_ == 0 ? 0 : static_cast<double>(at_) / static_cast<double>(totalBytes_); }
+    [[nodiscard]] double share() const {
+        return totalBytes_ == 0 ? 0 : static_cast<double>(at_) / static_cast<double>(totalBytes_);
+    }
     [[nodiscard]] bool empty() const { return ranges_.empty(); }
     // Passes the matched records of Same::All that were not passed yet, and returns their number.
     [[nodiscard]] size_t passed() const;
     [[nodiscard]] size_t followed() const { return followed_; }
-    template <typename Give>
-    void follow(size_t to, const Give& give) {
-        for (; followed_ < to; ++followed_) give(std::as_bytes(std::span(same_)).subspan(whole_[followed_].sameAt * size_t{4}, whole_[followed_].sizeBytes));
+    template <typename Give> void follow(size_t to, const Give& give) {
+        for (; followed_ < to; ++followed_)
+            give(std::as_bytes(std::span(same_))
+                     .subspan(whole_[followed_].sameAt * size_t{4}, whole_[followed_].sizeBytes));
     }
     void followFrom(size_t count) { followed_ = count; } // earlier ones were followed in another way
 
@@ -67,7 +70,7 @@ private:
 
     // Positions exclude the bytes of examined records.
     std::vector<Range> ranges_;
-    std::vector<uint32_t> same_; // expected words, contiguous; of short records including irrelevant ones
+    std::vector<uint32_t> same_;    // expected words, contiguous; of short records including irrelevant ones
     std::vector<uint32_t> matters_; // masks of the relevant bits
     std::vector<uint32_t> starts_;
     std::vector<Whole> whole_;

@@ -8,8 +8,7 @@
 
 namespace mural::filter {
 
-template <typename T>
-class NameIndex {
+template <typename T> class NameIndex {
 public:
     [[nodiscard]] T* find(uint32_t name) const {
         if (name < low_.size()) return low_[name];
@@ -20,8 +19,10 @@ public:
     // null: removes the name.
     void set(uint32_t name, T* there) {
         if (name >= kLow) {
-            if (there == nullptr) high_.erase(name);
-            else high_[name] = there;
+            if (there == nullptr)
+                high_.erase(name);
+            else
+                high_[name] = there;
             return;
         }
         if (name >= low_.size()) low_.resize(name + size_t{1});

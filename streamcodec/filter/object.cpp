@@ -44,7 +44,8 @@ Object::Replaced Object::replaces(const Upload& u) {
         const auto stays = [&](const Item& i) {
             return &i != &item && !(u.kind == UploadKind::Whole && i.isUpload && i.place.overlaps(u.place));
         };
-        std::vector<Item> left(std::make_move_iterator(queue.begin()), std::make_move_iterator(queue.begin() + static_cast<std::ptrdiff_t>(at)));
+        std::vector<Item> left(std::make_move_iterator(queue.begin()),
+                               std::make_move_iterator(queue.begin() + static_cast<std::ptrdiff_t>(at)));
         for (size_t i = at; i < queue.size(); ++i) {
             if (stays(queue[i])) {
                 left.push_back(std::move(queue[i]));

@@ -21,7 +21,7 @@ struct Item {
     std::vector<std::byte> bytes;
     uint32_t recordAt = 0; // start of the record, after the pieces
     uint32_t records = 0;
-    uint32_t target = 0; // target at which the object must be bound; 0: the record contains the name
+    uint32_t target = 0;                    // target at which the object must be bound; 0: the record contains the name
     bool isUpload = false, barrier = false; // barrier: reads earlier uploads
     UploadKind kind = UploadKind::Part;
     Place place;
@@ -65,14 +65,15 @@ private:
 struct Object {
     Kind kind = Kind::Texture;
     uint32_t name = 0;
-    uint32_t target = 0; // texture: target of its first binding
-    bool open = false; // other commands than draws may read or change it: never deferred
+    uint32_t target = 0;     // texture: target of its first binding
+    bool open = false;       // other commands than draws may read or change it: never deferred
     std::vector<Item> queue; // deferred commands in order
-    StateCache<kUniformWords> uniforms; // program: uniforms that are not arrays, by location; deferred ones follow the queue
+    StateCache<kUniformWords>
+        uniforms; // program: uniforms that are not arrays, by location; deferred ones follow the queue
     size_t heldBytes = 0;
     uint64_t heldSince = 0; // frame of the first deferred command
-    bool filled = false; // has been uploaded to
-    bool gained = false; // a deferred upload was overwritten
+    bool filled = false;    // has been uploaded to
+    bool gained = false;    // a deferred upload was overwritten
     Worth holding, comparing;
     struct Known {
         Place place;

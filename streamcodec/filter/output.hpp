@@ -56,7 +56,7 @@ public:
 
 private:
     static constexpr size_t kWantedBytes = 256 * 1024; // size of the program's own packets
-    static constexpr size_t kCopiedBytes = 16 * 1024; // larger parts are sent in place
+    static constexpr size_t kCopiedBytes = 16 * 1024;  // larger parts are sent in place
 
     void copyTo(size_t to) {
         touched_ = true;

@@ -11,8 +11,7 @@ constexpr uint64_t kMinWireBytes = 200, kMinPart = 100;
 constexpr double kHopelessCost = 1.1;
 constexpr double kClearly = 0.97; // cost ratio that counts as cheaper; otherwise the filter stays on
 
-template <size_t N>
-double median(std::array<double, N> values) {
+template <size_t N> double median(std::array<double, N> values) {
     std::ranges::nth_element(values, values.begin() + N / 2);
     return values[N / 2];
 }
@@ -57,7 +56,8 @@ void RedundancyTuner::disturbed() {
 
 bool RedundancyTuner::hopeless() const {
     const double most = median(costs_[0]) * kHopelessCost;
-    return frames_ >= kHopeless && std::all_of(costs_[1].begin(), costs_[1].begin() + frames_, [most](double cost) { return cost > most; });
+    return frames_ >= kHopeless &&
+           std::all_of(costs_[1].begin(), costs_[1].begin() + frames_, [most](double cost) { return cost > most; });
 }
 
 void RedundancyTuner::decide() {

@@ -34,7 +34,7 @@ private:
     Phase phase_ = Phase::Waiting;
     uint32_t frames_ = 0; // in this phase
     uint32_t until_ = kFirst;
-    uint32_t large_ = 0; // relevant frames in the waiting phase
+    uint32_t large_ = 0;                                   // relevant frames in the waiting phase
     std::array<std::array<double, kCompared>, 2> costs_{}; // per byte of the program, before and during the trial
 };
 

@@ -21,8 +21,7 @@ struct SetResult {
 };
 
 // Words: length of the longest record.
-template <size_t Words>
-class StateCache {
+template <size_t Words> class StateCache {
 public:
     static constexpr size_t kMaxBytes = Words * 4;
 
@@ -55,15 +54,16 @@ public:
 
     // Returns true if the deferred record is of another command that sets the same cell.
     [[nodiscard]] bool otherWaits(size_t index, std::span<const std::byte> record) const {
-        return index < cells_.size() && cells_[index].waits && (cells_[index].now.sizeBytes != record.size() || std::memcmp(cells_[index].now.words.data(), record.data(), 4) != 0);
+        return index < cells_.size() && cells_[index].waits &&
+               (cells_[index].now.sizeBytes != record.size() ||
+                std::memcmp(cells_[index].now.words.data(), record.data(), 4) != 0);
     }
     [[nodiscard]] bool waiting() const { return !order_.empty(); }
     [[nodiscard]] size_t waitingRecords() const { return order_.size(); }
     [[nodiscard]] size_t waitingBytes() const { return waitingBytes_; }
 
     // Flushes the deferred records in order, by passing each to `give`.
-    template <typename Give>
-    void send(const Give& give) {
+    template <typename Give> void send(const Give& give) {
         for (const uint32_t index : order_) {
             Cell& cell = cells_[index];
             give(cell.now.bytes());
@@ -89,8 +89,12 @@ private:
             std::memcpy(words.data(), record.data(), record.size());
             return *this;
         }
-        bool operator==(std::span<const std::byte> record) const { return sizeBytes == record.size() && std::memcmp(words.data(), record.data(), sizeBytes) == 0; }
-        [[nodiscard]] std::span<const std::byte> bytes() const { return std::as_bytes(std::span(words)).first(sizeBytes); }
+        bool operator==(std::span<const std::byte> record) const {
+            return sizeBytes == record.size() && std::memcmp(words.data(), record.data(), sizeBytes) == 0;
+        }
+        [[nodiscard]] std::span<const std::byte> bytes() const {
+            return std::as_bytes(std::span(words)).first(sizeBytes);
+        }
     };
     struct Cell {
         bool waits = false;

@@ -1,5 +1,5 @@
-// Small state of a context: capabilities, functions, masks and rectangles, each set completely by one command. Determines
-// the role of each command for this state, so that the command filter can drop redundant setters.
+// Small state of a context: capabilities, functions, masks and rectangles, each set completely by one command.
+// Determines the role of each command for this state, so that the command filter can drop redundant setters.
 #pragma once
 
 #include <cstdint>

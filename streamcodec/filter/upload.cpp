@@ -18,12 +18,17 @@ using trace::argumentWord;
 using trace::Family;
 using trace::RecordView;
 
-uint64_t wideAt(const RecordView& r, size_t word) { return argumentWord(r, word) | uint64_t{argumentWord(r, word + 1)} << 32; }
+uint64_t wideAt(const RecordView& r, size_t word) {
+    return argumentWord(r, word) | uint64_t{argumentWord(r, word + 1)} << 32;
+}
 
-bool isFace(uint32_t target) { return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z; }
+bool isFace(uint32_t target) {
+    return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
+}
 
 bool ofSamples(uint16_t opcode) {
-    return opcode == op::glTexImage2DMultisample || opcode == op::glTexImage3DMultisample || opcode == op::glTexStorage2DMultisample || opcode == op::glTexStorage3DMultisample;
+    return opcode == op::glTexImage2DMultisample || opcode == op::glTexImage3DMultisample ||
+           opcode == op::glTexStorage2DMultisample || opcode == op::glTexStorage3DMultisample;
 }
 
 } // namespace
@@ -71,7 +76,8 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
     }
     switch (family) {
     case Family::BufferData:
-        u.kind = r.opcode == op::glBufferData || r.opcode == op::glNamedBufferData ? UploadKind::Whole : UploadKind::Storage;
+        u.kind =
+            r.opcode == op::glBufferData || r.opcode == op::glNamedBufferData ? UploadKind::Whole : UploadKind::Storage;
         return u;
     case Family::BufferSubData: // target, offset, size
         u.place = {0, 0, wideAt(r, 1), wideAt(r, 1) + u.shape.valueBytes};
@@ -79,12 +85,11 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
     case Family::Uniform:
         if (static_cast<int32_t>(argumentWord(r, 0)) < 0) return std::nullopt;
         // array elements are consecutive
-        u.place = {0, 0, argumentWord(r, 0), uint64_t{argumentWord(r, 0)} + (valueWord == kNoValue ? 1 : std::max(argumentWord(r, 1), 1u))};
+        u.place = {0, 0, argumentWord(r, 0),
+                   uint64_t{argumentWord(r, 0)} + (valueWord == kNoValue ? 1 : std::max(argumentWord(r, 1), 1u))};
         return u;
     case Family::TexStorage: u.kind = UploadKind::Storage; return u;
-    case Family::TexImage:
-        u.kind = ofSamples(r.opcode) ? UploadKind::Storage : UploadKind::Whole;
-        [[fallthrough]];
+    case Family::TexImage: u.kind = ofSamples(r.opcode) ? UploadKind::Storage : UploadKind::Whole; [[fallthrough]];
     default: // glTexSubImage..., by target or name
         u.place = {isFace(argumentWord(r, 0)) ? argumentWord(r, 0) : 0, argumentWord(r, 1), 0, UINT64_MAX};
         return u;

@@ -17,7 +17,9 @@ namespace mural::filter {
 struct Place {
     uint32_t target = 0, level = 0;
     uint64_t begin = 0, end = UINT64_MAX;
-    [[nodiscard]] bool overlaps(const Place& o) const { return target == o.target && level == o.level && begin < o.end && o.begin < end; }
+    [[nodiscard]] bool overlaps(const Place& o) const {
+        return target == o.target && level == o.level && begin < o.end && o.begin < end;
+    }
     bool operator==(const Place&) const = default;
 };
 
@@ -29,8 +31,8 @@ struct Shape {
 };
 
 enum class UploadKind : uint8_t {
-    Whole, // replaces the image or buffer, including its size
-    Part, // replaces a part
+    Whole,   // replaces the image or buffer, including its size
+    Part,    // replaces a part
     Storage, // allocates new storage: earlier contents are irrelevant if it succeeds, which is unknown here
 };
 
@@ -39,7 +41,7 @@ struct Upload {
     Place place;
     Shape shape;
     std::span<const std::byte> inlineValue; // the inline part
-    bool given = false; // has data; false: only a size, or the data is in a buffer
+    bool given = false;                     // has data; false: only a size, or the data is in a buffer
 };
 
 // Parses a record of class Upload. blobBytes: size of its blob, 0: none. Returns an empty value for unknown forms.

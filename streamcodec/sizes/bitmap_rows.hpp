@@ -9,8 +9,8 @@ namespace mural::sizes {
 
 struct BitmapRow {
     uint32_t firstBit; // of the client row, 0…7
-    uint32_t width; // pixels, at least 1
-    bool lsbFirst; // bit order of the client
+    uint32_t width;    // pixels, at least 1
+    bool lsbFirst;     // bit order of the client
 };
 
 void packBitmapRow(uint8_t* tight, const uint8_t* client, const BitmapRow& row);

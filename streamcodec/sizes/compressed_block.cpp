@@ -9,20 +9,15 @@ namespace {
 struct BlockShape {
     uint8_t width, height, depth;
 };
-constexpr BlockShape kAstc2d[] = {{4, 4, 1},  {5, 4, 1},   {5, 5, 1},   {6, 5, 1},  {6, 6, 1},
-                                  {8, 5, 1},  {8, 6, 1},   {8, 8, 1},   {10, 5, 1}, {10, 6, 1},
-                                  {10, 8, 1}, {10, 10, 1}, {12, 10, 1}, {12, 12, 1}};
+constexpr BlockShape kAstc2d[] = {{4, 4, 1}, {5, 4, 1},  {5, 5, 1},  {6, 5, 1},  {6, 6, 1},   {8, 5, 1},   {8, 6, 1},
+                                  {8, 8, 1}, {10, 5, 1}, {10, 6, 1}, {10, 8, 1}, {10, 10, 1}, {12, 10, 1}, {12, 12, 1}};
 constexpr BlockShape kAstc3d[] = {{3, 3, 3}, {4, 3, 3}, {4, 4, 3}, {4, 4, 4}, {5, 4, 4},
                                   {5, 5, 4}, {5, 5, 5}, {6, 5, 5}, {6, 6, 5}, {6, 6, 6}};
 
 template <size_t count>
-bool astcBlock(const BlockShape (&shapes)[count],
-               GLenum format,
-               GLenum first,
-               CompressedBlock& block) {
+bool astcBlock(const BlockShape (&shapes)[count], GLenum format, GLenum first, CompressedBlock& block) {
     const GLenum index = format - first;
-    if (format < first || index >= count)
-        return false;
+    if (format < first || index >= count) return false;
     block = {shapes[index].width, shapes[index].height, shapes[index].depth, 16, 1};
     return true;
 }
@@ -50,8 +45,7 @@ uint32_t squareBlockBytes(GLenum internalformat) {
     case GL_ATC_RGB_AMD:
     case GL_3DC_X_AMD:
     case GL_COMPRESSED_RGBA_PVRTC_4BPPV2_IMG:
-    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_4BPPV2_IMG:
-        return 8;
+    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_4BPPV2_IMG: return 8;
     case GL_COMPRESSED_RGBA_S3TC_DXT3_EXT:
     case GL_RGBA_S3TC:
     case GL_RGBA4_S3TC:
@@ -75,33 +69,26 @@ uint32_t squareBlockBytes(GLenum internalformat) {
     case GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC:
     case GL_ATC_RGBA_EXPLICIT_ALPHA_AMD:
     case GL_ATC_RGBA_INTERPOLATED_ALPHA_AMD:
-    case GL_3DC_XY_AMD:
-        return 16;
-    default:
-        return 0;
+    case GL_3DC_XY_AMD: return 16;
+    default: return 0;
     }
 }
 
 CompressedBlock otherBlock(GLenum internalformat) {
     switch (internalformat) {
     case GL_COMPRESSED_RGB_FXT1_3DFX:
-    case GL_COMPRESSED_RGBA_FXT1_3DFX:
-        return {8, 4, 1, 16, 1};
+    case GL_COMPRESSED_RGBA_FXT1_3DFX: return {8, 4, 1, 16, 1};
     case GL_COMPRESSED_RGB_PVRTC_4BPPV1_IMG:
     case GL_COMPRESSED_RGBA_PVRTC_4BPPV1_IMG:
     case GL_COMPRESSED_SRGB_PVRTC_4BPPV1_EXT:
-    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_4BPPV1_EXT:
-        return {4, 4, 1, 8, 2};
+    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_4BPPV1_EXT: return {4, 4, 1, 8, 2};
     case GL_COMPRESSED_RGB_PVRTC_2BPPV1_IMG:
     case GL_COMPRESSED_RGBA_PVRTC_2BPPV1_IMG:
     case GL_COMPRESSED_SRGB_PVRTC_2BPPV1_EXT:
-    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_2BPPV1_EXT:
-        return {8, 4, 1, 8, 2};
+    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_2BPPV1_EXT: return {8, 4, 1, 8, 2};
     case GL_COMPRESSED_RGBA_PVRTC_2BPPV2_IMG:
-    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_2BPPV2_IMG:
-        return {8, 4, 1, 8, 1};
-    default:
-        return {};
+    case GL_COMPRESSED_SRGB_ALPHA_PVRTC_2BPPV2_IMG: return {8, 4, 1, 8, 1};
+    default: return {};
     }
 }
 
@@ -114,17 +101,14 @@ size_t blocksAlong(GLsizei texels, uint32_t block, uint32_t atLeast) {
 size_t product(size_t a, size_t b, size_t c) {
     size_t ab = 0;
     size_t all = 0;
-    if (__builtin_mul_overflow(a, b, &ab) || __builtin_mul_overflow(ab, c, &all) || all > kMaxBytes)
-        return SIZE_MAX;
+    if (__builtin_mul_overflow(a, b, &ab) || __builtin_mul_overflow(ab, c, &all) || all > kMaxBytes) return SIZE_MAX;
     return all;
 }
 
 // Products of up to three 31-bit program values and a row size fit.
 __extension__ typedef unsigned __int128 Wide;
 
-Wide wide(GLint value) {
-    return value > 0 ? static_cast<Wide>(value) : 0;
-}
+Wide wide(GLint value) { return value > 0 ? static_cast<Wide>(value) : 0; }
 
 } // namespace
 
@@ -141,29 +125,21 @@ CompressedBlock compressedBlock(GLenum internalformat) {
 
 size_t compressedBytes(GLenum internalformat, GLsizei width, GLsizei height, GLsizei depth) {
     const CompressedBlock block = compressedBlock(internalformat);
-    if (block.bytes == 0 || width <= 0 || height <= 0 || depth <= 0)
-        return 0;
+    if (block.bytes == 0 || width <= 0 || height <= 0 || depth <= 0) return 0;
     return product(blocksAlong(width, block.width, block.minBlocks) * block.bytes,
-                   blocksAlong(height, block.height, block.minBlocks),
-                   blocksAlong(depth, block.depth, 1));
+                   blocksAlong(height, block.height, block.minBlocks), blocksAlong(depth, block.depth, 1));
 }
 
-ImageLayout compressedLayoutOf(const PixelStore& store,
-                               GLenum internalformat,
-                               GLsizei width,
-                               GLsizei height,
-                               GLsizei depth,
-                               int dims) {
+ImageLayout compressedLayoutOf(const PixelStore& store, GLenum internalformat, GLsizei width, GLsizei height,
+                               GLsizei depth, int dims) {
     ImageLayout layout;
     const CompressedBlock block = compressedBlock(internalformat);
     const size_t tight = compressedBytes(internalformat, width, height, depth);
-    if (tight == 0 || tight == SIZE_MAX)
-        return layout;
+    if (tight == 0 || tight == SIZE_MAX) return layout;
     layout.width = static_cast<uint32_t>(width);
     layout.rows = static_cast<uint32_t>(blocksAlong(height, block.height, block.minBlocks));
     layout.images = static_cast<uint32_t>(blocksAlong(depth, block.depth, 1));
-    layout.rowBytes = layout.clientRowBytes =
-        blocksAlong(width, block.width, block.minBlocks) * block.bytes;
+    layout.rowBytes = layout.clientRowBytes = blocksAlong(width, block.width, block.minBlocks) * block.bytes;
 
     Wide stride = layout.rowBytes;
     Wide rowsPerImage = layout.rows;
@@ -171,23 +147,19 @@ ImageLayout compressedLayoutOf(const PixelStore& store,
     const Wide size = wide(store.compressedBlockSize);
     if (size != 0 && store.compressedBlockWidth > 0) {
         const Wide across = wide(store.compressedBlockWidth);
-        if (store.rowLength > 0)
-            stride = size * ((wide(store.rowLength) + across - 1) / across);
+        if (store.rowLength > 0) stride = size * ((wide(store.rowLength) + across - 1) / across);
         first += wide(store.skipPixels) * size / across;
     }
     if (dims > 1 && size != 0 && store.compressedBlockHeight > 0) {
         const Wide down = wide(store.compressedBlockHeight);
-        if (store.imageHeight > 0)
-            rowsPerImage = (wide(store.imageHeight) + down - 1) / down;
+        if (store.imageHeight > 0) rowsPerImage = (wide(store.imageHeight) + down - 1) / down;
         first += wide(store.skipRows) * stride / down;
     }
     if (dims > 2 && size != 0 && store.compressedBlockDepth > 0)
         first += wide(store.skipImages) * stride * rowsPerImage / wide(store.compressedBlockDepth);
 
-    const Wide end = first + stride * rowsPerImage * (layout.images - 1) +
-                     stride * (layout.rows - 1) + layout.rowBytes;
-    if (end > kMaxBytes || stride * rowsPerImage > kMaxBytes)
-        return layout;
+    const Wide end = first + stride * rowsPerImage * (layout.images - 1) + stride * (layout.rows - 1) + layout.rowBytes;
+    if (end > kMaxBytes || stride * rowsPerImage > kMaxBytes) return layout;
     layout.known = true;
     layout.rowStride = static_cast<ptrdiff_t>(stride);
     layout.imageStride = static_cast<size_t>(stride * rowsPerImage);

@@ -12,8 +12,8 @@ namespace mural::sizes {
 
 struct CompressedBlock {
     uint32_t width = 0, height = 0, depth = 0; // texels
-    uint32_t bytes = 0; // 0: not a block format
-    uint32_t minBlocks = 1; // minimum number of blocks per direction (PVRTC: 2)
+    uint32_t bytes = 0;                        // 0: not a block format
+    uint32_t minBlocks = 1;                    // minimum number of blocks per direction (PVRTC: 2)
 };
 
 // GL_PALETTE*_OES images consist of a palette and all levels, without blocks: bytes is 0, and imageSize is the only
@@ -25,11 +25,7 @@ size_t compressedBytes(GLenum internalformat, GLsizei width, GLsizei height, GLs
 
 // rows and rowBytes refer to rows of blocks. Without GL_*_COMPRESSED_BLOCK_* the image is tight. The result works with
 // spanBytes, packTight, unpackTight and tightBytes.
-ImageLayout compressedLayoutOf(const PixelStore& store,
-                               GLenum internalformat,
-                               GLsizei width,
-                               GLsizei height,
-                               GLsizei depth,
-                               int dims);
+ImageLayout compressedLayoutOf(const PixelStore& store, GLenum internalformat, GLsizei width, GLsizei height,
+                               GLsizei depth, int dims);
 
 } // namespace mural::sizes

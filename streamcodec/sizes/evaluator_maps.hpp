@@ -21,19 +21,9 @@ size_t map2Values(GLenum target, GLint ustride, GLint uorder, GLint vstride, GLi
 // written, 0 if GL reads nothing.
 size_t packMap1(float* dst, const float* points, GLenum target, GLint stride, GLint order);
 size_t packMap1(double* dst, const double* points, GLenum target, GLint stride, GLint order);
-size_t packMap2(float* dst,
-                const float* points,
-                GLenum target,
-                GLint ustride,
-                GLint uorder,
-                GLint vstride,
+size_t packMap2(float* dst, const float* points, GLenum target, GLint ustride, GLint uorder, GLint vstride,
                 GLint vorder);
-size_t packMap2(double* dst,
-                const double* points,
-                GLenum target,
-                GLint ustride,
-                GLint uorder,
-                GLint vstride,
+size_t packMap2(double* dst, const double* points, GLenum target, GLint ustride, GLint uorder, GLint vstride,
                 GLint vorder);
 
 } // namespace mural::sizes

@@ -35,22 +35,18 @@ void copyRow(uint8_t* dst, const uint8_t* src, const ImageLayout& layout) {
         std::memcpy(dst, src, layout.rowBytes);
 }
 
-BitmapRow bitmapRow(const ImageLayout& layout) {
-    return {layout.firstBit, layout.width, layout.lsbFirst};
-}
+BitmapRow bitmapRow(const ImageLayout& layout) { return {layout.firstBit, layout.width, layout.lsbFirst}; }
 
 // True if the client's rows are contiguous and in the order of the tight image.
 bool isContiguous(const ImageLayout& layout) {
-    return !layout.bitmap && layout.swapUnit == 0 &&
-           layout.rowStride == static_cast<ptrdiff_t>(layout.rowBytes) &&
+    return !layout.bitmap && layout.swapUnit == 0 && layout.rowStride == static_cast<ptrdiff_t>(layout.rowBytes) &&
            (layout.images == 1 || layout.imageStride == layout.rowBytes * layout.rows);
 }
 
 } // namespace
 
 void packTight(void* dst, const void* src, const ImageLayout& layout) {
-    if (!layout.known)
-        return;
+    if (!layout.known) return;
     auto* out = static_cast<uint8_t*>(dst);
     const auto* client = static_cast<const uint8_t*>(src);
     if (isContiguous(layout)) {
@@ -69,8 +65,7 @@ void packTight(void* dst, const void* src, const ImageLayout& layout) {
 }
 
 void unpackTight(void* dst, const void* tightSrc, const ImageLayout& layout) {
-    if (!layout.known)
-        return;
+    if (!layout.known) return;
     auto* client = static_cast<uint8_t*>(dst);
     const auto* in = static_cast<const uint8_t*>(tightSrc);
     if (isContiguous(layout)) {

@@ -18,8 +18,7 @@ template <class Value> IndexRange scanAll(const Stored<Value>* indices, size_t c
     return {lowest, highest, true};
 }
 
-template <class Value>
-IndexRange scanWithRestart(const Stored<Value>* indices, size_t count, Value restartIndex) {
+template <class Value> IndexRange scanWithRestart(const Stored<Value>* indices, size_t count, Value restartIndex) {
     Value lowest = static_cast<Value>(-1);
     Value highest = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -33,43 +32,31 @@ IndexRange scanWithRestart(const Stored<Value>* indices, size_t count, Value res
     return {lowest, highest, true};
 }
 
-template <class Value>
-IndexRange scan(const void* indices, size_t count, bool restart, uint32_t restartIndex) {
+template <class Value> IndexRange scan(const void* indices, size_t count, bool restart, uint32_t restartIndex) {
     const auto* stored = static_cast<const Stored<Value>*>(indices);
-    if (!restart || restartIndex > static_cast<Value>(-1))
-        return scanAll(stored, count);
+    if (!restart || restartIndex > static_cast<Value>(-1)) return scanAll(stored, count);
     const IndexRange range = scanWithRestart(stored, count, static_cast<Value>(restartIndex));
     return range.min <= range.max ? range : IndexRange{};
 }
 
 } // namespace
 
-IndexRange
-scanIndices(const void* indices, GLenum type, size_t count, bool restart, uint32_t restartIndex) {
-    if (count == 0)
-        return {};
+IndexRange scanIndices(const void* indices, GLenum type, size_t count, bool restart, uint32_t restartIndex) {
+    if (count == 0) return {};
     switch (type) {
-    case GL_UNSIGNED_BYTE:
-        return scan<uint8_t>(indices, count, restart, restartIndex);
-    case GL_UNSIGNED_SHORT:
-        return scan<uint16_t>(indices, count, restart, restartIndex);
-    case GL_UNSIGNED_INT:
-        return scan<uint32_t>(indices, count, restart, restartIndex);
-    default:
-        return {};
+    case GL_UNSIGNED_BYTE: return scan<uint8_t>(indices, count, restart, restartIndex);
+    case GL_UNSIGNED_SHORT: return scan<uint16_t>(indices, count, restart, restartIndex);
+    case GL_UNSIGNED_INT: return scan<uint32_t>(indices, count, restart, restartIndex);
+    default: return {};
     }
 }
 
 uint32_t fixedRestartIndex(GLenum type) {
     switch (type) {
-    case GL_UNSIGNED_BYTE:
-        return 0xff;
-    case GL_UNSIGNED_SHORT:
-        return 0xffff;
-    case GL_UNSIGNED_INT:
-        return 0xffffffff;
-    default:
-        return 0;
+    case GL_UNSIGNED_BYTE: return 0xff;
+    case GL_UNSIGNED_SHORT: return 0xffff;
+    case GL_UNSIGNED_INT: return 0xffffffff;
+    default: return 0;
     }
 }
 

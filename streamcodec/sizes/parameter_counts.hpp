@@ -33,23 +33,22 @@ namespace mural::sizes {
 // Values of gl<Name>*v for a pname. An unknown pname counts as one value: extensions nearly always add single numbers,
 // and drivers read one value before they reject a pname (measured with Mesa). Callers check for null pointers.
 uint32_t texParameterCount(GLenum pname); // also glTextureParameter*, glMultiTexParameter*
-uint32_t texEnvCount(GLenum pname); // also glMultiTexEnv*
-uint32_t texGenCount(GLenum pname); // also glMultiTexGen*
-uint32_t lightCount(GLenum pname); // also glFragmentLight*SGIX
-uint32_t lightModelCount(GLenum pname); // also glFragmentLightModel*SGIX
-uint32_t materialCount(GLenum pname); // also glFragmentMaterial*SGIX
+uint32_t texEnvCount(GLenum pname);       // also glMultiTexEnv*
+uint32_t texGenCount(GLenum pname);       // also glMultiTexGen*
+uint32_t lightCount(GLenum pname);        // also glFragmentLight*SGIX
+uint32_t lightModelCount(GLenum pname);   // also glFragmentLightModel*SGIX
+uint32_t materialCount(GLenum pname);     // also glFragmentMaterial*SGIX
 uint32_t fogCount(GLenum pname);
 uint32_t pointParameterCount(GLenum pname);
 uint32_t samplerParameterCount(GLenum pname);
 uint32_t patchParameterCount(GLenum pname);
 uint32_t convolutionParameterCount(GLenum pname);
 uint32_t colorTableParameterCount(GLenum pname);
-uint32_t
-combinerParameterCount(GLenum pname); // glCombinerParameter*NV, glCombinerStageParameter*NV
-uint32_t spriteParameterCount(GLenum pname); // SGIX
-uint32_t texBumpParameterCount(GLenum pname); // ATI
-uint32_t singleParameterCount(GLenum pname); // glListParameter*SGIX, glImageTransformParameter*HP,
-                                              // glPixelTexGenParameter*SGIS: one value each
+uint32_t combinerParameterCount(GLenum pname); // glCombinerParameter*NV, glCombinerStageParameter*NV
+uint32_t spriteParameterCount(GLenum pname);   // SGIX
+uint32_t texBumpParameterCount(GLenum pname);  // ATI
+uint32_t singleParameterCount(GLenum pname);   // glListParameter*SGIX, glImageTransformParameter*HP,
+                                               // glPixelTexGenParameter*SGIS: one value each
 
 // glClear(Named)Buffer*v; 0: not a buffer.
 uint32_t clearBufferCount(GLenum buffer);
@@ -58,11 +57,11 @@ uint32_t clearBufferCount(GLenum buffer);
 uint32_t variantCount(GLenum dataType);
 
 // Values per element of `count` elements.
-constexpr uint32_t kDepthRangeValues = 2; // glDepthRangeArray*v
-constexpr uint32_t kScissorValues = 4; // glScissorArrayv*, glScissorExclusiveArrayvNV
-constexpr uint32_t kViewportValues = 4; // glViewportArrayv*
-constexpr uint32_t kWindowRectangleValues = 4; // glWindowRectanglesEXT
-constexpr uint32_t kSampleLocationValues = 2; // gl*FramebufferSampleLocationsfv*
+constexpr uint32_t kDepthRangeValues = 2;              // glDepthRangeArray*v
+constexpr uint32_t kScissorValues = 4;                 // glScissorArrayv*, glScissorExclusiveArrayvNV
+constexpr uint32_t kViewportValues = 4;                // glViewportArrayv*
+constexpr uint32_t kWindowRectangleValues = 4;         // glWindowRectanglesEXT
+constexpr uint32_t kSampleLocationValues = 2;          // gl*FramebufferSampleLocationsfv*
 constexpr uint32_t kTransformFeedbackAttribValues = 3; // glTransformFeedbackAttribsNV
 
 // Bytes of a text that GL reads: `length`, or if negative, all including the final zero. 0 for a null pointer.

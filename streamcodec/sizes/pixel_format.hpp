@@ -32,8 +32,7 @@ struct PixelStore {
     GLint skipImages = 0;
     bool swapBytes = false;
     bool lsbFirst = false;
-    bool invert =
-        false; // GL_PACK_INVERT_MESA, GL_PACK_REVERSE_ROW_ORDER_ANGLE: the first row is the highest
+    bool invert = false; // GL_PACK_INVERT_MESA, GL_PACK_REVERSE_ROW_ORDER_ANGLE: the first row is the highest
     GLint compressedBlockWidth = 0;
     GLint compressedBlockHeight = 0;
     GLint compressedBlockDepth = 0;
@@ -42,18 +41,17 @@ struct PixelStore {
 
 // The rows of an image relative to the pointer passed to GL. All sizes in bytes.
 struct ImageLayout {
-    bool known = false; // false: GL accesses nothing (invalid or empty image)
-    bool bitmap = false; // rows are bits: the first is bit `firstBit` of the row's first byte
+    bool known = false;    // false: GL accesses nothing (invalid or empty image)
+    bool bitmap = false;   // rows are bits: the first is bit `firstBit` of the row's first byte
     bool lsbFirst = false; // of a bitmap
     uint32_t firstBit = 0; // 0…7
-    uint32_t width = 0; // pixels
-    uint32_t rows = 0; // per image; rows of blocks if compressed
+    uint32_t width = 0;    // pixels
+    uint32_t rows = 0;     // per image; rows of blocks if compressed
     uint32_t images = 0;
-    uint32_t swapUnit =
-        0; // client values of 2 or 4 bytes need a byte swap; 0: none
-    size_t rowBytes = 0; // of a tight row
+    uint32_t swapUnit = 0;     // client values of 2 or 4 bytes need a byte swap; 0: none
+    size_t rowBytes = 0;       // of a tight row
     size_t clientRowBytes = 0; // from the first to the last byte with pixels in a client row
-    ptrdiff_t rowStride = 0; // negative if inverted
+    ptrdiff_t rowStride = 0;   // negative if inverted
     size_t imageStride = 0;
     ptrdiff_t firstByte = 0; // of row 0 of image 0
 
@@ -65,12 +63,7 @@ struct ImageLayout {
 
 // dims: of the command or texture target (1, 2, 3). GL_*_SKIP_IMAGES applies to 3 only, GL_*_SKIP_ROWS always. height
 // and depth are 1 for commands without them. glPolygonStipple is a 32×32 image with GL_COLOR_INDEX, GL_BITMAP.
-ImageLayout layoutOf(const PixelStore& store,
-                     GLenum format,
-                     GLenum type,
-                     GLsizei width,
-                     GLsizei height,
-                     GLsizei depth,
+ImageLayout layoutOf(const PixelStore& store, GLenum format, GLenum type, GLsizei width, GLsizei height, GLsizei depth,
                      int dims);
 
 // Bytes of the tight image. 0: empty or unknown. SIZE_MAX: not addressable.

@@ -7,7 +7,21 @@
 
 namespace mural::trace {
 
-enum class Slot : uint8_t { Texture = 1, Buffer, IndexedBuffer, DrawFramebuffer, ReadFramebuffer, Renderbuffer, VertexArray, Sampler, Image, Program, Pipeline, Feedback, ArbProgram };
+enum class Slot : uint8_t {
+    Texture = 1,
+    Buffer,
+    IndexedBuffer,
+    DrawFramebuffer,
+    ReadFramebuffer,
+    Renderbuffer,
+    VertexArray,
+    Sampler,
+    Image,
+    Program,
+    Pipeline,
+    Feedback,
+    ArbProgram
+};
 
 constexpr uint64_t slotOf(Slot kind, uint32_t target = 0, uint32_t index = 0) {
     return uint64_t{static_cast<uint8_t>(kind)} << 56 | uint64_t{index & 0xffffff} << 32 | target;

@@ -14,9 +14,12 @@ using enum Family;
 
 bool selects(const ParameterInfo& p, Family family) {
     const std::string_view name = p.name;
-    if (family == Uniform || family == ProgramUniform) return name == "program" || name == "location" || name == "count";
-    if (family == Attribute || family == Color) return p.element == Element::Enum || name == "index"; // other numbers are the value
-    return p.element == Element::Enum || p.element == Element::U32 || p.element == Element::Bits || name == "level" || name == "count" || name == "first" || name == "n";
+    if (family == Uniform || family == ProgramUniform)
+        return name == "program" || name == "location" || name == "count";
+    if (family == Attribute || family == Color)
+        return p.element == Element::Enum || name == "index"; // other numbers are the value
+    return p.element == Element::Enum || p.element == Element::U32 || p.element == Element::Bits || name == "level" ||
+           name == "count" || name == "first" || name == "n";
 }
 
 void findSelectors(Rule& rule, uint16_t opcode) {
@@ -25,7 +28,8 @@ void findSelectors(Rule& rule, uint16_t opcode) {
     size_t word = 0;
     for (const ParameterInfo& p : parametersOf(opcode).parameters) {
         if (p.travel != Travel::Scalar || word > 200) break;
-        if ((valueToo || selects(p, rule.family)) && rule.selectors < rule.selectorWords.size()) rule.selectorWords[rule.selectors++] = static_cast<uint8_t>(word);
+        if ((valueToo || selects(p, rule.family)) && rule.selectors < rule.selectorWords.size())
+            rule.selectorWords[rule.selectors++] = static_cast<uint8_t>(word);
         word += bytesOf(p.element) == 8 ? 2 : 1;
     }
 }

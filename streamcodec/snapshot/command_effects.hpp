@@ -16,8 +16,8 @@ struct Rule {
     Family family = Family::Unknown;
     ObjectType type = ObjectType::None;
     uint32_t attribBits = 0; // of glPushAttrib: those that certainly save this state; 0: unknown
-    // The words of a record that say which part of the state it is about: scalars that name or count, before the first value of
-    // variable size.
+    // The words of a record that say which part of the state it is about: scalars that name or count, before the first
+    // value of variable size.
     uint8_t selectors = 0;
     std::array<uint8_t, 8> selectorWords{};
 };

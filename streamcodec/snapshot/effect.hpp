@@ -8,12 +8,12 @@
 namespace mural::trace {
 
 enum class Mode : uint8_t {
-    Write, // changes a part; the previous value still counts
-    Kill, // replaces everything; the previous value is dead
-    Read, // the command depends on it
-    Forget, // as Kill, without a new value: the object is deleted
-    Close, // ends an earlier command's effect: needed if any of it is kept
-    Open, // glPushAttrib: values that Restores of its glPopAttrib bring back
+    Write,   // changes a part; the previous value still counts
+    Kill,    // replaces everything; the previous value is dead
+    Read,    // the command depends on it
+    Forget,  // as Kill, without a new value: the object is deleted
+    Close,   // ends an earlier command's effect: needed if any of it is kept
+    Open,    // glPushAttrib: values that Restores of its glPopAttrib bring back
     Restore, // glPopAttrib: restores the value at the Open of the closed key
 };
 

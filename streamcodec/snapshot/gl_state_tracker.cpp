@@ -92,13 +92,19 @@ bool GlStateTracker::record(uint32_t stream, const RecordView& r, Effect& effect
     At at{stream, client, thread, context == client.contexts.end() ? nullptr : &context->second, effect, blobBytes};
     if (thread.expectsDraw && !takesArrays(r.opcode)) effect.always = true;
     thread.expectsDraw = false;
-    if (r.opcode < wire::kFirstGlOpcode) own(at, r);
-    else if (at.context != nullptr) gl(at, r);
+    if (r.opcode < wire::kFirstGlOpcode)
+        own(at, r);
+    else if (at.context != nullptr)
+        gl(at, r);
     return !thread.inPrimitive && thread.list == 0 && thread.blobBytes.empty();
 }
 
 // Reads everything that a draw may depend on. Pictures that are neither its textures nor its targets are excluded.
-void GlStateTracker::readState(At& at) { at.effect.read(at.context != nullptr && (at.context->usesFront || at.context->limits.conditional) ? at.client.key : at.client.state); }
+void GlStateTracker::readState(At& at) {
+    at.effect.read(at.context != nullptr && (at.context->usesFront || at.context->limits.conditional)
+                       ? at.client.key
+                       : at.client.state);
+}
 void GlStateTracker::readAll(At& at) { at.effect.read(at.client.key); }
 
 // ---- Mural's own records
@@ -141,8 +147,10 @@ void GlStateTracker::own(At& at, const RecordView& r) {
     case wire::kOpProgramRecipe:
         if (at.context == nullptr) return;
         if (Object* program = find(at, ObjectType::Program, first)) {
-            if (r.opcode == wire::kOpProgramLayout) at.effect.kill(part(program->key, Part::Layout));
-            else at.effect.write(part(program->key, Part::Linked)), program->anyUnit = true;
+            if (r.opcode == wire::kOpProgramLayout)
+                at.effect.kill(part(program->key, Part::Layout));
+            else
+                at.effect.write(part(program->key, Part::Linked)), program->anyUnit = true;
             at.effect.read(part(program->key, Part::Linked));
             at.effect.read(at.thread.key);
             return;
@@ -165,7 +173,8 @@ void GlStateTracker::own(At& at, const RecordView& r) {
         return at.effect.read(at.thread.key);
     case wire::kOpCreateImage: {
         const auto owner = at.client.contexts.find(argumentWord(r, 2));
-        if (owner != at.client.contexts.end()) owner->second.group->trackingDisabled = true; // images share the contents of objects
+        if (owner != at.client.contexts.end())
+            owner->second.group->trackingDisabled = true; // images share the contents of objects
         [[fallthrough]];
     }
     default:
@@ -255,7 +264,8 @@ void GlStateTracker::makeCurrent(At& at, const RecordView& r) {
     // Viewport and scissor take the window's size, and its first buffer is chosen.
     at.effect.write(part(context.key, Part::First));
     const auto drawn = at.client.windows.find(at.thread.draw);
-    if (drawn != at.client.windows.end() && !drawn->second.config.doubleBuffer && context.api == wire::Api::Desktop) context.limits.drawBuffer = GL_FRONT;
+    if (drawn != at.client.windows.end() && !drawn->second.config.doubleBuffer && context.api == wire::Api::Desktop)
+        context.limits.drawBuffer = GL_FRONT;
 }
 
 void GlStateTracker::window(At& at, const RecordView& r) {
@@ -274,7 +284,7 @@ void GlStateTracker::window(At& at, const RecordView& r) {
         return at.effect.kill(window.picture);
     }
     at.effect.kill(part(window.key, Part::Config));
-    at.effect.kill(window.picture); // it gets another surface
+    at.effect.kill(window.picture);               // it gets another surface
     at.effect.read(part(window.key, Part::Name)); // the window must exist
 }
 
@@ -290,11 +300,12 @@ void GlStateTracker::unknown(At& at, bool names) {
 void GlStateTracker::gl(At& at, const RecordView& r) {
     const size_t before = at.effect.entries.size();
     execute(at, r);
-    // Moves reads after the keys that the command replaces: the new values do not depend on the old ones. Calls of lists
-    // are sequences of commands and keep their order.
+    // Moves reads after the keys that the command replaces: the new values do not depend on the old ones. Calls of
+    // lists are sequences of commands and keep their order.
     const Family family = ruleOf(r.opcode).family;
     if (family != Family::CallList && family != Family::CallLists)
-        std::stable_partition(at.effect.entries.begin() + static_cast<std::ptrdiff_t>(before), at.effect.entries.end(), [](const EffectEntry& e) { return e.mode != Mode::Read; });
+        std::stable_partition(at.effect.entries.begin() + static_cast<std::ptrdiff_t>(before), at.effect.entries.end(),
+                              [](const EffectEntry& e) { return e.mode != Mode::Read; });
     // Any effect depends on the current context of the stream.
     if (at.effect.always || at.effect.entries.size() > before) at.effect.read(at.thread.key);
 }
@@ -314,9 +325,7 @@ void GlStateTracker::execute(At& at, const RecordView& r) {
     case Family::DeleteList:
     case Family::CallList:
     case Family::CallLists: return lists(at, rule, r);
-    case Family::Begin:
-        at.thread.inPrimitive = at.context->callDepth == 0;
-        return draw(at);
+    case Family::Begin: at.thread.inPrimitive = at.context->callDepth == 0; return draw(at);
     case Family::End: at.thread.inPrimitive = false; return;
     case Family::Vertex:
         if (!at.thread.inPrimitive) draw(at);

@@ -102,7 +102,9 @@ private:
     void writeMemory(At& at);
     void clear(At& at, const Rule& rule, const RecordView& r);
 
-    [[nodiscard]] Key part(Key above, Part kind, uint64_t a = 0, uint64_t b = 0) { return keys_.child(above, static_cast<uint32_t>(kind), a, b); }
+    [[nodiscard]] Key part(Key above, Part kind, uint64_t a = 0, uint64_t b = 0) {
+        return keys_.child(above, static_cast<uint32_t>(kind), a, b);
+    }
 
     KeyTree& keys_;
     std::map<uint32_t, ClientNames> clients_;
@@ -111,7 +113,9 @@ private:
 
 // Reads names from a value in the arguments, from that word on. Returns false if they travel as a blob, or are missing.
 bool namesAt(const RecordView& r, size_t word, std::vector<uint32_t>& names);
-inline uint64_t argumentWide(const RecordView& r, size_t word) { return argumentWord(r, word) | uint64_t{argumentWord(r, word + 1)} << 32; }
+inline uint64_t argumentWide(const RecordView& r, size_t word) {
+    return argumentWord(r, word) | uint64_t{argumentWord(r, word + 1)} << 32;
+}
 
 struct GlStateTracker::At {
     uint32_t stream;

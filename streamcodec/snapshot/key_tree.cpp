@@ -36,8 +36,10 @@ Key KeyTree::child(Key parent, uint32_t kind, uint64_t a, uint64_t b) {
         free_.pop_back();
         nodes_[key] = wanted;
     }
-    if (used() * 2 > slots_.size()) rehash(slots_.size() * 2);
-    else insert(key);
+    if (used() * 2 > slots_.size())
+        rehash(slots_.size() * 2);
+    else
+        insert(key);
     return key;
 }
 
@@ -58,7 +60,8 @@ void KeyTree::keepOnly(std::vector<bool> marked) {
     marked.resize(nodes_.size());
     for (Key key = 1; key < nodes_.size(); ++key)
         if (marked[key])
-            for (Key above = nodes_[key].parent; above != kNoKey && !marked[above]; above = nodes_[above].parent) marked[above] = true;
+            for (Key above = nodes_[key].parent; above != kNoKey && !marked[above]; above = nodes_[above].parent)
+                marked[above] = true;
     for (Key key = 1; key < nodes_.size(); ++key) {
         if (marked[key] || nodes_[key].kind == kFreeKind) continue;
         nodes_[key].kind = kFreeKind;

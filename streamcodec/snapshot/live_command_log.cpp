@@ -9,7 +9,7 @@ namespace mural::trace {
 namespace {
 
 constexpr size_t kLargeBytes = 4096; // larger entries have memory of their own and are not moved
-constexpr size_t kMinItems = 8192; // minimum for a sweep
+constexpr size_t kMinItems = 8192;   // minimum for a sweep
 constexpr size_t kMinBytes = size_t{4} << 20;
 constexpr size_t kMinKeys = 16384;
 
@@ -29,7 +29,8 @@ void LiveCommandLog::record(uint32_t stream, const RecordView& r, std::span<cons
         if (!pinned) pending.bytes.insert(pending.bytes.end(), bytes.begin(), bytes.end());
         if (!whole) return;
     }
-    if (pending.effect.always || !pending.effect.entries.empty()) put(stream, alone ? bytes : std::span<const std::byte>(pending.bytes), pending.effect, pinned);
+    if (pending.effect.always || !pending.effect.entries.empty())
+        put(stream, alone ? bytes : std::span<const std::byte>(pending.bytes), pending.effect, pinned);
     pending.bytes.clear();
     if (pending.bytes.capacity() > size_t{1} << 20) pending.bytes.shrink_to_fit();
     pending.effect.clear();
@@ -84,7 +85,8 @@ void LiveCommandLog::clientGone(uint32_t client) {
 }
 
 bool LiveCommandLog::compactIfGrown() {
-    const bool due = items_.size() > std::max(grownItems_, kMinItems) || bytes_.size() + largeBytes_ > std::max(grownBytes_, kMinBytes) ||
+    const bool due = items_.size() > std::max(grownItems_, kMinItems) ||
+                     bytes_.size() + largeBytes_ > std::max(grownBytes_, kMinBytes) ||
                      keys_.used() > std::max(grownKeys_, kMinKeys);
     if (due) compact();
     return due;
@@ -97,14 +99,17 @@ void LiveCommandLog::compact() {
     for (size_t i = items_.size(); i-- > 0;) {
         const Item& item = items_[i];
         const bool gl = item.effects > 0 || item.always;
-        if (gl && sweep.command(static_cast<uint32_t>(i), std::span(effects_).subspan(item.effectAt, item.effects), item.always || item.pinned)) stays[i] = true;
+        if (gl && sweep.command(static_cast<uint32_t>(i), std::span(effects_).subspan(item.effectAt, item.effects),
+                                item.always || item.pinned))
+            stays[i] = true;
     }
     size_t kept = 0, effects = 0, bytes = 0;
     largeBytes_ = 0;
     for (size_t i = 0; i < items_.size(); ++i) {
         if (!stays[i]) continue;
         Item item = std::move(items_[i]);
-        std::move(effects_.begin() + item.effectAt, effects_.begin() + item.effectAt + item.effects, effects_.begin() + static_cast<std::ptrdiff_t>(effects));
+        std::move(effects_.begin() + item.effectAt, effects_.begin() + item.effectAt + item.effects,
+                  effects_.begin() + static_cast<std::ptrdiff_t>(effects));
         item.effectAt = static_cast<uint32_t>(effects);
         effects += item.effects;
         if (item.large) {
@@ -136,7 +141,8 @@ void LiveCommandLog::forgetKeys() {
 
 void LiveCommandLog::forEach(const std::function<void(uint32_t, std::span<const std::byte>)>& take) const {
     for (const Item& item : items_) {
-        if (item.sizeBytes > 0) take(item.stream, {item.large ? item.large.get() : bytes_.data() + item.at, item.sizeBytes});
+        if (item.sizeBytes > 0)
+            take(item.stream, {item.large ? item.large.get() : bytes_.data() + item.at, item.sizeBytes});
     }
     for (const auto& [stream, pending] : pending_)
         if (!pending.bytes.empty()) take(stream, pending.bytes);
@@ -146,7 +152,8 @@ size_t LiveCommandLog::sizeBytes() const {
     constexpr size_t kKeyBytes = 32; // including its table entry
     size_t pending = 0;
     for (const auto& [stream, p] : pending_) pending += p.bytes.size();
-    return bytes_.size() + largeBytes_ + pending + items_.size() * sizeof(Item) + effects_.size() * sizeof(EffectEntry) + keys_.used() * kKeyBytes;
+    return bytes_.size() + largeBytes_ + pending + items_.size() * sizeof(Item) +
+           effects_.size() * sizeof(EffectEntry) + keys_.used() * kKeyBytes;
 }
 
 void LiveCommandLog::clear() {

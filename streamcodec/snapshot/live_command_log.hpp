@@ -37,7 +37,7 @@ public:
 private:
     struct Item {
         std::unique_ptr<std::byte[]> large; // null: stored in bytes_
-        size_t at = 0; // offset there
+        size_t at = 0;                      // offset there
         uint32_t sizeBytes = 0;
         uint32_t stream = 0;
         uint32_t effectAt = 0, effects = 0;

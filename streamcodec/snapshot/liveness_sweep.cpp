@@ -44,7 +44,7 @@ void LivenessSweep::mention(Key key) {
 void LivenessSweep::open(Key key) {
     const auto found = restored_.find(key);
     const Key state = keys_.parent(keys_.parent(key)); // of all contexts and their objects
-    if (found == restored_.end()) return need(state); // the values that its end restores are not known yet
+    if (found == restored_.end()) return need(state);  // the values that its end restores are not known yet
     for (const auto& [restored, wasNeeded] : found->second.keys)
         if (wasNeeded) need(restored);
     if (found->second.all) need(state);

@@ -28,11 +28,11 @@ public:
 
 private:
     struct Mark {
-        uint64_t said = 0; // step << 1 | dead
+        uint64_t said = 0;      // step << 1 | dead
         uint64_t readBelow = 0; // the same, of the last live mark in the subtree
         uint32_t closer = kNobody;
     };
-    struct Restored { // by attribute stack level
+    struct Restored {                           // by attribute stack level
         std::vector<std::pair<Key, bool>> keys; // live after it
         bool all = false;
     };

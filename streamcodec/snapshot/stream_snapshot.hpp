@@ -17,10 +17,11 @@ namespace mural::trace {
 class StreamSnapshot {
 public:
     // boundBytes: memory limit. If the live state exceeds it, logging stops, and `say` reports it once.
-    StreamSnapshot(size_t boundBytes, std::function<void(const std::string&)> say) : boundBytes_(boundBytes), say_(std::move(say)) {}
+    StreamSnapshot(size_t boundBytes, std::function<void(const std::string&)> say)
+        : boundBytes_(boundBytes), say_(std::move(say)) {}
 
     void append(uint32_t stream, std::span<const std::byte> payload); // ignores the head's own stream
-    void event(const ClientEvent& event); // ClientGone: removes everything of the program
+    void event(const ClientEvent& event);                             // ClientGone: removes everything of the program
 
     [[nodiscard]] bool serves() const { return !overrun_; } // false: nodes can no longer resynchronize
     // Returns packets that bring a fresh node to the current state. Swaps in them are unseen (frame 0), and they

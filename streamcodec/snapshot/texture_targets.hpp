@@ -7,7 +7,9 @@
 
 namespace mural::trace {
 
-constexpr bool isFace(uint32_t target) { return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z; }
+constexpr bool isFace(uint32_t target) {
+    return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
+}
 
 constexpr bool isProxy(uint32_t target) {
     switch (target) {

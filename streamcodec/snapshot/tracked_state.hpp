@@ -1,5 +1,5 @@
-// State of the GL state tracker: bindings and stacks that later commands refer to, and the structure of objects as far as
-// it determines which commands replace others.
+// State of the GL state tracker: bindings and stacks that later commands refer to, and the structure of objects as far
+// as it determines which commands replace others.
 #pragma once
 
 #include <compare>
@@ -20,10 +20,57 @@ namespace mural::trace {
 
 // Kinds of keys. Kinds of state cells are opcodes, which are larger.
 enum class Part : uint32_t {
-    Client = 1, State, Pictures, Results, Images, Group, Context, Window, Stream, Owner, Made, First, Config, Picture, Front, Color, Depth, Stencil,
-    Object, Name, Storage, Level, Data, Box, Mipmaps, Compiled, Linked, Uniforms, Layout, Attachments, Binding, TextureUnit, ActiveUnit, ClientUnit, MatrixMode, ListBase,
-    Matrices, Matrix, MatrixLevel, MatrixValue, AttribLevel, ClientAttribLevel, Conditional, Feedback, QueryKnown, Cells, Arrays, ColorMaterial, MaterialMode,
-    Resident, Pages,
+    Client = 1,
+    State,
+    Pictures,
+    Results,
+    Images,
+    Group,
+    Context,
+    Window,
+    Stream,
+    Owner,
+    Made,
+    First,
+    Config,
+    Picture,
+    Front,
+    Color,
+    Depth,
+    Stencil,
+    Object,
+    Name,
+    Storage,
+    Level,
+    Data,
+    Box,
+    Mipmaps,
+    Compiled,
+    Linked,
+    Uniforms,
+    Layout,
+    Attachments,
+    Binding,
+    TextureUnit,
+    ActiveUnit,
+    ClientUnit,
+    MatrixMode,
+    ListBase,
+    Matrices,
+    Matrix,
+    MatrixLevel,
+    MatrixValue,
+    AttribLevel,
+    ClientAttribLevel,
+    Conditional,
+    Feedback,
+    QueryKnown,
+    Cells,
+    Arrays,
+    ColorMaterial,
+    MaterialMode,
+    Resident,
+    Pages,
 };
 
 struct Extent {
@@ -42,30 +89,30 @@ struct Object;
 
 struct Attachment {
     Object* object = nullptr;
-    uint64_t level = 0;  // face << 32 | level
-    bool whole = true;   // of the level; false: a layer of it
+    uint64_t level = 0; // face << 32 | level
+    bool whole = true;  // of the level; false: a layer of it
 };
 
 struct Object {
     ObjectType type = ObjectType::None;
     uint32_t name = 0;
-    Key key = kNoKey, images = kNoKey; // images: of textures and renderbuffers
-    bool made = false;    // created by a command that stays in the log
-    bool deleted = false; // its name is free, but other objects hold it
-    bool opaque = false;  // its contents, or the objects that share it, are not known
-    uint32_t holders = 0; // bindings and objects that keep it alive
-    uint32_t target = 0;  // texture
-    std::map<uint64_t, Extent> levels; // texture, by face << 32 | level; renderbuffer: 0
-    uint64_t sizeBytes = 0;            // buffer
+    Key key = kNoKey, images = kNoKey;          // images: of textures and renderbuffers
+    bool made = false;                          // created by a command that stays in the log
+    bool deleted = false;                       // its name is free, but other objects hold it
+    bool opaque = false;                        // its contents, or the objects that share it, are not known
+    uint32_t holders = 0;                       // bindings and objects that keep it alive
+    uint32_t target = 0;                        // texture
+    std::map<uint64_t, Extent> levels;          // texture, by face << 32 | level; renderbuffer: 0
+    uint64_t sizeBytes = 0;                     // buffer
     std::map<uint32_t, Attachment> attachments; // framebuffer
-    std::vector<uint32_t> drawBuffers; // framebuffer
-    std::map<uint64_t, Object*> holds; // shaders of a program, buffers of a vertex array
-    std::vector<std::byte> records; // display list: effects of a call, without repetitions
-    bool stacks = false; // display list that pushes or pops
-    std::set<uint32_t> units; // texture units that may have been assigned to a program's samplers
-    bool anyUnit = false; // program or shader that may assign units itself
-    bool sparse = false; // texture or buffer whose writes depend on committed pages
-    std::set<HandleId> handles; // of a texture
+    std::vector<uint32_t> drawBuffers;          // framebuffer
+    std::map<uint64_t, Object*> holds;          // shaders of a program, buffers of a vertex array
+    std::vector<std::byte> records;             // display list: effects of a call, without repetitions
+    bool stacks = false;                        // display list that pushes or pops
+    std::set<uint32_t> units;                   // texture units that may have been assigned to a program's samplers
+    bool anyUnit = false;                       // program or shader that may assign units itself
+    bool sparse = false;                        // texture or buffer whose writes depend on committed pages
+    std::set<HandleId> handles;                 // of a texture
 };
 
 using Objects = std::unordered_map<uint64_t, std::unique_ptr<Object>>; // key: type << 32 | name
@@ -76,7 +123,7 @@ struct Group {
     bool trackingDisabled = false; // an unsupported command may have modified objects: tracking is off for this group
     Objects objects;
     std::vector<std::unique_ptr<Object>> gone; // deleted objects that are still held
-    std::map<HandleId, uint32_t> handles; // texture names
+    std::map<HandleId, uint32_t> handles;      // texture names
     uint32_t lives = 0;
 };
 
@@ -94,9 +141,9 @@ struct SavedAttribs { // one level of glPushAttrib
     uint32_t unit = 0, clientUnit = 0, matrixMode = 0, listBase = 0;
     Limits limits;
     uint64_t colorMaterialMode = 0;
-    bool texturesTouched = false; // units, bindings or textures changed since then
+    bool texturesTouched = false;                        // units, bindings or textures changed since then
     std::vector<std::pair<uint64_t, uint32_t>> bindings; // slot, name
-    std::vector<std::pair<Key, uint32_t>> touched; // keys changed since then, and the bits that save them
+    std::vector<std::pair<Key, uint32_t>> touched;       // keys changed since then, and the bits that save them
 };
 
 struct ContextNames {
@@ -104,8 +151,8 @@ struct ContextNames {
     std::shared_ptr<Group> group;
     wire::Api api = wire::Api::Desktop;
     bool everCurrent = false, current = false;
-    bool unknown = false; // bindings are no longer known
-    uint32_t lastStream = 0; // stream in which it was last current
+    bool unknown = false;                                                     // bindings are no longer known
+    uint32_t lastStream = 0;                                                  // stream in which it was last current
     bool depthTested = false, stencilTested = false, transfersPixels = false; // at any time in the past
     uint64_t colorMaterialMode = 0;
     Objects own; // objects that are not shared
@@ -119,9 +166,9 @@ struct ContextNames {
     bool feedback = false;
     std::map<HandleId, bool> resident; // shaders may sample these textures, and write those images
     uint32_t callDepth = 0;
-    bool restUnsafe = false; // calls a list that pushes, pops, or calls others
+    bool restUnsafe = false;     // calls a list that pushes, pops, or calls others
     bool gathersBitmaps = false; // the driver may batch bitmaps
-    bool usesFront = false; // has drawn to or read from a window buffer other than the back
+    bool usesFront = false;      // has drawn to or read from a window buffer other than the back
 };
 
 struct WindowNames {
@@ -138,7 +185,7 @@ struct StreamNames {
     bool listExecutes = false;
     std::vector<std::byte> listRecords;
     bool listStacks = false;
-    std::vector<std::byte> rest; // side effects to set after the command
+    std::vector<std::byte> rest;     // side effects to set after the command
     std::vector<uint64_t> blobBytes; // sizes of blobs that no record has consumed yet
 };
 

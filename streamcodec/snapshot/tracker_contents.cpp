@@ -27,7 +27,8 @@ void noteUnits(Object& program, const RecordView& r, size_t locationWord) {
 // Returns true if the shader's source may assign units.
 bool namesUnits(const RecordView& r) {
     const std::string_view text(reinterpret_cast<const char*>(r.arguments.data()), r.arguments.size());
-    return text.find("binding") != std::string_view::npos || text.find("#include") != std::string_view::npos || text.size() < 64 || argumentWord(r, 2) > record::kInlineBytes || text.find("void") == std::string_view::npos;
+    return text.find("binding") != std::string_view::npos || text.find("#include") != std::string_view::npos ||
+           text.size() < 64 || argumentWord(r, 2) > record::kInlineBytes || text.find("void") == std::string_view::npos;
 }
 
 } // namespace
@@ -38,8 +39,10 @@ void GlStateTracker::writeBuffer(At& at, Object* buffer, uint64_t offset, uint64
     const Key data = part(part(buffer->key, Part::Storage), Part::Data);
     if (buffer->opaque && at.context->group->trackingDisabled) at.effect.always = true;
     if (buffer->sparse) at.effect.read(part(part(buffer->key, Part::Storage), Part::Pages));
-    if (offset == 0 && sizeBytes == buffer->sizeBytes && sizeBytes > 0) at.effect.kill(data);
-    else at.effect.kill(part(data, Part::Box, offset, sizeBytes)); // an upload of the same range replaces it
+    if (offset == 0 && sizeBytes == buffer->sizeBytes && sizeBytes > 0)
+        at.effect.kill(data);
+    else
+        at.effect.kill(part(data, Part::Box, offset, sizeBytes)); // an upload of the same range replaces it
 }
 
 void GlStateTracker::buffers(At& at, const Rule& rule, const RecordView& r) {
@@ -85,7 +88,7 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
     if (rule.family == Family::Uniform) {
         Object* const program = bound(at, slotOf(Slot::Program));
-            if (program == nullptr) { // of a pipeline's program, or an error
+        if (program == nullptr) { // of a pipeline's program, or an error
             if (bound(at, slotOf(Slot::Pipeline)) == nullptr) return;
             at.effect.always = true;
             return readAll(at);
@@ -99,27 +102,30 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
     if (rule.family == Family::ArbProgram) {
         Object* const program = bound(at, slotOf(Slot::ArbProgram, first));
         at.effect.read(part(c.cells, Part::Binding, slotOf(Slot::ArbProgram, first)));
-        const Key above = program != nullptr ? program->key : part(c.cells, Part::Binding, slotOf(Slot::ArbProgram, first, 1));
-            return at.effect.kill(cell(at, above, r.opcode, rule, r));
+        const Key above =
+            program != nullptr ? program->key : part(c.cells, Part::Binding, slotOf(Slot::ArbProgram, first, 1));
+        return at.effect.kill(cell(at, above, r.opcode, rule, r));
     }
     if (rule.family == Family::ProgramDelete || rule.family == Family::ShaderDelete) {
-            return deleteOne(at, ObjectType::Program, first);
+        return deleteOne(at, ObjectType::Program, first);
     }
-    const ObjectType type = rule.family == Family::NamedSet ? rule.type : rule.family == Family::PipelineSet ? ObjectType::Pipeline : ObjectType::Program;
+    const ObjectType type = rule.family == Family::NamedSet      ? rule.type
+                            : rule.family == Family::PipelineSet ? ObjectType::Pipeline
+                                                                 : ObjectType::Program;
     Object* const object = find(at, type, first);
     if (object == nullptr) return unknown(at, false);
     use(at, object);
     switch (rule.family) {
-    case Family::ShaderSet:
-        object->anyUnit = namesUnits(r);
-        return at.effect.kill(part(object->key, Part::Data));
+    case Family::ShaderSet: object->anyUnit = namesUnits(r); return at.effect.kill(part(object->key, Part::Data));
     case Family::ShaderCompile:
         at.effect.read(part(object->key, Part::Data));
         return at.effect.write(part(object->key, Part::Compiled));
     case Family::ProgramAttach:
     case Family::ProgramDetach: {
         Object* const shader = find(at, ObjectType::Program, second);
-        Object* const known = shader != nullptr ? shader : object->holds.contains(second) ? object->holds[second] : nullptr;
+        Object* const known = shader != nullptr                ? shader
+                              : object->holds.contains(second) ? object->holds[second]
+                                                               : nullptr;
         if (known == nullptr) return unknown(at, false);
         use(at, known);
         at.effect.write(part(object->key, Part::Attachments));
@@ -134,7 +140,8 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
         }
         return at.effect.write(part(object->key, Part::Linked)); // a failed link replaces nothing
     case Family::PipelineSet: {
-        Object* const program = find(at, ObjectType::Program, argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1));
+        Object* const program =
+            find(at, ObjectType::Program, argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1));
         if (program != nullptr) {
             use(at, program);
             program->opaque = true; // lives as long as the pipeline refers to it
@@ -147,7 +154,8 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
         at.effect.read(part(object->key, Part::Linked));
         return at.effect.kill(cell(at, part(object->key, Part::Uniforms), r.opcode, rule, r));
     case Family::ProgramSet: // names are texts: each is a separate cell
-        if (r.opcode == op::glBindAttribLocation || r.opcode == op::glBindFragDataLocation || r.opcode == op::glBindFragDataLocationIndexed || r.opcode == op::glTransformFeedbackVaryings)
+        if (r.opcode == op::glBindAttribLocation || r.opcode == op::glBindFragDataLocation ||
+            r.opcode == op::glBindFragDataLocationIndexed || r.opcode == op::glTransformFeedbackVaryings)
             return at.effect.write(part(object->key, Part::Attachments));
         if (r.opcode != op::glProgramParameteri) at.effect.read(part(object->key, Part::Linked));
         return at.effect.kill(cell(at, object->key, r.opcode, rule, r));

@@ -53,20 +53,26 @@ void GlStateTracker::framebufferPlanes(At& at, Object& target, uint32_t mask, bo
     for (const auto& [point, a] : target.attachments) {
         if (a.object == nullptr) continue;
         const auto level = a.object->levels.find(a.level);
-        covers = covers && a.whole && level != a.object->levels.end() && level->second.depth == 1 && (common == nullptr || *common == level->second);
+        covers = covers && a.whole && level != a.object->levels.end() && level->second.depth == 1 &&
+                 (common == nullptr || *common == level->second);
         if (level != a.object->levels.end()) common = &level->second;
     }
     covers = covers && common != nullptr && !at.context->group->trackingDisabled;
     for (const auto& [point, a] : target.attachments) {
         if (a.object == nullptr) continue;
-        const uint32_t plane = isColor(point) ? kColor : point == GL_DEPTH_ATTACHMENT ? kDepth : point == GL_STENCIL_ATTACHMENT ? kStencil : 0;
+        const uint32_t plane = isColor(point)                   ? kColor
+                               : point == GL_DEPTH_ATTACHMENT   ? kDepth
+                               : point == GL_STENCIL_ATTACHMENT ? kStencil
+                                                                : 0;
         if (plane != 0 && !(mask & plane)) continue;
         if (a.object->opaque || at.context->group->trackingDisabled) at.effect.always = true;
         const Key storage = part(a.object->images, Part::Storage);
         const bool texture = a.object->type == ObjectType::Texture;
         const Key image = texture ? part(storage, Part::Level, a.level) : storage;
         Key data = part(image, Part::Data);
-        const bool drawn = target.drawBuffers.empty() ? point == GL_COLOR_ATTACHMENT0 : std::ranges::find(target.drawBuffers, point) != target.drawBuffers.end();
+        const bool drawn = target.drawBuffers.empty()
+                               ? point == GL_COLOR_ATTACHMENT0
+                               : std::ranges::find(target.drawBuffers, point) != target.drawBuffers.end();
         bool whole = plane == kColor && drawn && !l.colorMasked && !l.alphaMasked;
         if (plane == kDepth) data = part(data, Part::Depth), whole = !l.depthMasked;
         if (plane == kStencil) data = part(data, Part::Stencil), whole = !l.stencilMasked;
@@ -79,7 +85,8 @@ void GlStateTracker::framebufferPlanes(At& at, Object& target, uint32_t mask, bo
 void GlStateTracker::planes(At& at, uint32_t mask, bool covers) {
     const Limits& l = at.context->limits;
     covers = covers && !l.scissor && !l.discard && !l.conditional && !l.unknown;
-    if (Object* const target = bound(at, slotOf(Slot::DrawFramebuffer))) return framebufferPlanes(at, *target, mask, covers);
+    if (Object* const target = bound(at, slotOf(Slot::DrawFramebuffer)))
+        return framebufferPlanes(at, *target, mask, covers);
     windowPlanes(at, mask, covers);
 }
 
@@ -90,8 +97,10 @@ void GlStateTracker::writeMemory(At& at) {
         if (query != nullptr) at.effect.write(query->images);
     for (const auto& [slot, object] : c.bindings) {
         if (object == nullptr) continue;
-        const bool buffer = slotKind(slot) == Slot::IndexedBuffer && (slotTarget(slot) == GL_SHADER_STORAGE_BUFFER || slotTarget(slot) == GL_ATOMIC_COUNTER_BUFFER ||
-                                                                       (slotTarget(slot) == GL_TRANSFORM_FEEDBACK_BUFFER && c.feedback));
+        const bool buffer =
+            slotKind(slot) == Slot::IndexedBuffer &&
+            (slotTarget(slot) == GL_SHADER_STORAGE_BUFFER || slotTarget(slot) == GL_ATOMIC_COUNTER_BUFFER ||
+             (slotTarget(slot) == GL_TRANSFORM_FEEDBACK_BUFFER && c.feedback));
         if (!buffer && slotKind(slot) != Slot::Image) continue;
         if (object->opaque) at.effect.always = true;
         at.effect.write(part(buffer ? object->key : object->images, Part::Storage));
@@ -122,8 +131,9 @@ void GlStateTracker::drawBitmap(At& at) {
     draw(at);
 }
 
-// Mesa batches bitmaps, and nodes flush them at requests (nodes/replay/features/bitmap_flush.cpp). Without the request they
-// would be drawn later with other state, for which Mesa may crash. The request therefore stays as long as the bitmaps.
+// Mesa batches bitmaps, and nodes flush them at requests (nodes/replay/features/bitmap_flush.cpp). Without the request
+// they would be drawn later with other state, for which Mesa may crash. The request therefore stays as long as the
+// bitmaps.
 void GlStateTracker::drawGathered(At& at) {
     if (at.context != nullptr && std::exchange(at.context->gathersBitmaps, false)) drawBitmap(at);
 }
@@ -175,14 +185,18 @@ void GlStateTracker::clear(At& at, const Rule& rule, const RecordView& r) {
         if (c.limits.conditional) readState(at);
         // glClearBuffer... clears one of several colour buffers.
         const Object* const target = bound(at, slotOf(Slot::DrawFramebuffer));
-        const auto colors = target == nullptr ? 1 : std::ranges::count_if(target->attachments, [](const auto& a) { return a.second.object != nullptr && isColor(a.first); });
+        const auto colors = target == nullptr ? 1 : std::ranges::count_if(target->attachments, [](const auto& a) {
+            return a.second.object != nullptr && isColor(a.first);
+        });
         return planes(at, mask, !buffer || mask != kColor || (colors == 1 && argumentWord(r, 1) == 0));
     }
     case Family::Blit: { // source, x0, y0, x1, y1 of the destination, mask
         readPicture(at);
         const auto window = at.client.windows.find(at.thread.draw);
-        const bool covers = bound(at, slotOf(Slot::DrawFramebuffer)) == nullptr && window != at.client.windows.end() && argumentWord(r, 4) == 0 && argumentWord(r, 5) == 0 &&
-                            argumentWord(r, 6) == window->second.config.width && argumentWord(r, 7) == window->second.config.height;
+        const bool covers = bound(at, slotOf(Slot::DrawFramebuffer)) == nullptr && window != at.client.windows.end() &&
+                            argumentWord(r, 4) == 0 && argumentWord(r, 5) == 0 &&
+                            argumentWord(r, 6) == window->second.config.width &&
+                            argumentWord(r, 7) == window->second.config.height;
         return planes(at, argumentWord(r, 8), covers);
     }
     case Family::Compute:

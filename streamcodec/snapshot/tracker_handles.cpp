@@ -31,12 +31,15 @@ Object* GlStateTracker::textureOf(At& at, const HandleId& handle) {
 
 void GlStateTracker::handles(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
-    const bool ofImage = r.opcode == op::glGetImageHandleARB || r.opcode == op::glMakeImageHandleResidentARB || r.opcode == op::glMakeImageHandleNonResidentARB;
+    const bool ofImage = r.opcode == op::glGetImageHandleARB || r.opcode == op::glMakeImageHandleResidentARB ||
+                         r.opcode == op::glMakeImageHandleNonResidentARB;
     if (rule.family == Family::HandleResident) {
         const HandleId handle{ofImage, argumentWide(r, 0)};
         const Key key = part(part(c.key, Part::Resident, ofImage), Part::Resident, handle.value);
-        if (r.opcode == op::glMakeTextureHandleNonResidentARB || r.opcode == op::glMakeImageHandleNonResidentARB) c.resident.erase(handle);
-        else c.resident[handle] = ofImage && argumentWord(r, 2) != GL_READ_ONLY;
+        if (r.opcode == op::glMakeTextureHandleNonResidentARB || r.opcode == op::glMakeImageHandleNonResidentARB)
+            c.resident.erase(handle);
+        else
+            c.resident[handle] = ofImage && argumentWord(r, 2) != GL_READ_ONLY;
         return at.effect.kill(key);
     }
     const uint32_t name = argumentWord(r, 0);
@@ -52,7 +55,8 @@ void GlStateTracker::handles(At& at, const Rule& rule, const RecordView& r) {
     use(at, texture);
     at.effect.read(texture->key);
     const Key storage = part(texture->images, Part::Storage);
-    for (const auto& [level, extent] : texture->levels) at.effect.read(part(part(storage, Part::Level, level), Part::Name));
+    for (const auto& [level, extent] : texture->levels)
+        at.effect.read(part(part(storage, Part::Level, level), Part::Name));
     at.effect.read(part(storage, Part::Name));
     if (texture->opaque || texture->target == GL_TEXTURE_BUFFER) readState(at);
     if (r.opcode != op::glGetTextureSamplerHandleARB) return;
@@ -66,15 +70,18 @@ void GlStateTracker::handles(At& at, const Rule& rule, const RecordView& r) {
 void GlStateTracker::pages(At& at, const Rule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0);
     if (rule.family == Family::TexPages) { // target or texture, level, offsets, sizes, commit
-        Object* const t = rule.type == ObjectType::Texture ? find(at, ObjectType::Texture, first) : texture(at, first, true);
+        Object* const t =
+            rule.type == ObjectType::Texture ? find(at, ObjectType::Texture, first) : texture(at, first, true);
         if (t == nullptr) return unknown(at, false);
         use(at, t);
         if (t->opaque) at.effect.always = true;
         t->sparse = true;
         const Key storage = part(t->images, Part::Storage), all = part(storage, Part::Pages);
         at.effect.read(part(storage, Part::Name));
-        const Key level = part(all, Part::Level, uint64_t{argumentWord(r, 1)} << 32 | argumentWord(r, 4), argumentWord(r, 7));
-        return at.effect.kill(part(level, Part::Box, uint64_t{argumentWord(r, 2)} << 32 | argumentWord(r, 3), uint64_t{argumentWord(r, 5)} << 32 | argumentWord(r, 6)));
+        const Key level =
+            part(all, Part::Level, uint64_t{argumentWord(r, 1)} << 32 | argumentWord(r, 4), argumentWord(r, 7));
+        return at.effect.kill(part(level, Part::Box, uint64_t{argumentWord(r, 2)} << 32 | argumentWord(r, 3),
+                                   uint64_t{argumentWord(r, 5)} << 32 | argumentWord(r, 6)));
     }
     const uint64_t slot = slotOf(Slot::Buffer, first); // target or buffer, offset, size, commit
     Object* const buffer = rule.type == ObjectType::Buffer ? find(at, ObjectType::Buffer, first) : bound(at, slot);

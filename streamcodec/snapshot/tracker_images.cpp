@@ -11,7 +11,9 @@
 namespace mural::trace {
 namespace {
 
-uint64_t levelOf(uint32_t target, uint32_t level) { return uint64_t{isFace(target) ? target - GL_TEXTURE_CUBE_MAP_POSITIVE_X : 0} << 32 | level; }
+uint64_t levelOf(uint32_t target, uint32_t level) {
+    return uint64_t{isFace(target) ? target - GL_TEXTURE_CUBE_MAP_POSITIVE_X : 0} << 32 | level;
+}
 
 // Returns the number of size arguments, from the command's name.
 unsigned dimensionsOf(uint16_t opcode) {
@@ -44,7 +46,8 @@ unsigned dimensionsOf(uint16_t opcode) {
 }
 
 Extent extentAt(const RecordView& r, size_t word, unsigned dimensions) {
-    return {argumentWord(r, word), dimensions > 1 ? argumentWord(r, word + 1) : 1, dimensions > 2 ? argumentWord(r, word + 2) : 1};
+    return {argumentWord(r, word), dimensions > 1 ? argumentWord(r, word + 1) : 1,
+            dimensions > 2 ? argumentWord(r, word + 2) : 1};
 }
 
 } // namespace
@@ -75,7 +78,8 @@ void GlStateTracker::textures(At& at, const Rule& rule, const RecordView& r) {
     if (t == nullptr) return unknown(at, false);
     use(at, t);
     if (t->opaque) at.effect.always = true;
-    const Key storage = part(t->images, Part::Storage), image = part(storage, Part::Level, levelOf(target, level)), data = part(image, Part::Data);
+    const Key storage = part(t->images, Part::Storage), image = part(storage, Part::Level, levelOf(target, level)),
+              data = part(image, Part::Data);
     const unsigned dimensions = dimensionsOf(r.opcode);
     Extent& extent = t->levels[levelOf(target, level)];
     // Images may come from a buffer, and pass through the pixel transfer.
@@ -181,7 +185,8 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
         const bool readBuffer = r.opcode == op::glReadBuffer;
         Object* const target = framebuffer(at, readBuffer ? GL_READ_FRAMEBUFFER : first);
         if (target == nullptr && readBuffer && first != GL_BACK && first != GL_NONE) c.usesFront = true;
-        if (target == nullptr) return readBuffer ? set(at, part(c.cells, Part::Picture), GL_PIXEL_MODE_BIT | 0x40000000) : void();
+        if (target == nullptr)
+            return readBuffer ? set(at, part(c.cells, Part::Picture), GL_PIXEL_MODE_BIT | 0x40000000) : void();
         use(at, target);
         return set(at, cell(at, target->key, r.opcode, rule, r), 0);
     }

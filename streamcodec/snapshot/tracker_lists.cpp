@@ -11,9 +11,9 @@
 namespace mural::trace {
 namespace {
 
-constexpr uint32_t kMaxNesting = 64; // GL's limit
+constexpr uint32_t kMaxNesting = 64;              // GL's limit
 constexpr size_t kMaxListBytes = size_t{1} << 20; // remembered effects of one list
-constexpr size_t kRememberedWords = 16; // remembered arguments of one command
+constexpr size_t kRememberedWords = 16;           // remembered arguments of one command
 
 enum class Compiles : uint8_t { Compiled, Executed, Unsure };
 
@@ -34,7 +34,8 @@ Compiles compiles(const Rule& rule) {
     case Family::BufferSubData: return Compiles::Executed;
     case Family::Bind:
         if (rule.type == ObjectType::Buffer || rule.type == ObjectType::VertexArray) return Compiles::Executed;
-        return rule.type == ObjectType::Texture || rule.type == ObjectType::ArbProgram ? Compiles::Compiled : Compiles::Unsure;
+        return rule.type == ObjectType::Texture || rule.type == ObjectType::ArbProgram ? Compiles::Compiled
+                                                                                       : Compiles::Unsure;
     case Family::Nothing:
     case Family::Cell:
     case Family::CellOfMatrix:
@@ -74,7 +75,9 @@ Compiles compiles(const Rule& rule) {
     }
 }
 
-bool draws(Family family) { return family == Family::Draw || family == Family::Begin || family == Family::Vertex || family == Family::End; }
+bool draws(Family family) {
+    return family == Family::Draw || family == Family::Begin || family == Family::Vertex || family == Family::End;
+}
 
 // Returns true if the command sets one part of the context's state, independent of other state.
 bool setsAlone(const Rule& rule, const RecordView& r) {
@@ -108,7 +111,8 @@ void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& 
             const Family before = ruleOf(known.opcode).family;
             if (!draws(rule.family) || (before != Family::Attribute && before != Family::Color)) drawn = same;
             if (!same || draws(rule.family)) continue;
-            into.erase(into.begin() + static_cast<std::ptrdiff_t>(known.offset), into.begin() + static_cast<std::ptrdiff_t>(known.offset + known.sizeBytes));
+            into.erase(into.begin() + static_cast<std::ptrdiff_t>(known.offset),
+                       into.begin() + static_cast<std::ptrdiff_t>(known.offset + known.sizeBytes));
             break;
         }
         if (draws(rule.family) && drawn) return;
@@ -124,7 +128,8 @@ void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& 
 // State setters within a primitive or a list are repeated after it as side effects, so the state does not depend on the
 // whole command.
 bool GlStateTracker::hasSideEffects(At& at, const Rule& rule, const RecordView& r) {
-    if ((!at.thread.inPrimitive && at.context->callDepth == 0) || at.context->restUnsafe || !setsAlone(rule, r)) return false;
+    if ((!at.thread.inPrimitive && at.context->callDepth == 0) || at.context->restUnsafe || !setsAlone(rule, r))
+        return false;
     if (at.context->callDepth > 0) { // later clears in the list depend on it
         Effect none;
         At of{at.stream, at.client, at.thread, at.context, none, 0};
@@ -139,8 +144,9 @@ void GlStateTracker::compiled(At& at, const RecordView& r) {
     const Compiles how = compiles(rule);
     if (how == Compiles::Unsure) return unknown(at, true);
     const bool executes = how == Compiles::Executed || at.thread.listExecutes;
-    if (rule.family == Family::AttribPush || rule.family == Family::AttribPop || rule.family == Family::CallList || rule.family == Family::CallLists ||
-        r.opcode == op::glColorMaterial || (rule.family == Family::Cap && argumentWord(r, 0) == GL_COLOR_MATERIAL))
+    if (rule.family == Family::AttribPush || rule.family == Family::AttribPop || rule.family == Family::CallList ||
+        rule.family == Family::CallLists || r.opcode == op::glColorMaterial ||
+        (rule.family == Family::Cap && argumentWord(r, 0) == GL_COLOR_MATERIAL))
         at.thread.listStacks = true;
     if (how == Compiles::Compiled && rule.family != Family::Nothing) remember(at.thread.listRecords, rule, r);
     if (rule.family == Family::Draw) readState(at); // arrays are read from buffers at compile time
@@ -156,12 +162,13 @@ void GlStateTracker::lists(At& at, const Rule& rule, const RecordView& r) {
     std::vector<uint32_t> names;
     switch (rule.family) {
     case Family::GenLists: // range, result
-        for (uint32_t i = 0; i < first && second != 0 && i < 1u << 20; ++i) (void)make(at, ObjectType::List, second + i);
+        for (uint32_t i = 0; i < first && second != 0 && i < 1u << 20; ++i)
+            (void)make(at, ObjectType::List, second + i);
         return;
     case Family::DeleteList:
         if (second > 1u << 20) return unknown(at, false);
         for (uint32_t i = 0; i < second; ++i) deleteOne(at, ObjectType::List, first + i);
-            return;
+        return;
     case Family::NewList: {
         Object* const list = findOrMake(at, ObjectType::List, first);
         at.thread.list = first;
@@ -209,7 +216,10 @@ void GlStateTracker::callLists(At& at, const RecordView& r) {
     const uint32_t n = argumentWord(r, 0), type = argumentWord(r, 1), bytes = argumentWord(r, 2);
     if (bytes > record::kInlineBytes || 12 + bytes > r.arguments.size()) return unknown(at, true);
     const auto* const values = r.arguments.data() + 12;
-    const size_t width = type == GL_BYTE || type == GL_UNSIGNED_BYTE ? 1 : type == GL_SHORT || type == GL_UNSIGNED_SHORT ? 2 : type == GL_INT || type == GL_UNSIGNED_INT ? 4 : 0;
+    const size_t width = type == GL_BYTE || type == GL_UNSIGNED_BYTE     ? 1
+                         : type == GL_SHORT || type == GL_UNSIGNED_SHORT ? 2
+                         : type == GL_INT || type == GL_UNSIGNED_INT     ? 4
+                                                                         : 0;
     if (width == 0 || uint64_t{n} * width > bytes) return unknown(at, true);
     at.effect.read(part(at.context->cells, Part::ListBase));
     const uint32_t base = at.context->listBase;

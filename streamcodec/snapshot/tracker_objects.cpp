@@ -14,12 +14,15 @@ constexpr uint64_t idOf(ObjectType type, uint32_t name) { return uint64_t{static
 
 // Returns true for types that belong to a context: GL does not share container objects and queries.
 bool isOwn(ObjectType type) {
-    return type == ObjectType::Framebuffer || type == ObjectType::VertexArray || type == ObjectType::Query || type == ObjectType::Pipeline || type == ObjectType::Feedback;
+    return type == ObjectType::Framebuffer || type == ObjectType::VertexArray || type == ObjectType::Query ||
+           type == ObjectType::Pipeline || type == ObjectType::Feedback;
 }
 
 } // namespace
 
-Objects& GlStateTracker::tableOf(At& at, ObjectType type) { return isOwn(type) ? at.context->own : at.context->group->objects; }
+Objects& GlStateTracker::tableOf(At& at, ObjectType type) {
+    return isOwn(type) ? at.context->own : at.context->group->objects;
+}
 
 Object* GlStateTracker::find(At& at, ObjectType type, uint32_t name) {
     if (at.context == nullptr) return nullptr;
@@ -40,8 +43,10 @@ Object* GlStateTracker::make(At& at, ObjectType type, uint32_t name) {
     object->name = name;
     // A deleted but held object of that name keeps the plain key.
     Group& group = *at.context->group;
-    const bool taken = std::ranges::any_of(group.gone, [&](const auto& o) { return o->type == type && o->name == name; });
-    object->key = part(isOwn(type) ? at.context->key : group.key, Part::Object, idOf(type, name), taken ? ++group.lives : 0);
+    const bool taken =
+        std::ranges::any_of(group.gone, [&](const auto& o) { return o->type == type && o->name == name; });
+    object->key =
+        part(isOwn(type) ? at.context->key : group.key, Part::Object, idOf(type, name), taken ? ++group.lives : 0);
     object->made = true;
     at.effect.kill(object->key);
     if (type == ObjectType::Texture || type == ObjectType::Renderbuffer) {
@@ -49,7 +54,9 @@ Object* GlStateTracker::make(At& at, ObjectType type, uint32_t name) {
         at.effect.kill(object->images);
     }
     // Results of queries: no draw depends on them.
-    if (type == ObjectType::Query) object->images = part(part(at.client.results, Part::Context, at.thread.context), Part::Object, idOf(type, name));
+    if (type == ObjectType::Query)
+        object->images =
+            part(part(at.client.results, Part::Context, at.thread.context), Part::Object, idOf(type, name));
     auto& place = tableOf(at, type)[idOf(type, name)];
     place = std::move(object);
     return place.get();
@@ -115,12 +122,12 @@ void GlStateTracker::objects(At& at, const Rule& rule, const RecordView& r) {
     }
     case Family::SyncMake: // condition, flags, result
         at.effect.kill(part(at.context->group->key, Part::Object, idOf(ObjectType::Sync, 0), argumentWide(r, 2)));
-            return;
+        return;
     case Family::SyncDelete: {
         const Key sync = part(at.context->group->key, Part::Object, idOf(ObjectType::Sync, 0), argumentWide(r, 0));
         at.effect.add(sync, Mode::Forget);
         at.effect.add(sync, Mode::Close);
-            return;
+        return;
     }
     default: return deleteNames(at, rule.type, r);
     }
@@ -130,7 +137,8 @@ void GlStateTracker::deleteNames(At& at, ObjectType type, const RecordView& r) {
     std::vector<uint32_t> names;
     if (!namesAt(r, 1, names)) return unknown(at, true);
     // Deletion unbinds the object where it is currently bound, and only there.
-    for (const Slot slot : {Slot::DrawFramebuffer, Slot::ReadFramebuffer, Slot::VertexArray}) at.effect.read(part(at.context->cells, Part::Binding, slotOf(slot)));
+    for (const Slot slot : {Slot::DrawFramebuffer, Slot::ReadFramebuffer, Slot::VertexArray})
+        at.effect.read(part(at.context->cells, Part::Binding, slotOf(slot)));
     if (!at.context->attribs.empty()) at.context->attribs.back().texturesTouched = true;
     for (const auto* stack : {&at.context->attribs, &at.context->clientAttribs}) // they restore bindings
         for (const SavedAttribs& level : *stack) at.effect.read(level.key);
@@ -187,14 +195,17 @@ void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
     const auto keyOf = [&](uint64_t slot) { return part(c.cells, Part::Binding, slot); };
     const auto objectOf = [&](uint32_t name) { return name == 0 ? nullptr : findOrMake(at, rule.type, name); };
-    const auto simple = [&](uint64_t slot, uint32_t name) { bindSlot(at, slot, keyOf(slot), rule.attribBits, objectOf(name)); };
+    const auto simple = [&](uint64_t slot, uint32_t name) {
+        bindSlot(at, slot, keyOf(slot), rule.attribBits, objectOf(name));
+    };
     switch (r.opcode) {
     case op::glBindTexture: {
         Object* const object = objectOf(second);
         if (object != nullptr && object->target == 0) object->target = first;
         const uint64_t slot = slotOf(Slot::Texture, first, c.unit);
         at.effect.read(part(c.cells, Part::ActiveUnit));
-        return bindSlot(at, slot, part(part(c.cells, Part::TextureUnit, c.unit), Part::Binding, slot), rule.attribBits, object);
+        return bindSlot(at, slot, part(part(c.cells, Part::TextureUnit, c.unit), Part::Binding, slot), rule.attribBits,
+                        object);
     }
     case op::glBindTextureUnit: {
         Object* const object = objectOf(second);
@@ -211,7 +222,9 @@ void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
             return;
         }
         // The element array binding belongs to the vertex array.
-        Object* const array = findOrMake(at, ObjectType::VertexArray, bound(at, slotOf(Slot::VertexArray)) ? bound(at, slotOf(Slot::VertexArray))->name : 0);
+        Object* const array =
+            findOrMake(at, ObjectType::VertexArray,
+                       bound(at, slotOf(Slot::VertexArray)) ? bound(at, slotOf(Slot::VertexArray))->name : 0);
         Object* const buffer = objectOf(second);
         if (buffer != nullptr) use(at, buffer);
         at.effect.read(keyOf(slotOf(Slot::VertexArray)));
@@ -222,7 +235,8 @@ void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
     case op::glBindBufferBase:
     case op::glBindBufferRange: {
         const uint32_t name = argumentWord(r, 2);
-        if (first == GL_TRANSFORM_FEEDBACK_BUFFER && bound(at, slotOf(Slot::Feedback)) != nullptr) return unknown(at, false);
+        if (first == GL_TRANSFORM_FEEDBACK_BUFFER && bound(at, slotOf(Slot::Feedback)) != nullptr)
+            return unknown(at, false);
         simple(slotOf(Slot::IndexedBuffer, first, second), name);
         return simple(slotOf(Slot::Buffer, first), name); // the generic binding too
     }
@@ -256,7 +270,9 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     if (rule.family == Family::ArrayNamedSet) {
         Object* const array = findOrMake(at, ObjectType::VertexArray, argumentWord(r, 0));
-        const uint32_t name = r.opcode == op::glVertexArrayElementBuffer ? argumentWord(r, 1) : r.opcode == op::glVertexArrayVertexBuffer ? argumentWord(r, 2) : 0;
+        const uint32_t name = r.opcode == op::glVertexArrayElementBuffer  ? argumentWord(r, 1)
+                              : r.opcode == op::glVertexArrayVertexBuffer ? argumentWord(r, 2)
+                                                                          : 0;
         std::vector<uint32_t> names{name};
         if (r.opcode == op::glVertexArrayVertexBuffers && !namesAt(r, 3, names)) names.clear();
         for (const uint32_t held : names) {
@@ -279,10 +295,12 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
         at.effect.read(part(c.cells, Part::ClientUnit));
         above = part(above, Part::TextureUnit, c.clientUnit);
     }
-    if (rule.family == Family::ClientCap) return setClient(at, keys_.child(above, op::glEnableClientState, argumentWord(r, 0)));
+    if (rule.family == Family::ClientCap)
+        return setClient(at, keys_.child(above, op::glEnableClientState, argumentWord(r, 0)));
     if (r.opcode == op::glEnableVertexAttribArray || r.opcode == op::glDisableVertexAttribArray)
         return setClient(at, keys_.child(above, op::glEnableVertexAttribArray, argumentWord(r, 0)));
-    const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer || r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
+    const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer ||
+                         r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
     const uint32_t index = generic || rule.family == Family::ArraySet ? argumentWord(r, 0) : 0;
     if (r.opcode == op::glBindVertexBuffers) { // first, count, buffers, ...
         std::vector<uint32_t> names;

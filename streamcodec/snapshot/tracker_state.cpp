@@ -57,7 +57,8 @@ void GlStateTracker::setClient(At& at, Key key) {
     if (at.context->clientAttribs.empty()) return;
     for (const SavedAttribs& level : at.context->clientAttribs) at.effect.read(level.key);
     SavedAttribs& saved = at.context->clientAttribs.back();
-    if (std::ranges::find(saved.touched, key, &std::pair<Key, uint32_t>::first) == saved.touched.end()) saved.touched.emplace_back(key, 0);
+    if (std::ranges::find(saved.touched, key, &std::pair<Key, uint32_t>::first) == saved.touched.end())
+        saved.touched.emplace_back(key, 0);
 }
 
 void GlStateTracker::state(At& at, const Rule& rule, const RecordView& r) {
@@ -67,15 +68,9 @@ void GlStateTracker::state(At& at, const Rule& rule, const RecordView& r) {
     switch (rule.family) {
     case Family::Cap: return cap(at, rule, r);
     case Family::Limit: limit(at, r); break;
-    case Family::ActiveTexture:
-        c.unit = first - GL_TEXTURE0;
-        return set(at, unit, rule.attribBits);
-    case Family::MatrixMode:
-        c.matrixMode = first;
-        return set(at, part(c.cells, Part::MatrixMode), rule.attribBits);
-    case Family::ListBase:
-        c.listBase = first;
-        return set(at, part(c.cells, Part::ListBase), rule.attribBits);
+    case Family::ActiveTexture: c.unit = first - GL_TEXTURE0; return set(at, unit, rule.attribBits);
+    case Family::MatrixMode: c.matrixMode = first; return set(at, part(c.cells, Part::MatrixMode), rule.attribBits);
+    case Family::ListBase: c.listBase = first; return set(at, part(c.cells, Part::ListBase), rule.attribBits);
     case Family::ClientActiveTexture:
         c.clientUnit = first - GL_TEXTURE0;
         return setClient(at, part(c.cells, Part::ClientUnit));
@@ -105,7 +100,8 @@ void GlStateTracker::state(At& at, const Rule& rule, const RecordView& r) {
         if (c.limits.colorMaterial) colorMaterial(at);
         return set(at, part(c.cells, Part::MaterialMode), rule.attribBits);
     }
-    if (r.opcode == op::glPixelTransferf || r.opcode == op::glPixelTransferi || r.opcode == op::glPixelMapfv || r.opcode == op::glPixelMapuiv || r.opcode == op::glPixelMapusv)
+    if (r.opcode == op::glPixelTransferf || r.opcode == op::glPixelTransferi || r.opcode == op::glPixelMapfv ||
+        r.opcode == op::glPixelMapuiv || r.opcode == op::glPixelMapusv)
         c.transfersPixels = true;
     set(at, cell(at, c.cells, r.opcode, rule, r), rule.attribBits);
 }
@@ -138,9 +134,11 @@ void GlStateTracker::cap(At& at, const Rule& rule, const RecordView& r) {
     const Key above = ofUnit ? part(c.cells, Part::TextureUnit, c.unit) : c.cells;
     // glEnable and glDisable set one cell; indexed variants set it for one buffer.
     const Key all = keys_.child(above, op::glEnable, what);
-    const bool known = isContextCap(what) && what != GL_RASTERIZER_DISCARD && what != GL_PRIMITIVE_RESTART && what != GL_PRIMITIVE_RESTART_FIXED_INDEX &&
-                       what != GL_TEXTURE_CUBE_MAP_SEAMLESS && what != GL_FRAMEBUFFER_SRGB;
-    set(at, indexed ? keys_.child(all, op::glEnablei, argumentWord(r, 1)) : all, known || ofUnit ? rule.attribBits | kMaybe : 0);
+    const bool known = isContextCap(what) && what != GL_RASTERIZER_DISCARD && what != GL_PRIMITIVE_RESTART &&
+                       what != GL_PRIMITIVE_RESTART_FIXED_INDEX && what != GL_TEXTURE_CUBE_MAP_SEAMLESS &&
+                       what != GL_FRAMEBUFFER_SRGB;
+    set(at, indexed ? keys_.child(all, op::glEnablei, argumentWord(r, 1)) : all,
+        known || ofUnit ? rule.attribBits | kMaybe : 0);
 }
 
 void GlStateTracker::limit(At& at, const RecordView& r) {
@@ -170,27 +168,23 @@ void GlStateTracker::matrix(At& at, const Rule& rule, const RecordView&) {
         at.effect.read(part(c.cells, Part::MatrixMode));
         if (ofUnit) at.effect.read(part(c.cells, Part::ActiveUnit));
         at.effect.read(part(level, Part::Made)); // depends on the pushes so far
-        };
+    };
     switch (rule.family) {
-    case Family::MatrixLoad:
-        at.effect.kill(value);
-        return readPlace();
-    case Family::MatrixChange:
-        at.effect.write(value);
-        return readPlace();
+    case Family::MatrixLoad: at.effect.kill(value); return readPlace();
+    case Family::MatrixChange: at.effect.write(value); return readPlace();
     case Family::MatrixPush:
         ++depth;
         at.effect.kill(part(stack, Part::MatrixLevel, depth));
         at.effect.read(value);
         return readPlace();
-    default: // glPopMatrix
+    default:                    // glPopMatrix
         if (depth == 0) return; // an error
         --depth;
         at.effect.add(level, Mode::Forget);
         at.effect.add(level, Mode::Close);
         at.effect.read(part(c.cells, Part::MatrixMode));
         if (ofUnit) at.effect.read(part(c.cells, Part::ActiveUnit));
-        }
+    }
 }
 
 // ---- stacks of attributes
@@ -219,7 +213,8 @@ void GlStateTracker::popAttribs(At& at, std::vector<SavedAttribs>& stack, Part k
     const SavedAttribs saved = std::move(stack.back());
     stack.pop_back();
     const auto touchBelow = [&](Key key, uint32_t bits) {
-        if (!stack.empty() && std::ranges::find(stack.back().touched, key, &std::pair<Key, uint32_t>::first) == stack.back().touched.end())
+        if (!stack.empty() && std::ranges::find(stack.back().touched, key, &std::pair<Key, uint32_t>::first) ==
+                                  stack.back().touched.end())
             stack.back().touched.emplace_back(key, bits);
     };
     // glPopAttrib rebinds textures and restores their parameters, whatever happened to their names; this is not
@@ -243,7 +238,8 @@ void GlStateTracker::popAttribs(At& at, std::vector<SavedAttribs>& stack, Part k
     for (auto& [slot, object] : c.bindings) {
         if (!savesBinding(kind, mask, slot)) continue;
         const auto was = std::ranges::find(saved.bindings, slot, &std::pair<uint64_t, uint32_t>::first);
-        hold(at, object, was == saved.bindings.end() || was->second == 0 ? nullptr : find(at, typeOf(slotKind(slot)), was->second));
+        hold(at, object,
+             was == saved.bindings.end() || was->second == 0 ? nullptr : find(at, typeOf(slotKind(slot)), was->second));
     }
     if (kind == Part::ClientAttribLevel) {
         if (mask & GL_CLIENT_VERTEX_ARRAY_BIT) c.clientUnit = saved.clientUnit;

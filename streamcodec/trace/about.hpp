@@ -9,9 +9,9 @@
 namespace mural::trace {
 
 struct About {
-    std::string version; // Mural's version
+    std::string version;            // Mural's version
     std::vector<std::string> nodes; // GL of the recording nodes
-    std::string trimmed; // parts removed by `mural trim`; empty: none
+    std::string trimmed;            // parts removed by `mural trim`; empty: none
 };
 
 std::string toJson(const About& about);

@@ -16,7 +16,8 @@ void appendEntry(std::vector<std::byte>& raw, const Entry& entry) {
     const size_t at = raw.size();
     raw.resize(at + entryBytes(entry.payload.size()));
     std::memcpy(raw.data() + at, &header, sizeof header);
-    if (!entry.payload.empty()) std::memcpy(raw.data() + at + sizeof header, entry.payload.data(), entry.payload.size());
+    if (!entry.payload.empty())
+        std::memcpy(raw.data() + at + sizeof header, entry.payload.data(), entry.payload.size());
 }
 
 std::vector<std::byte> eventBytes(const ClientEvent& event) {
@@ -38,7 +39,8 @@ bool parseEvent(std::span<const std::byte> payload, ClientEvent& event) {
     const auto name = payload.subspan(kEventHeadBytes);
     event.name.assign(reinterpret_cast<const char*>(name.data()), name.size());
     event.name.resize(std::min(event.name.size(), event.name.find('\0')));
-    return (event.kind == Event::ClientCame || event.kind == Event::ClientGone) && event.client >= 1 && event.client <= 0xffff;
+    return (event.kind == Event::ClientCame || event.kind == Event::ClientGone) && event.client >= 1 &&
+           event.client <= 0xffff;
 }
 
 bool EntryWalk::next(Entry& entry) {
@@ -46,8 +48,8 @@ bool EntryWalk::next(Entry& entry) {
     if (left == 0 || malformed_) return false;
     EntryHeader header{};
     if (left >= sizeof header) std::memcpy(&header, raw_.data() + at_, sizeof header);
-    malformed_ = left < sizeof header || header.sizeBytes > wire::kMaxPacketBytes || entryBytes(header.sizeBytes) > left ||
-                 (header.stream != 0 && wire::clientOf(header.stream) == 0);
+    malformed_ = left < sizeof header || header.sizeBytes > wire::kMaxPacketBytes ||
+                 entryBytes(header.sizeBytes) > left || (header.stream != 0 && wire::clientOf(header.stream) == 0);
     if (malformed_) return false;
     entry.stream = header.stream;
     entry.timeNs = header.timeNs;

@@ -19,7 +19,7 @@ struct Entry {
 struct ClientEvent {
     Event kind = Event::ClientGone;
     uint32_t client = 0;
-    int32_t pid = 0; // for ClientCame
+    int32_t pid = 0;  // for ClientCame
     std::string name; // for ClientCame
 };
 

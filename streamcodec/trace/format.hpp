@@ -22,9 +22,9 @@ constexpr uint32_t kIndexMagic = 0x58444e49; // "INDX"
 struct Header {
     char magic[8];
     uint32_t version;
-    uint32_t wireVersion; // format of the records: wire::kVersion
+    uint32_t wireVersion;    // format of the records: wire::kVersion
     uint64_t registryDigest; // command set of the records
-    uint32_t aboutBytes; // size of the following JSON (streamcodec/trace/about.hpp)
+    uint32_t aboutBytes;     // size of the following JSON (streamcodec/trace/about.hpp)
     uint32_t reserved;
     uint64_t checksum; // over the fields above and the JSON
 };
@@ -34,9 +34,9 @@ constexpr uint32_t kMaxAboutBytes = 1u << 20;
 struct BlockHeader {
     uint32_t magic;
     uint32_t packedBytes; // size of the following data
-    uint32_t rawBytes; // decompressed size
+    uint32_t rawBytes;    // decompressed size
     uint32_t entries;
-    uint64_t firstFrame; // wall frame at the start of the block, from 1
+    uint64_t firstFrame;  // wall frame at the start of the block, from 1
     uint32_t framesEnded; // in it
     uint32_t reserved;
     uint64_t checksum; // over the fields above and the data
@@ -48,12 +48,14 @@ constexpr size_t kMaxBlockBytes = size_t{8} << 20;
 
 struct EntryHeader {
     uint32_t sizeBytes; // of the payload
-    uint32_t stream; // client << 16 | thread, as in wire::PacketHeader; 0: the payload is an Event
-    uint64_t timeNs; // since the start of the trace
+    uint32_t stream;    // client << 16 | thread, as in wire::PacketHeader; 0: the payload is an Event
+    uint64_t timeNs;    // since the start of the trace
 };
 static_assert(sizeof(EntryHeader) == 16);
 constexpr size_t kEntryAlign = 8;
-constexpr size_t entryBytes(size_t payloadBytes) { return sizeof(EntryHeader) + (payloadBytes + kEntryAlign - 1) / kEntryAlign * kEntryAlign; }
+constexpr size_t entryBytes(size_t payloadBytes) {
+    return sizeof(EntryHeader) + (payloadBytes + kEntryAlign - 1) / kEntryAlign * kEntryAlign;
+}
 
 // First word of an entry of stream 0.
 enum class Event : uint32_t {
@@ -64,7 +66,7 @@ enum class Event : uint32_t {
 struct IndexHeader {
     uint32_t magic;
     uint32_t blocks;
-    uint64_t frames; // wall frames in the whole file
+    uint64_t frames;   // wall frames in the whole file
     uint64_t checksum; // over the fields above and the rows
 };
 static_assert(sizeof(IndexHeader) == 24);

@@ -14,7 +14,7 @@ namespace mural::trace {
 
 struct RecordView {
     uint16_t opcode = 0;
-    size_t offset = 0; // offset in the packet, in bytes
+    size_t offset = 0;    // offset in the packet, in bytes
     size_t sizeBytes = 0; // including its header
     std::span<const std::byte> arguments;
 };
@@ -41,13 +41,14 @@ public:
     // Skips short records while their opcode is of no interest. The predicate must be pure: it is evaluated once per
     // run of equal records, or once per round of alternating records. A loading program sends hundreds of thousands of
     // records in one frame, so the loop keeps its state in locals, which the predicate cannot alias.
-    template <typename OfNoInterest>
-    void skip(const OfNoInterest& ofNoInterest) {
+    template <typename OfNoInterest> void skip(const OfNoInterest& ofNoInterest) {
         const std::span<const std::byte> packet = packet_;
         size_t at = at_, records = 0, lastBytes = 0;
         const auto passOne = [&](uint32_t head) {
             const size_t sizeBytes = (head >> 16) * size_t{4};
-            if (sizeBytes == 0 || record::isLongForm(head) || sizeBytes > packet.size() - at || !ofNoInterest(static_cast<uint16_t>(head), size_t{1})) return false;
+            if (sizeBytes == 0 || record::isLongForm(head) || sizeBytes > packet.size() - at ||
+                !ofNoInterest(static_cast<uint16_t>(head), size_t{1}))
+                return false;
             if (sizeBytes > kMaxShortRecordBytes) walked_.longAt.push_back(static_cast<uint32_t>(at));
             at += sizeBytes;
             lastBytes = sizeBytes;
@@ -68,14 +69,17 @@ public:
             while (headHere(head)) {
                 if (round.closes(head)) {
                     const size_t rounds = round.pass(packet, at);
-                    for (size_t k = 0; rounds > 0 && k < round.size(); ++k) ofNoInterest(static_cast<uint16_t>(round.head(k)), rounds);
+                    for (size_t k = 0; rounds > 0 && k < round.size(); ++k)
+                        ofNoInterest(static_cast<uint16_t>(round.head(k)), rounds);
                     records += rounds * round.size();
                     if (rounds > 0) continue;
                 }
                 const size_t from = at;
                 if (!passOne(head)) break;
-                if (lastBytes > kMaxShortRecordBytes) round.begin(); // long records are always reported
-                else round.add(head, from);
+                if (lastBytes > kMaxShortRecordBytes)
+                    round.begin(); // long records are always reported
+                else
+                    round.add(head, from);
             }
         }
         at_ = at;
@@ -88,8 +92,7 @@ public:
     // As skip(), but passes records of Interest::Look to look() one by one; its result false stops before that record.
     // A separate loop: a common one kept less state in registers and took 0.5 to 5 us longer per frame of some hundred
     // records.
-    template <typename InterestOf, typename Looks>
-    void pass(const InterestOf& interestOf, const Looks& look) {
+    template <typename InterestOf, typename Looks> void pass(const InterestOf& interestOf, const Looks& look) {
         const std::span<const std::byte> packet = packet_;
         size_t at = at_, records = 0, lastBytes = 0;
         uint32_t head = 0;
@@ -110,7 +113,9 @@ public:
             const Interest interest = interestOf(static_cast<uint16_t>(head));
             if (interest == Interest::Stop) break;
             if (interest == Interest::Look) {
-                if (!look(RecordView{static_cast<uint16_t>(head), at, sizeBytes, packet.subspan(at + 4, sizeBytes - 4)})) break;
+                if (!look(
+                        RecordView{static_cast<uint16_t>(head), at, sizeBytes, packet.subspan(at + 4, sizeBytes - 4)}))
+                    break;
                 if (unlooked >= kBeforeRounds) round.begin();
                 unlooked = 0;
             } else if (unlooked >= kBeforeRounds) {
@@ -138,7 +143,9 @@ public:
         walked_.add(passed);
     }
     // Returns the offsets of the whole packet after the last record; null if it does not consist of records only.
-    [[nodiscard]] const RecordOffsets* whole() const { return at_ == packet_.size() && !malformed_ ? &walked_ : nullptr; }
+    [[nodiscard]] const RecordOffsets* whole() const {
+        return at_ == packet_.size() && !malformed_ ? &walked_ : nullptr;
+    }
     [[nodiscard]] bool malformed() const { return malformed_; }
 
 private:
@@ -153,7 +160,8 @@ private:
 // Returns a word of a record's arguments; 0 after their end.
 inline uint32_t argumentWord(const RecordView& record, size_t index) {
     uint32_t value = 0;
-    if ((index + 1) * 4 <= record.arguments.size()) std::memcpy(&value, record.arguments.data() + index * 4, sizeof value);
+    if ((index + 1) * 4 <= record.arguments.size())
+        std::memcpy(&value, record.arguments.data() + index * 4, sizeof value);
     return value;
 }
 

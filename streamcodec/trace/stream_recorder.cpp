@@ -48,7 +48,8 @@ void StreamRecorder::put(uint32_t stream, std::span<const std::byte> payload) {
     while (queue_.size() + entryBytes(payload.size()) > config_.queueBytes && !queue_.empty() && !ended_) {
         if (patience.passed()) {
             lock.unlock();
-            return end("nothing was written for " + std::to_string(config_.patienceMs / 1000) + " s; is the disk too slow? Give another place");
+            return end("nothing was written for " + std::to_string(config_.patienceMs / 1000) +
+                       " s; is the disk too slow? Give another place");
         }
         changed_.wait_for(lock, leftOf(patience));
     }
@@ -80,8 +81,10 @@ void StreamRecorder::work() {
         Result<void> written = ended_ ? Result<void>() : writeAll(batch);
         if (written && wholeBy.passed() && !ended_) written = writer_->flush();
         wholeFrames_ = writer_->totals().frames;
-        if (!writer_->hasUnwritten() || ended_) wholeBy = Deadline::never();
-        else if (wholeBy.atNs() == INT64_MAX || wholeBy.passed()) wholeBy = Deadline::inMs(config_.wholeEveryMs);
+        if (!writer_->hasUnwritten() || ended_)
+            wholeBy = Deadline::never();
+        else if (wholeBy.atNs() == INT64_MAX || wholeBy.passed())
+            wholeBy = Deadline::inMs(config_.wholeEveryMs);
         if (!written) end(written.error().message);
         lock.lock();
     }

@@ -18,9 +18,9 @@ namespace mural::trace {
 
 struct RecorderConfig {
     size_t queueBytes = size_t{64} << 20; // when full, senders wait
-    int64_t patienceMs = 5'000; // timeout without progress of a full queue; then the recording ends
-    int64_t lastFrame = 0; // wall frame after which nothing is recorded; 0: all frames
-    int64_t wholeEveryMs = 1'000; // older data is in the file even if the head dies
+    int64_t patienceMs = 5'000;           // timeout without progress of a full queue; then the recording ends
+    int64_t lastFrame = 0;                // wall frame after which nothing is recorded; 0: all frames
+    int64_t wholeEveryMs = 1'000;         // older data is in the file even if the head dies
     std::function<void(const std::string&)> say;
 };
 

@@ -17,7 +17,8 @@ namespace {
 template <class T> std::span<std::byte> bytesOf(T& value) { return std::as_writable_bytes(std::span(&value, 1)); }
 
 bool soundShape(const BlockHeader& h) {
-    return h.magic == kBlockMagic && h.rawBytes <= kMaxBlockBytes && h.packedBytes <= ZSTD_COMPRESSBOUND(kMaxBlockBytes);
+    return h.magic == kBlockMagic && h.rawBytes <= kMaxBlockBytes &&
+           h.packedBytes <= ZSTD_COMPRESSBOUND(kMaxBlockBytes);
 }
 
 constexpr const char* kEndMissing = "its end is missing (was the head killed, or the file cut?)";
@@ -26,13 +27,15 @@ constexpr const char* kEndMissing = "its end is missing (was the head killed, or
 
 Result<std::unique_ptr<TraceReader>> TraceReader::open(const std::string& path) {
     FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (!file.valid()) return Error{"recording " + path + ": can't be read: " + std::strerror(errno) + "; check the name"};
+    if (!file.valid())
+        return Error{"recording " + path + ": can't be read: " + std::strerror(errno) + "; check the name"};
     return open(std::move(file), path);
 }
 
 Result<std::unique_ptr<TraceReader>> TraceReader::open(FileDescriptor file, const std::string& name) {
     struct stat about {};
-    if (fstat(file.get(), &about) != 0 || !S_ISREG(about.st_mode)) return Error{"recording " + name + ": is not a file; give one that mural run --record has made"};
+    if (fstat(file.get(), &about) != 0 || !S_ISREG(about.st_mode))
+        return Error{"recording " + name + ": is not a file; give one that mural run --record has made"};
     std::unique_ptr<TraceReader> reader(new TraceReader(std::move(file), name));
     reader->sizeBytes_ = static_cast<uint64_t>(about.st_size);
     if (auto r = reader->readHeader(); !r) return r.error();
@@ -43,7 +46,8 @@ Result<std::unique_ptr<TraceReader>> TraceReader::open(FileDescriptor file, cons
     return reader;
 }
 
-TraceReader::TraceReader(FileDescriptor file, std::string name) : file_(std::move(file)), name_(std::move(name)), unpacker_(ZSTD_createDCtx()) {}
+TraceReader::TraceReader(FileDescriptor file, std::string name)
+    : file_(std::move(file)), name_(std::move(name)), unpacker_(ZSTD_createDCtx()) {}
 
 TraceReader::~TraceReader() { ZSTD_freeDCtx(unpacker_); }
 
@@ -57,15 +61,22 @@ Error TraceReader::damagedBlock(size_t number, const std::string& what) const {
     const uint64_t offset = blocks_[number].offset;
     if (before == 0) return damaged(offset, what + ", and no frame ends before it", kElsewhere);
     const std::string good = before == 1 ? "1" : "1-" + std::to_string(before);
-    return damaged(offset, what, "the frames before it are good (" + good + "): keep them by mural trim " + name_ + " " + good + " -o good.mural, " + kElsewhere);
+    return damaged(offset, what,
+                   "the frames before it are good (" + good + "): keep them by mural trim " + name_ + " " + good +
+                       " -o good.mural, " + kElsewhere);
 }
 
 Error TraceReader::noSuchFrames(int64_t frames) const {
     if (frames > 0) {
-        return Error{"the recording has " + std::to_string(frames) + " frames" + (notice_.empty() ? "" : std::string(", as ") + kEndMissing) + "; give some of them, such as 1-" + std::to_string(frames)};
+        return Error{"the recording has " + std::to_string(frames) + " frames" +
+                     (notice_.empty() ? "" : std::string(", as ") + kEndMissing) + "; give some of them, such as 1-" +
+                     std::to_string(frames)};
     }
-    if (notice_.empty()) return Error{"recording " + name_ + " has no frame: its program showed no picture; mural dump prints its calls"};
-    return Error{"recording " + name_ + " has no whole frame: " + kEndMissing + ", what is whole ends at byte " + std::to_string(blocksEnd_) + " of " + std::to_string(sizeBytes_) + "; " + kElsewhere};
+    if (notice_.empty())
+        return Error{"recording " + name_ +
+                     " has no frame: its program showed no picture; mural dump prints its calls"};
+    return Error{"recording " + name_ + " has no whole frame: " + kEndMissing + ", what is whole ends at byte " +
+                 std::to_string(blocksEnd_) + " of " + std::to_string(sizeBytes_) + "; " + kElsewhere};
 }
 
 bool TraceReader::readAt(uint64_t offset, std::span<std::byte> into) const {
@@ -85,19 +96,24 @@ Result<void> TraceReader::readHeader() {
     if (!read || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0)
         return Error{name_ + " is not a recording of Mural; give a file that mural run --record has made"};
     if (header.version != kVersion) {
-        return Error{"recording " + name_ + " has version " + std::to_string(header.version) + " of the format, this Mural reads version " + std::to_string(kVersion) +
+        return Error{"recording " + name_ + " has version " + std::to_string(header.version) +
+                     " of the format, this Mural reads version " + std::to_string(kVersion) +
                      "; use the Mural that it was made with, or a newer one"};
     }
     blocksAt_ = sizeof header + header.aboutBytes;
-    if (header.aboutBytes > kMaxAboutBytes || blocksAt_ > sizeBytes_) return damaged(0, "its header is longer than the file");
+    if (header.aboutBytes > kMaxAboutBytes || blocksAt_ > sizeBytes_)
+        return damaged(0, "its header is longer than the file");
     std::string text(header.aboutBytes, '\0');
-    if (!readAt(sizeof header, std::as_writable_bytes(std::span(text)))) return damaged(sizeof header, "its header can't be read");
-    if (checksumOf({beforeChecksum(header), std::as_bytes(std::span(text))}) != header.checksum) return damaged(0, "its header is not as it was written");
+    if (!readAt(sizeof header, std::as_writable_bytes(std::span(text))))
+        return damaged(sizeof header, "its header can't be read");
+    if (checksumOf({beforeChecksum(header), std::as_bytes(std::span(text))}) != header.checksum)
+        return damaged(0, "its header is not as it was written");
     auto about = aboutFromJson(text);
     if (!about) return damaged(sizeof header, about.error().message);
     about_ = std::move(*about);
     if (header.wireVersion == wire::kVersion && header.registryDigest == registryDigest()) return {};
-    return Error{"recording " + name_ + " was made by a Mural with other commands (version " + about_.version + "); use that one to read it, or record again"};
+    return Error{"recording " + name_ + " was made by a Mural with other commands (version " + about_.version +
+                 "); use that one to read it, or record again"};
 }
 
 Result<bool> TraceReader::readIndex() {
@@ -106,38 +122,47 @@ Result<bool> TraceReader::readIndex() {
     if (std::memcmp(trailer.magic, kEndMagic, sizeof kEndMagic) != 0) return false;
     const uint64_t end = sizeBytes_ - sizeof trailer, at = trailer.indexOffset;
     IndexHeader header{};
-    if (checksumOf({beforeChecksum(trailer)}) != trailer.checksum || at < blocksAt_ || at > end || end - at < sizeof header || !readAt(at, bytesOf(header)))
+    if (checksumOf({beforeChecksum(trailer)}) != trailer.checksum || at < blocksAt_ || at > end ||
+        end - at < sizeof header || !readAt(at, bytesOf(header)))
         return damaged(end, "its last bytes are not as they were written");
-    if (header.magic != kIndexMagic || (end - at - sizeof header) / sizeof(IndexRow) != header.blocks || (end - at - sizeof header) % sizeof(IndexRow) != 0)
+    if (header.magic != kIndexMagic || (end - at - sizeof header) / sizeof(IndexRow) != header.blocks ||
+        (end - at - sizeof header) % sizeof(IndexRow) != 0)
         return damaged(at, "there is no index");
     blocks_.resize(header.blocks);
     const auto rows = std::as_writable_bytes(std::span(blocks_));
-    if (!readAt(at + sizeof header, rows) || checksumOf({beforeChecksum(header), rows}) != header.checksum) return damaged(at, "its index is not as it was written");
+    if (!readAt(at + sizeof header, rows) || checksumOf({beforeChecksum(header), rows}) != header.checksum)
+        return damaged(at, "its index is not as it was written");
     frames_ = static_cast<int64_t>(header.frames);
     blocksEnd_ = at;
     // Rows must be contiguous. Blocks are validated when they are read, so a bad block does not affect earlier ones.
     uint64_t least = blocksAt_;
     for (const IndexRow& row : blocks_) {
-        if (row.offset < least || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader)) return damaged(at, "its index is of no blocks");
+        if (row.offset < least || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader))
+            return damaged(at, "its index is of no blocks");
         least = row.offset + sizeof(BlockHeader);
     }
-    if ((blocks_.empty() ? blocksEnd_ : blocks_.front().offset) != blocksAt_) return damaged(at, "its index begins elsewhere");
+    if ((blocks_.empty() ? blocksEnd_ : blocks_.front().offset) != blocksAt_)
+        return damaged(at, "its index begins elsewhere");
     return true;
 }
 
-uint64_t TraceReader::endOf(size_t number) const { return number + 1 < blocks_.size() ? blocks_[number + 1].offset : blocksEnd_; }
+uint64_t TraceReader::endOf(size_t number) const {
+    return number + 1 < blocks_.size() ? blocks_[number + 1].offset : blocksEnd_;
+}
 
 Result<void> TraceReader::findBlocks() {
     uint64_t at = blocksAt_;
     BlockHeader block{};
-    while (sizeBytes_ - at >= sizeof block && readAt(at, bytesOf(block)) && soundShape(block) && sizeBytes_ - at - sizeof block >= block.packedBytes) {
+    while (sizeBytes_ - at >= sizeof block && readAt(at, bytesOf(block)) && soundShape(block) &&
+           sizeBytes_ - at - sizeof block >= block.packedBytes) {
         blocks_.push_back({at, block.firstFrame, block.framesEnded, block.entries});
         frames_ += block.framesEnded;
         at += sizeof block + block.packedBytes;
     }
     blocksEnd_ = at;
-    notice_ = "recording " + name_ + ": its end is missing (was the head killed, or the file cut?); " + std::to_string(frames_) + " whole frames are there, up to byte " +
-              std::to_string(at) + " of " + std::to_string(sizeBytes_);
+    notice_ = "recording " + name_ + ": its end is missing (was the head killed, or the file cut?); " +
+              std::to_string(frames_) + " whole frames are there, up to byte " + std::to_string(at) + " of " +
+              std::to_string(sizeBytes_);
     return {};
 }
 
@@ -151,11 +176,14 @@ Result<BlockHeader> TraceReader::readPacked(size_t number) {
     const IndexRow& row = blocks_[number];
     BlockHeader header{};
     if (!readAt(row.offset, bytesOf(header)) || !soundShape(header)) return damagedBlock(number, "there is no block");
-    if (row.offset + sizeof header + header.packedBytes != endOf(number)) return damagedBlock(number, "a block does not end where the next one begins");
+    if (row.offset + sizeof header + header.packedBytes != endOf(number))
+        return damagedBlock(number, "a block does not end where the next one begins");
     packed_.resize(header.packedBytes);
     if (!readAt(row.offset + sizeof header, packed_)) return damagedBlock(number, "a block can't be read");
-    const bool same = header.firstFrame == row.firstFrame && header.framesEnded == row.framesEnded && header.entries == row.entries;
-    if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum) return damagedBlock(number, "a block is not as it was written");
+    const bool same =
+        header.firstFrame == row.firstFrame && header.framesEnded == row.framesEnded && header.entries == row.entries;
+    if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum)
+        return damagedBlock(number, "a block is not as it was written");
     return header;
 }
 
@@ -172,9 +200,11 @@ Result<std::span<const std::byte>> TraceReader::read(size_t number) {
     uint32_t entries = 0;
     while (walk.next(entry)) {
         ++entries;
-        if (entry.stream == 0 && !parseEvent(entry.payload, event)) return damagedBlock(number, "an event in a block is unknown");
+        if (entry.stream == 0 && !parseEvent(entry.payload, event))
+            return damagedBlock(number, "an event in a block is unknown");
     }
-    if (walk.malformed() || entries != header.entries) return damagedBlock(number, "the entries of a block are not entries");
+    if (walk.malformed() || entries != header.entries)
+        return damagedBlock(number, "the entries of a block are not entries");
     return std::span<const std::byte>(raw_);
 }
 

@@ -57,7 +57,7 @@ private:
     const std::string name_;
     ZSTD_DCtx_s* const unpacker_;
     uint64_t sizeBytes_ = 0;
-    uint64_t blocksAt_ = 0; // end of the header
+    uint64_t blocksAt_ = 0;  // end of the header
     uint64_t blocksEnd_ = 0; // start of the index, or end of the last complete block
     About about_;
     std::string notice_;

@@ -16,7 +16,8 @@ template <class T> std::span<const std::byte> bytesOf(const T& value) { return s
 
 Result<std::unique_ptr<TraceWriter>> TraceWriter::create(const std::string& path, int level) {
     FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-    if (!file.valid()) return Error{"recording " + path + ": can't be written: " + std::strerror(errno) + "; give another place"};
+    if (!file.valid())
+        return Error{"recording " + path + ": can't be written: " + std::strerror(errno) + "; give another place"};
     return std::unique_ptr<TraceWriter>(new TraceWriter(path, std::move(file), level));
 }
 
@@ -26,7 +27,8 @@ TraceWriter::TraceWriter(std::string path, FileDescriptor file, int level)
 TraceWriter::~TraceWriter() { ZSTD_freeCCtx(packer_); }
 
 Error TraceWriter::fileError(const char* what) const {
-    return Error{"recording " + path_ + ": " + what + ": " + std::strerror(errno) + "; make room there, or give another place"};
+    return Error{"recording " + path_ + ": " + what + ": " + std::strerror(errno) +
+                 "; make room there, or give another place"};
 }
 
 Result<void> TraceWriter::write(std::span<const std::byte> bytes) {
@@ -61,8 +63,10 @@ Result<void> TraceWriter::append(const Entry& entry) {
     ++entries_;
     ClientEvent event;
     uint32_t ended = 0;
-    if (entry.stream != 0) ended = frames_.packet(entry.stream, entry.payload);
-    else if (parseEvent(entry.payload, event) && event.kind == Event::ClientGone) frames_.clientGone(event.client);
+    if (entry.stream != 0)
+        ended = frames_.packet(entry.stream, entry.payload);
+    else if (parseEvent(entry.payload, event) && event.kind == Event::ClientGone)
+        frames_.clientGone(event.client);
     framesEnded_ += ended;
     const bool atFrame = ended > 0 && raw_.size() >= kBlockBytes;
     const bool full = raw_.size() > kMaxBlockBytes - entryBytes(wire::kMaxPacketBytes);
@@ -72,8 +76,11 @@ Result<void> TraceWriter::append(const Entry& entry) {
 Result<void> TraceWriter::flush() {
     if (raw_.empty()) return {};
     packed_.resize(ZSTD_compressBound(raw_.size()));
-    const size_t packedBytes = ZSTD_compressCCtx(packer_, packed_.data(), packed_.size(), raw_.data(), raw_.size(), level_);
-    if (ZSTD_isError(packedBytes)) return Error{"recording " + path_ + ": a block can't be packed: " + ZSTD_getErrorName(packedBytes) + "; is memory short?"};
+    const size_t packedBytes =
+        ZSTD_compressCCtx(packer_, packed_.data(), packed_.size(), raw_.data(), raw_.size(), level_);
+    if (ZSTD_isError(packedBytes))
+        return Error{"recording " + path_ + ": a block can't be packed: " + ZSTD_getErrorName(packedBytes) +
+                     "; is memory short?"};
     const auto packed = std::span<const std::byte>(packed_).first(packedBytes);
     BlockHeader header{};
     header.magic = kBlockMagic;
@@ -105,7 +112,8 @@ Result<void> TraceWriter::finish() {
     Trailer trailer{totals_.fileBytes, 0, {}};
     trailer.checksum = checksumOf({beforeChecksum(trailer)});
     std::memcpy(trailer.magic, kEndMagic, sizeof kEndMagic);
-    if (ftruncate(file_.get(), static_cast<off_t>(totals_.fileBytes)) != 0) return fileError("can't be cut to its last block");
+    if (ftruncate(file_.get(), static_cast<off_t>(totals_.fileBytes)) != 0)
+        return fileError("can't be cut to its last block");
     if (auto r = write(bytesOf(header)); !r) return r;
     if (auto r = write(rows); !r) return r;
     return write(bytesOf(trailer));

@@ -19,7 +19,10 @@ public:
     int64_t record(uint32_t stream, const RecordView& r) {
         const uint32_t client = wire::clientOf(stream), window = argumentWord(r, 0);
         switch (r.opcode) {
-        case wire::kOpWindow: windows_[{client, window}] = {argumentWord(r, 1), argumentWord(r, 2), uint64_t{argumentWord(r, 7)} << 32 | argumentWord(r, 6)}; return 0;
+        case wire::kOpWindow:
+            windows_[{client, window}] = {argumentWord(r, 1), argumentWord(r, 2),
+                                          uint64_t{argumentWord(r, 7)} << 32 | argumentWord(r, 6)};
+            return 0;
         case wire::kOpDestroyWindow:
             windows_.erase({client, window});
             mainWindow_.windowGone(client, window);

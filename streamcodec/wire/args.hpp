@@ -127,7 +127,8 @@ public:
             if (length > bytes.size() - at) return false;
             starts_.push_back(text_.size());
             lengths_.push_back(static_cast<GLint>(length));
-            text_.insert(text_.end(), reinterpret_cast<const char*>(bytes.data()) + at, reinterpret_cast<const char*>(bytes.data()) + at + length);
+            text_.insert(text_.end(), reinterpret_cast<const char*>(bytes.data()) + at,
+                         reinterpret_cast<const char*>(bytes.data()) + at + length);
             text_.push_back(0);
             at += length;
         }

@@ -8,7 +8,14 @@
 namespace mural::client_arrays {
 
 enum Slot : uint32_t {
-    kVertex = 0, kNormal, kColor, kSecondaryColor, kFogCoord, kIndex, kEdgeFlag, kPointSize,
+    kVertex = 0,
+    kNormal,
+    kColor,
+    kSecondaryColor,
+    kFogCoord,
+    kIndex,
+    kEdgeFlag,
+    kPointSize,
     kTexCoord0 = 8,
     kGeneric0 = 40,
 };

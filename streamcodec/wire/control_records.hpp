@@ -11,7 +11,8 @@ enum Op : uint16_t {
     kOpInvalid = 0,
     kOpBlobBegin = 1,      // u64 sizeBytes: a value too large for a record; queued until its command uses it
     kOpBlobData = 2,       // u32 count, bytes
-    kOpCreateContext = 3,  // u32 context, u32 shareContext (0 none), u32 api, u32 versionMajor, minor, u32 profile, u32 flags, u32 surfaceConfig index
+    kOpCreateContext = 3,  // u32 context, u32 shareContext (0 none), u32 api, u32 versionMajor, minor, u32 profile, u32
+                           // flags, u32 surfaceConfig index
     kOpDestroyContext = 4, // u32 context
     kOpMakeCurrent = 5,    // u32 context (0 none), u32 drawWindow, u32 readWindow
     kOpWindow = 6,         // u32 window, WindowConfig: created or resized
@@ -22,19 +23,21 @@ enum Op : uint16_t {
     kOpRequestTexImage = 11,
     kOpRequestBuffer = 12,
     kOpRequestQuery = 13,
-    kOpFillWindow = 14,    // i32 x y w h, u32 planes, bytes: pixels of other tiles; precedes a copy
-    kOpProgramLayout = 15, // after a link: u32 program, locations by name
-    kOpBufferBytes = 16,   // u32 buffer, u64 offset, bytes: written through a mapping
-    kOpFinish = 17,        // u32 request: replied to when all earlier commands are complete
-    kOpFrontPicture = 18,  // u32 window, u32 frame: like Swap, for single-buffered windows and front-buffer drawing
+    kOpFillWindow = 14,       // i32 x y w h, u32 planes, bytes: pixels of other tiles; precedes a copy
+    kOpProgramLayout = 15,    // after a link: u32 program, locations by name
+    kOpBufferBytes = 16,      // u32 buffer, u64 offset, bytes: written through a mapping
+    kOpFinish = 17,           // u32 request: replied to when all earlier commands are complete
+    kOpFrontPicture = 18,     // u32 window, u32 frame: like Swap, for single-buffered windows and front-buffer drawing
     kOpBeginConditional = 19, // u32 draws: glBeginConditionalRender with the known result; 0: nothing is drawn
-    kOpQueryKnown = 20,    // u32 query, u32 passed: for conditional rendering in the next called display list
-    kOpDrawAll = 21,       // from here on every node draws all of every window
-    kOpCreateImage = 22,   // u64 image, u32 context, u32 target, u32 name, i32 level, i32 layer: eglCreateImage of a GL object
-    kOpDestroyImage = 23,  // u64 image
+    kOpQueryKnown = 20,       // u32 query, u32 passed: for conditional rendering in the next called display list
+    kOpDrawAll = 21,          // from here on every node draws all of every window
+    kOpCreateImage =
+        22, // u64 image, u32 context, u32 target, u32 name, i32 level, i32 layer: eglCreateImage of a GL object
+    kOpDestroyImage = 23,   // u64 image
     kOpRequestProgram = 24, // u32 request, u32 program: reads the recipe of its linked state
-    kOpProgramRecipe = 25,  // u32 program, a reply to kOpRequestProgram: for glProgramBinary; empty: the binary was refused
-    kOpErrorTold = 26,      // glGetError has returned an error of the program's own GL
+    kOpProgramRecipe =
+        25,            // u32 program, a reply to kOpRequestProgram: for glProgramBinary; empty: the binary was refused
+    kOpErrorTold = 26, // glGetError has returned an error of the program's own GL
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;
@@ -53,8 +56,8 @@ constexpr uint32_t kForCopy = 0x80000000;
 constexpr uint32_t kTenBits = 0x40000000;
 constexpr uint32_t kFloats = 0x20000000;
 
-// Frame number in kOpSwap and kOpFrontPicture of an unseen frame: it is drawn and counted, but no picture is sent and no
-// credit is returned.
+// Frame number in kOpSwap and kOpFrontPicture of an unseen frame: it is drawn and counted, but no picture is sent and
+// no credit is returned.
 constexpr uint32_t kUnseenFrame = 0;
 
 // Properties of the program's drawable; the surfaces of the nodes have the same.

@@ -7,10 +7,11 @@ namespace mural::wire {
 
 // First word of a packet of the head's own stream.
 enum class HeadCommand : uint32_t {
-    Setup = 1,        // json: tiles, regions, outputs, backend, rewriting mode (nodes/render/setup.hpp)
-    ClientGone = 2,   // u32 client: frees its contexts and windows
-    Finish = 3,       // the last packet: the node replies Goodbye and exits
-    // json: {"pictures", "swaps"}: HOST:PORT of each node that composites pictures, or leads a swap barrier, by its number.
+    Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/render/setup.hpp)
+    ClientGone = 2, // u32 client: frees its contexts and windows
+    Finish = 3,     // the last packet: the node replies Goodbye and exits
+    // json: {"pictures", "swaps"}: HOST:PORT of each node that composites pictures, or leads a swap barrier, by its
+    // number.
     Exchange = 4,
     // u32 view, u32 node, u32 first, u32 life, u32 absent*: the restarted node, which has received everything before,
     // is a member from here on. All members reply ViewReached.
@@ -21,19 +22,19 @@ enum class HeadCommand : uint32_t {
     // u32 number, u32 draws: to a node in resync, which replies Synchronized. draws = 1: it draws each window from its
     // next frame on.
     Synchronize = 6,
-    ResetDictionary = 7,   // the dictionary is cleared: later batches refer to nothing earlier
+    ResetDictionary = 7, // the dictionary is cleared: later batches refer to nothing earlier
     // u32 number: members with phases, or with areas that move, reply Turns for a node whose resync begins here.
     RequestPhase = 8,
-    Turns = 9,        // contents of a member's Turns message: to a node in resync, after all packets before that RequestPhase
-    JoinMulticast = 10,   // u32 node: joins the multicast group of its Setup; packets continue on its own connection
-    // SwitchToMulticastCommand: the last packet, or batch, on the node's own connection. The group carries it too, and carries all
-    // later ones alone.
+    Turns = 9, // contents of a member's Turns message: to a node in resync, after all packets before that RequestPhase
+    JoinMulticast = 10, // u32 node: joins the multicast group of its Setup; packets continue on its own connection
+    // SwitchToMulticastCommand: the last packet, or batch, on the node's own connection. The group carries it too, and
+    // carries all later ones alone.
     SwitchToMulticast = 11,
-    // u32 number, u32 nodes, {f64 x, y, w, h} of each: the areas of the picture that nodes draw, from the next full clear
-    // of each window on.
+    // u32 number, u32 nodes, {f64 x, y, w, h} of each: the areas of the picture that nodes draw, from the next full
+    // clear of each window on.
     ViewportAssignment = 12,
-    // u32 number, u32 nodes, {f64 start, end} of each: the ranges of a frame's draws that nodes draw, from the next shared
-    // draws of each window on.
+    // u32 number, u32 nodes, {f64 start, end} of each: the ranges of a frame's draws that nodes draw, from the next
+    // shared draws of each window on.
     RangeAssignment = 13,
 };
 struct SwitchToMulticastCommand {

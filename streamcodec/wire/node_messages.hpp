@@ -7,17 +7,17 @@ namespace mural::wire {
 
 // Node → head.
 enum class NodeMessage : uint32_t {
-    Ready = 1,          // json: host, pid, renderer, glVersion, extensions, threads
-    ReplyPart = 2,      // ReplyPartHeader + bytes
-    FrameDone = 3,      // FrameDoneMessage
-    Picture = 4,        // PictureHeader + rows, if the picture store is not shared memory
-    Log = 5,            // text: one line for the user
-    Goodbye = 6,        // json: totals (commands, GL errors, replay time)
-    WindowGone = 7,     // WindowGoneMessage: the program has destroyed the window, or ended; after its last FrameDone
-    Alive = 8,          // no contents: heartbeat every few seconds, also while the replay is busy
-    DriverEvent = 9,           // DriverEvent + text: a driver event
-    ViewReached = 10,   // u32 view, ClientFrame*: later messages were sent after this Activate
-    Synchronized = 11,  // SynchronizedMessage: the node has reached that Synchronize
+    Ready = 1,         // json: host, pid, renderer, glVersion, extensions, threads
+    ReplyPart = 2,     // ReplyPartHeader + bytes
+    FrameDone = 3,     // FrameDoneMessage
+    Picture = 4,       // PictureHeader + rows, if the picture store is not shared memory
+    Log = 5,           // text: one line for the user
+    Goodbye = 6,       // json: totals (commands, GL errors, replay time)
+    WindowGone = 7,    // WindowGoneMessage: the program has destroyed the window, or ended; after its last FrameDone
+    Alive = 8,         // no contents: heartbeat every few seconds, also while the replay is busy
+    DriverEvent = 9,   // DriverEvent + text: a driver event
+    ViewReached = 10,  // u32 view, ClientFrame*: later messages were sent after this Activate
+    Synchronized = 11, // SynchronizedMessage: the node has reached that Synchronize
     // u32 number of the RequestPhase, then the state of all windows there: WindowTurn*, or, of nodes whose areas move,
     // u32 windows, WindowAreas of each, Areas*: the latest first, then all that the windows refer to.
     Turns = 12,
@@ -33,8 +33,8 @@ struct MessageHeader {
 struct FrameDoneMessage {
     uint32_t client;
     uint32_t window;
-    uint32_t frame;    // number of the frame of this client, from 1
-    uint32_t width;    // of the window, pixels
+    uint32_t frame; // number of the frame of this client, from 1
+    uint32_t width; // of the window, pixels
     uint32_t height;
     uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
     uint32_t areas;    // number of the Areas that divide its picture; 0: those of Setup
@@ -42,7 +42,7 @@ struct FrameDoneMessage {
     uint64_t busyNs;   // work since the previous frame, without waits and sending; CPU time where nodes share cores
     uint64_t replayNs; // CPU time of the replay thread since the previous frame
     uint64_t readbackNs;
-    uint64_t calls;    // records of this client since its start, up to this frame
+    uint64_t calls; // records of this client since its start, up to this frame
 };
 
 // Flags of FrameDoneMessage.
@@ -69,9 +69,9 @@ struct WindowTurn {
     uint32_t window;
     int64_t frames; // number of frames begun
     int64_t turn;
-    int64_t kept;      // consecutive frames that depend on their predecessor
-    uint32_t cleared;  // buffers cleared completely in this frame
-    uint32_t state;    // kTurn…
+    int64_t kept;     // consecutive frames that depend on their predecessor
+    uint32_t cleared; // buffers cleared completely in this frame
+    uint32_t state;   // kTurn…
 };
 static_assert(sizeof(WindowTurn) == 40);
 constexpr uint32_t kTurnOver = 1, kTurnUndecided = 2, kTurnFresh = 4, kTurnForGood = 8;
@@ -87,7 +87,7 @@ struct WindowAreas {
 static_assert(sizeof(WindowAreas) == 28);
 
 struct SynchronizedMessage {
-    uint32_t number; // of the Synchronize
+    uint32_t number;   // of the Synchronize
     uint32_t validity; // FrameValidity
 };
 // FrameValidity of the frames of a node that has not drawn everything before.
@@ -110,7 +110,7 @@ struct PictureHeader {
     int32_t x, y, w, h; // lower left origin, rows bottom first, tightly packed
     uint32_t windowWidth, windowHeight;
     uint32_t nativeLow, nativeHigh; // X window id of WindowConfig; 0: none
-    uint32_t format; // PictureFormat (common/base/picture_format.hpp)
+    uint32_t format;                // PictureFormat (common/base/picture_format.hpp)
 };
 static_assert(sizeof(PictureHeader) == 48);
 

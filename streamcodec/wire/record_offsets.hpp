@@ -13,7 +13,7 @@ inline constexpr size_t kMaxShortRecordBytes = 1024;
 
 struct RecordOffsets {
     size_t records = 0;
-    size_t lastBytes = 0; // of the last record
+    size_t lastBytes = 0;         // of the last record
     std::vector<uint32_t> longAt; // offsets of the long records in bytes, ascending
 
     void pass(size_t at, size_t sizeBytes) {

@@ -86,7 +86,8 @@ private:
         std::copy_n(round_.begin(), size, heads.begin());
         std::copy_n(offsets_.begin(), size, places.begin());
         size_t rounds = 0;
-        for (const std::byte *at = from.data(), *end = at + from.size(); static_cast<size_t>(end - at) >= sizeBytes; at += sizeBytes, ++rounds)
+        for (const std::byte *at = from.data(), *end = at + from.size(); static_cast<size_t>(end - at) >= sizeBytes;
+             at += sizeBytes, ++rounds)
             for (size_t i = 0; i < size; ++i) {
                 uint32_t head = 0;
                 std::memcpy(&head, at + places[i], sizeof head);
@@ -96,8 +97,8 @@ private:
     }
 
     std::array<uint8_t, kPairs> last_{}; // number of the last record with this pair of headers; the lower bits suffice
-    std::array<uint32_t, kKept> heads_; // of the last records, a ring buffer
-    std::array<size_t, kKept> places_; // bytes
+    std::array<uint32_t, kKept> heads_;  // of the last records, a ring buffer
+    std::array<size_t, kKept> places_;   // bytes
     size_t count_ = 0;
     std::array<uint32_t, kMost> round_;
     std::array<size_t, kMost> offsets_; // bytes from the round's first record

@@ -88,12 +88,15 @@ TEST(AccuracyReport, namesBrokenBoundsAndFailures) {
 }
 
 TEST(AccuracyReport, returnsAStatusForTheMeasuredRows) {
-    const AccuracyRow good{"group", "good", "native", errorOf(grey(5, 4, 0).view(), grey(5, 4, 0).view()), Bound::exact(), {}};
+    const AccuracyRow good{"group",        "good", "native", errorOf(grey(5, 4, 0).view(), grey(5, 4, 0).view()),
+                           Bound::exact(), {}};
     AccuracyRow bad = good, lost = good;
     bad.error = errorOf(grey(5, 4, 0).view(), grey(5, 4, 1).view());
     lost.error = {};
     lost.failure = "why it was";
-    const auto statusOf = [](const std::vector<AccuracyRow>& rows) { return AccuracyReport{"scenes", "", rows}.exitStatus(); };
+    const auto statusOf = [](const std::vector<AccuracyRow>& rows) {
+        return AccuracyReport{"scenes", "", rows}.exitStatus();
+    };
     EXPECT_EQ(statusOf({good, good}), 0);
     EXPECT_EQ(statusOf({good, bad}), 1);
     EXPECT_EQ(statusOf({good, lost}), 1);

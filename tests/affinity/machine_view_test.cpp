@@ -27,7 +27,9 @@ const DeviceFacts kFacts{[](const std::string& name) { return name == "ib0" ? 20
 
 TEST(MachineView, findsDevicesAndTheCoresNearThem) {
     const std::string xml = twoPackagesXml(2);
-    const Topology topology = load([&](hwloc_topology_t t) { return hwloc_topology_set_xmlbuffer(t, xml.c_str(), static_cast<int>(xml.size()) + 1); });
+    const Topology topology = load([&](hwloc_topology_t t) {
+        return hwloc_topology_set_xmlbuffer(t, xml.c_str(), static_cast<int>(xml.size()) + 1);
+    });
     MachineView machine = viewOf(topology.get(), kFacts);
     EXPECT_EQ(machine.numaNodes, 2);
     ASSERT_EQ(machine.devices.size(), 4u);
@@ -42,7 +44,9 @@ TEST(MachineView, findsDevicesAndTheCoresNearThem) {
 
 TEST(MachineView, marksInterfacesThatAreDownAsUnusable) {
     const std::string xml = twoPackagesXml(2);
-    const Topology topology = load([&](hwloc_topology_t t) { return hwloc_topology_set_xmlbuffer(t, xml.c_str(), static_cast<int>(xml.size()) + 1); });
+    const Topology topology = load([&](hwloc_topology_t t) {
+        return hwloc_topology_set_xmlbuffer(t, xml.c_str(), static_cast<int>(xml.size()) + 1);
+    });
     DeviceFacts facts = kFacts;
     facts.linkMbitPerSec = [](const std::string& name) { return name == "ib0" ? 0 : 1000; };
     MachineView machine = viewOf(topology.get(), facts);
@@ -51,7 +55,8 @@ TEST(MachineView, marksInterfacesThatAreDownAsUnusable) {
 }
 
 TEST(MachineView, supportsMachinesWithoutDevices) {
-    const Topology topology = load([](hwloc_topology_t t) { return hwloc_topology_set_synthetic(t, "numa:4 core:2 pu:2"); });
+    const Topology topology =
+        load([](hwloc_topology_t t) { return hwloc_topology_set_synthetic(t, "numa:4 core:2 pu:2"); });
     const MachineView machine = viewOf(topology.get(), kFacts);
     EXPECT_EQ(machine.numaNodes, 4);
     EXPECT_TRUE(machine.devices.empty());

@@ -34,7 +34,8 @@ TEST(PlaceThread, reportsItsChanges) {
             CPU_AND(&both, &before, &after);
             EXPECT_TRUE(CPU_EQUAL(&both, &after));
             EXPECT_EQ(placement.bound, CPU_EQUAL(&before, &after) == 0) << placement.description;
-            EXPECT_EQ(placement.description.rfind(placement.bound ? "on cores " : "not placed: ", 0), 0u) << placement.description;
+            EXPECT_EQ(placement.description.rfind(placement.bound ? "on cores " : "not placed: ", 0), 0u)
+                << placement.description;
         }).join();
     }
     const cpu_set_t afterwards = coresOfThisThread();

@@ -17,7 +17,9 @@ namespace mural::config::testing {
 
 inline std::filesystem::path exampleFolder() {
     const char* given = std::getenv("MURAL_SHARED");
-    return (given != nullptr ? std::filesystem::path(given) : std::filesystem::path(MURAL_SOURCE_DIR).parent_path() / "shared") / "eqc";
+    return (given != nullptr ? std::filesystem::path(given)
+                             : std::filesystem::path(MURAL_SOURCE_DIR).parent_path() / "shared") /
+           "eqc";
 }
 
 inline std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder) {
@@ -31,7 +33,9 @@ inline std::vector<std::filesystem::path> filesIn(const std::filesystem::path& f
 }
 
 inline std::vector<std::filesystem::path> exampleFiles() { return filesIn(exampleFolder()); }
-inline std::vector<std::filesystem::path> ownFiles() { return filesIn(std::filesystem::path(MURAL_SOURCE_DIR) / "configs"); }
+inline std::vector<std::filesystem::path> ownFiles() {
+    return filesIn(std::filesystem::path(MURAL_SOURCE_DIR) / "configs");
+}
 
 inline std::vector<std::filesystem::path> allFiles() {
     std::vector<std::filesystem::path> all = ownFiles();
@@ -45,6 +49,8 @@ inline std::string textOf(const std::filesystem::path& path) {
 }
 
 // The message for missing example files.
-inline std::string noExamples() { return "no example files in " + exampleFolder().string() + "; set MURAL_SHARED to the folder that holds eqc"; }
+inline std::string noExamples() {
+    return "no example files in " + exampleFolder().string() + "; set MURAL_SHARED to the folder that holds eqc";
+}
 
 } // namespace mural::config::testing

@@ -23,8 +23,10 @@ namespace {
 
 // The flow of one channel's draws, on a wall of 400 x 200 pixels.
 Flow flowOfDraw(const std::string& compounds, const std::string& channel) {
-    const std::string text = "#Equalizer 1.2 ascii\nconfig { appNode { pipe { window { viewport [ 0 0 400 200 ] channel { name \"d\" } } window { viewport [ 0 0 400 200 ] channel { name \"s\" } } } "
-                             "pipe { window { viewport [ 0 0 400 200 ] channel { name \"t\" } } } } layout { view { } } canvas { layout 0 wall { } segment { channel \"d\" } } compound { channel ( ) " +
+    const std::string text = "#Equalizer 1.2 ascii\nconfig { appNode { pipe { window { viewport [ 0 0 400 200 ] "
+                             "channel { name \"d\" } } window { viewport [ 0 0 400 200 ] channel { name \"s\" } } } "
+                             "pipe { window { viewport [ 0 0 400 200 ] channel { name \"t\" } } } } layout { view { } "
+                             "} canvas { layout 0 wall { } segment { channel \"d\" } } compound { channel ( ) " +
                              compounds + " } }";
     config::Diagnostics diagnostics("f");
     const ResolvedConfig c = config::resolve(config::parseConfig(text, diagnostics), {}, diagnostics);
@@ -34,7 +36,8 @@ Flow flowOfDraw(const std::string& compounds, const std::string& channel) {
     const auto flows = flowOf(c, input, plan);
     for (const ChannelPlan& one : plan.channels)
         for (const PlannedTask& t : one.tasks)
-            if (t.kind == Task::Draw && c.channels[ResolvedConfig::at(one.channel)].name == channel) return flows[ResolvedConfig::at(t.context)];
+            if (t.kind == Task::Draw && c.channels[ResolvedConfig::at(one.channel)].name == channel)
+                return flows[ResolvedConfig::at(t.context)];
     ADD_FAILURE() << channel << " draws nothing";
     return {};
 }
@@ -49,11 +52,15 @@ void expectNear(const Viewport& v, double x, double y, double w, double h) {
 } // namespace
 
 TEST(FrameFlow, isTrivialWithoutViewportsAndZooms) {
-    EXPECT_FALSE(flowOfDraw("compound { channel \"t\" zoom [ .5 .5 ] outputframe { } } inputframe { name \"frame.t\" }", "t").steered);
+    EXPECT_FALSE(
+        flowOfDraw("compound { channel \"t\" zoom [ .5 .5 ] outputframe { } } inputframe { name \"frame.t\" }", "t")
+            .steered);
 }
 
 TEST(FrameFlow, clipsToViewportsOfOutputsAndInputs) {
-    const Flow f = flowOfDraw("compound { channel \"t\" outputframe { viewport [ .25 0 .5 1 ] } } inputframe { name \"frame.t\" viewport [ 0 .5 1 .5 ] }", "t");
+    const Flow f = flowOfDraw("compound { channel \"t\" outputframe { viewport [ .25 0 .5 1 ] } } inputframe { name "
+                              "\"frame.t\" viewport [ 0 .5 1 .5 ] }",
+                              "t");
     ASSERT_TRUE(f.steered);
     ASSERT_EQ(f.parts.size(), 1u);
     expectNear(f.parts[0].from, .25, .5, .5, .5);
@@ -62,7 +69,9 @@ TEST(FrameFlow, clipsToViewportsOfOutputsAndInputs) {
 }
 
 TEST(FrameFlow, undoesZoomsOfOutputsWhereTheyAreShown) {
-    const Flow f = flowOfDraw("compound { channel \"t\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .25 ] } } inputframe { name \"frame.t\" }", "t");
+    const Flow f = flowOfDraw("compound { channel \"t\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .25 ] } } "
+                              "inputframe { name \"frame.t\" }",
+                              "t");
     ASSERT_EQ(f.parts.size(), 1u);
     expectNear(f.parts[0].from, 0, 0, 1, 1);
     expectNear(f.parts[0].to, 0, 0, 1, 1);
@@ -71,12 +80,14 @@ TEST(FrameFlow, undoesZoomsOfOutputsWhereTheyAreShown) {
 }
 
 TEST(FrameFlow, scalesByZoomsOfInputs) {
-    const Flow small = flowOfDraw("compound { channel \"t\" outputframe { } } inputframe { name \"frame.t\" zoom [ .5 .5 ] }", "t");
+    const Flow small =
+        flowOfDraw("compound { channel \"t\" outputframe { } } inputframe { name \"frame.t\" zoom [ .5 .5 ] }", "t");
     ASSERT_EQ(small.parts.size(), 1u);
     expectNear(small.parts[0].from, 0, 0, 1, 1);
     expectNear(small.parts[0].to, 0, 0, .5, .5);
     EXPECT_TRUE(small.parts[0].way.none()) << "as large as it is shown";
-    const Flow large = flowOfDraw("compound { channel \"t\" outputframe { } } inputframe { name \"frame.t\" zoom [ 2 2 ] }", "t");
+    const Flow large =
+        flowOfDraw("compound { channel \"t\" outputframe { } } inputframe { name \"frame.t\" zoom [ 2 2 ] }", "t");
     ASSERT_EQ(large.parts.size(), 1u);
     expectNear(large.parts[0].from, 0, 0, .5, .5);
     expectNear(large.parts[0].to, 0, 0, 1, 1);
@@ -84,7 +95,8 @@ TEST(FrameFlow, scalesByZoomsOfInputs) {
 }
 
 TEST(FrameFlow, replacesExistingColours) {
-    const std::string compounds = "compound { } compound { channel \"t\" outputframe { viewport [ .5 .5 .5 .5 ] } } inputframe { name \"frame.t\" }";
+    const std::string compounds = "compound { } compound { channel \"t\" outputframe { viewport [ .5 .5 .5 .5 ] } } "
+                                  "inputframe { name \"frame.t\" }";
     double area = 0;
     const Flow own = flowOfDraw(compounds, "d"), other = flowOfDraw(compounds, "t");
     for (const ShownPart& p : own.parts) {
@@ -97,10 +109,13 @@ TEST(FrameFlow, replacesExistingColours) {
 }
 
 TEST(FrameFlow, recombinesStripesOfDirectSend) {
-    const std::string compounds = "buffer [ COLOR DEPTH ] "
-                                  "compound { compound { range [ 0 .5 ] outputframe { name \"s2.d\" viewport [ 0 .5 1 .5 ] } } inputframe { name \"s1.t\" } } "
-                                  "compound { channel \"t\" compound { range [ .5 1 ] outputframe { name \"s1.t\" viewport [ 0 0 1 .5 ] } } inputframe { name \"s2.d\" } outputframe { name \"s2.t\" buffer [ COLOR ] viewport [ 0 .5 1 .5 ] } } "
-                                  "inputframe { name \"s2.t\" }";
+    const std::string compounds =
+        "buffer [ COLOR DEPTH ] "
+        "compound { compound { range [ 0 .5 ] outputframe { name \"s2.d\" viewport [ 0 .5 1 .5 ] } } inputframe { name "
+        "\"s1.t\" } } "
+        "compound { channel \"t\" compound { range [ .5 1 ] outputframe { name \"s1.t\" viewport [ 0 0 1 .5 ] } } "
+        "inputframe { name \"s2.d\" } outputframe { name \"s2.t\" buffer [ COLOR ] viewport [ 0 .5 1 .5 ] } } "
+        "inputframe { name \"s2.t\" }";
     for (const std::string channel : {"d", "t"}) {
         std::vector<Rect> pieces;
         for (const ShownPart& p : flowOfDraw(compounds, channel).parts) {
@@ -117,7 +132,8 @@ TEST(FrameFlow, matchesPixelsOfRandomTrees) {
     size_t compared = 0, steered = 0;
     for (uint64_t seed = 1; seed <= mural::testing::rounds(300); ++seed) {
         const config::ConfigFile file = testing::TreeMaker(seed, true).make();
-        const LoadedConfig loaded = loadConfig(file, "seed " + std::to_string(seed), [](const std::string&) { return std::nullopt; });
+        const LoadedConfig loaded =
+            loadConfig(file, "seed " + std::to_string(seed), [](const std::string&) { return std::nullopt; });
         ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
         FrameInput input = firstFrame(loaded.resolved);
         for (input.frameNumber = 0; input.frameNumber < 4; ++input.frameNumber) {
@@ -135,14 +151,22 @@ TEST(FrameFlow, matchesPixelsOfRandomTrees) {
                         for (size_t c = 0; c < flows.size(); ++c) {
                             const RenderContext& context = plan.contexts[c];
                             if (!flows[c].steered || context.destination != channel || context.eye != eye) continue;
-                            const auto mine = [](const PixelAxis& axis, int32_t pixel) { return (static_cast<int32_t>(std::lround(pixel - axis.origin)) - axis.kernel) % axis.step == 0; };
+                            const auto mine = [](const PixelAxis& axis, int32_t pixel) {
+                                return (static_cast<int32_t>(std::lround(pixel - axis.origin)) - axis.kernel) %
+                                           axis.step ==
+                                       0;
+                            };
                             if (!mine(context.x, x) || !mine(context.y, y)) continue;
-                            const double u = (x + .5 - context.x.origin) / (context.viewport.w * context.x.step), v = (y + .5 - context.y.origin) / (context.viewport.h * context.y.step);
+                            const double u = (x + .5 - context.x.origin) / (context.viewport.w * context.x.step),
+                                         v = (y + .5 - context.y.origin) / (context.viewport.h * context.y.step);
                             for (const ShownPart& p : flows[c].parts)
-                                if (u > p.to.x && u < p.to.x + p.to.w && v > p.to.y && v < p.to.y + p.to.h) found.insert(static_cast<Index>(c));
+                                if (u > p.to.x && u < p.to.x + p.to.w && v > p.to.y && v < p.to.y + p.to.h)
+                                    found.insert(static_cast<Index>(c));
                         }
                         if (std::ranges::none_of(flows, &Flow::steered)) continue;
-                        ASSERT_EQ(found, expected) << "seed " << seed << " frame " << input.frameNumber << " pixel " << x << " " << y << "\n" << config::writeConfig(file);
+                        ASSERT_EQ(found, expected)
+                            << "seed " << seed << " frame " << input.frameNumber << " pixel " << x << " " << y << "\n"
+                            << config::writeConfig(file);
                         ++compared;
                     }
             }
@@ -165,7 +189,10 @@ TEST(Cells, areDisjointAndCoverAll) {
         const auto cells = cellsOf(pieces);
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) {
-                const auto holds = [&](const Viewport& v) { return v.x * 16 < x + .5 && (v.x + v.w) * 16 > x + .5 && v.y * 16 < y + .5 && (v.y + v.h) * 16 > y + .5; };
+                const auto holds = [&](const Viewport& v) {
+                    return v.x * 16 < x + .5 && (v.x + v.w) * 16 > x + .5 && v.y * 16 < y + .5 &&
+                           (v.y + v.h) * 16 > y + .5;
+                };
                 std::set<int> expected;
                 for (const Rect& p : pieces)
                     if (holds(p.area)) expected.insert(p.of);

@@ -25,7 +25,8 @@ TEST(Geometry, givesNeighboursCommonEdges) {
                 if (cut + width > 1000) continue;
                 const PixelViewport all{5, 0, size, 1};
                 const PixelViewport left = apply(all, Viewport{cut / 1000., 0, width / 1000., 1});
-                ASSERT_EQ(left.right(), apply(all, Viewport{(cut + width) / 1000., 0, .1, 1}).x) << size << " " << cut << " " << width;
+                ASSERT_EQ(left.right(), apply(all, Viewport{(cut + width) / 1000., 0, .1, 1}).x)
+                    << size << " " << cut << " " << width;
             }
         }
     }

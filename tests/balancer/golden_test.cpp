@@ -30,7 +30,8 @@ std::vector<Row> goldenRows() {
         std::vector<std::string> cells;
         std::stringstream stream(line.substr(1));
         for (std::string cell; std::getline(stream, cell, '|');) cells.push_back(trimmed(cell));
-        if (cells.size() >= 9) rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7], cells[8]});
+        if (cells.size() >= 9)
+            rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7], cells[8]});
     }
     return rows;
 }
@@ -98,8 +99,10 @@ private:
         if (!s) return;
         if (*feature != '\0') has(feature);
         const auto* wall = std::get_if<Wall>(&*s);
-        if (wall == nullptr) has("projection");
-        else if (wall->type == WallType::Hmd) has("HMD");
+        if (wall == nullptr)
+            has("projection");
+        else if (wall->type == WallType::Hmd)
+            has("HMD");
     }
 
     void connection(const Connection& c) {
@@ -109,18 +112,23 @@ private:
     void node(const Node& n) {
         for (const Connection& c : n.connections) connection(c);
         for (const Pipe& p : n.pipes) {
-            if (is(p.attributes.hintThread, "EQ_PIPE_IATTR_HINT_THREAD", [](int32_t v) { return v == value::kOff; })) has("nonthreaded");
+            if (is(p.attributes.hintThread, "EQ_PIPE_IATTR_HINT_THREAD", [](int32_t v) { return v == value::kOff; }))
+                has("nonthreaded");
             for (const Window& w : p.windows) window(w);
         }
     }
 
     void window(const Window& w) {
         const WindowAttributes& a = w.attributes;
-        if (is(a.hintFullscreen, "EQ_WINDOW_IATTR_HINT_FULLSCREEN", [](int32_t v) { return v == value::kOn; })) has("fullscreen");
-        if (is(a.hintDrawable, "EQ_WINDOW_IATTR_HINT_DRAWABLE", [](int32_t v) { return v == value::kFbo; })) has("FBO-drawable");
+        if (is(a.hintFullscreen, "EQ_WINDOW_IATTR_HINT_FULLSCREEN", [](int32_t v) { return v == value::kOn; }))
+            has("fullscreen");
+        if (is(a.hintDrawable, "EQ_WINDOW_IATTR_HINT_DRAWABLE", [](int32_t v) { return v == value::kFbo; }))
+            has("FBO-drawable");
         if (is(a.planesSamples, "EQ_WINDOW_IATTR_PLANES_SAMPLES", [](int32_t v) { return v > 0; })) has("multisample");
-        if (is(a.planesColor, "EQ_WINDOW_IATTR_PLANES_COLOR", [](int32_t v) { return v == value::kRgba16f; })) has("RGBA16F");
-        if (is(a.planesColor, "EQ_WINDOW_IATTR_PLANES_COLOR", [](int32_t v) { return v == value::kRgba32f; })) has("RGBA32F");
+        if (is(a.planesColor, "EQ_WINDOW_IATTR_PLANES_COLOR", [](int32_t v) { return v == value::kRgba16f; }))
+            has("RGBA16F");
+        if (is(a.planesColor, "EQ_WINDOW_IATTR_PLANES_COLOR", [](int32_t v) { return v == value::kRgba32f; }))
+            has("RGBA32F");
         for (const Channel& c : w.channels) {
             if (c.attributes.dumpImage) has("dump_image");
         }

@@ -46,7 +46,8 @@ TEST(Parser, ignoresWhatEqualizersLexerIgnores) {
 }
 
 TEST(Parser, acceptsAFileWithoutAServer) {
-    const Parsed p = parse("EQ_WINDOW_IATTR_HINT_STEREO ON global { global { EQ_CONFIG_FATTR_EYE_BASE .1 } } config { latency 3 }");
+    const Parsed p =
+        parse("EQ_WINDOW_IATTR_HINT_STEREO ON global { global { EQ_CONFIG_FATTR_EYE_BASE .1 } } config { latency 3 }");
     EXPECT_TRUE(p.lines.empty()) << p.lines.front();
     EXPECT_EQ(p.file.config.latency, 3u);
     EXPECT_EQ(std::get<double>(p.file.globals.at("EQ_CONFIG_FATTR_EYE_BASE")), .1);
@@ -64,7 +65,8 @@ TEST(Parser, readsTheHeaderAfterComments) {
 TEST(Parser, acceptsACommentAtTheEnd) { EXPECT_TRUE(parse("config { } # no newline").lines.empty()); }
 
 TEST(Parser, usesTheLastOfRepeatedFields) {
-    const Parsed p = inCompound("range [ 0 .1 ] range [ 0 .2 ] eye [ LEFT RIGHT ] eye [ CYCLOP ] wall { } projection { distance 3 }");
+    const Parsed p = inCompound(
+        "range [ 0 .1 ] range [ 0 .2 ] eye [ LEFT RIGHT ] eye [ CYCLOP ] wall { } projection { distance 3 }");
     EXPECT_EQ(compoundOf(p).range, (Range{0, .2}));
     EXPECT_EQ(compoundOf(p).eyes, EyeSet{Eye::Cyclop});
     EXPECT_EQ(std::get<Projection>(*compoundOf(p).surface).distance, 3);
@@ -78,7 +80,8 @@ TEST(Parser, acceptsEmptySets) {
 }
 
 TEST(Parser, resetsTheEyesAtAnEyeBase) {
-    const Observer o = inConfig("observer { eye_left [ 1 0 0 ] eye_base .1 eye_right [ 2 0 0 ] }").file.config.observers.at(0);
+    const Observer o =
+        inConfig("observer { eye_left [ 1 0 0 ] eye_base .1 eye_right [ 2 0 0 ] }").file.config.observers.at(0);
     EXPECT_FALSE(o.eyeLeft);
     EXPECT_EQ(o.eyeRight, (Vector3{2, 0, 0}));
 }
@@ -90,7 +93,8 @@ TEST(Parser, mergesSectionsOfTheAppNode) {
 }
 
 TEST(Parser, readsAttributeValues) {
-    const Parsed p = inConfig("appNode { pipe { attributes { hint_affinity CORE 3 } window { attributes { planes_color RGBA16F hint_drawable pbuffer planes_depth 24 } } } }");
+    const Parsed p = inConfig("appNode { pipe { attributes { hint_affinity CORE 3 } window { attributes { planes_color "
+                              "RGBA16F hint_drawable pbuffer planes_depth 24 } } } }");
     EXPECT_EQ(p.file.config.appNode->pipes[0].attributes.hintAffinity, value::kCore + 3);
     EXPECT_EQ(windowOf(p).attributes.planesColor, value::kRgba16f);
     EXPECT_EQ(windowOf(p).attributes.hintDrawable, value::kFbo);
@@ -100,7 +104,8 @@ TEST(Parser, readsAttributeValues) {
 TEST(Parser, reportsPositionProblemAndRemedyOfUnknownWords) {
     const Parsed p = parse("server { config {\n  latancy 3\n  latency 2 } }");
     ASSERT_EQ(p.lines.size(), 1u);
-    EXPECT_EQ(p.lines[0], "f:2:3: section config has no field latancy, it is left out; check its spelling, or remove it");
+    EXPECT_EQ(p.lines[0],
+              "f:2:3: section config has no field latancy, it is left out; check its spelling, or remove it");
     EXPECT_EQ(p.file.config.latency, 2u);
     EXPECT_EQ(p.errors, 0);
     EXPECT_EQ(parse("server { config { latancy 3 } }", true).errors, 1);
@@ -118,16 +123,22 @@ TEST(Parser, acceptsLoadBalancersOfEarlyReleases) {
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).mode, SplitMode::Db);
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).damping, .3);
     EXPECT_EQ(p.lines.at(0), "f:1:30: loadBalancer is called load_equalizer today; write load_equalizer");
-    EXPECT_TRUE(std::holds_alternative<FramerateEqualizer>(compoundOf(inCompound("loadBalancer { mode DPLEX }")).equalizers.at(0)));
-    EXPECT_EQ(std::get<DfrEqualizer>(compoundOf(inCompound("loadBalancer { mode DFR framerate 20 }")).equalizers.at(0)).frameRate, 20);
+    EXPECT_TRUE(std::holds_alternative<FramerateEqualizer>(
+        compoundOf(inCompound("loadBalancer { mode DPLEX }")).equalizers.at(0)));
+    EXPECT_EQ(std::get<DfrEqualizer>(compoundOf(inCompound("loadBalancer { mode DFR framerate 20 }")).equalizers.at(0))
+                  .frameRate,
+              20);
     for (const char* mode : {"MONITOR", "DDS"}) {
-        EXPECT_TRUE(std::holds_alternative<MonitorEqualizer>(compoundOf(inCompound(std::string("loadBalancer { mode ") + mode + " }")).equalizers.at(0)));
+        EXPECT_TRUE(std::holds_alternative<MonitorEqualizer>(
+            compoundOf(inCompound(std::string("loadBalancer { mode ") + mode + " }")).equalizers.at(0)));
     }
 }
 
 TEST(Parser, acceptsResourcesOfEarlyReleases) {
-    const Parsed p = inConfig("appNode { connection { type SDP TCPIP_port 4 command \"rsh %h %c\" command_quote '\"' timeout 100 } connection { type MCIP PIPE_filename \"x\" } connection { type IB }"
-                              " pipe { display 1 screen 2 window { hints { stereo on hint_fullscreen OFF } attributes { planes { stencil 8 } } channel { drawable [ FBO_COLOR FBO_DEPTH ] } } } }");
+    const Parsed p = inConfig("appNode { connection { type SDP TCPIP_port 4 command \"rsh %h %c\" command_quote '\"' "
+                              "timeout 100 } connection { type MCIP PIPE_filename \"x\" } connection { type IB }"
+                              " pipe { display 1 screen 2 window { hints { stereo on hint_fullscreen OFF } attributes "
+                              "{ planes { stencil 8 } } channel { drawable [ FBO_COLOR FBO_DEPTH ] } } } }");
     const Node& n = *p.file.config.appNode;
     EXPECT_EQ(p.errors, 0);
     EXPECT_EQ(n.connections[0].type, ConnectionType::Tcp);
@@ -147,8 +158,10 @@ TEST(Parser, acceptsResourcesOfEarlyReleases) {
 }
 
 TEST(Parser, acceptsOtherKeywordsOfEarlyReleases) {
-    Parsed p = inConfig("attributes { eyeBase .1 focus_distance 2 focus_mode relative_to_origin } observer { eyeBase .2 } layout { view { attributes { displaycluster \"h\" } } }"
-                        " compound { buffers [ COLOR STENCIL depth ] format RGBA8 attributes { update_FOV ON stereo_mode quad stereo_anaglyph_left_mask [ red ] } }");
+    Parsed p = inConfig("attributes { eyeBase .1 focus_distance 2 focus_mode relative_to_origin } observer { eyeBase "
+                        ".2 } layout { view { attributes { displaycluster \"h\" } } }"
+                        " compound { buffers [ COLOR STENCIL depth ] format RGBA8 attributes { update_FOV ON "
+                        "stereo_mode quad stereo_anaglyph_left_mask [ red ] } }");
     EXPECT_EQ(p.errors, 0) << p.lines.back();
     EXPECT_EQ(p.file.config.attributes.eyeBase, .1);
     EXPECT_EQ(p.file.config.observers.at(0).eyeBase, .2);
@@ -157,7 +170,8 @@ TEST(Parser, acceptsOtherKeywordsOfEarlyReleases) {
     EXPECT_EQ(compoundOf(p).buffers, (BufferSet{Buffer::Color, Buffer::Depth}));
     EXPECT_EQ(compoundOf(p).attributes.stereoMode, value::kQuad);
     EXPECT_EQ(compoundOf(p).attributes.anaglyphLeftMask, ColorMask{ColorComponent::Red});
-    p = parse("global { EQ_CONNECTION_HOSTNAME \"h\" EQ_CONNECTION_IATTR_TCPIP_PORT 3 EQ_WINDOW_HINT_STEREO ON EQ_VIEW_SATTR_DISPLAYCLUSTER \"x\" } config { }");
+    p = parse("global { EQ_CONNECTION_HOSTNAME \"h\" EQ_CONNECTION_IATTR_TCPIP_PORT 3 EQ_WINDOW_HINT_STEREO ON "
+              "EQ_VIEW_SATTR_DISPLAYCLUSTER \"x\" } config { }");
     EXPECT_EQ(p.errors, 0);
     EXPECT_EQ(std::get<std::string>(p.file.globals.at("EQ_CONNECTION_SATTR_HOSTNAME")), "h");
     EXPECT_EQ(std::get<int32_t>(p.file.globals.at("EQ_CONNECTION_IATTR_PORT")), 3);
@@ -171,12 +185,18 @@ TEST(Parser, reportsEachErrorInOneLine) {
     expectError("config { latency -1 }", "f:1:18: latency can't be negative; give 0 or more");
     expectError("config { latency 1.5 }", "f:1:18: latency can't be the number 1.5; it is a whole number");
     expectError("config { latency 99999999999 }", "f:1:18: latency is too large a number; give one below 2147483648");
-    expectError("config { compound { range [ 0 1 2 ] } }", "f:1:33: range ends with ], here is the number 2; add it, or look for a bracket that is missing before");
+    expectError(
+        "config { compound { range [ 0 1 2 ] } }",
+        "f:1:33: range ends with ], here is the number 2; add it, or look for a bracket that is missing before");
     expectError("config { compound { range 0 }", "f:1:27: range begins with [, here is the number 0; add it");
-    expectError("config { compound { range [ 0 " + std::string(400, '9') + " ] } }", "f:1:31: range is too large a number; give one that can be meant");
-    expectError("config { 3 }", "f:1:10: the number 3 belongs to no field of section config; remove it, or look for a bracket that is missing before");
-    expectError("config { layout { view { mode FISH } } }", "f:1:31: mode can't be the word FISH; it is one of MONO, STEREO");
-    expectError("config { node {", "f:1:16: section node ends with }, here is the end of the file; add it, or look for a bracket that is missing before");
+    expectError("config { compound { range [ 0 " + std::string(400, '9') + " ] } }",
+                "f:1:31: range is too large a number; give one that can be meant");
+    expectError("config { 3 }", "f:1:10: the number 3 belongs to no field of section config; remove it, or look for a "
+                                "bracket that is missing before");
+    expectError("config { layout { view { mode FISH } } }",
+                "f:1:31: mode can't be the word FISH; it is one of MONO, STEREO");
+    expectError("config { node {", "f:1:16: section node ends with }, here is the end of the file; add it, or look for "
+                                   "a bracket that is missing before");
 }
 
 TEST(Parser, reportsDeepNestingInOneLine) {
@@ -184,12 +204,15 @@ TEST(Parser, reportsDeepNestingInOneLine) {
     for (int i = 0; i < 100'000; ++i) text += "compound { ";
     const Parsed p = parse(text);
     EXPECT_EQ(p.errors, 1);
-    EXPECT_EQ(p.lines.back().substr(p.lines.back().find(' ') + 1), "more than 200 sections stand in each other; check the brackets");
+    EXPECT_EQ(p.lines.back().substr(p.lines.back().find(' ') + 1),
+              "more than 200 sections stand in each other; check the brackets");
 }
 
 TEST(Parser, reportsEveryTruncatedFileInOneLine) {
-    const std::string whole = "#Equalizer 1.2 ascii\nglobal { EQ_CONFIG_FATTR_EYE_BASE .1 }\nserver { connection { type RSP } config { appNode { pipe { window { viewport [ 0 0 1 1 ] channel { name \"c\" } } } }"
-                              " compound { channel ( segment 0 view \"v\" ) eye [ LEFT ] load_equalizer { boundary [ 1 2 ] } } } }";
+    const std::string whole =
+        "#Equalizer 1.2 ascii\nglobal { EQ_CONFIG_FATTR_EYE_BASE .1 }\nserver { connection { type RSP } config { "
+        "appNode { pipe { window { viewport [ 0 0 1 1 ] channel { name \"c\" } } } }"
+        " compound { channel ( segment 0 view \"v\" ) eye [ LEFT ] load_equalizer { boundary [ 1 2 ] } } } }";
     for (size_t n = 0; n + 2 < whole.size(); ++n) EXPECT_LE(parse(whole.substr(0, n)).errors, 1) << n;
     EXPECT_EQ(parse(whole).errors, 0);
 }
@@ -200,7 +223,8 @@ TEST(Parser, reportsFewLinesForABinaryFile) {
     EXPECT_LE(parse(noise).lines.size(), 200u);
     Diagnostics diagnostics("/nonexistent/x.eqc");
     readConfigFile("/nonexistent/x.eqc", diagnostics);
-    EXPECT_EQ(diagnostics.firstError(), "/nonexistent/x.eqc: can't be read: No such file or directory; check the name and its permissions");
+    EXPECT_EQ(diagnostics.firstError(),
+              "/nonexistent/x.eqc: can't be read: No such file or directory; check the name and its permissions");
     Diagnostics folder("/");
     readConfigFile("/", folder);
     EXPECT_EQ(folder.errors(), 1);

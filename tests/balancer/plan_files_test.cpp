@@ -43,7 +43,8 @@ void expectWhole(const std::string& path) {
                 const std::string wrong = testing::SymbolicWall(config, input, plan).run();
                 // Files for stereo only may show nothing in mono, and vice versa.
                 if (switched && wrong.ends_with("nothing was drawn")) continue;
-                ASSERT_EQ(wrong, "") << "layout " << layout << " frame " << input.frameNumber << (switched ? ", mono and stereo exchanged" : "");
+                ASSERT_EQ(wrong, "") << "layout " << layout << " frame " << input.frameNumber
+                                     << (switched ? ", mono and stereo exchanged" : "");
             }
         }
     }
@@ -55,7 +56,7 @@ TEST(PlanFiles, showEveryPixelOnce) {
     for (const auto& path : config::testing::allFiles()) {
         SCOPED_TRACE(path.filename().string());
         if (path.filename() == "own-coverage.eqc") continue; // uses every keyword, so its picture makes no sense
-        if (path.filename() == "frame-zoom.eqc") continue; // merges pixels intentionally: see FrameFlow
+        if (path.filename() == "frame-zoom.eqc") continue;   // merges pixels intentionally: see FrameFlow
         expectWhole(path.string());
     }
     if (config::testing::exampleFiles().empty()) GTEST_SKIP() << config::testing::noExamples();

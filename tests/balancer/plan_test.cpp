@@ -11,9 +11,11 @@ namespace mural::compound {
 
 namespace {
 
-const std::string kHead = "#Equalizer 1.2 ascii\nconfig { appNode { pipe { window { viewport [ 0 0 400 200 ] channel { name \"d\" } } window { viewport [ 0 0 400 200 ] channel { name \"s\" } } }"
+const std::string kHead = "#Equalizer 1.2 ascii\nconfig { appNode { pipe { window { viewport [ 0 0 400 200 ] channel { "
+                          "name \"d\" } } window { viewport [ 0 0 400 200 ] channel { name \"s\" } } }"
                           " pipe { window { viewport [ 0 0 400 200 ] channel { name \"t\" } } } } ";
-const std::string kWall = "observer { eye_base .05 } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall { } segment { channel \"d\" } } ";
+const std::string kWall = "observer { eye_base .05 } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall "
+                          "{ } segment { channel \"d\" } } ";
 
 ResolvedConfig resolved(const std::string& text) {
     config::Diagnostics diagnostics("f");
@@ -29,11 +31,14 @@ FramePlan plan(const ResolvedConfig& c, config::ViewMode mode = config::ViewMode
     return planFrame(c, input);
 }
 
-const RenderContext& drawn(const FramePlan& p, const ResolvedConfig& c, const std::string& channel, Eye eye = Eye::Cyclop) {
+const RenderContext& drawn(const FramePlan& p, const ResolvedConfig& c, const std::string& channel,
+                           Eye eye = Eye::Cyclop) {
     for (const ChannelPlan& one : p.channels) {
         for (const PlannedTask& t : one.tasks) {
             const RenderContext& context = p.contexts[static_cast<size_t>(t.context)];
-            if (t.kind == Task::Draw && context.eye == eye && c.channels[static_cast<size_t>(one.channel)].name == channel) return context;
+            if (t.kind == Task::Draw && context.eye == eye &&
+                c.channels[static_cast<size_t>(one.channel)].name == channel)
+                return context;
         }
     }
     static const RenderContext none;
@@ -53,7 +58,8 @@ std::vector<std::string> faults(const std::string& text) {
     const ResolvedConfig c = config::resolve(config::parseConfig(kHead + text + " }", diagnostics), {}, diagnostics);
     checkConfig(c, diagnostics);
     std::vector<std::string> lines;
-    for (const auto& d : diagnostics.all()) lines.push_back((d.severity == config::Severity::Error ? "error: " : "") + d.what);
+    for (const auto& d : diagnostics.all())
+        lines.push_back((d.severity == config::Severity::Error ? "error: " : "") + d.what);
     return lines;
 }
 
@@ -76,7 +82,8 @@ TEST(Plan, computesFrustaOfTheDefaultWall) {
 
 TEST(Plan, setsAnaglyphMasksAndQuadBuffers) {
     ResolvedConfig c = resolved(kWall);
-    EXPECT_EQ(drawn(plan(c, config::ViewMode::Stereo), c, "d", Eye::Left).colorMask, config::ColorMask{config::ColorComponent::Red});
+    EXPECT_EQ(drawn(plan(c, config::ViewMode::Stereo), c, "d", Eye::Left).colorMask,
+              config::ColorMask{config::ColorComponent::Red});
     c.windows[0].attributes.hintStereo = config::value::kOn;
     const FramePlan quad = plan(c, config::ViewMode::Stereo);
     EXPECT_EQ(drawn(quad, c, "d", Eye::Left).drawBuffer, DrawBuffer::BackLeft);
@@ -88,7 +95,8 @@ TEST(Plan, setsAnaglyphMasksAndQuadBuffers) {
 }
 
 TEST(Plan, appliesHeadsAndModelUnits) {
-    const ResolvedConfig c = resolved("observer { } layout { view { observer 0 } } canvas { layout 0 wall { } segment { channel \"d\" } }");
+    const ResolvedConfig c =
+        resolved("observer { } layout { view { observer 0 } } canvas { layout 0 wall { } segment { channel \"d\" } }");
     FrameInput input = firstFrame(c);
     input.observers = {{Matrix4::translation({.1, .2, 1})}};
     const FramePlan one = planFrame(c, input);
@@ -106,13 +114,17 @@ TEST(Plan, appliesHeadsAndModelUnits) {
 }
 
 TEST(Plan, movesTheWallToTheFocusDistance) {
-    const ResolvedConfig c = resolved("observer { eye_base .1 focus_distance 4 focus_mode relative_to_observer } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall { } segment { channel \"d\" } }");
+    const ResolvedConfig c =
+        resolved("observer { eye_base .1 focus_distance 4 focus_mode relative_to_observer } layout { view { observer 0 "
+                 "mode STEREO } } canvas { layout 0 wall { } segment { channel \"d\" } }");
     // As if the wall were 4 m away and four times as large: a quarter of the eye's offset remains.
-    expectFrustum(drawn(plan(c, config::ViewMode::Stereo), c, "d", Eye::Right).perspective, -.08 - .00125, .08 - .00125, -.05, .05);
+    expectFrustum(drawn(plan(c, config::ViewMode::Stereo), c, "d", Eye::Right).perspective, -.08 - .00125, .08 - .00125,
+                  -.05, .05);
 }
 
 TEST(Plan, movesHmdWallsWithTheHead) {
-    const ResolvedConfig c = resolved("observer { } layout { view { observer 0 wall { type HMD } } } canvas { layout 0 segment { channel \"d\" } }");
+    const ResolvedConfig c = resolved(
+        "observer { } layout { view { observer 0 wall { type HMD } } } canvas { layout 0 segment { channel \"d\" } }");
     FrameInput input = firstFrame(c);
     input.observers = {{Matrix4::translation({5, 6, 7})}};
     const FramePlan p = planFrame(c, input);
@@ -121,7 +133,9 @@ TEST(Plan, movesHmdWallsWithTheHead) {
 }
 
 TEST(Plan, computesAreasInPixels) {
-    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { viewport [ 0 0 .333 1 ] } compound { channel \"s\" viewport [ .333 0 .667 1 ] outputframe { } } inputframe { name \"frame.s\" } }");
+    const ResolvedConfig c =
+        resolved(kWall + "compound { channel ( ) compound { viewport [ 0 0 .333 1 ] } compound { channel \"s\" "
+                         "viewport [ .333 0 .667 1 ] outputframe { } } inputframe { name \"frame.s\" } }");
     const FramePlan p = plan(c);
     const RenderContext& s = drawn(p, c, "s");
     EXPECT_EQ(s.area, (PixelViewport{133, 0, 267, 200}));
@@ -139,8 +153,10 @@ TEST(Plan, computesAreasInPixels) {
 TEST(Plan, supportsKernelsOfAnySize) {
     for (const int k : {1, 2, 3, 5}) {
         for (int i = 0; i < k; ++i) {
-            const std::string kernel = "[ " + std::to_string(i) + " " + std::to_string(k - 1 - i) + " " + std::to_string(k) + " " + std::to_string(k) + " ]";
-            const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"s\" pixel " + kernel + " outputframe { } } inputframe { name \"frame.s\" } }");
+            const std::string kernel = "[ " + std::to_string(i) + " " + std::to_string(k - 1 - i) + " " +
+                                       std::to_string(k) + " " + std::to_string(k) + " ]";
+            const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"s\" pixel " +
+                                              kernel + " outputframe { } } inputframe { name \"frame.s\" } }");
             const FramePlan p = plan(c);
             const RenderContext& s = drawn(p, c, "s");
             EXPECT_EQ(s.viewport.w, (400 + k - 1) / k);
@@ -169,11 +185,14 @@ TEST(Plan, distributesSamplesEvenly) {
 }
 
 TEST(Plan, undoesZoomsWhereTheyAreShown) {
-    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"s\" zoom [ .5 .5 ] outputframe { } } compound { channel \"t\" zoom [ 2 2 ] outputframe { } } inputframe { name \"frame.s\" } inputframe { name \"frame.t\" } }");
+    const ResolvedConfig c = resolved(
+        kWall +
+        "compound { channel ( ) compound { channel \"s\" zoom [ .5 .5 ] outputframe { } } compound { channel \"t\" "
+        "zoom [ 2 2 ] outputframe { } } inputframe { name \"frame.s\" } inputframe { name \"frame.t\" } }");
     const FramePlan p = plan(c);
     EXPECT_EQ(drawn(p, c, "s").viewport.w, 200);
-    EXPECT_EQ(p.frames[0].size.w, 200); // transferred at the small size
-    EXPECT_EQ(p.channels.back().channel, 3); // (the destination)
+    EXPECT_EQ(p.frames[0].size.w, 200);                                     // transferred at the small size
+    EXPECT_EQ(p.channels.back().channel, 3);                                // (the destination)
     EXPECT_EQ(p.channels.back().tasks.back().inputs[0].zoom, (Zoom{2, 2})); // enlarged at the destination
     EXPECT_EQ(drawn(p, c, "t").viewport.w, 800);
     EXPECT_EQ(p.frames[1].size.w, 400); // reduced before the transfer
@@ -181,7 +200,8 @@ TEST(Plan, undoesZoomsWhereTheyAreShown) {
 }
 
 TEST(Plan, showsTheSamePictureInCopies) {
-    const ResolvedConfig c = resolved("layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"d\" mural_copy_to \"t\" } }");
+    const ResolvedConfig c = resolved(
+        "layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"d\" mural_copy_to \"t\" } }");
     for (const auto mode : {config::ViewMode::Mono, config::ViewMode::Stereo}) {
         const FramePlan p = plan(c, mode);
         const size_t passes = mode == config::ViewMode::Mono ? 1 : 2;
@@ -192,13 +212,16 @@ TEST(Plan, showsTheSamePictureInCopies) {
 }
 
 TEST(Plan, timeMultiplexes) {
-    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"s\" period 2 phase 0 outputframe { name \"f\" } } compound { channel \"t\" period 2 phase 1 outputframe { name \"f\" } } inputframe { name \"f\" } }");
+    const ResolvedConfig c = resolved(
+        kWall + "compound { channel ( ) compound { channel \"s\" period 2 phase 0 outputframe { name \"f\" } } "
+                "compound { channel \"t\" period 2 phase 1 outputframe { name \"f\" } } inputframe { name \"f\" } }");
     EXPECT_EQ(c.channels[static_cast<size_t>(plan(c, config::ViewMode::Mono, 0).frames.at(0).channel)].name, "s");
     EXPECT_EQ(c.channels[static_cast<size_t>(plan(c, config::ViewMode::Mono, 1).frames.at(0).channel)].name, "t");
 }
 
 TEST(Plan, doesNotClearDrawsOfOtherLeaves) {
-    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { range [ 0 .5 ] } compound { range [ .5 1 ] } compound { channel \"d\" viewport [ 0 0 1 0 ] } }");
+    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { range [ 0 .5 ] } compound { range [ "
+                                              ".5 1 ] } compound { channel \"d\" viewport [ 0 0 1 0 ] } }");
     const FramePlan p = plan(c);
     ASSERT_EQ(p.channels.size(), 1u);
     std::vector<Task> kinds;
@@ -209,9 +232,12 @@ TEST(Plan, doesNotClearDrawsOfOtherLeaves) {
 // A channel draws for another screen, and waits for it, and also shows its own picture in the same window. Its own
 // picture follows after that work, although it could continue earlier.
 TEST(Plan, separatesChannelsOfOneWindow) {
-    const ResolvedConfig c = resolved("layout { view { } } canvas { layout 0 wall { } segment { channel \"s\" viewport [ 0 0 .5 1 ] } segment { channel \"d\" viewport [ .5 0 .5 1 ] } }"
-                                      " compound { channel ( segment 1 ) compound { outputframe { name \"x\" } } compound { channel \"s\" task [ CLEAR ASSEMBLE READBACK ] inputframe { name \"x\" } outputframe { name \"y\" } }"
-                                      " inputframe { name \"y\" } } compound { channel ( segment 0 ) }");
+    const ResolvedConfig c =
+        resolved("layout { view { } } canvas { layout 0 wall { } segment { channel \"s\" viewport [ 0 0 .5 1 ] } "
+                 "segment { channel \"d\" viewport [ .5 0 .5 1 ] } }"
+                 " compound { channel ( segment 1 ) compound { outputframe { name \"x\" } } compound { channel \"s\" "
+                 "task [ CLEAR ASSEMBLE READBACK ] inputframe { name \"x\" } outputframe { name \"y\" } }"
+                 " inputframe { name \"y\" } } compound { channel ( segment 0 ) }");
     const FramePlan p = plan(c);
     EXPECT_FALSE(p.interleaved);
     bool shown = false, worked = false;
@@ -226,21 +252,25 @@ TEST(Plan, separatesChannelsOfOneWindow) {
 }
 
 TEST(Plan, ofTwoFramesOfOneNameTheFirstIsTaken) {
-    const ResolvedConfig c = resolved(kWall + "compound { channel ( ) compound { channel \"t\" outputframe { name \"f\" } } compound { channel \"s\" outputframe { name \"f\" } } inputframe { name \"f\" } }");
+    const ResolvedConfig c =
+        resolved(kWall + "compound { channel ( ) compound { channel \"t\" outputframe { name \"f\" } } compound { "
+                         "channel \"s\" outputframe { name \"f\" } } inputframe { name \"f\" } }");
     const FramePlan p = plan(c);
     ASSERT_EQ(p.frames.size(), 1u);
     EXPECT_EQ(c.channels[static_cast<size_t>(p.frames[0].channel)].name, "t");
 }
 
 TEST(Plan, barriersNameTheirWindows) {
-    const ResolvedConfig c = resolved("layout { view { } } canvas { layout 0 swapbarrier { name \"w\" } segment { channel \"d\" } segment { channel \"t\" } }");
+    const ResolvedConfig c = resolved("layout { view { } } canvas { layout 0 swapbarrier { name \"w\" } segment { "
+                                      "channel \"d\" } segment { channel \"t\" } }");
     const FramePlan p = plan(c);
     ASSERT_EQ(p.barriers.size(), 1u);
     EXPECT_EQ(p.barriers[0].windows, (std::vector<Index>{0, 2}));
 }
 
 TEST(Plan, switchesLayouts) {
-    const ResolvedConfig c = resolved("layout { view { } } layout { view { } view { } } canvas { layout 0 layout 1 layout OFF segment { channel \"d\" } }");
+    const ResolvedConfig c = resolved("layout { view { } } layout { view { } view { } } canvas { layout 0 layout 1 "
+                                      "layout OFF segment { channel \"d\" } }");
     FrameInput input = firstFrame(c);
     EXPECT_EQ(planFrame(c, input).channels.size(), 1u);
     input.activeLayouts = {1};
@@ -252,34 +282,56 @@ TEST(Plan, switchesLayouts) {
 }
 
 TEST(Check, reportsCyclicFrames) {
-    const auto lines = faults(kWall + "compound { channel ( ) compound { channel \"s\" task [ ASSEMBLE READBACK ] inputframe { name \"x\" } outputframe { name \"y\" } }"
-                                      " compound { channel \"t\" task [ ASSEMBLE READBACK ] inputframe { name \"y\" } outputframe { name \"x\" } } inputframe { name \"y\" } inputframe { name \"x\" } }");
+    const auto lines =
+        faults(kWall + "compound { channel ( ) compound { channel \"s\" task [ ASSEMBLE READBACK ] inputframe { name "
+                       "\"x\" } outputframe { name \"y\" } }"
+                       " compound { channel \"t\" task [ ASSEMBLE READBACK ] inputframe { name \"y\" } outputframe { "
+                       "name \"x\" } } inputframe { name \"y\" } inputframe { name \"x\" } }");
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_EQ(lines[0], "error: frames \"x\", \"y\" wait for each other: nothing is ever drawn");
     const auto itself = faults(kWall + "compound { channel ( ) inputframe { name \"x\" } outputframe { name \"x\" } }");
     EXPECT_EQ(itself.back(), "error: frame \"x\" waits for itself: nothing is ever drawn");
     // In different frames there is no cycle.
-    EXPECT_TRUE(faults(kWall + "compound { channel ( ) compound { channel \"s\" outputframe { name \"y\" } } compound { channel \"t\" period 2 phase 1 inputframe { name \"y\" } outputframe { name \"x\" } } inputframe { name \"x\" } }").empty());
+    EXPECT_TRUE(
+        faults(kWall +
+               "compound { channel ( ) compound { channel \"s\" outputframe { name \"y\" } } compound { channel \"t\" "
+               "period 2 phase 1 inputframe { name \"y\" } outputframe { name \"x\" } } inputframe { name \"x\" } }")
+            .empty());
 }
 
 TEST(Check, reportsNamesWithoutACounterpart) {
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) inputframe { name \"x\" } }"), std::vector<std::string>{"nobody in this tree makes frame \"x\", it is not waited for"});
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) outputframe { name \"x\" } }"), std::vector<std::string>{"nobody in this tree takes frame \"x\", it is not read back"});
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"s\" outputframe { } } compound { channel \"t\" outputframe { name \"frame.s\" } } inputframe { name \"frame.s\" } }"),
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) inputframe { name \"x\" } }"),
+              std::vector<std::string>{"nobody in this tree makes frame \"x\", it is not waited for"});
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) outputframe { name \"x\" } }"),
+              std::vector<std::string>{"nobody in this tree takes frame \"x\", it is not read back"});
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"s\" outputframe { } } compound { channel "
+                             "\"t\" outputframe { name \"frame.s\" } } inputframe { name \"frame.s\" } }"),
               std::vector<std::string>{"frame \"frame.s\" is made twice in this tree, only the first one is taken"});
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { eye [ LEFT ] channel \"s\" outputframe { } } compound { eye [ RIGHT ] task [ ASSEMBLE ] inputframe { name \"frame.s\" } } }"),
-              std::vector<std::string>{"frame \"frame.s\" is never made for the eyes and frame numbers that it is taken for, it is not waited for"});
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"s\" inputtiles { name \"q\" } } }"), std::vector<std::string>{"error: nobody in this tree fills the queue \"q\""});
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) outputtiles { name \"q\" } compound { inputtiles { name \"q\" } } }"), std::vector<std::string>{"error: the queue \"q\" has no size"});
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"t\" outputframe { type texture } } inputframe { name \"frame.t\" } }"),
-              std::vector<std::string>{"frame \"frame.t\" is a texture, and taken by another pipe, it is handed over in memory"});
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { eye [ LEFT ] channel \"s\" outputframe { } } compound "
+                             "{ eye [ RIGHT ] task [ ASSEMBLE ] inputframe { name \"frame.s\" } } }"),
+              std::vector<std::string>{"frame \"frame.s\" is never made for the eyes and frame numbers that it is "
+                                       "taken for, it is not waited for"});
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"s\" inputtiles { name \"q\" } } }"),
+              std::vector<std::string>{"error: nobody in this tree fills the queue \"q\""});
+    EXPECT_EQ(
+        faults(kWall + "compound { channel ( ) outputtiles { name \"q\" } compound { inputtiles { name \"q\" } } }"),
+        std::vector<std::string>{"error: the queue \"q\" has no size"});
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"t\" outputframe { type texture } } "
+                             "inputframe { name \"frame.t\" } }"),
+              std::vector<std::string>{
+                  "frame \"frame.t\" is a texture, and taken by another pipe, it is handed over in memory"});
 }
 
 TEST(Check, reportsPartsThatAreNeverShown) {
-    EXPECT_EQ(faults("layout { name \"a\" view { } } layout { name \"b\" view { viewport [ .6 0 .2 1 ] } } canvas { layout \"b\" segment { channel \"d\" viewport [ 0 0 .5 1 ] } }"),
-              (std::vector<std::string>{"layout \"a\" is on no canvas and never shown", "view number 1 falls onto no segment and is never shown"}));
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) period 2 phase 2 }"), std::vector<std::string>{"phase 2 never comes with a period of 2, so this compound never draws"});
-    EXPECT_EQ(faults(kWall + "compound { channel ( ) load_equalizer { } }"), std::vector<std::string>{"this equalizer has nothing to divide: its compound has fewer than two children"});
+    EXPECT_EQ(faults("layout { name \"a\" view { } } layout { name \"b\" view { viewport [ .6 0 .2 1 ] } } canvas { "
+                     "layout \"b\" segment { channel \"d\" viewport [ 0 0 .5 1 ] } }"),
+              (std::vector<std::string>{"layout \"a\" is on no canvas and never shown",
+                                        "view number 1 falls onto no segment and is never shown"}));
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) period 2 phase 2 }"),
+              std::vector<std::string>{"phase 2 never comes with a period of 2, so this compound never draws"});
+    EXPECT_EQ(
+        faults(kWall + "compound { channel ( ) load_equalizer { } }"),
+        std::vector<std::string>{"this equalizer has nothing to divide: its compound has fewer than two children"});
 }
 
 } // namespace mural::compound

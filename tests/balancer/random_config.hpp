@@ -46,8 +46,10 @@ public:
     template <class T> void merged(std::string_view, T& s) { fields(*this, s); }
     void merged(std::string_view word, std::optional<Node>& s) { section(word, s); }
     void surface(std::optional<ProjectionSurface>& s) {
-        if (chance(.3)) fields(*this, s.emplace(Wall{}).emplace<Wall>());
-        else if (chance(.3)) fields(*this, s.emplace(Projection{}).emplace<Projection>());
+        if (chance(.3))
+            fields(*this, s.emplace(Wall{}).emplace<Wall>());
+        else if (chance(.3))
+            fields(*this, s.emplace(Projection{}).emplace<Projection>());
     }
     void equalizers(std::vector<Equalizer>& all) {
         if (chance(.3)) add<LoadEqualizer>(all);
@@ -61,7 +63,8 @@ public:
 
     void fill(std::string& v) {
         static constexpr std::string_view kCharacters = "abcXYZ 0123-\\.,_%&@<>:!/=+();~$*'#{}[]\t\xc3\xa4";
-        for (int32_t n = number(0, 12); n > 0; --n) v += kCharacters[static_cast<size_t>(number(0, static_cast<int32_t>(kCharacters.size()) - 1))];
+        for (int32_t n = number(0, 12); n > 0; --n)
+            v += kCharacters[static_cast<size_t>(number(0, static_cast<int32_t>(kCharacters.size()) - 1))];
     }
     void fill(char& v) { v = "'\"x%"[number(0, 3)]; }
     void fill(double& v) { v = real(); }
@@ -79,12 +82,16 @@ public:
         if (chance(.4)) v.range = real();
     }
     void fill(Reference& v) {
-        if (chance(.5)) v = static_cast<uint32_t>(number(0, 9));
-        else fill(v.emplace<std::string>());
+        if (chance(.5))
+            v = static_cast<uint32_t>(number(0, 9));
+        else
+            fill(v.emplace<std::string>());
     }
     void fill(LayoutReference& v) {
-        if (chance(.3)) v = static_cast<uint32_t>(number(0, 9));
-        else if (chance(.5)) fill(v.emplace<std::string>());
+        if (chance(.3))
+            v = static_cast<uint32_t>(number(0, 9));
+        else if (chance(.5))
+            fill(v.emplace<std::string>());
     }
     void fill(ChannelReference& v) {
         if (chance(.5)) return fill(v.emplace<std::string>());
@@ -95,7 +102,9 @@ public:
             fill(path.steps.back().second);
         }
     }
-    template <class E> requires std::is_enum_v<E> void fill(E& v) {
+    template <class E>
+    requires std::is_enum_v<E>
+    void fill(E& v) {
         const auto all = spellings(E{});
         v = all[static_cast<size_t>(number(0, static_cast<int32_t>(all.size()) - 1))].value;
     }
@@ -125,12 +134,18 @@ inline ConfigFile randomConfig(uint64_t seed) {
     for (const GlobalAttribute& g : globalAttributes()) {
         if (!filler.chance(.3)) continue;
         GlobalValue& value = file.globals[std::string(g.name)];
-        if (g.kind == GlobalKind::Length) filler.fill(value.emplace<double>());
-        else if (g.kind == GlobalKind::Text) filler.fill(value.emplace<std::string>());
-        else if (g.kind == GlobalKind::Character) filler.fill(value.emplace<char>());
-        else if (g.kind == GlobalKind::Mask) filler.fill(value.emplace<ColorMask>());
-        else if (g.kind == GlobalKind::ConnectionType) filler.fill(value.emplace<ConnectionType>());
-        else value = filler.number(-17, 40);
+        if (g.kind == GlobalKind::Length)
+            filler.fill(value.emplace<double>());
+        else if (g.kind == GlobalKind::Text)
+            filler.fill(value.emplace<std::string>());
+        else if (g.kind == GlobalKind::Character)
+            filler.fill(value.emplace<char>());
+        else if (g.kind == GlobalKind::Mask)
+            filler.fill(value.emplace<ColorMask>());
+        else if (g.kind == GlobalKind::ConnectionType)
+            filler.fill(value.emplace<ConnectionType>());
+        else
+            value = filler.number(-17, 40);
     }
     filler.sections("connection", file.serverConnections);
     fields(filler, file.config);

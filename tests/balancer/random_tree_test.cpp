@@ -19,13 +19,16 @@ TEST(RandomTrees, showEveryPixelOnce) {
     size_t tasks = 0;
     for (uint64_t seed = 1; seed <= mural::testing::rounds(150); ++seed) {
         const ConfigFile file = TreeMaker(seed).make();
-        const LoadedConfig loaded = loadConfig(file, "seed " + std::to_string(seed), [](const std::string&) { return std::nullopt; });
+        const LoadedConfig loaded =
+            loadConfig(file, "seed " + std::to_string(seed), [](const std::string&) { return std::nullopt; });
         ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError() << config::writeConfig(file);
         FrameInput input = firstFrame(loaded.resolved);
         for (input.frameNumber = 0; input.frameNumber < 12; input.frameNumber += 1 + input.frameNumber / 4) {
             const FramePlan plan = planFrame(loaded.resolved, input);
             for (const ChannelPlan& c : plan.channels) tasks += c.tasks.size();
-            ASSERT_EQ(testing::SymbolicWall(loaded.resolved, input, plan).run(), "") << "seed " << seed << " frame " << input.frameNumber << "\n" << config::writeConfig(file);
+            ASSERT_EQ(testing::SymbolicWall(loaded.resolved, input, plan).run(), "")
+                << "seed " << seed << " frame " << input.frameNumber << "\n"
+                << config::writeConfig(file);
         }
     }
     EXPECT_GT(tasks, mural::testing::rounds(4'000));

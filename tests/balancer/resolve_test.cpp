@@ -24,9 +24,12 @@ Resolved resolved(const std::string& text, const Globals& environment = {}) {
     return r;
 }
 
-const std::string kTwoWindows = "appNode { pipe { window { channel { name \"a\" } } window { channel { name \"b\" } } } }";
+const std::string kTwoWindows =
+    "appNode { pipe { window { channel { name \"a\" } } window { channel { name \"b\" } } } }";
 
-Resolved with(const std::string& text, const std::string& version = "#Equalizer 1.2 ascii\n") { return resolved(version + "config { " + kTwoWindows + text + " }"); }
+Resolved with(const std::string& text, const std::string& version = "#Equalizer 1.2 ascii\n") {
+    return resolved(version + "config { " + kTwoWindows + text + " }");
+}
 
 std::vector<const ResolvedChannel*> destinations(const ResolvedConfig& c) {
     std::vector<const ResolvedChannel*> all;
@@ -39,7 +42,9 @@ std::vector<const ResolvedChannel*> destinations(const ResolvedConfig& c) {
 } // namespace
 
 TEST(Resolve, createsDestinationsFromSegmentsAndViews) {
-    const Resolved r = with("layout { name \"l\" view { viewport [ .25 0 .5 1 ] } view { viewport [ 0 0 .25 1 ] } } canvas { layout 0 segment { channel \"a\" viewport [ 0 0 .5 1 ] } segment { channel \"b\" viewport [ .5 0 .5 1 ] } }");
+    const Resolved r =
+        with("layout { name \"l\" view { viewport [ .25 0 .5 1 ] } view { viewport [ 0 0 .25 1 ] } } canvas { layout 0 "
+             "segment { channel \"a\" viewport [ 0 0 .5 1 ] } segment { channel \"b\" viewport [ .5 0 .5 1 ] } }");
     EXPECT_EQ(r.errors, 0);
     const auto all = destinations(r.config);
     ASSERT_EQ(all.size(), 3u);
@@ -57,12 +62,16 @@ TEST(Resolve, createsDestinationsFromSegmentsAndViews) {
 }
 
 TEST(Resolve, computesChannelsInPixels) {
-    const Resolved r = resolved("config { appNode { pipe { window { channel { name \"a\" viewport [ 10 20 100 50 ] } } } } layout { view { viewport [ .5 .5 .5 .5 ] } } canvas { layout 0 segment { channel \"a\" } } }");
+    const Resolved r =
+        resolved("config { appNode { pipe { window { channel { name \"a\" viewport [ 10 20 100 50 ] } } } } layout { "
+                 "view { viewport [ .5 .5 .5 .5 ] } } canvas { layout 0 segment { channel \"a\" } } }");
     EXPECT_EQ(destinations(r.config).at(0)->viewport, (Viewport{60, 45, 50, 25}));
 }
 
 TEST(Resolve, resolvesReferencesToChannels) {
-    const std::string displays = "layout { name \"one\" view { } } layout { name \"two\" view { name \"v\" } view { name \"w\" viewport [ 0 0 .5 1 ] } } canvas { name \"c\" layout 0 layout 1 segment { name \"s\" channel \"a\" } segment { name \"t\" channel \"b\" } }";
+    const std::string displays = "layout { name \"one\" view { } } layout { name \"two\" view { name \"v\" } view { "
+                                 "name \"w\" viewport [ 0 0 .5 1 ] } } canvas { name \"c\" layout 0 layout 1 segment { "
+                                 "name \"s\" channel \"a\" } segment { name \"t\" channel \"b\" } }";
     const auto shown = [&](const std::string& way) {
         const Resolved r = with(displays + "compound { channel " + way + " }");
         if (r.errors > 0) return r.lines.back().substr(r.lines.back().find(' ') + 1);
@@ -80,7 +89,9 @@ TEST(Resolve, resolvesReferencesToChannels) {
 }
 
 TEST(Resolve, completesFilesOlderThanCanvases) {
-    const Resolved r = with("compound { eye [ LEFT ] channel \"a\" viewport [ 0 0 .5 1 ] wall { bottom_left [ -2 -1 -1 ] bottom_right [ 2 -1 -1 ] top_left [ -2 1 -1 ] } }", "");
+    const Resolved r = with("compound { eye [ LEFT ] channel \"a\" viewport [ 0 0 .5 1 ] wall { bottom_left [ -2 -1 -1 "
+                            "] bottom_right [ 2 -1 -1 ] top_left [ -2 1 -1 ] } }",
+                            "");
     EXPECT_EQ(r.errors, 0);
     ASSERT_EQ(r.config.canvases.size(), 1u);
     ASSERT_EQ(r.config.segments.size(), 1u);
@@ -95,7 +106,8 @@ TEST(Resolve, completesFilesOlderThanCanvases) {
 }
 
 TEST(Resolve, findsHostsInOldFiles) {
-    const std::string node = "config { node { host \"h\" connection { hostname \"c\" } } node { connection { hostname \"d\" } } }";
+    const std::string node =
+        "config { node { host \"h\" connection { hostname \"c\" } } node { connection { hostname \"d\" } } }";
     EXPECT_EQ(resolved("#Equalizer 1.1 ascii\n" + node).config.nodes[1].host, "c");
     EXPECT_EQ(resolved("#Equalizer 1.1 ascii\n" + node).lines.size(), 1u);
     const Resolved today = resolved("#Equalizer 1.2 ascii\n" + node);
@@ -107,7 +119,11 @@ TEST(Resolve, findsHostsInOldFiles) {
 
 TEST(Resolve, appliesPrecedenceOfAttributes) {
     const auto stereo = [](const std::string& global, const std::string& own, const Globals& environment) {
-        return resolved("global { " + global + " } config { appNode { pipe { window { attributes { " + own + " } } } } }", environment).config.windows[0].attributes.hintStereo;
+        return resolved("global { " + global + " } config { appNode { pipe { window { attributes { " + own +
+                            " } } } } }",
+                        environment)
+            .config.windows[0]
+            .attributes.hintStereo;
     };
     const Globals environment{{"EQ_WINDOW_IATTR_HINT_STEREO", 7}};
     EXPECT_EQ(stereo("", "", {}), value::kAuto);
@@ -118,33 +134,45 @@ TEST(Resolve, appliesPrecedenceOfAttributes) {
 }
 
 TEST(Resolve, readsEnvironmentVariables) {
-    const std::map<std::string, std::string> set{{"EQ_WINDOW_IATTR_HINT_STEREO", "1"}, {"EQ_PIPE_IATTR_HINT_THREAD", "OFF"}, {"EQ_CONFIG_FATTR_EYE_BASE", "x"},
-                                                 {"EQ_CONNECTION_SATTR_HOSTNAME", "a \"b"}, {"EQ_NODE_CATTR_LAUNCH_COMMAND_QUOTE", "\""}};
+    const std::map<std::string, std::string> set{{"EQ_WINDOW_IATTR_HINT_STEREO", "1"},
+                                                 {"EQ_PIPE_IATTR_HINT_THREAD", "OFF"},
+                                                 {"EQ_CONFIG_FATTR_EYE_BASE", "x"},
+                                                 {"EQ_CONNECTION_SATTR_HOSTNAME", "a \"b"},
+                                                 {"EQ_NODE_CATTR_LAUNCH_COMMAND_QUOTE", "\""}};
     Diagnostics diagnostics("f");
-    const Globals globals = globalsOfEnvironment([&](const std::string& name) { return set.contains(name) ? std::optional(set.at(name)) : std::nullopt; }, diagnostics);
+    const Globals globals = globalsOfEnvironment(
+        [&](const std::string& name) { return set.contains(name) ? std::optional(set.at(name)) : std::nullopt; },
+        diagnostics);
     EXPECT_EQ(std::get<int32_t>(globals.at("EQ_WINDOW_IATTR_HINT_STEREO")), 1);
     EXPECT_EQ(std::get<int32_t>(globals.at("EQ_PIPE_IATTR_HINT_THREAD")), 0);
     EXPECT_EQ(std::get<std::string>(globals.at("EQ_CONNECTION_SATTR_HOSTNAME")), "a \"b");
     EXPECT_EQ(std::get<char>(globals.at("EQ_NODE_CATTR_LAUNCH_COMMAND_QUOTE")), '"');
     EXPECT_EQ(globals.size(), 4u);
     ASSERT_EQ(diagnostics.all().size(), 1u);
-    EXPECT_EQ(diagnostics.text(diagnostics.all()[0]), "f: environment variable EQ_CONFIG_FATTR_EYE_BASE:1:1: EQ_CONFIG_FATTR_EYE_BASE can't be the word x; it is a number; it is left out");
+    EXPECT_EQ(diagnostics.text(diagnostics.all()[0]),
+              "f: environment variable EQ_CONFIG_FATTR_EYE_BASE:1:1: EQ_CONFIG_FATTR_EYE_BASE can't be the word x; it "
+              "is a number; it is left out");
 }
 
 TEST(Resolve, namesFramesAndBarriers) {
-    const Resolved r = with("compound { name \"root\" channel \"a\" swapbarrier { } compound { channel \"b\" outputframe { } } compound { name \"n\" outputframe { } inputframe { } } inputframe { } }");
+    const Resolved r =
+        with("compound { name \"root\" channel \"a\" swapbarrier { } compound { channel \"b\" outputframe { } } "
+             "compound { name \"n\" outputframe { } inputframe { } } inputframe { } }");
     EXPECT_EQ(r.config.compounds[1].outputFrames[0].name, "frame.b");
     EXPECT_EQ(r.config.compounds[2].outputFrames[0].name, "frame.n");
     EXPECT_EQ(r.config.compounds[0].inputFrames[0].name, "frame.root");
     EXPECT_EQ(r.config.compounds[0].barrier->name, "barrier.root");
-    const Resolved shown = with("layout { view { } } canvas { name \"c\" layout 0 swapbarrier { } segment { channel \"a\" } segment { channel \"b\" swapbarrier { name \"own\" } } }");
+    const Resolved shown = with("layout { view { } } canvas { name \"c\" layout 0 swapbarrier { } segment { channel "
+                                "\"a\" } segment { channel \"b\" swapbarrier { name \"own\" } } }");
     EXPECT_EQ(shown.config.compounds[1].barrier->name, "barrier.canvas.c");
     EXPECT_EQ(shown.config.compounds[2].barrier->name, "own");
 }
 
 TEST(Resolve, subtractsBezels) {
-    const std::string wall = "layout { view { } } canvas { layout 0 wall { bottom_left [ -1 -.5 -1 ] bottom_right [ 1 -.5 -1 ] top_left [ -1 .5 -1 ] } mural_bezel_mm [ 10 20 30 40 ] ";
-    const Resolved r = with(wall + "segment { channel \"a\" viewport [ 0 0 .5 1 ] } segment { channel \"b\" viewport [ .5 0 .5 1 ] mural_bezel_mm [ 0 0 0 0 ] } }");
+    const std::string wall = "layout { view { } } canvas { layout 0 wall { bottom_left [ -1 -.5 -1 ] bottom_right [ 1 "
+                             "-.5 -1 ] top_left [ -1 .5 -1 ] } mural_bezel_mm [ 10 20 30 40 ] ";
+    const Resolved r = with(wall + "segment { channel \"a\" viewport [ 0 0 .5 1 ] } segment { channel \"b\" viewport [ "
+                                   ".5 0 .5 1 ] mural_bezel_mm [ 0 0 0 0 ] } }");
     EXPECT_EQ(r.errors, 0);
     const Viewport seen = r.config.segments[0].viewport;
     EXPECT_NEAR(seen.x, .005, 1e-12);
@@ -152,7 +180,9 @@ TEST(Resolve, subtractsBezels) {
     EXPECT_NEAR(seen.y, .03, 1e-12);
     EXPECT_NEAR(seen.h, 1 - .07, 1e-12);
     EXPECT_EQ(r.config.segments[1].viewport, (Viewport{.5, 0, .5, 1}));
-    EXPECT_EQ(with(wall + "segment { channel \"a\" viewport [ 0 0 .01 1 ] } }").lines.back(), "f:2:246: bezels leave nothing of this segment, or are negative; they are millimetres of left, right, bottom and top");
+    EXPECT_EQ(with(wall + "segment { channel \"a\" viewport [ 0 0 .01 1 ] } }").lines.back(),
+              "f:2:246: bezels leave nothing of this segment, or are negative; they are millimetres of left, right, "
+              "bottom and top");
 }
 
 TEST(Resolve, rejectsDegenerateWalls) {

@@ -42,14 +42,16 @@ void expectWhole(Preset form) {
 } // namespace
 
 TEST(ShortForms, workSeparately) {
-    for (const auto member : {&Preset::columns, &Preset::rows, &Preset::ranges, &Preset::pixels, &Preset::samples, &Preset::frames}) {
+    for (const auto member :
+         {&Preset::columns, &Preset::rows, &Preset::ranges, &Preset::pixels, &Preset::samples, &Preset::frames}) {
         for (const int n : {1, 2, 3, 7}) {
             Preset form;
             form.*member = n;
             expectWhole(form);
         }
     }
-    for (const auto stereo : {StereoPreset::Anaglyph, StereoPreset::Quad, StereoPreset::Passive, StereoPreset::SideBySide}) {
+    for (const auto stereo :
+         {StereoPreset::Anaglyph, StereoPreset::Quad, StereoPreset::Passive, StereoPreset::SideBySide}) {
         Preset form;
         form.stereo = stereo;
         expectWhole(form);
@@ -60,7 +62,8 @@ TEST(ShortForms, supportZoom) {
     Preset form;
     form.columns = form.ranges = 2;
     form.zoom = {0.5, 2};
-    for (const auto& c : loaded(form).resolved.compounds) EXPECT_EQ(c.zoom, c.parent == config::kNone ? form.zoom : Zoom{}) << "what is in it inherits that";
+    for (const auto& c : loaded(form).resolved.compounds)
+        EXPECT_EQ(c.zoom, c.parent == config::kNone ? form.zoom : Zoom{}) << "what is in it inherits that";
 }
 
 TEST(ShortForms, workInCombination) {
@@ -115,7 +118,8 @@ TEST(ShortForms, areRejectedWhenInvalid) {
     EXPECT_FALSE(config::shortForm(form).ok());
     form = {};
     form.columns = 3000;
-    EXPECT_EQ(config::shortForm(form).error().message, "a picture of 1920x1080 pixels can't be divided so; give another size");
+    EXPECT_EQ(config::shortForm(form).error().message,
+              "a picture of 1920x1080 pixels can't be divided so; give another size");
     form = {};
     form.nodes = {"a\"b"};
     EXPECT_FALSE(config::shortForm(form).ok());

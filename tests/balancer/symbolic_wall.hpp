@@ -27,7 +27,8 @@ struct Picture {
 
 class SymbolicWall {
 public:
-    SymbolicWall(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan) : config_(config), input_(input), plan_(plan) {}
+    SymbolicWall(const ResolvedConfig& config, const FrameInput& input, const FramePlan& plan)
+        : config_(config), input_(input), plan_(plan) {}
 
     // The final content of every destination, by its eyes: pixels of its window.
     std::map<std::pair<Index, Eye>, std::map<std::pair<int32_t, int32_t>, Pixel>> shown;
@@ -49,7 +50,8 @@ public:
         }
         if (!fault_.empty()) return fault_;
         for (size_t p = 0; p < next.size(); ++p) {
-            if (next[p] < plan_.pipes[p].size()) return "pipe " + std::to_string(p) + " stands still at its task " + std::to_string(next[p]);
+            if (next[p] < plan_.pipes[p].size())
+                return "pipe " + std::to_string(p) + " stands still at its task " + std::to_string(next[p]);
         }
         return {};
     }
@@ -82,7 +84,8 @@ private:
             for (const Index f : task.outputs) readBack(c, f);
             break;
         }
-        if (step.task + 1 == plan_.channels[step.channel].tasks.size() && fault_.empty()) check(plan_.channels[step.channel]);
+        if (step.task + 1 == plan_.channels[step.channel].tasks.size() && fault_.empty())
+            check(plan_.channels[step.channel]);
         return true;
     }
 
@@ -100,7 +103,9 @@ private:
 
     void drawInto(Pixels& pixels, const RenderContext& c, int32_t toX, int32_t toY) {
         for (int32_t y = 0; y < c.viewport.h; ++y) {
-            for (int32_t x = 0; x < c.viewport.w; ++x) pixels[{toX + x, toY + y}].push_back({pixelOf(c.x, x), pixelOf(c.y, y), c.range, c.subPixel, c.destination, contextOf(c)});
+            for (int32_t x = 0; x < c.viewport.w; ++x)
+                pixels[{toX + x, toY + y}].push_back(
+                    {pixelOf(c.x, x), pixelOf(c.y, y), c.range, c.subPixel, c.destination, contextOf(c)});
         }
     }
 
@@ -118,7 +123,8 @@ private:
         const RenderContext& divided = plan_.contexts[ResolvedConfig::at(queue.context)];
         for (const PlannedTile& tile : queue.tiles) {
             const RenderContext one = contextOfTile(c, divided, tile);
-            drawInto(pixelsOf(c), one, c.viewport.x + tile.area.x - divided.area.x, c.viewport.y + tile.area.y - divided.area.y);
+            drawInto(pixelsOf(c), one, c.viewport.x + tile.area.x - divided.area.x,
+                     c.viewport.y + tile.area.y - divided.area.y);
         }
     }
 
@@ -130,16 +136,21 @@ private:
             for (int32_t x = 0; x < area.w; ++x) {
                 const Pixel& drawn = pixelsOf(c)[{area.x + x, area.y + y}];
                 // An enlarged picture is reduced for the transfer: the mean of the pixels drawn for the same one.
-                const auto [at, isFirst] = picture.try_emplace({static_cast<int32_t>(x * frame.zoom.x + 1e-9), static_cast<int32_t>(y * frame.zoom.y + 1e-9)}, drawn);
-                if (!isFirst && !(frame.zoom == Zoom{}) && !drawnForSame(at->second, drawn)) fault_ = "pixels for several are made one";
-                else if (!isFirst) at->second = drawn;
+                const auto [at, isFirst] = picture.try_emplace(
+                    {static_cast<int32_t>(x * frame.zoom.x + 1e-9), static_cast<int32_t>(y * frame.zoom.y + 1e-9)},
+                    drawn);
+                if (!isFirst && !(frame.zoom == Zoom{}) && !drawnForSame(at->second, drawn))
+                    fault_ = "pixels for several are made one";
+                else if (!isFirst)
+                    at->second = drawn;
             }
         }
         ready_[ResolvedConfig::at(f)] = true;
     }
 
     static bool drawnForSame(const Pixel& a, const Pixel& b) {
-        return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Share& one, const Share& other) { return one.x == other.x && one.y == other.y; });
+        return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                          [](const Share& one, const Share& other) { return one.x == other.x && one.y == other.y; });
     }
 
     // Whole pictures replace the existing content; parts of the range and samples are merged with it. removes: only
@@ -149,7 +160,8 @@ private:
         const bool replaces = !frame.buffers.has(config::Buffer::Depth) && frame.range.full() && frame.subPixel.whole();
         for (const auto& [at, pixel] : frames_[ResolvedConfig::at(use.frame)]) {
             if (frame.perTile && pixel.empty()) continue; // another channel has taken that tile
-            const int32_t x0 = use.x + use.kernel.x + enlarged(use.kernel.w * at.first, use.zoom.x), y0 = use.y + use.kernel.y + enlarged(use.kernel.h * at.second, use.zoom.y);
+            const int32_t x0 = use.x + use.kernel.x + enlarged(use.kernel.w * at.first, use.zoom.x),
+                          y0 = use.y + use.kernel.y + enlarged(use.kernel.h * at.second, use.zoom.y);
             for (int32_t y = y0; y < y0 + enlarged(1, use.zoom.y); ++y)
                 for (int32_t x = x0; x < x0 + enlarged(1, use.zoom.x); ++x) {
                     if (x < use.clip.x || y < use.clip.y || x >= use.clip.right() || y >= use.clip.top()) continue;
@@ -170,13 +182,17 @@ private:
     void check(const ChannelPlan& done) {
         const PixelViewport& channel = input_.sizes.channels[ResolvedConfig::at(done.channel)];
         for (const Eye eye : kEyes) {
-            const auto drawn = std::find_if(plan_.contexts.begin(), plan_.contexts.end(), [&](const RenderContext& c) { return c.channel == done.channel && c.destination == done.channel && c.view != kNone && c.eye == eye; });
+            const auto drawn = std::find_if(plan_.contexts.begin(), plan_.contexts.end(), [&](const RenderContext& c) {
+                return c.channel == done.channel && c.destination == done.channel && c.view != kNone && c.eye == eye;
+            });
             if (drawn == plan_.contexts.end()) continue;
             shown[{done.channel, eye}] = pixelsOf(*drawn);
             for (int32_t i = 0; i < channel.w * channel.h && fault_.empty(); ++i) {
                 const int32_t x = i % channel.w, y = i / channel.w;
                 const std::string wrong = faultOf(pixelsOf(*drawn)[{channel.x + x, channel.y + y}], x, y, done.channel);
-                if (!wrong.empty()) fault_ = "channel " + config_.channels[ResolvedConfig::at(done.channel)].name + " eye " + nameOf(eye) + " pixel " + std::to_string(x) + " " + std::to_string(y) + ": " + wrong;
+                if (!wrong.empty())
+                    fault_ = "channel " + config_.channels[ResolvedConfig::at(done.channel)].name + " eye " +
+                             nameOf(eye) + " pixel " + std::to_string(x) + " " + std::to_string(y) + ": " + wrong;
             }
         }
     }
@@ -185,17 +201,21 @@ private:
         if (pixel.empty()) return "nothing was drawn";
         std::vector<std::pair<double, double>> edges; // of ranges: the weight that starts or ends there
         for (const Share& s : pixel) {
-            if (s.destination == destination && (s.x != x || s.y != y)) return "drawn for pixel " + std::to_string(s.x) + " " + std::to_string(s.y);
+            if (s.destination == destination && (s.x != x || s.y != y))
+                return "drawn for pixel " + std::to_string(s.x) + " " + std::to_string(s.y);
             edges.emplace_back(s.range.start, 1. / s.sample.size);
             edges.emplace_back(s.range.end, -1. / s.sample.size);
         }
         std::sort(edges.begin(), edges.end());
-        if (std::abs(edges.front().first) > 1e-9 || std::abs(edges.back().first - 1) > 1e-9) return "the range is " + std::to_string(edges.front().first) + " to " + std::to_string(edges.back().first);
+        if (std::abs(edges.front().first) > 1e-9 || std::abs(edges.back().first - 1) > 1e-9)
+            return "the range is " + std::to_string(edges.front().first) + " to " + std::to_string(edges.back().first);
         double weight = 0; // over all samples, 1 in each part of the range
         for (size_t i = 0; i < edges.size(); ++i) {
             weight += edges[i].second;
             const bool sameEdge = i + 1 < edges.size() && edges[i + 1].first - edges[i].first < 1e-9;
-            if (!sameEdge && i + 1 < edges.size() && std::abs(weight - 1) > 1e-9) return "from range " + std::to_string(edges[i].first) + " on it is drawn " + std::to_string(weight) + " times";
+            if (!sameEdge && i + 1 < edges.size() && std::abs(weight - 1) > 1e-9)
+                return "from range " + std::to_string(edges[i].first) + " on it is drawn " + std::to_string(weight) +
+                       " times";
         }
         return {};
     }

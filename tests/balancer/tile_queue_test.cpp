@@ -12,26 +12,31 @@
 namespace mural::queue {
 namespace {
 
-bool same(const std::vector<TileRegion>& a, const std::vector<TileRegion>& b) { return tilesMoved(a, b) == 0 && a.size() == b.size(); }
+bool same(const std::vector<TileRegion>& a, const std::vector<TileRegion>& b) {
+    return tilesMoved(a, b) == 0 && a.size() == b.size();
+}
 
 // Checks that areas are disjoint, not empty, within the grid, and cover it.
 std::string whatIsWrong(int columns, int rows, const std::vector<TileRegion>& areas) {
     std::vector<int> owners(static_cast<size_t>(columns) * static_cast<size_t>(rows), 0);
     for (const TileRegion& r : areas) {
         if (r.columns < 1 || r.rows < 1) return "an empty area";
-        if (r.column < 0 || r.row < 0 || r.column + r.columns > columns || r.row + r.rows > rows) return "an area outside of the grid";
+        if (r.column < 0 || r.row < 0 || r.column + r.columns > columns || r.row + r.rows > rows)
+            return "an area outside of the grid";
         for (int y = r.row; y < r.row + r.rows; ++y)
-            for (int x = r.column; x < r.column + r.columns; ++x) ++owners[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
+            for (int x = r.column; x < r.column + r.columns; ++x)
+                ++owners[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
     }
-    return std::ranges::all_of(owners, [](int n) { return n == 1; }) ? "" : "a tile that nobody, or more than one, draws";
+    return std::ranges::all_of(owners, [](int n) { return n == 1; }) ? ""
+                                                                     : "a tile that nobody, or more than one, draws";
 }
 
 // A simulated load and the nodes that process it.
 struct Load {
     int columns = 1, rows = 1;
-    std::vector<double> tiles; // work per tile
+    std::vector<double> tiles;  // work per tile
     std::vector<double> speeds; // of the nodes
-    double everywhere = 0; // work of each node independent of its tiles
+    double everywhere = 0;      // work of each node independent of its tiles
 
     [[nodiscard]] std::vector<double> times(const std::vector<TileRegion>& areas) const {
         std::vector<double> times;
@@ -39,7 +44,8 @@ struct Load {
             const TileRegion& r = areas[i];
             double work = everywhere;
             for (int y = r.row; y < r.row + r.rows; ++y)
-                for (int x = r.column; x < r.column + r.columns; ++x) work += tiles[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
+                for (int x = r.column; x < r.column + r.columns; ++x)
+                    work += tiles[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
             times.push_back(work / speeds[i]);
         }
         return times;
@@ -116,10 +122,13 @@ TEST(DealTiles, coversTheGridOnceForAnyCostsAndCuts) {
         const auto before = randomAreas(columns, rows, static_cast<size_t>(n), random);
         ASSERT_EQ(whatIsWrong(columns, rows, before), "");
         TileCosts costs(columns, rows);
-        for (const TileRegion& r : randomAreas(columns, rows, static_cast<size_t>(1 + below(std::min(columns * rows, 12))), random)) costs.learn(r, below(3) == 0 ? 0 : std::pow(10, below(7) - 3));
+        for (const TileRegion& r :
+             randomAreas(columns, rows, static_cast<size_t>(1 + below(std::min(columns * rows, 12))), random))
+            costs.learn(r, below(3) == 0 ? 0 : std::pow(10, below(7) - 3));
         const auto after = dealTiles(costs, before);
         ASSERT_EQ(after.size(), before.size());
-        ASSERT_EQ(whatIsWrong(columns, rows, after), "") << columns << "x" << rows << " for " << n << ", round " << round;
+        ASSERT_EQ(whatIsWrong(columns, rows, after), "")
+            << columns << "x" << rows << " for " << n << ", round " << round;
         ASSERT_TRUE(same(dealTiles(costs, before), after)) << "not the same twice";
         ASSERT_EQ(whatIsWrong(columns, rows, dealTiles(costs, after)), "") << "areas that it has made itself";
     }
@@ -155,14 +164,16 @@ TEST(TileQueue, approachesTheOptimumOnUnevenLoads) {
                 const Load load = withHill(64, 1, static_cast<size_t>(n), x, 0.5, height);
                 const Course strip = run(load, strips(64, n), 300);
                 ASSERT_EQ(strip.wrong, "");
-                EXPECT_LE(strip.last, 1.25 * bestOfStrips(load)) << n << " strips, hill of " << height << " at " << x << ", from " << strip.first;
+                EXPECT_LE(strip.last, 1.25 * bestOfStrips(load))
+                    << n << " strips, hill of " << height << " at " << x << ", from " << strip.first;
                 std::mt19937 random(static_cast<uint32_t>(n));
                 const Load wide = withHill(40, 30, static_cast<size_t>(n), x, 0.8, height);
                 const Course rectangles = run(wide, randomAreas(40, 30, static_cast<size_t>(n), random), 300);
                 double all = 0;
                 for (const double tile : wide.tiles) all += tile;
                 ASSERT_EQ(rectangles.wrong, "");
-                EXPECT_LE(rectangles.last, 1.25 * all / n) << n << " rectangles, hill of " << height << " at " << x << ", from " << rectangles.first;
+                EXPECT_LE(rectangles.last, 1.25 * all / n)
+                    << n << " rectangles, hill of " << height << " at " << x << ", from " << rectangles.first;
             }
 }
 
@@ -206,7 +217,8 @@ TEST(TileQueue, settlesOnAConstantLoad) {
 
 TEST(TileQueue, movesLittleForNoise) {
     int late = 0;
-    for (uint32_t seed = 0; seed < 50; ++seed) late += run(withHill(64, 1, 3, 0.3, 0.5, 20), strips(64, 3), 600, 0.03, seed).lateMoves;
+    for (uint32_t seed = 0; seed < 50; ++seed)
+        late += run(withHill(64, 1, 3, 0.3, 0.5, 20), strips(64, 3), 600, 0.03, seed).lateMoves;
     EXPECT_LE(late, 10) << "in 15000 frames";
 }
 

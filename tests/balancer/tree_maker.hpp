@@ -87,7 +87,8 @@ private:
         for (int i = 0; i < n; ++i) {
             Compound child;
             const double from = edges[static_cast<size_t>(i)], to = edges[static_cast<size_t>(i) + 1];
-            if (kind == Kind::ViewportAssignment) child.viewport = columns ? Viewport{from, 0, to - from, 1} : Viewport{0, from, 1, to - from};
+            if (kind == Kind::ViewportAssignment)
+                child.viewport = columns ? Viewport{from, 0, to - from, 1} : Viewport{0, from, 1, to - from};
             if (kind == Kind::Ranges) child.range = Range{from, to};
             if (kind == Kind::Pixels) child.pixel = columns ? PixelKernel{i, 0, n, 1} : PixelKernel{0, i, 1, n};
             if (kind == Kind::Samples) child.subPixel = SubPixel{i, n};

@@ -37,11 +37,14 @@ public:
 
     void look(bool exact = false) {
         told.clear();
-        changes.collect(exact, [](void* self, size_t from, const std::byte* bytes, size_t size) {
-            auto& its = *static_cast<Watched*>(self);
-            its.told.push_back({from, size});
-            std::memcpy(its.copy.data() + from, bytes, size);
-        }, this);
+        changes.collect(
+            exact,
+            [](void* self, size_t from, const std::byte* bytes, size_t size) {
+                auto& its = *static_cast<Watched*>(self);
+                its.told.push_back({from, size});
+                std::memcpy(its.copy.data() + from, bytes, size);
+            },
+            this);
     }
     [[nodiscard]] bool same() const { return std::memcmp(copy.data(), memory, size_) == 0; }
 
@@ -145,7 +148,9 @@ TEST_P(MapChangesOfSize, ignoresAcceptedForeignWrites) {
     std::vector<std::byte> news(memory.memory, memory.memory + 256);
     news[8] = std::byte{9};
     size_t at = 0;
-    memory.changes.accept(0, news.data(), news.size(), [](void* self, size_t from, const std::byte*, size_t) { *static_cast<size_t*>(self) = from; }, &at);
+    memory.changes.accept(
+        0, news.data(), news.size(),
+        [](void* self, size_t from, const std::byte*, size_t) { *static_cast<size_t*>(self) = from; }, &at);
     EXPECT_EQ(at, 8U);
     memory.memory[8] = std::byte{9};
     memory.look();
@@ -191,7 +196,9 @@ TEST(MapChanges, supportsSharedMemoryOfAFile) {
     for (int round = 0; round < 3; ++round) {
         memory[kLarge / 2] = std::byte(round + 1);
         int told = 0;
-        for (int i = 0; i < 40; ++i) changes.collect(false, [](void* self, size_t, const std::byte*, size_t) { ++*static_cast<int*>(self); }, &told);
+        for (int i = 0; i < 40; ++i)
+            changes.collect(
+                false, [](void* self, size_t, const std::byte*, size_t) { ++*static_cast<int*>(self); }, &told);
         EXPECT_EQ(told, 1);
     }
     changes.end();

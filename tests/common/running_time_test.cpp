@@ -32,7 +32,8 @@ TEST(RunningTime, countsALongWaitOfRareBeats) {
     RunningTime waited(0, 0);
     int64_t countedNs = 0;
     for (int64_t second = 1; second <= 60; ++second)
-        for (int64_t slice = 0; slice < 20; ++slice) countedNs = waited.countNs(second * kNsPerS + slice * kStepNs, static_cast<uint32_t>(second));
+        for (int64_t slice = 0; slice < 20; ++slice)
+            countedNs = waited.countNs(second * kNsPerS + slice * kStepNs, static_cast<uint32_t>(second));
     EXPECT_EQ(countedNs, 60 * kNsPerS);
 }
 
@@ -69,7 +70,8 @@ TEST_F(Pauses, doNotShortenADeadline) {
     EXPECT_NEAR(static_cast<double>(deadline.atNs()), static_cast<double>(nowNs_ + 10 * kNsPerS), 1);
     nowNs_ += 45 * kNsPerS;
     pauses::tick(nowNs_);
-    EXPECT_NEAR(static_cast<double>(deadline.atNs()), static_cast<double>(nowNs_ + 10 * kNsPerS), static_cast<double>(pauses::kTickNs));
+    EXPECT_NEAR(static_cast<double>(deadline.atNs()), static_cast<double>(nowNs_ + 10 * kNsPerS),
+                static_cast<double>(pauses::kTickNs));
 }
 
 } // namespace

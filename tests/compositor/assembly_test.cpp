@@ -33,7 +33,8 @@ Image randomImage(std::mt19937& random, DrawOrder order) {
 TEST(AssembleDepth, isIndependentOfArrivalOrder) {
     std::mt19937 random(1);
     std::array<Image, 3> parts{randomImage(random, {0, 1}), randomImage(random, {1, 2}), randomImage(random, {2, 3})};
-    for (const DepthFunction f : {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::GreaterOrEqual, DepthFunction::Always}) {
+    for (const DepthFunction f :
+         {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::GreaterOrEqual, DepthFunction::Always}) {
         const auto merge = [&](std::array<size_t, 3> arrival) {
             Image sum = parts[arrival[0]];
             EXPECT_TRUE(assembleDepth(sum, parts[arrival[1]], {f, Coverage::All, 0}));
@@ -55,9 +56,11 @@ TEST(AssembleDepth, isIndependentOfArrivalOrder) {
 }
 
 TEST(AssembleBlended, blendsOnlyNeighboursWithTheLaterInFront) {
-    Image back = emptyImage(PlaneFormat::Rgba8, {0, 1}), front = emptyImage(PlaneFormat::Rgba8, {1, 2}), third = emptyImage(PlaneFormat::Rgba8, {2, 3});
+    Image back = emptyImage(PlaneFormat::Rgba8, {0, 1}), front = emptyImage(PlaneFormat::Rgba8, {1, 2}),
+          third = emptyImage(PlaneFormat::Rgba8, {2, 3});
     std::ranges::fill(back.colour->bytes(), std::byte{255});
-    for (size_t i = 0; i < front.colour->bytes().size(); ++i) front.colour->bytes()[i] = std::byte(i % 4 == 3 ? 255 : 7);
+    for (size_t i = 0; i < front.colour->bytes().size(); ++i)
+        front.colour->bytes()[i] = std::byte(i % 4 == 3 ? 255 : 7);
     Image a = back, b = front;
     EXPECT_FALSE(assembleBlended(a, third)) << "something is missing in between";
     EXPECT_EQ(a.colour, back.colour);
@@ -116,15 +119,21 @@ TEST(InterleavePixels, supportsSizesThatDoNotDivide) {
                 for (int32_t row = rows - 1; row >= 0; --row)
                     for (int32_t column = 0; column < columns; ++column) {
                         const PixelKernel k{column, row, columns, rows};
-                        const int32_t partWidth = column < width ? (width - column + columns - 1) / columns : 0, partHeight = row < height ? (height - row + rows - 1) / rows : 0;
+                        const int32_t partWidth = column < width ? (width - column + columns - 1) / columns : 0,
+                                      partHeight = row < height ? (height - row + rows - 1) / rows : 0;
                         // With exactly its pixels, or with an additional column and row outside the picture.
-                        for (const PixelViewport& size : {PixelViewport{0, 0, partWidth, partHeight}, apply({0, 0, width, height}, k)}) {
+                        for (const PixelViewport& size :
+                             {PixelViewport{0, 0, partWidth, partHeight}, apply({0, 0, width, height}, k)}) {
                             Plane part(format, size.w, size.h);
                             ASSERT_TRUE(deinterleavePixels(part.view(), whole.view(), k));
                             for (int32_t y = 0; y < partHeight; ++y)
                                 for (int32_t x = 0; x < partWidth; ++x)
-                                    ASSERT_EQ(std::memcmp(part.view().row(y) + static_cast<size_t>(x) * bytesPerPixel(format),
-                                                          whole.view().row(row + y * rows) + static_cast<size_t>(column + x * columns) * bytesPerPixel(format), bytesPerPixel(format)), 0);
+                                    ASSERT_EQ(std::memcmp(
+                                                  part.view().row(y) + static_cast<size_t>(x) * bytesPerPixel(format),
+                                                  whole.view().row(row + y * rows) +
+                                                      static_cast<size_t>(column + x * columns) * bytesPerPixel(format),
+                                                  bytesPerPixel(format)),
+                                              0);
                             ASSERT_TRUE(interleavePixels(put.view(), part.view(), k));
                         }
                     }
@@ -139,7 +148,8 @@ TEST(InterleavePixels, supportsSizesThatDoNotDivide) {
 
 TEST(AssembleMasked, masksComponentsOfEveryFormat) {
     std::mt19937 random(5);
-    for (const auto& [format, bits] : {std::pair{PlaneFormat::Rgba8, 8}, {PlaneFormat::Rgba16F, 16}, {PlaneFormat::Rgba32F, 32}}) {
+    for (const auto& [format, bits] :
+         {std::pair{PlaneFormat::Rgba8, 8}, {PlaneFormat::Rgba16F, 16}, {PlaneFormat::Rgba32F, 32}}) {
         Plane left(format, 37, 3), right(format, 37, 3);
         fillRandomly(random, left.bytes());
         fillRandomly(random, right.bytes());

@@ -40,7 +40,9 @@ TEST(Average, dividesExactlyAtEveryStep) {
         for (const uint32_t n : {1u, 2u, 3u, 7u, 64u, 257u, 258u, 1000u, 4099u, 65521u, kMaxAveraged8}) {
             std::vector<uint32_t> sums;
             for (uint32_t value = 0; value < 255; ++value)
-                for (uint32_t d = 0; d < 4; ++d) sums.push_back(std::min(255 * n, value * n + (n + 1) / 2 + d - std::min(2u, value * n + (n + 1) / 2)));
+                for (uint32_t d = 0; d < 4; ++d)
+                    sums.push_back(
+                        std::min(255 * n, value * n + (n + 1) / 2 + d - std::min(2u, value * n + (n + 1) / 2)));
             std::vector<uint8_t> average(sums.size()), expected(sums.size());
             averageOfSums(average.data(), sums.data(), sums.size(), n);
             averageOfSumsScalar(expected.data(), sums.data(), sums.size(), n);
@@ -63,7 +65,8 @@ TEST(Average, doesNotDriftInEightBits) {
         }
         Plane result(PlaneFormat::Rgba8, 13, 3);
         ASSERT_TRUE(average.write(result.view()));
-        for (size_t c = 0; c < truth.size(); ++c) ASSERT_EQ(std::to_integer<int>(result.bytes()[c]), std::floor(truth[c] / n + 0.5)) << n;
+        for (size_t c = 0; c < truth.size(); ++c)
+            ASSERT_EQ(std::to_integer<int>(result.bytes()[c]), std::floor(truth[c] / n + 0.5)) << n;
     }
 }
 
@@ -74,9 +77,12 @@ TEST(Average, supportsOtherFormats) {
         const auto fill = [&](Plane& p, uint32_t ten, float value) {
             for (size_t at = 0; at < p.bytes().size();) {
                 const uint16_t half = halfOfFloat(value);
-                if (format == PlaneFormat::Rgb10A2) std::memcpy(p.bytes().data() + at, &ten, 4), at += 4;
-                else if (format == PlaneFormat::Rgba16F) std::memcpy(p.bytes().data() + at, &half, 2), at += 2;
-                else std::memcpy(p.bytes().data() + at, &value, 4), at += 4;
+                if (format == PlaneFormat::Rgb10A2)
+                    std::memcpy(p.bytes().data() + at, &ten, 4), at += 4;
+                else if (format == PlaneFormat::Rgba16F)
+                    std::memcpy(p.bytes().data() + at, &half, 2), at += 2;
+                else
+                    std::memcpy(p.bytes().data() + at, &value, 4), at += 4;
             }
         };
         fill(a, 3u << 30 | 1023u << 20 | 0u << 10 | 10, 1.0f);

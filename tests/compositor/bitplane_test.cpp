@@ -61,7 +61,9 @@ TEST(Bitplane, givesEqualBytesForVectorsAndWords) {
                         std::vector<std::byte> bytes(kStripBoundBytes + kSlackBytes), expected = bytes;
                         const size_t size = encodeStrip(source, {a, p, first}, bytes.data());
                         ASSERT_EQ(encodeStripScalar(source, {a, p, first}, expected.data()), size);
-                        ASSERT_TRUE(std::equal(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(size), expected.begin())) << target;
+                        ASSERT_TRUE(
+                            std::equal(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(size), expected.begin()))
+                            << target;
 
                         ParsedStrip strip;
                         ASSERT_EQ(parseStrip({bytes.data(), size}, blocks, strip), size);
@@ -74,7 +76,8 @@ TEST(Bitplane, givesEqualBytesForVectorsAndWords) {
                         };
                         decodeStrip(strip, {a, p, first}, targetOf(out));
                         decodeStripScalar(strip, {a, p, first}, targetOf(scalar));
-                        ASSERT_EQ(out, words) << target << " arithmetic " << static_cast<int>(a) << " predictor " << static_cast<int>(p) << " first " << first;
+                        ASSERT_EQ(out, words) << target << " arithmetic " << static_cast<int>(a) << " predictor "
+                                              << static_cast<int>(p) << " first " << first;
                         ASSERT_EQ(scalar, words);
                     }
     });

@@ -12,7 +12,8 @@
 namespace mural::compositor::test {
 namespace {
 
-constexpr PlaneFormat kColours[] = {PlaneFormat::Rgba8, PlaneFormat::Rgb10A2, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F};
+constexpr PlaneFormat kColours[] = {PlaneFormat::Rgba8, PlaneFormat::Rgb10A2, PlaneFormat::Rgba16F,
+                                    PlaneFormat::Rgba32F};
 
 std::vector<std::byte> randomPixels(std::mt19937& random, PlaneFormat format, size_t count) {
     std::vector<std::byte> bytes = randomBytes(random, count * bytesPerPixel(format));
@@ -47,11 +48,14 @@ TEST(BlendOver, roundsBytesExactly) {
     for (unsigned alpha = 0; alpha < 256; ++alpha) {
         std::vector<uint8_t> back, front;
         for (unsigned value = 0; value < 256; ++value) {
-            back.insert(back.end(), {static_cast<uint8_t>(value), static_cast<uint8_t>(255 - value), 7, static_cast<uint8_t>(value)});
-            front.insert(front.end(), {static_cast<uint8_t>(alpha / 2), 0, static_cast<uint8_t>(value), static_cast<uint8_t>(alpha)});
+            back.insert(back.end(), {static_cast<uint8_t>(value), static_cast<uint8_t>(255 - value), 7,
+                                     static_cast<uint8_t>(value)});
+            front.insert(front.end(), {static_cast<uint8_t>(alpha / 2), 0, static_cast<uint8_t>(value),
+                                       static_cast<uint8_t>(alpha)});
         }
         std::vector<uint8_t> into = back;
-        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into.data()), reinterpret_cast<const std::byte*>(front.data()), 256, SourceSide::InFront);
+        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into.data()),
+                     reinterpret_cast<const std::byte*>(front.data()), 256, SourceSide::InFront);
         for (size_t i = 0; i < into.size(); ++i) {
             const double exact = std::min(255.0, front[i] + std::floor(back[i] * (255.0 - alpha) / 255.0 + 0.5));
             ASSERT_EQ(into[i], exact) << "alpha " << alpha << " component " << i;
@@ -65,9 +69,11 @@ TEST(BlendOver, roundsTenBitsExactly) {
             const uint32_t front = alpha << 30 | 5u << 20 | 1023u << 10 | value;
             uint32_t into = 2u << 30 | value << 20 | 1u << 10 | value;
             const uint32_t back = into;
-            blendOverRow(PlaneFormat::Rgb10A2, reinterpret_cast<std::byte*>(&into), reinterpret_cast<const std::byte*>(&front), 1, SourceSide::InFront);
+            blendOverRow(PlaneFormat::Rgb10A2, reinterpret_cast<std::byte*>(&into),
+                         reinterpret_cast<const std::byte*>(&front), 1, SourceSide::InFront);
             for (int shift = 0; shift < 30; shift += 10) {
-                const double exact = std::min(1023.0, (front >> shift & 1023) + std::floor((back >> shift & 1023) * (3.0 - alpha) / 3.0 + 0.5));
+                const double exact = std::min(
+                    1023.0, (front >> shift & 1023) + std::floor((back >> shift & 1023) * (3.0 - alpha) / 3.0 + 0.5));
                 ASSERT_EQ(into >> shift & 1023, exact) << alpha << " " << value;
             }
         }
@@ -77,7 +83,8 @@ TEST(BlendOver, roundsTenBitsExactly) {
 TEST(BlendOver, saturates) {
     const uint8_t glow[8] = {200, 0, 255, 0, 200, 0, 255, 0};
     uint8_t into[8] = {100, 3, 255, 9, 255, 255, 1, 255};
-    blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into), reinterpret_cast<const std::byte*>(glow), 2, SourceSide::InFront);
+    blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into), reinterpret_cast<const std::byte*>(glow), 2,
+                 SourceSide::InFront);
     const uint8_t expected[8] = {255, 3, 255, 9, 255, 255, 255, 255};
     EXPECT_EQ(std::memcmp(into, expected, sizeof into), 0);
 }
@@ -88,8 +95,10 @@ TEST(BlendOver, keepsOpaquePixelsWhenRepeated) {
     const std::vector<uint8_t> nothing(64, 0);
     std::vector<uint8_t> faint(64, 0);
     for (int i = 0; i < 16; ++i) {
-        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into.data()), reinterpret_cast<const std::byte*>(nothing.data()), 16, SourceSide::InFront);
-        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into.data()), reinterpret_cast<const std::byte*>(faint.data()), 16, SourceSide::Behind);
+        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into.data()),
+                     reinterpret_cast<const std::byte*>(nothing.data()), 16, SourceSide::InFront);
+        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(into.data()),
+                     reinterpret_cast<const std::byte*>(faint.data()), 16, SourceSide::Behind);
     }
     EXPECT_EQ(into, std::vector<uint8_t>(64, 255));
 }
@@ -104,10 +113,12 @@ TEST(BlendOver, staysAccurateForManyLayers) {
         std::vector<uint8_t> front(sum.size());
         for (size_t i = 0; i < front.size(); i += 4) {
             const unsigned alpha = random() % 256;
-            for (int c = 0; c < 3; ++c) front[i + static_cast<size_t>(c)] = static_cast<uint8_t>(random() % (alpha + 1));
+            for (int c = 0; c < 3; ++c)
+                front[i + static_cast<size_t>(c)] = static_cast<uint8_t>(random() % (alpha + 1));
             front[i + 3] = static_cast<uint8_t>(alpha);
         }
-        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(sum.data()), reinterpret_cast<const std::byte*>(front.data()), 512, SourceSide::InFront);
+        blendOverRow(PlaneFormat::Rgba8, reinterpret_cast<std::byte*>(sum.data()),
+                     reinterpret_cast<const std::byte*>(front.data()), 512, SourceSide::InFront);
         for (size_t i = 0; i < truth.size(); ++i) truth[i] = front[i] + truth[i] * (255 - front[i / 4 * 4 + 3]) / 255;
     }
     for (size_t i = 0; i < truth.size(); ++i) worst = std::max(worst, std::abs(truth[i] - sum[i]));
@@ -119,11 +130,13 @@ TEST(HalfFloat, roundTripsEveryHalf) {
     for (uint32_t half = 0; half < 0x10000; ++half) {
         const auto h = static_cast<uint16_t>(half);
         const float value = floatOfHalf(h);
-        if (std::isnan(value)) EXPECT_EQ(halfOfFloat(value), 0x7e00);
-        else ASSERT_EQ(halfOfFloat(value), h) << half;
+        if (std::isnan(value))
+            EXPECT_EQ(halfOfFloat(value), 0x7e00);
+        else
+            ASSERT_EQ(halfOfFloat(value), h) << half;
     }
-    EXPECT_EQ(halfOfFloat(65519.0f), 0x7bff); // the largest
-    EXPECT_EQ(halfOfFloat(65520.0f), 0x7c00); // a tie, to infinity
+    EXPECT_EQ(halfOfFloat(65519.0f), 0x7bff);         // the largest
+    EXPECT_EQ(halfOfFloat(65520.0f), 0x7c00);         // a tie, to infinity
     EXPECT_EQ(halfOfFloat(std::ldexp(1.0f, -25)), 0); // a tie, to even
     EXPECT_EQ(halfOfFloat(std::ldexp(3.0f, -25)), 2);
     EXPECT_EQ(floatOfHalf(1), std::ldexp(1.0f, -24));

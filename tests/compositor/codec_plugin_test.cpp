@@ -16,7 +16,8 @@ TEST(CodecPlugin, isFoundByNameAndWorks) {
     ASSERT_EQ(registry.known().size(), own + 1) << "opened once";
     const auto info = registry.find("inverted");
     ASSERT_TRUE(info);
-    EXPECT_TRUE(info.value().lossless && info.value().takes(PlaneFormat::Rgba8) && !info.value().takes(PlaneFormat::D32F));
+    EXPECT_TRUE(info.value().lossless && info.value().takes(PlaneFormat::Rgba8) &&
+                !info.value().takes(PlaneFormat::D32F));
     std::mt19937 random(1);
     Plane plane(PlaneFormat::Rgba8, 13, 7), back(PlaneFormat::Rgba8, 13, 7);
     fillRandomly(random, plane.bytes());

@@ -18,21 +18,25 @@ struct Model {
 };
 // raw, bitplane, bitplane-zstd, lz4, zstd; for a picture with much background, and for a full one.
 const std::vector<std::string> kNames = {"raw", "bitplane", "bitplane-zstd", "lz4", "zstd"};
-const std::vector<Model> kSparse = {{0.15, 0.15, 1}, {0.12, 0.12, 0.02}, {0.2, 0.16, 0.012}, {0.3, 0.15, 0.03}, {0.6, 0.3, 0.02}};
-const std::vector<Model> kDense = {{0.15, 0.15, 1}, {0.28, 0.22, 0.45}, {0.9, 0.5, 0.41}, {1.6, 0.3, 0.55}, {3.3, 0.9, 0.41}};
+const std::vector<Model> kSparse = {
+    {0.15, 0.15, 1}, {0.12, 0.12, 0.02}, {0.2, 0.16, 0.012}, {0.3, 0.15, 0.03}, {0.6, 0.3, 0.02}};
+const std::vector<Model> kDense = {
+    {0.15, 0.15, 1}, {0.28, 0.22, 0.45}, {0.9, 0.5, 0.41}, {1.6, 0.3, 0.55}, {3.3, 0.9, 0.41}};
 constexpr TileClass kClass{PlaneFormat::Rgba8, Activity::Flat, Change::Smooth};
 constexpr uint64_t kPieceBytes = 65536;
 constexpr double kGbit[] = {0.1, 1, 10, 25, 100};
 
 double timeOf(const Model& m, double bytesPerSec, Overlap overlap) {
     const double transfer = m.size * 1e9 / bytesPerSec;
-    const double ns = overlap == Overlap::Serial ? m.encodeNs + m.decodeNs + transfer : std::max({m.encodeNs, m.decodeNs, transfer});
+    const double ns =
+        overlap == Overlap::Serial ? m.encodeNs + m.decodeNs + transfer : std::max({m.encodeNs, m.decodeNs, transfer});
     return ns * kPieceBytes;
 }
 
 class Simulation {
 public:
-    Simulation(Overlap overlap, double noise, unsigned seed = 1) : overlap_(overlap), noise_(noise), random_(seed), selector_(kNames, {.overlap = overlap}) {}
+    Simulation(Overlap overlap, double noise, unsigned seed = 1)
+        : overlap_(overlap), noise_(noise), random_(seed), selector_(kNames, {.overlap = overlap}) {}
 
     // Returns the time relative to the best codec: 1.05 is 5 % more.
     double run(const std::vector<Model>& content, double bytesPerSec, int pieces) {
@@ -51,10 +55,12 @@ public:
                 const Model& other = content[*choice.measure];
                 ++measured_[*choice.measure];
                 spent += (other.encodeNs + other.decodeNs) * kPieceBytes; // not hidden by a transfer
-                selector_.measured(kClass, *choice.measure, kPieceBytes, bytesOf(other, hard), nsOf(other.encodeNs), nsOf(other.decodeNs));
+                selector_.measured(kClass, *choice.measure, kPieceBytes, bytesOf(other, hard), nsOf(other.encodeNs),
+                                   nsOf(other.decodeNs));
             }
             selector_.decoded(kClass, c, kPieceBytes, nsOf(m.decodeNs));
-            selector_.transferred(bytes, static_cast<int64_t>(static_cast<double>(bytes) * 1e9 / bytesPerSec * jitter(noise_)));
+            selector_.transferred(
+                bytes, static_cast<int64_t>(static_cast<double>(bytes) * 1e9 / bytesPerSec * jitter(noise_)));
         }
         return spent / best;
     }
@@ -63,12 +69,15 @@ public:
     // How often each codec was used and measured.
     [[nodiscard]] std::string history() const {
         std::string text;
-        for (size_t i = 0; i < kNames.size(); ++i) text += kNames[i] + " " + std::to_string(used_[i]) + "+" + std::to_string(measured_[i]) + "  ";
+        for (size_t i = 0; i < kNames.size(); ++i)
+            text += kNames[i] + " " + std::to_string(used_[i]) + "+" + std::to_string(measured_[i]) + "  ";
         return text;
     }
 
 private:
-    static uint64_t bytesOf(const Model& m, double hard) { return m.size >= 1 ? kPieceBytes : static_cast<uint64_t>(std::min(1.0, m.size * hard) * kPieceBytes); }
+    static uint64_t bytesOf(const Model& m, double hard) {
+        return m.size >= 1 ? kPieceBytes : static_cast<uint64_t>(std::min(1.0, m.size * hard) * kPieceBytes);
+    }
     int64_t nsOf(double nsPerByte) { return static_cast<int64_t>(nsPerByte * kPieceBytes * jitter(noise_)); }
     double jitter(double by) { return 1 + by * (static_cast<double>(random_() % 2001) / 1000 - 1); }
     Overlap overlap_;
@@ -103,7 +112,8 @@ TEST(CodecSelector, followsContentAndLink) {
 
 // Results for the old content say nothing about the new one.
 TEST(CodecSelector, measuresAllCodecsAgainForNewContent) {
-    const std::vector<Model> before = {{0.15, 0.15, 1}, {0.12, 0.12, 0.05}, {0.2, 0.16, 0.9}, {0.3, 0.15, 0.9}, {0.6, 0.3, 0.9}};
+    const std::vector<Model> before = {
+        {0.15, 0.15, 1}, {0.12, 0.12, 0.05}, {0.2, 0.16, 0.9}, {0.3, 0.15, 0.9}, {0.6, 0.3, 0.9}};
     std::vector<Model> after = before;
     after[1].size = 0.6;
     after[4].size = 0.05;
@@ -116,7 +126,8 @@ TEST(CodecSelector, measuresAllCodecsAgainForNewContent) {
 
 // If pieces grow with the current codec, they grow with the others: no old size counts.
 TEST(CodecSelector, scalesOldSizesWithTheContent) {
-    const std::vector<Model> before = {{0.15, 0.15, 1}, {0.2, 0.2, 0.02}, {0.2, 0.2, 0.03}, {0.2, 0.2, 0.04}, {0.2, 0.2, 0.05}};
+    const std::vector<Model> before = {
+        {0.15, 0.15, 1}, {0.2, 0.2, 0.02}, {0.2, 0.2, 0.03}, {0.2, 0.2, 0.04}, {0.2, 0.2, 0.05}};
     std::vector<Model> after = before;
     for (size_t i = 1; i < after.size(); ++i) after[i].size *= 10;
     Simulation s(Overlap::Serial, 0);
@@ -125,7 +136,8 @@ TEST(CodecSelector, scalesOldSizesWithTheContent) {
 }
 
 TEST(CodecSelector, switchesToRawForIncompressibleContent) {
-    const std::vector<Model> noise = {{0.15, 0.15, 1}, {0.5, 0.2, 1.001}, {0.8, 0.3, 1.002}, {0.3, 0.15, 1.004}, {0.5, 0.2, 1.001}};
+    const std::vector<Model> noise = {
+        {0.15, 0.15, 1}, {0.5, 0.2, 1.001}, {0.8, 0.3, 1.002}, {0.3, 0.15, 1.004}, {0.5, 0.2, 1.001}};
     for (const double gbit : kGbit) {
         Simulation s(Overlap::Serial, 0.1);
         EXPECT_LT(s.run(noise, gbit * 1e9 / 8, 2000), 1.05);
@@ -143,15 +155,19 @@ TEST(CodecSelector, separatesClasses) {
             const Model& m = (*content)[c];
             if (choice.measure) {
                 const Model& other = (*content)[*choice.measure];
-                selector.measured(tile, *choice.measure, kPieceBytes, static_cast<uint64_t>(other.size * kPieceBytes), static_cast<int64_t>(other.encodeNs * kPieceBytes), static_cast<int64_t>(other.decodeNs * kPieceBytes));
+                selector.measured(tile, *choice.measure, kPieceBytes, static_cast<uint64_t>(other.size * kPieceBytes),
+                                  static_cast<int64_t>(other.encodeNs * kPieceBytes),
+                                  static_cast<int64_t>(other.decodeNs * kPieceBytes));
             }
-            selector.encoded(tile, c, kPieceBytes, static_cast<uint64_t>(m.size * kPieceBytes), static_cast<int64_t>(m.encodeNs * kPieceBytes));
+            selector.encoded(tile, c, kPieceBytes, static_cast<uint64_t>(m.size * kPieceBytes),
+                             static_cast<int64_t>(m.encodeNs * kPieceBytes));
             selector.decoded(tile, c, kPieceBytes, static_cast<int64_t>(m.decodeNs * kPieceBytes));
             selector.transferred(kPieceBytes, kPieceBytes / 10); // 10 bytes per ns
         }
     EXPECT_EQ(selector.name(selector.best(kClass)), "bitplane");
     EXPECT_EQ(selector.name(selector.best(depth)), "raw");
-    EXPECT_EQ(selector.name(selector.best({PlaneFormat::D32F, Activity::Full, Change::Sharp})), "raw") << "nothing is known";
+    EXPECT_EQ(selector.name(selector.best({PlaneFormat::D32F, Activity::Full, Change::Sharp})), "raw")
+        << "nothing is known";
     EXPECT_EQ(selector.expectedNsPerByte({PlaneFormat::D32F, Activity::Full, Change::Sharp}, 0), 0);
 }
 
@@ -189,8 +205,12 @@ TEST(CodecSelector, ignoresOneInterruptedPiece) {
         const auto nsOf = [](double nsPerByte) { return static_cast<int64_t>(nsPerByte * kPieceBytes); };
         const Model m = tell(choice.codec);
         const double interrupted = i == 300 ? 50 : 1;
-        selector.encoded(kClass, choice.codec, kPieceBytes, static_cast<uint64_t>(m.size * kPieceBytes), nsOf(m.encodeNs * interrupted));
-        if (choice.measure) selector.measured(kClass, *choice.measure, kPieceBytes, static_cast<uint64_t>(tell(*choice.measure).size * kPieceBytes), nsOf(tell(*choice.measure).encodeNs), nsOf(tell(*choice.measure).decodeNs));
+        selector.encoded(kClass, choice.codec, kPieceBytes, static_cast<uint64_t>(m.size * kPieceBytes),
+                         nsOf(m.encodeNs * interrupted));
+        if (choice.measure)
+            selector.measured(kClass, *choice.measure, kPieceBytes,
+                              static_cast<uint64_t>(tell(*choice.measure).size * kPieceBytes),
+                              nsOf(tell(*choice.measure).encodeNs), nsOf(tell(*choice.measure).decodeNs));
         selector.decoded(kClass, choice.codec, kPieceBytes, nsOf(m.decodeNs));
         selector.transferred(kPieceBytes, kPieceBytes / 4); // 4 bytes per ns
         if (i >= 300) {

@@ -12,13 +12,20 @@
 namespace mural::compositor::test {
 namespace {
 
-constexpr std::pair<int32_t, int32_t> kSizes[] = {{1, 1}, {3, 2}, {16, 4}, {17, 5}, {63, 65}, {257, 66}, {301, 129}, {512, 64}};
+constexpr std::pair<int32_t, int32_t> kSizes[] = {{1, 1},   {3, 2},    {16, 4},    {17, 5},
+                                                  {63, 65}, {257, 66}, {301, 129}, {512, 64}};
 constexpr std::byte kUntouched{0xa7};
 
 // A plane within a larger buffer: with a stride, and guard bytes around it.
 struct Framed {
-    explicit Framed(const PlaneShape& s) : strideBytes(s.rowBytes() + 40), memory(strideBytes * static_cast<size_t>(s.height + 2) + 80, kUntouched), shape(s) {}
-    MutablePlaneView view() { return {shape.format, shape.width, shape.height, static_cast<ptrdiff_t>(strideBytes), memory.data() + strideBytes + 20}; }
+    explicit Framed(const PlaneShape& s)
+        : strideBytes(s.rowBytes() + 40),
+          memory(strideBytes * static_cast<size_t>(s.height + 2) + 80, kUntouched),
+          shape(s) {}
+    MutablePlaneView view() {
+        return {shape.format, shape.width, shape.height, static_cast<ptrdiff_t>(strideBytes),
+                memory.data() + strideBytes + 20};
+    }
     [[nodiscard]] bool frameIsWhole() {
         for (int32_t y = 0; y < shape.height; ++y) std::fill_n(view().row(y), shape.rowBytes(), kUntouched);
         return std::ranges::all_of(memory, [](std::byte b) { return b == kUntouched; });
@@ -42,7 +49,8 @@ void expectLossless(Codec& codec, const Plane& plane, const std::string& what) {
     auto size = codec.encode(source.view(), std::span(bytes).first(bytes.size() - 64));
     ASSERT_TRUE(size) << what << size.error().message;
     ASSERT_LE(*size, bytes.size() - 64) << what;
-    ASSERT_TRUE(std::all_of(bytes.end() - 64, bytes.end(), [](std::byte b) { return b == kUntouched; })) << what << ": wrote behind its bound";
+    ASSERT_TRUE(std::all_of(bytes.end() - 64, bytes.end(), [](std::byte b) { return b == kUntouched; }))
+        << what << ": wrote behind its bound";
     // lets a sanitizer see the first byte after the end
     const std::vector<std::byte> exact(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(*size));
     auto decoded = codec.decode(exact, target.view());
@@ -65,7 +73,10 @@ TEST_P(EveryLosslessCodec, roundTripsEveryBit) {
     for (const PlaneFormat format : kEveryFormat)
         for (const Content content : kEveryContent)
             for (const auto& [width, height] : kSizes)
-                expectLossless(**codec, makePlane(random, format, content, width, height), GetParam() + " " + nameOf(format) + " content " + std::to_string(static_cast<int>(content)) + " " + std::to_string(width) + "x" + std::to_string(height) + ": ");
+                expectLossless(**codec, makePlane(random, format, content, width, height),
+                               GetParam() + " " + nameOf(format) + " content " +
+                                   std::to_string(static_cast<int>(content)) + " " + std::to_string(width) + "x" +
+                                   std::to_string(height) + ": ");
 }
 
 TEST_P(EveryLosslessCodec, encodesEmptyPlanesAsNoBytes) {
@@ -100,7 +111,9 @@ TEST_P(EveryLosslessCodec, survivesTruncation) {
     EXPECT_TRUE(target.frameIsWhole());
 }
 
-INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec, testing::Values("raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd"),
+INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec,
+                         testing::Values("raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "slope",
+                                         "bitplane-zstd", "slope-zstd", "lz4", "zstd"),
                          [](const auto& test) {
                              std::string name = test.param;
                              std::ranges::replace(name, '-', '_');
@@ -113,7 +126,8 @@ TEST(RleSwizzled, storesPairsOfBitsWithTheHighOnesFirst) {
         const auto word = static_cast<uint32_t>(random());
         uint32_t expected = 0;
         for (unsigned stream = 0; stream < 4; ++stream)
-            for (unsigned c = 0; c < 4; ++c) expected |= (word >> (8 * c + 6 - 2 * stream) & 3) << (8 * stream + 6 - 2 * c);
+            for (unsigned c = 0; c < 4; ++c)
+                expected |= (word >> (8 * c + 6 - 2 * stream) & 3) << (8 * stream + 6 - 2 * c);
         ASSERT_EQ(swizzledWord(word), expected);
         ASSERT_EQ(swizzledWord(expected), word);
     }
@@ -142,7 +156,9 @@ TEST(BitplaneCodecs, decodeThePlaneTileByTile) {
             BitplaneCodec codec(bitplane::Predictor::Above);
             std::vector<std::byte> bytes(codec.boundBytes(shapeOf(plane.view())));
             bytes.resize(codec.encode(plane.view(), bytes).value());
-            const auto put = [&](const PixelViewport& area, const PlaneView& tile) { copyPlane(together.view().part(area), tile); };
+            const auto put = [&](const PixelViewport& area, const PlaneView& tile) {
+                copyPlane(together.view().part(area), tile);
+            };
             const auto decoded = codec.decodeTiles(bytes, shapeOf(plane.view()), put);
             ASSERT_TRUE(decoded) << decoded.error().message;
             ASSERT_EQ(together, plane) << compositor::nameOf(format) << " " << width << "x" << height;
@@ -163,7 +179,9 @@ TEST(BitplaneCodecs, enlargeNoiseByTheirTablesOnly) {
 
 double worstError(const Plane& a, const Plane& b) {
     double worst = 0;
-    for (size_t i = 0; i < a.bytes().size(); ++i) worst = std::max(worst, std::abs(1.0 * std::to_integer<int>(a.bytes()[i]) - std::to_integer<int>(b.bytes()[i])));
+    for (size_t i = 0; i < a.bytes().size(); ++i)
+        worst =
+            std::max(worst, std::abs(1.0 * std::to_integer<int>(a.bytes()[i]) - std::to_integer<int>(b.bytes()[i])));
     return worst;
 }
 
@@ -174,7 +192,8 @@ TEST(LossyCodecs, areAccurateOnSmoothPicturesAndKeepAlpha) {
         for (const auto& [width, height] : kSizes)
             for (const bool mixedAlpha : {false, true}) {
                 Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Surface, width, height);
-                for (size_t i = 3; mixedAlpha && i < plane.bytes().size(); i += 4) plane.bytes()[i] = static_cast<std::byte>(random());
+                for (size_t i = 3; mixedAlpha && i < plane.bytes().size(); i += 4)
+                    plane.bytes()[i] = static_cast<std::byte>(random());
                 auto codec = registry.make(name);
                 ASSERT_TRUE(codec);
                 std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(plane.view())));
@@ -185,8 +204,10 @@ TEST(LossyCodecs, areAccurateOnSmoothPicturesAndKeepAlpha) {
                 const auto decoded = (*codec)->decode(bytes, back.view());
                 ASSERT_TRUE(decoded) << decoded.error().message;
                 EXPECT_LE(worstError(plane, back), most) << name << " " << width << "x" << height;
-                for (size_t i = 3; i < plane.bytes().size(); i += 4) ASSERT_EQ(back.bytes()[i], plane.bytes()[i]) << name;
-                for (size_t cut = 0; cut < bytes.size(); cut += 1 + bytes.size() / 50) EXPECT_FALSE((*codec)->decode(std::span(bytes).first(cut), back.view())) << name << " " << cut;
+                for (size_t i = 3; i < plane.bytes().size(); i += 4)
+                    ASSERT_EQ(back.bytes()[i], plane.bytes()[i]) << name;
+                for (size_t cut = 0; cut < bytes.size(); cut += 1 + bytes.size() / 50)
+                    EXPECT_FALSE((*codec)->decode(std::span(bytes).first(cut), back.view())) << name << " " << cut;
             }
 }
 
@@ -194,7 +215,8 @@ TEST(CodecRegistry, returnsLossyCodecsByNameOnly) {
     CodecRegistry registry;
     ASSERT_TRUE(registry.make("jpeg-90"));
     for (const PlaneFormat format : kEveryFormat)
-        for (const CodecInfo& c : registry.losslessFor(format)) EXPECT_TRUE(c.lossless && c.name != "yuv420" && !c.name.starts_with("jpeg")) << c.name;
+        for (const CodecInfo& c : registry.losslessFor(format))
+            EXPECT_TRUE(c.lossless && c.name != "yuv420" && !c.name.starts_with("jpeg")) << c.name;
     EXPECT_FALSE(registry.find("yuv420").value().lossless);
     EXPECT_FALSE(registry.find("jpeg-90").value().takes(PlaneFormat::D24S8));
     for (const char* name : {"", "jpeg-", "jpeg-0", "jpeg-101", "jpeg-9x", "gif"}) {

@@ -35,7 +35,8 @@ void expectSame(const Region& region, const Marks& marks) {
 
 PixelViewport randomArea(std::mt19937& random) {
     const auto x = static_cast<int32_t>(random() % kSize), y = static_cast<int32_t>(random() % kSize);
-    return {x, y, 1 + static_cast<int32_t>(random() % static_cast<unsigned>(kSize - x)), 1 + static_cast<int32_t>(random() % static_cast<unsigned>(kSize - y))};
+    return {x, y, 1 + static_cast<int32_t>(random() % static_cast<unsigned>(kSize - x)),
+            1 + static_cast<int32_t>(random() % static_cast<unsigned>(kSize - y))};
 }
 
 TEST(Region, behavesAsASetOfPixels) {
@@ -75,9 +76,11 @@ TEST(Region, simplifiesTilesToRectangles) {
 
 TEST(RegionOfInterest, containsDrawnPixelsAndOmitsHoles) {
     std::mt19937 random(2);
-    for (const PlaneFormat format : {PlaneFormat::Rgba8, PlaneFormat::D24S8, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F}) {
+    for (const PlaneFormat format :
+         {PlaneFormat::Rgba8, PlaneFormat::D24S8, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F}) {
         for (int round = 0; round < 40; ++round) {
-            const auto width = static_cast<int32_t>(1 + random() % 150), height = static_cast<int32_t>(1 + random() % 70);
+            const auto width = static_cast<int32_t>(1 + random() % 150),
+                       height = static_cast<int32_t>(1 + random() % 70);
             Background background;
             for (auto& b : background.pixel) b = std::byte{0x35};
             Plane plane(format, width, height);
@@ -85,7 +88,8 @@ TEST(RegionOfInterest, containsDrawnPixelsAndOmitsHoles) {
             const int32_t tile = round % 2 ? 16 : 7;
             std::vector<std::pair<int32_t, int32_t>> drawn;
             for (unsigned i = 0; i < random() % 6; ++i) {
-                const auto x = static_cast<int32_t>(random() % static_cast<unsigned>(width)), y = static_cast<int32_t>(random() % static_cast<unsigned>(height));
+                const auto x = static_cast<int32_t>(random() % static_cast<unsigned>(width)),
+                           y = static_cast<int32_t>(random() % static_cast<unsigned>(height));
                 const size_t pixel = bytesPerPixel(format);
                 plane.view().row(y)[static_cast<size_t>(x) * pixel + pixel - 1] = std::byte{0x36};
                 drawn.emplace_back(x, y);
@@ -95,7 +99,9 @@ TEST(RegionOfInterest, containsDrawnPixelsAndOmitsHoles) {
             for (int32_t ty = 0; ty < height; ty += tile)
                 for (int32_t tx = 0; tx < width; tx += tile) {
                     const PixelViewport area{tx, ty, std::min(tile, width - tx), std::min(tile, height - ty)};
-                    const bool wanted = std::ranges::any_of(drawn, [&](auto& d) { return area.contains({d.first, d.second, 1, 1}); });
+                    const bool wanted = std::ranges::any_of(drawn, [&](auto& d) {
+                        return area.contains({d.first, d.second, 1, 1});
+                    });
                     EXPECT_EQ(found.covers(area), wanted);
                     tiles += wanted ? area.area() : 0;
                 }

@@ -23,7 +23,8 @@ struct Message {
 class Simulation {
 public:
     Simulation(const Schedule& schedule, int32_t rows) : schedule_(schedule), rows_(rows) {
-        for (uint32_t rank = 0; rank < schedule.size(); ++rank) held_.emplace_back(static_cast<size_t>(rows), DrawOrder{rank, rank + 1});
+        for (uint32_t rank = 0; rank < schedule.size(); ++rank)
+            held_.emplace_back(static_cast<size_t>(rows), DrawOrder{rank, rank + 1});
     }
 
     std::string wrong() {
@@ -40,12 +41,16 @@ public:
             }
         }
         for (size_t rank = 0; rank < schedule_.size(); ++rank)
-            if (next[rank] < schedule_[rank].size()) return "rank " + std::to_string(rank) + " waits for ever in step " + std::to_string(next[rank]);
+            if (next[rank] < schedule_[rank].size())
+                return "rank " + std::to_string(rank) + " waits for ever in step " + std::to_string(next[rank]);
         for (const auto& [way, messages] : under_)
-            if (!messages.empty()) return "nobody takes what rank " + std::to_string(way.first) + " sends to " + std::to_string(way.second);
+            if (!messages.empty())
+                return "nobody takes what rank " + std::to_string(way.first) + " sends to " +
+                       std::to_string(way.second);
         const DrawOrder all{0, static_cast<uint32_t>(schedule_.size())};
         for (int32_t y = 0; y < rows_; ++y)
-            if (held_[0][static_cast<size_t>(y)] != all) return "row " + std::to_string(y) + " of the collector does not hold all";
+            if (held_[0][static_cast<size_t>(y)] != all)
+                return "row " + std::to_string(y) + " of the collector does not hold all";
         return {};
     }
 
@@ -53,7 +58,8 @@ private:
     // Returns false if the rank must wait.
     bool take(size_t rank, const Step& step, int& waits) {
         const auto peer = static_cast<size_t>(step.peer);
-        if (peer >= schedule_.size() || peer == rank || step.rows.empty() || step.rows.first < 0 || step.rows.end > rows_) {
+        if (peer >= schedule_.size() || peer == rank || step.rows.empty() || step.rows.first < 0 ||
+            step.rows.end > rows_) {
             wrong_ = "rank " + std::to_string(rank) + " has a step of no sense";
             return false;
         }
@@ -62,7 +68,9 @@ private:
             Message m{step.rows, {}, waits};
             for (int32_t y = step.rows.first; y < step.rows.end; ++y) {
                 DrawOrder& row = own[static_cast<size_t>(y)];
-                if (row.empty()) wrong_ = "rank " + std::to_string(rank) + " sends row " + std::to_string(y) + ", which it has given away";
+                if (row.empty())
+                    wrong_ = "rank " + std::to_string(rank) + " sends row " + std::to_string(y) +
+                             ", which it has given away";
                 m.held.push_back(row);
                 row = {0, 0};
             }
@@ -74,15 +82,21 @@ private:
         const Message m = coming.front();
         coming.pop_front();
         if (m.rows != step.rows) wrong_ = "rank " + std::to_string(rank) + " expects other rows than come";
-        if (m.waits != step.stage) wrong_ = "the stage is " + std::to_string(step.stage) + " and not " + std::to_string(m.waits);
+        if (m.waits != step.stage)
+            wrong_ = "the stage is " + std::to_string(step.stage) + " and not " + std::to_string(m.waits);
         waits = std::max(waits, m.waits + 1);
-        for (size_t i = 0; wrong_.empty() && i < m.held.size(); ++i) fold(own[static_cast<size_t>(step.rows.first) + i], m.held[i], step.kind);
+        for (size_t i = 0; wrong_.empty() && i < m.held.size(); ++i)
+            fold(own[static_cast<size_t>(step.rows.first) + i], m.held[i], step.kind);
         return wrong_.empty();
     }
 
     void fold(DrawOrder& own, const DrawOrder& theirs, Step::Kind kind) {
-        const bool fits = kind == Step::Kind::Place ? own.empty() : kind == Step::Kind::FoldEarlier ? !own.empty() && theirs.end == own.first : !own.empty() && own.end == theirs.first;
-        if (!fits) wrong_ = "draws " + std::to_string(theirs.first) + " to " + std::to_string(theirs.end) + " are no neighbours of " + std::to_string(own.first) + " to " + std::to_string(own.end);
+        const bool fits = kind == Step::Kind::Place         ? own.empty()
+                          : kind == Step::Kind::FoldEarlier ? !own.empty() && theirs.end == own.first
+                                                            : !own.empty() && own.end == theirs.first;
+        if (!fits)
+            wrong_ = "draws " + std::to_string(theirs.first) + " to " + std::to_string(theirs.end) +
+                     " are no neighbours of " + std::to_string(own.first) + " to " + std::to_string(own.end);
         own = own.empty() ? theirs : joined(own, theirs);
     }
 
@@ -99,7 +113,8 @@ TEST(Schedule, deliversEveryRowOfEveryRankOnceAndInOrder) {
             for (const int32_t rows : {1, 2, 7, 64, 191, 1080}) {
                 const Schedule schedule = makeSchedule(strategy, ranks, rows);
                 ASSERT_EQ(schedule.size(), static_cast<size_t>(ranks));
-                EXPECT_EQ(Simulation(schedule, rows).wrong(), "") << nameOf(strategy) << ", " << ranks << " ranks, " << rows << " rows";
+                EXPECT_EQ(Simulation(schedule, rows).wrong(), "")
+                    << nameOf(strategy) << ", " << ranks << " ranks, " << rows << " rows";
             }
 }
 
@@ -138,7 +153,7 @@ TEST(Schedule, sendsTheDocumentedAmountPerStrategy) {
     EXPECT_DOUBLE_EQ(mostSent(Strategy::TwoThreeSwap, 9), 1); // 2/3 + 2/9 swapped, 1/9 gathered
     EXPECT_EQ(stagesOf(Strategy::TwoThreeSwap, 9), 3);
     EXPECT_LT(mostSent(Strategy::TwoThreeSwap, 7), 1.5); // uneven cuts cost slightly more
-    EXPECT_EQ(stagesOf(Strategy::RadixK, 16), 3);           // 8 x 2
+    EXPECT_EQ(stagesOf(Strategy::RadixK, 16), 3);        // 8 x 2
     EXPECT_EQ(stagesOf(Strategy::RadixK, 7), 2);
     EXPECT_EQ(stagesOf(Strategy::RadixK, 31), 4); // one is folded, then 6 x 5
     EXPECT_DOUBLE_EQ(mostSent(Strategy::Streaming, 8), 1);
@@ -155,7 +170,11 @@ TEST(Schedule, isCheckedForFaults) {
     EXPECT_NE(broken([](Schedule& s) { s[3].pop_back(); }), ""); // a band is not sent
     EXPECT_NE(broken([](Schedule& s) { s[0].pop_back(); }), ""); // or not received
     // both wait first
-    EXPECT_NE(broken([](Schedule& s) { std::swap(s[0][0], s[0][1]); s[1] = {s[1][1], s[1][0]}; }), "");
+    EXPECT_NE(broken([](Schedule& s) {
+                  std::swap(s[0][0], s[0][1]);
+                  s[1] = {s[1][1], s[1][0]};
+              }),
+              "");
     EXPECT_NE(broken([](Schedule& s) { s[0][1].kind = Step::Kind::FoldEarlier; }), ""); // order swapped
     EXPECT_NE(broken([](Schedule& s) { s[2][0].peer = 1; }), "");
 }

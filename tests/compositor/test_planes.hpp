@@ -12,15 +12,18 @@
 
 namespace mural::compositor::test {
 
-constexpr PlaneFormat kEveryFormat[] = {PlaneFormat::Rgba8, PlaneFormat::Rgb10A2, PlaneFormat::Rgba16F, PlaneFormat::Rgba32F, PlaneFormat::D24S8, PlaneFormat::D32F};
+constexpr PlaneFormat kEveryFormat[] = {PlaneFormat::Rgba8,   PlaneFormat::Rgb10A2, PlaneFormat::Rgba16F,
+                                        PlaneFormat::Rgba32F, PlaneFormat::D24S8,   PlaneFormat::D32F};
 
 enum class Content { Noise, Uniform, Surface, Sparse, Rows, Mixed };
-constexpr Content kEveryContent[] = {Content::Noise, Content::Uniform, Content::Surface, Content::Sparse, Content::Rows, Content::Mixed};
+constexpr Content kEveryContent[] = {Content::Noise,  Content::Uniform, Content::Surface,
+                                     Content::Sparse, Content::Rows,    Content::Mixed};
 
 inline uint32_t surfaceWord(PlaneFormat format, int32_t x, int32_t y) {
     const double z = 0.25 + 0.0003 * x + 0.0001 * y + 0.00002 * ((x ^ y) & 3);
     if (format == PlaneFormat::D24S8) return static_cast<uint32_t>(z * 0xffffff) << 8 | 5;
-    if (format == PlaneFormat::D32F || format == PlaneFormat::Rgba32F) return std::bit_cast<uint32_t>(static_cast<float>(z));
+    if (format == PlaneFormat::D32F || format == PlaneFormat::Rgba32F)
+        return std::bit_cast<uint32_t>(static_cast<float>(z));
     const auto shade = static_cast<uint32_t>(x / 3 + y / 2) & 0xff;
     return shade | shade << 8 | (shade ^ 1) << 16 | 0xff000000u;
 }

@@ -23,7 +23,8 @@ struct Link {
 TEST(UnchangedTiles, sendsChangesOnly) {
     std::mt19937 random(1);
     Link link;
-    Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Noise, 1000, 300), there(PlaneFormat::Rgba8, 1000, 300);
+    Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Noise, 1000, 300),
+          there(PlaneFormat::Rgba8, 1000, 300);
     std::vector<std::byte> bytes = link.encoded(plane);
     EXPECT_EQ(link.encoder.changedTiles(), 4u * 5u);
     ASSERT_TRUE(link.decoder.decode(bytes, *link.codec, there.view()));
@@ -58,7 +59,8 @@ TEST(UnchangedTiles, detectsAMissingPlaneAndRestarts) {
     ASSERT_TRUE(link.decoder.decode(link.encoded(plane), *link.codec, there.view()));
     EXPECT_EQ(there, plane);
     // Another shape restarts automatically.
-    Plane larger = makePlane(random, PlaneFormat::D24S8, Content::Surface, 301, 70), target(PlaneFormat::D24S8, 301, 70);
+    Plane larger = makePlane(random, PlaneFormat::D24S8, Content::Surface, 301, 70),
+          target(PlaneFormat::D24S8, 301, 70);
     ASSERT_TRUE(link.decoder.decode(link.encoded(larger), *link.codec, target.view()));
     EXPECT_EQ(target, larger);
 }

@@ -19,9 +19,13 @@ uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
 
 // Few distinct depths, so ties are frequent.
 std::vector<uint32_t> hardDepths(DepthFormat format) {
-    if (format == DepthFormat::D24S8) return {0, 1, 0xff, 0x100, 0x101, 0x1ff, 0x7fffff00, 0x80000000, 0x80000001, 0xffffff00, 0xffffffff, 0xfffffe00};
+    if (format == DepthFormat::D24S8)
+        return {0,          1,          0xff,       0x100,      0x101,      0x1ff,
+                0x7fffff00, 0x80000000, 0x80000001, 0xffffff00, 0xffffffff, 0xfffffe00};
     const auto inf = std::numeric_limits<float>::infinity();
-    return {bits(0.0f), bits(-0.0f), bits(1.0f), bits(0.5f), bits(std::nextafter(0.5f, 1.0f)), bits(-1.0f), bits(inf), bits(-inf), 0x7fc00000, 0xffc00000, 0x7f800001, 1, 0x80000001, bits(1e-30f)};
+    return {bits(0.0f),  bits(-0.0f), bits(1.0f), bits(0.5f),  bits(std::nextafter(0.5f, 1.0f)),
+            bits(-1.0f), bits(inf),   bits(-inf), 0x7fc00000,  0xffc00000,
+            0x7f800001,  1,           0x80000001, bits(1e-30f)};
 }
 
 struct Pixels {
@@ -56,7 +60,8 @@ std::vector<DepthRule> allRules() {
             for (const bool later : {false, true})
                 for (const Coverage c : {Coverage::All, Coverage::NotClear, Coverage::Stencil}) {
                     if (c == Coverage::Stencil && format == DepthFormat::D32F) continue;
-                    rules.push_back({static_cast<DepthFunction>(f), format, later, c, format == DepthFormat::D24S8 ? 0xffffff00u : bits(1.0f)});
+                    rules.push_back({static_cast<DepthFunction>(f), format, later, c,
+                                     format == DepthFormat::D24S8 ? 0xffffff00u : bits(1.0f)});
                 }
     return rules;
 }
@@ -72,7 +77,8 @@ TEST(ZSelect, givesEqualResultsForVectorsAndPixels) {
                     Pixels expected = into;
                     zSelect(rowOf(into, source, colourBytes), rule);
                     zSelectScalar(rowOf(expected, source, colourBytes), rule);
-                    ASSERT_EQ(into, expected) << target << " function " << static_cast<int>(rule.function) << " later " << rule.sourceIsLater << " count " << count;
+                    ASSERT_EQ(into, expected) << target << " function " << static_cast<int>(rule.function) << " later "
+                                              << rule.sourceIsLater << " count " << count;
                 }
     });
 }
@@ -83,7 +89,8 @@ TEST(ZSelect, preservesDataBetweenRows) {
     struct Shape {
         size_t columns, rows, gap, begin;
     };
-    constexpr Shape kShapes[] = {{1, 9, 3, 0}, {37, 20, 5, 1}, {64, 3, 0, 0}, {200, 11, 40, 2}, {1024, 520, 0, 0}, {1021, 530, 3, 1}, {1024, 520, 16, 0}};
+    constexpr Shape kShapes[] = {{1, 9, 3, 0},      {37, 20, 5, 1},    {64, 3, 0, 0},     {200, 11, 40, 2},
+                                 {1024, 520, 0, 0}, {1021, 530, 3, 1}, {1024, 520, 16, 0}};
     forEachTarget([&](const char* target) {
         std::mt19937 random(3);
         for (const Shape& shape : kShapes)
@@ -94,7 +101,10 @@ TEST(ZSelect, preservesDataBetweenRows) {
                 Words depth(count), sourceDepth(count);
                 for (size_t i = 0; i < count; ++i) { // runs of pixels won by either side, and single ones
                     depth[i] = bits(0.5f);
-                    sourceDepth[i] = bits(i / 150 % 3 == 0 ? 0.25f : i / 150 % 3 == 1 ? 0.75f : random() % 2 ? 0.25f : 0.75f);
+                    sourceDepth[i] = bits(i / 150 % 3 == 0   ? 0.25f
+                                          : i / 150 % 3 == 1 ? 0.75f
+                                          : random() % 2     ? 0.25f
+                                                             : 0.75f);
                 }
                 PixelBytes colour(count * colourBytes), sourceColour(count * colourBytes);
                 fillRandomly(random, colour);
@@ -116,10 +126,12 @@ TEST(ZSelect, preservesDataBetweenRows) {
                 Words expectedDepth = depth;
                 PixelBytes expectedColour = colour;
                 const DepthRule rule{DepthFunction::Less, DepthFormat::D32F, true, Coverage::All, 0};
-                for (size_t y = 0; y < shape.rows; ++y) zSelectScalar(areaOf(expectedDepth, expectedColour).row(y), rule);
+                for (size_t y = 0; y < shape.rows; ++y)
+                    zSelectScalar(areaOf(expectedDepth, expectedColour).row(y), rule);
                 zSelect(areaOf(depth, colour), rule);
                 ASSERT_EQ(depth, expectedDepth) << target << " " << shape.columns << "x" << shape.rows;
-                ASSERT_EQ(colour, expectedColour) << target << " " << shape.columns << "x" << shape.rows << " of " << colourBytes << " bytes";
+                ASSERT_EQ(colour, expectedColour)
+                    << target << " " << shape.columns << "x" << shape.rows << " of " << colourBytes << " bytes";
             }
     });
 }
@@ -144,7 +156,10 @@ bool sourceWins(const DepthRule& rule, uint32_t source, uint32_t there) {
 TEST(ZSelect, resolvesTiesByDrawOrder) {
     for (const DepthFormat format : {DepthFormat::D24S8, DepthFormat::D32F}) {
         const uint32_t half = format == DepthFormat::D24S8 ? 0x80000000u : bits(0.5f);
-        for (const auto& [function, laterWins] : {std::pair{DepthFunction::Less, false}, {DepthFunction::LessOrEqual, true}, {DepthFunction::Greater, false}, {DepthFunction::GreaterOrEqual, true}}) {
+        for (const auto& [function, laterWins] : {std::pair{DepthFunction::Less, false},
+                                                  {DepthFunction::LessOrEqual, true},
+                                                  {DepthFunction::Greater, false},
+                                                  {DepthFunction::GreaterOrEqual, true}}) {
             EXPECT_EQ(sourceWins({function, format, true, Coverage::All, 0}, half, half), laterWins);
             EXPECT_EQ(sourceWins({function, format, false, Coverage::All, 0}, half, half), !laterWins);
         }
@@ -163,24 +178,28 @@ TEST(ZSelect, ignoresStencilBits) {
 
 TEST(ZSelect, makesNanLoseAndMinusZeroEqualZero) {
     const uint32_t nan = 0x7fc00000, other = 0xffc00001;
-    for (const DepthFunction f : {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::Greater, DepthFunction::GreaterOrEqual})
+    for (const DepthFunction f :
+         {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::Greater, DepthFunction::GreaterOrEqual})
         for (const bool later : {false, true}) {
             const DepthRule rule{f, DepthFormat::D32F, later, Coverage::All, 0};
-            for (const float number : {0.0f, 1.0f, -1.0f, std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
+            for (const float number :
+                 {0.0f, 1.0f, -1.0f, std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
                 EXPECT_FALSE(sourceWins(rule, nan, bits(number)));
                 EXPECT_TRUE(sourceWins(rule, bits(number), nan));
             }
             EXPECT_EQ(sourceWins(rule, nan, other), !later); // the earlier one stays
         }
     EXPECT_FALSE(sourceWins({DepthFunction::Less, DepthFormat::D32F, true, Coverage::All, 0}, bits(-0.0f), bits(0.0f)));
-    EXPECT_TRUE(sourceWins({DepthFunction::LessOrEqual, DepthFormat::D32F, true, Coverage::All, 0}, bits(0.0f), bits(-0.0f)));
+    EXPECT_TRUE(
+        sourceWins({DepthFunction::LessOrEqual, DepthFormat::D32F, true, Coverage::All, 0}, bits(0.0f), bits(-0.0f)));
 }
 
 TEST(ZSelect, makesUndrawnPixelsLose) {
     const uint32_t far24 = 0xffffff00;
     const DepthRule clear{DepthFunction::LessOrEqual, DepthFormat::D24S8, true, Coverage::NotClear, far24};
     EXPECT_FALSE(sourceWins(clear, far24, far24));
-    EXPECT_FALSE(sourceWins({DepthFunction::Always, DepthFormat::D24S8, true, Coverage::NotClear, far24}, far24, 0x100));
+    EXPECT_FALSE(
+        sourceWins({DepthFunction::Always, DepthFormat::D24S8, true, Coverage::NotClear, far24}, far24, 0x100));
     // A sky drawn at the clear depth, marked in the stencil.
     const DepthRule stencil{DepthFunction::LessOrEqual, DepthFormat::D24S8, true, Coverage::Stencil, 0};
     EXPECT_TRUE(sourceWins(stencil, far24 | 1, far24));
@@ -190,7 +209,10 @@ TEST(ZSelect, makesUndrawnPixelsLose) {
 // Undrawn pixels are equal in all parts.
 void clearUndrawn(Pixels& p, const DepthRule& rule) {
     for (size_t i = 0; i < p.depth.size(); ++i) {
-        const bool drawn = rule.coverage == Coverage::All || (rule.coverage == Coverage::Stencil ? (p.depth[i] & 0xff) != 0 : rule.format == DepthFormat::D24S8 ? p.depth[i] >> 8 != rule.clearBits >> 8 : p.depth[i] != rule.clearBits);
+        const bool drawn = rule.coverage == Coverage::All ||
+                           (rule.coverage == Coverage::Stencil  ? (p.depth[i] & 0xff) != 0
+                            : rule.format == DepthFormat::D24S8 ? p.depth[i] >> 8 != rule.clearBits >> 8
+                                                                : p.depth[i] != rule.clearBits);
         if (drawn) continue;
         p.depth[i] = rule.clearBits;
         std::fill_n(p.colour.begin() + static_cast<ptrdiff_t>(4 * i), 4, std::byte{0});
@@ -216,9 +238,12 @@ TEST(ZSelect, isIndependentOfPairing) {
         };
         const Pixels inOrder = merge(merge(merge(parts[0], parts[1], true), parts[2], true), parts[3], true);
         for (const bool way : {false, true}) {
-            EXPECT_EQ(merge(merge(parts[0], parts[1], way), merge(parts[2], parts[3], !way), way), inOrder) << static_cast<int>(base.function);
-            EXPECT_EQ(merge(parts[0], merge(parts[1], merge(parts[2], parts[3], way), way), way), inOrder) << static_cast<int>(base.function);
-            EXPECT_EQ(merge(merge(parts[0], merge(parts[1], parts[2], way), !way), parts[3], !way), inOrder) << static_cast<int>(base.function);
+            EXPECT_EQ(merge(merge(parts[0], parts[1], way), merge(parts[2], parts[3], !way), way), inOrder)
+                << static_cast<int>(base.function);
+            EXPECT_EQ(merge(parts[0], merge(parts[1], merge(parts[2], parts[3], way), way), way), inOrder)
+                << static_cast<int>(base.function);
+            EXPECT_EQ(merge(merge(parts[0], merge(parts[1], parts[2], way), !way), parts[3], !way), inOrder)
+                << static_cast<int>(base.function);
         }
     }
 }

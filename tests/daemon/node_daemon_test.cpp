@@ -36,7 +36,8 @@ exit 3
 
 class Waiting : public testing::Test {
 protected:
-    Waiting() : folder_(testing::TempDir() + "/mural_waiting_" + std::to_string(::getpid())), stop_(eventfd(0, EFD_CLOEXEC)) {
+    Waiting()
+        : folder_(testing::TempDir() + "/mural_waiting_" + std::to_string(::getpid())), stop_(eventfd(0, EFD_CLOEXEC)) {
         std::filesystem::create_directories(folder_);
         std::ofstream(folder_ + "/mural") << kScript;
         ::chmod((folder_ + "/mural").c_str(), 0755);
@@ -58,15 +59,18 @@ protected:
     // Connects from 127.0.0.`host`.
     [[nodiscard]] FileDescriptor connect(int host) const {
         FileDescriptor fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-        auto from = numericAddress("127.0.0." + std::to_string(host), 0), to = numericAddress("127.0.0.1", node_->port());
+        auto from = numericAddress("127.0.0." + std::to_string(host), 0),
+             to = numericAddress("127.0.0.1", node_->port());
         EXPECT_EQ(::bind(fd.get(), from->get(), from->sizeBytes), 0);
         (void)::connect(fd.get(), to->get(), to->sizeBytes);
         EXPECT_NE(waitForSocket(fd.get(), POLLOUT, Deadline::inMs(kMs)), 0);
         return fd;
     }
-    [[nodiscard]] std::unique_ptr<ChannelSocket> head(int host, const ChannelSecret& secret, const std::vector<std::string>& order) const {
+    [[nodiscard]] std::unique_ptr<ChannelSocket> head(int host, const ChannelSecret& secret,
+                                                      const std::vector<std::string>& order) const {
         auto channel = std::make_unique<ChannelSocket>(connect(host), SecureChannel::connecting("head", secret));
-        if (!channel->open(Deadline::inMs(kMs)) || !channel->send(orderMessage(order), Deadline::inMs(kMs))) return nullptr;
+        if (!channel->open(Deadline::inMs(kMs)) || !channel->send(orderMessage(order), Deadline::inMs(kMs)))
+            return nullptr;
         return channel;
     }
     [[nodiscard]] std::unique_ptr<ChannelSocket> head(int host = 1) const { return head(host, secret_, kNode); }
@@ -126,7 +130,8 @@ TEST_F(Waiting, passesOnInputThatArrivesWithTheOrder) {
         ASSERT_TRUE(secure.input(std::span(piece).first(static_cast<size_t>(n)), none));
         write();
     }
-    for (const NodeMessage& m : {orderMessage(kNode), textMessage(NodeMessageKind::Input, "early\n"), NodeMessage{NodeMessageKind::InputEnd, {}}})
+    for (const NodeMessage& m : {orderMessage(kNode), textMessage(NodeMessageKind::Input, "early\n"),
+                                 NodeMessage{NodeMessageKind::InputEnd, {}}})
         ASSERT_TRUE(secure.send(encode(m)));
     write();
     ChannelSocket channel(std::move(fd), std::move(secure));

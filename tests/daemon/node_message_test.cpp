@@ -34,8 +34,17 @@ TEST(NodeMessage, rejectsLengthsOutOfBounds) {
 TEST(NodeMessage, permitsOnlyNodesInOrders) {
     EXPECT_TRUE(isAllowedCommand({"node", "--as", "node3", "--connect", "wall0:4711"}));
     EXPECT_TRUE(isAllowedCommand({"network-member"}));
-    for (const Arguments& a : {Arguments{"run", "--", "sh"}, {"node"}, {"node", "--wait"}, {"node", "--connect", "wall0:4711"}, {"node", "--as", "x", "--connect", "--wait"}, {"node", "--as", "--wait", "--connect", "a:1"}, {"node", "--connect-fd", "3"}, {"node", "--as", "x", "--connect", "a:1", "x"},
-             {"network-member", "x"}, {"doctor"}, {}})
+    for (const Arguments& a : {Arguments{"run", "--", "sh"},
+                               {"node"},
+                               {"node", "--wait"},
+                               {"node", "--connect", "wall0:4711"},
+                               {"node", "--as", "x", "--connect", "--wait"},
+                               {"node", "--as", "--wait", "--connect", "a:1"},
+                               {"node", "--connect-fd", "3"},
+                               {"node", "--as", "x", "--connect", "a:1", "x"},
+                               {"network-member", "x"},
+                               {"doctor"},
+                               {}})
         EXPECT_FALSE(isAllowedCommand(a)) << (a.empty() ? "nothing" : a.front());
 }
 

@@ -56,7 +56,8 @@ TEST(SectionCodec, keepsItsWindowOverSectionsOfAnySize) {
                 ASSERT_TRUE(decompressor.decompress(coding, coded, back));
                 ASSERT_TRUE(std::ranges::equal(back, some)) << section;
                 const bool isInWindow = time > 0 && size < 60'000;
-                ASSERT_LT(coded.size(), isInWindow ? size / 100 + 100 : size + size / 100 + 100) << section << ", " << time;
+                ASSERT_LT(coded.size(), isInWindow ? size / 100 + 100 : size + size / 100 + 100)
+                    << section << ", " << time;
             }
             bytes[random() % size] ^= std::byte{1};
         }
@@ -85,7 +86,8 @@ TEST(BatchCodec, failsOrDiffersAfterAnyChange) {
     ASSERT_TRUE(head.sections);
     ASSERT_EQ(head.sizeBytes, body.size());
     // Control bytes are last: a cut there shortens them, a cut before is an error.
-    for (size_t size = 0; size + some.size() < body.size(); ++size) EXPECT_FALSE(BatchDecoder().decode(head, std::span(body).first(size)).ok()) << size;
+    for (size_t size = 0; size + some.size() < body.size(); ++size)
+        EXPECT_FALSE(BatchDecoder().decode(head, std::span(body).first(size)).ok()) << size;
     BatchDecoder decoder;
     auto back = decoder.decode(head, body);
     ASSERT_TRUE(back.ok());

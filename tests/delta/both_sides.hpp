@@ -22,11 +22,14 @@ struct Packet {
     bool operator==(const Packet&) const = default;
 };
 
-inline Limits tinyLimits() { return {.storeBytes = 8 * kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024}; }
+inline Limits tinyLimits() {
+    return {.storeBytes = 8 * kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024};
+}
 
 class BothSides {
 public:
-    explicit BothSides(const Limits& limits) : packer(limits), unpacker(limits), encoder_([](size_t) { return int64_t{0}; }) {}
+    explicit BothSides(const Limits& limits)
+        : packer(limits), unpacker(limits), encoder_([](size_t) { return int64_t{0}; }) {}
 
     // Sends one batch as a frame and returns its encoded size.
     size_t send(const std::vector<Packet>& packets) {
@@ -68,7 +71,7 @@ public:
         return wire.size();
     }
     const RecordOffsets* walked = nullptr; // passed to the encoder
-    bool goesOn = false; // continues the previous frame
+    bool goesOn = false;                   // continues the previous frame
     size_t send(Bytes packet) { return send({Packet{0x10000, std::move(packet)}}); }
 
     DeltaEncoder packer;

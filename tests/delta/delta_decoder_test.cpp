@@ -4,7 +4,8 @@
 namespace mural::delta::testing {
 namespace {
 
-std::string problemOf(DeltaDecoder& unpacker, const std::function<void(ControlWriter&)>& write, size_t literalBytes = 0) {
+std::string problemOf(DeltaDecoder& unpacker, const std::function<void(ControlWriter&)>& write,
+                      size_t literalBytes = 0) {
     RangeWriter coder;
     ControlWriter control(coder);
     write(control);
@@ -26,41 +27,110 @@ std::string problemOf(const std::function<void(ControlWriter&)>& write, size_t l
 }
 
 TEST(DeltaDecoder, describesErrors) {
-    const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos && text.find("; head and nodes must be") != std::string::npos; };
+    const auto has = [](const std::string& text, const char* part) {
+        return text.find(part) != std::string::npos && text.find("; head and nodes must be") != std::string::npos;
+    };
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Run, 1); }), "an item that is not remembered"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Patch, 1); }), "a change of an item that is not remembered"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Patch, 1); }),
+                    "a change of an item that is not remembered"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 4), "fewer bytes than it names"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 0); }), "impossible size"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 257); }, 2000), "impossible size"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewPage, 1024); }, 5000), "impossible size"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Seek, 1); }), "before the first"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 1), c.number(0); }), "not in the store"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 2), c.number(UINT32_MAX); }), "not in the store"));
+    EXPECT_TRUE(
+        has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 2), c.number(UINT32_MAX); }), "not in the store"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::ControlOp, 9); }), "unknown"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(ControlOp::Stream); }), "in the middle"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 1), c.put(ControlOp::Stream), c.number(1); }, 4), "another stream"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Skip, 1), c.put(DeltaOp::Patch, 1), c.span(2, 1); }, 8), "not remembered"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewPage, 300), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 300), c.put(DeltaOp::Patch, 1); }, 1200), "fewer words"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 1), c.span(UINT32_MAX, 1); }, 8), "behind the end"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 9), c.span(0, 1), c.span(1, 1); }, 8), "behind the end"));
-    const auto kept = [](ControlWriter& c, uint32_t slot) { c.put(ControlOp::KeptBytes), c.number(slot), c.number(2000); };
+    EXPECT_TRUE(
+        has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 1), c.put(ControlOp::Stream), c.number(1); }, 4),
+            "another stream"));
+    EXPECT_TRUE(has(problemOf(
+                        [](ControlWriter& c) {
+                            c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Skip, 1), c.put(DeltaOp::Patch, 1), c.span(2, 1);
+                        },
+                        8),
+                    "not remembered"));
+    EXPECT_TRUE(has(problemOf(
+                        [](ControlWriter& c) {
+                            c.put(DeltaOp::NewPage, 300), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 300),
+                                c.put(DeltaOp::Patch, 1);
+                        },
+                        1200),
+                    "fewer words"));
+    EXPECT_TRUE(has(problemOf(
+                        [](ControlWriter& c) {
+                            c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 1),
+                                c.span(UINT32_MAX, 1);
+                        },
+                        8),
+                    "behind the end"));
+    EXPECT_TRUE(has(problemOf(
+                        [](ControlWriter& c) {
+                            c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 9), c.span(0, 1),
+                                c.span(1, 1);
+                        },
+                        8),
+                    "behind the end"));
+    const auto kept = [](ControlWriter& c, uint32_t slot) {
+        c.put(ControlOp::KeptBytes), c.number(slot), c.number(2000);
+    };
     EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 32); }, 2000), "nobody keeps"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(ControlOp::KeptBytes), c.number(3), c.number(65540); }, 65540), "nobody keeps"));
+    EXPECT_TRUE(
+        has(problemOf([](ControlWriter& c) { c.put(ControlOp::KeptBytes), c.number(3), c.number(65540); }, 65540),
+            "nobody keeps"));
     EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3); }, 1999), "fewer bytes than it names"));
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(4), c.number(1); }, 2000), "not remembered"));
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(32), c.number(1); }, 2000), "not remembered"));
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(501); }, 2004), "behind the end"));
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500), c.put(ControlOp::ChangedBytes), c.number(3), c.number(2); }, 2000), "fewer words"));
-    EXPECT_EQ(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500), c.put(ControlOp::End), c.put(ControlOp::Done); }, 2000), "");
-    EXPECT_EQ(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewPage, 300), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 300), c.put(ControlOp::End), c.put(ControlOp::Done); }, 1200), "");
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2), c.put(ControlOp::Done); }, 8), "in the middle of a packet"));
+    EXPECT_TRUE(
+        has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(4), c.number(1); },
+                      2000),
+            "not remembered"));
+    EXPECT_TRUE(
+        has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(32), c.number(1); },
+                      2000),
+            "not remembered"));
+    EXPECT_TRUE(
+        has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(501); },
+                      2004),
+            "behind the end"));
+    EXPECT_TRUE(has(problemOf(
+                        [&](ControlWriter& c) {
+                            kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500),
+                                c.put(ControlOp::ChangedBytes), c.number(3), c.number(2);
+                        },
+                        2000),
+                    "fewer words"));
+    EXPECT_EQ(problemOf(
+                  [&](ControlWriter& c) {
+                      kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500), c.put(ControlOp::End),
+                          c.put(ControlOp::Done);
+                  },
+                  2000),
+              "");
+    EXPECT_EQ(problemOf(
+                  [](ControlWriter& c) {
+                      c.put(DeltaOp::NewPage, 300), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 300),
+                          c.put(ControlOp::End), c.put(ControlOp::Done);
+                  },
+                  1200),
+              "");
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2), c.put(ControlOp::Done); }, 8),
+                    "in the middle of a packet"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 8), "in the middle of a packet"));
 }
 
 // A few bytes must not make a node decode forever, or into more memory than a packet.
 TEST(DeltaDecoder, limitsPacketsAndBatches) {
-    EXPECT_NE(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 256), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Run, UINT32_MAX); }, 1024).find("too large"), std::string::npos);
-    EXPECT_NE(problemOf([](ControlWriter& c) { c.put(ControlOp::Bytes), c.number(UINT32_MAX); }, 1024).find("too large"), std::string::npos);
+    EXPECT_NE(problemOf(
+                  [](ControlWriter& c) {
+                      c.put(DeltaOp::NewText, 256), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Run, UINT32_MAX);
+                  },
+                  1024)
+                  .find("too large"),
+              std::string::npos);
+    EXPECT_NE(
+        problemOf([](ControlWriter& c) { c.put(ControlOp::Bytes), c.number(UINT32_MAX); }, 1024).find("too large"),
+        std::string::npos);
     Limits limits = tinyLimits();
     DeltaDecoder unpacker(limits);
     const auto many = [](ControlWriter& c) {

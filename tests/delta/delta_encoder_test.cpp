@@ -12,7 +12,9 @@ namespace {
 Bytes frameOf(uint32_t frame, uint32_t records = 2000) {
     std::mt19937 random(7);
     Bytes bytes;
-    for (uint32_t i = 0; i < records; ++i) addRecord(bytes, static_cast<uint16_t>(64 + random() % 200), 1 + random() % 6, [&] { return static_cast<uint32_t>(random()); });
+    for (uint32_t i = 0; i < records; ++i)
+        addRecord(bytes, static_cast<uint16_t>(64 + random() % 200), 1 + random() % 6,
+                  [&] { return static_cast<uint32_t>(random()); });
     addRecord(bytes, 8, 3, [&, window = true]() mutable { return std::exchange(window, false) ? 1 : frame; });
     return bytes;
 }
@@ -46,7 +48,9 @@ Bytes noise(size_t size, uint32_t seed) {
 std::vector<Packet> packetsOf(const Bytes& records, size_t pieceBytes = 3 * 65544) {
     std::vector<Packet> packets;
     for (size_t at = 0; at < records.size(); at += pieceBytes)
-        packets.push_back({0x10000, Bytes(records.begin() + static_cast<std::ptrdiff_t>(at), records.begin() + static_cast<std::ptrdiff_t>(std::min(records.size(), at + pieceBytes)))});
+        packets.push_back(
+            {0x10000, Bytes(records.begin() + static_cast<std::ptrdiff_t>(at),
+                            records.begin() + static_cast<std::ptrdiff_t>(std::min(records.size(), at + pieceBytes)))});
     return packets;
 }
 
@@ -84,7 +88,8 @@ TEST(DeltaEncoder, recognisesNewRecordsOfSeveralPacketsWhenTheyRepeat) {
         std::memcpy(&head, all.data() + at, 4);
         at += size_t{head >> 16} * 4;
         if (at - from < 30'000 && at < all.size()) continue;
-        packets.push_back({0x10000, Bytes(all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(at))});
+        packets.push_back({0x10000, Bytes(all.begin() + static_cast<std::ptrdiff_t>(from),
+                                          all.begin() + static_cast<std::ptrdiff_t>(at))});
         from = at;
     }
     ASSERT_GE(packets.size(), 4u);
@@ -124,7 +129,8 @@ TEST(DeltaEncoder, sendsChangedWordsOnly) {
     BothSides sides{Limits{}};
     const auto frame = [](uint32_t moved) {
         Bytes bytes;
-        for (uint32_t object = 0; object < 100; ++object) addRecord(bytes, 99, 18, [&, i = 0u]() mutable { return ++i == 13 ? moved * object : object + i; });
+        for (uint32_t object = 0; object < 100; ++object)
+            addRecord(bytes, 99, 18, [&, i = 0u]() mutable { return ++i == 13 ? moved * object : object + i; });
         return bytes;
     };
     sides.send(frame(1));
@@ -148,7 +154,9 @@ TEST(DeltaEncoder, encodesAPatchOfATextureAtItsSize) {
     sides.send(packetsOf(textureOf(pixels)));
     for (uint32_t frame = 0; frame < 4; ++frame) {
         const Bytes patch = noise(size_t{64} * 256, 100 + frame);
-        for (size_t row = 0; row < 64; ++row) std::copy_n(patch.begin() + static_cast<std::ptrdiff_t>(row * 256), 256, pixels.begin() + static_cast<std::ptrdiff_t>((row + 10 * frame) * 8192 + 1024));
+        for (size_t row = 0; row < 64; ++row)
+            std::copy_n(patch.begin() + static_cast<std::ptrdiff_t>(row * 256), 256,
+                        pixels.begin() + static_cast<std::ptrdiff_t>((row + 10 * frame) * 8192 + 1024));
         EXPECT_LE(sides.send(packetsOf(textureOf(pixels))), frame == 0 ? 22'000u : 17'500u) << frame;
     }
     EXPECT_LE(sides.send(packetsOf(textureOf(pixels))), 150u);
@@ -218,10 +226,12 @@ TEST(DeltaEncoder, sendsChangesOfPlainRunsOfOneSize) {
         for (size_t i = 0; i < records; ++i) addRecord(run, 99, 5, [&] { return static_cast<uint32_t>(random()); });
         return run;
     };
-    std::vector<Packet> frame{{0x10000, runOf(300)}, {0x10000, runOf(300)}, {0x10001, runOf(300)}, {0x10000, runOf(500)}};
+    std::vector<Packet> frame{
+        {0x10000, runOf(300)}, {0x10000, runOf(300)}, {0x10001, runOf(300)}, {0x10000, runOf(500)}};
     const auto change = [&](size_t words) {
         for (Packet& packet : frame)
-            for (size_t i = 0; i < words; ++i) packet.bytes[random() % (packet.bytes.size() / 20) * 20 + 8] ^= std::byte{1};
+            for (size_t i = 0; i < words; ++i)
+                packet.bytes[random() % (packet.bytes.size() / 20) * 20 + 8] ^= std::byte{1};
     };
     const auto send = [&] {
         sides.packer.beginFrame(true);
@@ -259,7 +269,8 @@ TEST(DeltaEncoder, preservesPlainRunsOfManySizes) {
         std::vector<Packet> packets;
         for (int i = 0; i < 50; ++i) {
             const size_t records = 20 + random() % (frame % 2 == 0 ? 40 : 3000);
-            packets.push_back({0x10000 + static_cast<uint32_t>(random() % 3), {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(records * 24)}});
+            packets.push_back({0x10000 + static_cast<uint32_t>(random() % 3),
+                               {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(records * 24)}});
             all[random() % (all.size() / 24) * 24 + 4 + random() % 20] ^= std::byte{1};
         }
         sides.send(packets);
@@ -283,7 +294,9 @@ TEST(DeltaEncoder, preservesPlainRecordsWithAnyWalkResult) {
     Bytes packet;
     for (uint32_t i = 0; i < 50; ++i) addRecord(packet, 99, 3, [&] { return i; });
     const auto size = static_cast<uint32_t>(packet.size());
-    for (const RecordOffsets& told : {RecordOffsets{50, 12, {}}, RecordOffsets{50, 1 << 20, {}}, RecordOffsets{50, 12, {size + 4096}}, RecordOffsets{50, 12, {size - 12}}, RecordOffsets{50, 12, {0, 24, 60}}}) {
+    for (const RecordOffsets& told :
+         {RecordOffsets{50, 12, {}}, RecordOffsets{50, 1 << 20, {}}, RecordOffsets{50, 12, {size + 4096}},
+          RecordOffsets{50, 12, {size - 12}}, RecordOffsets{50, 12, {0, 24, 60}}}) {
         BothSides sides(Limits{.storeBytes = 1 << 20});
         sides.walked = &told;
         sides.packer.beginFrame(true);
@@ -310,7 +323,8 @@ TEST(DeltaEncoder, findsLongRecordsAmongPlainOnesByTheWalkResult) {
     BothSides untold{Limits{}}, sides{Limits{}};
     sides.walked = &told;
     for (BothSides* each : {&untold, &sides}) each->packer.beginFrame(true);
-    for (uint32_t number = 1; number < 6; ++number) EXPECT_EQ(sides.send(frame(number)), untold.send(frame(number))) << number;
+    for (uint32_t number = 1; number < 6; ++number)
+        EXPECT_EQ(sides.send(frame(number)), untold.send(frame(number))) << number;
     EXPECT_EQ(sides.packer.counts().storeHits, 4 * 3u);
     EXPECT_EQ(sides.packer.counts().storeHits, untold.packer.counts().storeHits);
     EXPECT_EQ(sides.packer.counts().records, untold.packer.counts().records);
@@ -345,7 +359,9 @@ TEST(DeltaEncoder, refersToReturningStatesOfAPage) {
     for (const uint32_t framesAsItIs : {1u, 3u})
         for (uint32_t frame = 0; frame < 60; ++frame) {
             const size_t wire = sides.send(packetsOf(textureOf(frame / framesAsItIs % 2 == 0 ? first : second)));
-            if (frame > 4) { EXPECT_LE(wire, 16u) << framesAsItIs << ' ' << frame; }
+            if (frame > 4) {
+                EXPECT_LE(wire, 16u) << framesAsItIs << ' ' << frame;
+            }
         }
 }
 

@@ -47,8 +47,10 @@ TEST(PixelColours, groupsEachChannelOfThreeBytes) {
             for (size_t i = 0; i < count; ++i) {
                 const size_t pixel = before + 3 * i;
                 ASSERT_EQ(at(apart, i), at(piece, pixel + 1)) << target << ' ' << i;
-                ASSERT_EQ(at(apart, count + i), static_cast<uint8_t>(at(piece, pixel) - at(piece, pixel + 1))) << target << ' ' << i;
-                ASSERT_EQ(at(apart, 2 * count + i), static_cast<uint8_t>(at(piece, pixel + 2) - at(piece, pixel + 1))) << target << ' ' << i;
+                ASSERT_EQ(at(apart, count + i), static_cast<uint8_t>(at(piece, pixel) - at(piece, pixel + 1)))
+                    << target << ' ' << i;
+                ASSERT_EQ(at(apart, 2 * count + i), static_cast<uint8_t>(at(piece, pixel + 2) - at(piece, pixel + 1)))
+                    << target << ' ' << i;
             }
             for (size_t i = 0; i < before; ++i) EXPECT_EQ(apart[3 * count + i], piece[i]) << target;
             for (size_t i = before + 3 * count; i < kPageBytes; ++i) EXPECT_EQ(apart[i], piece[i]) << target;

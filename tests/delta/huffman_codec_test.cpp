@@ -29,7 +29,8 @@ Bytes repeated(const Bytes& bytes, size_t sizeBytes) {
 TEST(CountedCodec, roundTripsAllData) {
     HuffmanCompressor compressor;
     HuffmanDecompressor decompressor;
-    for (const Bytes& bytes : {Bytes{}, left(1, 1), left(300, 2), left(5000, 3), left(700'000, 4), repeated(left(100, 5), 9000), Bytes(4096, std::byte{7})}) {
+    for (const Bytes& bytes : {Bytes{}, left(1, 1), left(300, 2), left(5000, 3), left(700'000, 4),
+                               repeated(left(100, 5), 9000), Bytes(4096, std::byte{7})}) {
         Bytes coded{std::byte{1}}, out(bytes.size());
         ASSERT_TRUE(compressor.compress(bytes, coded));
         ASSERT_TRUE(decompressor.decompress(std::span(coded).subspan(1), out)) << bytes.size();

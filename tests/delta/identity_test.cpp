@@ -33,7 +33,9 @@ private:
         if (below(20) == 0) words = 1 + below(20'000);
         if (below(200) == 0) words = 0xffff + below(3);
         const uint32_t kind = below(3), same = static_cast<uint32_t>(random_());
-        addRecord(bytes, static_cast<uint16_t>(64 + below(9)), words, [&] { return kind == 0 ? static_cast<uint32_t>(random_()) : kind == 1 ? same : below(3); });
+        addRecord(bytes, static_cast<uint16_t>(64 + below(9)), words, [&] {
+            return kind == 0 ? static_cast<uint32_t>(random_()) : kind == 1 ? same : below(3);
+        });
         return bytes;
     }
     void change() {
@@ -44,14 +46,17 @@ private:
         case 2: records_.erase(records_.begin() + below(records_.size())); break;
         case 3: std::rotate(records_.begin(), records_.begin() + below(records_.size()), records_.end()); break;
         default:
-            for (uint32_t n = 1 + below(20); n > 0 && r.size() > 8; --n) r[8 + below(r.size() - 8)] = static_cast<std::byte>(below(256));
+            for (uint32_t n = 1 + below(20); n > 0 && r.size() > 8; --n)
+                r[8 + below(r.size() - 8)] = static_cast<std::byte>(below(256));
         }
     }
     void odd(Bytes& bytes) {
         switch (below(3)) {
         // truncated within a record
         case 0: bytes.resize(bytes.size() - std::min<size_t>(bytes.size(), below(9))); break;
-        case 1: bytes.insert(bytes.end(), 1 + below(30), std::byte{0}); break; // a record without length
+        case 1:
+            bytes.insert(bytes.end(), 1 + below(30), std::byte{0});
+            break; // a record without length
         // an invalid length
         default: bytes.insert(bytes.begin(), {std::byte{64}, std::byte{0}, std::byte{0xff}, std::byte{0xff}});
         }
@@ -84,7 +89,8 @@ void compare(const Limits& limits, uint32_t seed, uint32_t streams, int frames) 
 }
 
 TEST(Identity, holdsWithLargeDictionaries) {
-    for (uint32_t seed = 1; seed <= 4; ++seed) compare(Limits{.storeBytes = 64 << 20, .textBytes = 1 << 20, .logItems = 1 << 16, .streams = 8}, seed, 3, 60);
+    for (uint32_t seed = 1; seed <= 4; ++seed)
+        compare(Limits{.storeBytes = 64 << 20, .textBytes = 1 << 20, .logItems = 1 << 16, .streams = 8}, seed, 3, 60);
 }
 
 TEST(Identity, holdsWithTinyDictionaries) {
@@ -92,7 +98,8 @@ TEST(Identity, holdsWithTinyDictionaries) {
 }
 
 TEST(Identity, holdsWithLogsOfOneItemAndOnePage) {
-    for (uint32_t seed = 1; seed <= 6; ++seed) compare({.storeBytes = kPageBytes, .textBytes = 4096, .logItems = 1, .streams = 1}, seed, 2, 60);
+    for (uint32_t seed = 1; seed <= 6; ++seed)
+        compare({.storeBytes = kPageBytes, .textBytes = 4096, .logItems = 1, .streams = 1}, seed, 2, 60);
 }
 
 // Smooth motion is predicted from more shared state than jumps.
@@ -109,7 +116,9 @@ TEST(Identity, holdsForSmoothMotion) {
                 addRecord(bytes, 99, 20, [&, word = 0u]() mutable {
                     const double angle = time * (1 + object % 3);
                     const uint32_t i = word++;
-                    const auto value = static_cast<float>(i % 2 == 0 ? (1 + i) * std::cos(angle) : i % 3 == 0 ? 1.0 + object : (2 + i) * std::sin(angle));
+                    const auto value = static_cast<float>(i % 2 == 0   ? (1 + i) * std::cos(angle)
+                                                          : i % 3 == 0 ? 1.0 + object
+                                                                       : (2 + i) * std::sin(angle));
                     return std::bit_cast<uint32_t>(value);
                 });
             }

@@ -15,7 +15,8 @@ struct Made {
 };
 
 // The number of plain frames among the last `last` of `frames`.
-int plainOf(ModeSelector& choice, Made looked, Made plain, int frames, int last, double linkNsPerByte = kLinkNsPerByte, uint64_t pageBytes = 0) {
+int plainOf(ModeSelector& choice, Made looked, Made plain, int frames, int last, double linkNsPerByte = kLinkNsPerByte,
+            uint64_t pageBytes = 0) {
     int count = 0;
     for (int i = 0; i < frames; ++i) {
         count += choice.plain() && i >= frames - last;
@@ -74,8 +75,11 @@ TEST(ModeSelector, timesFewFramesButAllDecisiveOnes) {
         const bool wants = choice.wantsTime();
         timed += wants;
         plain += choice.plain();
-        if (wants) choice.measured(kRawBytes, 0, choice.plain() ? 5000 : 3000, choice.plain() ? 110'000 : 450'000, kLinkNsPerByte);
-        else choice.unmeasured();
+        if (wants)
+            choice.measured(kRawBytes, 0, choice.plain() ? 5000 : 3000, choice.plain() ? 110'000 : 450'000,
+                            kLinkNsPerByte);
+        else
+            choice.unmeasured();
     }
     EXPECT_LE(timed, 250);
     EXPECT_GE(plain, 900) << "it decides as if all were timed";
@@ -93,8 +97,10 @@ TEST(ModeSelector, timesCheapFramesRarely) {
     ModeSelector choice;
     int timed = 0;
     for (int i = 0; i < 4000; ++i) {
-        if (choice.wantsTime()) ++timed, choice.measured(52, 0, 2, 500, kLinkNsPerByte);
-        else choice.unmeasured();
+        if (choice.wantsTime())
+            ++timed, choice.measured(52, 0, 2, 500, kLinkNsPerByte);
+        else
+            choice.unmeasured();
     }
     EXPECT_LE(timed, 4000 / 16);
     EXPECT_GT(timed, 4000 / 64) << "they may become dear";
@@ -156,8 +162,10 @@ TEST(ModeSelector, endsATrialWithOmittedRecords) {
     plainOf(choice, {3000, 450'000}, {5000, 110'000}, 400, 1);
     int tries = 0;
     for (int i = 0; i < 4000; ++i) {
-        if (choice.plain()) choice.measured(kRawBytes, 0, 5000, 110'000, kLinkNsPerByte);
-        else ++tries, choice.leftOut();
+        if (choice.plain())
+            choice.measured(kRawBytes, 0, 5000, 110'000, kLinkNsPerByte);
+        else
+            ++tries, choice.leftOut();
     }
     EXPECT_GE(tries, 1);
     EXPECT_LE(tries, 16);

@@ -16,7 +16,8 @@ TEST(PacketCut, skipsRoundsLikeSingleRecords) {
     for (uint32_t seed = 0; seed < 3000; ++seed) {
         SCOPED_TRACE(seed);
         std::mt19937 random(seed);
-        const std::vector<std::byte> packet = mural::testing::recordRounds(random, [&](auto& p) { mural::testing::putRecord(p, 7, kMaxTextBytes / 4 + 1 + random() % 3); });
+        const std::vector<std::byte> packet = mural::testing::recordRounds(
+            random, [&](auto& p) { mural::testing::putRecord(p, 7, kMaxTextBytes / 4 + 1 + random() % 3); });
         PacketCut atOnce(packet), byOne(packet);
         while (true) {
             const size_t from = atOnce.at(), sizeBytes = atOnce.passShort();

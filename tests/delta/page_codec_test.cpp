@@ -35,7 +35,8 @@ Bytes vertices(size_t sizeBytes, uint32_t seed) {
     std::mt19937 random(seed);
     std::vector<float> some(300), floats;
     for (auto& f : some) f = static_cast<float>(random()) / 1e9f;
-    while (floats.size() * 4 < sizeBytes) floats.insert(floats.end(), some.begin() + static_cast<std::ptrdiff_t>(random() % 100) * 3, some.end());
+    while (floats.size() * 4 < sizeBytes)
+        floats.insert(floats.end(), some.begin() + static_cast<std::ptrdiff_t>(random() % 100) * 3, some.end());
     Bytes bytes(sizeBytes);
     if (sizeBytes > 0) std::memcpy(bytes.data(), floats.data(), sizeBytes);
     return bytes;
@@ -52,7 +53,8 @@ Bytes signs(size_t sizeBytes, uint32_t kinds, uint32_t seed) {
     std::vector<uint32_t> line(kSigns);
     for (size_t pixel = 0; pixel * 4 < sizeBytes; ++pixel) {
         const size_t x = pixel % kLine, y = pixel / kLine;
-        if (x == 0 && y % kHeight == 0) std::ranges::generate(line, [&] { return static_cast<uint32_t>(random()) % kinds; });
+        if (x == 0 && y % kHeight == 0)
+            std::ranges::generate(line, [&] { return static_cast<uint32_t>(random()) % kinds; });
         if (y / kHeight % 2 == 1) continue; // between lines
         std::memset(bytes.data() + pixel * 4, shapes[line[x / kWidth]][y % kHeight * kWidth + x % kWidth], 3);
     }
@@ -81,7 +83,9 @@ TEST(PageCodec, roundTripsAnyPagesWithBothCodings) {
             for (uint32_t parts = random() % 5; parts < 6; ++parts) {
                 const size_t sizeBytes = random() % 4 * kPageBytes + (random() % 3 == 0 ? random() % 1000 * 4 : 0);
                 constexpr size_t kPixels[] = {1, 2, 3, 4, 8};
-                bytes = bytes + (random() % 3 == 0 ? vertices(sizeBytes, round) : random() % 5 == 0 ? Bytes(sizeBytes, static_cast<std::byte>(random())) : picture(sizeBytes, kPixels[random() % 5], round));
+                bytes = bytes + (random() % 3 == 0   ? vertices(sizeBytes, round)
+                                 : random() % 5 == 0 ? Bytes(sizeBytes, static_cast<std::byte>(random()))
+                                                     : picture(sizeBytes, kPixels[random() % 5], round));
             }
             if (bytes.empty()) continue;
             Bytes coded, back(bytes.size());
@@ -139,7 +143,8 @@ TEST(PageCodec, encodesGreyPicturesOfThreeBytesLikeOneChannel) {
     Bytes three;
     for (const std::byte b : one) three.insert(three.end(), 3, b);
     for (size_t before = 0; before < 3; ++before) {
-        const Bytes bytes(three.begin() + static_cast<std::ptrdiff_t>(before), three.end() - static_cast<std::ptrdiff_t>(3 - before));
+        const Bytes bytes(three.begin() + static_cast<std::ptrdiff_t>(before),
+                          three.end() - static_cast<std::ptrdiff_t>(3 - before));
         EXPECT_LT(compressedBytes(bytes), compressedBytes(one) * 12 / 10) << before;
     }
 }
@@ -161,18 +166,22 @@ TEST(PageCodec, survivesChangedAndTruncatedBytes) {
     ASSERT_TRUE(PageCompressor().compress(Coding::Zstd, bytes, coded));
     ASSERT_TRUE(PageDecompressor().decompress(Coding::Zstd, coded, back));
     ASSERT_TRUE(back == bytes);
-    for (size_t size = 0; size < coded.size(); size += 1 + size / 50) EXPECT_FALSE(PageDecompressor().decompress(Coding::Zstd, std::span(coded).first(size), back)) << size;
+    for (size_t size = 0; size < coded.size(); size += 1 + size / 50)
+        EXPECT_FALSE(PageDecompressor().decompress(Coding::Zstd, std::span(coded).first(size), back)) << size;
     size_t refused = 0, other = 0;
     for (size_t at = 0; at < coded.size(); at += 1 + at / 50) {
         Bytes changed = coded;
         changed[at] ^= std::byte{0x41};
         Bytes into(bytes.size());
-        if (!PageDecompressor().decompress(Coding::Zstd, changed, into)) ++refused;
-        else other += into != bytes;
+        if (!PageDecompressor().decompress(Coding::Zstd, changed, into))
+            ++refused;
+        else
+            other += into != bytes;
     }
     EXPECT_GT(refused, 20u);
     EXPECT_GT(other, 20u);
-    for (const size_t size : {size_t{0}, size_t{4}, kPageBytes, bytes.size() - kPageBytes, bytes.size() - 4, bytes.size() + 4}) {
+    for (const size_t size :
+         {size_t{0}, size_t{4}, kPageBytes, bytes.size() - kPageBytes, bytes.size() - 4, bytes.size() + 4}) {
         Bytes into(size);
         EXPECT_FALSE(PageDecompressor().decompress(Coding::Zstd, coded, into)) << size;
     }

@@ -21,12 +21,19 @@ Bytes pieceOf(uint32_t seed) {
     while (i < piece.size()) {
         const uint32_t kind = random() % 4, step = random() % 5, period = 1 + random() % 8;
         const auto begin = static_cast<uint32_t>(random());
-        for (size_t end = std::min(piece.size(), i + random() % 200), from = i; i < end; ++i) piece[i] = static_cast<std::byte>(kind == 0 ? 0u : kind == 1 ? begin >> (i - from) % period : kind == 2 ? begin + step * static_cast<uint32_t>(i) : random());
+        for (size_t end = std::min(piece.size(), i + random() % 200), from = i; i < end; ++i)
+            piece[i] = static_cast<std::byte>(kind == 0   ? 0u
+                                              : kind == 1 ? begin >> (i - from) % period
+                                              : kind == 2 ? begin + step * static_cast<uint32_t>(i)
+                                                          : random());
     }
     return piece;
 }
 
-uint8_t behind(const Bytes& piece, size_t i, size_t pixelBytes) { return static_cast<uint8_t>(static_cast<uint8_t>(piece[i]) - (i < pixelBytes ? 0 : static_cast<uint8_t>(piece[i - pixelBytes]))); }
+uint8_t behind(const Bytes& piece, size_t i, size_t pixelBytes) {
+    return static_cast<uint8_t>(static_cast<uint8_t>(piece[i]) -
+                                (i < pixelBytes ? 0 : static_cast<uint8_t>(piece[i - pixelBytes])));
+}
 
 TEST(PixelWords, computesAndInvertsByteDifferences) {
     test::forEachTarget([](const char* target) {
@@ -58,7 +65,8 @@ TEST(PixelWords, measuresEqualRoughnessWithAllInstructionSets) {
     for (uint32_t seed = 0; seed < 40; ++seed) {
         const Bytes piece = pieceOf(seed);
         const auto first = roughness(piece.data());
-        test::forEachTarget([&](const char* target) { EXPECT_EQ(roughness(piece.data()), first) << target << " seed " << seed; });
+        test::forEachTarget(
+            [&](const char* target) { EXPECT_EQ(roughness(piece.data()), first) << target << " seed " << seed; });
     }
 }
 
@@ -66,16 +74,19 @@ TEST(PixelWords, findsThePixelSizeOfASlope) {
     for (size_t k = 1; k < kPlainWays; ++k) {
         const size_t pixelBytes = kPixelWays[k];
         Bytes piece(kPageBytes);
-        for (size_t i = 0; i < piece.size(); ++i) piece[i] = static_cast<std::byte>(i % pixelBytes * 67 + 90 + (i / pixelBytes) % 2 * (k % 2));
+        for (size_t i = 0; i < piece.size(); ++i)
+            piece[i] = static_cast<std::byte>(i % pixelBytes * 67 + 90 + (i / pixelBytes) % 2 * (k % 2));
         const auto rough = roughness(piece.data());
-        for (size_t other = 0; other < k; ++other) EXPECT_LT(rough[k], rough[other]) << pixelBytes << " beside " << +kPixelWays[other];
+        for (size_t other = 0; other < k; ++other)
+            EXPECT_LT(rough[k], rough[other]) << pixelBytes << " beside " << +kPixelWays[other];
     }
 }
 
 // Random brightness of one hue: only the common part of the channels changes.
 TEST(PixelWords, subtractsTheCommonPartForPixelsOfOneHue) {
     for (size_t k = kPlainWays; k < kPixelWays.size(); ++k) {
-        const size_t pixelBytes = kPixelWays[k] == kColoursOfFour ? 4 : 3, before = pixelBytes == 4 ? 0 : k - kPlainWays - 1;
+        const size_t pixelBytes = kPixelWays[k] == kColoursOfFour ? 4 : 3,
+                     before = pixelBytes == 4 ? 0 : k - kPlainWays - 1;
         std::mt19937 random(5);
         Bytes piece(kPageBytes);
         uint32_t bright = 0;
@@ -101,7 +112,9 @@ TEST(PixelWords, roundTripsPlanesOfAnyLength) {
             Bytes planes(4 * count);
             toPlanes(words.data(), count, planes.data());
             for (size_t i = 0; i < count; ++i)
-                for (size_t p = 0; p < 4; ++p) ASSERT_EQ(static_cast<uint8_t>(planes[p * count + i]), static_cast<uint8_t>(words[i] >> 8 * p)) << target << ' ' << count;
+                for (size_t p = 0; p < 4; ++p)
+                    ASSERT_EQ(static_cast<uint8_t>(planes[p * count + i]), static_cast<uint8_t>(words[i] >> 8 * p))
+                        << target << ' ' << count;
             fromPlanes(planes.data(), count, back.data());
             ASSERT_EQ(back, words) << target << ' ' << count;
         }

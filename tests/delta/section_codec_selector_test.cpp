@@ -61,7 +61,8 @@ TEST(SectionCodecSelector, ignoresTheFirstTimeAndOutliers) {
     SectionCodecSelector choice;
     choice.measured(Coding::Zstd, 1 << 16, 1 << 15, int64_t{1} << 30); // includes page faults
     for (const Coding coding : {Coding::Zstd, Coding::Lz4})
-        for (int i = 0; i < 5; ++i) choice.measured(coding, 1 << 16, coding == Coding::Zstd ? 1 << 15 : 1 << 16, 3 << 16);
+        for (int i = 0; i < 5; ++i)
+            choice.measured(coding, 1 << 16, coding == Coding::Zstd ? 1 << 15 : 1 << 16, 3 << 16);
     EXPECT_EQ(choice.choose(1000, 32), Coding::Zstd);
     choice.measured(Coding::Zstd, 1 << 16, 1 << 15, 60 << 16);
     choice.measured(Coding::Zstd, 1 << 16, 1 << 15, 3 << 16);

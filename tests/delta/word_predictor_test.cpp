@@ -56,12 +56,16 @@ uint32_t wordOf(double value) { return std::bit_cast<uint32_t>(static_cast<float
 
 TEST(WordPredictor, roundTripsAnyWords) {
     std::mt19937 random(1);
-    const Words odd{0, 1, 0x80000000, 0xffffffff, 0x7f800000, 0xff800000, 0x7fc00001, 0xffc12345, 0x00000001, 0x807fffff, 0x7f7fffff, 0xff7fffff, 0x3f800000, 0xbf800000};
+    const Words odd{0,          1,          0x80000000, 0xffffffff, 0x7f800000, 0xff800000, 0x7fc00001,
+                    0xffc12345, 0x00000001, 0x807fffff, 0x7f7fffff, 0xff7fffff, 0x3f800000, 0xbf800000};
     for (const uint32_t modelWords : {1024u, 4096u}) {
         OneItem item(modelWords);
         for (int frame = 0; frame < 400; ++frame) {
             Words words(100);
-            for (auto& w : words) w = random() % 3 == 0 ? static_cast<uint32_t>(random()) : random() % 2 == 0 ? odd[random() % odd.size()] : wordOf(frame * 0.1);
+            for (auto& w : words)
+                w = random() % 3 == 0   ? static_cast<uint32_t>(random())
+                    : random() % 2 == 0 ? odd[random() % odd.size()]
+                                        : wordOf(frame * 0.1);
             (void)item.send(words);
         }
     }

@@ -17,7 +17,7 @@ using compositor::Strategy;
 struct Happening {
     enum class Kind { Lost, Returned } kind;
     int rank = 0;
-    uint64_t before = 0; // number of the picture
+    uint64_t before = 0;       // number of the picture
     std::set<int> absent = {}; // as announced by the head when a node has returned
 };
 constexpr int64_t kPartMs = 5000; // reached only by a failing test
@@ -29,7 +29,8 @@ public:
     Story(const Scene& scene, Strategy strategy, uint64_t pictures, std::vector<Happening> happenings)
         : scene_(scene), strategy_(strategy), happenings_(std::move(happenings)), pictures_(pictures), sent_(pictures) {
         std::vector<std::thread> ranks;
-        for (int rank = 0; rank < static_cast<int>(scene.parts.size()); ++rank) ranks.emplace_back([this, rank] { live(rank); });
+        for (int rank = 0; rank < static_cast<int>(scene.parts.size()); ++rank)
+            ranks.emplace_back([this, rank] { live(rank); });
         for (std::thread& rank : ranks) rank.join();
     }
     [[nodiscard]] const std::vector<uint32_t>& colour(uint64_t picture) const { return pictures_[picture].colour; }
@@ -45,10 +46,13 @@ private:
             next = take(node, next);
             if (next == pictures_.size()) return;
             network_.lose(node);
-            const auto again = std::ranges::find_if(happenings_, [&](const Happening& h) { return h.kind == kReturned && h.rank == rank && h.before >= next; });
+            const auto again = std::ranges::find_if(happenings_, [&](const Happening& h) {
+                return h.kind == kReturned && h.rank == rank && h.before >= next;
+            });
             if (again == happenings_.end()) return;
             for (const Happening& h : happenings_)
-                if (h.kind == kReturned && (h.before < again->before || &h < &*again)) network_.awaitLife(h.rank, livesAt(h));
+                if (h.kind == kReturned && (h.before < again->before || &h < &*again))
+                    network_.awaitLife(h.rank, livesAt(h));
             next = again->before;
             node = network_.comeAgain(rank);
         }
@@ -62,7 +66,8 @@ private:
             if (node.life > 0 && h.kind == kReturned) lives[h.rank] = livesAt(h);
         }
         FakeRoutes routes(network_, node, lives);
-        PictureComposer composer({strategy_, node.rank, ranks, kPartMs, 2 * kPartMs, 1000, ""}, routes, [](const std::string&) {});
+        PictureComposer composer({strategy_, node.rank, ranks, kPartMs, 2 * kPartMs, 1000, ""}, routes,
+                                 [](const std::string&) {});
         bool member = node.life == 0;
         for (uint64_t picture = from; picture < pictures_.size(); ++picture) {
             for (const Happening& h : happenings_) {
@@ -113,11 +118,13 @@ TEST(ComposerReturns, workForEachRankAfterItsLossWasDetected) {
             for (int lost = 0; lost < ranks; ++lost) {
                 const Scene scene = sceneOf(random, ranks, ruleOf(DepthFunction::LessOrEqual, false), 60, 110);
                 const Story story(scene, strategy, 10, {{kLost, lost, 3}, {kReturned, lost, 6}});
-                const auto what = std::string(nameOf(strategy)) + ", " + std::to_string(lost) + " of " + std::to_string(ranks);
+                const auto what =
+                    std::string(nameOf(strategy)) + ", " + std::to_string(lost) + " of " + std::to_string(ranks);
                 if (lost > 0) {
                     ASSERT_EQ(story.colour(5), foldedWithout(scene, {lost}).colour) << what;
                 }
-                for (const uint64_t picture : {2, 6, 7, 9}) ASSERT_EQ(story.colour(picture), scene.whole.colour) << what << ", picture " << picture;
+                for (const uint64_t picture : {2, 6, 7, 9})
+                    ASSERT_EQ(story.colour(picture), scene.whole.colour) << what << ", picture " << picture;
                 ASSERT_TRUE(goesBy(strategy, story, 9, ranks - 1)) << what;
             }
 }
@@ -131,7 +138,8 @@ TEST(ComposerReturns, workBeforeTheLossWasDetected) {
             const int other = lost == 3 ? 2 : 3;
             const Story story(scene, strategy, 12, {{kLost, lost, 4}, {kReturned, lost, 4}, {kLost, other, 7}});
             const auto what = std::string(nameOf(strategy)) + ", " + std::to_string(lost);
-            for (const uint64_t picture : {3, 4, 5, 6}) ASSERT_EQ(story.colour(picture), scene.whole.colour) << what << ", picture " << picture;
+            for (const uint64_t picture : {3, 4, 5, 6})
+                ASSERT_EQ(story.colour(picture), scene.whole.colour) << what << ", picture " << picture;
             ASSERT_EQ(story.colour(9), foldedWithout(scene, {other}).colour) << what;
             ASSERT_EQ(story.colour(11), foldedWithout(scene, {other}).colour) << what;
         }
@@ -142,12 +150,18 @@ TEST(ComposerReturns, workWhileAnotherNodeIsLost) {
     const Scene scene = sceneOf(random, 4, ruleOf(DepthFunction::GreaterOrEqual, false), 60, 110);
     for (const Strategy strategy : kEveryStrategy)
         for (const auto& [first, second] : {std::pair(1, 2), std::pair(3, 1), std::pair(2, 0), std::pair(0, 3)}) {
-            const Story story(scene, strategy, 14, {{kLost, first, 2}, {kLost, second, 3}, {kReturned, first, 6, {second}}, {kReturned, second, 10, {}}});
-            const auto what = std::string(nameOf(strategy)) + ", " + std::to_string(first) + " before " + std::to_string(second);
+            const Story story(
+                scene, strategy, 14,
+                {{kLost, first, 2}, {kLost, second, 3}, {kReturned, first, 6, {second}}, {kReturned, second, 10, {}}});
+            const auto what =
+                std::string(nameOf(strategy)) + ", " + std::to_string(first) + " before " + std::to_string(second);
             if (second != 0) {
-                for (const uint64_t picture : {6, 9}) ASSERT_EQ(story.colour(picture), foldedWithout(scene, {second}).colour) << what << ", picture " << picture;
+                for (const uint64_t picture : {6, 9})
+                    ASSERT_EQ(story.colour(picture), foldedWithout(scene, {second}).colour)
+                        << what << ", picture " << picture;
             }
-            for (const uint64_t picture : {10, 11, 13}) ASSERT_EQ(story.colour(picture), scene.whole.colour) << what << ", picture " << picture;
+            for (const uint64_t picture : {10, 11, 13})
+                ASSERT_EQ(story.colour(picture), scene.whole.colour) << what << ", picture " << picture;
             ASSERT_TRUE(goesBy(strategy, story, 13, 3)) << what;
         }
 }
@@ -158,7 +172,9 @@ TEST(ComposerReturns, workWhileAnotherLossIsUnknownToTheHead) {
     const Scene scene = sceneOf(random, 5, ruleOf(DepthFunction::Less, false), 60, 110);
     for (const Strategy strategy : kEveryStrategy) {
         const Story story(scene, strategy, 10, {{kLost, 1, 2}, {kLost, 3, 4}, {kReturned, 1, 5, {}}});
-        for (const uint64_t picture : {7, 9}) ASSERT_EQ(story.colour(picture), foldedWithout(scene, {3}).colour) << nameOf(strategy) << ", picture " << picture;
+        for (const uint64_t picture : {7, 9})
+            ASSERT_EQ(story.colour(picture), foldedWithout(scene, {3}).colour)
+                << nameOf(strategy) << ", picture " << picture;
     }
 }
 
@@ -167,8 +183,16 @@ TEST(ComposerReturns, workRepeatedlyForOneNode) {
     const Scene scene = sceneOf(random, 3, ruleOf(DepthFunction::Less, false), 60, 110);
     for (const Strategy strategy : kEveryStrategy)
         for (int rank = 0; rank < 3; ++rank) {
-            const Story story(scene, strategy, 12, {{kLost, rank, 1}, {kReturned, rank, 3}, {kLost, rank, 5}, {kReturned, rank, 5}, {kLost, rank, 8}, {kReturned, rank, 9}});
-            for (const uint64_t picture : {0, 3, 4, 5, 7, 9, 11}) ASSERT_EQ(story.colour(picture), scene.whole.colour) << nameOf(strategy) << ", rank " << rank << ", picture " << picture;
+            const Story story(scene, strategy, 12,
+                              {{kLost, rank, 1},
+                               {kReturned, rank, 3},
+                               {kLost, rank, 5},
+                               {kReturned, rank, 5},
+                               {kLost, rank, 8},
+                               {kReturned, rank, 9}});
+            for (const uint64_t picture : {0, 3, 4, 5, 7, 9, 11})
+                ASSERT_EQ(story.colour(picture), scene.whole.colour)
+                    << nameOf(strategy) << ", rank " << rank << ", picture " << picture;
         }
 }
 

@@ -32,7 +32,9 @@ public:
     Result<std::vector<std::byte>> take(FakeNode from, FakeNode to, Deadline deadline) {
         std::unique_lock lock(mutex_);
         auto& coming = under_[{from, to}];
-        if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs()), [&] { return !coming.empty() || gone_.contains(from) || isCut(from.rank, to.rank); }) || coming.empty())
+        if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs()),
+                               [&] { return !coming.empty() || gone_.contains(from) || isCut(from.rank, to.rank); }) ||
+            coming.empty())
             return Error{"range " + std::to_string(from.rank + 1) + " is gone"};
         auto message = std::move(coming.front());
         coming.pop_front();
@@ -73,7 +75,8 @@ private:
 class FakeRoutes final : public PartRoutes {
 public:
     // lives: incarnations of the connected peers; 0 if not listed.
-    FakeRoutes(FakeNetwork& network, FakeNode own, std::map<int, int> lives = {}) : network_(network), own_(own), lives_(std::move(lives)) {}
+    FakeRoutes(FakeNetwork& network, FakeNode own, std::map<int, int> lives = {})
+        : network_(network), own_(own), lives_(std::move(lives)) {}
     Result<void> send(int rank, std::vector<std::byte> message, Deadline) override {
         network_.put(own_, peer(rank), std::move(message));
         return {};

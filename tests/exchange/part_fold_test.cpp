@@ -7,7 +7,8 @@ namespace mural::test {
 namespace {
 
 void fold(PicturePart& into, const PicturePart& other, LayerOrder side, const CompositeRule& rule) {
-    compositeRow({into.colour.data(), into.depth.data(), other.colour.data(), other.depth.data(), into.colour.size()}, side, rule);
+    compositeRow({into.colour.data(), into.depth.data(), other.colour.data(), other.depth.data(), into.colour.size()},
+                 side, rule);
 }
 
 // Three nodes draw a third each; any pairing gives the picture of a single node.
@@ -34,7 +35,8 @@ TEST(PartFold, givesOneNodesPictureForAnyPairing) {
                 fold(middle, parts[2], LayerOrder::Later, rule);
                 fold(middle, parts[0], LayerOrder::Earlier, rule);
                 for (const PicturePart* made : {&left, &right, &middle}) {
-                    ASSERT_EQ(made->colour, whole.colour) << "function " << static_cast<int>(function) << (deep ? ", deep" : "");
+                    ASSERT_EQ(made->colour, whole.colour)
+                        << "function " << static_cast<int>(function) << (deep ? ", deep" : "");
                     ASSERT_EQ(made->depth, whole.depth);
                 }
             }

@@ -14,18 +14,23 @@ using compositor::RowRange;
 PicturePart drawnPart(std::mt19937& random, int32_t width, int32_t height, const CompositeRule& rule) {
     PicturePart part = clearedPart(width, height, rule);
     for (int i = 0; i < 4; ++i) {
-        const auto x0 = static_cast<int32_t>(random() % static_cast<uint32_t>(width)), y0 = static_cast<int32_t>(random() % static_cast<uint32_t>(height));
+        const auto x0 = static_cast<int32_t>(random() % static_cast<uint32_t>(width)),
+                   y0 = static_cast<int32_t>(random() % static_cast<uint32_t>(height));
         const bool noise = random() % 3 == 0;
         for (int32_t y = y0; y < std::min(height, y0 + 90); ++y)
             for (int32_t x = x0; x < std::min(width, x0 + 130); ++x) {
-                const auto depth = noise ? static_cast<uint32_t>(random()) : static_cast<uint32_t>(0x300000 + 97 * x + 31 * y);
-                draw(part, part.at(x, y), noise ? static_cast<uint32_t>(random()) : 0xff00a000u + static_cast<uint32_t>(x), rule.deep ? depth : widened(depth & 0xffffff), rule);
+                const auto depth =
+                    noise ? static_cast<uint32_t>(random()) : static_cast<uint32_t>(0x300000 + 97 * x + 31 * y);
+                draw(part, part.at(x, y),
+                     noise ? static_cast<uint32_t>(random()) : 0xff00a000u + static_cast<uint32_t>(x),
+                     rule.deep ? depth : widened(depth & 0xffffff), rule);
             }
     }
     return part;
 }
 
-Result<PartState> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows, const CompositeRule& rule) {
+Result<PartState> unpackInto(PicturePart& into, std::span<const std::byte> message, const RowRange& rows,
+                             const CompositeRule& rule) {
     PlaneDecoder decoder;
     return unpackPart(message, into.id, rows, rule, decoder, [&](const ArrivedPiece& p) {
         ASSERT_TRUE((PixelViewport{0, rows.first, into.id.box.w, rows.count()}.contains(p.area)));
@@ -77,7 +82,9 @@ TEST(PartMessage, enlargesNoiseByItsHeadersOnly) {
     for (auto& word : part.colour) word = static_cast<uint32_t>(random());
     for (auto& word : part.depth) word = static_cast<uint32_t>(random());
     PlaneEncoder encoder;
-    for (int i = 0; i < 20; ++i) EXPECT_LE(packPart(part, {0, 200}, rule, PartState::Complete, encoder).size(), boundBytesOf(part.id.box, {0, 200}));
+    for (int i = 0; i < 20; ++i)
+        EXPECT_LE(packPart(part, {0, 200}, rule, PartState::Complete, encoder).size(),
+                  boundBytesOf(part.id.box, {0, 200}));
 }
 
 TEST(PartMessage, distinguishesPictures) {
@@ -88,7 +95,8 @@ TEST(PartMessage, distinguishesPictures) {
     EXPECT_EQ(*unpackInto(part, message, {0, 32}, rule), PartState::Incomplete);
     EXPECT_FALSE(unpackInto(part, message, {32, 64}, rule));
     ++part.id.serial;
-    EXPECT_EQ(unpackInto(part, message, {0, 32}, rule).error().message, "parts of different pictures came together: this one is incomplete");
+    EXPECT_EQ(unpackInto(part, message, {0, 32}, rule).error().message,
+              "parts of different pictures came together: this one is incomplete");
 }
 
 TEST(PartMessage, reportsDamageInOneLine) {
@@ -100,8 +108,12 @@ TEST(PartMessage, reportsDamageInOneLine) {
     int refused = 0;
     for (int i = 0; i < 3000; ++i) {
         auto damaged = message;
-        if (i % 3 == 0) damaged.resize(random() % damaged.size());
-        else for (uint32_t n = 0; n < 1 + random() % 4; ++n) damaged[random() % std::min<size_t>(damaged.size(), i % 2 ? 120 : SIZE_MAX)] = static_cast<std::byte>(random());
+        if (i % 3 == 0)
+            damaged.resize(random() % damaged.size());
+        else
+            for (uint32_t n = 0; n < 1 + random() % 4; ++n)
+                damaged[random() % std::min<size_t>(damaged.size(), i % 2 ? 120 : SIZE_MAX)] =
+                    static_cast<std::byte>(random());
         PicturePart into = clearedPart(200, 150, rule);
         auto done = unpackInto(into, damaged, {0, 150}, rule);
         if (done) continue;

@@ -21,7 +21,8 @@ struct Outcome {
 };
 
 // lost: a rank that is gone before it sends anything; -1: none.
-Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant = "", int lost = -1, int64_t partMs = 20'000) {
+Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant = "", int lost = -1,
+                int64_t partMs = 20'000) {
     FakeNetwork network;
     Outcome outcome;
     std::mutex mutex;
@@ -32,10 +33,11 @@ Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant 
         if (rank == lost) continue;
         nodes.emplace_back([&, rank] {
             FakeRoutes routes(network, {rank, 0});
-            PictureComposer composer({strategy, rank, ranks, partMs, 60'000, 200, plant}, routes, [&](const std::string& line) {
-                const std::lock_guard lock(mutex);
-                outcome.lines.push_back(line);
-            });
+            PictureComposer composer({strategy, rank, ranks, partMs, 60'000, 200, plant}, routes,
+                                     [&](const std::string& line) {
+                                         const std::lock_guard lock(mutex);
+                                         outcome.lines.push_back(line);
+                                     });
             PicturePart part = scene.parts[static_cast<size_t>(rank)];
             composer.compose(part, scene.rule);
             if (rank == 0) outcome.picture = std::move(part);
@@ -73,7 +75,8 @@ TEST(PictureComposer, composesConsecutivePictures) {
         for (int rank = 0; rank < 5; ++rank)
             nodes.emplace_back([&, rank] {
                 FakeRoutes routes(network, {rank, 0});
-                PictureComposer composer({strategy, rank, 5, 20'000, 60'000, 5'000, ""}, routes, [&](const std::string&) { ++wrong; });
+                PictureComposer composer({strategy, rank, 5, 20'000, 60'000, 5'000, ""}, routes,
+                                         [&](const std::string&) { ++wrong; });
                 for (const Scene& scene : scenes) {
                     PicturePart part = scene.parts[static_cast<size_t>(rank)];
                     composer.compose(part, scene.rule);
@@ -91,8 +94,10 @@ TEST(PictureComposer, showsPlantedFaults) {
     for (const Strategy strategy : kEveryStrategy)
         for (const char* plant : {"range", "tie", "order", "band"}) {
             // these strategies gather no bands
-            if (std::string(plant) == "band" && (strategy == Strategy::Serial || strategy == Strategy::Streaming)) continue;
-            EXPECT_NE(compose(scene, strategy, plant).picture.colour, scene.whole.colour) << nameOf(strategy) << " " << plant;
+            if (std::string(plant) == "band" && (strategy == Strategy::Serial || strategy == Strategy::Streaming))
+                continue;
+            EXPECT_NE(compose(scene, strategy, plant).picture.colour, scene.whole.colour)
+                << nameOf(strategy) << " " << plant;
         }
 }
 
@@ -104,7 +109,9 @@ TEST(PictureComposer, doesNotBlockOnALostNode) {
         for (int lost = 1; lost < 5; ++lost) {
             const Outcome made = compose(scene, strategy, "", lost);
             ASSERT_FALSE(made.lines.empty());
-            for (const std::string& line : made.lines) EXPECT_EQ(line, "a range of the picture is missing for now: range " + std::to_string(lost + 1) + " is gone");
+            for (const std::string& line : made.lines)
+                EXPECT_EQ(line,
+                          "a range of the picture is missing for now: range " + std::to_string(lost + 1) + " is gone");
         }
 }
 
@@ -120,7 +127,8 @@ PicturePart thirdPicture(const Scene& scene, Strategy strategy, int lost, std::p
         if (rank == lost) continue;
         nodes.emplace_back([&, rank] {
             FakeRoutes routes(network, {rank, 0});
-            PictureComposer composer({strategy, rank, ranks, 20'000, 60'000, 5'000, ""}, routes, [](const std::string&) {});
+            PictureComposer composer({strategy, rank, ranks, 20'000, 60'000, 5'000, ""}, routes,
+                                     [](const std::string&) {});
             for (uint64_t serial = 1; serial <= 3; ++serial) {
                 PicturePart part = scene.parts[static_cast<size_t>(rank)];
                 part.id.serial = serial;
@@ -140,7 +148,8 @@ TEST(PictureComposer, missesOnlyTheLostNodesDrawsAfterALoss) {
     for (const Strategy strategy : kEveryStrategy)
         for (int lost = 1; lost < 7; ++lost) {
             const PicturePart expected = foldedWithout(scene, {lost});
-            EXPECT_EQ(thirdPicture(scene, strategy, lost, {-1, -1}).colour, expected.colour) << nameOf(strategy) << " without " << lost;
+            EXPECT_EQ(thirdPicture(scene, strategy, lost, {-1, -1}).colour, expected.colour)
+                << nameOf(strategy) << " without " << lost;
         }
 }
 
@@ -148,7 +157,8 @@ TEST(PictureComposer, sendsToTheCollectorWhenNodesCannotConnect) {
     std::mt19937 random(47);
     const Scene scene = sceneOf(random, 6, ruleOf(DepthFunction::Less, false), 60, 150);
     for (const Strategy strategy : kEveryStrategy)
-        for (const auto& cut : {std::pair(1, 2), std::pair(2, 3), std::pair(3, 5)}) EXPECT_EQ(thirdPicture(scene, strategy, -1, cut).colour, scene.whole.colour) << nameOf(strategy);
+        for (const auto& cut : {std::pair(1, 2), std::pair(2, 3), std::pair(3, 5)})
+            EXPECT_EQ(thirdPicture(scene, strategy, -1, cut).colour, scene.whole.colour) << nameOf(strategy);
 }
 
 // Nodes that wait for a silent node must not count as lost themselves.
@@ -157,7 +167,8 @@ TEST(PictureComposer, losesOnlyTheSilentNode) {
     const Scene scene = sceneOf(random, 5, ruleOf(DepthFunction::Less, false), 60, 90);
     for (const Strategy strategy : kEveryStrategy) {
         const Outcome made = compose(scene, strategy, "", 3, 300);
-        for (const std::string& line : made.lines) EXPECT_EQ(line, "a range of the picture is missing for now: range 4 is gone") << nameOf(strategy);
+        for (const std::string& line : made.lines)
+            EXPECT_EQ(line, "a range of the picture is missing for now: range 4 is gone") << nameOf(strategy);
     }
 }
 

@@ -13,13 +13,18 @@ ChannelSecret secretOf(unsigned char fill) {
     return secret;
 }
 
-std::vector<std::byte> bytesOf(size_t count, int value) { return std::vector<std::byte>(count, static_cast<std::byte>(value)); }
+std::vector<std::byte> bytesOf(size_t count, int value) {
+    return std::vector<std::byte>(count, static_cast<std::byte>(value));
+}
 
 TEST(PictureExchange, namesRankAndIncarnation) {
-    const auto there = [](PictureExchange::Name name) { return PictureExchange::nameOf(PictureExchange::textOf(name)) == name; };
+    const auto there = [](PictureExchange::Name name) {
+        return PictureExchange::nameOf(PictureExchange::textOf(name)) == name;
+    };
     EXPECT_TRUE(there({12, 0}));
     EXPECT_TRUE(there({0, 31}));
-    for (const char* other : {"range", "range3", "range3.", "range3.x", "range3.1x", "range-1.0", "range.1", "node3.0"}) EXPECT_FALSE(PictureExchange::nameOf(other)) << other;
+    for (const char* other : {"range", "range3", "range3.", "range3.x", "range3.1x", "range-1.0", "range.1", "node3.0"})
+        EXPECT_FALSE(PictureExchange::nameOf(other)) << other;
 }
 
 TEST(PictureExchange, letsBothEndsSendMoreThanBuffersHold) {
@@ -68,7 +73,8 @@ TEST(PictureExchange, closesTheConnectionAfterAnOversizedMessage) {
     ASSERT_TRUE(low.listen(true));
     ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
     ASSERT_TRUE(high.send(0, bytesOf(101, 7), Deadline::inMs(5000)));
-    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2: a picture of 101 bytes came where 100 are the most");
+    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message,
+              "range 2: a picture of 101 bytes came where 100 are the most");
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2 is gone");
 }
 

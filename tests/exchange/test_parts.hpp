@@ -9,7 +9,9 @@
 
 namespace mural::test {
 
-constexpr compositor::DepthFunction kOrders[] = {compositor::DepthFunction::Less, compositor::DepthFunction::LessOrEqual, compositor::DepthFunction::Greater, compositor::DepthFunction::GreaterOrEqual};
+constexpr compositor::DepthFunction kOrders[] = {
+    compositor::DepthFunction::Less, compositor::DepthFunction::LessOrEqual, compositor::DepthFunction::Greater,
+    compositor::DepthFunction::GreaterOrEqual};
 
 // As OpenGL converts 24 bits of depth to 32.
 inline uint32_t widened(uint32_t depth24) { return depth24 << 8 | depth24 >> 16; }

@@ -32,7 +32,10 @@ inline PicturePart foldedWithout(const Scene& scene, const std::set<int>& lost) 
     PicturePart picture = scene.parts[0];
     for (size_t rank = 1; rank < scene.parts.size(); ++rank) {
         const PicturePart& part = scene.parts[rank];
-        if (!lost.contains(static_cast<int>(rank))) compositeRow({picture.colour.data(), picture.depth.data(), part.colour.data(), part.depth.data(), part.colour.size()}, LayerOrder::Later, scene.rule);
+        if (!lost.contains(static_cast<int>(rank)))
+            compositeRow({picture.colour.data(), picture.depth.data(), part.colour.data(), part.depth.data(),
+                          part.colour.size()},
+                         LayerOrder::Later, scene.rule);
     }
     return picture;
 }

@@ -20,7 +20,12 @@ protected:
     void send(const PacketBuilder& p, uint32_t stream = kStream) { holder_.add(stream, p.bytes()); }
     void begin() {
         holder_.leaveOutSmall(true);
-        send(PacketBuilder().context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1}).record(op::glGenTextures, {2, 8, 1, 2}).record(op::glGenBuffers, {2, 8, 1, 2}));
+        send(PacketBuilder()
+                 .context(1)
+                 .window(1, 20, 10)
+                 .record(wire::kOpMakeCurrent, {1, 1, 1})
+                 .record(op::glGenTextures, {2, 8, 1, 2})
+                 .record(op::glGenBuffers, {2, 8, 1, 2}));
     }
     static std::vector<uint32_t> image(uint32_t value) {
         std::vector<uint32_t> words{GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, 1024};
@@ -41,18 +46,22 @@ protected:
     std::vector<uint32_t> streams_; // of the packets that were sent
     std::vector<uint16_t> opcodes_; // of the records that were sent
     CommandFilter holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets*) {
-                       seen_.packet(stream, payload);
-                       streams_.push_back(stream);
-                       trace::RecordWalk walk(payload);
-                       for (trace::RecordView r; walk.next(r);) opcodes_.push_back(r.opcode);
-                   }};
+                              seen_.packet(stream, payload);
+                              streams_.push_back(stream);
+                              trace::RecordWalk walk(payload);
+                              for (trace::RecordView r; walk.next(r);) opcodes_.push_back(r.opcode);
+                          }};
 };
 
 TEST_F(Holding, defersATextureUntilADrawHasItBound) {
     begin();
-    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    send(PacketBuilder()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glTexImage2D, image(5))
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
     EXPECT_EQ(seen_.uploads(), 0u);
-    for (uint32_t frame = 1; frame <= 100; ++frame) send(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+    for (uint32_t frame = 1; frame <= 100; ++frame)
+        send(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
     EXPECT_EQ(seen_.uploads(), 0u);
     EXPECT_EQ(holder_.counts().heldRecords, 1u);
     EXPECT_GT(holder_.counts().heldBytes, 1024u);
@@ -64,7 +73,10 @@ TEST_F(Holding, defersATextureUntilADrawHasItBound) {
 // Shaders may use the texture without a binding.
 TEST_F(Holding, defersNothingAfterATextureHasAHandle) {
     begin();
-    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    send(PacketBuilder()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glTexImage2D, image(5))
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
     EXPECT_EQ(seen_.uploads(), 0u);
     send(PacketBuilder().record(op::glGetTextureHandleARB, {1, 7, 0}));
     EXPECT_EQ(seen_.uploads(), 1u);
@@ -74,15 +86,22 @@ TEST_F(Holding, defersNothingAfterATextureHasAHandle) {
 
 TEST_F(Holding, defersNothingAfterAHandleIsRequestedInAList) {
     begin();
-    send(PacketBuilder().record(op::glNewList, {3, GL_COMPILE}).record(op::glGetTextureHandleARB, {1, 7, 0}).record(op::glEndList, {}));
+    send(PacketBuilder()
+             .record(op::glNewList, {3, GL_COMPILE})
+             .record(op::glGetTextureHandleARB, {1, 7, 0})
+             .record(op::glEndList, {}));
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2}).record(op::glTexImage2D, image(6)));
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
 TEST_F(Holding, dropsUploadsReplacedBeforeTheirUse) {
     begin();
-    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1}).record(op::glVertexAttribPointer, {0, 4, GL_FLOAT, 0, 0, 0}));
-    for (uint32_t i = 0; i < 10; ++i) send(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glBufferData, buffer(i)).swap(1, i + 1));
+    send(PacketBuilder()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1})
+             .record(op::glVertexAttribPointer, {0, 4, GL_FLOAT, 0, 0, 0}));
+    for (uint32_t i = 0; i < 10; ++i)
+        send(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glBufferData, buffer(i)).swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), 0u);
     send(draw());
     EXPECT_EQ(seen_.uploads(), 2u);
@@ -92,7 +111,11 @@ TEST_F(Holding, dropsUploadsReplacedBeforeTheirUse) {
 
 TEST_F(Holding, sendsUploadsReadBeforeTheirReplacement) {
     begin();
-    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(1)).record(op::glGenerateMipmap, {GL_TEXTURE_2D}).record(op::glTexImage2D, image(2)));
+    send(PacketBuilder()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glTexImage2D, image(1))
+             .record(op::glGenerateMipmap, {GL_TEXTURE_2D})
+             .record(op::glTexImage2D, image(2)));
     send(draw());
     EXPECT_EQ(seen_.uploads(), 2u);
 }
@@ -100,14 +123,22 @@ TEST_F(Holding, sendsUploadsReadBeforeTheirReplacement) {
 TEST_F(Holding, dropsUploadsThatChangeNothing) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
-    for (uint32_t i = 0; i < 10; ++i) send(PacketBuilder().record(op::glTexImage2D, image(7)).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, i + 1));
+    for (uint32_t i = 0; i < 10; ++i)
+        send(PacketBuilder()
+                 .record(op::glTexImage2D, image(7))
+                 .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                 .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), 2u) << "the first is not remembered: most never comes again";
     EXPECT_EQ(holder_.counts().leftOutRecords, 8u);
 }
 
 TEST_F(Holding, dropsUploadsOfObjectsDeletedUnused) {
     begin();
-    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glDeleteTextures, {1, 4, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    send(PacketBuilder()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glTexImage2D, image(5))
+             .record(op::glDeleteTextures, {1, 4, 1})
+             .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(seen_.uploads(), 0u);
     EXPECT_EQ(holder_.counts().leftOutRecords, 1u);
 }
@@ -115,14 +146,21 @@ TEST_F(Holding, dropsUploadsOfObjectsDeletedUnused) {
 TEST_F(Holding, forwardsUploadsThatAreAlwaysUsedAtOnce) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
-    for (uint32_t i = 0; i < 40; ++i) send(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, i + 1));
+    for (uint32_t i = 0; i < 40; ++i)
+        send(PacketBuilder()
+                 .record(op::glTexImage2D, image(i))
+                 .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                 .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), 40u);
     EXPECT_EQ(holder_.counts().heldRecords, 2u) << "nothing was won twice";
 }
 
 TEST_F(Holding, releasesEverythingForAnUnknownCommand) {
     begin();
-    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    send(PacketBuilder()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glTexImage2D, image(5))
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
     send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
     EXPECT_EQ(seen_.uploads(), 1u);
     send(PacketBuilder().record(op::glTexImage2D, image(6)));
@@ -134,7 +172,12 @@ TEST_F(Holding, defersAgainInAContextWithoutSharing) {
     begin();
     holder_.leaveOutSmall(false);
     send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
-    send(draw().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).context(2).window(2, 20, 10).record(wire::kOpMakeCurrent, {2, 2, 2}).record(op::glGenTextures, {1, 4, 1}));
+    send(draw()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .context(2)
+             .window(2, 20, 10)
+             .record(wire::kOpMakeCurrent, {2, 2, 2})
+             .record(op::glGenTextures, {1, 4, 1}));
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(6)));
     EXPECT_EQ(seen_.uploads(), 0u);
     send(draw());
@@ -144,9 +187,18 @@ TEST_F(Holding, defersAgainInAContextWithoutSharing) {
 // A new vertex array does not inherit bindings of an older one in the same memory.
 TEST_F(Holding, distinguishesNewVertexArrays) {
     begin();
-    send(PacketBuilder().record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1}).record(op::glBufferData, buffer(5)).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 0}));
-    send(PacketBuilder().record(op::glGenVertexArrays, {1, 4, 1}).record(op::glBindVertexArray, {1}).record(op::glBindBuffer, {GL_ELEMENT_ARRAY_BUFFER, 1}));
-    send(PacketBuilder().record(op::glDeleteVertexArrays, {1, 4, 1}).record(op::glGenVertexArrays, {1, 4, 2}).record(op::glBindVertexArray, {2}));
+    send(PacketBuilder()
+             .record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1})
+             .record(op::glBufferData, buffer(5))
+             .record(op::glBindBuffer, {GL_ARRAY_BUFFER, 0}));
+    send(PacketBuilder()
+             .record(op::glGenVertexArrays, {1, 4, 1})
+             .record(op::glBindVertexArray, {1})
+             .record(op::glBindBuffer, {GL_ELEMENT_ARRAY_BUFFER, 1}));
+    send(PacketBuilder()
+             .record(op::glDeleteVertexArrays, {1, 4, 1})
+             .record(op::glGenVertexArrays, {1, 4, 2})
+             .record(op::glBindVertexArray, {2}));
     send(draw());
     EXPECT_EQ(seen_.uploads(), 0u);
     send(PacketBuilder().record(op::glBindBuffer, {GL_ELEMENT_ARRAY_BUFFER, 1}));
@@ -169,7 +221,8 @@ TEST_F(Holding, releasesBeforeRecordsOfAnotherContext) {
 TEST_F(Holding, respectsItsMemoryLimit) {
     begin();
     std::vector<uint32_t> names;
-    for (uint32_t i = 0; i < 2000; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
+    for (uint32_t i = 0; i < 2000; ++i)
+        send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
     EXPECT_GT(seen_.uploads(), 900u);
     EXPECT_LE(holder_.counts().heldBytes, kBound);
     holder_.releaseAll();
@@ -187,7 +240,8 @@ TEST_F(Holding, waitsForBlobs) {
             piece[0] = kWords * 4;
             send(PacketBuilder().longRecord(wire::kOpBlobData, piece));
         }
-        send(PacketBuilder().record(op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 100, 500, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagBlob}));
+        send(PacketBuilder().record(
+            op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 100, 500, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagBlob}));
     };
     give(1);
     give(2);
@@ -199,7 +253,8 @@ TEST_F(Holding, waitsForBlobs) {
     send(draw());
     EXPECT_EQ(seen_.uploads(), 1u) << "it is there";
     give(3);
-    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes + holder_.counts().heldBytes);
+    EXPECT_EQ(holder_.counts().inBytes,
+              holder_.counts().outBytes + holder_.counts().leftOutBytes + holder_.counts().heldBytes);
     holder_.clientGone(1);
     EXPECT_EQ(seen_.uploads(), 1u) << "nobody needs it";
     EXPECT_EQ(holder_.counts().heldBytes, 0u);
@@ -211,10 +266,18 @@ size_t Holding::countOf(uint16_t opcode) const { return static_cast<size_t>(std:
 TEST_F(Holding, dropsUnchangedState) {
     begin();
     for (uint32_t frame = 1; frame <= 50; ++frame) {
-        send(PacketBuilder().record(op::glEnable, {GL_BLEND}).record(op::glBlendFunc, {GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA}).record(op::glDepthMask, {1}).record(op::glActiveTexture, {GL_TEXTURE0}));
-        send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+        send(PacketBuilder()
+                 .record(op::glEnable, {GL_BLEND})
+                 .record(op::glBlendFunc, {GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA})
+                 .record(op::glDepthMask, {1})
+                 .record(op::glActiveTexture, {GL_TEXTURE0}));
+        send(PacketBuilder()
+                 .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+                 .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                 .swap(1, frame));
     }
-    for (const uint16_t opcode : {op::glEnable, op::glBlendFunc, op::glDepthMask, op::glBindTexture}) EXPECT_EQ(countOf(opcode), 1u);
+    for (const uint16_t opcode : {op::glEnable, op::glBlendFunc, op::glDepthMask, op::glBindTexture})
+        EXPECT_EQ(countOf(opcode), 1u);
     EXPECT_EQ(countOf(op::glActiveTexture), 0u) << "0 is active from the start";
     EXPECT_EQ(countOf(op::glDrawArrays), 50u);
     EXPECT_EQ(holder_.counts().leftOutRecords, 4u * 49 + 50);
@@ -223,10 +286,17 @@ TEST_F(Holding, dropsUnchangedState) {
 
 TEST_F(Holding, defersStateUntilADrawNeedsIt) {
     begin();
-    send(PacketBuilder().record(op::glDisable, {GL_DEPTH_TEST}).record(op::glDepthFunc, {GL_LESS}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    send(PacketBuilder()
+             .record(op::glDisable, {GL_DEPTH_TEST})
+             .record(op::glDepthFunc, {GL_LESS})
+             .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(countOf(op::glDisable), 1u);
     for (uint32_t frame = 1; frame <= 50; ++frame) // no draws in between
-        send(PacketBuilder().record(op::glEnable, {GL_DEPTH_TEST}).record(op::glDepthFunc, {GL_LESS + frame % 3}).record(op::glMatrixMode, {GL_MODELVIEW}).swap(1, frame));
+        send(PacketBuilder()
+                 .record(op::glEnable, {GL_DEPTH_TEST})
+                 .record(op::glDepthFunc, {GL_LESS + frame % 3})
+                 .record(op::glMatrixMode, {GL_MODELVIEW})
+                 .swap(1, frame));
     EXPECT_EQ(countOf(op::glEnable) + countOf(op::glDepthFunc), 1u);
     EXPECT_GT(holder_.counts().heldBytes, 0u);
     send(PacketBuilder().record(op::glClear, {GL_COLOR_BUFFER_BIT}));
@@ -241,9 +311,14 @@ TEST_F(Holding, defersStateUntilADrawNeedsIt) {
 }
 
 TEST_F(Holding, sendsStateBeforeCommandsThatReadIt) {
-    const PacketBuilder asking[] = {PacketBuilder().record(op::glPushAttrib, {GL_ENABLE_BIT}), PacketBuilder().record(op::glBegin, {GL_POINTS}).record(op::glEnd, {}),
-                                    PacketBuilder().record(op::glBlitFramebuffer, {0, 0, 1, 1, 0, 0, 1, 1, GL_COLOR_BUFFER_BIT, GL_NEAREST}), PacketBuilder().record(op::glCallList, {7}),
-                                    PacketBuilder().record(wire::kOpFinish, {1}), PacketBuilder().record(wire::kOpMakeCurrent, {0, 0, 0}), PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull})};
+    const PacketBuilder asking[] = {
+        PacketBuilder().record(op::glPushAttrib, {GL_ENABLE_BIT}),
+        PacketBuilder().record(op::glBegin, {GL_POINTS}).record(op::glEnd, {}),
+        PacketBuilder().record(op::glBlitFramebuffer, {0, 0, 1, 1, 0, 0, 1, 1, GL_COLOR_BUFFER_BIT, GL_NEAREST}),
+        PacketBuilder().record(op::glCallList, {7}),
+        PacketBuilder().record(wire::kOpFinish, {1}),
+        PacketBuilder().record(wire::kOpMakeCurrent, {0, 0, 0}),
+        PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull})};
     begin();
     for (size_t i = 0; i < std::size(asking); ++i) {
         send(PacketBuilder().record(wire::kOpMakeCurrent, {1, 1, 1}));
@@ -256,11 +331,20 @@ TEST_F(Holding, sendsStateBeforeCommandsThatReadIt) {
 
 TEST_F(Holding, sendsUniformsOfTheDrawingProgram) {
     begin();
-    for (const uint32_t program : {5U, 6U}) send(PacketBuilder().record(op::glCreateProgram, {program}).record(wire::kOpProgramLayout, {program, 4, 0}));
+    for (const uint32_t program : {5U, 6U})
+        send(PacketBuilder().record(op::glCreateProgram, {program}).record(wire::kOpProgramLayout, {program, 4, 0}));
     for (uint32_t frame = 1; frame <= 50; ++frame) {
         // replaced except once
-        send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glUniform1f, {0, frame}).record(op::glUniform4f, {1, frame, 2, 3, 4}));
-        send(PacketBuilder().record(op::glUseProgram, {6}).record(op::glUniform1f, {0, 7}).record(op::glUniform1i, {2, 3}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+        send(PacketBuilder()
+                 .record(op::glUseProgram, {5})
+                 .record(op::glUniform1f, {0, frame})
+                 .record(op::glUniform4f, {1, frame, 2, 3, 4}));
+        send(PacketBuilder()
+                 .record(op::glUseProgram, {6})
+                 .record(op::glUniform1f, {0, 7})
+                 .record(op::glUniform1i, {2, 3})
+                 .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                 .swap(1, frame));
     }
     EXPECT_EQ(countOf(op::glUniform1i), 1u) << "it is 3";
     EXPECT_EQ(countOf(op::glUniform4f), 0u) << "nothing is drawn by that program";
@@ -275,9 +359,16 @@ TEST_F(Holding, sendsUniformsOfTheDrawingProgram) {
 TEST_F(Holding, dropsNoSmallStateWhereContextsShare) {
     begin();
     send(PacketBuilder().context(2, 1), kOther);
-    send(PacketBuilder().record(op::glCreateProgram, {5}).record(wire::kOpProgramLayout, {5, 4, 0}).record(op::glUseProgram, {5}));
+    send(PacketBuilder()
+             .record(op::glCreateProgram, {5})
+             .record(wire::kOpProgramLayout, {5, 4, 0})
+             .record(op::glUseProgram, {5}));
     for (uint32_t frame = 1; frame <= 10; ++frame)
-        send(PacketBuilder().record(op::glUniform1f, {0, 7}).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
+        send(PacketBuilder()
+                 .record(op::glUniform1f, {0, 7})
+                 .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+                 .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                 .swap(1, frame));
     EXPECT_EQ(countOf(op::glUniform1f), 10u);
     EXPECT_EQ(countOf(op::glBindTexture), 10u);
 }
@@ -292,14 +383,28 @@ TEST_F(Holding, followsFramesThatEndDifferently) {
         send(p);
         ASSERT_EQ(seen_.seen(), whole.seen());
     };
-    whole.packet(kStream, PacketBuilder().context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1}).record(op::glGenTextures, {2, 8, 1, 2}).record(op::glGenBuffers, {2, 8, 1, 2}).bytes());
+    whole.packet(kStream, PacketBuilder()
+                              .context(1)
+                              .window(1, 20, 10)
+                              .record(wire::kOpMakeCurrent, {1, 1, 1})
+                              .record(op::glGenTextures, {2, 8, 1, 2})
+                              .record(op::glGenBuffers, {2, 8, 1, 2})
+                              .bytes());
     uint32_t frame = 0;
     const auto bindsSecond = [&] { return draw().record(op::glBindTexture, {GL_TEXTURE_2D, 2}).swap(1, ++frame); };
-    const auto bindsFirst = [&] { return draw().append(draw()).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).swap(1, ++frame); };
+    const auto bindsFirst = [&] {
+        return draw().append(draw()).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).swap(1, ++frame);
+    };
     for (uint32_t i = 0; i < 60; ++i) {
         give(bindsFirst());
         give(bindsSecond());
-        give(PacketBuilder().record(op::glTexImage2D, image(i)).record(op::glBindTexture, {GL_TEXTURE_2D, 0}).append(draw()).record(op::glBindTexture, {GL_TEXTURE_2D, 2}).append(draw()).swap(1, ++frame));
+        give(PacketBuilder()
+                 .record(op::glTexImage2D, image(i))
+                 .record(op::glBindTexture, {GL_TEXTURE_2D, 0})
+                 .append(draw())
+                 .record(op::glBindTexture, {GL_TEXTURE_2D, 2})
+                 .append(draw())
+                 .swap(1, ++frame));
     }
 }
 
@@ -308,7 +413,11 @@ TEST_F(Holding, skipsRepeatedFrames) {
     holder_.leaveOutSmall(false);
     const auto frame = [&](uint32_t number, uint32_t texture) {
         PacketBuilder p;
-        for (uint32_t i = 0; i < 50; ++i) p.record(op::glActiveTexture, {GL_TEXTURE0 + i % 2}).record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2}).record(op::glColor4f, {number, i, 0, 0}).append(draw());
+        for (uint32_t i = 0; i < 50; ++i)
+            p.record(op::glActiveTexture, {GL_TEXTURE0 + i % 2})
+                .record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2})
+                .record(op::glColor4f, {number, i, 0, 0})
+                .append(draw());
         return p.record(op::glBindTexture, {GL_TEXTURE_2D, texture}).swap(1, number);
     };
     for (uint32_t i = 1; i <= 100; ++i) send(frame(i, 1));
@@ -316,7 +425,10 @@ TEST_F(Holding, skipsRepeatedFrames) {
     EXPECT_GT(alike, 80u * 200) << "of 201 in each";
     send(frame(101, 2)); // differs at its end
     EXPECT_GT(holder_.counts().alikeRecords, alike + 199);
-    send(PacketBuilder().record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()));
+    send(PacketBuilder()
+             .record(op::glTexImage2D, image(5))
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .append(draw()));
     EXPECT_EQ(seen_.uploads(), 0u) << "it is the second that has waited";
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2}).append(draw()));
     EXPECT_EQ(seen_.uploads(), 1u);
@@ -332,7 +444,10 @@ TEST_F(Holding, skipsFramesThatLeaveOtherTexturesBound) {
     send(made);
     const auto frame = [&](uint32_t number) {
         PacketBuilder p;
-        for (uint32_t i = 0; i < 100; ++i) p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2}).record(op::glColor4f, {number, i, 0, 0}).append(draw());
+        for (uint32_t i = 0; i < 100; ++i)
+            p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2})
+                .record(op::glColor4f, {number, i, 0, 0})
+                .append(draw());
         return p.record(op::glBindTexture, {GL_TEXTURE_2D, kFirst + number % kEnds}).append(draw()).swap(1, number);
     };
     uint32_t number = 0;
@@ -340,7 +455,9 @@ TEST_F(Holding, skipsFramesThatLeaveOtherTexturesBound) {
     EXPECT_GT(holder_.counts().alikeRecords, 80u * 300) << "of 302 in each";
     // The remaining binding is followed nevertheless.
     const uint32_t last = kFirst + number % kEnds;
-    send(PacketBuilder().record(op::glTexImage2D, image(7)).record(op::glTexParameteri, {GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR}));
+    send(PacketBuilder()
+             .record(op::glTexImage2D, image(7))
+             .record(op::glTexParameteri, {GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR}));
     EXPECT_EQ(seen_.uploads(), 0u);
     send(frame(++number));
     EXPECT_EQ(seen_.uploads(), 0u) << "each frame binds others before it draws";
@@ -356,7 +473,10 @@ TEST_F(Holding, survivesDamagedPackets) {
     holder_.leaveOutSmall(false);
     const auto frame = [](uint32_t number) {
         PacketBuilder p;
-        for (uint32_t i = 0; i < 20; ++i) p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2}).longRecord(op::glColor4f, {i, number, 0, 0}).append(draw());
+        for (uint32_t i = 0; i < 20; ++i)
+            p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + i % 2})
+                .longRecord(op::glColor4f, {i, number, 0, 0})
+                .append(draw());
         return p.swap(1, number);
     };
     uint32_t number = 0;
@@ -373,7 +493,8 @@ TEST_F(Holding, survivesDamagedPackets) {
 TEST_F(Holding, releasesTheOldestAtTheMemoryLimit) {
     begin();
     constexpr uint32_t kImages = 1100; // about a thousand fit
-    for (uint32_t i = 0; i < kImages; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
+    for (uint32_t i = 0; i < kImages; ++i)
+        send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
     EXPECT_GT(seen_.uploads(), 50u);
     EXPECT_LT(seen_.uploads(), 400u) << "the others wait on";
     const size_t before = seen_.uploads();
@@ -387,20 +508,31 @@ TEST_F(Holding, releasesTheOldestAtTheMemoryLimit) {
 TEST_F(Holding, defersLittleThatIsAlwaysDrawnAtOnce) {
     begin();
     constexpr uint32_t kTextures = 200;
-    for (uint32_t i = 0; i < kTextures; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)).append(draw()).swap(1, i + 1));
+    for (uint32_t i = 0; i < kTextures; ++i)
+        send(PacketBuilder()
+                 .record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i})
+                 .record(op::glTexImage2D, image(i))
+                 .append(draw())
+                 .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), kTextures);
     EXPECT_LT(holder_.counts().heldRecords, 60u);
     // A waiting object shows that deferring pays.
-    for (uint32_t i = 0; i < 20; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1000 + i}).record(op::glTexImage2D, image(i)));
-    for (uint32_t i = 0; i < 5; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()).swap(1, 300 + i));
+    for (uint32_t i = 0; i < 20; ++i)
+        send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1000 + i}).record(op::glTexImage2D, image(i)));
+    for (uint32_t i = 0; i < 5; ++i)
+        send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()).swap(1, 300 + i));
     const uint64_t held = holder_.counts().heldRecords;
-    for (uint32_t i = 0; i < 100; ++i) send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2000 + i}).record(op::glTexImage2D, image(i)));
+    for (uint32_t i = 0; i < 100; ++i)
+        send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2000 + i}).record(op::glTexImage2D, image(i)));
     EXPECT_EQ(holder_.counts().heldRecords, held + 100);
 }
 
 TEST_F(Holding, examinesUniformsOnlyWithSmallState) {
     begin();
-    send(PacketBuilder().record(op::glCreateProgram, {5}).record(wire::kOpProgramLayout, {5, 4, 0}).record(op::glUseProgram, {5}));
+    send(PacketBuilder()
+             .record(op::glCreateProgram, {5})
+             .record(wire::kOpProgramLayout, {5, 4, 0})
+             .record(op::glUseProgram, {5}));
     const auto sets = [&](uint32_t value) { send(PacketBuilder().record(op::glUniform1f, {0, value})); };
     sets(1);
     EXPECT_EQ(countOf(op::glUniform1f), 0u) << "it waits";
@@ -417,10 +549,21 @@ TEST_F(Holding, examinesUniformsOnlyWithSmallState) {
 
 TEST_F(Holding, followsListsThatSetState) {
     begin();
-    send(PacketBuilder().record(op::glNewList, {3, GL_COMPILE}).record(op::glEnable, {GL_BLEND}).record(op::glEndList, {}).record(op::glDisable, {GL_BLEND}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
-    send(PacketBuilder().record(op::glCallList, {3}).record(op::glDisable, {GL_BLEND}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    send(PacketBuilder()
+             .record(op::glNewList, {3, GL_COMPILE})
+             .record(op::glEnable, {GL_BLEND})
+             .record(op::glEndList, {})
+             .record(op::glDisable, {GL_BLEND})
+             .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    send(PacketBuilder()
+             .record(op::glCallList, {3})
+             .record(op::glDisable, {GL_BLEND})
+             .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(countOf(op::glDisable), 2u) << "the list has enabled it";
-    send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+    send(PacketBuilder()
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glTexImage2D, image(5))
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
     EXPECT_EQ(seen_.uploads(), 0u) << "holding goes on";
 }
 
@@ -428,21 +571,34 @@ TEST_F(Holding, followsListsThatSetState) {
 TEST_F(Holding, pairsPrimitivesOfLists) {
     for (const bool leavesOut : {true, false}) {
         for (const bool ends : {true, false}) {
-            SCOPED_TRACE(testing::Message() << "small state left out: " << leavesOut << ", the last primitive ends: " << ends);
+            SCOPED_TRACE(testing::Message()
+                         << "small state left out: " << leavesOut << ", the last primitive ends: " << ends);
             SeenModel seen;
-            CommandFilter holder(kBound, [&](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets*) { seen.packet(stream, payload); });
+            CommandFilter holder(kBound, [&](uint32_t stream, std::span<const std::byte> payload,
+                                             const RecordOffsets*) { seen.packet(stream, payload); });
             const auto say = [&](const PacketBuilder& p) { holder.add(kStream, p.bytes()); };
             holder.leaveOutSmall(leavesOut);
-            say(PacketBuilder().context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1}).record(op::glGenTextures, {2, 8, 1, 2}));
+            say(PacketBuilder()
+                    .context(1)
+                    .window(1, 20, 10)
+                    .record(wire::kOpMakeCurrent, {1, 1, 1})
+                    .record(op::glGenTextures, {2, 8, 1, 2}));
             PacketBuilder list;
             list.record(op::glNewList, {3, GL_COMPILE});
-            for (int i = 0; i < 50; ++i) list.record(op::glNormal3f, {0, 0, 0}).record(op::glBegin, {GL_POINTS}).record(op::glVertex3f, {1, 2, 3}).record(op::glEnd, {});
+            for (int i = 0; i < 50; ++i)
+                list.record(op::glNormal3f, {0, 0, 0})
+                    .record(op::glBegin, {GL_POINTS})
+                    .record(op::glVertex3f, {1, 2, 3})
+                    .record(op::glEnd, {});
             say(list.record(op::glBegin, {GL_POINTS}).record(op::glVertex3f, {1, 2, 3}));
             PacketBuilder rest;
             rest.record(op::glVertex3f, {1, 2, 3});
             if (ends) rest.record(op::glEnd, {});
             say(rest.record(op::glEndList, {}).record(op::glCallList, {3}));
-            say(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)).record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+            say(PacketBuilder()
+                    .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+                    .record(op::glTexImage2D, image(5))
+                    .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
             EXPECT_EQ(holder.counts().heldRecords, ends ? 1u : 0u) << "a list that leaves one open is not followed";
         }
     }
@@ -450,7 +606,10 @@ TEST_F(Holding, pairsPrimitivesOfLists) {
 
 TEST_F(Holding, defersNothingForAProgramWithDebugOutput) {
     begin();
-    send(PacketBuilder().record(op::glEnable, {GL_DEBUG_OUTPUT}).record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)));
+    send(PacketBuilder()
+             .record(op::glEnable, {GL_DEBUG_OUTPUT})
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+             .record(op::glTexImage2D, image(5)));
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 

@@ -24,12 +24,17 @@ public:
         PacketBuilder p;
         p.context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1});
         for (uint32_t name = 1; name <= kNames; ++name) {
-            p.record(op::glGenTextures, {1, 4, name}).record(op::glGenBuffers, {1, 4, name}).record(op::glGenVertexArrays, {1, 4, name}).record(op::glCreateProgram, {name});
+            p.record(op::glGenTextures, {1, 4, name})
+                .record(op::glGenBuffers, {1, 4, name})
+                .record(op::glGenVertexArrays, {1, 4, name})
+                .record(op::glCreateProgram, {name});
             p.record(wire::kOpProgramLayout, {name, 4, 0});
         }
         return p;
     }
-    PacketBuilder other() { return PacketBuilder().context(2, 1).window(2, 20, 10).record(wire::kOpMakeCurrent, {2, 2, 2}); }
+    PacketBuilder other() {
+        return PacketBuilder().context(2, 1).window(2, 20, 10).record(wire::kOpMakeCurrent, {2, 2, 2});
+    }
 
     PacketBuilder packet() {
         PacketBuilder p;
@@ -59,9 +64,12 @@ public:
         std::vector<PacketBuilder> commands(80 + below(60));
         const bool bindsBoth = below(2) == 0;
         for (PacketBuilder& p : commands) {
-            if (below(4) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
-            else if (bindsBoth && below(3) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
-            else p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + below(2)});
+            if (below(4) == 0)
+                p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            else if (bindsBoth && below(3) == 0)
+                p.record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
+            else
+                p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + below(2)});
         }
         if (below(2) == 0) commands.front() = PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
         commands.push_back(PacketBuilder().record(op::glActiveTexture, {GL_TEXTURE0}));
@@ -77,7 +85,8 @@ public:
         }
         for (uint32_t unit = 0; unit < 2; ++unit) {
             if (below(2) == 0) continue;
-            p.record(op::glActiveTexture, {GL_TEXTURE0 + unit}).record(op::glBindTexture, {GL_TEXTURE_2D, below(3) != 0 ? kNames : 1 + below(kNames)});
+            p.record(op::glActiveTexture, {GL_TEXTURE0 + unit})
+                .record(op::glBindTexture, {GL_TEXTURE_2D, below(3) != 0 ? kNames : 1 + below(kNames)});
             if (below(12) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
         }
         p.record(op::glActiveTexture, {GL_TEXTURE0});
@@ -107,8 +116,10 @@ public:
         PacketBuilder p;
         for (const PacketBuilder& c : commands) {
             if (below(changes) == 0) command(p);
-            if (c.bytes().empty()) primitive(p, changes);
-            else if (below(changes) != 0) p.append(c);
+            if (c.bytes().empty())
+                primitive(p, changes);
+            else if (below(changes) != 0)
+                p.append(c);
         }
         return p.swap(1, ++frame_);
     }
@@ -116,9 +127,11 @@ public:
 private:
     // Few different values, so that some repeat.
     std::vector<uint32_t> value(uint32_t words) { return std::vector<uint32_t>(words, below(5)); }
-    void withValue(PacketBuilder& p, uint16_t opcode, std::vector<uint32_t> arguments, const std::vector<uint32_t>& value, const std::vector<uint32_t>& behind = {}) {
+    void withValue(PacketBuilder& p, uint16_t opcode, std::vector<uint32_t> arguments,
+                   const std::vector<uint32_t>& value, const std::vector<uint32_t>& behind = {}) {
         if (below(3) == 0) { // as a blob in two pieces
-            const uint32_t half = static_cast<uint32_t>(value.size() / 2), rest = static_cast<uint32_t>(value.size()) - half;
+            const uint32_t half = static_cast<uint32_t>(value.size() / 2),
+                           rest = static_cast<uint32_t>(value.size()) - half;
             p.record(wire::kOpBlobBegin, {static_cast<uint32_t>(value.size() * 4), 0});
             std::vector<uint32_t> piece{half * 4};
             piece.insert(piece.end(), value.begin(), value.begin() + half);
@@ -132,8 +145,10 @@ private:
             arguments.insert(arguments.end(), value.begin(), value.end());
         }
         arguments.insert(arguments.end(), behind.begin(), behind.end());
-        if (below(2) == 0) p.record(opcode, arguments);
-        else p.longRecord(opcode, arguments);
+        if (below(2) == 0)
+            p.record(opcode, arguments);
+        else
+            p.longRecord(opcode, arguments);
     }
     uint32_t name() { return 1 + below(kNames); }
     uint32_t target() { return below(3) == 0 ? GL_ELEMENT_ARRAY_BUFFER : GL_ARRAY_BUFFER; }
@@ -145,13 +160,21 @@ private:
         case 1:
         case 2: p.record(op::glBindTexture, {GL_TEXTURE_2D, below(kNames + 1)}); return;
         case 3:
-        case 4: return withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, below(2), GL_RGBA, 16, 16 + 16 * below(2), 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
-        case 5: return withValue(p, op::glTexSubImage2D, {GL_TEXTURE_2D, below(2), 8 * below(2), 0, 16U >> below(2), 16, GL_RGBA, GL_UNSIGNED_BYTE}, value(200));
+        case 4:
+            return withValue(p, op::glTexImage2D,
+                             {GL_TEXTURE_2D, below(2), GL_RGBA, 16, 16 + 16 * below(2), 0, GL_RGBA, GL_UNSIGNED_BYTE},
+                             value(256));
+        case 5:
+            return withValue(p, op::glTexSubImage2D,
+                             {GL_TEXTURE_2D, below(2), 8 * below(2), 0, 16U >> below(2), 16, GL_RGBA, GL_UNSIGNED_BYTE},
+                             value(200));
         case 6: p.record(op::glTexParameteri, {GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER + below(3), below(9)}); return;
         case 7: p.record(op::glGenerateMipmap, {GL_TEXTURE_2D}); return;
         case 8:
         case 9: p.record(op::glBindBuffer, {target(), below(kNames + 1)}); return;
-        case 10: return withValue(p, op::glBufferData, {target(), kBufferBytes, 0}, value(kBufferBytes / 4), {GL_STATIC_DRAW});
+        case 10:
+            return withValue(p, op::glBufferData, {target(), kBufferBytes, 0}, value(kBufferBytes / 4),
+                             {GL_STATIC_DRAW});
         case 11: return withValue(p, op::glBufferSubData, {target(), 128 * below(3), 0, 600, 0}, value(150));
         case 12: return withValue(p, wire::kOpBufferBytes, {name(), 64 * below(3), 0}, value(150));
         case 13: p.record(op::glVertexAttribPointer, {below(3), 4, GL_FLOAT, 0, 0, 0}); return;
@@ -163,8 +186,12 @@ private:
         case 19: p.record(op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, below(4) == 0 ? name() : 0}); return;
         case 20: p.record(op::glCopyTexSubImage2D, {GL_TEXTURE_2D, below(2), 0, 0, 0, 0, 4, 4}); return;
         case 21:
-            p.record(op::glPushAttrib, {GL_TEXTURE_BIT | (below(2) == 0 ? GL_ENABLE_BIT : 0U)}).record(op::glBindTexture, {GL_TEXTURE_2D, name()}).record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
-            if (below(2) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
+            p.record(op::glPushAttrib, {GL_TEXTURE_BIT | (below(2) == 0 ? GL_ENABLE_BIT : 0U)})
+                .record(op::glBindTexture, {GL_TEXTURE_2D, name()})
+                .record(op::glActiveTexture, {GL_TEXTURE0 + below(2)});
+            if (below(2) == 0)
+                withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE},
+                          value(256));
             for (uint32_t i = below(3); i > 0; --i) small(p);
             p.record(op::glPopAttrib, {});
             return;
@@ -190,19 +217,27 @@ private:
         const uint32_t unit = below(2);
         if (below(2) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0 + unit});
         if (below(8) == 0) p.record(op::glBindTexture, {GL_TEXTURE_2D, name()});
-        if (below(5) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
+        if (below(5) == 0)
+            withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE},
+                      value(256));
         if (below(4) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
         if (below(2) == 0) p.record(op::glActiveTexture, {GL_TEXTURE0});
     }
     void upload(PacketBuilder& p) {
-        if (below(2) == 0) withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE}, value(256));
-        else withValue(p, op::glBufferData, {target(), kBufferBytes, 0}, value(kBufferBytes / 4), {GL_STATIC_DRAW});
+        if (below(2) == 0)
+            withValue(p, op::glTexImage2D, {GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE},
+                      value(256));
+        else
+            withValue(p, op::glBufferData, {target(), kBufferBytes, 0}, value(kBufferBytes / 4), {GL_STATIC_DRAW});
         if (below(2) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
     }
     // Their addresses change too.
     void otherNames(PacketBuilder& p) {
         const uint32_t n = name(), other = n % kNames + 1;
-        p.record(op::glDeleteTextures, {1, 4, n}).record(op::glDeleteTextures, {1, 4, other}).record(op::glGenTextures, {1, 4, n}).record(op::glGenTextures, {1, 4, other});
+        p.record(op::glDeleteTextures, {1, 4, n})
+            .record(op::glDeleteTextures, {1, 4, other})
+            .record(op::glGenTextures, {1, 4, n})
+            .record(op::glGenTextures, {1, 4, other});
     }
     // Binding within it is an error.
     void primitive(PacketBuilder& p, uint32_t changes) {
@@ -216,7 +251,10 @@ private:
     void small(PacketBuilder& p) {
         switch (below(17)) {
         case 0:
-        case 1: p.record(below(2) == 0 ? op::glEnable : op::glDisable, {below(2) == 0 ? 0U + GL_BLEND : 0U + GL_DEPTH_TEST}); return;
+        case 1:
+            p.record(below(2) == 0 ? op::glEnable : op::glDisable,
+                     {below(2) == 0 ? 0U + GL_BLEND : 0U + GL_DEPTH_TEST});
+            return;
         case 2: p.record(below(2) == 0 ? op::glEnable : op::glDisable, {GL_TEXTURE_2D}); return;
         case 3: p.record(op::glDepthFunc, {below(4) == 0 ? 77U : GL_LESS + below(2)}); return; // 77: rejected
         case 4: p.record(op::glStencilFunc, {GL_LESS, below(2), 255}); return;
@@ -233,7 +271,8 @@ private:
         case 14: return withValue(p, op::glUniform1fv, {3 + below(2), 1 + below(2)}, value(2));
         case 15: p.record(op::glProgramUniform1f, {name(), 3 + below(3), below(2)}); return;
         default:
-            if (below(8) == 0) p.record(op::glNewList, {2, GL_COMPILE}).record(op::glEnable, {GL_BLEND}).record(op::glEndList, {});
+            if (below(8) == 0)
+                p.record(op::glNewList, {2, GL_COMPILE}).record(op::glEnable, {GL_BLEND}).record(op::glEndList, {});
             p.record(op::glCallList, {2});
             return;
         }
@@ -248,11 +287,22 @@ private:
             if (!shares_) p.record(op::glDeleteBuffers, {1, 4, n}).record(op::glGenBuffers, {1, 4, n});
             return;
         }
-        case 2: p.record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 1}).record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 1, 0}); return;
+        case 2:
+            p.record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 1})
+                .record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 1, 0});
+            return;
         case 3: p.record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 0}); return;
-        case 4: p.record(op::glNewList, {1, GL_COMPILE}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).record(op::glEndList, {}); return;
+        case 4:
+            p.record(op::glNewList, {1, GL_COMPILE})
+                .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                .record(op::glEndList, {});
+            return;
         case 5:
-            if (below(4) == 0) p.record(op::glNewList, {1, GL_COMPILE}).record(op::glBindTexture, {GL_TEXTURE_2D, name()}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).record(op::glEndList, {});
+            if (below(4) == 0)
+                p.record(op::glNewList, {1, GL_COMPILE})
+                    .record(op::glBindTexture, {GL_TEXTURE_2D, name()})
+                    .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                    .record(op::glEndList, {});
             return;
         case 6: p.record(op::glCallList, {1}); return;
         default: p.record(wire::kOpRequestTexImage, {1, 1, name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, 0, 0});
@@ -271,7 +321,10 @@ struct Won {
 // The effect of the original packets on a node, and of the filter's output.
 class Both {
 public:
-    Both(RandomProgram& program, uint64_t mostBytes, bool small, uint32_t toggles) : program_(program), mostBytes_(mostBytes), toggles_(toggles) { holder_.leaveOutSmall(small); }
+    Both(RandomProgram& program, uint64_t mostBytes, bool small, uint32_t toggles)
+        : program_(program), mostBytes_(mostBytes), toggles_(toggles) {
+        holder_.leaveOutSmall(small);
+    }
 
     // Sends in pieces: values may be divided between two packets, but not between streams.
     void send(uint32_t stream, const PacketBuilder& p) {
@@ -308,11 +361,12 @@ private:
     const uint64_t mostBytes_;
     const uint32_t toggles_; // mean number of packets between them
     SeenModel whole_, held_;
-    CommandFilter holder_{mostBytes_, [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
-                       ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
-                       if (walked != nullptr) isMadeOf(payload, *walked);
-                       held_.packet(stream, payload);
-                   }};
+    CommandFilter holder_{mostBytes_,
+                          [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
+                              ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
+                              if (walked != nullptr) isMadeOf(payload, *walked);
+                              held_.packet(stream, payload);
+                          }};
     static void isMadeOf(std::span<const std::byte> payload, const RecordOffsets& told) {
         trace::RecordWalk walk(payload);
         trace::RecordView r;
@@ -350,7 +404,8 @@ void sameFrames(uint32_t seed, Won& won) {
     for (int scene = 0; scene < 3; ++scene) {
         const std::vector<PacketBuilder> frame = program.frame();
         const uint32_t changes = program.below(3) == 0 ? 20 : 1000;
-        for (int i = 0; i < 40 && !::testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.likeFrame(frame, changes));
+        for (int i = 0; i < 40 && !::testing::Test::HasFatalFailure(); ++i)
+            both.send(kFirst, program.likeFrame(frame, changes));
     }
     both.ends(won);
 }
@@ -362,7 +417,8 @@ void bindingFrames(uint32_t seed, Won& won) {
     both.send(kFirst, program.begin());
     for (int scene = 0; scene < 2; ++scene) {
         const std::vector<PacketBuilder> frame = program.bindingFrame();
-        for (int i = 0; i < 30 && !::testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withUpload(frame));
+        for (int i = 0; i < 30 && !::testing::Test::HasFatalFailure(); ++i)
+            both.send(kFirst, program.withUpload(frame));
     }
     both.ends(won);
 }
@@ -374,7 +430,8 @@ void slidingFrames(uint32_t seed, Won& won) {
     both.send(kFirst, program.begin());
     for (int scene = 0; scene < 2; ++scene) {
         const std::vector<PacketBuilder> frame = program.textureFrame();
-        for (int i = 0; i < 200 && !::testing::Test::HasFatalFailure(); ++i) both.send(kFirst, program.withOtherEnd(frame));
+        for (int i = 0; i < 200 && !::testing::Test::HasFatalFailure(); ++i)
+            both.send(kFirst, program.withOtherEnd(frame));
     }
     both.ends(won);
 }

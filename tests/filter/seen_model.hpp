@@ -40,9 +40,9 @@ public:
 
 private:
     using Bytes = std::vector<std::byte>;
-    static constexpr uint32_t kColumns = 24; // of an image
+    static constexpr uint32_t kColumns = 24;             // of an image
     static constexpr uint32_t kSampler = 6, kUnits = 16; // location of a sampler uniform, and the number of units
-    using Levels = std::map<uint32_t, uint64_t>; // content, by level and column; parameters above
+    using Levels = std::map<uint32_t, uint64_t>;         // content, by level and column; parameters above
     struct Array {
         std::map<uint32_t, uint32_t> pointers;
         uint32_t indices = 0;
@@ -53,7 +53,7 @@ private:
         std::map<uint32_t, Array> arrays;
         std::map<uint32_t, uint32_t> attached;
         std::map<uint32_t, std::array<uint32_t, 4>> state; // by kind of state
-        std::map<uint32_t, uint32_t> matrices; // by mode
+        std::map<uint32_t, uint32_t> matrices;             // by mode
         struct Saved {
             uint32_t mask, unit;
             std::map<uint32_t, uint32_t> textures;
@@ -112,8 +112,10 @@ private:
     void draw(Context& c) {
         const uint64_t h = sees(c);
         seen_.push_back(h);
-        if (c.framebuffer == 0) c.window = h;
-        else if (const uint32_t name = c.attached[c.framebuffer]) textures_[name][0] = h;
+        if (c.framebuffer == 0)
+            c.window = h;
+        else if (const uint32_t name = c.attached[c.framebuffer])
+            textures_[name][0] = h;
     }
     // The value of the record and its blob.
     Bytes valueOf(Stream& s, const trace::RecordView& r, size_t word) {
@@ -144,7 +146,9 @@ private:
         const auto arg = [&](size_t word) { return trace::argumentWord(r, word); };
         switch (r.opcode) {
         case wire::kOpBlobBegin: s.blobs.emplace_back(); return;
-        case wire::kOpBlobData: s.blobs.back().insert(s.blobs.back().end(), r.arguments.begin() + 4, r.arguments.begin() + 4 + arg(0)); return;
+        case wire::kOpBlobData:
+            s.blobs.back().insert(s.blobs.back().end(), r.arguments.begin() + 4, r.arguments.begin() + 4 + arg(0));
+            return;
         case wire::kOpCreateContext: contexts_[arg(0)]; return;
         case wire::kOpMakeCurrent: s.context = arg(0); return;
         default: break;
@@ -176,7 +180,9 @@ private:
             for (uint32_t x = begin; x < end; ++x) textures_[texture][arg(1) * kColumns + x] = mix(h, x - begin);
             return;
         }
-        case op::glCopyTexSubImage2D: textures_[texture][arg(1) * kColumns] = mix(textures_[texture][arg(1) * kColumns], c.window); return;
+        case op::glCopyTexSubImage2D:
+            textures_[texture][arg(1) * kColumns] = mix(textures_[texture][arg(1) * kColumns], c.window);
+            return;
         case op::glGenerateMipmap:
             for (uint32_t x = 0; x < kColumns; ++x) textures_[texture][kColumns + x] = mix(textures_[texture][x], 99);
             return;
@@ -257,7 +263,10 @@ private:
             if (saved.mask & GL_ENABLE_BIT) c.state = saved.state; // a simplification
             return;
         }
-        case op::glBegin: draw(c); c.inPrimitive = true; return;
+        case op::glBegin:
+            draw(c);
+            c.inPrimitive = true;
+            return;
         case op::glEnd: c.inPrimitive = false; return;
         case op::glDrawArrays: return draw(c);
         case op::glNewList:

@@ -61,7 +61,8 @@ TEST_P(EveryLosslessCodec, restoresPictures) {
     EXPECT_EQ(ends.through(1, 7, 3, 1, resized), resized);
 }
 
-INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec, ::testing::Values("auto", "raw", "rle64", "bitplane", "bitplane-zstd", "lz4", "zstd"));
+INSTANTIATE_TEST_SUITE_P(Codecs, EveryLosslessCodec,
+                         ::testing::Values("auto", "raw", "rle64", "bitplane", "bitplane-zstd", "lz4", "zstd"));
 
 // Codecs treat words of 10 bits per component like any other words.
 TEST_P(EveryLosslessCodec, restoresDeepPixels) {
@@ -103,7 +104,8 @@ TEST(PackedPictures, haveSmallErrorsForSmoothPicturesWithLossyCodecs) {
         EXPECT_LE(farthest(pixels, out), 12) << codec; // red swapped with blue differs by 100 or more
     }
     Ends ends("jpeg-50");
-    EXPECT_NE(ends.through(1, 1, kWidth, kHeight, drawn(kWidth, kHeight, 3)), drawn(kWidth, kHeight, 3)) << "noise does not come through";
+    EXPECT_NE(ends.through(1, 1, kWidth, kHeight, drawn(kWidth, kHeight, 3)), drawn(kWidth, kHeight, 3))
+        << "noise does not come through";
 }
 
 TEST(PackedPictures, keepAlphaWithLossyCodecsUnlessDropped) {

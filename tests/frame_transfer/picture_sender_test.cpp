@@ -52,7 +52,8 @@ template <class Give> void waitsFor(Gate& gate, Give&& give) {
 
 std::vector<std::byte> rows(uint32_t frame) {
     std::vector<std::byte> all(size_t{kWidth} * kHeight * 4);
-    for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::byte>(i % 4 == 3 ? 255 : (i / 4 + frame * 31) & 255);
+    for (size_t i = 0; i < all.size(); ++i)
+        all[i] = static_cast<std::byte>(i % 4 == 3 ? 255 : (i / 4 + frame * 31) & 255);
     return all;
 }
 
@@ -155,7 +156,9 @@ TEST_F(PictureSenderTest, keepsTheOrderOfMessages) {
     EXPECT_EQ(types(), (std::vector{NodeMessage::ReplyPart})); // everything else waits for the first picture
     gate_.open();
     ASSERT_TRUE(sender_->finish());
-    EXPECT_EQ(types(), (std::vector{NodeMessage::ReplyPart, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::ReplyPart, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::ReplyPart}));
+    EXPECT_EQ(types(),
+              (std::vector{NodeMessage::ReplyPart, NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::ReplyPart,
+                           NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::ReplyPart}));
     EXPECT_EQ(sent_[3].as<uint32_t>(), 2u);
     EXPECT_EQ(sent_[6].as<uint32_t>(), 3u);
     ASSERT_TRUE(tell(4));
@@ -178,7 +181,7 @@ TEST_F(PictureSenderTest, limitsMessagesQueuedAfterAPicture) {
     ASSERT_TRUE(frame(1, &gate_));
     const std::vector<std::byte> large(4000);
     ASSERT_TRUE(sender_->tell(NodeMessage::ReplyPart, large));
-    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::ReplyPart, large); }); // 8000 bytes would be queued
+    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::ReplyPart, large); });    // 8000 bytes would be queued
     ASSERT_TRUE(sender_->tell(NodeMessage::ReplyPart, std::vector<std::byte>(9000))); // above the limit: accepted alone
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 5u);
@@ -239,8 +242,10 @@ TEST_F(PictureSenderTest, restoresPackedPicturesAcrossClosedWindows) {
         ASSERT_TRUE(frame(i, nullptr, windows.back()));
         if (i % 5 != 0) continue;
         const wire::WindowGoneMessage gone{1, i % 15 == 0 ? wire::kAllWindows : windows.back()};
-        if (i % 15 == 0) sender_->clientGone(1);
-        else sender_->windowGone(1, windows.back());
+        if (i % 15 == 0)
+            sender_->clientGone(1);
+        else
+            sender_->windowGone(1, windows.back());
         ASSERT_TRUE(sender_->tell(NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1))));
     }
     ASSERT_TRUE(sender_->finish());
@@ -249,13 +254,16 @@ TEST_F(PictureSenderTest, restoresPackedPicturesAcrossClosedWindows) {
     for (const Sent& s : sent_) {
         if (s.type == NodeMessage::WindowGone) {
             const auto gone = s.as<wire::WindowGoneMessage>();
-            if (gone.window == wire::kAllWindows) unpacker.clientGone(1);
-            else unpacker.windowGone(1, gone.window);
+            if (gone.window == wire::kAllWindows)
+                unpacker.clientGone(1);
+            else
+                unpacker.windowGone(1, gone.window);
         }
         if (s.type != NodeMessage::PackedPicture) continue;
         const auto header = s.as<wire::PictureHeader>();
         std::vector<std::byte> got(rows(0).size());
-        const auto done = unpacker.unpack(1, header.window, header.w, header.h, std::span(s.bytes).subspan(sizeof header), got);
+        const auto done =
+            unpacker.unpack(1, header.window, header.w, header.h, std::span(s.bytes).subspan(sizeof header), got);
         ASSERT_TRUE(done) << header.frame << ": " << done.error().message;
         EXPECT_EQ(got, rows(header.frame)) << header.frame;
         ++pictures;

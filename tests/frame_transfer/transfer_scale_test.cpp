@@ -14,7 +14,9 @@ std::vector<std::byte> noise(int32_t w, int32_t h) {
     return pixels;
 }
 
-int at(const std::vector<std::byte>& pixels, int32_t w, int32_t x, int32_t y, int c) { return std::to_integer<int>(pixels[static_cast<size_t>((y * w + x) * 4 + c)]); }
+int at(const std::vector<std::byte>& pixels, int32_t w, int32_t x, int32_t y, int c) {
+    return std::to_integer<int>(pixels[static_cast<size_t>((y * w + x) * 4 + c)]);
+}
 
 TEST(PictureWay, computesWholeSizesThatAreNeverLarger) {
     EXPECT_EQ(sizeOnWay(101, 50, {.5, .5}).w, 51);
@@ -31,7 +33,8 @@ TEST(PictureWay, averagesFourPixelsAtHalfTheSize) {
     for (int32_t y = 0; y < 3; ++y)
         for (int32_t x = 0; x < 4; ++x)
             for (int c = 0; c < 4; ++c) {
-                const int sum = at(pixels, 8, 2 * x, 2 * y, c) + at(pixels, 8, 2 * x + 1, 2 * y, c) + at(pixels, 8, 2 * x, 2 * y + 1, c) + at(pixels, 8, 2 * x + 1, 2 * y + 1, c);
+                const int sum = at(pixels, 8, 2 * x, 2 * y, c) + at(pixels, 8, 2 * x + 1, 2 * y, c) +
+                                at(pixels, 8, 2 * x, 2 * y + 1, c) + at(pixels, 8, 2 * x + 1, 2 * y + 1, c);
                 EXPECT_EQ(at(small, 4, x, y, c), (sum + 2) / 4);
             }
 }

@@ -52,7 +52,10 @@ GLsync makeFence(GLenum, GLbitfield) { return reinterpret_cast<GLsync>(uintptr_t
 void readNames(GLsizei n, const GLuint* names) { touch(names, count(n, 4)); }
 
 void getIntegerv(GLenum what, GLint* value) {
-    *value = what == GL_ELEMENT_ARRAY_BUFFER_BINDING ? state.elementBuffer : what == GL_RENDER_MODE ? GL_RENDER : what == GL_STENCIL_WRITEMASK ? 255 : 0;
+    *value = what == GL_ELEMENT_ARRAY_BUFFER_BINDING ? state.elementBuffer
+             : what == GL_RENDER_MODE                ? GL_RENDER
+             : what == GL_STENCIL_WRITEMASK          ? 255
+                                                     : 0;
 }
 void enable(GLenum cap) { state.enabled.insert(cap); }
 void disable(GLenum cap) { state.enabled.erase(cap); }
@@ -88,10 +91,13 @@ void texImage2d(GLenum, GLint, GLint, GLsizei w, GLsizei h, GLint, GLenum format
 void texSubImage2d(GLenum, GLint, GLint, GLint, GLsizei w, GLsizei h, GLenum format, GLenum type, const void* pixels) {
     readImage(pixels, format, type, w, h, 1);
 }
-void texImage3d(GLenum, GLint, GLint, GLsizei w, GLsizei h, GLsizei d, GLint, GLenum format, GLenum type, const void* pixels) {
+void texImage3d(GLenum, GLint, GLint, GLsizei w, GLsizei h, GLsizei d, GLint, GLenum format, GLenum type,
+                const void* pixels) {
     readImage(pixels, format, type, w, h, d);
 }
-void drawPixels(GLsizei w, GLsizei h, GLenum format, GLenum type, const void* pixels) { readImage(pixels, format, type, w, h, 1); }
+void drawPixels(GLsizei w, GLsizei h, GLenum format, GLenum type, const void* pixels) {
+    readImage(pixels, format, type, w, h, 1);
+}
 void bitmap(GLsizei w, GLsizei h, GLfloat, GLfloat, GLfloat, GLfloat, const GLubyte* bits) {
     readImage(bits, GL_COLOR_INDEX, GL_BITMAP, w, h, 1);
 }
@@ -100,7 +106,9 @@ void polygonStipple(const GLubyte* bits) { readImage(bits, GL_COLOR_INDEX, GL_BI
 void readPixels(GLint, GLint, GLsizei w, GLsizei h, GLenum format, GLenum type, void* pixels) {
     if (pixels && !state.packBuffer) std::memset(pixels, 0x5a, sizes::tightBytes(format, type, w, h, 1));
 }
-void getTexImage(GLenum, GLint, GLenum, GLenum, GLsizei room, void* pixels) { std::memset(pixels, 0x5a, count(room, 1)); }
+void getTexImage(GLenum, GLint, GLenum, GLenum, GLsizei room, void* pixels) {
+    std::memset(pixels, 0x5a, count(room, 1));
+}
 
 GLenum getError() { return std::exchange(state.error, GL_NO_ERROR); }
 void setCallback(void* callback, const void* user) {
@@ -110,7 +118,8 @@ void setCallback(void* callback, const void* user) {
 void drawArrays(GLenum, GLint, GLsizei) {
     if (!state.options.talks || !state.callback) return;
     for (const GLenum source : {GL_DEBUG_SOURCE_API, GL_DEBUG_SOURCE_APPLICATION})
-        state.callback(source, GL_DEBUG_TYPE_PERFORMANCE, 7, GL_DEBUG_SEVERITY_LOW, -1, "a slow draw", state.callbackUser);
+        state.callback(source, GL_DEBUG_TYPE_PERFORMANCE, 7, GL_DEBUG_SEVERITY_LOW, -1, "a slow draw",
+                       state.callbackUser);
 }
 GLenum graphicsResetStatus() { return state.options.resetStatus; }
 
@@ -133,7 +142,9 @@ GLuint createShaderProgram(GLenum, GLsizei n, const GLchar* const* texts) {
 }
 void uniform4fv(GLint, GLsizei n, const GLfloat* values) { touch(values, count(n, 16)); }
 // Reads like Mesa, which copies a negative count of values after reporting the error.
-void programParameters(GLuint, GLenum, GLuint, GLsizei n, const GLfloat* values) { touch(values, static_cast<size_t>(n) * 16); }
+void programParameters(GLuint, GLenum, GLuint, GLsizei n, const GLfloat* values) {
+    touch(values, static_cast<size_t>(n) * 16);
+}
 void uniformMatrix4fv(GLint, GLsizei n, GLboolean, const GLfloat* values) { touch(values, count(n, 64)); }
 void uniformMatrix4dv(GLint, GLsizei n, GLboolean, const GLdouble* values) { touch(values, count(n, 128)); }
 template <size_t bytes> void readFixed(const void* values) { touch(values, bytes); }
@@ -144,8 +155,12 @@ void drawBuffers(GLsizei n, const GLenum* buffers) {
     for (GLsizei i = 0; i < n; ++i) chooseBuffer(buffers[i]);
 }
 void invalidate(GLenum, GLsizei n, const GLenum* attachments) { touch(attachments, count(n, 4)); }
-void texParameterfv(GLenum, GLenum name, const GLfloat* values) { touch(values, name == GL_TEXTURE_BORDER_COLOR ? 16 : 4); }
-void lightfv(GLenum, GLenum name, const GLfloat* values) { touch(values, name >= GL_AMBIENT && name <= GL_POSITION ? 16 : 4); }
+void texParameterfv(GLenum, GLenum name, const GLfloat* values) {
+    touch(values, name == GL_TEXTURE_BORDER_COLOR ? 16 : 4);
+}
+void lightfv(GLenum, GLenum name, const GLfloat* values) {
+    touch(values, name >= GL_AMBIENT && name <= GL_POSITION ? 16 : 4);
+}
 
 // Ends the process in calls without a context. GL ignores them, but libepoxy ends the process.
 template <auto function> struct InContext;
@@ -160,22 +175,60 @@ template <auto function> gl::Proc proc() { return reinterpret_cast<gl::Proc>(InC
 
 const std::unordered_map<std::string, gl::Proc>& special() {
     static const std::unordered_map<std::string, gl::Proc> table = {
-        {"glGetIntegerv", proc<getIntegerv>()}, {"glGetQueryObjectui64v", proc<getUniform64>()}, {"glGetQueryObjectuiv", proc<getUniform32>()},
-        {"glEnable", proc<enable>()}, {"glDisable", proc<disable>()}, {"glIsEnabled", proc<isEnabled>()}, {"glScissor", proc<scissor>()}, {"glClear", proc<clear>()}, {"glRectf", proc<rectf>()},
-        {"glGetUniformLocation", proc<uniformLocation>()}, {"glBindBuffer", proc<bindBuffer>()}, {"glBufferData", proc<bufferData>()},
-        {"glBufferSubData", proc<bufferSubData>()}, {"glTexImage2D", proc<texImage2d>()}, {"glGetError", proc<getError>()}, {"glDebugMessageCallback", proc<setCallback>()},
-        {"glDrawArrays", proc<drawArrays>()}, {"glGetGraphicsResetStatus", proc<graphicsResetStatus>()}, {"glTexSubImage2D", proc<texSubImage2d>()},
-        {"glTexImage3D", proc<texImage3d>()}, {"glDrawPixels", proc<drawPixels>()}, {"glBitmap", proc<bitmap>()},
-        {"glPolygonStipple", proc<polygonStipple>()}, {"glReadPixels", proc<readPixels>()}, {"glGetnTexImageARB", proc<getTexImage>()},
-        {"glGetnTexImage", proc<getTexImage>()}, {"glGetTextureImage", proc<getTexImage>()}, {"glDrawElements", proc<drawElements>()},
-        {"glMultiDrawElements", proc<multiDrawElements>()}, {"glMultiDrawArrays", proc<multiDrawArrays>()}, {"glShaderSource", proc<shaderSource>()},
-        {"glCreateShaderProgramv", proc<createShaderProgram>()}, {"glUniform4fv", proc<uniform4fv>()}, {"glUniformMatrix4fv", proc<uniformMatrix4fv>()},
-        {"glUniformMatrix4dv", proc<uniformMatrix4dv>()}, {"glLoadMatrixd", proc<readFixed<128>>()}, {"glMultMatrixf", proc<readFixed<64>>()},
-        {"glWindowPos2fv", proc<readFixed<8>>()}, {"glWindowPos3dv", proc<readFixed<24>>()}, {"glWindowPos4dvMESA", proc<readFixed<32>>()},
-        {"glVertex3fv", proc<readFixed<12>>()}, {"glDrawBuffers", proc<drawBuffers>()}, {"glDrawBuffer", proc<chooseBuffer>()}, {"glReadBuffer", proc<chooseBuffer>()}, {"glInvalidateFramebuffer", proc<invalidate>()},
-        {"glTexParameterfv", proc<texParameterfv>()}, {"glLightfv", proc<lightfv>()}, {"glFenceSync", proc<makeFence>()},
-        {"glGenLists", proc<makeLists>()}, {"glCreateShader", proc<makeOne>()}, {"glCreateProgram", proc<makeOne>()},
-        {"glNamedProgramLocalParameters4fvEXT", proc<programParameters>()}, {"glCreateTextures", proc<makeNamesOf>()}, {"glCreateQueries", proc<makeNamesOf>()}};
+        {"glGetIntegerv", proc<getIntegerv>()},
+        {"glGetQueryObjectui64v", proc<getUniform64>()},
+        {"glGetQueryObjectuiv", proc<getUniform32>()},
+        {"glEnable", proc<enable>()},
+        {"glDisable", proc<disable>()},
+        {"glIsEnabled", proc<isEnabled>()},
+        {"glScissor", proc<scissor>()},
+        {"glClear", proc<clear>()},
+        {"glRectf", proc<rectf>()},
+        {"glGetUniformLocation", proc<uniformLocation>()},
+        {"glBindBuffer", proc<bindBuffer>()},
+        {"glBufferData", proc<bufferData>()},
+        {"glBufferSubData", proc<bufferSubData>()},
+        {"glTexImage2D", proc<texImage2d>()},
+        {"glGetError", proc<getError>()},
+        {"glDebugMessageCallback", proc<setCallback>()},
+        {"glDrawArrays", proc<drawArrays>()},
+        {"glGetGraphicsResetStatus", proc<graphicsResetStatus>()},
+        {"glTexSubImage2D", proc<texSubImage2d>()},
+        {"glTexImage3D", proc<texImage3d>()},
+        {"glDrawPixels", proc<drawPixels>()},
+        {"glBitmap", proc<bitmap>()},
+        {"glPolygonStipple", proc<polygonStipple>()},
+        {"glReadPixels", proc<readPixels>()},
+        {"glGetnTexImageARB", proc<getTexImage>()},
+        {"glGetnTexImage", proc<getTexImage>()},
+        {"glGetTextureImage", proc<getTexImage>()},
+        {"glDrawElements", proc<drawElements>()},
+        {"glMultiDrawElements", proc<multiDrawElements>()},
+        {"glMultiDrawArrays", proc<multiDrawArrays>()},
+        {"glShaderSource", proc<shaderSource>()},
+        {"glCreateShaderProgramv", proc<createShaderProgram>()},
+        {"glUniform4fv", proc<uniform4fv>()},
+        {"glUniformMatrix4fv", proc<uniformMatrix4fv>()},
+        {"glUniformMatrix4dv", proc<uniformMatrix4dv>()},
+        {"glLoadMatrixd", proc<readFixed<128>>()},
+        {"glMultMatrixf", proc<readFixed<64>>()},
+        {"glWindowPos2fv", proc<readFixed<8>>()},
+        {"glWindowPos3dv", proc<readFixed<24>>()},
+        {"glWindowPos4dvMESA", proc<readFixed<32>>()},
+        {"glVertex3fv", proc<readFixed<12>>()},
+        {"glDrawBuffers", proc<drawBuffers>()},
+        {"glDrawBuffer", proc<chooseBuffer>()},
+        {"glReadBuffer", proc<chooseBuffer>()},
+        {"glInvalidateFramebuffer", proc<invalidate>()},
+        {"glTexParameterfv", proc<texParameterfv>()},
+        {"glLightfv", proc<lightfv>()},
+        {"glFenceSync", proc<makeFence>()},
+        {"glGenLists", proc<makeLists>()},
+        {"glCreateShader", proc<makeOne>()},
+        {"glCreateProgram", proc<makeOne>()},
+        {"glNamedProgramLocalParameters4fvEXT", proc<programParameters>()},
+        {"glCreateTextures", proc<makeNamesOf>()},
+        {"glCreateQueries", proc<makeNamesOf>()}};
     return table;
 }
 
@@ -207,7 +260,8 @@ public:
         state.options = options;
     }
     Result<std::unique_ptr<gl::Surface>> createSurface(const gl::SurfaceConfig& c) override {
-        if (options_.surfacesFail || c.width > state.maxSurface || c.height > state.maxSurface) return Error{"too large"};
+        if (options_.surfacesFail || c.width > state.maxSurface || c.height > state.maxSurface)
+            return Error{"too large"};
         return std::unique_ptr<gl::Surface>(new FakeSurface(c, options_.colorBuffers));
     }
     Result<std::unique_ptr<gl::Context>> createContext(const gl::ContextConfig& c, gl::Context* share) override {
@@ -217,7 +271,8 @@ public:
     }
     Result<void> makeCurrent(gl::Context* context, gl::Surface* draw, gl::Surface* read, gl::HeldBack) override {
         // A change of context flushes the old surfaces and reads the new ones, so all must be alive.
-        for (const gl::Surface* s : {draw_, read_, static_cast<const gl::Surface*>(draw), static_cast<const gl::Surface*>(read)}) {
+        for (const gl::Surface* s :
+             {draw_, read_, static_cast<const gl::Surface*>(draw), static_cast<const gl::Surface*>(read)}) {
             if (s) sink = static_cast<uint8_t>(s->width());
         }
         state.current = context != nullptr;
@@ -228,7 +283,9 @@ public:
     gl::Proc getProcAddress(const char* text) override {
         const std::string name = text;
         if (const auto it = special().find(name); it != special().end()) return it->second;
-        if (name.starts_with("glGen") && name != "glGenerateMipmap" && name.find("Symbols") == std::string::npos && !name.starts_with("glGenerate") && name != "glGenPathsNV" && name != "glGenAsyncMarkersSGIX" && name != "glGenFragmentShadersATI" && name != "glGenVertexShadersEXT")
+        if (name.starts_with("glGen") && name != "glGenerateMipmap" && name.find("Symbols") == std::string::npos &&
+            !name.starts_with("glGenerate") && name != "glGenPathsNV" && name != "glGenAsyncMarkersSGIX" &&
+            name != "glGenFragmentShadersATI" && name != "glGenVertexShadersEXT")
             return proc<makeNames>();
         if (name.starts_with("glCreate") && name.ends_with("s")) return proc<makeNames>();
         if (name.starts_with("glDelete") && name.ends_with("s") && name != "glDeleteLists") return proc<readNames>();
@@ -244,6 +301,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<gl::Platform> makeFakePlatform(const FakeGlOptions& options) { return std::make_unique<FakePlatform>(options); }
+std::unique_ptr<gl::Platform> makeFakePlatform(const FakeGlOptions& options) {
+    return std::make_unique<FakePlatform>(options);
+}
 
 } // namespace mural::fuzz

@@ -14,8 +14,8 @@ namespace mural::fuzz {
 struct FakeGlOptions {
     gl::ColorBuffers colorBuffers = gl::ColorBuffers::FrontAndBack;
     bool surfacesFail = false;
-    int largestTexture = 0; // size in pixels above which memory is exhausted; 0: none
-    bool talks = false; // each glDrawArrays sends a performance message to the debug callback
+    int largestTexture = 0;   // size in pixels above which memory is exhausted; 0: none
+    bool talks = false;       // each glDrawArrays sends a performance message to the debug callback
     unsigned resetStatus = 0; // status that contexts with reset notification report
     // called for each glClear and glRectf; may be empty
     std::function<void(bool scissored, const std::array<int, 4>& box)> drew = {};

@@ -47,7 +47,9 @@ public:
 
 private:
     void change(Input& input, const Input& other) {
-        static constexpr uint32_t kWords[] = {0, 1, 2, 0xff, 0xffff, 0x10000, 0x7fffffff, 0x80000000, 0xfffffffd, 0xfffffffe, 0xffffffff, 0x10000001, 16384, 16385};
+        static constexpr uint32_t kWords[] = {0,          1,          2,          0xff,       0xffff,
+                                              0x10000,    0x7fffffff, 0x80000000, 0xfffffffd, 0xfffffffe,
+                                              0xffffffff, 0x10000001, 16384,      16385};
         const size_t at = below(input.size());
         switch (below(5)) {
         case 0: input[at] ^= static_cast<std::byte>(1u << below(8)); break;
@@ -57,10 +59,17 @@ private:
             if (word + 4 <= input.size()) std::memcpy(input.data() + word, &kWords[below(std::size(kWords))], 4);
             break;
         }
-        case 3: input.erase(input.begin() + static_cast<std::ptrdiff_t>(at), input.begin() + static_cast<std::ptrdiff_t>(std::min(input.size(), at + 4 * below(16)))); break;
+        case 3:
+            input.erase(input.begin() + static_cast<std::ptrdiff_t>(at),
+                        input.begin() + static_cast<std::ptrdiff_t>(std::min(input.size(), at + 4 * below(16))));
+            break;
         default: {
-            const size_t from = below(other.size()) / 4 * 4 + 1, count = std::min(4 * below(64), other.size() - std::min(other.size(), from));
-            if (count) input.insert(input.begin() + static_cast<std::ptrdiff_t>(std::min(at / 4 * 4 + 1, input.size())), other.begin() + static_cast<std::ptrdiff_t>(from), other.begin() + static_cast<std::ptrdiff_t>(from + count));
+            const size_t from = below(other.size()) / 4 * 4 + 1,
+                         count = std::min(4 * below(64), other.size() - std::min(other.size(), from));
+            if (count)
+                input.insert(input.begin() + static_cast<std::ptrdiff_t>(std::min(at / 4 * 4 + 1, input.size())),
+                             other.begin() + static_cast<std::ptrdiff_t>(from),
+                             other.begin() + static_cast<std::ptrdiff_t>(from + count));
         }
         }
     }
@@ -69,7 +78,8 @@ private:
 
 // Writes the input before each run. Only needed when a sanitizer may end the process at any byte.
 void keep(const Input& input) {
-    std::ofstream("last_input", std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+    std::ofstream("last_input", std::ios::binary)
+        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
 }
 
 } // namespace
@@ -80,11 +90,15 @@ int main(int argc, char** argv) {
     std::vector<Input> seeds;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
-        if (argument == "--seconds" && i + 1 < argc) seconds = std::atof(argv[++i]);
-        else if (argument == "--seed" && i + 1 < argc) seed = std::strtoull(argv[++i], nullptr, 10);
+        if (argument == "--seconds" && i + 1 < argc)
+            seconds = std::atof(argv[++i]);
+        else if (argument == "--seed" && i + 1 < argc)
+            seed = std::strtoull(argv[++i], nullptr, 10);
         else if (std::filesystem::is_directory(argument)) {
-            for (const auto& entry : std::filesystem::directory_iterator(argument)) seeds.push_back(readFile(entry.path()));
-        } else seeds.push_back(readFile(argument));
+            for (const auto& entry : std::filesystem::directory_iterator(argument))
+                seeds.push_back(readFile(entry.path()));
+        } else
+            seeds.push_back(readFile(argument));
     }
     if (seeds.empty()) {
         std::fprintf(stderr, "fuzz: no input; give files or folders\n");

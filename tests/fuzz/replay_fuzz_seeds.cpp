@@ -37,7 +37,8 @@ public:
     }
     void save(const std::filesystem::path& folder, const char* name) {
         cut();
-        std::ofstream(folder / name, std::ios::binary).write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+        std::ofstream(folder / name, std::ios::binary)
+            .write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
     }
 
 private:
@@ -132,7 +133,10 @@ void shaders(Seed& s) {
     encode_glAttachShader(s.t(), 2, 1);
     encode_glBindAttribLocation(s.t(), 2, 0, DataArg::text("position"));
     encode_glLinkProgram(s.t(), 2);
-    const struct { uint32_t count, location, length; char name[4]; } layout = {1, 9, 4, {'m', 'v', 'p', 0}};
+    const struct {
+        uint32_t count, location, length;
+        char name[4];
+    } layout = {1, 9, 4, {'m', 'v', 'p', 0}};
     records::programLayout(s.t(), 2, array(layout));
     encode_glUseProgram(s.t(), 2);
     const GLfloat matrix[16] = {1};
@@ -150,12 +154,18 @@ void clientMemory(Seed& s) {
     s.begin();
     static const GLfloat vertices[32] = {1};
     static const uint8_t large[17000] = {1};
-    const client_arrays::ArrayRecord arrays[] = {{client_arrays::kVertex, 3, GL_FLOAT, 0, 12, 0, 0, 0, 3}, {client_arrays::kTexCoord0, 2, GL_FLOAT, 0, 8, 1, 0, 2, 3}, {client_arrays::kGeneric0 + 1, 4, GL_UNSIGNED_BYTE, client_arrays::kNormalized, 4, 0, 4, 0, 3}};
+    const client_arrays::ArrayRecord arrays[] = {
+        {client_arrays::kVertex, 3, GL_FLOAT, 0, 12, 0, 0, 0, 3},
+        {client_arrays::kTexCoord0, 2, GL_FLOAT, 0, 8, 1, 0, 2, 3},
+        {client_arrays::kGeneric0 + 1, 4, GL_UNSIGNED_BYTE, client_arrays::kNormalized, 4, 0, 4, 0, 3}};
     const DataArg spans[] = {array(vertices), DataArg::of(large, sizeof large)};
     records::clientArrays(s.t(), arrays, 3, spans, 2);
     encode_glDrawArrays(s.t(), GL_TRIANGLES, 0, 3);
     const GLsizei counts[] = {3, 3};
-    const struct { uint32_t kind, zero; uint16_t indices[8]; } indices = {0, 0, {0, 1, 2, 0, 1, 2, 0, 0}};
+    const struct {
+        uint32_t kind, zero;
+        uint16_t indices[8];
+    } indices = {0, 0, {0, 1, 2, 0, 1, 2, 0, 0}};
     encode_glMultiDrawElements(s.t(), GL_TRIANGLES, array(counts), GL_UNSIGNED_SHORT, array(indices), 2);
     encode_glPolygonStipple(s.t(), DataArg::of(large, 128));
     encode_glBitmap(s.t(), 8, 8, 0, 0, 1, 1, DataArg::of(large, 8));
@@ -232,10 +242,16 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "replay_fuzz_seeds FOLDER\n");
         return 1;
     }
-    const struct { const char* name; void (*make)(mural::Seed&); } seeds[] = {
-        {"immediate", mural::immediate}, {"lists", mural::lists}, {"objects", mural::objects},
-        {"shaders", mural::shaders}, {"client_memory", mural::clientMemory}, {"threads", mural::threads},
-        {"released", mural::released}};
+    const struct {
+        const char* name;
+        void (*make)(mural::Seed&);
+    } seeds[] = {{"immediate", mural::immediate},
+                 {"lists", mural::lists},
+                 {"objects", mural::objects},
+                 {"shaders", mural::shaders},
+                 {"client_memory", mural::clientMemory},
+                 {"threads", mural::threads},
+                 {"released", mural::released}};
     for (const auto& [name, make] : seeds) {
         for (const int options : {2, 7}) { // exact tiles; lean tiles with one colour buffer
             mural::Seed seed(static_cast<uint8_t>(options));

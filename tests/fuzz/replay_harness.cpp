@@ -42,7 +42,9 @@ ReplayOutputs outputs() {
 ReplayCounts replayBytes(std::span<const std::byte> input) {
     if (input.empty()) return {};
     const auto options = static_cast<uint8_t>(input[0]);
-    Replay replay(makeFakePlatform({.colorBuffers = (options & kSingleBuffered) != 0 ? gl::ColorBuffers::OneNamedFront : gl::ColorBuffers::FrontAndBack, .surfacesFail = (options & kSurfacesFail) != 0}),
+    Replay replay(makeFakePlatform({.colorBuffers = (options & kSingleBuffered) != 0 ? gl::ColorBuffers::OneNamedFront
+                                                                                     : gl::ColorBuffers::FrontAndBack,
+                                    .surfacesFail = (options & kSurfacesFail) != 0}),
                   configOf(options), outputs());
     input = input.subspan(1);
     while (input.size() > sizeof(wire::PacketHeader)) {
@@ -56,8 +58,10 @@ ReplayCounts replayBytes(std::span<const std::byte> input) {
         input = input.subspan(bytes);
         uint32_t words[2] = {};
         std::memcpy(words, payload.get(), std::min(bytes, sizeof words));
-        if (wire::clientOf(header.stream) != 0) (void)replay.packet(header.stream, {payload.get(), bytes});
-        else if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) replay.clientGone(words[1]);
+        if (wire::clientOf(header.stream) != 0)
+            (void)replay.packet(header.stream, {payload.get(), bytes});
+        else if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
+            replay.clientGone(words[1]);
     }
     return replay.counts();
 }

@@ -222,7 +222,8 @@ TEST_P(Backends, useTheNearestBitsForMissingOnes) {
     const gl::SurfaceConfig& there = drawable.surface->config();
     EXPECT_EQ(there.depth, 24);
     EXPECT_LT(there.samples, 77);
-    EXPECT_EQ(gl::whatDiffers(there, config.surface), "depth 24 instead of 23, samples " + std::to_string(there.samples) + " instead of 77");
+    EXPECT_EQ(gl::whatDiffers(there, config.surface),
+              "depth 24 instead of 23, samples " + std::to_string(there.samples) + " instead of 77");
     const GlFunctions gl(find());
     GLint bits = 0;
     gl.getIntegerv(GL_DEPTH_BITS, &bits);
@@ -374,7 +375,8 @@ TEST_P(Backends, drawToTheCornersOfTheLargestSurface) {
         clearRed(gl, 5);
         gl.color4f(1, 0, 0, 1);
         gl.begin(GL_POINTS);
-        gl.vertex3f(1 - 1.0f / static_cast<float>(config.surface.width), 1 - 1.0f / static_cast<float>(config.surface.height), 0);
+        gl.vertex3f(1 - 1.0f / static_cast<float>(config.surface.width),
+                    1 - 1.0f / static_cast<float>(config.surface.height), 0);
         gl.end();
         uint8_t pixel[4] = {};
         gl.readPixels(config.surface.width - 1, config.surface.height - 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
@@ -474,10 +476,12 @@ TEST_P(Backends, showWritesToReadersInTheShareGroup) {
     ASSERT_TRUE(reader) << reader.error().message;
     const GlFunctions gl(find());
     const auto genBuffers = reinterpret_cast<decltype(&glGenBuffers)>(platform_->getProcAddress("glGenBuffers"));
-    const auto mapBufferRange = reinterpret_cast<decltype(&glMapBufferRange)>(platform_->getProcAddress("glMapBufferRange"));
+    const auto mapBufferRange =
+        reinterpret_cast<decltype(&glMapBufferRange)>(platform_->getProcAddress("glMapBufferRange"));
     const auto unmapBuffer = reinterpret_cast<decltype(&glUnmapBuffer)>(platform_->getProcAddress("glUnmapBuffer"));
     const auto fenceSync = reinterpret_cast<decltype(&glFenceSync)>(platform_->getProcAddress("glFenceSync"));
-    const auto clientWaitSync = reinterpret_cast<decltype(&glClientWaitSync)>(platform_->getProcAddress("glClientWaitSync"));
+    const auto clientWaitSync =
+        reinterpret_cast<decltype(&glClientWaitSync)>(platform_->getProcAddress("glClientWaitSync"));
     const auto deleteSync = reinterpret_cast<decltype(&glDeleteSync)>(platform_->getProcAddress("glDeleteSync"));
     const auto flush = reinterpret_cast<decltype(&glFlush)>(platform_->getProcAddress("glFlush"));
     GLuint buffer = 0;
@@ -497,7 +501,8 @@ TEST_P(Backends, showWritesToReadersInTheShareGroup) {
             EXPECT_TRUE(state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED) << state;
             deleteSync(done);
             gl.bindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
-            const auto* pixels = static_cast<const uint8_t*>(mapBufferRange(GL_PIXEL_PACK_BUFFER, 0, 16 * 16 * 4, GL_MAP_READ_BIT));
+            const auto* pixels =
+                static_cast<const uint8_t*>(mapBufferRange(GL_PIXEL_PACK_BUFFER, 0, 16 * 16 * 4, GL_MAP_READ_BIT));
             ASSERT_NE(pixels, nullptr);
             for (size_t i = 0; i < 16 * 16 * 4; i += 4) EXPECT_EQ(pixels[i], red);
             unmapBuffer(GL_PIXEL_PACK_BUFFER);

@@ -20,7 +20,8 @@ ConfigCandidate candidate(int alpha, int depth, int samples, int rank = 0) {
 }
 
 TEST(ConfigMatch, takesEqualBitsAndNotMore) {
-    const std::vector<ConfigCandidate> all{candidate(8, 32, 0), candidate(0, 32, 0), candidate(0, 24, 4), candidate(0, 24, 0)};
+    const std::vector<ConfigCandidate> all{candidate(8, 32, 0), candidate(0, 32, 0), candidate(0, 24, 4),
+                                           candidate(0, 24, 0)};
     auto index = matchConfig("X", all, SurfaceConfig());
     ASSERT_TRUE(index);
     EXPECT_EQ(*index, 3u);
@@ -31,9 +32,7 @@ TEST(ConfigMatch, takesTheLowestRankThenTheFirst) {
     EXPECT_EQ(matchConfig("X", all, SurfaceConfig()).value(), 1u);
 }
 
-TEST(ConfigMatch, oneSampleIsNoMultisampling) {
-    EXPECT_TRUE(matchConfig("X", {candidate(0, 24, 1)}, SurfaceConfig()));
-}
+TEST(ConfigMatch, oneSampleIsNoMultisampling) { EXPECT_TRUE(matchConfig("X", {candidate(0, 24, 1)}, SurfaceConfig())); }
 
 TEST(ConfigMatch, errorNamesTheWishAndWhatThereIs) {
     SurfaceConfig wish;
@@ -56,16 +55,17 @@ TEST(ConfigMatch, takesOtherAlphaOnlyWhereBothHaveOne) {
 }
 
 TEST(ConfigMatch, takesTheNearestOfWhatIsNotThere) {
-    const std::vector<ConfigCandidate> all{candidate(0, 0, 0), candidate(0, 16, 8), candidate(0, 24, 4), candidate(0, 24, 2)};
+    const std::vector<ConfigCandidate> all{candidate(0, 0, 0), candidate(0, 16, 8), candidate(0, 24, 4),
+                                           candidate(0, 24, 2)};
     const auto taken = [&](int depth, int samples) {
         SurfaceConfig wish;
         wish.depth = depth;
         wish.samples = samples;
         return matchConfig("X", all, wish).value();
     };
-    EXPECT_EQ(taken(32, 4), 2u);  // the most that there is
-    EXPECT_EQ(taken(20, 3), 2u);  // the least that has more, of each
-    EXPECT_EQ(taken(12, 0), 1u);  // depth goes before samples
+    EXPECT_EQ(taken(32, 4), 2u); // the most that there is
+    EXPECT_EQ(taken(20, 3), 2u); // the least that has more, of each
+    EXPECT_EQ(taken(12, 0), 1u); // depth goes before samples
     EXPECT_EQ(taken(24, 0), 3u);
     EXPECT_EQ(taken(24, 16), 2u);
 }
@@ -85,12 +85,13 @@ TEST(ConfigMatch, tellsWhatDiffers) {
 
 TEST(ConfigMatch, everyAttributeCounts) {
     const std::vector<int SurfaceConfig::*> numbers{
-        &SurfaceConfig::red, &SurfaceConfig::green, &SurfaceConfig::blue, &SurfaceConfig::alpha,
+        &SurfaceConfig::red,   &SurfaceConfig::green,   &SurfaceConfig::blue,    &SurfaceConfig::alpha,
         &SurfaceConfig::depth, &SurfaceConfig::stencil, &SurfaceConfig::samples, &SurfaceConfig::accum};
     for (auto number : numbers) {
         SurfaceConfig wish;
         wish.*number += 2;
-        EXPECT_EQ(static_cast<bool>(matchConfig("X", {ConfigCandidate()}, wish)), number != &SurfaceConfig::alpha && number != &SurfaceConfig::accum);
+        EXPECT_EQ(static_cast<bool>(matchConfig("X", {ConfigCandidate()}, wish)),
+                  number != &SurfaceConfig::alpha && number != &SurfaceConfig::accum);
         EXPECT_NE(whatDiffers(SurfaceConfig(), wish), "");
         EXPECT_FALSE(sameBits(wish, SurfaceConfig()));
     }

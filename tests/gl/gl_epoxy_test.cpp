@@ -33,14 +33,16 @@ Kinds desktopFirst() { return {esFirst().rbegin(), esFirst().rend()}; }
 
 bool isEpoxys(Proc proc) {
     Dl_info info{};
-    return proc && dladdr(reinterpret_cast<void*>(proc), &info) && std::string(info.dli_fname).find("libepoxy") != std::string::npos;
+    return proc && dladdr(reinterpret_cast<void*>(proc), &info) &&
+           std::string(info.dli_fname).find("libepoxy") != std::string::npos;
 }
 
 // The driver's functions, without libepoxy.
 FindProc driversOwn(const std::string& backend) {
     const bool glx = backend == "glx";
     void* library = dlopen(glx ? "libGLX.so.0" : "libEGL.so.1", RTLD_NOW);
-    const auto loader = reinterpret_cast<Proc (*)(const char*)>(dlsym(library, glx ? "glXGetProcAddressARB" : "eglGetProcAddress"));
+    const auto loader =
+        reinterpret_cast<Proc (*)(const char*)>(dlsym(library, glx ? "glXGetProcAddressARB" : "eglGetProcAddress"));
     return [loader](const char* name) { return loader(name); };
 }
 
@@ -56,7 +58,8 @@ protected:
         open(backend);
         if (HasFatalFailure()) return;
         for (const gl::ContextConfig& config : kinds) {
-            const std::string what = backend + ", kind " + std::to_string(static_cast<int>(config.api)) + " " + std::to_string(config.major);
+            const std::string what =
+                backend + ", kind " + std::to_string(static_cast<int>(config.api)) + " " + std::to_string(config.major);
             Picture pictures[2];
             for (const bool own : {false, true}) {
                 Drawable drawable(*platform_, config);
@@ -84,8 +87,9 @@ TEST_F(Epoxy, providesTheCommandsOfEglAndGlx) {
 // Names that libepoxy may confuse, commands allowed between Begin and End, and commands unknown to libepoxy.
 TEST_F(Epoxy, leavesOtherCommandsToTheDriver) {
     open("egl");
-    for (const char* name : {"glBindVertexArray", "glBindFramebufferEXT", "glAttachObjectARB", "glBlendBarrier", "glBegin", "glEnd",
-                             "glVertexAttrib4Nub", "glColor3hNV", "glTexCoordP2uiv", "glShadingRateQCOM", "glNoSuchCommand", "eglGetError"})
+    for (const char* name : {"glBindVertexArray", "glBindFramebufferEXT", "glAttachObjectARB", "glBlendBarrier",
+                             "glBegin", "glEnd", "glVertexAttrib4Nub", "glColor3hNV", "glTexCoordP2uiv",
+                             "glShadingRateQCOM", "glNoSuchCommand", "eglGetError"})
         EXPECT_FALSE(isEpoxys(platform_->getProcAddress(name))) << name;
 }
 
@@ -105,8 +109,9 @@ TEST_F(Epoxy, drawsTheDriversPicturesInGlxThenEgl) {
 
 // libepoxy itself would abort the process ("No provider of ... found").
 TEST_F(Epoxy, survivesACommandThatTheDriverLacks) {
-    constexpr std::array kLacking{"glResizeBuffersMESA", "glFlushVertexArrayRangeNV", "glFinishTextureSUNX", "glSwapAPPLE",
-                                  "glFlushRasterSGIX", "glEndOcclusionQueryNV", "glVDPAUFiniNV"};
+    constexpr std::array kLacking{"glResizeBuffersMESA", "glFlushVertexArrayRangeNV", "glFinishTextureSUNX",
+                                  "glSwapAPPLE",         "glFlushRasterSGIX",         "glEndOcclusionQueryNV",
+                                  "glVDPAUFiniNV"};
     size_t next = 0;
     for (const char* backend : {"egl", "glx"}) {
         open(backend);

@@ -44,7 +44,8 @@ protected:
 
     // Creates a surface, and expects zeros in all its buffers.
     void expectZero(const gl::SurfaceConfig& wish) {
-        SCOPED_TRACE(std::to_string(wish.width) + "x" + std::to_string(wish.height) + " alpha " + std::to_string(wish.alpha) + " samples " + std::to_string(wish.samples));
+        SCOPED_TRACE(std::to_string(wish.width) + "x" + std::to_string(wish.height) + " alpha " +
+                     std::to_string(wish.alpha) + " samples " + std::to_string(wish.samples));
         fillHeapWithPattern(static_cast<size_t>(wish.width) * static_cast<size_t>(wish.height) * 4);
         gl::ContextConfig config;
         config.major = 2;
@@ -119,7 +120,8 @@ TEST_P(NewSurfaces, keepTheCurrentContext) {
     EXPECT_EQ(gl.getError(), GLenum{GL_NO_ERROR});
 }
 
-INSTANTIATE_TEST_SUITE_P(All, NewSurfaces, testing::Values("egl", "osmesa", "glx"), [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(All, NewSurfaces, testing::Values("egl", "osmesa", "glx"),
+                         [](const auto& parameter) { return parameter.param; });
 
 } // namespace
 } // namespace mural::test

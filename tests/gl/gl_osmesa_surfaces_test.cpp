@@ -26,7 +26,8 @@ protected:
         ASSERT_EQ(expected.depth.size(), actual.depth.size());
         uint32_t largest = 0;
         for (size_t i = 0; i < expected.depth.size(); i++)
-            largest = std::max(largest, std::max(expected.depth[i], actual.depth[i]) - std::min(expected.depth[i], actual.depth[i]));
+            largest = std::max(largest, std::max(expected.depth[i], actual.depth[i]) -
+                                            std::min(expected.depth[i], actual.depth[i]));
         EXPECT_LE(largest, depthBits == 24 ? 256u * static_cast<unsigned>(copies) : 0u);
         expected.depth = actual.depth;
         EXPECT_EQ(difference(expected, actual), "");

@@ -12,7 +12,7 @@ namespace {
 struct Case {
     const char* name;
     gl::ContextConfig context; // surface: the bits
-    bool osmesa; // OSMesa supports these bits and this kind of context
+    bool osmesa;               // OSMesa supports these bits and this kind of context
     bool egl = true;
 };
 
@@ -69,9 +69,7 @@ const Case kCases[] = {
     {"coreSrgb", withSrgb(make(gl::Api::Desktop, 3, 3, true)), false},
 };
 
-void PrintTo(const Case& shown, std::ostream* out) {
-    *out << shown.name;
-}
+void PrintTo(const Case& shown, std::ostream* out) { *out << shown.name; }
 
 class WindowEquality : public BackendTest, public testing::WithParamInterface<Case> {
 protected:
@@ -95,7 +93,8 @@ protected:
         int largest = 0;
         for (int y = 0; y < picture.height; y++)
             for (int x = 0; x < picture.width; x++) {
-                const uint8_t* c = &picture.color[static_cast<size_t>((picture.height - 1 - y) * picture.width + x) * 4];
+                const uint8_t* c =
+                    &picture.color[static_cast<size_t>((picture.height - 1 - y) * picture.width + x) * 4];
                 const uint32_t rgb = static_cast<uint32_t>(c[0]) << 16 | static_cast<uint32_t>(c[1]) << 8 | c[2];
                 const uint32_t seen = shown[static_cast<size_t>(y * picture.width + x)];
                 if (seen != rgb) differing++;
@@ -114,7 +113,8 @@ protected:
         {
             Drawable drawable(*platform_, GetParam().context);
             ASSERT_EQ(drawable.error, "") << backend;
-            picture = drawScene(find(), GetParam().context, GetParam().context.surface, drawable.surface->hiddenAlpha());
+            picture =
+                drawScene(find(), GetParam().context, GetParam().context.surface, drawable.surface->hiddenAlpha());
             ASSERT_TRUE(platform_->makeCurrent(nullptr, nullptr, nullptr));
         }
         EXPECT_EQ(difference(native, picture), "") << backend << " against a native window";

@@ -83,10 +83,29 @@ public:
 
 private:
     GLXFBConfig choose(const gl::SurfaceConfig& s) const {
-        const int list[] = {GLX_X_RENDERABLE, True, GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT, GLX_DOUBLEBUFFER, True,
-                            GLX_RED_SIZE, s.red, GLX_GREEN_SIZE, s.green, GLX_BLUE_SIZE, s.blue, GLX_ALPHA_SIZE, s.alpha,
-                            GLX_DEPTH_SIZE, s.depth, GLX_STENCIL_SIZE, s.stencil, GLX_ACCUM_RED_SIZE, s.accum,
-                            GLX_SAMPLES, s.samples, 0};
+        const int list[] = {GLX_X_RENDERABLE,
+                            True,
+                            GLX_DRAWABLE_TYPE,
+                            GLX_WINDOW_BIT,
+                            GLX_DOUBLEBUFFER,
+                            True,
+                            GLX_RED_SIZE,
+                            s.red,
+                            GLX_GREEN_SIZE,
+                            s.green,
+                            GLX_BLUE_SIZE,
+                            s.blue,
+                            GLX_ALPHA_SIZE,
+                            s.alpha,
+                            GLX_DEPTH_SIZE,
+                            s.depth,
+                            GLX_STENCIL_SIZE,
+                            s.stencil,
+                            GLX_ACCUM_RED_SIZE,
+                            s.accum,
+                            GLX_SAMPLES,
+                            s.samples,
+                            0};
         int count = 0;
         GLXFBConfig* all = glXChooseFBConfig(x_.display(), DefaultScreen(x_.display()), list, &count);
         GLXFBConfig chosen = nullptr;
@@ -112,8 +131,13 @@ private:
         const int profile = wish.api != gl::Api::Desktop ? GLX_CONTEXT_ES_PROFILE_BIT_EXT
                             : wish.core                  ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB
                                                          : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB;
-        const int list[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, wish.major, GLX_CONTEXT_MINOR_VERSION_ARB, wish.minor,
-                            GLX_CONTEXT_PROFILE_MASK_ARB, profile, 0};
+        const int list[] = {GLX_CONTEXT_MAJOR_VERSION_ARB,
+                            wish.major,
+                            GLX_CONTEXT_MINOR_VERSION_ARB,
+                            wish.minor,
+                            GLX_CONTEXT_PROFILE_MASK_ARB,
+                            profile,
+                            0};
         return create(x_.display(), config, nullptr, True, list);
     }
 
@@ -159,9 +183,9 @@ public:
 
 private:
     EGLConfig choose(const gl::SurfaceConfig& s, EGLint& visualId) const {
-        const EGLint list[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RED_SIZE, s.red, EGL_GREEN_SIZE, s.green,
-                               EGL_BLUE_SIZE, s.blue, EGL_ALPHA_SIZE, s.alpha, EGL_DEPTH_SIZE, s.depth,
-                               EGL_STENCIL_SIZE, s.stencil, EGL_SAMPLES, s.samples, EGL_NONE};
+        const EGLint list[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RED_SIZE,   s.red,     EGL_GREEN_SIZE, s.green,
+                               EGL_BLUE_SIZE,    s.blue,         EGL_ALPHA_SIZE, s.alpha,   EGL_DEPTH_SIZE, s.depth,
+                               EGL_STENCIL_SIZE, s.stencil,      EGL_SAMPLES,    s.samples, EGL_NONE};
         EGLConfig all[256];
         EGLint count = 0;
         eglChooseConfig(egl_, list, all, 256, &count);

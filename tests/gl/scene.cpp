@@ -32,8 +32,8 @@ std::vector<Vertex> triangles(Random& random, int count, float size, float alpha
         const float x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-0.9f, 0.9f);
         for (int corner = 0; corner < 3; corner++)
             vertices.push_back({x + random.between(-size, size), y + random.between(-size, size),
-                                z + random.between(-0.1f, 0.1f), random.unit(), random.unit(), random.unit(),
-                                alpha, random.between(0, 3), random.between(0, 3)});
+                                z + random.between(-0.1f, 0.1f), random.unit(), random.unit(), random.unit(), alpha,
+                                random.between(0, 3), random.between(0, 3)});
     }
     return vertices;
 }
@@ -172,10 +172,12 @@ std::array<std::string, 2> shaders(bool core) {
                                " vec4 color; " + in + " vec2 place; " + to + " vec4 shade; " + to +
                                " vec2 at; void main() { shade = color; at = place; gl_PointSize = 6.0;"
                                " gl_Position = vec4(position, 1.0); }";
-    const std::string fragment = std::string(core ? "#version 150\nout vec4 result; " : "#version 100\nprecision highp float; ") +
-                                 from + " vec4 shade; " + from + " vec2 at; uniform sampler2D image; void main() { " + color +
-                                 " = shade * (0.3 + " + sample + "(image, at))"
-                                 " + vec4(fract(gl_FragCoord.xy / 37.0) * 0.2, gl_FragCoord.z * 0.2, 0.0); }";
+    const std::string fragment =
+        std::string(core ? "#version 150\nout vec4 result; " : "#version 100\nprecision highp float; ") + from +
+        " vec4 shade; " + from + " vec2 at; uniform sampler2D image; void main() { " + color + " = shade * (0.3 + " +
+        sample +
+        "(image, at))"
+        " + vec4(fract(gl_FragCoord.xy / 37.0) * 0.2, gl_FragCoord.z * 0.2, 0.0); }";
     return {vertex, fragment};
 }
 
@@ -222,7 +224,8 @@ std::string drawShaded(const GlFunctions& gl, const gl::SurfaceConfig& config, b
         offset += sizeof(float) * static_cast<size_t>(sizes[i]);
     }
     auto draw = [&](GLenum mode, const std::vector<Vertex>& vertices) {
-        gl.bufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(), GL_STATIC_DRAW);
+        gl.bufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                      GL_STATIC_DRAW);
         gl.drawArrays(mode, 0, static_cast<GLsizei>(vertices.size()));
     };
     draw(GL_TRIANGLES, triangles(random, 40, 0.5f, 0.5f));
@@ -243,7 +246,8 @@ std::vector<uint8_t> readResolved(const GlFunctions& gl, const gl::SurfaceConfig
     gl.genFramebuffers(1, &framebuffer);
     gl.bindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     gl.framebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
-    gl.blitFramebuffer(0, 0, config.width, config.height, 0, 0, config.width, config.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gl.blitFramebuffer(0, 0, config.width, config.height, 0, 0, config.width, config.height, GL_COLOR_BUFFER_BIT,
+                       GL_NEAREST);
     gl.bindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl.readPixels(0, 0, config.width, config.height, GL_RGBA, GL_UNSIGNED_BYTE, color.data());
     gl.bindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -276,9 +280,12 @@ Picture drawScene(const FindProc& find, const gl::ContextConfig& context, const 
     const GlFunctions gl(find);
     if (maskAlpha) gl.colorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
     std::string failed;
-    if (context.api == gl::Api::Es1) drawEs1(gl, config);
-    else if (context.api == gl::Api::Es2 || context.core) failed = drawShaded(gl, config, context.core);
-    else drawFixedFunction(gl, config);
+    if (context.api == gl::Api::Es1)
+        drawEs1(gl, config);
+    else if (context.api == gl::Api::Es2 || context.core)
+        failed = drawShaded(gl, config, context.core);
+    else
+        drawFixedFunction(gl, config);
     Picture picture = readPicture(gl, context, config);
     if (!failed.empty()) picture.error = failed;
     return picture;

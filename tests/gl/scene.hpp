@@ -14,7 +14,7 @@ namespace mural::test {
 // The readable content of a framebuffer. Planes that it lacks, or that the API cannot read, are empty.
 struct Picture {
     int width = 0, height = 0;
-    std::vector<uint8_t> color; // [y][x][rgba8], origin lower left; resolved if multisampled
+    std::vector<uint8_t> color;    // [y][x][rgba8], origin lower left; resolved if multisampled
     std::vector<uint8_t> readBack; // by glReadPixels: Mesa 22.3.6 returns one sample, unresolved
     std::vector<uint32_t> depth;
     std::vector<uint8_t> stencil;

@@ -24,7 +24,8 @@ protected:
         auto made = CaptureMemory::create(16, 4096);
         ASSERT_TRUE(made) << made.error().message;
         memory_ = std::move(made.value());
-        base_ = mmap(nullptr, sizeof(capture::CaptureHeader), PROT_READ | PROT_WRITE, MAP_SHARED, memory_->fdToPass(), 0);
+        base_ =
+            mmap(nullptr, sizeof(capture::CaptureHeader), PROT_READ | PROT_WRITE, MAP_SHARED, memory_->fdToPass(), 0);
         ASSERT_NE(base_, MAP_FAILED);
         program_ = static_cast<capture::CaptureHeader*>(base_);
     }

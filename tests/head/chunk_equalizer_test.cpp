@@ -20,15 +20,19 @@ class ChunkDealerTest : public ::testing::Test {
 protected:
     void begin(int nodes, int chunks) {
         plan_ = planSession(configOf(nodes, chunks), "me");
-        dealer_ = std::make_unique<ChunkEqualizer>(plan_, [this](const RangeAssignment& shares) { announced_.push_back(shares); });
+        dealer_ = std::make_unique<ChunkEqualizer>(
+            plan_, [this](const RangeAssignment& shares) { announced_.push_back(shares); });
         lives_.assign(static_cast<size_t>(nodes), true);
     }
 
-    [[nodiscard]] Range shareOf(size_t node) const { return announced_.empty() ? plan_.nodes[node].pass.share : announced_.back().ofNodes[node]; }
+    [[nodiscard]] Range shareOf(size_t node) const {
+        return announced_.empty() ? plan_.nodes[node].pass.share : announced_.back().ofNodes[node];
+    }
 
     // All living nodes finish a frame. A draw costs `cost` of its place in the frame, from 0 to 1; the collector has
     // `more` additional work.
-    void frame(const std::function<double(double)>& cost, double more = 0, uint32_t flags = 0, uint32_t shares = UINT32_MAX) {
+    void frame(const std::function<double(double)>& cost, double more = 0, uint32_t flags = 0,
+               uint32_t shares = UINT32_MAX) {
         ++frames_;
         const uint32_t number = shares != UINT32_MAX ? shares : announced_.empty() ? 0 : announced_.back().number;
         std::vector<double> busy;
@@ -142,7 +146,8 @@ TEST_F(ChunkDealerTest, givesEachNodeAChunk) {
 
 TEST_F(ChunkDealerTest, keepsRandomSharesCompleteAndInOrder) {
     plan_ = planSession(configOf(4, 16), "me");
-    dealer_ = std::make_unique<ChunkEqualizer>(plan_, [this](const RangeAssignment& shares) { announced_.push_back(shares); }, "shares");
+    dealer_ = std::make_unique<ChunkEqualizer>(
+        plan_, [this](const RangeAssignment& shares) { announced_.push_back(shares); }, "shares");
     lives_.assign(4, true);
     for (int i = 0; i < 50; ++i) {
         frame(even);
@@ -168,7 +173,9 @@ TEST(RangeAssignment, roundTripAndRejectInvalidOnes) {
     const auto bytes = bytesOf(shares);
     EXPECT_EQ(sharesOf(bytes), shares);
     for (size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(sharesOf(std::span(bytes).first(size))) << size;
-    for (const Range wrong : {Range{.5, .25}, Range{-.1, 1}, Range{0, 1.1}, Range{std::numeric_limits<double>::quiet_NaN(), 1}, Range{0, std::numeric_limits<double>::quiet_NaN()}})
+    for (const Range wrong :
+         {Range{.5, .25}, Range{-.1, 1}, Range{0, 1.1}, Range{std::numeric_limits<double>::quiet_NaN(), 1},
+          Range{0, std::numeric_limits<double>::quiet_NaN()}})
         EXPECT_FALSE(sharesOf(bytesOf(RangeAssignment{1, {wrong}})));
 }
 

@@ -17,7 +17,8 @@ namespace mural {
 namespace {
 
 compound::LoadedConfig load(const std::string& name) {
-    return compound::loadConfig(std::string(MURAL_SOURCE_DIR) + "/configs/" + name, [](const std::string&) { return std::optional<std::string>(); });
+    return compound::loadConfig(std::string(MURAL_SOURCE_DIR) + "/configs/" + name,
+                                [](const std::string&) { return std::optional<std::string>(); });
 }
 SessionPlan planOfFile(const std::string& name, bool here = true) {
     const auto loaded = load(name);
@@ -48,7 +49,8 @@ SessionPlan planOfRanges(const std::string& composition) {
     form.ranges = 5;
     form.composition = composition;
     const auto file = config::shortForm(form);
-    const auto loaded = compound::loadConfig(file.value(), "ranges.eqc", [](const std::string&) { return std::optional<std::string>(); });
+    const auto loaded = compound::loadConfig(file.value(), "ranges.eqc",
+                                             [](const std::string&) { return std::optional<std::string>(); });
     auto plan = planOf(loaded, {"me", true, "", {}});
     EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
     return plan.ok() ? std::move(*plan) : SessionPlan{};
@@ -62,7 +64,8 @@ TEST(ConfigPlan, readsTheCompositionOfRanges) {
         return plan.nodes[0].composition.value_or(Strategy::Serial);
     };
     EXPECT_EQ(chosen(planOfRanges("streaming"), "auto"), Strategy::Streaming);
-    EXPECT_EQ(chosen(planOfRanges("streaming"), "radix-k"), Strategy::RadixK) << "the command line counts before the file";
+    EXPECT_EQ(chosen(planOfRanges("streaming"), "radix-k"), Strategy::RadixK)
+        << "the command line counts before the file";
     EXPECT_EQ(chosen(planOfRanges("auto"), "auto"), compositor::chooseStrategy(5));
     EXPECT_EQ(chosen(planOfRanges(""), "auto"), compositor::chooseStrategy(5));
 }
@@ -76,7 +79,8 @@ TEST(ConfigPlan, placesPartsOfTheWallSideBySide) {
             ASSERT_TRUE(n.area.has_value());
             EXPECT_EQ(n.pass.ranges, 1);
             covered += n.area->w * n.area->h;
-            for (const NodePlan& other : plan.nodes) EXPECT_TRUE(other.node == n.node || intersect(*n.area, *other.area).empty()) << file;
+            for (const NodePlan& other : plan.nodes)
+                EXPECT_TRUE(other.node == n.node || intersect(*n.area, *other.area).empty()) << file;
         }
         EXPECT_NEAR(covered, whole, 1e-6) << file;
         EXPECT_EQ(picturesOf(plan.wall), static_cast<int>(plan.wall.parts.size())) << "one for each destination";
@@ -99,7 +103,8 @@ TEST(ConfigPlan, drawsWholePicturesForSamplesAndPixels) {
     const SessionPlan samples = planOfFile("subpixel.eqc"), pixels = planOfFile("pixel.eqc");
     EXPECT_EQ(picturesOf(samples.wall), samples.wall.parts.front().counts.samples);
     EXPECT_GT(samples.wall.parts.front().counts.samples, 1);
-    EXPECT_EQ(picturesOf(pixels.wall), pixels.wall.parts.front().counts.kernelWidth * pixels.wall.parts.front().counts.kernelHeight);
+    EXPECT_EQ(picturesOf(pixels.wall),
+              pixels.wall.parts.front().counts.kernelWidth * pixels.wall.parts.front().counts.kernelHeight);
     EXPECT_GT(picturesOf(pixels.wall), 1);
     for (const SessionPlan* plan : {&samples, &pixels}) {
         std::set<int> made;
@@ -131,10 +136,12 @@ TEST(ConfigPlan, usesTheColoursOfTheFileForEyes) {
     std::ifstream from(std::string(MURAL_SOURCE_DIR) + "/configs/stereo-anaglyph.eqc");
     std::string text((std::istreambuf_iterator<char>(from)), std::istreambuf_iterator<char>());
     const std::string mode = "stereo_mode ANAGLYPH";
-    text.insert(text.find(mode) + mode.size(), " stereo_anaglyph_left_mask [ GREEN ] stereo_anaglyph_right_mask [ RED BLUE ]");
+    text.insert(text.find(mode) + mode.size(),
+                " stereo_anaglyph_left_mask [ GREEN ] stereo_anaglyph_right_mask [ RED BLUE ]");
     const auto path = std::filesystem::temp_directory_path() / ("mural-magenta-" + std::to_string(getpid()) + ".eqc");
     std::ofstream(path) << text;
-    const auto loaded = compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    const auto loaded =
+        compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
     std::filesystem::remove(path);
     const auto plan = planOf(loaded, {"me", true, "", {}});
     ASSERT_TRUE(plan.ok());
@@ -213,7 +220,8 @@ TEST(ConfigPlan, showsChannelsOnTheirNodes) {
     EXPECT_EQ(displays, (std::set<std::string>{":0.0", ":0.1"}));
     const SessionPlan here = planOfFile("wall-2x2.eqc");
     EXPECT_FALSE(headShowsWall(windows, here));
-    for (const NodePlan& n : here.nodes) EXPECT_TRUE(setupOf(windows, here, n).windowAsOnWall && !setupOf(windows, here, n).fullScreen);
+    for (const NodePlan& n : here.nodes)
+        EXPECT_TRUE(setupOf(windows, here, n).windowAsOnWall && !setupOf(windows, here, n).fullScreen);
 }
 
 TEST(ConfigPlan, createsTileQueues) {
@@ -262,7 +270,9 @@ TEST(ConfigPlan, selectsWhoShowsComposedPictures) {
     SessionConfig windows;
     windows.display = Display::Windows;
     for (const char* file : {"db.eqc", "cave.eqc"}) EXPECT_FALSE(headShowsWall(windows, planOfFile(file))) << file;
-    for (const char* file : {"2d.eqc", "subpixel.eqc", "pixel.eqc", "dplex.eqc", "stereo-anaglyph.eqc", "stereo-passive.eqc"}) EXPECT_TRUE(headShowsWall(windows, planOfFile(file))) << file;
+    for (const char* file :
+         {"2d.eqc", "subpixel.eqc", "pixel.eqc", "dplex.eqc", "stereo-anaglyph.eqc", "stereo-passive.eqc"})
+        EXPECT_TRUE(headShowsWall(windows, planOfFile(file))) << file;
     EXPECT_FALSE(headShowsWall(windows, planOfFile("stereo-passive.eqc", false))) << "each eye has a projector";
 }
 
@@ -282,52 +292,67 @@ void forget(const std::filesystem::path& file) { std::filesystem::remove_all(fil
 
 Result<SessionPlan> planOfText(const std::string& compounds) {
     const auto path = ownFile("config_plan_test.eqc");
-    std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 321 200 ] channel { name \"a\" } } window { viewport [ 0 0 321 200 ] channel { name \"b\" } } } }\n"
-                           "layout { view { } } canvas { layout 0 wall { } segment { channel \"a\" } }\ncompound { channel ( ) buffer [ COLOR DEPTH ] " << compounds << " inputframe { name \"frame.b\" } } } }\n";
-    const auto loaded = compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 321 200 ] "
+                           "channel { name \"a\" } } window { viewport [ 0 0 321 200 ] channel { name \"b\" } } } }\n"
+                           "layout { view { } } canvas { layout 0 wall { } segment { channel \"a\" } }\ncompound { "
+                           "channel ( ) buffer [ COLOR DEPTH ] "
+                        << compounds << " inputframe { name \"frame.b\" } } } }\n";
+    const auto loaded =
+        compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
     forget(path);
     EXPECT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
     return planOf(loaded, {"me", true, "", {}});
 }
 
 TEST(ConfigPlan, multipliesZooms) {
-    auto plan = planOfText("zoom [ .5 1 ] compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }");
+    auto plan = planOfText("zoom [ .5 1 ] compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 "
+                           ".5 1 ] zoom [ .5 .5 ] outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->nodes.size(), 2u);
     EXPECT_EQ(plan->nodes[0].pass.zoom, (Zoom{.5, 1}));
     EXPECT_EQ(plan->nodes[1].pass.zoom, (Zoom{.25, .5})) << "whatever whole pixels their channels have";
     EXPECT_EQ(plan->nodes[0].picture, plan->nodes[1].picture);
-    auto larger = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 2 .5 ] outputframe { } }");
+    auto larger = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom "
+                             "[ 2 .5 ] outputframe { } }");
     ASSERT_TRUE(larger) << larger.error().message;
     EXPECT_EQ(larger->nodes[1].pass.zoom, (Zoom{2, .5}));
     EXPECT_TRUE(larger->warnings.empty());
 }
 
 TEST(ConfigPlan, reportsUnsupportedZooms) {
-    auto large = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ 17 .5 ] outputframe { } }");
+    auto large = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ "
+                            "17 .5 ] outputframe { } }");
     ASSERT_TRUE(large) << large.error().message;
     EXPECT_EQ(large->nodes[1].pass.zoom, (Zoom{kMaxZoom, .5}));
     ASSERT_EQ(large->warnings.size(), 1u);
     EXPECT_NE(large->warnings[0].find(".eqc:4:"), std::string::npos) << large->warnings[0];
-    auto ranges = planOfText("compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] zoom [ .5 .5 ] outputframe { } }");
+    auto ranges = planOfText(
+        "compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] zoom [ .5 .5 ] outputframe { } }");
     ASSERT_FALSE(ranges);
     EXPECT_NE(ranges.error().message.find("the same zoom"), std::string::npos) << ranges.error().message;
 }
 
 // Fields without effect are reported with position and remedy.
 TEST(ConfigPlan, reportsFieldsWithoutEffect) {
-    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" viewport [ .5 0 .5 1 ] framerate_equalizer { } outputframe { } }");
+    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" "
+                           "viewport [ .5 0 .5 1 ] framerate_equalizer { } outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
-    EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: load_equalizer has no effect"), std::string::npos) << plan->warnings[0];
-    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: framerate_equalizer has no effect"), std::string::npos) << plan->warnings[1];
+    EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: load_equalizer has no effect"), std::string::npos)
+        << plan->warnings[0];
+    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: framerate_equalizer has no effect"), std::string::npos)
+        << plan->warnings[1];
     EXPECT_NE(plan->warnings[1].find("; "), std::string::npos) << "a remedy";
-    EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ .5 .5 ] outputframe { } }")->warnings.empty()) << "that one has";
+    EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ "
+                           ".5 .5 ] outputframe { } }")
+                    ->warnings.empty())
+        << "that one has";
 }
 
 // The second channel's picture is exported in part: the screen's own draws are visible around it.
 TEST(ConfigPlan, placesPartialFramesOnTheWall) {
-    auto plan = planOfText("compound { } compound { channel \"b\" outputframe { viewport [ .5 .5 .5 .5 ] buffer [ COLOR ] } }");
+    auto plan =
+        planOfText("compound { } compound { channel \"b\" outputframe { viewport [ .5 .5 .5 .5 ] buffer [ COLOR ] } }");
     ASSERT_TRUE(plan) << plan.error().message;
     double covered = 0;
     int others = 0;
@@ -348,7 +373,8 @@ TEST(ConfigPlan, placesPartialFramesOnTheWall) {
 }
 
 TEST(ConfigPlan, reducesPicturesForTheTransfer) {
-    auto plan = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] outputframe { zoom [ .5 .25 ] } }");
+    auto plan = planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] "
+                           "outputframe { zoom [ .5 .25 ] } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->nodes.size(), 2u);
     EXPECT_TRUE(plan->nodes[0].way.none());
@@ -357,7 +383,8 @@ TEST(ConfigPlan, reducesPicturesForTheTransfer) {
     EXPECT_TRUE(plan->nodes[1].pass.zoom.none()) << "it is drawn as it is";
     EXPECT_TRUE(plan->warnings.empty());
     // Ranges composited by depth do not support this.
-    auto ranges = planOfText("buffer [ COLOR DEPTH ] compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] outputframe { zoom [ .5 .5 ] } }");
+    auto ranges = planOfText("buffer [ COLOR DEPTH ] compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 "
+                             "] outputframe { zoom [ .5 .5 ] } }");
     ASSERT_TRUE(ranges) << ranges.error().message;
     for (const NodePlan& n : ranges->nodes) EXPECT_TRUE(n.way.none());
     ASSERT_EQ(ranges->warnings.size(), 1u);
@@ -366,7 +393,8 @@ TEST(ConfigPlan, reducesPicturesForTheTransfer) {
 
 TEST(ConfigPlan, showsFramesOfQueuesWhereTheyAreDrawn) {
     const std::string queue = "outputtiles { name \"q\" size [ 16 16 ] } ";
-    auto plan = planOfText(queue + "compound { inputtiles { name \"q\" } } compound { channel \"b\" inputtiles { name \"q\" } outputframe { zoom [ .5 .5 ] } }");
+    auto plan = planOfText(queue + "compound { inputtiles { name \"q\" } } compound { channel \"b\" inputtiles { name "
+                                   "\"q\" } outputframe { zoom [ .5 .5 ] } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->warnings.size(), 1u);
     EXPECT_NE(plan->warnings[0].find("queue \"q\""), std::string::npos) << plan->warnings[0];
@@ -375,7 +403,9 @@ TEST(ConfigPlan, showsFramesOfQueuesWhereTheyAreDrawn) {
         EXPECT_EQ(n.queue, 0);
         EXPECT_TRUE(n.way.none());
     }
-    auto plain = planOfText(queue + "compound { inputtiles { name \"q\" } } compound { channel \"b\" inputtiles { name \"q\" } outputframe { } }");
+    auto plain = planOfText(
+        queue +
+        "compound { inputtiles { name \"q\" } } compound { channel \"b\" inputtiles { name \"q\" } outputframe { } }");
     ASSERT_TRUE(plain);
     EXPECT_TRUE(plain->warnings.empty());
 }
@@ -418,9 +448,12 @@ TEST(ConfigPlan, showsSeveralCanvases) {
 
 TEST(ConfigPlan, showsQuadBufferedPairsOnTheHead) {
     const auto path = ownFile("config_plan_quad.eqc");
-    std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 320 200 ] attributes { hint_stereo ON } channel { name \"a\" } } } }\n"
-                           "layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"a\" } }\ncompound { channel ( ) attributes { stereo_mode QUAD } } } }\n";
-    const auto loaded = compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
+    std::ofstream(path) << "#Equalizer 1.2 ascii\nserver { config { appNode { pipe { window { viewport [ 0 0 320 200 ] "
+                           "attributes { hint_stereo ON } channel { name \"a\" } } } }\n"
+                           "layout { view { mode STEREO } } canvas { layout 0 wall { } segment { channel \"a\" } "
+                           "}\ncompound { channel ( ) attributes { stereo_mode QUAD } } } }\n";
+    const auto loaded =
+        compound::loadConfig(path.string(), [](const std::string&) { return std::optional<std::string>(); });
     forget(path);
     auto plan = planOf(loaded, {"me", true, "", {}});
     ASSERT_TRUE(plan) << plan.error().message;
@@ -433,15 +466,20 @@ TEST(ConfigPlan, showsQuadBufferedPairsOnTheHead) {
 
 TEST(ConfigPlan, plansEveryExampleFile) {
     const auto files = config::testing::exampleFiles();
-    if (files.empty()) GTEST_SKIP() << "no example files at " << config::testing::exampleFolder() << "; MURAL_SHARED says where shared is";
+    if (files.empty())
+        GTEST_SKIP() << "no example files at " << config::testing::exampleFolder()
+                     << "; MURAL_SHARED says where shared is";
     for (const auto& file : files) {
-        const auto loaded = compound::loadConfig(file.string(), [](const std::string&) { return std::optional<std::string>(); });
+        const auto loaded =
+            compound::loadConfig(file.string(), [](const std::string&) { return std::optional<std::string>(); });
         ASSERT_TRUE(loaded.ok()) << loaded.diagnostics.firstError();
         auto plan = planOf(loaded, {"me", true, "", {}});
         EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
         if (!plan) continue;
         for (const NodePlan& n : plan->nodes) {
-            EXPECT_LT(n.picture, n.canvas == 0 ? picturesOf(plan->wall) : picturesOf(plan->canvases[static_cast<size_t>(n.canvas) - 1].wall)) << file;
+            EXPECT_LT(n.picture, n.canvas == 0 ? picturesOf(plan->wall)
+                                               : picturesOf(plan->canvases[static_cast<size_t>(n.canvas) - 1].wall))
+                << file;
             EXPECT_EQ(n.reach, NodeReach::SharedMemory) << "--here";
         }
     }

@@ -18,7 +18,8 @@ SessionPlan planOf(std::initializer_list<NodeReach> reaches) {
 }
 
 TEST(DeltaPlan, codesForNetworksButNotForSharedMemory) {
-    const SessionPlan plan = planOf({NodeReach::SharedMemory, NodeReach::Tcp, NodeReach::LaunchCommand, NodeReach::Tcp});
+    const SessionPlan plan =
+        planOf({NodeReach::SharedMemory, NodeReach::Tcp, NodeReach::LaunchCommand, NodeReach::Tcp});
     const auto third = [](int node) { return node == 3; };
     SessionConfig config;
     EXPECT_EQ(planEconomy(config, plan, third).nodes, (std::vector<int>{2, 3}));

@@ -202,7 +202,8 @@ TEST(HeadSession, reportsWindowsThatEveryNodeDrawsWholeOnce) {
     EXPECT_EQ(report["drawnWhole"], true);
     int said = 0;
     for (const auto& event : head.seen)
-        said += event["event"] == "say" && event["text"].get<std::string>().find("every node draws all") != std::string::npos;
+        said += event["event"] == "say" &&
+                event["text"].get<std::string>().find("every node draws all") != std::string::npos;
     EXPECT_EQ(said, 1);
 }
 
@@ -234,7 +235,8 @@ TEST(HeadSession, movesQueuedTilesOnAllNodesAtOnce) {
         for (const auto& packet : head.node(node).packets()) {
             if (packet.stream == 0 && packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::Setup)) continue;
             packets.emplace_back(packet.stream, packet.words);
-            announced += node == 0 && packet.stream == 0 && packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::ViewportAssignment);
+            announced += node == 0 && packet.stream == 0 &&
+                         packet.words[0] == static_cast<uint32_t>(wire::HeadCommand::ViewportAssignment);
         }
         if (node == 0) first = packets;
         EXPECT_EQ(packets, first) << "node " << node;
@@ -254,7 +256,12 @@ TEST(HeadSession, sendsUnchangedAreasOnce) {
     ASSERT_TRUE(program.waitFramesDone(5));
     head.waitForSay("its tiles stay with the nodes that have them");
     head.finish();
-    EXPECT_EQ(std::ranges::count_if(head.seen, [](const auto& e) { return e["event"] == "say" && e["text"].template get<std::string>().find("its tiles stay") != std::string::npos; }), 1);
+    EXPECT_EQ(std::ranges::count_if(head.seen,
+                                    [](const auto& e) {
+                                        return e["event"] == "say" && e["text"].template get<std::string>().find(
+                                                                          "its tiles stay") != std::string::npos;
+                                    }),
+              1);
 }
 
 TEST(HeadSession, assemblesRepliesOfOneToFiveNodes) {
@@ -340,14 +347,30 @@ struct Forgery {
 
 TEST(HeadSession, dropsOnlyTheProgramWithAForgedRing) {
     const Forgery forgeries[] = {
-        {"chunk", [](FakeProgram& p) { p.publishRaw({99999, 0, 64, 0, 0}); }},
-        {"begin after end", [](FakeProgram& p) { p.publishRaw({0, 64, 32, 0, 0}); }},
-        {"end", [](FakeProgram& p) { p.publishRaw({0, 0, capture::kChunkBytes + 4, 0, 0}); }},
-        {"odd", [](FakeProgram& p) { p.publishRaw({0, 0, 7, 0, 0}); }},
+        {"chunk",
+         [](FakeProgram& p) {
+             p.publishRaw({99999, 0, 64, 0, 0});
+         }},
+        {"begin after end",
+         [](FakeProgram& p) {
+             p.publishRaw({0, 64, 32, 0, 0});
+         }},
+        {"end",
+         [](FakeProgram& p) {
+             p.publishRaw({0, 0, capture::kChunkBytes + 4, 0, 0});
+         }},
+        {"odd",
+         [](FakeProgram& p) {
+             p.publishRaw({0, 0, 7, 0, 0});
+         }},
         {"tail", [](FakeProgram& p) { p.header()->publishedTail = 0x7fffffff; }},
         {"tail back", [](FakeProgram& p) { p.header()->publishedTail = 0xffffffff; }},
-        {"freed twice", [](FakeProgram& p) { p.publishRaw({0, 0, 0, 0, 1}); }},
-        {"offsets", [](FakeProgram& p) {
+        {"freed twice",
+         [](FakeProgram& p) {
+             p.publishRaw({0, 0, 0, 0, 1});
+         }},
+        {"offsets",
+         [](FakeProgram& p) {
              p.header()->publicationsAt = ~0ull >> 1;
              p.header()->chunksAt = ~0ull >> 1;
              p.header()->freedAt = ~0ull >> 1;
@@ -388,8 +411,7 @@ TEST(HeadSession, drainsAnEndedProgramAndFreesItsContexts) {
         ASSERT_TRUE(swapFrames(program, 1, 12));
         program.disconnect();
     }
-    while (head.waitFor("clients")["count"] != 0) {
-    }
+    while (head.waitFor("clients")["count"] != 0) {}
     const auto report = head.finish();
     EXPECT_EQ(report["frames"], 12);
     EXPECT_EQ(report["verifiedFrames"], 3);
@@ -416,8 +438,7 @@ TEST(HeadSession, keepsAProgramThatClosesItsSocketUntilItsMemoryIsUnmapped) {
     EXPECT_EQ(program.header()->headLife & FUTEX_OWNER_DIED, 0U);
     EXPECT_NE(program.header()->headLife, 0U);
     program.disconnect();
-    while (head.waitFor("clients")["count"] != 0) {
-    }
+    while (head.waitFor("clients")["count"] != 0) {}
     EXPECT_EQ(head.finish()["frames"], 6);
 }
 
@@ -473,7 +494,7 @@ TEST(HeadSession, answersWhenANodeIsLostInMidRequest) {
         const auto* words = reinterpret_cast<const uint32_t*>(answer.bytes.data());
         EXPECT_EQ(words[0], 1u);
         if (half) {
-            EXPECT_EQ(words[63], 64u); // the row that the node had sent
+            EXPECT_EQ(words[63], 64u);     // the row that the node had sent
             EXPECT_EQ(words[64 + 63], 0u); // and one that it had not sent
             EXPECT_EQ(words[64 + 41], 1042u);
         }
@@ -492,7 +513,8 @@ TEST(HeadSession, keepsDeferredRepliesForTheProgram) {
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
     constexpr uint32_t kOwedAnswers = 12, kWords = 300'000;
-    for (uint32_t i = 1; i <= kOwedAnswers; ++i) ASSERT_TRUE(program.publish(kFakeBytes, {capture::kOwed | i, kWords + i}));
+    for (uint32_t i = 1; i <= kOwedAnswers; ++i)
+        ASSERT_TRUE(program.publish(kFakeBytes, {capture::kOwed | i, kWords + i}));
     ASSERT_TRUE(program.publish(kFakeSum, {77}));
     ASSERT_TRUE(swapFrames(program, 1, 20));
     ASSERT_TRUE(program.waitFramesDone(20)); // the ring is full by then

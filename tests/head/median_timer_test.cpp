@@ -35,7 +35,8 @@ TEST(MedianTimer, separatesSizes) {
     for (int i = 0; i < 3; ++i) times.of(100).add(5'000);
     EXPECT_TRUE(times.of(127).isKnown());
     EXPECT_EQ(times.of(64).value(), 5'000);
-    for (const size_t other : {size_t{0}, size_t{63}, size_t{128}, size_t{77'000}, size_t{1} << 40}) EXPECT_FALSE(times.of(other).isKnown()) << other;
+    for (const size_t other : {size_t{0}, size_t{63}, size_t{128}, size_t{77'000}, size_t{1} << 40})
+        EXPECT_FALSE(times.of(other).isKnown()) << other;
     times.of(size_t{1} << 40).add(1);
     EXPECT_EQ(times.of(SIZE_MAX).value(), 1);
 }

@@ -16,9 +16,9 @@ namespace {
 struct World {
     std::mutex mutex;
     std::condition_variable changed;
-    std::set<uint64_t> stopped; // windows whose server does not answer
-    std::set<uint32_t> grabbed; // clients that put their pictures themselves
-    std::vector<std::pair<uint64_t, int64_t>> shown; // window, frame
+    std::set<uint64_t> stopped;                        // windows whose server does not answer
+    std::set<uint32_t> grabbed;                        // clients that put their pictures themselves
+    std::vector<std::pair<uint64_t, int64_t>> shown;   // window, frame
     std::multiset<std::pair<uint32_t, uint32_t>> done; // client, frame
     std::set<uint32_t> blocked;
     int said = 0;
@@ -39,7 +39,8 @@ public:
     SlowSink(World& world, uint64_t window) : world_(world), window_(window) {}
     Result<void> show(int64_t frame, const Picture&) override {
         std::unique_lock lock(world_.mutex);
-        isBlocked_ = world_.changed.wait_for(lock, std::chrono::milliseconds(20), [&] { return !world_.stopped.contains(window_); }) == false;
+        isBlocked_ = world_.changed.wait_for(lock, std::chrono::milliseconds(20),
+                                             [&] { return !world_.stopped.contains(window_); }) == false;
         if (isBlocked_) return Error{"it does not answer"};
         world_.shown.emplace_back(window_, frame);
         world_.changed.notify_all();
@@ -59,14 +60,21 @@ class NativeWindowsTest : public ::testing::Test {
 protected:
     NativeWindowsConfig config() {
         NativeWindowsConfig config;
-        config.openWindow = [this](const WindowPicture& picture) { return Result<std::unique_ptr<PictureSink>>(std::make_unique<SlowSink>(world_, picture.nativeWindow)); };
+        config.openWindow = [this](const WindowPicture& picture) {
+            return Result<std::unique_ptr<PictureSink>>(std::make_unique<SlowSink>(world_, picture.nativeWindow));
+        };
         config.giveToProgram = [this](const WindowPicture& picture, const Picture&) {
             const std::lock_guard lock(world_.mutex);
             return world_.grabbed.contains(picture.client);
         };
-        config.done = [this](uint32_t client, uint32_t frame) { world_.change([&] { world_.done.emplace(client, frame); }); };
+        config.done = [this](uint32_t client, uint32_t frame) {
+            world_.change([&] { world_.done.emplace(client, frame); });
+        };
         config.blocked = [this](uint32_t client, bool isBlocked) {
-            world_.change([&] { isBlocked ? static_cast<void>(world_.blocked.insert(client)) : static_cast<void>(world_.blocked.erase(client)); });
+            world_.change([&] {
+                isBlocked ? static_cast<void>(world_.blocked.insert(client))
+                          : static_cast<void>(world_.blocked.erase(client));
+            });
         };
         config.say = [this](const std::string&) { world_.change([&] { ++world_.said; }); };
         return config;

@@ -15,7 +15,8 @@ constexpr int64_t kPatienceMs = 20'000;
 std::unique_ptr<Connection> come(const NodeAcceptor& gate, int node, const SessionSecret& secret) {
     auto connection = connectTcp("127.0.0.1", static_cast<uint16_t>(gate.port()), Deadline::inMs(kPatienceMs));
     if (!connection) return nullptr;
-    auto secure = SecureConnection::connecting(std::move(*connection), NodeAcceptor::nameOf(node), secret, Deadline::inMs(kPatienceMs));
+    auto secure = SecureConnection::connecting(std::move(*connection), NodeAcceptor::nameOf(node), secret,
+                                               Deadline::inMs(kPatienceMs));
     if (!secure) return nullptr;
     return std::move(*secure);
 }
@@ -71,7 +72,8 @@ TEST(NodeAcceptor, rejectsStrangersAndUsedSecrets) {
 
 TEST(NodeAcceptor, convertsNodeNames) {
     EXPECT_EQ(NodeAcceptor::nodeOf(NodeAcceptor::nameOf(17)), 17);
-    for (const char* other : {"", "node", "node-1", "node1x", "nod1"}) EXPECT_FALSE(NodeAcceptor::nodeOf(other)) << other;
+    for (const char* other : {"", "node", "node-1", "node1x", "nod1"})
+        EXPECT_FALSE(NodeAcceptor::nodeOf(other)) << other;
 }
 
 } // namespace

@@ -56,7 +56,8 @@ TEST(NodeJoins, includeTheNodeInAnswersFromItsPositionOn) {
     const auto answer = [&](int node, uint32_t request, uint64_t value) {
         ByteBuffer bytes = ByteBuffer::ofSize(sizeof value);
         std::memcpy(bytes.data(), &value, sizeof value);
-        const wire::ReplyPartHeader header{1, request, static_cast<uint32_t>(wire::ReplyKind::Sum), 0, 0, 0, 0, 0, 0, 1};
+        const wire::ReplyPartHeader header{1, request, static_cast<uint32_t>(wire::ReplyKind::Sum), 0, 0, 0, 0, 0,
+                                           0, 1};
         EXPECT_TRUE(assembler.answer(node, header, std::move(bytes)).ok());
     };
     assembler.nodeLost(1);
@@ -130,7 +131,9 @@ size_t contextsIn(const RejoinLog::Snapshot& snapshot) {
 
 TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
     RejoinLog kept(1 << 20);
-    const auto makes = [&](uint32_t stream, uint32_t context) { kept.append(stream, trace::PacketBuilder().context(context).swap(1, context).bytes()); };
+    const auto makes = [&](uint32_t stream, uint32_t context) {
+        kept.append(stream, trace::PacketBuilder().context(context).swap(1, context).bytes());
+    };
     makes(wire::streamOf(1, 0), 7);
     makes(wire::streamOf(2, 0), 8);
     makes(wire::streamOf(1, 1), 9);
@@ -157,9 +160,11 @@ TEST(RejoinLog, reportsOverflowUntilTheProgramsAreGone) {
     RejoinLog kept(1 << 20);
     const auto fits = [&] { return kept.snapshot(kept.hold(), Deadline::inMs(10'000)).ok(); };
     const std::vector<uint32_t> much(65536, 1); // a command without a rule: it stays in the log
-    kept.append(wire::streamOf(1, 0), trace::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
+    kept.append(wire::streamOf(1, 0),
+                trace::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
     EXPECT_TRUE(fits());
-    for (int i = 0; i < 16; ++i) kept.append(wire::streamOf(1, 0), trace::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());
+    for (int i = 0; i < 16; ++i)
+        kept.append(wire::streamOf(1, 0), trace::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());
     kept.append(wire::streamOf(2, 0), trace::PacketBuilder().context(1).bytes());
     EXPECT_FALSE(fits());
     EXPECT_FALSE(kept.complete());

@@ -159,7 +159,8 @@ TEST(NodePlan, queuesThatCanNotMoveStay) {
     const std::string stays = "queue \"tiles\": its tiles of 32x32 pixels are dealt out evenly, and stay: ";
     const auto lean = planned([](SessionConfig& c) { c.tiling = Tiling::Lean; });
     EXPECT_EQ(lean, (std::pair(false, stays + "--tiling lean gives each node a framebuffer of its first tiles' size")));
-    EXPECT_EQ(planned([](SessionConfig& c) { c.passes.ranges = 2; }), (std::pair(false, stays + "their nodes share what they draw by ranges")));
+    EXPECT_EQ(planned([](SessionConfig& c) { c.passes.ranges = 2; }),
+              (std::pair(false, stays + "their nodes share what they draw by ranges")));
     EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.period = 2; }).first);
     EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.kernelWidth = 2; }).first);
     EXPECT_EQ(planned([](SessionConfig& c) { c.localNodes = 1; }), (std::pair(false, std::string())));

@@ -49,8 +49,8 @@ TEST(NodeProcess, killsItsDescendants) {
     ASSERT_EQ(pipe(ends), 0);
     const FileDescriptor reader(ends[0]);
     FileDescriptor writer(ends[1]);
-    auto started = NodeProcess::start(
-        {{"sh", "-c", "sleep 1000 & echo x >&" + std::to_string(ends[1]) + "; wait"}, "", ends[1]});
+    auto started =
+        NodeProcess::start({{"sh", "-c", "sleep 1000 & echo x >&" + std::to_string(ends[1]) + "; wait"}, "", ends[1]});
     ASSERT_TRUE(started.ok());
     writer = FileDescriptor();
     char byte = 0;
@@ -61,8 +61,7 @@ TEST(NodeProcess, killsItsDescendants) {
     // The pipe ends after the last process that holds it.
     pollfd end{reader.get(), POLLIN, 0};
     ASSERT_EQ(poll(&end, 1, static_cast<int>(kEndPatienceMs)), 1);
-    while (read(reader.get(), &byte, 1) > 0) {
-    }
+    while (read(reader.get(), &byte, 1) > 0) {}
 }
 
 TEST(NodeLauncher, reportsANodeThatEndsAtOnceInOneLine) {

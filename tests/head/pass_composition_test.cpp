@@ -39,7 +39,8 @@ TEST(PassComposition, roundsMeansOnce) {
         for (size_t i = 0; i < out.view().sizeBytes(); ++i) {
             double sum = 0;
             for (const OwnedPicture& p : passes) sum += std::to_integer<int>(p.view().bgra[i]);
-            EXPECT_EQ(std::to_integer<int>(out.view().bgra[i]), static_cast<int>(std::floor(sum / n + 0.5))) << n << " samples, byte " << i;
+            EXPECT_EQ(std::to_integer<int>(out.view().bgra[i]), static_cast<int>(std::floor(sum / n + 0.5)))
+                << n << " samples, byte " << i;
         }
     }
 }
@@ -55,7 +56,8 @@ TEST(PassComposition, averagesManyPicturesWithoutDrift) {
 
 // A picture divided into kernels is restored, whatever its size.
 TEST(PassComposition, interleavesKernels) {
-    for (const auto& [columns, rows] : {std::pair(2, 1), std::pair(3, 1), std::pair(1, 4), std::pair(3, 2), std::pair(2, 2)}) {
+    for (const auto& [columns, rows] :
+         {std::pair(2, 1), std::pair(3, 1), std::pair(1, 4), std::pair(3, 2), std::pair(2, 2)}) {
         for (const auto& [width, height] : {std::pair(12, 8), std::pair(11, 7), std::pair(13, 9), std::pair(4, 5)}) {
             PassCounts counts;
             counts.kernelWidth = columns;
@@ -67,11 +69,14 @@ TEST(PassComposition, interleavesKernels) {
                     OwnedPicture part((width - kx + columns - 1) / columns, (height - ky + rows - 1) / rows);
                     for (int y = 0; y < part.height(); ++y)
                         for (int x = 0; x < part.width(); ++x)
-                            for (int c = 0; c < 4; ++c) part.row(y)[x * 4 + c] = static_cast<std::byte>(channel(whole, x * columns + kx, y * rows + ky, c));
+                            for (int c = 0; c < 4; ++c)
+                                part.row(y)[x * 4 + c] =
+                                    static_cast<std::byte>(channel(whole, x * columns + kx, y * rows + ky, c));
                     passes.push_back(std::move(part));
                 }
             const OwnedPicture out = composed(counts, passes);
-            EXPECT_TRUE(comparePictures(whole.view(), out.view()).same()) << columns << "x" << rows << " of " << width << "x" << height;
+            EXPECT_TRUE(comparePictures(whole.view(), out.view()).same())
+                << columns << "x" << rows << " of " << width << "x" << height;
         }
     }
 }
@@ -98,7 +103,8 @@ TEST(PassComposition, takesTheColoursOfEachEye) {
         composeWall(wall, {eyes[0].view(), eyes[1].view()}, out);
         return out;
     };
-    const OwnedPicture magenta = with({false, true, false}, {true, false, true}), overlapping = with({true, true, false}, {false, true, false});
+    const OwnedPicture magenta = with({false, true, false}, {true, false, true}),
+                       overlapping = with({true, true, false}, {false, true, false});
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 9; ++x) {
             EXPECT_EQ(channel(magenta, x, y, 2), channel(eyes[1], x, y, 2));
@@ -119,8 +125,12 @@ TEST(PassComposition, halvesTheWidthSideBySide) {
         ASSERT_EQ(out.width(), width);
         ASSERT_EQ(out.height(), 2);
         const int half = (width + 1) / 2;
-        for (int x = 0; x < half; ++x) EXPECT_EQ(channel(out, x, 1, 0), mean(channel(eyes[0], 2 * x, 1, 0), channel(eyes[0], std::min(2 * x + 1, width - 1), 1, 0)));
-        for (int x = 0; x < width - half; ++x) EXPECT_EQ(channel(out, half + x, 0, 1), mean(channel(eyes[1], 2 * x, 0, 1), channel(eyes[1], std::min(2 * x + 1, width - 1), 0, 1)));
+        for (int x = 0; x < half; ++x)
+            EXPECT_EQ(channel(out, x, 1, 0),
+                      mean(channel(eyes[0], 2 * x, 1, 0), channel(eyes[0], std::min(2 * x + 1, width - 1), 1, 0)));
+        for (int x = 0; x < width - half; ++x)
+            EXPECT_EQ(channel(out, half + x, 0, 1),
+                      mean(channel(eyes[1], 2 * x, 0, 1), channel(eyes[1], std::min(2 * x + 1, width - 1), 0, 1)));
     }
 }
 
@@ -130,8 +140,11 @@ TEST(PassComposition, putsTheLeftEyeOnTop) {
         const OwnedPicture out = composed({.stereo = StereoMode::TopBottom}, eyes);
         ASSERT_EQ(out.height(), height);
         const int below = height - (height + 1) / 2; // rows of the right eye: row 0 is the lowest
-        for (int y = 0; y < below; ++y) EXPECT_EQ(channel(out, 2, y, 0), mean(channel(eyes[1], 2, 2 * y, 0), channel(eyes[1], 2, 2 * y + 1, 0)));
-        for (int y = below; y < height; ++y) EXPECT_EQ(channel(out, 1, y, 2), mean(channel(eyes[0], 1, 2 * (y - below), 2), channel(eyes[0], 1, std::min(2 * (y - below) + 1, height - 1), 2)));
+        for (int y = 0; y < below; ++y)
+            EXPECT_EQ(channel(out, 2, y, 0), mean(channel(eyes[1], 2, 2 * y, 0), channel(eyes[1], 2, 2 * y + 1, 0)));
+        for (int y = below; y < height; ++y)
+            EXPECT_EQ(channel(out, 1, y, 2), mean(channel(eyes[0], 1, 2 * (y - below), 2),
+                                                  channel(eyes[0], 1, std::min(2 * (y - below) + 1, height - 1), 2)));
     }
 }
 
@@ -167,8 +180,10 @@ TEST(PassComposition, combinesSamplesThenKernelsThenEyes) {
 
 // A lost node's picture may have the size of an earlier window.
 TEST(PassComposition, cropsOrFillsPicturesOfOtherSizes) {
-    for (const PassCounts& counts : {PassCounts{.stereo = StereoMode::SideBySide}, PassCounts{.stereo = StereoMode::TopBottom}, PassCounts{.stereo = StereoMode::Anaglyph},
-                                     PassCounts{.kernelWidth = 2}, PassCounts{.kernelHeight = 2}, PassCounts{.samples = 2}}) {
+    for (const PassCounts& counts :
+         {PassCounts{.stereo = StereoMode::SideBySide}, PassCounts{.stereo = StereoMode::TopBottom},
+          PassCounts{.stereo = StereoMode::Anaglyph}, PassCounts{.kernelWidth = 2}, PassCounts{.kernelHeight = 2},
+          PassCounts{.samples = 2}}) {
         const OwnedPicture out = composed(counts, {noise(64, 48, 1), noise(3, 2, 2)});
         EXPECT_GE(out.width(), 64);
         EXPECT_GE(out.height(), 48);

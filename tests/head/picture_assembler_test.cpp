@@ -13,9 +13,11 @@ protected:
     std::vector<WindowPicture> pictures;
 
     // Delivers one part of a window of 4 × 1 pixels. Node 0 draws the left half, node 1 the right one.
-    bool part(int node, uint32_t frame, uint32_t pixel, uint32_t window = 1, uint32_t width = 4, PictureFormat format = PictureFormat::Bgra8) {
+    bool part(int node, uint32_t frame, uint32_t pixel, uint32_t window = 1, uint32_t width = 4,
+              PictureFormat format = PictureFormat::Bgra8) {
         const int32_t x = node == 0 ? 0 : 2;
-        const wire::PictureHeader header{1, window, frame, x, 0, 2, 1, width, 1, 0xabc, 0, static_cast<uint32_t>(format)};
+        const wire::PictureHeader header{1, window, frame, x,     0, 2,
+                                         1, width,  1,     0xabc, 0, static_cast<uint32_t>(format)};
         ByteBuffer rows = ByteBuffer::ofSize(8);
         std::memcpy(rows.data(), &pixel, 4);
         std::memcpy(rows.data() + 4, &pixel, 4);
@@ -128,9 +130,9 @@ TEST_F(PictureAssemblerTest, reusesMemoryOnlyWithoutReferences) {
 
 TEST_F(PictureAssemblerTest, rejectsPartsOutsideTheirPicture) {
     const wire::PictureHeader bad[] = {
-        {1, 1, 1, 3, 0, 2, 1, 4, 1, 0, 0, 0},         {1, 1, 1, -1, 0, 2, 1, 4, 1, 0, 0, 0},
-        {1, 1, 1, 0, 1, 2, 1, 4, 1, 0, 0, 0},         {1, 1, 1, 0, 0, 2, 1, 0, 0, 0, 0, 0},
-        {1, 1, 1, 0, 0, 2, 1, 40000, 1, 0, 0, 0},     {1, 1, 1, 0, 0, 2, 1, 32000, 32000, 0, 0, 0},
+        {1, 1, 1, 3, 0, 2, 1, 4, 1, 0, 0, 0},     {1, 1, 1, -1, 0, 2, 1, 4, 1, 0, 0, 0},
+        {1, 1, 1, 0, 1, 2, 1, 4, 1, 0, 0, 0},     {1, 1, 1, 0, 0, 2, 1, 0, 0, 0, 0, 0},
+        {1, 1, 1, 0, 0, 2, 1, 40000, 1, 0, 0, 0}, {1, 1, 1, 0, 0, 2, 1, 32000, 32000, 0, 0, 0},
     };
     for (const auto& header : bad) EXPECT_FALSE(assembler.part(0, header, ByteBuffer::ofSize(8)).ok());
     EXPECT_TRUE(part(0, 1, 1));

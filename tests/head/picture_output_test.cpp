@@ -21,7 +21,8 @@ struct Shown {
 
 class TellingSink final : public PictureSink {
 public:
-    explicit TellingSink(std::vector<Shown>& shown, Result<void> finishes = {}) : shown_(shown), finishes_(std::move(finishes)) {}
+    explicit TellingSink(std::vector<Shown>& shown, Result<void> finishes = {})
+        : shown_(shown), finishes_(std::move(finishes)) {}
     Result<void> show(int64_t, const Picture& p) override {
         shown_.push_back({p.width, p.height, p.row(0)[0], std::byte{0}});
         return {};
@@ -56,7 +57,9 @@ TEST(PictureOutput, givesEachCanvasItsEyes) {
     for (const bool firstIsPair : {false, true})
         for (const bool otherIsPair : {false, true}) {
             std::vector<Shown> file, wall, otherFile, otherWall;
-            const auto wallInto = [](std::vector<Shown>& into) { return [&into] { return Result<std::unique_ptr<PictureSink>>(std::make_unique<TellingSink>(into)); }; };
+            const auto wallInto = [](std::vector<Shown>& into) {
+                return [&into] { return Result<std::unique_ptr<PictureSink>>(std::make_unique<TellingSink>(into)); };
+            };
             PictureOutputConfig config;
             config.pairs = firstIsPair;
             config.openWall = wallInto(wall);
@@ -68,7 +71,8 @@ TEST(PictureOutput, givesEachCanvasItsEyes) {
             config.done = [](uint32_t, uint32_t) {};
             config.say = [](const std::string& text) { ADD_FAILURE() << text; };
             PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));
-            output.add({1, 1, 1, 0, firstIsPair ? pairOfEyes() : filled(kLeft), {otherIsPair ? pairOfEyes() : filled(kLeft)}});
+            output.add(
+                {1, 1, 1, 0, firstIsPair ? pairOfEyes() : filled(kLeft), {otherIsPair ? pairOfEyes() : filled(kLeft)}});
             ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
             const auto expectOne = [](const std::vector<Shown>& shown, bool pair, const char* where) {
                 ASSERT_EQ(shown.size(), 1u) << where;
@@ -102,7 +106,9 @@ TEST(PictureOutput, reducesDeepPicturesForSinksWithoutDepth) {
     std::string said;
     PictureOutputConfig config;
     config.toNativeWindows = true;
-    config.openWindow = [&](const WindowPicture&) { return Result<std::unique_ptr<PictureSink>>(std::make_unique<DeepSink>(window)); };
+    config.openWindow = [&](const WindowPicture&) {
+        return Result<std::unique_ptr<PictureSink>>(std::make_unique<DeepSink>(window));
+    };
     config.done = [](uint32_t, uint32_t) {};
     config.say = [&](const std::string& text) { said += text; };
     PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));
@@ -125,7 +131,8 @@ TEST(PictureOutput, savesOnlyACompleteVideo) {
         PictureOutputConfig config;
         config.done = [](uint32_t, uint32_t) {};
         config.say = [&](const std::string& text) { said += text; };
-        PictureOutput output(std::move(config), std::make_unique<TellingSink>(file, complete ? Result<void>() : Error{"the disk is full"}));
+        PictureOutput output(std::move(config), std::make_unique<TellingSink>(
+                                                    file, complete ? Result<void>() : Error{"the disk is full"}));
         for (uint32_t frame = 1; frame <= 3; ++frame) output.add({1, 1, frame, 0, filled(kLeft), {}});
         ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
         EXPECT_EQ(file.size(), 3u);

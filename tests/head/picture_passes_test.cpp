@@ -60,8 +60,11 @@ TEST_F(PicturePassesTest, composesPartsOfAllPasses) {
 // lost.
 TEST(OtherCanvases, haveAPictureOfEachFrame) {
     std::vector<WindowPicture> pictures;
-    const auto only = [](size_t pass) { return [pass](const std::vector<Picture>& passes, OwnedPicture& into) { into.assign(passes[pass]); }; };
-    PictureAssembler assembler({0, 1}, {}, [&](WindowPicture picture) { pictures.push_back(std::move(picture)); }, {only(1)}, {Zoom{}, Zoom{.5, 1}});
+    const auto only = [](size_t pass) {
+        return [pass](const std::vector<Picture>& passes, OwnedPicture& into) { into.assign(passes[pass]); };
+    };
+    PictureAssembler assembler({0, 1}, {}, [&](WindowPicture picture) { pictures.push_back(std::move(picture)); },
+                               {only(1)}, {Zoom{}, Zoom{.5, 1}});
     const auto part = [&](int node, uint32_t frame, uint32_t width, int value) {
         const wire::PictureHeader header{1, 1, frame, 0, 0, static_cast<int32_t>(width), 1, width, 1, 0, 0, 0};
         ByteBuffer rows = ByteBuffer::ofSize(size_t{4} * width);
@@ -142,7 +145,8 @@ TEST_F(PicturePassesTest, finishedFramesNeedNoPart) { // another node's phase
 
 TEST_F(PicturePassesTest, reusesMemoryOnlyAfterItsRelease) {
     for (uint32_t number = 1; number <= 40; ++number) frame(number, 10 * number);
-    for (uint32_t number = 1; number <= 40; ++number) EXPECT_EQ(pixels(number - 1), (Pixels{10 * number, 10 * number + 1, 10 * number + 2, 10 * number + 3}));
+    for (uint32_t number = 1; number <= 40; ++number)
+        EXPECT_EQ(pixels(number - 1), (Pixels{10 * number, 10 * number + 1, 10 * number + 2, 10 * number + 3}));
 }
 
 } // namespace

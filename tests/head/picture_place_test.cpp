@@ -51,7 +51,8 @@ TEST(PicturePlace, movesThePicture) {
 TEST(PicturePlace, rejectsImpossibleSizes) {
     NodePlan node;
     node.way = {.5, .5};
-    EXPECT_FALSE(placeOnWall(node, headerOf(0, 0, 40, 40), rowsOf(1600, std::byte{1}))) << "it came as large as it was drawn";
+    EXPECT_FALSE(placeOnWall(node, headerOf(0, 0, 40, 40), rowsOf(1600, std::byte{1})))
+        << "it came as large as it was drawn";
     EXPECT_FALSE(placeOnWall(node, headerOf(0, 0, 1'000'000, 40), rowsOf(500'000 * 20, std::byte{1})));
     EXPECT_FALSE(placeOnWall(node, headerOf(0, 0, -4, 40), {}));
 }

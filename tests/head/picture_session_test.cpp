@@ -144,8 +144,7 @@ TEST(PictureSession, forgetsAProgramAfterItsLastPicture) {
         ASSERT_TRUE(swapFrame(program, 3, 8, 64));
         program.disconnect();
     }
-    while (head.waitFor("clients")["count"] != 0) {
-    }
+    while (head.waitFor("clients")["count"] != 0) {}
     hold = false;
     const auto report = head.finish();
     EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{1})) << "the other window's are none of the wall's";

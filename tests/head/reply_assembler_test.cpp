@@ -9,8 +9,8 @@
 namespace mural {
 namespace {
 
-using wire::ReplyPartHeader;
 using wire::ReplyKind;
+using wire::ReplyPartHeader;
 
 ByteBuffer bytesOf(const std::vector<uint8_t>& values) {
     ByteBuffer buffer = ByteBuffer::ofSize(values.size());
@@ -20,9 +20,8 @@ ByteBuffer bytesOf(const std::vector<uint8_t>& values) {
 
 class AnswerAssemblerTest : public testing::Test {
 protected:
-    ReplyAssembler assembler{3, [this](uint32_t client, Reply reply) {
-                                  replies.emplace_back(client, std::move(reply));
-                              }};
+    ReplyAssembler assembler{3,
+                             [this](uint32_t client, Reply reply) { replies.emplace_back(client, std::move(reply)); }};
     std::vector<std::pair<uint32_t, Reply>> replies;
 
     bool rectangle(int node, int32_t x, int32_t w, uint8_t value, bool last = true, bool all = false) {

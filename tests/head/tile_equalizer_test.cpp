@@ -16,12 +16,14 @@ protected:
         config.tileWidth = tileWidth;
         config.tileHeight = tileHeight;
         config.localNodes = nodes;
-        dealer_ = std::make_unique<TileEqualizer>(planSession(config, "me"), [this](const ViewportAssignment& areas) { announced_.push_back(areas); });
+        dealer_ = std::make_unique<TileEqualizer>(
+            planSession(config, "me"), [this](const ViewportAssignment& areas) { announced_.push_back(areas); });
         lives_.assign(static_cast<size_t>(nodes), true);
     }
 
     // All living nodes finish a frame. A pixel costs `cost` of its position, from 0 to 1.
-    void frame(const std::function<double(double x, double y)>& cost, uint32_t width = kWidth, uint32_t height = kHeight, uint32_t areas = UINT32_MAX) {
+    void frame(const std::function<double(double x, double y)>& cost, uint32_t width = kWidth,
+               uint32_t height = kHeight, uint32_t areas = UINT32_MAX) {
         ++frames_;
         for (size_t node = 0; node < lives_.size(); ++node) {
             if (!lives_[node]) continue;
@@ -53,8 +55,10 @@ protected:
         for (const Viewport& area : announced_.back().ofNodes) {
             const PixelViewport pixels = apply(whole, area);
             covered += pixels.area();
-            for (const int edge : {pixels.x, pixels.right()}) EXPECT_TRUE(edge % tileWidth == 0 || edge == width) << edge;
-            for (const int edge : {pixels.y, pixels.top()}) EXPECT_TRUE(edge % tileHeight == 0 || edge == height) << edge;
+            for (const int edge : {pixels.x, pixels.right()})
+                EXPECT_TRUE(edge % tileWidth == 0 || edge == width) << edge;
+            for (const int edge : {pixels.y, pixels.top()})
+                EXPECT_TRUE(edge % tileHeight == 0 || edge == height) << edge;
             for (const Viewport& other : announced_.back().ofNodes) {
                 if (&other != &area) {
                     EXPECT_TRUE(intersect(pixels, apply(whole, other)).empty());
@@ -63,7 +67,9 @@ protected:
         }
         EXPECT_EQ(covered, whole.area());
     }
-    [[nodiscard]] int64_t pixelsOf(size_t node) const { return apply({0, 0, kWidth, kHeight}, announced_.back().ofNodes[node]).area(); }
+    [[nodiscard]] int64_t pixelsOf(size_t node) const {
+        return apply({0, 0, kWidth, kHeight}, announced_.back().ofNodes[node]).area();
+    }
 
     std::unique_ptr<TileEqualizer> dealer_;
     std::vector<ViewportAssignment> announced_;

@@ -43,8 +43,8 @@ TEST(SplitGrid, coversEveryTileOnceForAnyNumberOfNodes) {
 }
 
 TEST(SplitGrid, dividesEquallyWherePossible) {
-    const int cases[][4] = {{2, 2, 4, 1}, {4, 4, 4, 4}, {4, 2, 2, 4}, {7, 5, 35, 1}, {6, 1, 3, 2}, {8, 8, 16, 4},
-                            {5, 1, 5, 1}, {7, 5, 4, 10}, {3, 3, 9, 1}, {1, 13, 13, 1}};
+    const int cases[][4] = {{2, 2, 4, 1},  {4, 4, 4, 4}, {4, 2, 2, 4},  {7, 5, 35, 1}, {6, 1, 3, 2},
+                            {8, 8, 16, 4}, {5, 1, 5, 1}, {7, 5, 4, 10}, {3, 3, 9, 1},  {1, 13, 13, 1}};
     for (const auto& [columns, rows, n, most] : cases)
         EXPECT_EQ(coverageOf(columns, rows, splitGrid(columns, rows, n)).most, most)
             << columns << 'x' << rows << " over " << n;

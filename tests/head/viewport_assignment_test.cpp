@@ -28,7 +28,13 @@ TEST(AreasOnTheWire, areRejectedWhenInvalid) {
         return !takeAreas(rest) && rest.size() == bytes.size();
     };
     EXPECT_FALSE(refused({0, 0, 1, 1}));
-    for (const Viewport& v : {Viewport{-0.1, 0, 1, 1}, {0, 0, 1.1, 1}, {0.5, 0, 0.6, 1}, {0, 0, 1, -1}, {NAN, 0, 1, 1}, {0, 0, INFINITY, 1}}) EXPECT_TRUE(refused(v));
+    for (const Viewport& v : {Viewport{-0.1, 0, 1, 1},
+                              {0, 0, 1.1, 1},
+                              {0.5, 0, 0.6, 1},
+                              {0, 0, 1, -1},
+                              {NAN, 0, 1, 1},
+                              {0, 0, INFINITY, 1}})
+        EXPECT_TRUE(refused(v));
     auto bytes = bytesOf(ViewportAssignment{1, {{0, 0, 1, 1}}});
     for (size_t size = 0; size < bytes.size(); ++size) {
         std::span<const std::byte> part = std::span(bytes).first(size);

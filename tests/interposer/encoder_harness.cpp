@@ -23,8 +23,10 @@ Session* Session::current() {
     alignas(Session) static std::byte memory[sizeof(Session)];
     static Session* session = new (memory) Session;
     if (!harness) return nullptr;
-    if (!harness->alive()) session->die("the test says so");
-    else session->alive_ = true;
+    if (!harness->alive())
+        session->die("the test says so");
+    else
+        session->alive_ = true;
     return session;
 }
 void Session::die(const char*) { alive_ = false; }

@@ -86,7 +86,8 @@ TEST_F(EncoderTest, padsFixedArraysToWords) {
 TEST_F(EncoderTest, encodesInlineDataOfEveryLengthModuloFour) {
     for (const size_t n : {1u, 2u, 3u, 4u, 5u, 1000u, record::kInlineBytes - 1, record::kInlineBytes}) {
         const auto bytes = counting(n);
-        encode_glBufferData(t_, GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(n), DataArg::of(bytes.data(), n), GL_STATIC_DRAW);
+        encode_glBufferData(t_, GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(n), DataArg::of(bytes.data(), n),
+                            GL_STATIC_DRAW);
         theRecord(op::glBufferData, [&](Args& in) {
             EXPECT_EQ(in.get<GLenum>(), GLenum{GL_ARRAY_BUFFER});
             EXPECT_EQ(in.get<GLsizeiptr>(), static_cast<GLsizeiptr>(n));
@@ -104,7 +105,8 @@ TEST_F(EncoderTest, encodesNullAndOffsets) {
         EXPECT_TRUE(in.data().absent());
         in.get<GLenum>();
     });
-    encode_glDrawElements(t_, GL_TRIANGLES, 3, GL_UNSIGNED_INT, DataArg::offset(reinterpret_cast<const void*>(uintptr_t{0x1234567890})));
+    encode_glDrawElements(t_, GL_TRIANGLES, 3, GL_UNSIGNED_INT,
+                          DataArg::offset(reinterpret_cast<const void*>(uintptr_t{0x1234567890})));
     theRecord(op::glDrawElements, [](Args& in) {
         in.get<GLenum>();
         in.get<GLsizei>();
@@ -128,9 +130,11 @@ TEST_F(EncoderTest, rejectsAnOffsetWhereOnlyBytesAreValid) {
 }
 
 TEST_F(EncoderTest, sendsLargeValuesInAdvanceInPieces) {
-    for (const size_t n : {size_t{record::kInlineBytes} + 1, size_t{record::kBlobPieceBytes}, size_t{3} * record::kBlobPieceBytes + 5, size_t{2} << 20}) {
+    for (const size_t n : {size_t{record::kInlineBytes} + 1, size_t{record::kBlobPieceBytes},
+                           size_t{3} * record::kBlobPieceBytes + 5, size_t{2} << 20}) {
         const auto bytes = counting(n);
-        encode_glBufferData(t_, GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(n), DataArg::of(bytes.data(), n), GL_STATIC_DRAW);
+        encode_glBufferData(t_, GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(n), DataArg::of(bytes.data(), n),
+                            GL_STATIC_DRAW);
         theRecord(op::glBufferData, [&](Args& in) {
             in.get<GLenum>();
             in.get<GLsizeiptr>();
@@ -142,7 +146,8 @@ TEST_F(EncoderTest, sendsLargeValuesInAdvanceInPieces) {
 
 TEST_F(EncoderTest, keepsTheOrderOfBlobsOfOneRecord) {
     const auto first = counting(20000), second = counting(30001);
-    encode_glMultiDrawElements(t_, GL_LINES, DataArg::of(first.data(), first.size()), GL_UNSIGNED_INT, DataArg::of(second.data(), second.size()), 5000);
+    encode_glMultiDrawElements(t_, GL_LINES, DataArg::of(first.data(), first.size()), GL_UNSIGNED_INT,
+                               DataArg::of(second.data(), second.size()), 5000);
     theRecord(op::glMultiDrawElements, [&](Args& in) {
         in.get<GLenum>();
         EXPECT_EQ(copyOf(in.data()), first);
@@ -179,7 +184,8 @@ TEST_F(EncoderTest, encodesStrings) {
 TEST_F(EncoderTest, packsImagesWithoutPadding) {
     // Rows of 5 bytes have a stride of 8 under the default alignment of 4.
     const auto image = counting(8 * 3);
-    encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_R8, 5, 3, 0, GL_RED, GL_UNSIGNED_BYTE, imageSource(t_, image.data(), GL_RED, GL_UNSIGNED_BYTE, 5, 3, 1, 2));
+    encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_R8, 5, 3, 0, GL_RED, GL_UNSIGNED_BYTE,
+                        imageSource(t_, image.data(), GL_RED, GL_UNSIGNED_BYTE, 5, 3, 1, 2));
     theRecord(op::glTexImage2D, [&](Args& in) {
         for (int i = 0; i < 8; ++i) in.get<uint32_t>();
         const auto rows = copyOf(in.data());
@@ -263,7 +269,8 @@ TEST_F(EncoderTest, encodesControlRecords) {
     const auto pixels = counting(20000);
     records::fillWindow(t_, -1, 2, 100, 50, GL_COLOR_BUFFER_BIT, DataArg::of(pixels.data(), pixels.size()));
     theRecord(wire::kOpFillWindow, [&](Args& in) {
-        for (const uint32_t v : {uint32_t(-1), 2u, 100u, 50u, uint32_t{GL_COLOR_BUFFER_BIT}}) EXPECT_EQ(in.get<uint32_t>(), v);
+        for (const uint32_t v : {uint32_t(-1), 2u, 100u, 50u, uint32_t{GL_COLOR_BUFFER_BIT}})
+            EXPECT_EQ(in.get<uint32_t>(), v);
         EXPECT_EQ(copyOf(in.data()), pixels);
     });
 }

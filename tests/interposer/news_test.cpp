@@ -56,24 +56,31 @@ protected:
             driverCallback = reinterpret_cast<GLDEBUGPROC>(callback);
             driverUser = user;
         };
-        gReal.glDebugMessageInsert = [](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar* text) { inserted.emplace_back(text); };
+        gReal.glDebugMessageInsert = [](GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar* text) {
+            inserted.emplace_back(text);
+        };
         inserted.clear();
         said.clear();
         context_.id = 3;
         t_.context = &context_;
     }
     void comes(wire::DriverEventKind kind, const std::string& text = "", uint32_t type = 0, uint32_t context = 3) {
-        coming.push_back({{1, context, static_cast<uint32_t>(kind), GL_DEBUG_SOURCE_API, type, 5, GL_DEBUG_SEVERITY_LOW, static_cast<uint32_t>(text.size())}, text});
+        coming.push_back({{1, context, static_cast<uint32_t>(kind), GL_DEBUG_SOURCE_API, type, 5, GL_DEBUG_SEVERITY_LOW,
+                           static_cast<uint32_t>(text.size())},
+                          text});
         shared.newsTail.fetch_add(1);
     }
     void message(const std::string& text, uint32_t type = GL_DEBUG_TYPE_PERFORMANCE, uint32_t context = 3) {
         comes(wire::DriverEventKind::DebugMessage, text, type, context);
         takeDriverEvents(t_);
     }
-    void fromDriver(const char* text) { driverCallback(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 9, GL_DEBUG_SEVERITY_LOW, -1, text, driverUser); }
+    void fromDriver(const char* text) {
+        driverCallback(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 9, GL_DEBUG_SEVERITY_LOW, -1, text, driverUser);
+    }
 
     static void APIENTRY hear(GLenum, GLenum, GLuint, GLenum, GLsizei length, const GLchar* text, const void* user) {
-        static_cast<std::vector<std::string>*>(const_cast<void*>(user))->emplace_back(length < 0 ? std::string(text) : std::string(text, static_cast<size_t>(length)));
+        static_cast<std::vector<std::string>*>(const_cast<void*>(user))
+            ->emplace_back(length < 0 ? std::string(text) : std::string(text, static_cast<size_t>(length)));
     }
     std::vector<std::string> heard_;
     Context context_;

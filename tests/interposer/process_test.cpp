@@ -34,7 +34,8 @@ bool trueInChild(const std::function<bool()>& check) {
 TEST(Process, beginsTheChildOnceAfterARawFork) {
     const uint32_t mine = process::number();
     process::onChildBegins([] { ++childBegins; });
-    EXPECT_TRUE(trueInChild([=] { return process::number() == mine + 1 && process::number() == mine + 1 && childBegins == 1; }));
+    EXPECT_TRUE(trueInChild(
+        [=] { return process::number() == mine + 1 && process::number() == mine + 1 && childBegins == 1; }));
     EXPECT_EQ(process::number(), mine);
     EXPECT_EQ(childBegins, 0);
 }
@@ -73,7 +74,8 @@ TEST(Lock, isFreeInTheChildWhenHeldByTheParent) {
 
 TEST(Readable, endsAtTheFirstPageWithoutRights) {
     const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
-    auto* const pages = static_cast<char*>(mmap(nullptr, 4 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    auto* const pages =
+        static_cast<char*>(mmap(nullptr, 4 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     ASSERT_NE(pages, MAP_FAILED);
     ASSERT_EQ(mprotect(pages + 2 * page, page, PROT_NONE), 0);
     EXPECT_EQ(readableBytes(pages + 12, 100), 100U);

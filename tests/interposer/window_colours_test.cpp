@@ -11,7 +11,8 @@
 namespace mural {
 namespace {
 
-template <class T, size_t N> ColourDifference compare(const std::array<T, N>& a, const std::array<T, N>& b, GLenum type, size_t pixels) {
+template <class T, size_t N>
+ColourDifference compare(const std::array<T, N>& a, const std::array<T, N>& b, GLenum type, size_t pixels) {
     return compareColours(a.data(), b.data(), pixels, type);
 }
 

@@ -28,14 +28,16 @@ std::string contentOf(int fd) {
     return text;
 }
 
-Said mural(std::vector<std::string> words, std::vector<std::string> environment = {}, const char* outputFile = nullptr) {
+Said mural(std::vector<std::string> words, std::vector<std::string> environment = {},
+           const char* outputFile = nullptr) {
     launch::SpawnRequest request;
     request.file = MURAL_BINARY;
     request.arguments = {"mural"};
     request.arguments.insert(request.arguments.end(), words.begin(), words.end());
     request.environment = {"PATH=/usr/bin:/bin"};
     request.environment.insert(request.environment.end(), environment.begin(), environment.end());
-    request.outputFd = outputFile != nullptr ? open(outputFile, O_WRONLY | O_CLOEXEC) : memfd_create("output", MFD_CLOEXEC);
+    request.outputFd =
+        outputFile != nullptr ? open(outputFile, O_WRONLY | O_CLOEXEC) : memfd_create("output", MFD_CLOEXEC);
     request.errorFd = memfd_create("errors", MFD_CLOEXEC);
     Said said;
     auto child = launch::ChildProcess::start(request);
@@ -67,7 +69,11 @@ TEST(BadArguments, areReportedForTheCommandItself) {
 
 // Incomplete output would look complete to a later reader.
 TEST(BadArguments, includeLostOutput) {
-    for (const std::vector<std::string>& words : {std::vector<std::string>{"version"}, {"list-commands"}, {"list-commands", "--unsupported"}, {"run", "--help"}, {"run", "--print-config", "--tiles", "3x2"}}) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"version"},
+                                                  {"list-commands"},
+                                                  {"list-commands", "--unsupported"},
+                                                  {"run", "--help"},
+                                                  {"run", "--print-config", "--tiles", "3x2"}}) {
         SCOPED_TRACE(words.front());
         expectOneLine(mural(words, {}, "/dev/full"), 1, "the output can't be written: No space left");
     }
@@ -75,9 +81,11 @@ TEST(BadArguments, includeLostOutput) {
 
 TEST(BadArguments, includeUnwritableFilesBeforeTheRun) {
     test::TemporaryFolder folder;
-    expectOneLine(mural({"run", "--report", "/nodir/r.json", "--", "true"}), 2, "--report /nodir/r.json: cannot be written");
+    expectOneLine(mural({"run", "--report", "/nodir/r.json", "--", "true"}), 2,
+                  "--report /nodir/r.json: cannot be written");
     expectOneLine(mural({"run", "--report", "/tmp", "--", "true"}), 2, "is a folder");
-    expectOneLine(mural({"run", "--out", folder.at("shots"), "--frames", "10", "--save", "4,45", "--", "true"}), 2, "behind the last one, 10");
+    expectOneLine(mural({"run", "--out", folder.at("shots"), "--frames", "10", "--save", "4,45", "--", "true"}), 2,
+                  "behind the last one, 10");
 }
 
 TEST(BadArguments, includeAWallThatNoNodeCanDraw) {
@@ -87,7 +95,8 @@ TEST(BadArguments, includeAWallThatNoNodeCanDraw) {
 TEST(GoodArguments, reportPicturesOfAnEarlierRun) {
     test::TemporaryFolder folder;
     const auto toldOf = [&](const std::string& out) {
-        return mural({"run", "--tiles", "1x1", "--display", "none", "--out", out, "--", "true"}).errors.find("2 pictures of an earlier run are there") != std::string::npos;
+        return mural({"run", "--tiles", "1x1", "--display", "none", "--out", out, "--", "true"})
+                   .errors.find("2 pictures of an earlier run are there") != std::string::npos;
     };
     folder.file("frame-000001.png", {}, 0644);
     folder.file("frame-000002.png", {}, 0644);
@@ -129,14 +138,17 @@ TEST(BadArguments, includeMissingDisplays) {
 
 TEST(BadArguments, includeProgramsThatCannotBeCaptured) {
     const test::TemporaryFolder folder;
-    const auto program = [&](const std::string& name, int mode) { return folder.file(name, test::elf64(true, launch::ownMachine()), mode); };
+    const auto program = [&](const std::string& name, int mode) {
+        return folder.file(name, test::elf64(true, launch::ownMachine()), mode);
+    };
     expectOneLine(mural({"run", "--", "surely-not-installed"}), 127, "PATH");
     expectOneLine(mural({"run", "--", folder.at("none")}), 127, "none");
     expectOneLine(mural({"run", "--", program("noright", 0644)}), 126, "chmod");
     expectOneLine(mural({"run", "--", folder.at("")}), 126, "folder");
     expectOneLine(mural({"run", "--", program("setuid", 04755)}), 2, "setuid");
     expectOneLine(mural({"run", "--", program("setgid", 02755)}), 2, "setgid");
-    expectOneLine(mural({"run", "--", folder.file("static", test::elf64(false, launch::ownMachine()), 0755)}), 2, "static");
+    expectOneLine(mural({"run", "--", folder.file("static", test::elf64(false, launch::ownMachine()), 0755)}), 2,
+                  "static");
     expectOneLine(mural({"run", "--", folder.file("narrow", test::elf32(), 0755)}), 2, "32-bit");
     expectOneLine(mural({"run", "--native", "--", folder.at("none")}), 127, "none");
 }

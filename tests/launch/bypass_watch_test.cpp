@@ -51,7 +51,8 @@ TEST_F(Bypass, whatFailsBeforeItLoadsGlIsNotSaidToDrawByX11) {
 TEST_F(Bypass, aLaunchersDialogDoesNotHideTheProgram) {
     const std::string x11 = library("libX11.so.6", {});
     const std::string own = library("libGL.so.1", {"libglapi.so.0"});
-    for (const auto& programs : {std::vector<UnseenProgram>{{"dialog", {x11}}, {"app", {own}}}, std::vector<UnseenProgram>{{"app", {own}}, {"dialog", {x11}}}}) {
+    for (const auto& programs : {std::vector<UnseenProgram>{{"dialog", {x11}}, {"app", {own}}},
+                                 std::vector<UnseenProgram>{{"app", {own}}, {"dialog", {x11}}}}) {
         EXPECT_EQ(describeBypass(programs).find("app draws by"), 0u);
     }
 }
@@ -71,7 +72,8 @@ TEST(BypassNotes, eachLineIsToldOnceAndHalfOnesWait) {
 TEST_F(Bypass, endedProgramsLeaveTheirLibraries) {
     auto watch = BypassWatch::create();
     ASSERT_TRUE(watch.ok());
-    std::ofstream(watch.value()->notesPath(), std::ios::app) << "ended\t/bin/app\t" << library("libOSMesa.so.8", {}) << "\n";
+    std::ofstream(watch.value()->notesPath(), std::ios::app)
+        << "ended\t/bin/app\t" << library("libOSMesa.so.8", {}) << "\n";
     watch.value()->news();
     EXPECT_NE(watch.value()->aboutEnded(false).find("app draws by OSMesa"), std::string::npos);
 }

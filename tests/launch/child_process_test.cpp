@@ -50,7 +50,8 @@ TEST(ChildProcess, hasExactlyTheGivenEnvironmentAndDescriptors) {
     const int output = memfd_create("output", MFD_CLOEXEC);
     const int kept = memfd_create("kept", MFD_CLOEXEC);
     const int other = memfd_create("other", MFD_CLOEXEC);
-    SpawnRequest request = shell("env; [ -e /proc/self/fd/" + std::to_string(kept) + " ] && echo kept; [ -e /proc/self/fd/" + std::to_string(other) + " ] && echo other");
+    SpawnRequest request = shell("env; [ -e /proc/self/fd/" + std::to_string(kept) +
+                                 " ] && echo kept; [ -e /proc/self/fd/" + std::to_string(other) + " ] && echo other");
     request.environment = {"PATH=/usr/bin:/bin", "ONLY=this"};
     request.keptFds = {kept};
     request.outputFd = output;

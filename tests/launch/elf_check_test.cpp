@@ -43,7 +43,10 @@ TEST_F(ElfCheck, readsThe32BitHeader) {
 
 TEST_F(ElfCheck, treatsATruncatedFileAsUnknown) {
     EXPECT_EQ(factsOf(test::elf64(true, EM_X86_64).substr(0, 20)).kind, FileKind::Unknown);
-    EXPECT_EQ(factsOf("\x7f" "ELF\x09 and more").kind, FileKind::Unknown);
+    EXPECT_EQ(factsOf("\x7f"
+                      "ELF\x09 and more")
+                  .kind,
+              FileKind::Unknown);
 }
 
 TEST_F(ElfCheck, ignoresInvalidHeaderCounts) {

@@ -63,7 +63,8 @@ TEST(CaptureEnvironment, savesTheUsersVendorsEvenWhenAddedTwice) {
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
     const auto once = e.entries();
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
-    EXPECT_EQ(std::multiset<std::string>(once.begin(), once.end()), std::multiset<std::string>(e.entries().begin(), e.entries().end()));
+    EXPECT_EQ(std::multiset<std::string>(once.begin(), once.end()),
+              std::multiset<std::string>(e.entries().begin(), e.entries().end()));
     EXPECT_EQ(e.get("MURAL_REAL_GLX_VENDOR"), "mesa");
     EXPECT_EQ(e.get("MURAL_REAL_EGL_VENDORS"), "/v/50_mesa.json");
 }
@@ -78,7 +79,8 @@ TEST(CaptureEnvironment, restoresTheOriginalGlForNodes) {
     Environment e({"HOME=/h", "LD_PRELOAD=/clock.so", "__GLX_VENDOR_LIBRARY_NAME=mesa"});
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
     removeCapture(e);
-    EXPECT_EQ(std::multiset<std::string>(e.entries().begin(), e.entries().end()), (std::multiset<std::string>{"HOME=/h", "__GLX_VENDOR_LIBRARY_NAME=mesa"}));
+    EXPECT_EQ(std::multiset<std::string>(e.entries().begin(), e.entries().end()),
+              (std::multiset<std::string>{"HOME=/h", "__GLX_VENDOR_LIBRARY_NAME=mesa"}));
 }
 
 TEST(CaptureEnvironment, usesTheLibraryPathForAFolderWithSpaces) {

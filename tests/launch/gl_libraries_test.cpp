@@ -28,7 +28,8 @@ TEST(LibraryFacts, rejectTruncatedFiles) {
         const auto facts = readLibrary(folder.at("cut.so"));
         if (!facts.ok()) continue;
         EXPECT_TRUE(std::string("libGL.so.1").starts_with(facts.value().soname));
-        for (const std::string& needed : facts.value().needed) EXPECT_TRUE(std::string("libc.so.6").starts_with(needed));
+        for (const std::string& needed : facts.value().needed)
+            EXPECT_TRUE(std::string("libc.so.6").starts_with(needed));
     }
     EXPECT_FALSE(readLibrary(folder.at("none.so")).ok());
 }

@@ -15,7 +15,8 @@ HeadEvent event(const std::string& line) {
 }
 
 TEST(HeadEvents, readsEachLineOfTheProtocol) {
-    EXPECT_EQ(event(R"({"event":"ready","explain":["a","b"],"nodes":[]})").explain, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(event(R"({"event":"ready","explain":["a","b"],"nodes":[]})").explain,
+              (std::vector<std::string>{"a", "b"}));
     EXPECT_EQ(event(R"({"event":"error","text":"no GL"})").text, "no GL");
     EXPECT_EQ(event(R"({"event":"clients","count":2})").clients, 2);
     const HeadEvent frame = event(R"({"event":"frame","frame":120,"framesPerSecond":58.2,"bytesPerFrame":12345})");
@@ -26,7 +27,8 @@ TEST(HeadEvents, readsEachLineOfTheProtocol) {
 }
 
 TEST(HeadEvents, nothingFromOutsideThrows) {
-    for (const char* line : {"", "{", "[]", "7", "null", R"({"text":"x"})"}) EXPECT_FALSE(parseHeadEvent(line).ok()) << line;
+    for (const char* line : {"", "{", "[]", "7", "null", R"({"text":"x"})"})
+        EXPECT_FALSE(parseHeadEvent(line).ok()) << line;
     EXPECT_EQ(event(R"({"event":"later"})").kind, HeadEvent::Kind::Unknown);
     EXPECT_EQ(event(R"({"event":7})").kind, HeadEvent::Kind::Unknown);
     EXPECT_EQ(event(R"({"event":"clients","count":"two"})").clients, 0);
@@ -34,47 +36,56 @@ TEST(HeadEvents, nothingFromOutsideThrows) {
 }
 
 TEST(Report, saysWhatDiffersAndWhoWasLost) {
-    const HeadEvent e = event(R"({"event":"report","frames":90,"seconds":1.5,"framesPerSecond":60.0,"bytesPerFrame":12345,"verifiedFrames":90,)"
-                              R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"squaredDifference":9,"savedPictures":1,"lastPicture":"out/a.png","recording":"a.mural","recordedFrames":90,"recordedBytes":1234567,)"
-                              R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true}]})");
-    EXPECT_EQ(reportLines(e.report), (std::vector<std::string>{
-                                         "90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node, 0 round trips",
-                                         "verified 90 frames, 70778880 pixels: 3 differ, by up to 2 of 255, PSNR 123.1 dB",
-                                         "saved 1 picture, the last in out/a.png",
-                                         "recorded 90 frames in a.mural, 1.23 MB",
-                                         "1 call of commands that Mural does not carry yet; see mural list-commands --unsupported",
-                                         "node 1 was lost after 12 frames"}));
+    const HeadEvent e = event(
+        R"({"event":"report","frames":90,"seconds":1.5,"framesPerSecond":60.0,"bytesPerFrame":12345,"verifiedFrames":90,)"
+        R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"squaredDifference":9,"savedPictures":1,"lastPicture":"out/a.png","recording":"a.mural","recordedFrames":90,"recordedBytes":1234567,)"
+        R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true}]})");
+    EXPECT_EQ(reportLines(e.report),
+              (std::vector<std::string>{
+                  "90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node, 0 round trips",
+                  "verified 90 frames, 70778880 pixels: 3 differ, by up to 2 of 255, PSNR 123.1 dB",
+                  "saved 1 picture, the last in out/a.png", "recorded 90 frames in a.mural, 1.23 MB",
+                  "1 call of commands that Mural does not carry yet; see mural list-commands --unsupported",
+                  "node 1 was lost after 12 frames"}));
 }
 
 TEST(Report, saysWhatWasNotVerified) {
-    const HeadEvent e = event(R"({"event":"report","frames":9,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"uncomparedFrames":3,)"
-                              R"("uncomparedFramesBy":{"front buffer":2,"window not current":1}})");
+    const HeadEvent e = event(
+        R"({"event":"report","frames":9,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"uncomparedFrames":3,)"
+        R"("uncomparedFramesBy":{"front buffer":2,"window not current":1}})");
     EXPECT_EQ(reportLines(e.report).back(), "not verified: 3 frames (front buffer 2, window not current 1)");
 }
 
 TEST(Report, saysWhatTheNodesWereSpared) {
-    const HeadEvent e = event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,)"
-                              R"("economy":{"records":1000,"rawBytes":50000,"stagedBytes":3000,"wireBytes":1200,"storeHits":90,"newPages":10,"encodeSeconds":0.0003,"heldRecords":7,"leftOutRecords":5,"leftOutBytes":4096}})");
+    const HeadEvent e = event(
+        R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,)"
+        R"("economy":{"records":1000,"rawBytes":50000,"stagedBytes":3000,"wireBytes":1200,"storeHits":90,"newPages":10,"encodeSeconds":0.0003,"heldRecords":7,"leftOutRecords":5,"leftOutBytes":4096}})");
     ASSERT_EQ(reportLines(e.report).size(), 3u);
-    EXPECT_EQ(reportLines(e.report)[2], "held back: 7 records waited for their first use; 5 of 4.1 kB never went, as nobody needed them");
-    EXPECT_EQ(reportLines(e.report)[1], "economy: of 5.0 kB per frame 300 B were new to the nodes, 120 B compressed; 90 of 100 pages they had; packing took 30 us per frame, 300 ns per call");
+    EXPECT_EQ(reportLines(e.report)[2],
+              "held back: 7 records waited for their first use; 5 of 4.1 kB never went, as nobody needed them");
+    EXPECT_EQ(reportLines(e.report)[1], "economy: of 5.0 kB per frame 300 B were new to the nodes, 120 B compressed; "
+                                        "90 of 100 pages they had; packing took 30 us per frame, 300 ns per call");
     EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"economy":null})").report).size(), 1u);
 }
 
 TEST(Report, saysHowTilesWereTaken) {
-    const HeadEvent e = event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"queues":[)"
-                              R"({"name":"tiles","of":"tiles","columns":25,"rows":19,"tileWidth":32,"tileHeight":32,"frames":8,"moves":2,"tilesMoved":60,"taken":2,"nodes":[{"node":0,"tiles":95},{"node":1,"tiles":380}]},)"
-                              R"({"name":"draws","of":"chunks","columns":60,"rows":1,"frames":1,"moves":1,"tilesMoved":6,"nodes":[{"node":0,"tiles":20},{"node":1,"tiles":40}]},)"
-                              R"({"name":"of nothing","columns":0},7]})");
+    const HeadEvent e = event(
+        R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"queues":[)"
+        R"({"name":"tiles","of":"tiles","columns":25,"rows":19,"tileWidth":32,"tileHeight":32,"frames":8,"moves":2,"tilesMoved":60,"taken":2,"nodes":[{"node":0,"tiles":95},{"node":1,"tiles":380}]},)"
+        R"({"name":"draws","of":"chunks","columns":60,"rows":1,"frames":1,"moves":1,"tilesMoved":6,"nodes":[{"node":0,"tiles":20},{"node":1,"tiles":40}]},)"
+        R"({"name":"of nothing","columns":0},7]})");
     ASSERT_EQ(reportLines(e.report).size(), 3u);
-    EXPECT_EQ(reportLines(e.report)[2], "queue \"draws\": 60 chunks moved after 1 of 1 frame, 6.00 chunks per frame; in the end node 0 has 20, node 1 has 40");
-    EXPECT_EQ(reportLines(e.report)[1], "queue \"tiles\": 25x19 tiles of 32x32 pixels moved after 2 of 8 frames, 7.50 tiles per frame; in the end node 0 has 95, node 1 has 380");
+    EXPECT_EQ(reportLines(e.report)[2], "queue \"draws\": 60 chunks moved after 1 of 1 frame, 6.00 chunks per frame; "
+                                        "in the end node 0 has 20, node 1 has 40");
+    EXPECT_EQ(reportLines(e.report)[1], "queue \"tiles\": 25x19 tiles of 32x32 pixels moved after 2 of 8 frames, 7.50 "
+                                        "tiles per frame; in the end node 0 has 95, node 1 has 380");
     EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"queues":null})").report).size(), 1u);
 }
 
 TEST(Report, saysWhichCommandsCauseRoundTrips) {
-    const HeadEvent e = event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":1,"roundTrips":5,)"
-                              R"("roundTripsBy":{"glGetQueryObjectuiv":1,"glReadPixels":4,"odd":"x"}})");
+    const HeadEvent e =
+        event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":1,"roundTrips":5,)"
+              R"("roundTripsBy":{"glGetQueryObjectuiv":1,"glReadPixels":4,"odd":"x"}})");
     EXPECT_EQ(reportLines(e.report).front(), "10 frames in 1.0 s, 9.0 frames/s, 1 B per frame to each node, "
                                              "5 round trips (0.50 per frame: glReadPixels 4, glGetQueryObjectuiv 1)");
 }

@@ -36,7 +36,8 @@ TEST(PrivateDisplay, hasTheRequestedSizeAndRequiresItsCookie) {
 
     std::string wrong(XAuthority::kCookieBytes, 'x');
     std::string protocol(kXAuthorityProtocol);
-    xcb_auth_info_t key{static_cast<int>(protocol.size()), protocol.data(), static_cast<int>(wrong.size()), wrong.data()};
+    xcb_auth_info_t key{static_cast<int>(protocol.size()), protocol.data(), static_cast<int>(wrong.size()),
+                        wrong.data()};
     EXPECT_FALSE(takes(d.name(), &key));
 
     Environment environment({"WAYLAND_DISPLAY=wayland-0"});

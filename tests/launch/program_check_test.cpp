@@ -53,7 +53,9 @@ TEST_F(ProgramCheckTest, followsScriptsToTheirInterpreter) {
     const std::string good = folder_.file("good", "#!" + program("interpreter") + " -x\n", 0755);
     EXPECT_TRUE(checkProgram(good, "").ok());
     EXPECT_EQ(checkProgram(good, "").path, good);
-    expectRefusal(folder_.file("bad", "#!" + folder_.file("static", test::elf64(false, ownMachine()), 0755) + "\n", 0755), 2, "static");
+    expectRefusal(
+        folder_.file("bad", "#!" + folder_.file("static", test::elf64(false, ownMachine()), 0755) + "\n", 0755), 2,
+        "static");
     expectRefusal(folder_.file("lost", "#!" + folder_.at("gone") + "\n", 0755), 127, "gone");
     EXPECT_TRUE(checkProgram(folder_.file("second", "#!" + good + "\n", 0755), "").ok());
     const std::string loop = folder_.at("loop");
@@ -72,7 +74,8 @@ TEST_F(ProgramCheckTest, searchesPathInOrderAndSkipsWhatIsNotExecutable) {
     const std::string wanted = second.file("app", test::elf64(true, ownMachine()), 0755);
     program("app");
     const std::string path = first.at("") + ":" + second.at("") + ":" + folder_.at("");
-    EXPECT_EQ(std::filesystem::path(findProgram("app", path).path).lexically_normal(), std::filesystem::path(wanted).lexically_normal());
+    EXPECT_EQ(std::filesystem::path(findProgram("app", path).path).lexically_normal(),
+              std::filesystem::path(wanted).lexically_normal());
     EXPECT_EQ(findProgram("app", first.at("")).exitStatus, 126);
 }
 

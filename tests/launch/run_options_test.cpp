@@ -35,12 +35,20 @@ TEST(RunOptions, defaultToOneExactNode) {
 }
 
 TEST(RunOptions, needNoTilesForAQueue) {
-    const RunOptions o = accepted([](RunArguments& a) { a.tileQueue = "64x48"; a.localNodes = "5"; });
+    const RunOptions o = accepted([](RunArguments& a) {
+        a.tileQueue = "64x48";
+        a.localNodes = "5";
+    });
     EXPECT_EQ(o.config.tileWidth, 64);
     EXPECT_EQ(o.config.tileHeight, 48);
     EXPECT_EQ(o.config.columns * o.config.rows, 1);
-    const RunOptions printed = accepted([](RunArguments& a) { a.tileQueue = "64x48"; a.localNodes = "2"; a.printConfig = true; });
-    EXPECT_NE(printed.configText.find("outputtiles { name \"wall.queue\" size [ 64 48 ] }"), std::string::npos) << printed.configText;
+    const RunOptions printed = accepted([](RunArguments& a) {
+        a.tileQueue = "64x48";
+        a.localNodes = "2";
+        a.printConfig = true;
+    });
+    EXPECT_NE(printed.configText.find("outputtiles { name \"wall.queue\" size [ 64 48 ] }"), std::string::npos)
+        << printed.configText;
 }
 
 TEST(RunOptions, readEveryOption) {
@@ -109,7 +117,10 @@ TEST(RunOptions, giveNodesOneTileEachByDefault) {
 
 TEST(RunOptions, nameTheOptionAndTheExpectedValue) {
     for (const char* bad : {"2", "2x", "x2", "0x1", "2x2x2", "-1x2", "2 x2", "2X2", "257x1", "99999999999x1", ""}) {
-        EXPECT_EQ(refusal([&](RunArguments& a) { a.tiles = bad; }).rfind("--tiles \"" + std::string(bad) + "\": must be", 0), 0u) << bad;
+        EXPECT_EQ(
+            refusal([&](RunArguments& a) { a.tiles = bad; }).rfind("--tiles \"" + std::string(bad) + "\": must be", 0),
+            0u)
+            << bad;
     }
     EXPECT_NE(refusal([](RunArguments& a) { a.size = "32768x1"; }).find("32767"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.frames = "0"; }).find("--frames"), std::string::npos);
@@ -123,8 +134,12 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValue) {
     EXPECT_EQ(accepted([](RunArguments& a) { a.store = "1048576"; }).config.storeBytes, 1 << 20);
     EXPECT_NE(refusal([](RunArguments& a) { a.position = "1"; }).find("--position"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
-    EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "3"; }).find("--local-nodes"), std::string::npos) << "a number is hardly a host";
-    EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,h2", a.leastNodes = "3"; }).find("--least-nodes \"3\": must be at most 2"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "3"; }).find("--local-nodes"), std::string::npos)
+        << "a number is hardly a host";
+    EXPECT_NE(refusal([](RunArguments& a) {
+                  a.nodes = "h1,h2", a.leastNodes = "3";
+              }).find("--least-nodes \"3\": must be at most 2"),
+              std::string::npos);
 }
 
 TEST(RunOptions, readPasses) {
@@ -144,30 +159,61 @@ TEST(RunOptions, readPasses) {
     EXPECT_EQ(p.samples, 4);
     EXPECT_EQ(p.period, 5);
     EXPECT_EQ(o.config.latency, 5) << "turns overlap only so";
-    EXPECT_EQ(accepted([](RunArguments& a) { a.dplex = "3"; a.latency = "1"; }).config.latency, 1);
+    EXPECT_EQ(accepted([](RunArguments& a) {
+                  a.dplex = "3";
+                  a.latency = "1";
+              }).config.latency,
+              1);
     const PassCounts row = accepted([](RunArguments& a) { a.pixel = "5"; }).config.passes;
     EXPECT_EQ(std::pair(row.kernelWidth, row.kernelHeight), std::pair(5, 1));
     EXPECT_TRUE(p.zoom.none());
     EXPECT_EQ(accepted([](RunArguments& a) { a.zoom = "0.5"; }).config.passes.zoom, (Zoom{0.5, 0.5}));
-    EXPECT_EQ(accepted([](RunArguments& a) { a.zoom = "2x0.25"; a.db = "2"; }).config.passes.zoom, (Zoom{2, 0.25}));
+    EXPECT_EQ(accepted([](RunArguments& a) {
+                  a.zoom = "2x0.25";
+                  a.db = "2";
+              }).config.passes.zoom,
+              (Zoom{2, 0.25}));
     const char* const modes[] = {"off", "anaglyph", "side-by-side", "top-bottom", "left", "right", "quad"};
-    for (size_t i = 0; i < 7; ++i) EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo, static_cast<StereoMode>(i));
+    for (size_t i = 0; i < 7; ++i)
+        EXPECT_EQ(accepted([&](RunArguments& a) { a.stereo = modes[i]; }).config.passes.stereo,
+                  static_cast<StereoMode>(i));
 }
 
 TEST(RunOptions, allowCompositionOnlyForSharedDraws) {
     EXPECT_EQ(accepted([](RunArguments& a) { a.db = "3"; }).config.composition, "auto");
     for (const char* how : {"auto", "serial", "direct-send", "binary-swap", "2-3-swap", "radix-k", "streaming"})
-        EXPECT_EQ(accepted([&](RunArguments& a) { a.db = "3"; a.composition = how; }).config.composition, how);
-    EXPECT_EQ(refusal([](RunArguments& a) { a.db = "3"; a.composition = "swap"; }),
-              "--composition \"swap\": must be one of auto, serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming");
-    EXPECT_EQ(refusal([](RunArguments& a) { a.composition = "serial"; }), "--composition is for nodes that share draws; add --db N, such as --db 4");
+        EXPECT_EQ(accepted([&](RunArguments& a) {
+                      a.db = "3";
+                      a.composition = how;
+                  }).config.composition,
+                  how);
+    EXPECT_EQ(
+        refusal([](RunArguments& a) {
+            a.db = "3";
+            a.composition = "swap";
+        }),
+        "--composition \"swap\": must be one of auto, serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming");
+    EXPECT_EQ(refusal([](RunArguments& a) { a.composition = "serial"; }),
+              "--composition is for nodes that share draws; add --db N, such as --db 4");
 }
 
 TEST(RunOptions, shareTilesAmongNodesOfSeveralPasses) {
-    EXPECT_EQ(accepted([](RunArguments& a) { a.subpixel = "4"; a.localNodes = "4"; }).config.columns, 1);
-    const RunOptions o = accepted([](RunArguments& a) { a.subpixel = "2"; a.localNodes = "8"; });
+    EXPECT_EQ(accepted([](RunArguments& a) {
+                  a.subpixel = "4";
+                  a.localNodes = "4";
+              }).config.columns,
+              1);
+    const RunOptions o = accepted([](RunArguments& a) {
+        a.subpixel = "2";
+        a.localNodes = "8";
+    });
     EXPECT_EQ(std::pair(o.config.columns, o.config.rows), std::pair(2, 2));
-    EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "2"; a.tiles = "2x1"; a.localNodes = "5"; }).find("5 render nodes for 2 tiles in 2 passes"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) {
+                  a.subpixel = "2";
+                  a.tiles = "2x1";
+                  a.localNodes = "5";
+              }).find("5 render nodes for 2 tiles in 2 passes"),
+              std::string::npos);
 }
 
 TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
@@ -176,41 +222,113 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
         EXPECT_EQ(said.rfind(option, 0), 0u) << said;
         EXPECT_EQ(said.find('\n'), std::string::npos);
     };
-    for (const char* bad : {"0", "17", "-1", "nan", "inf", "0.5x", "x2", "1x2x3", "half", ""}) names("--zoom \"", [&](RunArguments& a) { a.zoom = bad; });
-    for (const char* bad : {"0", "17", "2x17", "0x2", "x", "2x", ""}) names("--pixel \"", [&](RunArguments& a) { a.pixel = bad; });
+    for (const char* bad : {"0", "17", "-1", "nan", "inf", "0.5x", "x2", "1x2x3", "half", ""})
+        names("--zoom \"", [&](RunArguments& a) { a.zoom = bad; });
+    for (const char* bad : {"0", "17", "2x17", "0x2", "x", "2x", ""})
+        names("--pixel \"", [&](RunArguments& a) { a.pixel = bad; });
     for (const char* bad : {"0", "257", "-1", "2.5", ""}) {
         names("--subpixel", [&](RunArguments& a) { a.subpixel = bad; });
         names("--dplex", [&](RunArguments& a) { a.dplex = bad; });
     }
     names("--stereo", [](RunArguments& a) { a.stereo = "both"; });
-    for (const char* bad : {"-1", "nan", "inf", "1e10", "wide", "1 ", ""}) names("--eye-base", [&](RunArguments& a) { a.stereo = "left"; a.eyeBase = bad; });
-    for (const char* bad : {"0", "-3", "nan", "far"}) names("--focus", [&](RunArguments& a) { a.stereo = "left"; a.focus = bad; });
+    for (const char* bad : {"-1", "nan", "inf", "1e10", "wide", "1 ", ""})
+        names("--eye-base", [&](RunArguments& a) {
+            a.stereo = "left";
+            a.eyeBase = bad;
+        });
+    for (const char* bad : {"0", "-3", "nan", "far"})
+        names("--focus", [&](RunArguments& a) {
+            a.stereo = "left";
+            a.focus = bad;
+        });
     names("--frusta is for a configuration file", [](RunArguments& a) { a.frusta = "room"; });
-    names("--frusta", [](RunArguments& a) { a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc"; a.frusta = "cave"; });
-    names("--model-unit", [](RunArguments& a) { a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc"; a.modelUnit = "0"; });
+    names("--frusta", [](RunArguments& a) {
+        a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc";
+        a.frusta = "cave";
+    });
+    names("--model-unit", [](RunArguments& a) {
+        a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc";
+        a.modelUnit = "0";
+    });
     names("--eye-base is for stereo", [](RunArguments& a) { a.eyeBase = "1"; });
     names("--focus is for stereo", [](RunArguments& a) { a.focus = "1"; });
-    EXPECT_NE(refusal([](RunArguments& a) { a.subpixel = "16"; a.pixel = "4x4"; a.stereo = "anaglyph"; }).find("512 passes together; at most 256"), std::string::npos);
-    names("--verify compares with", [](RunArguments& a) { a.subpixel = "2"; a.verify = "1"; });
-    names("--verify compares with", [](RunArguments& a) { a.zoom = "2"; a.verify = "1"; });
-    names("--tiling lean does not go with --zoom", [](RunArguments& a) { a.zoom = "2"; a.tiling = "lean"; });
-    EXPECT_EQ(accepted([](RunArguments& a) { a.dplex = "2"; a.verify = "1"; }).config.verifyEvery, 1);
-    names("--tiling lean does not go with", [](RunArguments& a) { a.subpixel = "2"; a.tiling = "lean"; });
+    EXPECT_NE(refusal([](RunArguments& a) {
+                  a.subpixel = "16";
+                  a.pixel = "4x4";
+                  a.stereo = "anaglyph";
+              }).find("512 passes together; at most 256"),
+              std::string::npos);
+    names("--verify compares with", [](RunArguments& a) {
+        a.subpixel = "2";
+        a.verify = "1";
+    });
+    names("--verify compares with", [](RunArguments& a) {
+        a.zoom = "2";
+        a.verify = "1";
+    });
+    names("--tiling lean does not go with --zoom", [](RunArguments& a) {
+        a.zoom = "2";
+        a.tiling = "lean";
+    });
+    EXPECT_EQ(accepted([](RunArguments& a) {
+                  a.dplex = "2";
+                  a.verify = "1";
+              }).config.verifyEvery,
+              1);
+    names("--tiling lean does not go with", [](RunArguments& a) {
+        a.subpixel = "2";
+        a.tiling = "lean";
+    });
 }
 
 TEST(RunOptions, rejectMeaninglessCombinations) {
     EXPECT_NE(refusal([](RunArguments& a) { a.save = "1"; }).find("--out"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.fullScreen = true; }).find("--display windows"), std::string::npos);
-    EXPECT_NE(refusal([](RunArguments& a) { a.native = true; a.out = "x"; }).find("--native"), std::string::npos);
-    EXPECT_EQ(refusal([](RunArguments& a) { a.native = true; a.record = "x"; }), "--record needs captured frames; leave --native out");
+    EXPECT_NE(refusal([](RunArguments& a) {
+                  a.native = true;
+                  a.out = "x";
+              }).find("--native"),
+              std::string::npos);
+    EXPECT_EQ(refusal([](RunArguments& a) {
+                  a.native = true;
+                  a.record = "x";
+              }),
+              "--record needs captured frames; leave --native out");
     EXPECT_NE(refusal([](RunArguments& a) { a.record = ""; }).find("--record"), std::string::npos);
-    EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.localNodes = "5"; }).find("5 render nodes for 4 tiles"), std::string::npos);
-    EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "2x2"; a.tileQueue = "32x32"; }).find("leave one of them out"), std::string::npos);
-    for (const char* bad : {"", "1", "5000", "x", "-3", "2.5"}) EXPECT_EQ(refusal([&](RunArguments& a) { a.db = "2"; a.chunkQueue = bad; }).rfind("--chunk-queue", 0), 0u) << bad;
+    EXPECT_NE(refusal([](RunArguments& a) {
+                  a.tiles = "2x2";
+                  a.localNodes = "5";
+              }).find("5 render nodes for 4 tiles"),
+              std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) {
+                  a.tiles = "2x2";
+                  a.tileQueue = "32x32";
+              }).find("leave one of them out"),
+              std::string::npos);
+    for (const char* bad : {"", "1", "5000", "x", "-3", "2.5"})
+        EXPECT_EQ(refusal([&](RunArguments& a) {
+                      a.db = "2";
+                      a.chunkQueue = bad;
+                  }).rfind("--chunk-queue", 0),
+                  0u)
+            << bad;
     EXPECT_NE(refusal([](RunArguments& a) { a.chunkQueue = "20"; }).find("add --db"), std::string::npos);
-    EXPECT_EQ(accepted([](RunArguments& a) { a.db = "2"; a.chunkQueue = "20"; }).config.chunks, 20);
-    for (const char* bad : {"", "32", "0x32", "32x", "axb", "-1x3"}) EXPECT_EQ(refusal([&](RunArguments& a) { a.tileQueue = bad; }).rfind("--tile-queue \"" + std::string(bad) + "\": must be", 0), 0u) << bad;
-    EXPECT_NE(refusal([](RunArguments& a) { a.tiles = "4x4"; a.size = "3x100"; }).find("do not fit"), std::string::npos);
+    EXPECT_EQ(accepted([](RunArguments& a) {
+                  a.db = "2";
+                  a.chunkQueue = "20";
+              }).config.chunks,
+              20);
+    for (const char* bad : {"", "32", "0x32", "32x", "axb", "-1x3"})
+        EXPECT_EQ(refusal([&](RunArguments& a) {
+                      a.tileQueue = bad;
+                  }).rfind("--tile-queue \"" + std::string(bad) + "\": must be", 0),
+                  0u)
+            << bad;
+    EXPECT_NE(refusal([](RunArguments& a) {
+                  a.tiles = "4x4";
+                  a.size = "3x100";
+              }).find("do not fit"),
+              std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.program.clear(); }).find("no program"), std::string::npos);
 }
 

@@ -12,12 +12,42 @@ namespace {
 using Json = nlohmann::json;
 
 Json look(double atSeconds, int frames, int calls, int bytes, int trips, double framesWait) {
-    return {{"session", "mural-7-0123456789abcdef"}, {"runPid", 7}, {"headPid", 8}, {"atSeconds", atSeconds}, {"tiles", "2x1"}, {"display", "app"}, {"frames", frames},
-            {"programs", {{{"client", 1}, {"pid", 9}, {"command", "glxgears -info"}, {"frames", frames}, {"calls", calls}, {"bytes", bytes}, {"roundTrips", trips},
-                           {"roundTripsBy", {{"glReadPixels", trips}}}, {"waitSeconds", {{"frames", framesWait}, {"room", 0.0}}}, {"waitingFor", "frames"}, {"waitsForNodes", {1, 3}}}}},
-            {"nodes", {{{"node", 0}, {"where", "local"}, {"pid", 10}, {"gl", "llvmpipe"}, {"state", "alive"}, {"silentSeconds", 0.1}, {"frames", frames},
-                        {"replaySeconds", atSeconds / 4}, {"readbackSeconds", 0.0}},
-                       {{"node", 1}, {"where", "wall2"}, {"stream", "multicast"}, {"pid", 11}, {"gl", "llvmpipe"}, {"state", "lost"}, {"frames", 3}}}}};
+    return {{"session", "mural-7-0123456789abcdef"},
+            {"runPid", 7},
+            {"headPid", 8},
+            {"atSeconds", atSeconds},
+            {"tiles", "2x1"},
+            {"display", "app"},
+            {"frames", frames},
+            {"programs",
+             {{{"client", 1},
+               {"pid", 9},
+               {"command", "glxgears -info"},
+               {"frames", frames},
+               {"calls", calls},
+               {"bytes", bytes},
+               {"roundTrips", trips},
+               {"roundTripsBy", {{"glReadPixels", trips}}},
+               {"waitSeconds", {{"frames", framesWait}, {"room", 0.0}}},
+               {"waitingFor", "frames"},
+               {"waitsForNodes", {1, 3}}}}},
+            {"nodes",
+             {{{"node", 0},
+               {"where", "local"},
+               {"pid", 10},
+               {"gl", "llvmpipe"},
+               {"state", "alive"},
+               {"silentSeconds", 0.1},
+               {"frames", frames},
+               {"replaySeconds", atSeconds / 4},
+               {"readbackSeconds", 0.0}},
+              {{"node", 1},
+               {"where", "wall2"},
+               {"stream", "multicast"},
+               {"pid", 11},
+               {"gl", "llvmpipe"},
+               {"state", "lost"},
+               {"frames", 3}}}}};
 }
 
 TEST(SessionRates, areDifferencesOfTwoStates) {
@@ -29,27 +59,40 @@ TEST(SessionRates, areDifferencesOfTwoStates) {
     EXPECT_DOUBLE_EQ(recent["roundTripsPerFrame"].get<double>(), 0.5);
     EXPECT_DOUBLE_EQ(recent["waitShares"]["frames"].get<double>(), 0.75);
     EXPECT_DOUBLE_EQ(both[0]["nodes"][0]["recent"]["busyShare"].get<double>(), 0.25);
-    EXPECT_EQ(statLines(both[0]), (std::vector<std::string>{
-                                      "session 7  2x1 tiles, display app, 150 frames on the wall; head 8",
-                                      "  program 9  glxgears -info",
-                                      "    150 frames, 25.0 frames/s, 20 calls and 2.0 kB per frame",
-                                      "    0.50 round trips per frame, 29 in all: glReadPixels 29",
-                                      "    waits 75 % of the time for the nodes to finish frames, now for node 1, 3",
-                                      "  node 0  local, pid 10, llvmpipe: 150 frames, busy 25 %",
-                                      "  node 1  wall2, by multicast, pid 11, llvmpipe: lost"}));
+    EXPECT_EQ(statLines(both[0]),
+              (std::vector<std::string>{"session 7  2x1 tiles, display app, 150 frames on the wall; head 8",
+                                        "  program 9  glxgears -info",
+                                        "    150 frames, 25.0 frames/s, 20 calls and 2.0 kB per frame",
+                                        "    0.50 round trips per frame, 29 in all: glReadPixels 29",
+                                        "    waits 75 % of the time for the nodes to finish frames, now for node 1, 3",
+                                        "  node 0  local, pid 10, llvmpipe: 150 frames, busy 25 %",
+                                        "  node 1  wall2, by multicast, pid 11, llvmpipe: lost"}));
 }
 
 TEST(SessionRates, includeDeltaCoding) {
     const auto with = [](Json session, int frames) {
-        session["economy"] = {{"records", 100 * frames}, {"rawBytes", 5000 * frames}, {"stagedBytes", 300 * frames}, {"wireBytes", 120 * frames}, {"storeHits", 9 * frames},
-                              {"newPages", frames}, {"patches", 2 * frames}, {"encodeSeconds", 3e-5 * frames}, {"programBytes", 9000 * frames}, {"heldRecords", 4}, {"heldBytes", 2000},
-                              {"leftOutRecords", 2 * frames}, {"leftOutBytes", 4000 * frames}};
+        session["economy"] = {{"records", 100 * frames},
+                              {"rawBytes", 5000 * frames},
+                              {"stagedBytes", 300 * frames},
+                              {"wireBytes", 120 * frames},
+                              {"storeHits", 9 * frames},
+                              {"newPages", frames},
+                              {"patches", 2 * frames},
+                              {"encodeSeconds", 3e-5 * frames},
+                              {"programBytes", 9000 * frames},
+                              {"heldRecords", 4},
+                              {"heldBytes", 2000},
+                              {"leftOutRecords", 2 * frames},
+                              {"leftOutBytes", 4000 * frames}};
         return session;
     };
-    const auto both = withRates({with(look(10, 100, 1000, 5000, 4, 1.0), 100)}, {with(look(12, 150, 2000, 105000, 29, 2.5), 150)});
+    const auto both =
+        withRates({with(look(10, 100, 1000, 5000, 4, 1.0), 100)}, {with(look(12, 150, 2000, 105000, 29, 2.5), 150)});
     EXPECT_DOUBLE_EQ(both[0]["economy"]["recent"]["wireBytesPerFrame"].get<double>(), 120);
-    EXPECT_EQ(statLines(both[0])[5], "  economy  5.0 kB per frame, 300 B of it new to the nodes, 120 B compressed; 9.0 of 10.0 pages per frame they had, packing 30 us");
-    EXPECT_EQ(statLines(both[0])[6], "           of 9.0 kB per frame 4.0 kB were left out (2.0 records); 2.0 kB held back now");
+    EXPECT_EQ(statLines(both[0])[5], "  economy  5.0 kB per frame, 300 B of it new to the nodes, 120 B compressed; 9.0 "
+                                     "of 10.0 pages per frame they had, packing 30 us");
+    EXPECT_EQ(statLines(both[0])[6],
+              "           of 9.0 kB per frame 4.0 kB were left out (2.0 records); 2.0 kB held back now");
 }
 
 TEST(SessionRates, includeTransferredPictures) {
@@ -57,16 +100,38 @@ TEST(SessionRates, includeTransferredPictures) {
     session["nodes"][0]["pictureRawBytes"] = 300000.0;
     session["nodes"][0]["pictureBytes"] = 2000.0;
     const auto lines = statLines(withRates({}, {session})[0]);
-    EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) { return line.find("100 frames, pictures of 3.0 kB came in 20 B per frame") != std::string::npos; })) << lines.back();
+    EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) {
+        return line.find("100 frames, pictures of 3.0 kB came in 20 B per frame") != std::string::npos;
+    })) << lines.back();
 }
 
 TEST(SessionRates, includeQueues) {
     auto session = look(10, 100, 1000, 5000, 4, 1.0);
-    session["queues"] = {{{"name", "tiles"}, {"of", "tiles"}, {"columns", 25}, {"rows", 19}, {"tileWidth", 32}, {"tileHeight", 16}, {"frames", 8}, {"moves", 2}, {"tilesMoved", 60}, {"nodes", {{{"node", 0}, {"tiles", 95}}, {{"node", 1}, {"tiles", 380}}}}}};
-    session["queues"].push_back({{"name", "draws"}, {"of", "chunks"}, {"columns", 60}, {"rows", 1}, {"frames", 4}, {"moves", 1}, {"tilesMoved", 6}, {"nodes", {{{"node", 0}, {"tiles", 20}}, {{"node", 1}, {"tiles", 40}}}}});
+    session["queues"] = {{{"name", "tiles"},
+                          {"of", "tiles"},
+                          {"columns", 25},
+                          {"rows", 19},
+                          {"tileWidth", 32},
+                          {"tileHeight", 16},
+                          {"frames", 8},
+                          {"moves", 2},
+                          {"tilesMoved", 60},
+                          {"nodes", {{{"node", 0}, {"tiles", 95}}, {{"node", 1}, {"tiles", 380}}}}}};
+    session["queues"].push_back({{"name", "draws"},
+                                 {"of", "chunks"},
+                                 {"columns", 60},
+                                 {"rows", 1},
+                                 {"frames", 4},
+                                 {"moves", 1},
+                                 {"tilesMoved", 6},
+                                 {"nodes", {{{"node", 0}, {"tiles", 20}}, {{"node", 1}, {"tiles", 40}}}}});
     const auto lines = statLines(withRates({}, {session})[0]);
-    EXPECT_NE(std::ranges::find(lines, "  queue \"draws\"  60 chunks: node 0 has 20, node 1 has 40; moved after 1 of 4 frames, 1.50 chunks per frame"), lines.end());
-    EXPECT_NE(std::ranges::find(lines, "  queue \"tiles\"  25x19 tiles of 32x16 pixels: node 0 has 95, node 1 has 380; moved after 2 of 8 frames, 7.50 tiles per frame"), lines.end());
+    EXPECT_NE(std::ranges::find(lines, "  queue \"draws\"  60 chunks: node 0 has 20, node 1 has 40; moved after 1 of 4 "
+                                       "frames, 1.50 chunks per frame"),
+              lines.end());
+    EXPECT_NE(std::ranges::find(lines, "  queue \"tiles\"  25x19 tiles of 32x16 pixels: node 0 has 95, node 1 has 380; "
+                                       "moved after 2 of 8 frames, 7.50 tiles per frame"),
+              lines.end());
 }
 
 TEST(SessionRates, areOmittedForIdleAndNewEntries) {
@@ -80,21 +145,24 @@ TEST(SessionRates, areOmittedForIdleAndNewEntries) {
 
 TEST(SessionRates, surviveMalformedStates) {
     for (const char* text : {"{}", R"({"programs":[{}],"nodes":[{}]})", R"({"programs":7,"nodes":"x","atSeconds":[]})",
-                             R"({"programs":[1,null],"nodes":[[]]})", R"({"programs":[{"waitSeconds":{"frames":"x"},"client":1}],"nodes":[]})"}) {
+                             R"({"programs":[1,null],"nodes":[[]]})",
+                             R"({"programs":[{"waitSeconds":{"frames":"x"},"client":1}],"nodes":[]})"}) {
         const Json odd = Json::parse(text);
         EXPECT_GE(statLines(withRates({odd}, {odd})[0]).size(), 1u) << text;
     }
 }
 
 TEST(RunningSessions, areFoundByTheirSocketNames) {
-    const std::string sockets = "Num       RefCount Protocol Flags    Type St Inode Path\n"
-                                "0000000000000000: 00000002 00000000 00010000 0001 01 411 @mural-123-00ff00ff00ff00ff\n"
-                                "0000000000000000: 00000003 00000000 00000000 0001 03 412 @mural-123-00ff00ff00ff00ff\n"
-                                "0000000000000000: 00000002 00000000 00010000 0001 01 413 @mural-test-123-1\n"
-                                "0000000000000000: 00000002 00000000 00010000 0001 01 414 /tmp/mural-9-00ff00ff00ff00ff\n"
-                                "0000000000000000: 00000002 00000000 00010000 0001 01 415 @mural-45-0123456789abcdef\n"
-                                "0000000000000000: 00000003 00000000 00000000 0002 01 416\n";
-    EXPECT_EQ(sessionNamesIn(sockets), (std::vector<std::string>{"mural-123-00ff00ff00ff00ff", "mural-45-0123456789abcdef"}));
+    const std::string sockets =
+        "Num       RefCount Protocol Flags    Type St Inode Path\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 411 @mural-123-00ff00ff00ff00ff\n"
+        "0000000000000000: 00000003 00000000 00000000 0001 03 412 @mural-123-00ff00ff00ff00ff\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 413 @mural-test-123-1\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 414 /tmp/mural-9-00ff00ff00ff00ff\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 415 @mural-45-0123456789abcdef\n"
+        "0000000000000000: 00000003 00000000 00000000 0002 01 416\n";
+    EXPECT_EQ(sessionNamesIn(sockets),
+              (std::vector<std::string>{"mural-123-00ff00ff00ff00ff", "mural-45-0123456789abcdef"}));
 }
 
 } // namespace

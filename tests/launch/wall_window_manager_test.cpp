@@ -42,15 +42,17 @@ protected:
     xcb_window_t create(int width, int height, bool overrideRedirect = false) {
         const xcb_window_t window = xcb_generate_id(program_);
         const uint32_t values[] = {overrideRedirect ? 1u : 0u, XCB_EVENT_MASK_STRUCTURE_NOTIFY};
-        xcb_create_window(program_, screen_->root_depth, window, screen_->root, 20, 30, static_cast<uint16_t>(width), static_cast<uint16_t>(height), 3,
-                          XCB_WINDOW_CLASS_INPUT_OUTPUT, screen_->root_visual, XCB_CW_OVERRIDE_REDIRECT | XCB_CW_EVENT_MASK, values);
+        xcb_create_window(program_, screen_->root_depth, window, screen_->root, 20, 30, static_cast<uint16_t>(width),
+                          static_cast<uint16_t>(height), 3, XCB_WINDOW_CLASS_INPUT_OUTPUT, screen_->root_visual,
+                          XCB_CW_OVERRIDE_REDIRECT | XCB_CW_EVENT_MASK, values);
         return window;
     }
     void setAtoms(xcb_window_t window, const char* property, xcb_atom_t type, uint32_t value) {
         xcb_change_property(program_, XCB_PROP_MODE_REPLACE, window, atom(property), type, 32, 1, &value);
     }
     xcb_atom_t atom(const char* name) {
-        xcb_intern_atom_reply_t* reply = xcb_intern_atom_reply(program_, xcb_intern_atom(program_, 0, static_cast<uint16_t>(std::strlen(name)), name), nullptr);
+        xcb_intern_atom_reply_t* reply = xcb_intern_atom_reply(
+            program_, xcb_intern_atom(program_, 0, static_cast<uint16_t>(std::strlen(name)), name), nullptr);
         const xcb_atom_t found = reply->atom;
         std::free(reply);
         return found;
@@ -79,7 +81,9 @@ protected:
     }
     bool map(xcb_window_t window) {
         xcb_map_window(program_, window);
-        return await(XCB_MAP_NOTIFY, [window](const xcb_generic_event_t& e) { return reinterpret_cast<const xcb_map_notify_event_t&>(e).window == window; });
+        return await(XCB_MAP_NOTIFY, [window](const xcb_generic_event_t& e) {
+            return reinterpret_cast<const xcb_map_notify_event_t&>(e).window == window;
+        });
     }
 
     std::unique_ptr<PrivateDisplay> display_;
@@ -131,7 +135,9 @@ TEST_F(WallWindows, keepTheSizeOfAuxiliaryWindows) {
     EXPECT_EQ(geometry(second), (Geometry{20, 30, 400, 310}));
     const uint32_t size[] = {410, 320};
     xcb_configure_window(program_, second, XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT, size);
-    EXPECT_TRUE(await(XCB_CONFIGURE_NOTIFY, [&](const auto& e) { return reinterpret_cast<const xcb_configure_notify_event_t&>(e).window == second; }));
+    EXPECT_TRUE(await(XCB_CONFIGURE_NOTIFY, [&](const auto& e) {
+        return reinterpret_cast<const xcb_configure_notify_event_t&>(e).window == second;
+    }));
     EXPECT_EQ(geometry(second), (Geometry{20, 30, 410, 320}));
 }
 

@@ -13,7 +13,9 @@ namespace {
 
 class MadeUpMachine : public testing::Test {
 protected:
-    MadeUpMachine() : root_(testing::TempDir() + "/mural_machine_" + std::to_string(::getpid())) { card_.name = "eth7"; }
+    MadeUpMachine() : root_(testing::TempDir() + "/mural_machine_" + std::to_string(::getpid())) {
+        card_.name = "eth7";
+    }
     ~MadeUpMachine() override { std::filesystem::remove_all(root_); }
     void file(const std::string& path, const std::string& text) const {
         std::filesystem::create_directories(std::filesystem::path(root_ + path).parent_path());
@@ -27,7 +29,8 @@ TEST_F(MadeUpMachine, reportsLimitsBridgesAndFilters) {
     file("/proc/sys/net/core/rmem_max", "212992");
     file("/proc/sys/net/ipv4/conf/all/rp_filter", "0");
     file("/proc/sys/net/ipv4/conf/eth7/rp_filter", "1");
-    for (const auto& [bridge, snoops, asks] : {std::tuple("br1", "1", "0"), std::tuple("br0", "1", "0"), std::tuple("br2", "1", "1"), std::tuple("br3", "0", "0")}) {
+    for (const auto& [bridge, snoops, asks] : {std::tuple("br1", "1", "0"), std::tuple("br0", "1", "0"),
+                                               std::tuple("br2", "1", "1"), std::tuple("br3", "0", "0")}) {
         file(std::string("/sys/class/net/") + bridge + "/bridge/multicast_snooping", snoops);
         file(std::string("/sys/class/net/") + bridge + "/bridge/multicast_querier", asks);
     }
@@ -55,7 +58,11 @@ TEST_F(MadeUpMachine, addsTheDropsOfAllQueues) {
 }
 
 TEST_F(MadeUpMachine, toleratesAnswersOfAnotherFormat) {
-    const MachineFacts f = machineFactsFrom({{"interface", 7}, {"mtu", "long"}, {"multicast", "yes"}, {"silentBridges", {1, "br0"}}, {"receiveLimitBytes", {}}});
+    const MachineFacts f = machineFactsFrom({{"interface", 7},
+                                             {"mtu", "long"},
+                                             {"multicast", "yes"},
+                                             {"silentBridges", {1, "br0"}},
+                                             {"receiveLimitBytes", {}}});
     EXPECT_EQ(f.mtuBytes, 0u);
     EXPECT_EQ(f.silentBridges, std::vector<std::string>{"br0"});
 }

@@ -162,7 +162,8 @@ TEST(NetworkVerdict, reportsASnoopingBridgeWithoutQuerier) {
     HereMeasured h = here();
     h.facts.silentBridges = {"br0"};
     const auto checks = judgeHere(h);
-    EXPECT_TRUE(std::ranges::any_of(checks, [](const Check& c) { return c.health == Health::Warn && c.name == "bridge br0"; }));
+    EXPECT_TRUE(
+        std::ranges::any_of(checks, [](const Check& c) { return c.health == Health::Warn && c.name == "bridge br0"; }));
 }
 
 } // namespace

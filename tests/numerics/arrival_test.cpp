@@ -27,7 +27,9 @@ using DrawList = std::vector<Fragment>;
 
 DrawList randomList(std::mt19937& random, size_t count) {
     DrawList list;
-    for (size_t i = 0; i < count; ++i) list.push_back({random() % kPixels, static_cast<uint32_t>(random() % 5) * 0x33333300u & 0xffffff00u, 0xff000000u | static_cast<uint32_t>(random() & 0xffffff)});
+    for (size_t i = 0; i < count; ++i)
+        list.push_back({random() % kPixels, static_cast<uint32_t>(random() % 5) * 0x33333300u & 0xffffff00u,
+                        0xff000000u | static_cast<uint32_t>(random() & 0xffffff)});
     return list;
 }
 
@@ -47,7 +49,9 @@ struct Drawn {
 
 // OpenGL's depth test, fragment by fragment.
 Drawn draw(const DrawList& list, size_t first, size_t end, DepthFunction f) {
-    Drawn d{std::vector<uint32_t>(kPixels, 0), std::vector<uint32_t>(kPixels, f == DepthFunction::Greater || f == DepthFunction::GreaterOrEqual ? 0 : kFar)};
+    Drawn d{
+        std::vector<uint32_t>(kPixels, 0),
+        std::vector<uint32_t>(kPixels, f == DepthFunction::Greater || f == DepthFunction::GreaterOrEqual ? 0 : kFar)};
     for (size_t i = first; i < end; ++i)
         if (passes(f, list[i].depth, d.depth[list[i].pixel])) {
             d.depth[list[i].pixel] = list[i].depth;
@@ -70,7 +74,8 @@ Image imageOf(const Drawn& d, uint32_t part) {
     return image;
 }
 
-constexpr DepthFunction kShared[] = {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::Greater, DepthFunction::GreaterOrEqual};
+constexpr DepthFunction kShared[] = {DepthFunction::Less, DepthFunction::LessOrEqual, DepthFunction::Greater,
+                                     DepthFunction::GreaterOrEqual};
 
 // Uneven contiguous parts of the list, some of them empty.
 std::vector<size_t> edgesOf(std::mt19937& random, size_t count, size_t parts) {
@@ -113,10 +118,13 @@ TEST(Arrival, givesOneSortLastPictureInAllOrders) {
                 std::iota(order.begin(), order.end(), size_t{0});
                 do {
                     std::vector<Image> arriving;
-                    for (const size_t p : order) arriving.push_back(imageOf(draw(list, edges[p], edges[p + 1], f), static_cast<uint32_t>(p)));
+                    for (const size_t p : order)
+                        arriving.push_back(imageOf(draw(list, edges[p], edges[p + 1], f), static_cast<uint32_t>(p)));
                     const Image got = assembled(std::move(arriving), f);
-                    ASSERT_EQ(got.colour, wanted.colour) << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
-                    ASSERT_EQ(got.depth, wanted.depth) << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
+                    ASSERT_EQ(got.colour, wanted.colour)
+                        << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
+                    ASSERT_EQ(got.depth, wanted.depth)
+                        << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
                 } while (std::ranges::next_permutation(order).found);
             }
 }
@@ -135,9 +143,11 @@ TEST(Arrival, givesOnePictureForRangesOfNodes) {
                 Drawn sum = draw(list, edges[0], edges[1], f);
                 for (size_t p = 1; p < parts; ++p) {
                     const Drawn part = draw(list, edges[p], edges[p + 1], f);
-                    compositeRow({sum.colour.data(), sum.depth.data(), part.colour.data(), part.depth.data(), kPixels}, LayerOrder::Later, rule);
+                    compositeRow({sum.colour.data(), sum.depth.data(), part.colour.data(), part.depth.data(), kPixels},
+                                 LayerOrder::Later, rule);
                 }
-                ASSERT_EQ(sum.colour, whole.colour) << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
+                ASSERT_EQ(sum.colour, whole.colour)
+                    << "seed " << seed << ", " << parts << " parts, function " << static_cast<int>(f);
                 ASSERT_EQ(sum.depth, whole.depth) << "seed " << seed;
             }
         }

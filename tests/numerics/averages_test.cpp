@@ -26,7 +26,8 @@ Plane allValues() {
 }
 
 TEST(Averages, reproduceARepeatedPicture) {
-    for (size_t n = 1; n <= 256; ++n) ASSERT_EQ(meanOf(std::vector<Plane>(n, allValues())), allValues()) << n << " pictures";
+    for (size_t n = 1; n <= 256; ++n)
+        ASSERT_EQ(meanOf(std::vector<Plane>(n, allValues())), allValues()) << n << " pictures";
 }
 
 // With k of n pictures one step above the others, the exact mean is value + k/n: covers all roundings, including ties.
@@ -41,7 +42,8 @@ TEST(Averages, areTheNearestValue) {
             const Plane mean = meanOf(pictures);
             for (size_t i = 0; i < 256; ++i) {
                 const unsigned wanted = i == 255 ? 255 : static_cast<unsigned>(i) + (2 * k >= n ? 1 : 0);
-                ASSERT_EQ(std::to_integer<unsigned>(mean.bytes()[i]), k == 0 ? i : wanted) << k << " of " << n << " pictures one above " << i;
+                ASSERT_EQ(std::to_integer<unsigned>(mean.bytes()[i]), k == 0 ? i : wanted)
+                    << k << " of " << n << " pictures one above " << i;
             }
         }
 }
@@ -63,7 +65,8 @@ TEST(Averages, doNotDrift) {
         const Plane mean = meanOf(pictures);
         double drift = 0, worst = 0;
         for (size_t b = 0; b < sums.size(); ++b) {
-            const double error = std::to_integer<unsigned>(mean.bytes()[b]) - static_cast<double>(sums[b]) / static_cast<double>(n);
+            const double error =
+                std::to_integer<unsigned>(mean.bytes()[b]) - static_cast<double>(sums[b]) / static_cast<double>(n);
             worst = std::max(worst, std::abs(error));
             drift += error / static_cast<double>(sums.size());
         }

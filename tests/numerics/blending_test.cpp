@@ -31,7 +31,8 @@ Layers layersOf(int count, double leastAlpha, double mostAlpha) {
         std::vector<double> layer(4 * kBlendedPixels);
         for (size_t p = 0; p < layer.size(); p += 4) {
             const double alpha = std::round(255 * std::uniform_real_distribution<>(leastAlpha, mostAlpha)(random));
-            for (size_t c = 0; c < 3; ++c) layer[p + c] = std::round(std::uniform_real_distribution<>(0, alpha)(random));
+            for (size_t c = 0; c < 3; ++c)
+                layer[p + c] = std::round(std::uniform_real_distribution<>(0, alpha)(random));
             layer[p + 3] = alpha;
         }
         layers.colours.push_back(layer);
@@ -52,7 +53,8 @@ double offBy(const Layers& layers, PlaneFormat format) {
     const auto pack = [&](const std::vector<double>& layer) {
         Plane plane(format, kBlendedPixels, 1);
         for (size_t i = 0; i < layer.size(); ++i) {
-            if (!halves) plane.bytes()[i] = static_cast<std::byte>(std::lround(layer[i]));
+            if (!halves)
+                plane.bytes()[i] = static_cast<std::byte>(std::lround(layer[i]));
             else {
                 const uint16_t h = halfOfFloat(static_cast<float>(layer[i] / 255));
                 plane.bytes()[2 * i] = static_cast<std::byte>(h & 0xff);
@@ -63,7 +65,9 @@ double offBy(const Layers& layers, PlaneFormat format) {
     };
     const auto fold = [&](size_t first, size_t end) {
         Plane sum = pack(std::vector<double>(4 * kBlendedPixels, 0));
-        for (size_t i = first; i < end; ++i) blendOverRow(format, sum.bytes().data(), pack(layers.colours[i]).bytes().data(), kBlendedPixels, SourceSide::InFront);
+        for (size_t i = first; i < end; ++i)
+            blendOverRow(format, sum.bytes().data(), pack(layers.colours[i]).bytes().data(), kBlendedPixels,
+                         SourceSide::InFront);
         return sum;
     };
     Plane back = fold(0, layers.colours.size() / 2);
@@ -72,7 +76,9 @@ double offBy(const Layers& layers, PlaneFormat format) {
     const std::vector<double> truth = truthOf(layers);
     double worst = 0;
     for (size_t i = 0; i < truth.size(); ++i) {
-        const double got = halves ? 255.0 * static_cast<double>(floatOfHalf(static_cast<uint16_t>(std::to_integer<unsigned>(back.bytes()[2 * i]) | std::to_integer<unsigned>(back.bytes()[2 * i + 1]) << 8)))
+        const double got = halves ? 255.0 * static_cast<double>(floatOfHalf(static_cast<uint16_t>(
+                                                std::to_integer<unsigned>(back.bytes()[2 * i]) |
+                                                std::to_integer<unsigned>(back.bytes()[2 * i + 1]) << 8)))
                                   : static_cast<double>(std::to_integer<int>(back.bytes()[i]));
         worst = std::max(worst, std::abs(got - truth[i]));
     }
@@ -81,20 +87,27 @@ double offBy(const Layers& layers, PlaneFormat format) {
 
 TEST(Blending, staysAccurateForManyLayers) {
     for (const int n : {1, 2, 8, 32, 64}) {
-        expectWithin("1 to 64 layers over each other, RGBA8, alpha from 0.1", "double", offBy(layersOf(n, .1, 1), PlaneFormat::Rgba8), 3, "of 255");
-        expectWithin("1 to 64 layers over each other, RGBA16F", "double", offBy(layersOf(n, .03, 1), PlaneFormat::Rgba16F), 1, "of 255");
+        expectWithin("1 to 64 layers over each other, RGBA8, alpha from 0.1", "double",
+                     offBy(layersOf(n, .1, 1), PlaneFormat::Rgba8), 3, "of 255");
+        expectWithin("1 to 64 layers over each other, RGBA16F", "double",
+                     offBy(layersOf(n, .03, 1), PlaneFormat::Rgba16F), 1, "of 255");
     }
-    for (const int n : {8, 64}) expectWithin("8 and 64 thin layers, RGBA8, alpha 0.03", "double", offBy(layersOf(n, .03, .03), PlaneFormat::Rgba8), 6, "of 255");
+    for (const int n : {8, 64})
+        expectWithin("8 and 64 thin layers, RGBA8, alpha 0.03", "double",
+                     offBy(layersOf(n, .03, .03), PlaneFormat::Rgba8), 6, "of 255");
 }
 
 TEST(Blending, losesNothingWhenRepeated) {
     Plane whole(PlaneFormat::Rgba8, kBlendedPixels, 1), clear(PlaneFormat::Rgba8, kBlendedPixels, 1);
     std::ranges::fill(whole.bytes(), std::byte{255});
     for (int i = 0; i < 1000; ++i) {
-        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kBlendedPixels, SourceSide::InFront);
-        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kBlendedPixels, SourceSide::Behind);
+        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kBlendedPixels,
+                     SourceSide::InFront);
+        blendOverRow(PlaneFormat::Rgba8, whole.bytes().data(), clear.bytes().data(), kBlendedPixels,
+                     SourceSide::Behind);
     }
-    expectWithin("white under 1000 transparent layers (by >> 8: 239 after 16)", "white", 255 - std::to_integer<int>(*std::ranges::min_element(whole.bytes())), 0, "of 255");
+    expectWithin("white under 1000 transparent layers (by >> 8: 239 after 16)", "white",
+                 255 - std::to_integer<int>(*std::ranges::min_element(whole.bytes())), 0, "of 255");
 }
 
 // All 2^24 combinations of background, emission and alpha. Emission may exceed the coverage; the sum then saturates
@@ -116,13 +129,15 @@ TEST(Blending, saturates) {
                 worst = std::max(worst, std::abs(std::to_integer<int>(sum.bytes()[static_cast<size_t>(i)]) - exact));
             }
         }
-    expectWithin("light brighter than it covers, all backgrounds, lights and alphas", "double, saturated", worst, 0.5, "of 255");
+    expectWithin("light brighter than it covers, all backgrounds, lights and alphas", "double, saturated", worst, 0.5,
+                 "of 255");
 }
 
 Image layerImage(const Layers& layers, uint32_t i) {
     Image image;
     image.colour.emplace(PlaneFormat::Rgba8, static_cast<int32_t>(kBlendedPixels), 1);
-    for (size_t b = 0; b < 4 * kBlendedPixels; ++b) image.colour->bytes()[b] = static_cast<std::byte>(std::lround(layers.colours[i][b]));
+    for (size_t b = 0; b < 4 * kBlendedPixels; ++b)
+        image.colour->bytes()[b] = static_cast<std::byte>(std::lround(layers.colours[i][b]));
     image.drawn = Region(image.area());
     image.order = {i, i + 1};
     return image;
@@ -157,10 +172,12 @@ TEST(Blending, blendsOnlyNeighbours) {
             waiting.push_back(next);
         }
         ASSERT_EQ(waiting.size(), 1U);
-        for (size_t i = 0; i < truth.size(); ++i) worst = std::max(worst, std::abs(std::to_integer<int>(waiting[0].colour->bytes()[i]) - truth[i]));
+        for (size_t i = 0; i < truth.size(); ++i)
+            worst = std::max(worst, std::abs(std::to_integer<int>(waiting[0].colour->bytes()[i]) - truth[i]));
     } while (std::ranges::next_permutation(arrival).found);
     expectWithin("5 layers in all 120 orders of arrival", "double", worst, 3, "of 255");
-    expectThat("layers that are no neighbours", "their draw order", refused == gaps && gaps > 0, std::to_string(refused) + " of " + std::to_string(gaps) + " refused");
+    expectThat("layers that are no neighbours", "their draw order", refused == gaps && gaps > 0,
+               std::to_string(refused) + " of " + std::to_string(gaps) + " refused");
 }
 
 } // namespace

@@ -22,7 +22,8 @@ std::vector<Row>& rows() {
 }
 
 Row& rowOf(const std::string& what, const std::string& against) {
-    const auto found = std::ranges::find_if(rows(), [&](const Row& r) { return r.what == what && r.against == against; });
+    const auto found =
+        std::ranges::find_if(rows(), [&](const Row& r) { return r.what == what && r.against == against; });
     if (found != rows().end()) return *found;
     rows().push_back({what, against, {}, {}, 0, 0, true});
     return rows().back();
@@ -33,7 +34,13 @@ class Tests : public testing::EmptyTestEventListener {
     void OnTestStart(const testing::TestInfo&) override { before_ = rows().size(); }
     void OnTestEnd(const testing::TestInfo& test) override {
         if (rows().size() != before_ || test.result()->Skipped()) return;
-        rows().push_back({std::string(test.test_suite_name()) + "." + test.name(), "what the test computes it by", {}, test.result()->Passed() ? "passed" : "failed", 0, 0, test.result()->Passed()});
+        rows().push_back({std::string(test.test_suite_name()) + "." + test.name(),
+                          "what the test computes it by",
+                          {},
+                          test.result()->Passed() ? "passed" : "failed",
+                          0,
+                          0,
+                          test.result()->Passed()});
     }
     size_t before_ = 0;
 };
@@ -45,8 +52,12 @@ class Table : public testing::Environment {
         if (rows().empty()) return;
         std::printf("\n| case | against | off by | at most | |\n|---|---|---|---|---|\n");
         for (const Row& r : rows()) {
-            if (r.result.empty()) std::printf("| %s | %s | %.3g %s | %.3g | %s |\n", r.what.c_str(), r.against.c_str(), r.off, r.unit.c_str(), r.most, r.holds ? "holds" : "BROKEN");
-            else std::printf("| %s | %s | %s | | %s |\n", r.what.c_str(), r.against.c_str(), r.result.c_str(), r.holds ? "holds" : "BROKEN");
+            if (r.result.empty())
+                std::printf("| %s | %s | %.3g %s | %.3g | %s |\n", r.what.c_str(), r.against.c_str(), r.off,
+                            r.unit.c_str(), r.most, r.holds ? "holds" : "BROKEN");
+            else
+                std::printf("| %s | %s | %s | | %s |\n", r.what.c_str(), r.against.c_str(), r.result.c_str(),
+                            r.holds ? "holds" : "BROKEN");
         }
     }
 };
@@ -55,14 +66,16 @@ class Table : public testing::Environment {
 
 } // namespace
 
-void expectWithin(const std::string& what, const std::string& against, double off, double most, const std::string& unit) {
+void expectWithin(const std::string& what, const std::string& against, double off, double most,
+                  const std::string& unit) {
     Row& row = rowOf(what, against);
     const bool within = off <= most; // false for NaN as well
     if (row.holds) row.off = within ? std::max(row.off, off) : off;
     row.most = most;
     row.unit = unit;
     row.holds = row.holds && within;
-    EXPECT_TRUE(within) << what << ", against " << against << ": off by " << off << " " << unit << ", at most " << most << " is right";
+    EXPECT_TRUE(within) << what << ", against " << against << ": off by " << off << " " << unit << ", at most " << most
+                        << " is right";
 }
 
 void expectThat(const std::string& what, const std::string& against, bool holds, const std::string& result) {

@@ -7,7 +7,8 @@ namespace mural::numerics {
 
 // A measured case: fails the test if it is off by more than `most`. The table shows the worst of several cases with one
 // name.
-void expectWithin(const std::string& what, const std::string& against, double off, double most, const std::string& unit);
+void expectWithin(const std::string& what, const std::string& against, double off, double most,
+                  const std::string& unit);
 // A case that is exact, or rejected as required.
 void expectThat(const std::string& what, const std::string& against, bool holds, const std::string& result);
 

@@ -13,7 +13,8 @@ namespace mural {
 namespace {
 
 // Difficult sizes: primes, neighbours of powers of two, the largest GL viewports, and beyond.
-constexpr int32_t kSizes[] = {1, 2, 3, 7, 63, 64, 65, 127, 191, 253, 777, 1000, 1023, 1080, 1921, 2047, 4099, 8191, 16381, 16384, 32749, 32767, 32768};
+constexpr int32_t kSizes[] = {1,    2,    3,    7,    63,   64,   65,    127,   191,   253,   777,  1000,
+                              1023, 1080, 1921, 2047, 4099, 8191, 16381, 16384, 32749, 32767, 32768};
 
 TEST(Coverage, joinsTilesAtEveryEdge) {
     for (const int32_t size : kSizes)
@@ -29,7 +30,8 @@ TEST(Coverage, joinsTilesAtEveryEdge) {
                     widest = std::max(widest, tile.w);
                 }
                 ASSERT_EQ(reached, size) << n << " tiles by " << alignment;
-                ASSERT_LE(widest, (size + n - 1) / n + 2 * (alignment - 1)) << size << " pixels, " << n << " tiles by " << alignment;
+                ASSERT_LE(widest, (size + n - 1) / n + 2 * (alignment - 1))
+                    << size << " pixels, " << n << " tiles by " << alignment;
             }
 }
 
@@ -38,7 +40,8 @@ TEST(Coverage, assignsEveryPixelToOneTile) {
     std::mt19937 random(1);
     for (int trial = 0; trial < 300; ++trial) {
         const auto width = static_cast<int32_t>(1 + random() % 200), height = static_cast<int32_t>(1 + random() % 150);
-        const TileGrid grid{static_cast<int>(1 + random() % 20), static_cast<int>(1 + random() % 20), random() % 2 ? 2 : 1};
+        const TileGrid grid{static_cast<int>(1 + random() % 20), static_cast<int>(1 + random() % 20),
+                            random() % 2 ? 2 : 1};
         std::vector<int> seen(static_cast<size_t>(width) * static_cast<size_t>(height), 0);
         for (int row = 0; row < grid.rows; ++row)
             for (int column = 0; column < grid.columns; ++column) {
@@ -46,7 +49,9 @@ TEST(Coverage, assignsEveryPixelToOneTile) {
                 for (int32_t y = tile.y; y < tile.top(); ++y)
                     for (int32_t x = tile.x; x < tile.right(); ++x) ++seen.at(static_cast<size_t>(y * width + x));
             }
-        for (const int n : seen) ASSERT_EQ(n, 1) << width << "x" << height << " in " << grid.columns << "x" << grid.rows << ", trial " << trial;
+        for (const int n : seen)
+            ASSERT_EQ(n, 1) << width << "x" << height << " in " << grid.columns << "x" << grid.rows << ", trial "
+                            << trial;
     }
 }
 
@@ -62,7 +67,8 @@ TEST(Coverage, matchesIntegerArithmeticForFractions) {
 }
 
 // Nested viewports: each cut applies to both sides, with sizes by subtraction as equalizers compute them.
-void cut(std::mt19937& random, const Viewport& part, int depth, int32_t width, int32_t height, int64_t& pixels, std::vector<PixelViewport>& leaves) {
+void cut(std::mt19937& random, const Viewport& part, int depth, int32_t width, int32_t height, int64_t& pixels,
+         std::vector<PixelViewport>& leaves) {
     if (depth == 0) {
         leaves.push_back(apply(PixelViewport{0, 0, width, height}, part));
         pixels += leaves.back().area();
@@ -71,8 +77,10 @@ void cut(std::mt19937& random, const Viewport& part, int depth, int32_t width, i
     const double share = static_cast<double>(1 + random() % 9) / 10;
     Viewport first{0, 0, 1, 1}, second{0, 0, 1, 1};
     (random() % 2 ? first.w : first.h) = share;
-    if (first.w < 1) second.x = share, second.w = 1 - share;
-    else second.y = share, second.h = 1 - share;
+    if (first.w < 1)
+        second.x = share, second.w = 1 - share;
+    else
+        second.y = share, second.h = 1 - share;
     cut(random, compose(part, first), depth - 1, width, height, pixels, leaves);
     cut(random, compose(part, second), depth - 1, width, height, pixels, leaves);
 }

@@ -20,10 +20,15 @@ static_assert(std::numeric_limits<Exact>::digits >= 64);
 
 // One picture of width × height, divided by the given parts of one compound, each drawn by channel s; both eyes.
 Planned planned(int width, int height, const std::string& parts) {
-    const std::string window = "window { viewport [ 0 0 " + std::to_string(width) + " " + std::to_string(height) + " ] ";
-    const std::string text = "#Equalizer 1.2 ascii\nconfig { appNode { pipe { " + window + "channel { name \"d\" } } " + window + "channel { name \"s\" } } } } "
-                             "observer { eye_base .065 } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall { bottom_left [ -.83 -.47 -1.1 ] bottom_right [ .91 -.47 -1.1 ] top_left [ -.83 .52 -1.1 ] } segment { channel \"d\" } } "
-                             "compound { channel ( ) " + parts + " } }";
+    const std::string window =
+        "window { viewport [ 0 0 " + std::to_string(width) + " " + std::to_string(height) + " ] ";
+    const std::string text =
+        "#Equalizer 1.2 ascii\nconfig { appNode { pipe { " + window + "channel { name \"d\" } } " + window +
+        "channel { name \"s\" } } } } "
+        "observer { eye_base .065 } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall { bottom_left [ "
+        "-.83 -.47 -1.1 ] bottom_right [ .91 -.47 -1.1 ] top_left [ -.83 .52 -1.1 ] } segment { channel \"d\" } } "
+        "compound { channel ( ) " +
+        parts + " } }";
     config::Diagnostics diagnostics("f");
     Planned p{config::resolve(config::parseConfig(text, diagnostics), {}, diagnostics), {}};
     EXPECT_EQ(diagnostics.errors(), 0) << diagnostics.firstError();
@@ -35,12 +40,14 @@ Planned planned(int width, int height, const std::string& parts) {
 
 // For a frustum that `pixels` pixels show: the pixel, counted from its first, of a place on the near plane.
 template <class Real> Real pixelOf(double left, double right, Real place, int pixels) {
-    return (place - static_cast<Real>(left)) / (static_cast<Real>(right) - static_cast<Real>(left)) * static_cast<Real>(pixels);
+    return (place - static_cast<Real>(left)) / (static_cast<Real>(right) - static_cast<Real>(left)) *
+           static_cast<Real>(pixels);
 }
 
 // As OpenGL computes it: glFrustum's matrix, w and the viewport transform in floats.
 float pixelByFloats(double left, double right, double nearPlane, float x, float z, int pixels) {
-    const auto scale = static_cast<float>(2 * nearPlane / (right - left)), shear = static_cast<float>((right + left) / (right - left));
+    const auto scale = static_cast<float>(2 * nearPlane / (right - left)),
+               shear = static_cast<float>((right + left) / (right - left));
     const float clip = scale * x + shear * z, w = -z, half = static_cast<float>(pixels) / 2;
     return clip / w * half + half;
 }
@@ -48,10 +55,11 @@ float pixelByFloats(double left, double right, double nearPlane, float x, float 
 // The maximum error of vertices along one axis.
 struct Off {
     double byDoubles = 0; // of the frustum itself
-    double byFloats = 0; // with OpenGL's floats
+    double byFloats = 0;  // with OpenGL's floats
 };
 
-void measure(std::mt19937& random, const Frustum& whole, const Frustum& part, bool horizontal, int wholePixels, int partPixels, const PixelAxis& axis, Off& off) {
+void measure(std::mt19937& random, const Frustum& whole, const Frustum& part, bool horizontal, int wholePixels,
+             int partPixels, const PixelAxis& axis, Off& off) {
     const double l = horizontal ? whole.left : whole.bottom, r = horizontal ? whole.right : whole.top;
     const double pl = horizontal ? part.left : part.bottom, pr = horizontal ? part.right : part.top;
     for (int i = 0; i < 50; ++i) {
@@ -61,10 +69,12 @@ void measure(std::mt19937& random, const Frustum& whole, const Frustum& part, bo
         const Exact place = static_cast<Exact>(x) * static_cast<Exact>(whole.nearPlane) / -static_cast<Exact>(z);
         const Exact wanted = pixelOf<Exact>(l, r, place, wholePixels);
         // The part's pixels are `step` whole pixels wide and centred on the pixels that they stand for.
-        const Exact first = static_cast<Exact>(axis.origin) + static_cast<Exact>(axis.kernel) + 0.5L - static_cast<Exact>(axis.step) / 2;
+        const Exact first = static_cast<Exact>(axis.origin) + static_cast<Exact>(axis.kernel) + 0.5L -
+                            static_cast<Exact>(axis.step) / 2;
         const Exact got = first + pixelOf<Exact>(pl, pr, place, partPixels) * axis.step;
         off.byDoubles = std::max(off.byDoubles, static_cast<double>(std::abs(got - wanted)));
-        const Exact drawn = first + static_cast<Exact>(pixelByFloats(pl, pr, whole.nearPlane, x, z, partPixels)) * axis.step;
+        const Exact drawn =
+            first + static_cast<Exact>(pixelByFloats(pl, pr, whole.nearPlane, x, z, partPixels)) * axis.step;
         off.byFloats = std::max(off.byFloats, static_cast<double>(std::abs(drawn - wanted)));
     }
 }
@@ -95,7 +105,8 @@ std::string tiles(int columns, int rows) {
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x) {
             char text[200];
-            std::snprintf(text, sizeof text, "viewport [ %.9f %.9f %.9f %.9f ]", 1. * x / columns, 1. * y / rows, 1. / columns, 1. / rows);
+            std::snprintf(text, sizeof text, "viewport [ %.9f %.9f %.9f %.9f ]", 1. * x / columns, 1. * y / rows,
+                          1. / columns, 1. / rows);
             all += part(text);
         }
     return all;
@@ -105,13 +116,18 @@ std::string tiles(int columns, int rows) {
 void expectExact(int width, int height, const std::string& parts, const std::string& what) {
     const Off off = worst(width, height, parts);
     SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height));
-    numerics::expectWithin("frusta of " + what + ", both eyes, 253x191 to 8191x4099", "64 bits of mantissa", off.byDoubles, 1e-8, "pixels");
-    numerics::expectWithin("the same through OpenGL's floats: " + what, "64 bits of mantissa", off.byFloats, 1.0 / 256, "pixels");
+    numerics::expectWithin("frusta of " + what + ", both eyes, 253x191 to 8191x4099", "64 bits of mantissa",
+                           off.byDoubles, 1e-8, "pixels");
+    numerics::expectWithin("the same through OpenGL's floats: " + what, "64 bits of mantissa", off.byFloats, 1.0 / 256,
+                           "pixels");
 }
 
 TEST(Frusta, matchTheWholeForTiles) {
-    for (const auto& [width, height] : {std::pair(253, 191), std::pair(1000, 777), std::pair(1921, 1081), std::pair(8191, 4099)})
-        for (const auto& [columns, rows] : {std::pair(1, 1), std::pair(2, 1), std::pair(3, 3), std::pair(7, 5), std::pair(16, 1)}) expectExact(width, height, tiles(columns, rows), "tiles");
+    for (const auto& [width, height] :
+         {std::pair(253, 191), std::pair(1000, 777), std::pair(1921, 1081), std::pair(8191, 4099)})
+        for (const auto& [columns, rows] :
+             {std::pair(1, 1), std::pair(2, 1), std::pair(3, 3), std::pair(7, 5), std::pair(16, 1)})
+            expectExact(width, height, tiles(columns, rows), "tiles");
 }
 
 TEST(Frusta, hitPixelCentresForKernels) {
@@ -125,8 +141,13 @@ TEST(Frusta, hitPixelCentresForKernels) {
 }
 
 TEST(Frusta, matchTheWholeForTilesOfKernelsOfTiles) {
-    expectExact(1921, 1081, "compound { viewport [ .1 .3 .5 .7 ] compound { channel \"s\" pixel [ 1 0 3 2 ] viewport [ .3 0 .7 .9 ] outputframe { } } }", "mixed");
-    expectExact(1921, 1081, "compound { pixel [ 2 1 3 2 ] compound { channel \"s\" viewport [ .5 .1 .5 .9 ] outputframe { } } }", "mixed");
+    expectExact(1921, 1081,
+                "compound { viewport [ .1 .3 .5 .7 ] compound { channel \"s\" pixel [ 1 0 3 2 ] viewport [ .3 0 .7 .9 "
+                "] outputframe { } } }",
+                "mixed");
+    expectExact(1921, 1081,
+                "compound { pixel [ 2 1 3 2 ] compound { channel \"s\" viewport [ .5 .1 .5 .9 ] outputframe { } } }",
+                "mixed");
 }
 
 } // namespace

@@ -72,14 +72,16 @@ TEST(Lossy, preservesGreys) {
     for (int32_t y = 0; y < 16; ++y)
         for (int32_t x = 0; x < 256; ++x) std::memset(grey.view().row(y) + 4 * x, x, 4);
     numerics::expectWithin("greys, YUV 4:2:0", "the greys", lossOf(grey, through("yuv420", grey)).largest, 0, "of 255");
-    numerics::expectWithin("greys, JPEG 100", "the greys", lossOf(grey, through("jpeg-100", grey)).largest, 1, "of 255");
+    numerics::expectWithin("greys, JPEG 100", "the greys", lossOf(grey, through("jpeg-100", grey)).largest, 1,
+                           "of 255");
 }
 
 // Luma noise: YUV preserves it up to rounding, JPEG by its quality, and never worse at a higher quality.
 TEST(Lossy, preservesLumaAndImprovesWithQuality) {
     std::mt19937 random(3);
     Plane noise(PlaneFormat::Rgba8, 256, 128);
-    for (size_t i = 0; i < noise.bytes().size(); i += 4) std::memset(noise.bytes().data() + i, static_cast<int>(random() % 256), 4);
+    for (size_t i = 0; i < noise.bytes().size(); i += 4)
+        std::memset(noise.bytes().data() + i, static_cast<int>(random() % 256), 4);
     EXPECT_LE(lossOf(noise, through("yuv420", noise)).largest, 0);
     double before = 1e9;
     for (const char* name : {"jpeg-50", "jpeg-80", "jpeg-95", "jpeg-100"}) {
@@ -104,8 +106,12 @@ TEST(Lossy, preservesLumaOfSubsampledColour) {
         }
     const Plane back = through("yuv420", stripes);
     numerics::expectWithin("stripes of colour, subsampled", "the stripes", lossOf(stripes, back).largest, 33, "of 255");
-    const auto brightness = [](const std::byte* p) { return .299 * std::to_integer<int>(p[0]) + .587 * std::to_integer<int>(p[1]) + .114 * std::to_integer<int>(p[2]); };
-    for (size_t i = 0; i < back.bytes().size(); i += 4) ASSERT_NEAR(brightness(back.bytes().data() + i), brightness(stripes.bytes().data() + i), 1.5);
+    const auto brightness = [](const std::byte* p) {
+        return .299 * std::to_integer<int>(p[0]) + .587 * std::to_integer<int>(p[1]) +
+               .114 * std::to_integer<int>(p[2]);
+    };
+    for (size_t i = 0; i < back.bytes().size(); i += 4)
+        ASSERT_NEAR(brightness(back.bytes().data() + i), brightness(stripes.bytes().data() + i), 1.5);
 }
 
 } // namespace

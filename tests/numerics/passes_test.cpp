@@ -25,7 +25,8 @@ TEST(Passes, placeOneSampleInEveryColumnAndRow) {
             const long x = std::lround(j.x * 2 * n), y = std::lround(j.y * 2 * n);
             ASSERT_NEAR(j.x * 2 * n, static_cast<double>(x), 1e-9) << n;
             ASSERT_NEAR(j.y * 2 * n, static_cast<double>(y), 1e-9) << n;
-            ASSERT_TRUE(columns.insert(x).second && rows.insert(y).second) << "sample " << i << " of " << n << " stands where another does";
+            ASSERT_TRUE(columns.insert(x).second && rows.insert(y).second)
+                << "sample " << i << " of " << n << " stands where another does";
             ASSERT_TRUE(std::abs(x) < n && std::abs(y) < n && (x + n) % 2 != 0 && (y + n) % 2 != 0) << n;
             sumX += x;
             sumY += y;
@@ -60,9 +61,12 @@ TEST(Passes, moveVerticesAccurately) {
             const Exact at = static_cast<Exact>(origin) + (static_cast<Exact>(ndc) + 1) * size / 2;
             const Jitter jitter = jitterOf({p.sample, p.samples});
             const Exact wanted = (at - p.kernelX - 0.5L - static_cast<Exact>(jitter.x)) / p.kernelWidth + 0.5L;
-            worst = std::max(worst, static_cast<double>(std::abs(shown(ndc, move[0], move[2], origin, viewport[2]) - wanted)));
+            worst = std::max(worst,
+                             static_cast<double>(std::abs(shown(ndc, move[0], move[2], origin, viewport[2]) - wanted)));
         }
-        numerics::expectWithin("positions moved for samples and kernels in floats, " + std::to_string(size) + " pixels wide", "64 bits of mantissa", worst, size * 0x1p-23, "pixels");
+        numerics::expectWithin("positions moved for samples and kernels in floats, " + std::to_string(size) +
+                                   " pixels wide",
+                               "64 bits of mantissa", worst, size * 0x1p-23, "pixels");
     }
 }
 

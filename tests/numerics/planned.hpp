@@ -20,7 +20,9 @@ inline std::vector<RenderContext> drawn(const Planned& p, const std::string& cha
     for (const ChannelPlan& one : p.plan.channels)
         for (const PlannedTask& t : one.tasks) {
             const RenderContext& c = p.plan.contexts[static_cast<size_t>(t.context)];
-            if (t.kind == Task::Draw && c.eye == eye && p.config.channels[static_cast<size_t>(one.channel)].name == channel) found.push_back(c);
+            if (t.kind == Task::Draw && c.eye == eye &&
+                p.config.channels[static_cast<size_t>(one.channel)].name == channel)
+                found.push_back(c);
         }
     return found;
 }

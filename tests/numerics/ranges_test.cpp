@@ -15,7 +15,8 @@ namespace {
 void expectOnce(const std::vector<Range>& leaves, uint64_t count, const std::string& what) {
     uint64_t reached = 0;
     for (const Range& r : leaves) {
-        ASSERT_EQ(countBefore(r.start, count), reached) << what << ", " << count << " draws, range " << r.start << " to " << r.end;
+        ASSERT_EQ(countBefore(r.start, count), reached)
+            << what << ", " << count << " draws, range " << r.start << " to " << r.end;
         reached = countBefore(r.end, count);
     }
     ASSERT_EQ(reached, count) << what;
@@ -28,7 +29,8 @@ TEST(Ranges, matchIntegerArithmeticForFractions) {
         for (const uint64_t count : kCounts) {
             std::vector<Range> leaves;
             for (uint64_t i = 0; i < n; ++i) {
-                leaves.push_back({static_cast<double>(i) / static_cast<double>(n), static_cast<double>(i + 1) / static_cast<double>(n)});
+                leaves.push_back({static_cast<double>(i) / static_cast<double>(n),
+                                  static_cast<double>(i + 1) / static_cast<double>(n)});
                 // as in integer arithmetic
                 ASSERT_EQ(countBefore(leaves.back().start, count), count * i / n) << i << "/" << n;
             }
@@ -63,15 +65,20 @@ TEST(Ranges, unifyDifferentExpressionsOfOneEdge) {
                 ASSERT_EQ(compose(outer, {}), outer);
                 for (int k = 1; k < 10; ++k) {
                     const double nested = compose(outer, {k / 10., 1}).start, written = (a * 10 + k * (b - a)) / 1000.;
-                    if (count <= 1'000'000) { ASSERT_EQ(countBefore(nested, count), countBefore(written, count)) << count << ": " << nested << " and " << written; }
+                    if (count <= 1'000'000) {
+                        ASSERT_EQ(countBefore(nested, count), countBefore(written, count))
+                            << count << ": " << nested << " and " << written;
+                    }
                 }
             }
 }
 
 TEST(Ranges, handleEdgesNextToNothingAndAll) {
     for (const uint64_t count : kCounts) {
-        for (const double nothing : {0.0, -0.0, -1.0, 5e-324, 1e-300, 1e-17, std::nan("")}) EXPECT_EQ(countBefore(nothing, count), 0U) << nothing;
-        for (const double all : {1.0, std::nextafter(1.0, 2.0), 1.5, 1e300}) EXPECT_EQ(countBefore(all, count), count) << all;
+        for (const double nothing : {0.0, -0.0, -1.0, 5e-324, 1e-300, 1e-17, std::nan("")})
+            EXPECT_EQ(countBefore(nothing, count), 0U) << nothing;
+        for (const double all : {1.0, std::nextafter(1.0, 2.0), 1.5, 1e300})
+            EXPECT_EQ(countBefore(all, count), count) << all;
         // one rounding step below the end counts as the end
         EXPECT_EQ(countBefore(std::nextafter(1.0, 0.0), count), count);
         uint64_t before = 0;

@@ -13,8 +13,9 @@ namespace {
 
 // -0, infinities, quiet and signalling NaN with payloads, the smallest, largest and denormal numbers, and values near
 // 1.
-constexpr uint32_t kSpecial32[] = {0x00000000, 0x80000000, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc00001, 0x7f800001, 0xffbfffff, 0x7fffffff, 0xffffffff,
-                                   0x00000001, 0x80000001, 0x007fffff, 0x807fffff, 0x00800000, 0x7f7fffff, 0xff7fffff, 0x3f7fffff, 0x3f800000, 0x3f800001};
+constexpr uint32_t kSpecial32[] = {0x00000000, 0x80000000, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc00001, 0x7f800001,
+                                   0xffbfffff, 0x7fffffff, 0xffffffff, 0x00000001, 0x80000001, 0x007fffff, 0x807fffff,
+                                   0x00800000, 0x7f7fffff, 0xff7fffff, 0x3f7fffff, 0x3f800000, 0x3f800001};
 
 // A plane of the given words (2 or 4 bytes), in order and shuffled, so that neighbours differ in all ways.
 template <class Word> Plane planeOf(PlaneFormat format, const std::vector<Word>& words) {
@@ -42,13 +43,17 @@ void expectIdentity(const Plane& plane, const char* what) {
         ASSERT_TRUE(size) << info.name;
         Plane back(plane.format(), plane.width(), plane.height());
         ASSERT_TRUE((*codec)->decode(std::span(bytes).first(*size), back.view())) << info.name;
-        ASSERT_EQ(std::memcmp(back.bytes().data(), plane.bytes().data(), plane.bytes().size()), 0) << info.name << ", " << what;
+        ASSERT_EQ(std::memcmp(back.bytes().data(), plane.bytes().data(), plane.bytes().size()), 0)
+            << info.name << ", " << what;
     }
 }
 
 TEST(SpecialValues, preserveSpecialDepths) {
-    expectIdentity(planeOf(PlaneFormat::D32F, std::vector<uint32_t>(std::begin(kSpecial32), std::end(kSpecial32))), "D32F");
-    expectIdentity(planeOf<uint32_t>(PlaneFormat::D24S8, {0, 0xff, 0x100, 0x1ff, 0x7fffffff, 0x80000000, 0xffffff00, 0xffffffff, 0xfffffe01}), "D24S8");
+    expectIdentity(planeOf(PlaneFormat::D32F, std::vector<uint32_t>(std::begin(kSpecial32), std::end(kSpecial32))),
+                   "D32F");
+    expectIdentity(planeOf<uint32_t>(PlaneFormat::D24S8, {0, 0xff, 0x100, 0x1ff, 0x7fffffff, 0x80000000, 0xffffff00,
+                                                          0xffffffff, 0xfffffe01}),
+                   "D24S8");
 }
 
 TEST(SpecialValues, preserveEveryHalf) {
@@ -58,10 +63,12 @@ TEST(SpecialValues, preserveEveryHalf) {
 }
 
 TEST(SpecialValues, preserveFloatsAndTenBitComponents) {
-    expectIdentity(planeOf(PlaneFormat::Rgba32F, std::vector<uint32_t>(std::begin(kSpecial32), std::end(kSpecial32))), "RGBA32F");
+    expectIdentity(planeOf(PlaneFormat::Rgba32F, std::vector<uint32_t>(std::begin(kSpecial32), std::end(kSpecial32))),
+                   "RGBA32F");
     std::vector<uint32_t> tens;
     for (uint32_t alpha = 0; alpha < 4; ++alpha)
-        for (uint32_t value = 0; value < 1024; ++value) tens.push_back(alpha << 30 | value << 20 | (1023 - value) << 10 | value);
+        for (uint32_t value = 0; value < 1024; ++value)
+            tens.push_back(alpha << 30 | value << 20 | (1023 - value) << 10 | value);
     expectIdentity(planeOf(PlaneFormat::Rgb10A2, tens), "RGB10A2");
 }
 

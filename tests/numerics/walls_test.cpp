@@ -25,10 +25,15 @@ using numerics::expectWithin;
 const std::string kWall = "bottom_left [ -3 -1.5 -1 ] bottom_right [ 3 -1.5 -1 ] top_left [ -3 1.5 -1 ]";
 
 std::string configOf(int width, int height, const std::string& wall, const std::string& parts) {
-    const std::string window = "window { viewport [ 0 0 " + std::to_string(width) + " " + std::to_string(height) + " ] ";
-    return "#Equalizer 1.2 ascii\nconfig { appNode { pipe { " + window + "channel { name \"d\" } } " + window + "channel { name \"s\" } } } } "
-           "observer { eye_base .065 } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall { " + wall + " } segment { channel \"d\" } } "
-           "compound { channel ( ) " + parts + " } }";
+    const std::string window =
+        "window { viewport [ 0 0 " + std::to_string(width) + " " + std::to_string(height) + " ] ";
+    return "#Equalizer 1.2 ascii\nconfig { appNode { pipe { " + window + "channel { name \"d\" } } " + window +
+           "channel { name \"s\" } } } } "
+           "observer { eye_base .065 } layout { view { observer 0 mode STEREO } } canvas { layout 0 wall { " +
+           wall +
+           " } segment { channel \"d\" } } "
+           "compound { channel ( ) " +
+           parts + " } }";
 }
 
 Planned planned(const std::string& text, const Vector3& head, double nearPlane, double farPlane) {
@@ -50,7 +55,9 @@ std::string tiles(int columns, int rows) {
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x) {
             char text[200];
-            std::snprintf(text, sizeof text, "compound { channel \"s\" viewport [ %.12f %.12f %.12f %.12f ] outputframe { } } ", 1. * x / columns, 1. * y / rows, 1. / columns, 1. / rows);
+            std::snprintf(text, sizeof text,
+                          "compound { channel \"s\" viewport [ %.12f %.12f %.12f %.12f ] outputframe { } } ",
+                          1. * x / columns, 1. * y / rows, 1. / columns, 1. / rows);
             all += text;
         }
     return all;
@@ -59,38 +66,50 @@ std::string tiles(int columns, int rows) {
 // The error of positions in a part, in pixels; positions are spread over the part.
 struct Off {
     double byDoubles = 0; // of the frustum itself
-    double byFloats = 0; // with glFrustum's matrix and the viewport transform in floats
-    double whole = 0; // the same for one picture of the whole size
-    double edges = 0; // between a part's edge and its neighbour's
+    double byFloats = 0;  // with glFrustum's matrix and the viewport transform in floats
+    double whole = 0;     // the same for one picture of the whole size
+    double edges = 0;     // between a part's edge and its neighbour's
 };
 
 // With glFrustum's matrix, w and the viewport transform in floats.
 float pixelByFloats(double l, double r, double nearPlane, float x, float z, int pixels) {
-    const auto scale = static_cast<float>(2 * nearPlane / (r - l)), shear = static_cast<float>((r + l) / (r - l)), half = static_cast<float>(pixels) / 2;
+    const auto scale = static_cast<float>(2 * nearPlane / (r - l)), shear = static_cast<float>((r + l) / (r - l)),
+               half = static_cast<float>(pixels) / 2;
     return (scale * x + shear * z) / -z * half + half;
 }
 
-void along(std::mt19937& random, double l, double r, double pl, double pr, double nearPlane, int whole, int part, int origin, Off& off) {
+void along(std::mt19937& random, double l, double r, double pl, double pr, double nearPlane, int whole, int part,
+           int origin, Off& off) {
     for (int i = 0; i < 20; ++i) {
         // on the near plane
-        const Exact place = static_cast<Exact>(pl) + std::uniform_real_distribution<>(0, 1)(random) * (static_cast<Exact>(pr) - static_cast<Exact>(pl));
+        const Exact place = static_cast<Exact>(pl) + std::uniform_real_distribution<>(0, 1)(random) *
+                                                         (static_cast<Exact>(pr) - static_cast<Exact>(pl));
         const Exact wanted = (place - static_cast<Exact>(l)) / (static_cast<Exact>(r) - static_cast<Exact>(l)) * whole;
-        const Exact got = origin + (place - static_cast<Exact>(pl)) / (static_cast<Exact>(pr) - static_cast<Exact>(pl)) * part;
+        const Exact got =
+            origin + (place - static_cast<Exact>(pl)) / (static_cast<Exact>(pr) - static_cast<Exact>(pl)) * part;
         off.byDoubles = std::max(off.byDoubles, static_cast<double>(std::abs(got - wanted)));
-        const auto z = static_cast<float>(-nearPlane * std::exp(std::uniform_real_distribution<>(0, 9)(random))), x = static_cast<float>(place * -static_cast<Exact>(z) / nearPlane);
+        const auto z = static_cast<float>(-nearPlane * std::exp(std::uniform_real_distribution<>(0, 9)(random))),
+                   x = static_cast<float>(place * -static_cast<Exact>(z) / nearPlane);
         const Exact seen = static_cast<Exact>(x) * static_cast<Exact>(nearPlane) / -static_cast<Exact>(z);
         const Exact exactly = (seen - static_cast<Exact>(l)) / (static_cast<Exact>(r) - static_cast<Exact>(l)) * whole;
-        off.byFloats = std::max(off.byFloats, static_cast<double>(std::abs(origin + static_cast<Exact>(pixelByFloats(pl, pr, nearPlane, x, z, part)) - exactly)));
-        off.whole = std::max(off.whole, static_cast<double>(std::abs(static_cast<Exact>(pixelByFloats(l, r, nearPlane, x, z, whole)) - exactly)));
+        off.byFloats = std::max(
+            off.byFloats, static_cast<double>(std::abs(
+                              origin + static_cast<Exact>(pixelByFloats(pl, pr, nearPlane, x, z, part)) - exactly)));
+        off.whole = std::max(
+            off.whole,
+            static_cast<double>(std::abs(static_cast<Exact>(pixelByFloats(l, r, nearPlane, x, z, whole)) - exactly)));
     }
     const double pixelSize = (r - l) / whole;
-    off.edges = std::max({off.edges, std::abs(pl - (l + pixelSize * origin)) / pixelSize, std::abs(pr - (l + pixelSize * (origin + part))) / pixelSize});
+    off.edges = std::max({off.edges, std::abs(pl - (l + pixelSize * origin)) / pixelSize,
+                          std::abs(pr - (l + pixelSize * (origin + part))) / pixelSize});
 }
 
-Off worst(int width, int height, const std::string& parts, const Vector3& head, double nearPlane, double farPlane, size_t wantedParts) {
+Off worst(int width, int height, const std::string& parts, const Vector3& head, double nearPlane, double farPlane,
+          size_t wantedParts) {
     std::mt19937 random(9);
     Off off;
-    const Planned all = planned(configOf(width, height, kWall, ""), head, nearPlane, farPlane), divided = planned(configOf(width, height, kWall, parts), head, nearPlane, farPlane);
+    const Planned all = planned(configOf(width, height, kWall, ""), head, nearPlane, farPlane),
+                  divided = planned(configOf(width, height, kWall, parts), head, nearPlane, farPlane);
     for (const Eye eye : {Eye::Left, Eye::Right}) {
         const auto whole = drawn(all, "d", eye), pieces = drawn(divided, "s", eye);
         EXPECT_EQ(whole.size(), 1U);
@@ -99,8 +118,10 @@ Off worst(int width, int height, const std::string& parts, const Vector3& head, 
         const Frustum& f = whole[0].perspective;
         for (const double v : {f.left, f.right, f.bottom, f.top}) EXPECT_TRUE(std::isfinite(v));
         for (const RenderContext& c : pieces) {
-            along(random, f.left, f.right, c.perspective.left, c.perspective.right, nearPlane, width, c.viewport.w, c.x.origin, off);
-            along(random, f.bottom, f.top, c.perspective.bottom, c.perspective.top, nearPlane, height, c.viewport.h, c.y.origin, off);
+            along(random, f.left, f.right, c.perspective.left, c.perspective.right, nearPlane, width, c.viewport.w,
+                  c.x.origin, off);
+            along(random, f.bottom, f.top, c.perspective.bottom, c.perspective.top, nearPlane, height, c.viewport.h,
+                  c.y.origin, off);
             EXPECT_EQ(c.perspective.nearPlane, f.nearPlane); // depths must be bit-identical
             EXPECT_EQ(c.perspective.farPlane, f.farPlane);
         }
@@ -115,20 +136,25 @@ constexpr double kGrid = 1.0 / 256; // OpenGL's rasterisation grid
 void expectNear(const std::string& what, const Off& off) {
     expectWithin(what + ": a part's frustum", "the whole's, 64 bits of mantissa", off.byDoubles, 1e-6, "pixels");
     expectWithin(what + ": edges of neighbours", "the whole's grid", off.edges, 1e-6, "pixels");
-    expectWithin(what + ": vertices through OpenGL's floats", "the whole's, 64 bits of mantissa", off.byFloats, std::max(kGrid, 2 * off.whole), "pixels");
+    expectWithin(what + ": vertices through OpenGL's floats", "the whole's, 64 bits of mantissa", off.byFloats,
+                 std::max(kGrid, 2 * off.whole), "pixels");
 }
 
 TEST(Walls, areExactWithTheEyeACentimetreAway) {
-    expectNear("eye 1 cm from a wall of 6 m, 7x5 tiles", worst(1921, 1081, tiles(7, 5), {0.4, 0.2, -0.99}, 0.001, 1000, 35));
+    expectNear("eye 1 cm from a wall of 6 m, 7x5 tiles",
+               worst(1921, 1081, tiles(7, 5), {0.4, 0.2, -0.99}, 0.001, 1000, 35));
 }
 
 // An eye in the plane would see nothing. It is treated as a tenth of a millimetre in front, and all numbers stay
 // finite.
 TEST(Walls, areFiniteWithTheEyeInTheirPlane) {
     expectNear("eye in the wall's plane, 7x5 tiles", worst(1921, 1081, tiles(7, 5), {0.4, 0.2, -1}, 0.001, 1000, 35));
-    const Planned before = planned(configOf(1921, 1081, kWall, ""), {0, 0, -1 + 1e-4}, 0.1, 100), in = planned(configOf(1921, 1081, kWall, ""), {0, 0, -1}, 0.1, 100);
-    const double a = drawn(before, "d", Eye::Left)[0].perspective.right, b = drawn(in, "d", Eye::Left)[0].perspective.right;
-    expectWithin("eye in the wall's plane: its frustum", "that of an eye 0.1 mm before it", std::abs(a - b) / std::abs(a), 1e-9, "of its width");
+    const Planned before = planned(configOf(1921, 1081, kWall, ""), {0, 0, -1 + 1e-4}, 0.1, 100),
+                  in = planned(configOf(1921, 1081, kWall, ""), {0, 0, -1}, 0.1, 100);
+    const double a = drawn(before, "d", Eye::Left)[0].perspective.right,
+                 b = drawn(in, "d", Eye::Left)[0].perspective.right;
+    expectWithin("eye in the wall's plane: its frustum", "that of an eye 0.1 mm before it",
+                 std::abs(a - b) / std::abs(a), 1e-9, "of its width");
 }
 
 TEST(Walls, supportTwoToTheEighteenPixels) {
@@ -160,15 +186,20 @@ TEST(Walls, areRejectedWhenDegenerate) {
         config::Diagnostics diagnostics("wall.eqc");
         (void)config::resolve(config::parseConfig(configOf(100, 100, none.wall, ""), diagnostics), {}, diagnostics);
         const std::string said = diagnostics.errors() > 0 ? diagnostics.firstError() : "";
-        expectThat(none.what, "what a wall is", !said.empty() && said.find('\n') == std::string::npos && said.find("wall.eqc:") == 0, said.empty() ? "taken" : "refused: " + said);
+        expectThat(none.what, "what a wall is",
+                   !said.empty() && said.find('\n') == std::string::npos && said.find("wall.eqc:") == 0,
+                   said.empty() ? "taken" : "refused: " + said);
     }
-    for (const char* projection : {"origin [ 0 0 0 ] distance 0 fov [ 60 40 ]", "origin [ 0 0 0 ] distance 3 fov [ 180 40 ]", "origin [ 0 0 0 ] distance 3 fov [ 60 0 ]"}) {
+    for (const char* projection :
+         {"origin [ 0 0 0 ] distance 0 fov [ 60 40 ]", "origin [ 0 0 0 ] distance 3 fov [ 180 40 ]",
+          "origin [ 0 0 0 ] distance 3 fov [ 60 0 ]"}) {
         std::string text = configOf(100, 100, kWall, "");
         const size_t at = text.find("wall {"), end = text.find('}', at);
         text.replace(at, end + 1 - at, std::string("projection { ") + projection + " }");
         config::Diagnostics diagnostics("wall.eqc");
         (void)config::resolve(config::parseConfig(text, diagnostics), {}, diagnostics);
-        expectThat(std::string("projection { ") + projection + " }", "what a projection is", diagnostics.errors() > 0, diagnostics.errors() > 0 ? "refused: " + diagnostics.firstError() : "taken");
+        expectThat(std::string("projection { ") + projection + " }", "what a projection is", diagnostics.errors() > 0,
+                   diagnostics.errors() > 0 ? "refused: " + diagnostics.firstError() : "taken");
     }
 }
 

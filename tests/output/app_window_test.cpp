@@ -79,8 +79,7 @@ TEST_F(AppWindows, showExactlyThroughTheConnection) {
     for (const size_t pieceBytes : {32'768, 1 << 20, 1204, 500, 1}) {
         AppWindowConfig config = configFor(window, false);
         config.pieceBytes = pieceBytes;
-        if (pieceBytes == 1)
-            client_->resizeWindow(window, 20, 20);
+        if (pieceBytes == 1) client_->resizeWindow(window, 20, 20);
         openOutput(config);
         const int width = pieceBytes == 1 ? 20 : 301;
         const int height = pieceBytes == 1 ? 20 : 203;
@@ -155,16 +154,14 @@ TEST_P(OtherDepths, thirtyBitsOfDeepPictures) {
     OwnedPicture picture;
     picture.resize(33, 9, PictureFormat::Bgr10A2);
     const uint32_t word = 0x2aaU << 20 | 0x155U << 10 | 0x3feU;
-    for (int i = 0; i < 33 * 9; ++i)
-        std::memcpy(picture.data() + i * 4, &word, 4);
+    for (int i = 0; i < 33 * 9; ++i) std::memcpy(picture.data() + i * 4, &word, 4);
     show(picture);
     const auto seen = client_->pixelAt(window, 3, 0).value() & 0x3fffffffU;
     EXPECT_TRUE(seen == word || seen == (0x3feU << 20 | 0x155U << 10 | 0x2aaU)) << std::hex << seen;
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, OtherDepths, testing::Bool(), [](const auto& shared) {
-    return shared.param ? "sharedMemory" : "connection";
-});
+INSTANTIATE_TEST_SUITE_P(Ways, OtherDepths, testing::Bool(),
+                         [](const auto& shared) { return shared.param ? "sharedMemory" : "connection"; });
 
 TEST_F(AppWindows, sizesNeedNotFit) {
     startServer();
@@ -223,15 +220,12 @@ TEST_F(AppWindows, windowWithTheSameIdAgain) {
     client_->destroyWindow(window);
     const xcb_colormap_t colours = xcb_generate_id(client_->get());
     xcb_visualid_t visual = 0;
-    for (auto d = xcb_screen_allowed_depths_iterator(&client_->screen()); d.rem > 0;
-         xcb_depth_next(&d))
-        if (d.data->depth == 32)
-            visual = xcb_depth_visuals_iterator(d.data).data->visual_id;
+    for (auto d = xcb_screen_allowed_depths_iterator(&client_->screen()); d.rem > 0; xcb_depth_next(&d))
+        if (d.data->depth == 32) visual = xcb_depth_visuals_iterator(d.data).data->visual_id;
     xcb_create_colormap(client_->get(), 0, colours, client_->root(), visual);
     const uint32_t values[] = {0, 0, colours};
-    xcb_create_window(client_->get(), 32, window, client_->root(), 0, 0, 80, 60, 0,
-                      XCB_WINDOW_CLASS_INPUT_OUTPUT, visual,
-                      XCB_CW_BACK_PIXEL | XCB_CW_BORDER_PIXEL | XCB_CW_COLORMAP, values);
+    xcb_create_window(client_->get(), 32, window, client_->root(), 0, 0, 80, 60, 0, XCB_WINDOW_CLASS_INPUT_OUTPUT,
+                      visual, XCB_CW_BACK_PIXEL | XCB_CW_BORDER_PIXEL | XCB_CW_COLORMAP, values);
     xcb_map_window(client_->get(), window);
     client_->sync();
     show(picture);
@@ -339,13 +333,11 @@ TEST_P(StoppedServer, deadlinePassesAndLaterItGoesOn) {
     // On a busy machine even a server that runs may be too slow for this deadline.
     const auto showsSoon = [&](const OwnedPicture& picture) {
         for (int i = 0; i < 100; ++i)
-            if (output_->show(1, picture.view()))
-                return true;
+            if (output_->show(1, picture.view())) return true;
         return false;
     };
     for (int i = 0; i < 100 && !output_; ++i)
-        if (auto output = AppWindow::open(config); output)
-            output_ = std::move(output.value());
+        if (auto output = AppWindow::open(config); output) output_ = std::move(output.value());
     ASSERT_NE(output_, nullptr);
     ASSERT_TRUE(showsSoon(first));
     ASSERT_EQ(::kill(server_->pid(), SIGSTOP), 0);
@@ -373,9 +365,8 @@ TEST_P(StoppedServer, deadlinePassesAndLaterItGoesOn) {
     expectSeen(window, 0, 0, first.view());
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, StoppedServer, testing::Bool(), [](const auto& shared) {
-    return shared.param ? "sharedMemory" : "connection";
-});
+INSTANTIATE_TEST_SUITE_P(Ways, StoppedServer, testing::Bool(),
+                         [](const auto& shared) { return shared.param ? "sharedMemory" : "connection"; });
 
 TEST_F(AppWindows, serverThatEndsIsAnError) {
     startServer();
@@ -387,8 +378,7 @@ TEST_F(AppWindows, serverThatEndsIsAnError) {
     for (int i = 0; i < 2; ++i) {
         Result<void> shown = output_->show(2, picture.view());
         ASSERT_FALSE(shown);
-        EXPECT_NE(shown.error().message.find("is lost"), std::string::npos)
-            << shown.error().message;
+        EXPECT_NE(shown.error().message.find("is lost"), std::string::npos) << shown.error().message;
     }
 }
 

@@ -11,9 +11,8 @@ TEST(Picture, copiesOnlyPixelsInsideTheTarget) {
     const OwnedPicture whole = noisePicture(37, 23, 1);
     OwnedPicture built = plainPicture(37, 23, 0, 0, 0);
     // Four overlapping parts, each extending beyond the target on two sides.
-    for (const PixelViewport part :
-         {PixelViewport{-3, -5, 25, 20}, PixelViewport{20, -2, 30, 20},
-          PixelViewport{-1, 11, 25, 30}, PixelViewport{19, 13, 18, 10}}) {
+    for (const PixelViewport part : {PixelViewport{-3, -5, 25, 20}, PixelViewport{20, -2, 30, 20},
+                                     PixelViewport{-1, 11, 25, 30}, PixelViewport{19, 13, 18, 10}}) {
         const OwnedPicture piece = cutOut(whole.view(), part);
         copyInto(built, part.x, part.y, piece.view());
     }
@@ -56,8 +55,7 @@ TEST(Picture, flipsRows) {
         OwnedPicture flipped(before.view());
         flipRows(flipped);
         for (int y = 0; y < height; ++y)
-            EXPECT_TRUE(samePictures(Picture{3, 1, before.view().row(y)},
-                                     Picture{3, 1, flipped.row(height - 1 - y)}));
+            EXPECT_TRUE(samePictures(Picture{3, 1, before.view().row(y)}, Picture{3, 1, flipped.row(height - 1 - y)}));
     }
 }
 

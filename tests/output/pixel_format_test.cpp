@@ -24,7 +24,8 @@ uint32_t convertDeep(const PixelFormat& format, uint32_t word) {
     auto converter = PixelConverter::make(format);
     EXPECT_TRUE(converter);
     uint32_t stored = 0;
-    converter->convertRow(PictureFormat::Bgr10A2, reinterpret_cast<const std::byte*>(&word), 1, reinterpret_cast<std::byte*>(&stored));
+    converter->convertRow(PictureFormat::Bgr10A2, reinterpret_cast<const std::byte*>(&word), 1,
+                          reinterpret_cast<std::byte*>(&stored));
     return stored;
 }
 
@@ -45,8 +46,7 @@ TEST(PixelFormat, thirtyBits) {
     const PixelFormat format{30, 32, 32, 0x3ff00000, 0x000ffc00, 0x000003ff};
     EXPECT_EQ(convertOne(format, 255, 255, 255), 0x3fffffffU);
     for (int value = 0; value < 256; ++value)
-        EXPECT_EQ(convertOne(format, 0, 0, value),
-                  static_cast<uint32_t>(std::lround(value / 255.0 * 1023)));
+        EXPECT_EQ(convertOne(format, 0, 0, value), static_cast<uint32_t>(std::lround(value / 255.0 * 1023)));
 }
 
 // As drivers write them: the upper bits lie beyond the depth.
@@ -66,9 +66,7 @@ TEST(PixelFormat, depth32KeepsAlpha) {
     EXPECT_EQ(convertOne({32, 32, 32, 0xff, 0xff00, 0xff0000}, 1, 2, 3), 0x5a030201U);
 }
 
-TEST(PixelFormat, swappedChannels) {
-    EXPECT_EQ(convertOne({24, 32, 32, 0xff, 0xff00, 0xff0000}, 1, 2, 3), 0x030201U);
-}
+TEST(PixelFormat, swappedChannels) { EXPECT_EQ(convertOne({24, 32, 32, 0xff, 0xff00, 0xff0000}, 1, 2, 3), 0x030201U); }
 
 TEST(PixelFormat, threeBytesPerPixelArePadded) {
     auto converter = PixelConverter::make({24, 24, 32, 0xff0000, 0xff00, 0xff});

@@ -36,8 +36,8 @@ TEST(PngFiles, lookTheSameToOtherPrograms) {
     OwnedPicture picture = plainPicture(2, 2, 0, 0, 0);
     setPixel(picture, 0, 1, 255, 128, 1); // upper left
     ASSERT_TRUE(writePng(folder.at("a.png"), picture.view()));
-    const std::string command = "ffmpeg -nostdin -v error -i " + folder.at("a.png") +
-                                " -f rawvideo -pix_fmt rgb24 " + folder.at("raw");
+    const std::string command =
+        "ffmpeg -nostdin -v error -i " + folder.at("a.png") + " -f rawvideo -pix_fmt rgb24 " + folder.at("raw");
     ASSERT_EQ(std::system(command.c_str()), 0) << "install Debian's package ffmpeg";
     std::ifstream raw(folder.at("raw"), std::ios::binary);
     unsigned char bytes[12] = {};
@@ -57,8 +57,7 @@ TEST(PngFiles, reportAFullDisk) {
     const OwnedPicture picture = noisePicture(300, 300, 1);
     Result<void> shown = files.value()->show(7, picture.view());
     ASSERT_FALSE(shown);
-    EXPECT_NE(shown.error().message.find("No space left on device"), std::string::npos)
-        << shown.error().message;
+    EXPECT_NE(shown.error().message.find("No space left on device"), std::string::npos) << shown.error().message;
     EXPECT_NE(shown.error().message.find("frame-000007.png"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder.at("frame-000007.png")));
     EXPECT_TRUE(files.value()->show(8, picture.view())); // one failure does not end the sink
@@ -111,8 +110,7 @@ TEST(ReadPng, rejectsOtherFiles) {
     // Truncated within the pixels.
     const OwnedPicture picture = noisePicture(64, 64, 1);
     ASSERT_TRUE(writePng(folder.at("cut.png"), picture.view()));
-    std::filesystem::resize_file(folder.at("cut.png"),
-                                 std::filesystem::file_size(folder.at("cut.png")) / 2);
+    std::filesystem::resize_file(folder.at("cut.png"), std::filesystem::file_size(folder.at("cut.png")) / 2);
     EXPECT_FALSE(readPng(folder.at("cut.png")));
 }
 

@@ -31,16 +31,14 @@ inline void setPixel(OwnedPicture& picture, int x, int y, int red, int green, in
 inline OwnedPicture plainPicture(int width, int height, int red, int green, int blue) {
     OwnedPicture picture(width, height);
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            setPixel(picture, x, y, red, green, blue);
+        for (int x = 0; x < width; ++x) setPixel(picture, x, y, red, green, blue);
     return picture;
 }
 
 // For EXPECT_TRUE: reports the number of differing pixels, the maximum difference and the position.
 inline testing::AssertionResult samePictures(const Picture& expected, const Picture& actual) {
     const PictureDifference difference = comparePictures(expected, actual);
-    if (difference.same())
-        return testing::AssertionSuccess();
+    if (difference.same()) return testing::AssertionSuccess();
     return testing::AssertionFailure() << describe(difference, expected, actual);
 }
 

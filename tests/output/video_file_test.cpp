@@ -13,20 +13,17 @@ namespace mural::test {
 namespace {
 
 // All frames of a video as pictures, decoded by ffmpeg without frame rate conversion.
-std::vector<OwnedPicture>
-decode(const TemporaryFolder& folder, const std::string& path, int width, int height) {
+std::vector<OwnedPicture> decode(const TemporaryFolder& folder, const std::string& path, int width, int height) {
     const std::string raw = folder.at("decoded");
-    const std::string command = "ffmpeg -nostdin -y -v error -i " + path +
-                                " -vf vflip -fps_mode passthrough -f rawvideo -pix_fmt bgra " + raw;
-    if (std::system(command.c_str()) != 0)
-        return {};
+    const std::string command =
+        "ffmpeg -nostdin -y -v error -i " + path + " -vf vflip -fps_mode passthrough -f rawvideo -pix_fmt bgra " + raw;
+    if (std::system(command.c_str()) != 0) return {};
     std::vector<OwnedPicture> frames;
     std::ifstream file(raw, std::ios::binary);
     for (;;) {
         OwnedPicture frame(width, height);
         const auto sizeBytes = static_cast<std::streamsize>(frame.view().sizeBytes());
-        if (!file.read(reinterpret_cast<char*>(frame.data()), sizeBytes))
-            return frames;
+        if (!file.read(reinterpret_cast<char*>(frame.data()), sizeBytes)) return frames;
         frames.push_back(std::move(frame));
     }
 }
@@ -40,8 +37,8 @@ VideoConfig configFor(const std::string& path) {
 // A fake ffmpeg that lists all encoders and then executes `text`.
 std::string fakeEncoder(const TemporaryFolder& folder, const std::string& text) {
     return folder.script("fake-ffmpeg", "if [ \"$2\" = -encoders ]; then\n"
-                                         "echo ' V....D libx264rgb x'; exit 0\nfi\n" +
-                                             text);
+                                        "echo ' V....D libx264rgb x'; exit 0\nfi\n" +
+                                            text);
 }
 
 } // namespace
@@ -60,8 +57,7 @@ TEST_P(VideoFormats, decodeBitExactly) {
     for (int i = 0; i < kFrames; ++i) {
         written.push_back(noisePicture(kWidth, kHeight, static_cast<uint32_t>(i)));
         // Two equal consecutive frames must stay two frames.
-        if (i == 4)
-            written.back().assign(written[3].view());
+        if (i == 4) written.back().assign(written[3].view());
         Result<void> shown = video.value()->show(i + 1, written.back().view());
         ASSERT_TRUE(shown) << shown.error().message;
     }
@@ -74,9 +70,7 @@ TEST_P(VideoFormats, decodeBitExactly) {
         EXPECT_TRUE(samePictures(written[i].view(), decoded[i].view())) << "frame " << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(All,
-                         VideoFormats,
-                         testing::Values("mp4", "mkv", "avi", "webm", "mov"),
+INSTANTIATE_TEST_SUITE_P(All, VideoFormats, testing::Values("mp4", "mkv", "avi", "webm", "mov"),
                          [](const auto& format) { return format.param; });
 
 TEST(VideoFile, startsANumberedFileForANewSize) {
@@ -124,11 +118,9 @@ TEST(VideoFile, detectsAKilledEncoder) {
     ASSERT_GT(encoder, 0);
     ASSERT_EQ(::kill(encoder, SIGKILL), 0);
     Result<void> shown;
-    for (int i = 2; i < 10'000 && shown; ++i)
-        shown = video.value()->show(i, picture.view());
+    for (int i = 2; i < 10'000 && shown; ++i) shown = video.value()->show(i, picture.view());
     ASSERT_FALSE(shown);
-    EXPECT_NE(shown.error().message.find("killed by signal 9"), std::string::npos)
-        << shown.error().message;
+    EXPECT_NE(shown.error().message.find("killed by signal 9"), std::string::npos) << shown.error().message;
     EXPECT_NE(::kill(encoder, 0), 0); // reaped
     EXPECT_FALSE(video.value()->show(10'000, picture.view()));
 }
@@ -136,17 +128,14 @@ TEST(VideoFile, detectsAKilledEncoder) {
 TEST(VideoFile, quotesAnEncoderThatFails) {
     const TemporaryFolder folder;
     VideoConfig config = configFor(folder.at("run.mkv"));
-    config.program =
-        fakeEncoder(folder, "echo first >&2\necho 'disk quota is gone' >&2\nexit 3\n");
+    config.program = fakeEncoder(folder, "echo first >&2\necho 'disk quota is gone' >&2\nexit 3\n");
     auto video = VideoFile::open(std::move(config));
     ASSERT_TRUE(video) << video.error().message;
     const OwnedPicture picture = noisePicture(512, 512, 1); // more than the socket buffers
     Result<void> shown;
-    for (int i = 1; i < 1000 && shown; ++i)
-        shown = video.value()->show(i, picture.view());
+    for (int i = 1; i < 1000 && shown; ++i) shown = video.value()->show(i, picture.view());
     ASSERT_FALSE(shown);
-    EXPECT_NE(shown.error().message.find("exit code 3: first; disk quota is gone"),
-              std::string::npos)
+    EXPECT_NE(shown.error().message.find("exit code 3: first; disk quota is gone"), std::string::npos)
         << shown.error().message;
 }
 
@@ -158,11 +147,9 @@ TEST(VideoFile, reportsARealEncoderThatCannotWrite) {
     std::filesystem::remove(folder.at("folder"));
     const OwnedPicture picture = noisePicture(16, 16, 1);
     Result<void> result = video.value()->show(1, picture.view());
-    if (result)
-        result = video.value()->finish();
+    if (result) result = video.value()->finish();
     ASSERT_FALSE(result);
-    EXPECT_NE(result.error().message.find("No such file or directory"), std::string::npos)
-        << result.error().message;
+    EXPECT_NE(result.error().message.find("No such file or directory"), std::string::npos) << result.error().message;
 }
 
 TEST(VideoFile, reportsAFullDisk) {
@@ -173,13 +160,10 @@ TEST(VideoFile, reportsAFullDisk) {
         ASSERT_TRUE(video) << video.error().message;
         const OwnedPicture picture = noisePicture(256, 256, 1);
         Result<void> result;
-        for (int i = 1; i < 20 && result; ++i)
-            result = video.value()->show(i, picture.view());
-        if (result)
-            result = video.value()->finish();
+        for (int i = 1; i < 20 && result; ++i) result = video.value()->show(i, picture.view());
+        if (result) result = video.value()->finish();
         ASSERT_FALSE(result);
-        EXPECT_NE(result.error().message.find("No space left on device"), std::string::npos)
-            << result.error().message;
+        EXPECT_NE(result.error().message.find("No space left on device"), std::string::npos) << result.error().message;
     }
 }
 
@@ -193,11 +177,9 @@ TEST(VideoFile, stopsAtTheDeadlineWhenTheEncoderDoesNotRead) {
     ASSERT_TRUE(video) << video.error().message;
     const OwnedPicture picture = noisePicture(1024, 1024, 1);
     Result<void> shown;
-    for (int i = 1; i < 100 && shown; ++i)
-        shown = video.value()->show(i, picture.view());
+    for (int i = 1; i < 100 && shown; ++i) shown = video.value()->show(i, picture.view());
     ASSERT_FALSE(shown);
-    EXPECT_NE(shown.error().message.find("takes no more data"), std::string::npos)
-        << shown.error().message;
+    EXPECT_NE(shown.error().message.find("takes no more data"), std::string::npos) << shown.error().message;
     // The same for an encoder that does not end.
     auto second = VideoFile::open(config);
     ASSERT_TRUE(second);
@@ -216,8 +198,7 @@ TEST(VideoFile, namesThePackageOfAMissingProgram) {
     config.program = "no-such-ffmpeg";
     auto video = VideoFile::open(std::move(config));
     ASSERT_FALSE(video);
-    EXPECT_NE(video.error().message.find("package ffmpeg"), std::string::npos)
-        << video.error().message;
+    EXPECT_NE(video.error().message.find("package ffmpeg"), std::string::npos) << video.error().message;
 }
 
 TEST(VideoFile, rejectsUnusableNamesAtOnce) {

@@ -60,14 +60,11 @@ protected:
     // The only mapped child of the root with this size; 0: none.
     uint32_t findWindow(int width, int height) {
         xcb_connection_t* c = client_->get();
-        XOwned<xcb_query_tree_reply_t> tree(
-            xcb_query_tree_reply(c, xcb_query_tree(c, client_->root()), nullptr));
+        XOwned<xcb_query_tree_reply_t> tree(xcb_query_tree_reply(c, xcb_query_tree(c, client_->root()), nullptr));
         for (int i = 0; tree && i < xcb_query_tree_children_length(tree.get()); ++i) {
             const xcb_window_t child = xcb_query_tree_children(tree.get())[i];
-            XOwned<xcb_get_geometry_reply_t> geometry(
-                xcb_get_geometry_reply(c, xcb_get_geometry(c, child), nullptr));
-            if (geometry && geometry->width == width && geometry->height == height)
-                return child;
+            XOwned<xcb_get_geometry_reply_t> geometry(xcb_get_geometry_reply(c, xcb_get_geometry(c, child), nullptr));
+            if (geometry && geometry->width == width && geometry->height == height) return child;
         }
         return 0;
     }
@@ -76,8 +73,7 @@ protected:
     template <class Condition> static bool becomesTrue(Condition condition) {
         const Deadline deadline = Deadline::inMs(20'000);
         while (!condition()) {
-            if (deadline.passed())
-                return false;
+            if (deadline.passed()) return false;
             ::poll(nullptr, 0, 2);
         }
         return true;
@@ -105,8 +101,7 @@ TEST(PlaceTiles, convertsTheOriginFromLowerLeftToUpperLeft) {
 // A picture in four tiles of odd sizes reappears on the screen.
 TEST_P(DrawnWalls, showThePictureExactlyInTiles) {
     startServer();
-    const PixelViewport tiles[] = {
-        {0, 0, 201, 99}, {201, 0, 150, 99}, {0, 99, 201, 131}, {201, 99, 150, 131}};
+    const PixelViewport tiles[] = {{0, 0, 201, 99}, {201, 0, 150, 99}, {0, 99, 201, 131}, {201, 99, 150, 131}};
     WallWindowsConfig config = configFor(placeTiles(tiles, 230), GetParam());
     config.positionX = 17;
     config.positionY = 33;
@@ -115,13 +110,10 @@ TEST_P(DrawnWalls, showThePictureExactlyInTiles) {
         const OwnedPicture whole = noisePicture(351, 230, i);
         std::vector<OwnedPicture> parts;
         std::vector<WallWindows::TilePicture> pictures;
-        for (size_t t = 0; t < 4; ++t)
-            parts.push_back(cutOut(whole.view(), tiles[t]));
-        for (size_t t = 0; t < 4; ++t)
-            pictures.push_back({t, parts[t].view()});
+        for (size_t t = 0; t < 4; ++t) parts.push_back(cutOut(whole.view(), tiles[t]));
+        for (size_t t = 0; t < 4; ++t) pictures.push_back({t, parts[t].view()});
         if (i == 1) { // also one by one
-            for (size_t t = 0; t < 4; ++t)
-                show(t, parts[t].view());
+            for (size_t t = 0; t < 4; ++t) show(t, parts[t].view());
         } else {
             Result<void> shown = wall_->showAll(pictures);
             ASSERT_TRUE(shown) << shown.error().message;
@@ -135,10 +127,8 @@ TEST_P(DrawnWalls, showThePictureExactlyInTiles) {
 TEST_P(DrawnWalls, resizeWindowsToThePicture) {
     startServer();
     openWall(configFor({{{0, 0, 100, 100}, 50, 60, "wall", -1}}, GetParam()));
-    for (const auto& size :
-         {std::pair{100, 100}, std::pair{203, 157}, std::pair{31, 300}, std::pair{100, 100}}) {
-        const OwnedPicture picture =
-            noisePicture(size.first, size.second, static_cast<uint32_t>(size.first));
+    for (const auto& size : {std::pair{100, 100}, std::pair{203, 157}, std::pair{31, 300}, std::pair{100, 100}}) {
+        const OwnedPicture picture = noisePicture(size.first, size.second, static_cast<uint32_t>(size.first));
         show(0, picture.view());
         expectOnScreen(50, 60, picture.view());
         // Nothing of an earlier larger window remains beside it.
@@ -201,8 +191,8 @@ TEST_P(DrawnWalls, detectTheCloseButton) {
     EXPECT_FALSE(wall_->closeRequested());
     xcb_connection_t* c = client_->get();
     const auto atom = [&](const char* name) {
-        XOwned<xcb_intern_atom_reply_t> reply(xcb_intern_atom_reply(
-            c, xcb_intern_atom(c, 0, static_cast<uint16_t>(std::strlen(name)), name), nullptr));
+        XOwned<xcb_intern_atom_reply_t> reply(
+            xcb_intern_atom_reply(c, xcb_intern_atom(c, 0, static_cast<uint16_t>(std::strlen(name)), name), nullptr));
         return reply->atom;
     };
     xcb_client_message_event_t message{};
@@ -223,8 +213,7 @@ TEST_P(DrawnWalls, detectTheCloseButton) {
 
 TEST_P(DrawnWalls, surviveAWindowDestroyedByOthers) {
     startServer();
-    openWall(configFor({{{0, 0, 120, 90}, 0, 0, "a", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}},
-                       GetParam()));
+    openWall(configFor({{{0, 0, 120, 90}, 0, 0, "a", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}}, GetParam()));
     const OwnedPicture a = noisePicture(120, 90, 1);
     const OwnedPicture b = noisePicture(64, 64, 1);
     show(0, a.view());
@@ -245,8 +234,7 @@ TEST_P(DrawnWalls, stopAtTheDeadlineWithAStoppedServer) {
     for (int i = 0; i < 2; ++i) {
         Result<void> shown = wall_->show(0, picture.view());
         ASSERT_FALSE(shown);
-        EXPECT_NE(shown.error().message.find("in time"), std::string::npos)
-            << shown.error().message;
+        EXPECT_NE(shown.error().message.find("in time"), std::string::npos) << shown.error().message;
     }
     ASSERT_EQ(::kill(server_->pid(), SIGCONT), 0);
     EXPECT_TRUE(becomesTrue([&] { return wall_->show(0, picture.view()).ok(); }));
@@ -268,8 +256,7 @@ TEST_P(DrawnWalls, stopOpeningAtTheDeadlineWithAStoppedServer) {
     config.showTimeoutMs = 20'000;
     EXPECT_TRUE(becomesTrue([&] {
         auto wall = WallWindows::open(config);
-        if (wall)
-            wall_ = std::move(wall.value());
+        if (wall) wall_ = std::move(wall.value());
         return wall_ != nullptr;
     }));
     ASSERT_NE(wall_, nullptr);
@@ -287,8 +274,7 @@ TEST_P(DrawnWalls, reportAServerThatEnds) {
     for (int i = 0; i < 2; ++i) {
         Result<void> shown = wall_->show(0, picture.view());
         ASSERT_FALSE(shown);
-        EXPECT_NE(shown.error().message.find("is lost"), std::string::npos)
-            << shown.error().message;
+        EXPECT_NE(shown.error().message.find("is lost"), std::string::npos) << shown.error().message;
     }
     wall_.reset();
     // Another display works afterwards.
@@ -298,12 +284,8 @@ TEST_P(DrawnWalls, reportAServerThatEnds) {
     expectOnScreen(10, 10, picture.view());
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways,
-                         DrawnWalls,
-                         testing::Values(WallDrawing::OpenGl, WallDrawing::XPut),
-                         [](const auto& way) {
-                             return way.param == WallDrawing::OpenGl ? "OpenGl" : "XPut";
-                         });
+INSTANTIATE_TEST_SUITE_P(Ways, DrawnWalls, testing::Values(WallDrawing::OpenGl, WallDrawing::XPut),
+                         [](const auto& way) { return way.param == WallDrawing::OpenGl ? "OpenGl" : "XPut"; });
 
 TEST_F(Walls, letTheServerDrawWithoutGlx) {
     startServer({"-extension", "GLX"});
@@ -319,8 +301,7 @@ TEST_F(Walls, letTheServerDrawWithoutGlx) {
 
 TEST_F(Walls, areExactWithAuto) {
     startServer();
-    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}},
-                       WallDrawing::Auto));
+    openWall(configFor({{{0, 0, 120, 90}, 10, 10, "wall", -1}, {{0, 0, 64, 64}, 200, 0, "b", -1}}, WallDrawing::Auto));
     const OwnedPicture a = noisePicture(120, 90, 1);
     const OwnedPicture b = noisePicture(64, 64, 2);
     show(0, a.view());
@@ -331,20 +312,17 @@ TEST_F(Walls, areExactWithAuto) {
 
 TEST_F(Walls, reportWhatIsMissing) {
     startServer();
-    const std::vector<TileWindow> tiles = {{{0, 0, 120, 90}, 10, 10, "a", -1},
-                                           {{0, 0, 120, 90}, 200, 10, "b", -1}};
+    const std::vector<TileWindow> tiles = {{{0, 0, 120, 90}, 10, 10, "a", -1}, {{0, 0, 120, 90}, 200, 10, "b", -1}};
     WallWindowsConfig config = configFor(tiles, WallDrawing::Auto);
     config.displayName = ":64999";
     auto noDisplay = WallWindows::open(config);
     ASSERT_FALSE(noDisplay);
-    EXPECT_NE(noDisplay.error().message.find("':64999'"), std::string::npos)
-        << noDisplay.error().message;
+    EXPECT_NE(noDisplay.error().message.find("':64999'"), std::string::npos) << noDisplay.error().message;
     config = configFor(tiles, WallDrawing::Auto);
     config.fullScreen = true;
     auto noMonitor = WallWindows::open(config);
     ASSERT_FALSE(noMonitor);
-    EXPECT_NE(noMonitor.error().message.find("no monitor 2"), std::string::npos)
-        << noMonitor.error().message;
+    EXPECT_NE(noMonitor.error().message.find("no monitor 2"), std::string::npos) << noMonitor.error().message;
     EXPECT_FALSE(WallWindows::open(configFor({}, WallDrawing::Auto)));
     openWall(configFor(tiles, WallDrawing::XPut));
     auto second = WallWindows::open(configFor(tiles, WallDrawing::XPut));
@@ -364,8 +342,8 @@ TEST_F(Walls, preserveTheEnvironment) {
 // A render node has an EGL context current while it shows its tiles.
 TEST_F(Walls, preserveTheCallersCurrentContext) {
     startServer();
-    const auto getDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
-        eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    const auto getDisplay =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
     ASSERT_NE(getDisplay, nullptr);
     EGLDisplay display = getDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     ASSERT_TRUE(eglInitialize(display, nullptr, nullptr));
@@ -378,8 +356,7 @@ TEST_F(Walls, preserveTheCallersCurrentContext) {
     show(0, picture.view());
     expectOnScreen(10, 10, picture.view());
     EXPECT_EQ(eglGetCurrentContext(), context);
-    const auto getString =
-        reinterpret_cast<const unsigned char* (*)(unsigned)>(eglGetProcAddress("glGetString"));
+    const auto getString = reinterpret_cast<const unsigned char* (*)(unsigned)>(eglGetProcAddress("glGetString"));
     EXPECT_NE(getString(0x1F01 /* GL_RENDERER */), nullptr);
     wall_.reset();
     EXPECT_EQ(eglGetCurrentContext(), context);

@@ -52,8 +52,11 @@ protected:
         wire::MessageHeader header{};
         while (head_->read(std::as_writable_bytes(std::span(&header, 1)), Deadline::inMs(kAnswerMs))) {
             std::string text(header.sizeBytes, ' ');
-            if (!text.empty() && !head_->read(std::as_writable_bytes(std::span(text)), Deadline::inMs(kAnswerMs))) break;
-            if (header.type == static_cast<uint32_t>(wire::NodeMessage::Alive) || header.type == static_cast<uint32_t>(wire::NodeMessage::Ready)) continue;
+            if (!text.empty() && !head_->read(std::as_writable_bytes(std::span(text)), Deadline::inMs(kAnswerMs)))
+                break;
+            if (header.type == static_cast<uint32_t>(wire::NodeMessage::Alive) ||
+                header.type == static_cast<uint32_t>(wire::NodeMessage::Ready))
+                continue;
             EXPECT_EQ(header.type, static_cast<uint32_t>(type)) << text;
             all.push_back(text);
         }
@@ -93,7 +96,8 @@ TEST_P(ForeignBuild, isRejectedWithOneLine) {
     EXPECT_EQ(status(), 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Builds, ForeignBuild, ::testing::Values("", "1.0000000000000000", "4294967295.0000000000000000"));
+INSTANTIATE_TEST_SUITE_P(Builds, ForeignBuild,
+                         ::testing::Values("", "1.0000000000000000", "4294967295.0000000000000000"));
 
 // Records after the damaged batch are unreadable, because their references are missing.
 TEST_F(NodeTest, endsWithOneLineAfterADamagedBatch) {

@@ -92,7 +92,8 @@ void goesOn(size_t meanwhileBytes) {
     auto stream = late.goOn(place - *from, Deadline::inMs(kPatienceMs));
     ASSERT_TRUE(stream) << stream.error().message;
     std::vector<std::byte> read(50'000);
-    for (size_t at = 0; at < read.size(); at += 12'500) ASSERT_TRUE((*stream)->read(std::span(read).subspan(at, 12'500), Deadline::inMs(kPatienceMs)));
+    for (size_t at = 0; at < read.size(); at += 12'500)
+        ASSERT_TRUE((*stream)->read(std::span(read).subspan(at, 12'500), Deadline::inMs(kPatienceMs)));
     size_t wrong = 0;
     for (size_t i = 0; i < read.size(); ++i) wrong += read[i] != byteAt(place + i);
     EXPECT_EQ(wrong, 0u);
@@ -114,7 +115,8 @@ TEST(StagedMulticastJoin, reportsAFailedJoin) {
     StagedMulticastJoin late(options(nobody), complaints.hear());
     {
         std::unique_lock lock(complaints.mutex);
-        ASSERT_TRUE(complaints.changed.wait_for(lock, std::chrono::milliseconds(kPatienceMs), [&] { return !complaints.all.empty(); }));
+        ASSERT_TRUE(complaints.changed.wait_for(lock, std::chrono::milliseconds(kPatienceMs),
+                                                [&] { return !complaints.all.empty(); }));
         EXPECT_NE(complaints.all[0].find("127.0.0.1"), std::string::npos) << complaints.all[0];
     }
     EXPECT_FALSE(late.goOn(0, Deadline::inMs(1)));

@@ -34,7 +34,13 @@ TEST(Accumulation, wrapsAround) {
 }
 
 TEST(Accumulation, clearsToShorts) {
-    for (const auto& [colour, value] : {std::pair{0.05f, 1637}, {0.1f, 3276}, {0.5f, 16383}, {1.0f, 32767}, {-1.0f, -32768}, {-0.3f, -9830}, {0.0f, 0}}) {
+    for (const auto& [colour, value] : {std::pair{0.05f, 1637},
+                                        {0.1f, 3276},
+                                        {0.5f, 16383},
+                                        {1.0f, 32767},
+                                        {-1.0f, -32768},
+                                        {-0.3f, -9830},
+                                        {0.0f, 0}}) {
         const std::array<float, 4> colours{colour, 0, 0, colour};
         std::array<int16_t, 8> values{};
         accumulation::clear(values.data(), 2, colours.data());

@@ -96,7 +96,8 @@ TEST_F(MovingAreas, areAdoptedAtTheNextFullClear) {
     draw();
     EXPECT_EQ(shown(), kRight);
     EXPECT_EQ(frame_.areas, 1u);
-    EXPECT_EQ(drawn_, (std::vector<PixelViewport>{kLeft, {0, 0, 64, 32}, kRight})) << "what was the other node's is cleared here, too";
+    EXPECT_EQ(drawn_, (std::vector<PixelViewport>{kLeft, {0, 0, 64, 32}, kRight}))
+        << "what was the other node's is cleared here, too";
 }
 
 TEST_F(MovingAreas, waitForEachBufferThatIsDrawnTo) {

@@ -57,7 +57,9 @@ TEST(PassPlace, convertsRectanglesToKernels) {
                     }
                     const PixelViewport got = inKernel(kernel(k, 0, width, 1), {x, 0, w, 1});
                     EXPECT_EQ(got.w, count) << x << "+" << w << ", " << k << " of " << width;
-                    if (count > 0) { EXPECT_EQ(got.x, first); }
+                    if (count > 0) {
+                        EXPECT_EQ(got.x, first);
+                    }
                     EXPECT_EQ(inKernel(kernel(0, k, 1, width), {0, x, 1, w}).h, count);
                 }
 }
@@ -118,10 +120,12 @@ TEST(PassPlace, alignsCentresOfZoomedPixels) {
 
 TEST(PassPlace, acceptsAnyRectangle) {
     constexpr int32_t kMost = std::numeric_limits<int32_t>::max(), kLeast = std::numeric_limits<int32_t>::min();
-    for (const PixelViewport& r : {PixelViewport{kMost, kMost, kMost, kMost}, PixelViewport{kLeast, kLeast, kMost, kMost}, PixelViewport{kLeast, 0, kLeast, 1}})
+    for (const PixelViewport& r : {PixelViewport{kMost, kMost, kMost, kMost},
+                                   PixelViewport{kLeast, kLeast, kMost, kMost}, PixelViewport{kLeast, 0, kLeast, 1}})
         for (const int width : {1, 2, 16}) (void)inKernel(kernel(width - 1, 0, width, 1), r);
     EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, 0, 10}), (std::array<float, 4>{}));
-    EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, std::numeric_limits<float>::quiet_NaN(), 10}), (std::array<float, 4>{}));
+    EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, std::numeric_limits<float>::quiet_NaN(), 10}),
+              (std::array<float, 4>{}));
 }
 
 // A position moved within its viewport equals the position in a moved viewport.
@@ -133,7 +137,8 @@ TEST(PassPlace, movesPositionsLikeViewports) {
     const auto move = moveInViewport(p, v);
     for (const double ndc : {-1.0, -0.3, 0.0, 0.7, 1.0}) {
         const auto wanted = placeInPass(p, v[0] + (ndc + 1) * v[2] / 2, v[1] + (ndc + 1) * v[3] / 2);
-        const double x = ndc + ndc * static_cast<double>(move[0]) + static_cast<double>(move[2]), y = ndc + ndc * static_cast<double>(move[1]) + static_cast<double>(move[3]);
+        const double x = ndc + ndc * static_cast<double>(move[0]) + static_cast<double>(move[2]),
+                     y = ndc + ndc * static_cast<double>(move[1]) + static_cast<double>(move[3]);
         EXPECT_NEAR(v[0] + (x + 1) * v[2] / 2, wanted[0], 1e-3);
         EXPECT_NEAR(v[1] + (y + 1) * v[3] / 2, wanted[1], 1e-3);
     }

@@ -15,7 +15,8 @@ TEST(RasterBins, countsFromTheUpperLeftCorner) {
 }
 
 TEST(RasterBins, keepsRegionsOfWholeBins) {
-    for (const PixelViewport& region : {kSurface, PixelViewport{64, 777 - 128, 128, 64}, PixelViewport{960, 0, 40, 777 - 768}})
+    for (const PixelViewport& region :
+         {kSurface, PixelViewport{64, 777 - 128, 128, 64}, PixelViewport{960, 0, 40, 777 - 768}})
         EXPECT_EQ(widenToBins(region, kSurface), region);
 }
 
@@ -41,7 +42,8 @@ TEST(RasterBins, holdsEachTouchedBinWhole) {
                 for (int32_t row = 0; row < 3; ++row) {
                     const PixelViewport bin = intersect({64 * column, 131 - 64 * (row + 1), 64, 64}, surface);
                     const bool touched = !intersect(bin, region).empty();
-                    EXPECT_EQ(intersect(bin, widened), touched ? bin : PixelViewport{}) << x << ", " << y << " bin " << column << ", " << row;
+                    EXPECT_EQ(intersect(bin, widened), touched ? bin : PixelViewport{})
+                        << x << ", " << y << " bin " << column << ", " << row;
                 }
         }
 }

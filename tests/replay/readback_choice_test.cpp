@@ -39,7 +39,8 @@ TEST(ReadbackChoice, minimisesTheDrawingThreadsTime) {
 TEST(ReadbackChoice, ignoresFirstFramesAndOutliers) {
     ReadbackChoice choice;
     for (int i = 0; i < 4; ++i) choice.took(choice.later() ? 1 : 900'000'000);
-    for (int i = 0; i < 10; ++i) choice.took(choice.later() ? (i < 2 ? 1 : 5'000'000) : (i < 2 ? 800'000'000 : 5'000'000));
+    for (int i = 0; i < 10; ++i)
+        choice.took(choice.later() ? (i < 2 ? 1 : 5'000'000) : (i < 2 ? 800'000'000 : 5'000'000));
     EXPECT_EQ(laterOf(choice, 0, 500, {5'000'000, 5'000'000}), 0);
 }
 

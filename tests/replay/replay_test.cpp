@@ -50,7 +50,9 @@ protected:
         for (const auto& packet : encoder_.takePackets()) ok = replay_->packet(wire::streamOf(1, thread), packet) && ok;
         return ok;
     }
-    bool sendWords(const std::vector<uint32_t>& words) { return replay_->packet(wire::streamOf(1, 1), std::as_bytes(std::span(words))); }
+    bool sendWords(const std::vector<uint32_t>& words) {
+        return replay_->packet(wire::streamOf(1, 1), std::as_bytes(std::span(words)));
+    }
     static constexpr uint32_t head(uint32_t opcode, uint32_t words) { return opcode | words << 16; }
 
     void begin(uint32_t thread = 1, uint32_t id = 1) {
@@ -101,14 +103,16 @@ TEST_F(ReplayTest, showsBlackWithoutAContext) {
 
 // GL never receives a name that it would reject: an error would reach the program, and GL_NONE would stay.
 TEST_F(ReplayTest, passesOnlyBufferNamesOfTheSurface) {
-    for (const auto& [buffers, only] : {std::pair{gl::ColorBuffers::OneNamedFront, GL_FRONT_LEFT}, {gl::ColorBuffers::OneNamedBack, GL_BACK}}) {
+    for (const auto& [buffers, only] :
+         {std::pair{gl::ColorBuffers::OneNamedFront, GL_FRONT_LEFT}, {gl::ColorBuffers::OneNamedBack, GL_BACK}}) {
         std::vector<GLenum> named;
         fuzz::FakeGlOptions options;
         options.colorBuffers = buffers;
         options.namedBuffer = [&](unsigned name) { named.push_back(name); };
         start({}, options);
         begin();
-        for (const GLenum name : {GL_NONE, GL_BACK, GL_FRONT, GL_FRONT_AND_BACK, GL_LEFT, GL_BACK_LEFT, GL_FRONT_LEFT}) {
+        for (const GLenum name :
+             {GL_NONE, GL_BACK, GL_FRONT, GL_FRONT_AND_BACK, GL_LEFT, GL_BACK_LEFT, GL_FRONT_LEFT}) {
             encode_glDrawBuffer(t_, name);
             encode_glReadBuffer(t_, name);
             encode_glDrawBuffers(t_, 1, DataArg::of(&name, sizeof name));
@@ -126,9 +130,10 @@ TEST_F(ReplayTest, endsThePacketAtABrokenHeader) {
     EXPECT_FALSE(sendWords({head(op::glEnd, 0)}));
     EXPECT_FALSE(sendWords({head(op::glEnd, 2)}));
     EXPECT_FALSE(sendWords({head(op::glEnd, record::kLongForm)}));
-    for (const uint32_t words : {0u, 1u, 3u, 0x40000000u, 0xffffffffu}) EXPECT_FALSE(sendWords({head(op::glEnd, record::kLongForm), words})) << words;
+    for (const uint32_t words : {0u, 1u, 3u, 0x40000000u, 0xffffffffu})
+        EXPECT_FALSE(sendWords({head(op::glEnd, record::kLongForm), words})) << words;
     EXPECT_TRUE(sendWords({head(op::glEnd, record::kLongForm), 2}));
-    EXPECT_FALSE(sendWords({head(60, 1)})); // a control opcode that does not exist
+    EXPECT_FALSE(sendWords({head(60, 1)}));     // a control opcode that does not exist
     EXPECT_FALSE(sendWords({head(0xfff0, 1)})); // beyond all GL opcodes
     EXPECT_TRUE(sendWords({head(op::glEnd, 1)}));
     const std::byte odd[3] = {};
@@ -154,7 +159,8 @@ TEST_F(ReplayTest, keepsNegativeCountsFromTheDriver) {
     begin();
     const GLfloat values[8] = {};
     for (const GLsizei count : {2, 0, -1, -5, INT32_MIN}) {
-        encode_glNamedProgramLocalParameters4fvEXT(t_, 1, GL_VERTEX_PROGRAM_ARB, 5, count, DataArg::of(values, count > 0 ? uint64_t(count) * 16 : 0));
+        encode_glNamedProgramLocalParameters4fvEXT(t_, 1, GL_VERTEX_PROGRAM_ARB, 5, count,
+                                                   DataArg::of(values, count > 0 ? uint64_t(count) * 16 : 0));
         EXPECT_TRUE(send()) << count;
     }
     EXPECT_TRUE(sendWords({head(op::glDeleteTextures, 4), 0xffffffff, 4, 1}));
@@ -338,7 +344,8 @@ TEST_F(ReplayTest, keepsLargeValuesOfLists) {
     const std::vector<std::byte> data(20000);
     encode_glBufferData(t_, GL_ARRAY_BUFFER, 20000, DataArg::of(data.data(), data.size()), GL_STATIC_DRAW);
     EXPECT_TRUE(send());
-    EXPECT_FALSE(sendWords({head(op::glBufferData, 6), GL_ARRAY_BUFFER, 8, 0, record::kTagBlob, GL_STATIC_DRAW})) << "no blob is left over";
+    EXPECT_FALSE(sendWords({head(op::glBufferData, 6), GL_ARRAY_BUFFER, 8, 0, record::kTagBlob, GL_STATIC_DRAW}))
+        << "no blob is left over";
 }
 
 TEST_F(ReplayTest, limitsAndAnswersRequests) {
@@ -366,8 +373,9 @@ TEST_F(ReplayTest, keepsClientArraysWithinTheirSpans) {
     records::clientArrays(t_, &a, 1, &data, 1);
     EXPECT_TRUE(send());
     for (const auto& spoil : std::initializer_list<std::function<void(client_arrays::ArrayRecord&)>>{
-             [](auto& r) { r.elementCount = 11; }, [](auto& r) { r.elementCount = 0; }, [](auto& r) { r.elementCount = 0xffffffff; },
-             [](auto& r) { r.strideBytes = 0xffffffff; }, [](auto& r) { r.offsetBytes = 4; }, [](auto& r) { r.span = 1; },
+             [](auto& r) { r.elementCount = 11; }, [](auto& r) { r.elementCount = 0; },
+             [](auto& r) { r.elementCount = 0xffffffff; }, [](auto& r) { r.strideBytes = 0xffffffff; },
+             [](auto& r) { r.offsetBytes = 4; }, [](auto& r) { r.span = 1; },
              [](auto& r) { r.slot = client_arrays::kSlots; }}) {
         client_arrays::ArrayRecord bad = a;
         spoil(bad);
@@ -461,12 +469,18 @@ protected:
         gl.glGetImageHandleARB = [](GLuint, GLint, GLboolean, GLint, GLenum) { return other.next++; };
         gl.glMakeTextureHandleResidentARB = [](GLuint64 h) { other.resident.push_back(h); };
         gl.glMakeTextureHandleNonResidentARB = [](GLuint64 h) { other.notResident.push_back(h); };
-        gl.glMakeImageHandleResidentARB = [](GLuint64 h, GLenum access) { other.resident.push_back(h), other.access = access; };
+        gl.glMakeImageHandleResidentARB = [](GLuint64 h, GLenum access) {
+            other.resident.push_back(h), other.access = access;
+        };
         gl.glMakeImageHandleNonResidentARB = [](GLuint64 h) { other.notResident.push_back(h); };
         gl.glUniformHandleui64ARB = [](GLint, GLuint64 h) { other.uniforms.push_back(h); };
-        gl.glUniformHandleui64vARB = [](GLint, GLsizei n, const GLuint64* h) { other.uniforms.insert(other.uniforms.end(), h, h + n); };
+        gl.glUniformHandleui64vARB = [](GLint, GLsizei n, const GLuint64* h) {
+            other.uniforms.insert(other.uniforms.end(), h, h + n);
+        };
         gl.glProgramUniformHandleui64ARB = [](GLuint, GLint, GLuint64 h) { other.uniforms.push_back(h); };
-        gl.glProgramUniformHandleui64vARB = [](GLuint, GLint, GLsizei n, const GLuint64* h) { other.uniforms.insert(other.uniforms.end(), h, h + n); };
+        gl.glProgramUniformHandleui64vARB = [](GLuint, GLint, GLsizei n, const GLuint64* h) {
+            other.uniforms.insert(other.uniforms.end(), h, h + n);
+        };
         gl.glVertexAttribL1ui64ARB = [](GLuint, GLuint64EXT h) { other.attribute = h; };
     }
 };
@@ -539,17 +553,27 @@ protected:
         pages = {};
         GlFunctions& gl = replay_->gl;
         gl.glGetError = [] { return std::exchange(pages.error, GLenum{GL_NO_ERROR}); };
-        gl.glTexPageCommitmentARB = [](GLenum, GLint, GLint x, GLint y, GLint z, GLsizei w, GLsizei h, GLsizei d, GLboolean commit) {
-            const bool fits = x % kPage == 0 && y % kPage == 0 && (w % kPage == 0 || x + w == kWidth) && (h % kPage == 0 || y + h == kHeight);
-            if (fits) pages.commits.push_back({x, y, z, w, h, d, commit});
-            else pages.error = GL_INVALID_VALUE;
+        gl.glTexPageCommitmentARB = [](GLenum, GLint, GLint x, GLint y, GLint z, GLsizei w, GLsizei h, GLsizei d,
+                                       GLboolean commit) {
+            const bool fits = x % kPage == 0 && y % kPage == 0 && (w % kPage == 0 || x + w == kWidth) &&
+                              (h % kPage == 0 || y + h == kHeight);
+            if (fits)
+                pages.commits.push_back({x, y, z, w, h, d, commit});
+            else
+                pages.error = GL_INVALID_VALUE;
         };
-        gl.glGetInternalformativ = [](GLenum, GLenum, GLenum name, GLsizei, GLint* value) { *value = name == GL_VIRTUAL_PAGE_SIZE_Z_ARB ? 1 : kPage; };
+        gl.glGetInternalformativ = [](GLenum, GLenum, GLenum name, GLsizei, GLint* value) {
+            *value = name == GL_VIRTUAL_PAGE_SIZE_Z_ARB ? 1 : kPage;
+        };
         gl.glGetTexParameteriv = [](GLenum, GLenum, GLint* value) { *value = 0; };
-        gl.glGetTexLevelParameteriv = [](GLenum, GLint, GLenum name, GLint* value) { *value = name == GL_TEXTURE_WIDTH ? kWidth : name == GL_TEXTURE_HEIGHT ? kHeight : GL_RGBA8; };
+        gl.glGetTexLevelParameteriv = [](GLenum, GLint, GLenum name, GLint* value) {
+            *value = name == GL_TEXTURE_WIDTH ? kWidth : name == GL_TEXTURE_HEIGHT ? kHeight : GL_RGBA8;
+        };
         gl.glGetIntegerv = [](GLenum, GLint* value) { *value = kPage; };
         gl.glGetBufferParameteri64v = [](GLenum, GLenum, GLint64* value) { *value = 200; };
-        gl.glBufferPageCommitmentARB = [](GLenum, GLintptr offset, GLsizeiptr size, GLboolean commit) { pages.buffers.push_back({offset, size, commit}); };
+        gl.glBufferPageCommitmentARB = [](GLenum, GLintptr offset, GLsizeiptr size, GLboolean commit) {
+            pages.buffers.push_back({offset, size, commit});
+        };
     }
     void commit(GLint x, GLint y, GLsizei w, GLsizei h, GLboolean committed) {
         encode_glTexPageCommitmentARB(t_, GL_TEXTURE_2D, 0, x, y, 2, w, h, 1, committed);
@@ -560,7 +584,8 @@ protected:
 TEST_F(PagesTest, keepsCommitmentsOnPageBorders) {
     commit(64, 128, 36, 64, GL_TRUE);
     commit(64, 128, 36, 64, GL_FALSE);
-    EXPECT_EQ(pages.commits, (std::vector<std::array<GLint, 7>>{{64, 128, 2, 36, 64, 1, 1}, {64, 128, 2, 36, 64, 1, 0}}));
+    EXPECT_EQ(pages.commits,
+              (std::vector<std::array<GLint, 7>>{{64, 128, 2, 36, 64, 1, 1}, {64, 128, 2, 36, 64, 1, 0}}));
 }
 
 TEST_F(PagesTest, extendsCommitmentsToPagesAndReleasesNone) {
@@ -590,7 +615,8 @@ TEST_F(PagesTest, supportsBuffers) {
     commitBuffer(192, 8, GL_FALSE); // up to the end
     commitBuffer(160, 40, GL_TRUE);
     commitBuffer(160, 80, GL_TRUE); // beyond it
-    EXPECT_EQ(pages.buffers, (std::vector<std::array<GLint64, 3>>{{64, 128, 1}, {0, 128, 1}, {192, 8, 0}, {128, 72, 1}}));
+    EXPECT_EQ(pages.buffers,
+              (std::vector<std::array<GLint64, 3>>{{64, 128, 1}, {0, 128, 1}, {192, 8, 0}, {128, 72, 1}}));
 }
 
 } // namespace

@@ -10,22 +10,25 @@
 namespace mural {
 namespace {
 
-std::vector<std::byte> scaled(const std::vector<std::byte>& drawn, const PixelViewport& area, const Zoom& zoom, const PixelViewport& box) {
+std::vector<std::byte> scaled(const std::vector<std::byte>& drawn, const PixelViewport& area, const Zoom& zoom,
+                              const PixelViewport& box) {
     std::vector<std::byte> into(static_cast<size_t>(box.area()) * 4);
     scalePicture({drawn.data(), area}, zoom, box, into.data(), box);
     return into;
 }
 
 // value(x, y), in all four bytes
-template <typename Value>
-std::vector<std::byte> picture(const PixelViewport& area, const Value& value) {
+template <typename Value> std::vector<std::byte> picture(const PixelViewport& area, const Value& value) {
     std::vector<std::byte> bytes;
     for (int y = 0; y < area.h; ++y)
         for (int x = 0; x < area.w; ++x) bytes.insert(bytes.end(), 4, static_cast<std::byte>(value(x, y)));
     return bytes;
 }
 
-int at(const std::vector<std::byte>& bytes, const PixelViewport& box, int x, int y) { return std::to_integer<int>(bytes[(static_cast<size_t>(y) * static_cast<size_t>(box.w) + static_cast<size_t>(x)) * 4]); }
+int at(const std::vector<std::byte>& bytes, const PixelViewport& box, int x, int y) {
+    return std::to_integer<int>(
+        bytes[(static_cast<size_t>(y) * static_cast<size_t>(box.w) + static_cast<size_t>(x)) * 4]);
+}
 
 TEST(ScalePicture, changesNothingWithoutZoom) {
     std::vector<std::byte> drawn;
@@ -51,7 +54,8 @@ TEST(ScalePicture, averagesToReduce) {
     const PixelViewport box{5, 3, 10, 6};
     for (const int zoom : {2, 3, 5}) {
         const PixelViewport area{5 * zoom, 3 * zoom, 10 * zoom, 6 * zoom};
-        const auto shown = scaled(picture(area, [&](int x, int y) { return x % zoom == 0 && y % zoom == 0 ? 250 : 0; }), area, {double(zoom), double(zoom)}, box);
+        const auto shown = scaled(picture(area, [&](int x, int y) { return x % zoom == 0 && y % zoom == 0 ? 250 : 0; }),
+                                  area, {double(zoom), double(zoom)}, box);
         for (int y = 0; y < box.h; ++y)
             for (int x = 0; x < box.w; ++x) ASSERT_NEAR(at(shown, box, x, y), 250.0 / (zoom * zoom), 1) << zoom;
     }
@@ -69,7 +73,9 @@ TEST(ScalePicture, keepsBrightness) {
         }
         const auto noise = picture(area, [](int x, int y) { return (x * 73 + y * 151 + x * y * 29) & 255; });
         const auto mean = [](const std::vector<std::byte>& bytes) {
-            return std::accumulate(bytes.begin(), bytes.end(), 0.0, [](double sum, std::byte b) { return sum + std::to_integer<int>(b); }) / static_cast<double>(bytes.size());
+            return std::accumulate(bytes.begin(), bytes.end(), 0.0,
+                                   [](double sum, std::byte b) { return sum + std::to_integer<int>(b); }) /
+                   static_cast<double>(bytes.size());
         };
         if (zoom.x > 1 && zoom.y > 1) {
             EXPECT_NEAR(mean(scaled(noise, area, zoom, box)), mean(noise), 3) << zoom.x << " " << zoom.y;

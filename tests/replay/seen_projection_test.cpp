@@ -25,9 +25,26 @@ double scaleOf(const Matrix& m) {
     return seenProjection(plain).scaleX;
 }
 Matrix frustum(double l, double r, double b, double t, double n, double f) {
-    return {2 * n / (r - l), 0, 0, 0, 0, 2 * n / (t - b), 0, 0, (r + l) / (r - l), (t + b) / (t - b), -(f + n) / (f - n), -1, 0, 0, -2 * f * n / (f - n), 0};
+    return {2 * n / (r - l),
+            0,
+            0,
+            0,
+            0,
+            2 * n / (t - b),
+            0,
+            0,
+            (r + l) / (r - l),
+            (t + b) / (t - b),
+            -(f + n) / (f - n),
+            -1,
+            0,
+            0,
+            -2 * f * n / (f - n),
+            0};
 }
-Matrix turned(double angle) { return {std::cos(angle), 0, -std::sin(angle), 0, 0, 1, 0, 0, std::sin(angle), 0, std::cos(angle), 0, 3, -2, -9, 1}; }
+Matrix turned(double angle) {
+    return {std::cos(angle), 0, -std::sin(angle), 0, 0, 1, 0, 0, std::sin(angle), 0, std::cos(angle), 0, 3, -2, -9, 1};
+}
 
 TEST(ProjectionDetector, recognisesPlainProjections) {
     EXPECT_DOUBLE_EQ(scaleOf(frustum(-2, 2, -1, 1, 3, 50)), 1.5);
@@ -57,7 +74,8 @@ TEST(ProjectionDetector, rejectsMatricesWithoutPerspective) {
 TEST(ProjectionDetector, readsAllLayoutsOfUniforms) {
     const Matrix p = product(frustum(-2, 2, -1, 1, 3, 50), turned(0.2));
     float single[16], turnedOver[16];
-    for (size_t i = 0; i < 16; ++i) single[i] = static_cast<float>(p[i]), turnedOver[i % 4 * 4 + i / 4] = static_cast<float>(p[i]);
+    for (size_t i = 0; i < 16; ++i)
+        single[i] = static_cast<float>(p[i]), turnedOver[i % 4 * 4 + i / 4] = static_cast<float>(p[i]);
     EXPECT_NEAR(seenProjectionAt(reinterpret_cast<const std::byte*>(single), false, false).scaleX, 1.5, 1e-5);
     EXPECT_NEAR(seenProjectionAt(reinterpret_cast<const std::byte*>(turnedOver), false, true).scaleX, 1.5, 1e-5);
     EXPECT_NEAR(seenProjectionAt(reinterpret_cast<const std::byte*>(p.data()), true, false).scaleX, 1.5, 1e-12);

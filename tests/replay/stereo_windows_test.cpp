@@ -30,12 +30,15 @@ protected:
         config.eyeBase = 2;
         config.focusDistance = 4;
         ReplayOutputs out;
-        out.answer = [this](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) { answered_.assign(bytes.begin(), bytes.end()); };
+        out.answer = [this](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) {
+            answered_.assign(bytes.begin(), bytes.end());
+        };
         out.frameDone = [this](const ReplayOutputs::Frame& f) {
             const std::byte* const pixels = f.pixels ? f.pixels(f.region) : nullptr;
             shown_.clear();
             for (int64_t i = 0; pixels && i < f.region.area(); ++i)
-                shown_.push_back({static_cast<uint8_t>(pixels[i * 4 + 2]), static_cast<uint8_t>(pixels[i * 4 + 1]), static_cast<uint8_t>(pixels[i * 4])});
+                shown_.push_back({static_cast<uint8_t>(pixels[i * 4 + 2]), static_cast<uint8_t>(pixels[i * 4 + 1]),
+                                  static_cast<uint8_t>(pixels[i * 4])});
         };
         out.log = [this](const std::string& line) { log_ += line + "\n"; };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, out);
@@ -140,7 +143,8 @@ TEST_F(StereoWindows, answerReads) {
         answered_.clear();
         records::requestPixels(t_, 1, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, 4);
         send();
-        EXPECT_EQ(answered_, (std::vector<std::byte>{std::byte{255}, std::byte{0}, std::byte{0}, std::byte{255}})) << buffer;
+        EXPECT_EQ(answered_, (std::vector<std::byte>{std::byte{255}, std::byte{0}, std::byte{0}, std::byte{255}}))
+            << buffer;
     }
 }
 

@@ -13,7 +13,22 @@ using Point = std::array<double, 4>;
 struct Projection {
     double l, r, b, t, n, f;
     [[nodiscard]] std::array<double, 16> matrix() const {
-        return {2 * n / (r - l), 0, 0, 0, 0, 2 * n / (t - b), 0, 0, (r + l) / (r - l), (t + b) / (t - b), -(f + n) / (f - n), -1, 0, 0, -2 * f * n / (f - n), 0};
+        return {2 * n / (r - l),
+                0,
+                0,
+                0,
+                0,
+                2 * n / (t - b),
+                0,
+                0,
+                (r + l) / (r - l),
+                (t + b) / (t - b),
+                -(f + n) / (f - n),
+                -1,
+                0,
+                0,
+                -2 * f * n / (f - n),
+                0};
     }
 };
 
@@ -26,7 +41,9 @@ Point times(const double (&m)[16], const Point& p) {
 
 // As in the shader.
 Point moved(const ClipTransform& m, const Point& p) {
-    const auto by = [&](const std::array<double, 4>& row) { return row[0] * p[0] + row[1] * p[1] + row[2] * p[3] + row[3]; };
+    const auto by = [&](const std::array<double, 4>& row) {
+        return row[0] * p[0] + row[1] * p[1] + row[2] * p[3] + row[3];
+    };
     return {p[0] + by(m.x), p[1] + by(m.y), p[2] + m.z * by(m.w), p[3] + by(m.w)};
 }
 
@@ -34,11 +51,14 @@ class ViewMoveTest : public testing::Test {
 protected:
     std::mt19937 numbers{7};
     double random(double from, double to) { return std::uniform_real_distribution<double>(from, to)(numbers); }
-    Projection anyProjection() { return {random(-3, -0.5), random(0.5, 3), random(-2, -0.4), random(0.4, 2), random(0.1, 2), random(10, 1000)}; }
+    Projection anyProjection() {
+        return {random(-3, -0.5), random(0.5, 3), random(-2, -0.4), random(0.4, 2), random(0.1, 2), random(10, 1000)};
+    }
 };
 
 Matrix4 turn(double about, double up) {
-    const Matrix4 y = Matrix4::rows({std::cos(about), 0, -std::sin(about)}, {0, 1, 0}, {std::sin(about), 0, std::cos(about)});
+    const Matrix4 y =
+        Matrix4::rows({std::cos(about), 0, -std::sin(about)}, {0, 1, 0}, {std::sin(about), 0, std::cos(about)});
     return Matrix4::rows({1, 0, 0}, {0, std::cos(up), -std::sin(up)}, {0, std::sin(up), std::cos(up)}) * y;
 }
 
@@ -47,8 +67,10 @@ TEST_F(ViewMoveTest, matchesScreensOfARoom) {
         const Projection own = anyProjection();
         ScreenView s;
         s.area = {random(0, 0.5), random(0, 0.5), random(0.1, 0.5), random(0.1, 0.5)};
-        s.left = random(-2, 0.5), s.right = s.left + random(0.3, 3), s.bottom = random(-2, 0.5), s.top = s.bottom + random(0.3, 3);
-        s.fromProgram = Matrix4::translation({random(-1, 1), random(-1, 1), random(-1, 1)}) * turn(random(-3, 3), random(-1, 1));
+        s.left = random(-2, 0.5), s.right = s.left + random(0.3, 3), s.bottom = random(-2, 0.5),
+        s.top = s.bottom + random(0.3, 3);
+        s.fromProgram =
+            Matrix4::translation({random(-1, 1), random(-1, 1), random(-1, 1)}) * turn(random(-3, 3), random(-1, 1));
         double m[16];
         std::ranges::copy(own.matrix(), m);
         const ProjectionDetector seen = seenProjection(m);
@@ -56,9 +78,11 @@ TEST_F(ViewMoveTest, matchesScreensOfARoom) {
         const Point clip = times(m, {eye.x, eye.y, eye.z, 1});
 
         const Vector3 there = transformPoint(s.fromProgram, eye);
-        const double x = (2 * there.x + (s.right + s.left) * there.z) / (s.right - s.left), y = (2 * there.y + (s.top + s.bottom) * there.z) / (s.top - s.bottom);
+        const double x = (2 * there.x + (s.right + s.left) * there.z) / (s.right - s.left),
+                     y = (2 * there.y + (s.top + s.bottom) * there.z) / (s.top - s.bottom);
         const double w = -there.z;
-        const double placedX = s.area.w * x + (2 * s.area.x + s.area.w - 1) * w, placedY = s.area.h * y + (2 * s.area.y + s.area.h - 1) * w;
+        const double placedX = s.area.w * x + (2 * s.area.x + s.area.w - 1) * w,
+                     placedY = s.area.h * y + (2 * s.area.y + s.area.h - 1) * w;
         const double depth = own.matrix()[10] * there.z + own.matrix()[14]; // with the program's near and far planes
 
         const Point got = moved(screenMove(seen, s), clip);

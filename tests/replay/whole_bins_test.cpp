@@ -29,7 +29,9 @@ protected:
         out.log = [](const std::string&) {};
         out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte>) {};
         fuzz::FakeGlOptions options;
-        options.drew = [this](bool scissored, const std::array<int, 4>& box) { drawn_ = scissored ? PixelViewport{box[0], box[1], box[2], box[3]} : kWindow; };
+        options.drew = [this](bool scissored, const std::array<int, 4>& box) {
+            drawn_ = scissored ? PixelViewport{box[0], box[1], box[2], box[3]} : kWindow;
+        };
         replay_ = std::make_unique<Replay>(fuzz::makeFakePlatform(options), config, out);
         wire::WindowConfig c = buffers;
         c.width = static_cast<uint32_t>(kWindow.w);

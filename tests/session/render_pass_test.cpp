@@ -8,7 +8,9 @@
 namespace mural {
 namespace {
 
-PassCounts counted(StereoMode stereo, int kernelWidth, int kernelHeight, int samples, int period) { return {stereo, kernelWidth, kernelHeight, samples, period}; }
+PassCounts counted(StereoMode stereo, int kernelWidth, int kernelHeight, int samples, int period) {
+    return {stereo, kernelWidth, kernelHeight, samples, period};
+}
 
 TEST(RenderPass, isOnePlainPassByDefault) {
     EXPECT_EQ(passesOf({}), std::vector<RenderPass>{RenderPass{}});

@@ -7,7 +7,8 @@ namespace mural::shaders {
 namespace {
 
 TEST(GlslTokens, ignoresNamesInComments) {
-    const GlslText t = scanGlsl("// gl_FragCoord\n/* gl_FragCoord\n*/ float a/**/b; // \\\ngl_FragCoord\nint c;", false);
+    const GlslText t =
+        scanGlsl("// gl_FragCoord\n/* gl_FragCoord\n*/ float a/**/b; // \\\ngl_FragCoord\nint c;", false);
     EXPECT_FALSE(t.uses("gl_FragCoord"));
     EXPECT_TRUE(t.uses("a"));
     EXPECT_TRUE(t.uses("b"));
@@ -38,7 +39,8 @@ TEST(GlslTokens, endsDirectivesWithTheirLine) {
     const GlslText t = scanGlsl(source, false);
     ASSERT_EQ(t.directives.size(), 2u);
     EXPECT_EQ(source.substr(t.directives[1].end), "int b;\n");
-    for (const GlslToken& token : t.tokens) EXPECT_EQ(token.directive, token.text != "int" && token.text != "b" && token.text != ";") << token.text;
+    for (const GlslToken& token : t.tokens)
+        EXPECT_EQ(token.directive, token.text != "int" && token.text != "b" && token.text != ";") << token.text;
 }
 
 std::string behind(const std::string& source) { return source.substr(scanGlsl(source, false).declarationsAt()); }
@@ -48,7 +50,8 @@ TEST(GlslTokens, placesDeclarationsAfterAllExtensions) {
     EXPECT_EQ(behind("#version 330\nint a;"), "int a;");
     EXPECT_EQ(behind("#version 330\n#extension X : enable\nint a;"), "int a;");
     EXPECT_EQ(behind("#ifdef X\n#extension X : enable\n#if 1\n#endif\n#endif\nint a;"), "int a;");
-    EXPECT_EQ(behind("#extension X : enable\n#ifdef GL_ES\nprecision mediump float;\n#endif\nint a;"), "#ifdef GL_ES\nprecision mediump float;\n#endif\nint a;");
+    EXPECT_EQ(behind("#extension X : enable\n#ifdef GL_ES\nprecision mediump float;\n#endif\nint a;"),
+              "#ifdef GL_ES\nprecision mediump float;\n#endif\nint a;");
     EXPECT_EQ(behind("#if A\n#extension X : enable\n#else\n#extension Y : enable\n#endif\nint a;"), "int a;");
 }
 
@@ -61,7 +64,8 @@ TEST(GlslTokens, appliesEditsInOrderOfPosition) {
 }
 
 TEST(GlslTokens, acceptsAnyBytes) {
-    for (const char* text : {"/*", "#", "#if", "\\", "\"", "//", "#endif\n#endif\n", "\xff\xfe", "#version", "#version x", "#version 99999999999"}) {
+    for (const char* text : {"/*", "#", "#if", "\\", "\"", "//", "#endif\n#endif\n", "\xff\xfe", "#version",
+                             "#version x", "#version 99999999999"}) {
         const GlslText t = scanGlsl(text, false);
         EXPECT_LE(t.declarationsAt(), std::string_view(text).size()) << text;
     }

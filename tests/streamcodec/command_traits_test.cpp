@@ -1,5 +1,5 @@
-// Checks over the whole command list: class, traits and effect of each command agree, and so do the classes that replay,
-// capture and filters derive from them. The rules name each exception and its reason.
+// Checks over the whole command list: class, traits and effect of each command agree, and so do the classes that
+// replay, capture and filters derive from them. The rules name each exception and its reason.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,9 @@ template <class... Traits> Predicate has(Traits... traits) {
 }
 
 Predicate hasEffect(std::vector<EffectKind> kinds) {
-    return [kinds = std::move(kinds)](uint16_t opcode) { return std::ranges::count(kinds, kCommandEffects[opcode].kind) > 0; };
+    return [kinds = std::move(kinds)](uint16_t opcode) {
+        return std::ranges::count(kinds, kCommandEffects[opcode].kind) > 0;
+    };
 }
 
 Predicate operator!(const Predicate& p) {
@@ -87,7 +89,10 @@ TEST(CommandTraits, areOfClassDrawExactlyWhenTheCommandWritesPixelsOrOrdersThem)
     const Rule rules[] = {
         {"output is of class draw", output, has(DrawClass), {}},
         {"class draw is output", has(DrawClass), output, {}},
-        {"copies out of a framebuffer are state, unless they write to one", both(has(ReadsFramebuffer), !has(Pixels)), !has(DrawClass), {}},
+        {"copies out of a framebuffer are state, unless they write to one",
+         both(has(ReadsFramebuffer), !has(Pixels)),
+         !has(DrawClass),
+         {}},
     };
     expectAll(rules);
 }
@@ -109,13 +114,18 @@ TEST(CommandTraits, drawsIntoWindowForAllThatWritesToOrReadsFromFramebuffers) {
 
 TEST(CommandTraits, agreeWithEffects) {
     using enum EffectKind;
-    const Predicate drawEffect = hasEffect({EffectKind::Draw, EffectKind::Compute, EffectKind::Clear, EffectKind::ClearBuffer, Blit, EffectKind::Barrier,
-                                            EffectKind::Begin, EffectKind::Vertex, EffectKind::End, EffectKind::CallList, CallLists});
+    const Predicate drawEffect = hasEffect({EffectKind::Draw, EffectKind::Compute, EffectKind::Clear,
+                                            EffectKind::ClearBuffer, Blit, EffectKind::Barrier, EffectKind::Begin,
+                                            EffectKind::Vertex, EffectKind::End, EffectKind::CallList, CallLists});
     const Rule rules[] = {
-        // glPrimitiveRestartNV is no vertex: it restarts the primitive. The program's own context executes it to track that.
+        // glPrimitiveRestartNV is no vertex: it restarts the primitive. The program's own context executes it to track
+        // that.
         {"an effect on pixels is of class draw", drawEffect, has(DrawClass), {op::glPrimitiveRestartNV}},
         {"class draw has such an effect, or an unknown one", has(DrawClass), either(drawEffect, kUnknown), {}},
-        {"draws and pixels", either(has(Trait::Draw, Pixels), has(SkippableDraw)), either(hasEffect({EffectKind::Draw, Blit}), kUnknown), {}},
+        {"draws and pixels",
+         either(has(Trait::Draw, Pixels), has(SkippableDraw)),
+         either(hasEffect({EffectKind::Draw, Blit}), kUnknown),
+         {}},
         {"clears", has(Trait::Clear), hasEffect({EffectKind::Clear}), {}},
         {"clears of a buffer", has(Trait::ClearBuffer), hasEffect({EffectKind::ClearBuffer}), {}},
         {"vertices", has(Trait::Vertex), hasEffect({EffectKind::Vertex}), {}},
@@ -126,14 +136,20 @@ TEST(CommandTraits, agreeWithEffects) {
         {"barriers", has(Trait::Barrier), hasEffect({EffectKind::Barrier}), {}},
         {"copies to textures", hasEffect({TexCopyImage, TexCopySubImage}), has(ReadsFramebuffer), {}},
         {"matrices", hasEffect({MatrixLoad, MatrixChange, MatrixPush, MatrixPop}), has(Matrix), {}},
-        {"no other matrices", has(Matrix), either(hasEffect({MatrixLoad, MatrixChange, MatrixPush, MatrixPop}), kUnknown), {}},
+        {"no other matrices",
+         has(Matrix),
+         either(hasEffect({MatrixLoad, MatrixChange, MatrixPush, MatrixPop}), kUnknown),
+         {}},
         {"queries begin", hasEffect({EffectKind::QueryBegin}), has(Trait::QueryBegin), {}},
         {"queries end", hasEffect({EffectKind::QueryEnd}), has(Trait::QueryEnd), {}},
         {"feedback begins", hasEffect({EffectKind::FeedbackBegin}), has(Trait::FeedbackBegin), {}},
         {"feedback ends", hasEffect({EffectKind::FeedbackEnd}), has(Trait::FeedbackEnd), {}},
         {"uploads to buffers", hasEffect({EffectKind::BufferData, EffectKind::BufferSubData}), has(BufferContents), {}},
         {"buffers with new memory", hasEffect({EffectKind::BufferData}), has(Allocates), {}},
-        {"images with new memory", hasEffect({TexImage, TexStorage, TexCopyImage, TexMipmaps, RenderbufferStorage}), has(Allocates), {}},
+        {"images with new memory",
+         hasEffect({TexImage, TexStorage, TexCopyImage, TexMipmaps, RenderbufferStorage}),
+         has(Allocates),
+         {}},
         {"images of levels", hasEffect({TexImage, TexSubImage, TexCopyImage, TexCopySubImage}), has(TextureLevel), {}},
         {"storage of levels", hasEffect({TexStorage}), has(TextureLevels), {}},
         {"mipmaps", hasEffect({TexMipmaps}), has(TextureAnyLevel), {}},
@@ -151,32 +167,58 @@ TEST(CommandTraits, excludeEachOther) {
         {"rectangles are not skippable", has(DrawRectangle), !has(SkippableDraw), {}},
         {"draws from feedback are draws", has(FeedbackDraw), has(Draw), {}},
         {"pixels of all planes are pixels", has(AllPlanes), has(Pixels), {}},
-        {"draws are not pixels", has(Draw), !has(Pixels, Clear, ClearBuffer, ClearNamed, Vertex, Begin, End, CallList), {}},
-        {"state is not output", has(OrderState, Matrix, Viewport, RasterPosition, UniformMatrix4, BufferContents), !has(DrawClass), {}},
-        {"memory is not output", has(Allocates, TextureLevel, TextureLevels, TextureAnyLevel, TextureParameter), !has(DrawClass), {}},
+        {"draws are not pixels",
+         has(Draw),
+         !has(Pixels, Clear, ClearBuffer, ClearNamed, Vertex, Begin, End, CallList),
+         {}},
+        {"state is not output",
+         has(OrderState, Matrix, Viewport, RasterPosition, UniformMatrix4, BufferContents),
+         !has(DrawClass),
+         {}},
+        {"memory is not output",
+         has(Allocates, TextureLevel, TextureLevels, TextureAnyLevel, TextureParameter),
+         !has(DrawClass),
+         {}},
     };
     expectAll(rules);
 }
 
 TEST(CommandUses, ofReplayAgreeWithEachOther) {
-    const auto range = [](RangeUse use) -> Predicate { return [=](uint16_t opcode) { return rangeUseOf(opcode) == use; }; };
+    const auto range = [](RangeUse use) -> Predicate {
+        return [=](uint16_t opcode) { return rangeUseOf(opcode) == use; };
+    };
     const auto eye = [](EyeUse use) -> Predicate { return [=](uint16_t opcode) { return eyeUseOf(opcode) == use; }; };
-    const auto whole = [](WholeUse use) -> Predicate { return [=](uint16_t opcode) { return wholeUseOf(opcode) == use; }; };
-    const auto window = [](WindowUse use) -> Predicate { return [=](uint16_t opcode) { return useOf(opcode) == use; }; };
+    const auto whole = [](WholeUse use) -> Predicate {
+        return [=](uint16_t opcode) { return wholeUseOf(opcode) == use; };
+    };
+    const auto window = [](WindowUse use) -> Predicate {
+        return [=](uint16_t opcode) { return useOf(opcode) == use; };
+    };
     const Predicate writes = either(window(WindowUse::Draws), window(WindowUse::Clears));
-    const Predicate rangeKnows = either(either(range(RangeUse::Draw), range(RangeUse::Begin)), either(range(RangeUse::Clear), either(range(RangeUse::Read), range(RangeUse::Feedback))));
+    const Predicate rangeKnows =
+        either(either(range(RangeUse::Draw), range(RangeUse::Begin)),
+               either(range(RangeUse::Clear), either(range(RangeUse::Read), range(RangeUse::Feedback))));
     const Rule rules[] = {
         {"output is of class draw", writes, has(DrawClass), {}},
         // Sort-last sees the commands of a list, or counts them when the list is compiled.
         {"sort-last classifies output", writes, rangeKnows, {op::glCallList, op::glCallLists}},
         {"draws of sort-last write", either(range(RangeUse::Draw), range(RangeUse::Clear)), writes, {}},
         {"primitives of sort-last write", range(RangeUse::Begin), writes, {}},
-        {"draws of sort-last move with the eye", either(range(RangeUse::Draw), range(RangeUse::Begin)), eye(EyeUse::Draw), {}},
+        {"draws of sort-last move with the eye",
+         either(range(RangeUse::Draw), range(RangeUse::Begin)),
+         eye(EyeUse::Draw),
+         {}},
         // A raster position is transformed as a vertex, and an image from the client is part of the scene.
         {"draws of the eye write", both(eye(EyeUse::Draw), !has(RasterPosition)), writes, {}},
         {"lists", eye(EyeUse::List), whole(WholeUse::Draw), {}},
-        {"draws sample textures", either(range(RangeUse::Draw), range(RangeUse::Begin)), either(whole(WholeUse::Draw), whole(WholeUse::Copies)), {}},
-        {"commands that sample textures are output", either(whole(WholeUse::Draw), whole(WholeUse::Copies)), writes, {}},
+        {"draws sample textures",
+         either(range(RangeUse::Draw), range(RangeUse::Begin)),
+         either(whole(WholeUse::Draw), whole(WholeUse::Copies)),
+         {}},
+        {"commands that sample textures are output",
+         either(whole(WholeUse::Draw), whole(WholeUse::Copies)),
+         writes,
+         {}},
     };
     expectAll(rules);
 }
@@ -184,16 +226,26 @@ TEST(CommandUses, ofReplayAgreeWithEachOther) {
 // Deferred uploads are sent before a command that may read them.
 TEST(CommandClasses, neverPassCommandsThatMayReadDeferredUploads) {
     using filter::CommandClass;
-    const auto about = [](CommandClass c) -> Predicate { return [=](uint16_t opcode) { return filter::CommandKinds::all()[opcode].about == c; }; };
-    const auto role = [](filter::StateRole r) -> Predicate { return [=](uint16_t opcode) { return filter::stateRoleOf(opcode) == r; }; };
+    const auto about = [](CommandClass c) -> Predicate {
+        return [=](uint16_t opcode) { return filter::CommandKinds::all()[opcode].about == c; };
+    };
+    const auto role = [](filter::StateRole r) -> Predicate {
+        return [=](uint16_t opcode) { return filter::stateRoleOf(opcode) == r; };
+    };
     const Predicate pass = about(CommandClass::Pass);
     const Rule rules[] = {
         {"draws", has(Draw, Compute, RasterPosition), !pass, {}},
         {"images and bitmaps", both(has(Pixels), !has(ReadsFramebuffer)), !pass, {}},
         {"primitives", has(Begin, End, CallList), !pass, {}},
         {"uploads", has(TextureLevel, TextureLevels, TextureAnyLevel, BufferContents), !pass, {}},
-        {"output uses or changes state", kWrites, either(role(filter::StateRole::Use), role(filter::StateRole::Change)), {}},
-        {"copies use state", has(ReadsFramebuffer), either(role(filter::StateRole::Use), role(filter::StateRole::Change)), {}},
+        {"output uses or changes state",
+         kWrites,
+         either(role(filter::StateRole::Use), role(filter::StateRole::Change)),
+         {}},
+        {"copies use state",
+         has(ReadsFramebuffer),
+         either(role(filter::StateRole::Use), role(filter::StateRole::Change)),
+         {}},
         {"cells set state", role(filter::StateRole::Set), !has(DrawClass), {}},
     };
     expectAll(rules);
@@ -212,7 +264,9 @@ TEST(CommandTable, hasEverySentCommandWithOneClass) {
 
 // These commands were of class `state`, although all other tables had them as draws.
 TEST(CommandTraits, knowRectanglesInWindowCoordinatesAsDraws) {
-    for (const uint16_t opcode : {op::glDrawTexfOES, op::glDrawTexfvOES, op::glDrawTexiOES, op::glDrawTexivOES, op::glDrawTexsOES, op::glDrawTexsvOES, op::glDrawTexxOES, op::glDrawTexxvOES, op::glDrawTextureNV}) {
+    for (const uint16_t opcode :
+         {op::glDrawTexfOES, op::glDrawTexfvOES, op::glDrawTexiOES, op::glDrawTexivOES, op::glDrawTexsOES,
+          op::glDrawTexsvOES, op::glDrawTexxOES, op::glDrawTexxvOES, op::glDrawTextureNV}) {
         EXPECT_TRUE(hasTrait(opcode, DrawClass)) << glOpcodeName(opcode);
         EXPECT_TRUE(drawsIntoWindow(opcode)) << glOpcodeName(opcode);
         EXPECT_EQ(useOf(opcode), WindowUse::Draws) << glOpcodeName(opcode);

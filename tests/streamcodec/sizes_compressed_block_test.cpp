@@ -42,16 +42,14 @@ TEST(SizesCompressedBlock, computesImageSizes) {
               32u); // at least 2×2 blocks
     EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 0, 5, 1), 0u);
     EXPECT_EQ(compressedBytes(GL_RGBA8, 4, 4, 1), 0u);
-    EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGBA_ASTC_4x4_KHR, INT32_MAX, INT32_MAX, INT32_MAX),
-              SIZE_MAX);
+    EXPECT_EQ(compressedBytes(GL_COMPRESSED_RGBA_ASTC_4x4_KHR, INT32_MAX, INT32_MAX, INT32_MAX), SIZE_MAX);
 }
 
 TEST(SizesCompressedBlock, isTightWithoutBlockSettings) {
     PixelStore store;
     store.rowLength = 100;
     store.skipRows = 3;
-    const ImageLayout layout =
-        compressedLayoutOf(store, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 9, 6, 2, 3);
+    const ImageLayout layout = compressedLayoutOf(store, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 9, 6, 2, 3);
     ASSERT_TRUE(layout.known);
     EXPECT_EQ(layout.firstByte, 0);
     EXPECT_EQ(spanBytes(layout), 3u * 2 * 2 * 16);
@@ -63,13 +61,12 @@ TEST(SizesCompressedBlock, selectsAPartOfALargerImage) {
     store.compressedBlockWidth = store.compressedBlockHeight = 4;
     store.compressedBlockDepth = 1;
     store.compressedBlockSize = 8;
-    store.rowLength = 22; // 6 blocks
+    store.rowLength = 22;   // 6 blocks
     store.imageHeight = 13; // 4 rows
-    store.skipPixels = 8; // 2 blocks
-    store.skipRows = 4; // 1 row
+    store.skipPixels = 8;   // 2 blocks
+    store.skipRows = 4;     // 1 row
     store.skipImages = 1;
-    const ImageLayout layout =
-        compressedLayoutOf(store, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 8, 2, 3);
+    const ImageLayout layout = compressedLayoutOf(store, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 8, 2, 3);
     ASSERT_TRUE(layout.known);
     EXPECT_EQ(layout.rowBytes, 16u);
     EXPECT_EQ(layout.rows, 2u);

@@ -17,8 +17,7 @@ int checkImageSizes(GLenum format) {
     for (const auto& [width, height] : {std::pair{1, 1}, {4, 4}, {5, 9}, {13, 8}, {24, 25}}) {
         const auto size = static_cast<GLsizei>(compressedBytes(format, width, height, 1));
         glCompressedTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, size, data.data());
-        if (takeErrors())
-            return 0;
+        if (takeErrors()) return 0;
         glCompressedTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, size + 1, data.data());
         EXPECT_TRUE(takeErrors()) << std::hex << format;
     }
@@ -27,8 +26,7 @@ int checkImageSizes(GLenum format) {
 
 void checkFormats(TestApi api, int atLeast) {
     const TestContext context(api);
-    if (!context.valid())
-        GTEST_SKIP() << "no such context over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no such context over EGL surfaceless here";
     int taken = 0;
     const std::vector<uint8_t> data(4096);
     for (GLenum format = 0; format <= 0xffff; ++format) {
@@ -36,8 +34,7 @@ void checkFormats(TestApi api, int atLeast) {
             taken += checkImageSizes(format);
             continue;
         }
-        if (format >= GL_PALETTE4_RGB8_OES && format <= GL_PALETTE8_RGB5_A1_OES)
-            continue;
+        if (format >= GL_PALETTE4_RGB8_OES && format <= GL_PALETTE8_RGB5_A1_OES) continue;
         for (GLsizei size : {8, 16}) {
             glCompressedTexImage2D(GL_TEXTURE_2D, 0, format, 4, 4, 0, size, data.data());
             EXPECT_TRUE(takeErrors()) << "a block format that is missing: " << std::hex << format;
@@ -47,12 +44,8 @@ void checkFormats(TestApi api, int atLeast) {
     EXPECT_GE(taken, atLeast);
 }
 
-TEST(SizesCompressedGl, matchesImageSizes) {
-    checkFormats(TestApi::Compatibility, 10);
-}
-TEST(SizesCompressedGl, matchesImageSizesOfOpenGlEs3) {
-    checkFormats(TestApi::Es3, 10);
-}
+TEST(SizesCompressedGl, matchesImageSizes) { checkFormats(TestApi::Compatibility, 10); }
+TEST(SizesCompressedGl, matchesImageSizesOfOpenGlEs3) { checkFormats(TestApi::Es3, 10); }
 
 PixelStore randomBlockStore(Random& random, const CompressedBlock& block, int width, int height) {
     PixelStore store;
@@ -66,12 +59,9 @@ PixelStore randomBlockStore(Random& random, const CompressedBlock& block, int wi
         store.skipPixels = random.upTo(2) * across;
         store.rowLength = width + store.skipPixels + random.upTo(9);
     }
-    if (random.oneIn(2))
-        store.skipRows = random.upTo(2) * down;
-    if (random.oneIn(2))
-        store.imageHeight = height + random.upTo(9);
-    if (random.oneIn(2))
-        store.skipImages = random.upTo(2);
+    if (random.oneIn(2)) store.skipRows = random.upTo(2) * down;
+    if (random.oneIn(2)) store.imageHeight = height + random.upTo(9);
+    if (random.oneIn(2)) store.skipImages = random.upTo(2);
     return store;
 }
 
@@ -83,9 +73,8 @@ protected:
         uint8_t* pointer = memory_.end() - bytes.size() + pastTheEnd;
         std::memcpy(pointer, bytes.data(), bytes.size() - pastTheEnd);
         memory_.close();
-        glCompressedTexImage3D(
-            GL_TEXTURE_2D_ARRAY, 0, format_, width_, height_, depth_, 0,
-            static_cast<GLsizei>(compressedBytes(format_, width_, height_, depth_)), pointer);
+        glCompressedTexImage3D(GL_TEXTURE_2D_ARRAY, 0, format_, width_, height_, depth_, 0,
+                               static_cast<GLsizei>(compressedBytes(format_, width_, height_, depth_)), pointer);
     }
     std::vector<uint8_t> fetch() {
         setPixelStore(Direction::Pack, tightStore(), TestApi::Compatibility);
@@ -135,24 +124,20 @@ protected:
 
 TEST_F(CompressedGl, uploadsPartsOfLargerImages) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
-    for (GLenum format : {GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, GL_COMPRESSED_RGB_S3TC_DXT1_EXT,
-                          GL_COMPRESSED_RED_RGTC1, GL_COMPRESSED_RGBA_BPTC_UNORM})
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    for (GLenum format : {GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, GL_COMPRESSED_RED_RGTC1,
+                          GL_COMPRESSED_RGBA_BPTC_UNORM})
         for (int round = 0; round < 40; ++round) {
             format_ = static_cast<GLenum>(format);
             width_ = random_.between(1, 30);
             height_ = random_.between(1, 20);
             depth_ = random_.between(1, 3);
-            const PixelStore store =
-                randomBlockStore(random_, compressedBlock(format_), width_, height_);
+            const PixelStore store = randomBlockStore(random_, compressedBlock(format_), width_, height_);
             SCOPED_TRACE("seed " + std::to_string(seed_) + " " + std::to_string(width_) + "x" +
-                         std::to_string(height_) + "x" + std::to_string(depth_) + " " +
-                         describe(store));
+                         std::to_string(height_) + "x" + std::to_string(depth_) + " " + describe(store));
             checkLoad(store);
             checkFetch(store);
-            if (HasFailure())
-                return;
+            if (HasFailure()) return;
         }
 }
 

@@ -29,8 +29,7 @@ bool within(const uint8_t* address, const uint8_t* guard) {
 void onFault(int signal, siginfo_t* info, void* /*context*/) {
     auto* address = static_cast<uint8_t*>(info->si_addr);
     for (uint8_t* guard : {gGuards.front, gGuards.back}) {
-        if (!within(address, guard))
-            continue;
+        if (!within(address, guard)) continue;
         gTouched = true;
         mprotect(guard, kGuardBytes, PROT_READ | PROT_WRITE);
         return;
@@ -40,12 +39,9 @@ void onFault(int signal, siginfo_t* info, void* /*context*/) {
 
 } // namespace
 
-GuardedMemory::GuardedMemory(size_t size)
-    : size_((size + kPageBytes - 1) / kPageBytes * kPageBytes) {
-    void* map = mmap(nullptr, size_ + 2 * kGuardBytes, PROT_READ | PROT_WRITE,
-                     MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (map == MAP_FAILED || gGuards.front != nullptr)
-        std::abort();
+GuardedMemory::GuardedMemory(size_t size) : size_((size + kPageBytes - 1) / kPageBytes * kPageBytes) {
+    void* map = mmap(nullptr, size_ + 2 * kGuardBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (map == MAP_FAILED || gGuards.front != nullptr) std::abort();
     map_ = static_cast<uint8_t*>(map);
     begin_ = map_ + kGuardBytes;
     gGuards = {map_, begin_ + size_};
@@ -63,13 +59,10 @@ GuardedMemory::~GuardedMemory() {
     munmap(map_, size_ + 2 * kGuardBytes);
 }
 
-bool GuardedMemory::touched() const {
-    return gTouched;
-}
+bool GuardedMemory::touched() const { return gTouched; }
 
 void GuardedMemory::close() {
-    if (!gTouched)
-        return;
+    if (!gTouched) return;
     mprotect(gGuards.front, kGuardBytes, PROT_NONE);
     mprotect(gGuards.back, kGuardBytes, PROT_NONE);
     gTouched = false;

@@ -38,12 +38,10 @@ const Shape kShapes[] = {
 size_t rowStrideBySpec(const Shape& shape, const PixelStore& store, size_t width) {
     const auto a = static_cast<size_t>(store.alignment);
     const size_t l = store.rowLength > 0 ? static_cast<size_t>(store.rowLength) : width;
-    if (shape.elementBytes == 0)
-        return a * ((l + 8 * a - 1) / (8 * a));
+    if (shape.elementBytes == 0) return a * ((l + 8 * a - 1) / (8 * a));
     const size_t s = shape.elementBytes;
     const size_t n = shape.components;
-    if (s >= a)
-        return n * l * s;
+    if (s >= a) return n * l * s;
     return a / s * ((s * n * l + a - 1) / a) * s;
 }
 
@@ -56,18 +54,15 @@ struct Reference {
 
     size_t rowStart(size_t row, size_t image) const {
         const size_t stride = rowStrideBySpec(shape, store, width);
-        const size_t imageHeight =
-            store.imageHeight > 0 ? static_cast<size_t>(store.imageHeight) : height;
+        const size_t imageHeight = store.imageHeight > 0 ? static_cast<size_t>(store.imageHeight) : height;
         const size_t skipImages = dims == 3 ? static_cast<size_t>(store.skipImages) : 0;
-        return (skipImages + image) * imageHeight * stride +
-               (static_cast<size_t>(store.skipRows) + row) * stride;
+        return (skipImages + image) * imageHeight * stride + (static_cast<size_t>(store.skipRows) + row) * stride;
     }
 
     template <class Visit> void eachPixel(const Visit& visit) const {
         for (size_t image = 0; image < depth; ++image)
             for (size_t row = 0; row < height; ++row)
-                for (size_t x = 0; x < width; ++x)
-                    visit(x, row, image);
+                for (size_t x = 0; x < width; ++x) visit(x, row, image);
     }
 
     size_t clientBit(size_t x, size_t row, size_t image) const {
@@ -86,11 +81,10 @@ struct Reference {
         eachPixel([&](size_t x, size_t row, size_t image) {
             for (size_t value = 0; value < n; ++value)
                 for (size_t b = 0; b < s; ++b) {
-                    const size_t client = rowStart(row, image) +
-                                          (static_cast<size_t>(store.skipPixels) + x) * n * s +
-                                          value * s + b;
-                    const size_t tight = ((image * height + row) * width + x) * n * s + value * s +
-                                         (store.swapBytes ? s - 1 - b : b);
+                    const size_t client =
+                        rowStart(row, image) + (static_cast<size_t>(store.skipPixels) + x) * n * s + value * s + b;
+                    const size_t tight =
+                        ((image * height + row) * width + x) * n * s + value * s + (store.swapBytes ? s - 1 - b : b);
                     visit(client, tight);
                 }
         });
@@ -98,27 +92,22 @@ struct Reference {
 
     size_t tightSize() const {
         return depth * height *
-               (shape.elementBytes == 0 ? (width + 7) / 8
-                                        : width * shape.components * shape.elementBytes);
+               (shape.elementBytes == 0 ? (width + 7) / 8 : width * shape.components * shape.elementBytes);
     }
     size_t span() const {
         size_t end = 0;
         if (shape.elementBytes != 0)
             eachByte([&](size_t client, size_t) { end = std::max(end, client + 1); });
         else
-            eachPixel([&](size_t x, size_t row, size_t image) {
-                end = std::max(end, clientBit(x, row, image) / 8 + 1);
-            });
+            eachPixel(
+                [&](size_t x, size_t row, size_t image) { end = std::max(end, clientBit(x, row, image) / 8 + 1); });
         return end;
     }
 };
 
-bool bitAt(const std::vector<uint8_t>& bytes, size_t bit) {
-    return (bytes[bit / 8] >> bit % 8 & 1) != 0;
-}
+bool bitAt(const std::vector<uint8_t>& bytes, size_t bit) { return (bytes[bit / 8] >> bit % 8 & 1) != 0; }
 void setBit(std::vector<uint8_t>& bytes, size_t bit, bool on) {
-    bytes[bit / 8] =
-        static_cast<uint8_t>((bytes[bit / 8] & ~(1 << bit % 8)) | (on ? 1 << bit % 8 : 0));
+    bytes[bit / 8] = static_cast<uint8_t>((bytes[bit / 8] & ~(1 << bit % 8)) | (on ? 1 << bit % 8 : 0));
 }
 
 std::vector<uint8_t> packedByReference(const Reference& r, const std::vector<uint8_t>& client) {
@@ -132,8 +121,7 @@ std::vector<uint8_t> packedByReference(const Reference& r, const std::vector<uin
     return tight;
 }
 
-std::vector<uint8_t> unpackedByReference(const Reference& r,
-                                         std::vector<uint8_t> client,
+std::vector<uint8_t> unpackedByReference(const Reference& r, std::vector<uint8_t> client,
                                          const std::vector<uint8_t>& tight) {
     if (r.shape.elementBytes == 0)
         r.eachPixel([&](size_t x, size_t row, size_t image) {
@@ -150,19 +138,13 @@ void compareOnce(Random& random, const Shape& shape) {
     const int height = dims > 1 ? random.between(1, 9) : 1;
     const int depth = dims > 2 ? random.between(1, 4) : 1;
     PixelStore store = random.store(width, height);
-    if (random.oneIn(8))
-        store.rowLength = random.between(1, width); // rows may overlap: both sides proceed row by row
-    SCOPED_TRACE(describe(store) + " size " + std::to_string(width) + "x" + std::to_string(height) +
-                 "x" + std::to_string(depth) + " dims " + std::to_string(dims));
-    const Reference reference{shape,
-                              store,
-                              static_cast<size_t>(width),
-                              static_cast<size_t>(height),
-                              static_cast<size_t>(depth),
-                              dims};
+    if (random.oneIn(8)) store.rowLength = random.between(1, width); // rows may overlap: both sides proceed row by row
+    SCOPED_TRACE(describe(store) + " size " + std::to_string(width) + "x" + std::to_string(height) + "x" +
+                 std::to_string(depth) + " dims " + std::to_string(dims));
+    const Reference reference{
+        shape, store, static_cast<size_t>(width), static_cast<size_t>(height), static_cast<size_t>(depth), dims};
 
-    const ImageLayout layout =
-        layoutOf(store, shape.format, shape.type, width, height, depth, dims);
+    const ImageLayout layout = layoutOf(store, shape.format, shape.type, width, height, depth, dims);
     ASSERT_TRUE(layout.known);
     ASSERT_EQ(spanBytes(layout), reference.span());
     ASSERT_EQ(tightBytes(layout), reference.tightSize());
@@ -186,8 +168,7 @@ TEST(SizesImageCopy, agreesWithTheSpecification) {
     for (const Shape& shape : kShapes) {
         for (int i = 0; i < 300; ++i) {
             compareOnce(random, shape);
-            if (HasFatalFailure())
-                return;
+            if (HasFatalFailure()) return;
         }
     }
 }
@@ -221,10 +202,8 @@ TEST(SizesImageCopy, preservesAdjacentBitsOfBitmaps) {
 TEST(SizesImageCopy, accessesNothingForEmptyUnknownAndImpossibleImages) {
     const PixelStore store;
     for (const ImageLayout& layout :
-         {layoutOf(store, GL_RGBA, GL_FLOAT, 0, 5, 1, 2),
-          layoutOf(store, GL_RGBA, GL_FLOAT, 5, -1, 1, 2),
-          layoutOf(store, GL_RGBA, 0x1234, 5, 5, 1, 2),
-          layoutOf(store, GL_RED, GL_BITMAP, 5, 5, 1, 2),
+         {layoutOf(store, GL_RGBA, GL_FLOAT, 0, 5, 1, 2), layoutOf(store, GL_RGBA, GL_FLOAT, 5, -1, 1, 2),
+          layoutOf(store, GL_RGBA, 0x1234, 5, 5, 1, 2), layoutOf(store, GL_RED, GL_BITMAP, 5, 5, 1, 2),
           layoutOf(store, GL_RGBA, GL_FLOAT, INT32_MAX, INT32_MAX, INT32_MAX, 3)}) {
         EXPECT_FALSE(layout.known);
         EXPECT_EQ(spanBytes(layout), 0u);

@@ -21,19 +21,18 @@ struct Image {
 
 class Checker {
 public:
-    explicit Checker(TestApi api)
-        : api_(api) {}
+    explicit Checker(TestApi api) : api_(api) {}
     Random& random() { return random_; }
 
     void check(const Image& image, const Read& read) { check(image, randomStore(image), read); }
 
     void check(const Image& image, const PixelStore& store, const Read& read) {
         char text[128];
-        std::snprintf(text, sizeof text, "seed %u format %#x type %#x %dx%dx%d ", seed_,
-                      image.format, image.type, image.width, image.height, image.depth);
+        std::snprintf(text, sizeof text, "seed %u format %#x type %#x %dx%dx%d ", seed_, image.format, image.type,
+                      image.width, image.height, image.depth);
         SCOPED_TRACE(text + describe(store));
-        const ImageLayout layout = layoutOf(store, image.format, image.type, image.width,
-                                            image.height, image.depth, image.dims);
+        const ImageLayout layout =
+            layoutOf(store, image.format, image.type, image.width, image.height, image.depth, image.dims);
         ASSERT_TRUE(layout.known);
         const size_t span = spanBytes(layout);
         ASSERT_LE(span, memory_.size());
@@ -66,19 +65,15 @@ private:
     PixelStore randomStore(const Image& image) {
         PixelStore store = random_.store(image.width, image.height);
         // Mesa swaps depth through floats, which loses bits of 32-bit integers.
-        if (image.format == GL_DEPTH_COMPONENT || image.format == GL_DEPTH_STENCIL)
-            store.swapBytes = false;
+        if (image.format == GL_DEPTH_COMPONENT || image.format == GL_DEPTH_STENCIL) store.swapBytes = false;
         // Mesa clears the bits before the first pixel; the specification preserves them.
-        if (image.type == GL_BITMAP)
-            store.skipPixels &= ~7;
+        if (image.type == GL_BITMAP) store.skipPixels &= ~7;
         if (api_ != TestApi::Compatibility) {
             store.swapBytes = store.lsbFirst = false;
             store.imageHeight = store.skipImages = 0;
         } else {
-            store.invert =
-                image.type != GL_BITMAP && random_.oneIn(4); // Mesa does not invert stipples
-            if (store.invert)
-                store.skipRows = 0; // see placesInvertedRowsAboveTheSkippedOnes
+            store.invert = image.type != GL_BITMAP && random_.oneIn(4); // Mesa does not invert stipples
+            if (store.invert) store.skipRows = 0;                       // see placesInvertedRowsAboveTheSkippedOnes
         }
         return store;
     }
@@ -113,11 +108,9 @@ bool isDepth(GLenum format) {
 // Mesa 22.3 calls a null pointer for some pairs that it should reject. It accepts GL_BITMAP and colour indices but
 // writes nothing, and writes integer luminance only partly.
 bool isReadable(const Source& source, GLenum format) {
-    if (format == GL_STENCIL_INDEX && source.format == GL_DEPTH_COMPONENT)
-        return false;
-    return isDepth(source.format) == isDepth(format) && format != GL_COLOR_INDEX &&
-           format != GL_YCBCR_MESA && format != GL_LUMINANCE_INTEGER_EXT &&
-           format != GL_LUMINANCE_ALPHA_INTEGER_EXT;
+    if (format == GL_STENCIL_INDEX && source.format == GL_DEPTH_COMPONENT) return false;
+    return isDepth(source.format) == isDepth(format) && format != GL_COLOR_INDEX && format != GL_YCBCR_MESA &&
+           format != GL_LUMINANCE_INTEGER_EXT && format != GL_LUMINANCE_ALPHA_INTEGER_EXT;
 }
 
 int checkReadPixels(Checker& checker, TestApi api) {
@@ -125,24 +118,17 @@ int checkReadPixels(Checker& checker, TestApi api) {
     std::vector<uint8_t> pixel(64);
     for (const Source& source : kSources) {
         const TestFramebuffer framebuffer(source.internalformat, source.format, source.type);
-        if (!framebuffer.complete())
-            continue;
+        if (!framebuffer.complete()) continue;
         for (GLenum format : knownFormats())
             for (GLenum type : knownTypes()) {
-                if (!isReadable(source, format) || type == GL_BITMAP)
-                    continue;
+                if (!isReadable(source, format) || type == GL_BITMAP) continue;
                 setPixelStore(Direction::Pack, tightStore(), api);
                 glReadPixels(0, 0, 1, 1, format, type, pixel.data());
-                if (takeErrors())
-                    continue;
+                if (takeErrors()) continue;
                 ++pairs;
                 for (int round = 0; round < 3; ++round) {
-                    const Image image{format,
-                                      type,
-                                      checker.random().between(1, 29),
-                                      checker.random().between(1, 9),
-                                      1,
-                                      2};
+                    const Image image{format, type, checker.random().between(1, 29), checker.random().between(1, 9),
+                                      1,      2};
                     const Read read = [&](void* pixels) {
                         glReadPixels(1, 2, image.width, image.height, format, type, pixels);
                     };
@@ -152,8 +138,7 @@ int checkReadPixels(Checker& checker, TestApi api) {
                     else
                         checker.check(image, read);
                 }
-                if (testing::Test::HasFailure())
-                    return pairs;
+                if (testing::Test::HasFailure()) return pairs;
             }
     }
     return pairs;
@@ -161,8 +146,7 @@ int checkReadPixels(Checker& checker, TestApi api) {
 
 TEST(SizesImageReadGl, matchesReadPixels) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
     Checker checker(TestApi::Compatibility);
     const int pairs = checkReadPixels(checker, TestApi::Compatibility);
     std::printf("%d pairs of format and type\n", pairs);
@@ -171,8 +155,7 @@ TEST(SizesImageReadGl, matchesReadPixels) {
 
 TEST(SizesImageReadGl, matchesReadPixelsOfOpenGlEs3) {
     const TestContext context(TestApi::Es3);
-    if (!context.valid())
-        GTEST_SKIP() << "no OpenGL ES 3 over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no OpenGL ES 3 over EGL surfaceless here";
     Checker checker(TestApi::Es3);
     const int pairs = checkReadPixels(checker, TestApi::Es3);
     std::printf("%d pairs of format and type\n", pairs);
@@ -182,23 +165,20 @@ TEST(SizesImageReadGl, matchesReadPixelsOfOpenGlEs3) {
 // Images of 1, 2 and 3 dimensions with random content.
 class Texture {
 public:
-    Texture(const Source& source, const Image& image, Random& random)
-        : target_(targetOf(image.dims)) {
+    Texture(const Source& source, const Image& image, Random& random) : target_(targetOf(image.dims)) {
         glGenTextures(1, &name_);
         glBindTexture(target_, name_);
         setPixelStore(Direction::Unpack, tightStore(), TestApi::Compatibility);
         const auto internal = static_cast<GLint>(source.internalformat);
-        const std::vector<uint8_t> bytes = random.bytes(
-            tightBytes(source.format, source.type, image.width, image.height, image.depth));
+        const std::vector<uint8_t> bytes =
+            random.bytes(tightBytes(source.format, source.type, image.width, image.height, image.depth));
         if (image.dims == 1)
-            glTexImage1D(target_, 0, internal, image.width, 0, source.format, source.type,
-                         bytes.data());
+            glTexImage1D(target_, 0, internal, image.width, 0, source.format, source.type, bytes.data());
         if (image.dims == 2)
-            glTexImage2D(target_, 0, internal, image.width, image.height, 0, source.format,
-                         source.type, bytes.data());
+            glTexImage2D(target_, 0, internal, image.width, image.height, 0, source.format, source.type, bytes.data());
         if (image.dims == 3)
-            glTexImage3D(target_, 0, internal, image.width, image.height, image.depth, 0,
-                         source.format, source.type, bytes.data());
+            glTexImage3D(target_, 0, internal, image.width, image.height, image.depth, 0, source.format, source.type,
+                         bytes.data());
     }
     ~Texture() { glDeleteTextures(1, &name_); }
     Texture(const Texture&) = delete;
@@ -224,37 +204,29 @@ void checkGetTexImage(Checker& checker, const Source& source, int dims, int& pai
     std::vector<uint8_t> image(size_t{19} * 7 * 3 * 40);
     for (GLenum format : knownFormats())
         for (GLenum type : knownTypes()) {
-            if (!isReadable(source, format) || type == GL_BITMAP)
-                continue;
+            if (!isReadable(source, format) || type == GL_BITMAP) continue;
             // Mesa 22.3 writes bytes for every type.
-            if (format == GL_STENCIL_INDEX && type != GL_UNSIGNED_BYTE && type != GL_BYTE)
-                continue;
+            if (format == GL_STENCIL_INDEX && type != GL_UNSIGNED_BYTE && type != GL_BYTE) continue;
             setPixelStore(Direction::Pack, tightStore(), TestApi::Compatibility);
             glGetTexImage(texture.target(), 0, format, type, image.data());
-            if (takeErrors())
-                continue;
+            if (takeErrors()) continue;
             ++pairs;
             for (int round = 0; round < 2; ++round)
                 checker.check({format, type, size.width, size.height, size.depth, dims},
-                              [&](void* pixels) {
-                                  glGetTexImage(texture.target(), 0, format, type, pixels);
-                              });
-            if (testing::Test::HasFailure())
-                return;
+                              [&](void* pixels) { glGetTexImage(texture.target(), 0, format, type, pixels); });
+            if (testing::Test::HasFailure()) return;
         }
 }
 
 TEST(SizesImageReadGl, matchesGetTexImage) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
     Checker checker(TestApi::Compatibility);
     int pairs = 0;
     for (const Source& source : kSources)
         for (int dims : {1, 2, 3}) {
             checkGetTexImage(checker, source, dims, pairs);
-            if (HasFailure())
-                return;
+            if (HasFailure()) return;
         }
     std::printf("%d cases of texture, format and type\n", pairs);
     EXPECT_GE(pairs, 100);
@@ -262,8 +234,7 @@ TEST(SizesImageReadGl, matchesGetTexImage) {
 
 TEST(SizesImageReadGl, matchesGetPolygonStipple) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
     Checker checker(TestApi::Compatibility);
     setPixelStore(Direction::Unpack, tightStore(), TestApi::Compatibility);
     const std::vector<uint8_t> stipple = checker.random().bytes(128);
@@ -277,8 +248,7 @@ TEST(SizesImageReadGl, matchesGetPolygonStipple) {
 // highest row, and below the pointer if more rows are skipped than exist.
 TEST(SizesImageReadGl, placesInvertedRowsAboveTheSkippedOnes) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
     const TestFramebuffer framebuffer(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
     ASSERT_TRUE(framebuffer.complete());
     PixelStore store = tightStore();

@@ -23,20 +23,16 @@ struct Image {
 
 std::string describe(const Image& image) {
     char text[96];
-    std::snprintf(text, sizeof text, "format %#x type %#x %dx%dx%d ", image.format, image.type,
-                  image.width, image.height, image.depth);
+    std::snprintf(text, sizeof text, "format %#x type %#x %dx%dx%d ", image.format, image.type, image.width,
+                  image.height, image.depth);
     return text;
 }
 
 // Mesa swaps depth through floats, which loses bits of 32-bit integers: only equal paths are comparable.
-bool isDepth(GLenum format) {
-    return format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL;
-}
+bool isDepth(GLenum format) { return format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL; }
 
 // A 32-bit depth, a byte of stencil, and three unused bytes.
-size_t unreadAtTheEnd(GLenum type) {
-    return type == GL_FLOAT_32_UNSIGNED_INT_24_8_REV ? 3 : 0;
-}
+size_t unreadAtTheEnd(GLenum type) { return type == GL_FLOAT_32_UNSIGNED_INT_24_8_REV ? 3 : 0; }
 
 // Mesa 22.3 swaps bytes in a copy of all rows from the pointer on, and skips in the copy again.
 PixelStore swappedOnly(const PixelStore& store) {
@@ -51,22 +47,17 @@ bool mesaIgnoresStore(const Image& image) {
 
 class Checker {
 public:
-    explicit Checker(TestApi api)
-        : api_(api) {}
+    explicit Checker(TestApi api) : api_(api) {}
 
     Random& random() { return random_; }
     [[nodiscard]] uint32_t seed() const { return seed_; }
 
     PixelStore randomStore(const Image& image) {
         PixelStore store = random_.store(image.width, image.height);
-        if (api_ != TestApi::Compatibility)
-            store.swapBytes = store.lsbFirst = false;
-        if (api_ == TestApi::Es1)
-            store = PixelStore{.alignment = store.alignment};
-        if (isDepth(image.format))
-            store.swapBytes = false;
-        if (store.swapBytes)
-            store = swappedOnly(store);
+        if (api_ != TestApi::Compatibility) store.swapBytes = store.lsbFirst = false;
+        if (api_ == TestApi::Es1) store = PixelStore{.alignment = store.alignment};
+        if (isDepth(image.format)) store.swapBytes = false;
+        if (store.swapBytes) store = swappedOnly(store);
         return mesaIgnoresStore(image) ? tightStore() : store;
     }
 
@@ -75,14 +66,10 @@ public:
         check(image, randomStore(image), upload, snapshot);
     }
 
-    void check(const Image& image,
-               const PixelStore& store,
-               const Upload& upload,
-               const Snapshot& snapshot) {
-        SCOPED_TRACE("seed " + std::to_string(seed_) + " " + describe(image) +
-                     sizes::describe(store));
-        const ImageLayout layout = layoutOf(store, image.format, image.type, image.width,
-                                            image.height, image.depth, image.dims);
+    void check(const Image& image, const PixelStore& store, const Upload& upload, const Snapshot& snapshot) {
+        SCOPED_TRACE("seed " + std::to_string(seed_) + " " + describe(image) + sizes::describe(store));
+        const ImageLayout layout =
+            layoutOf(store, image.format, image.type, image.width, image.height, image.depth, image.dims);
         ASSERT_TRUE(layout.known);
         const size_t span = spanBytes(layout);
         ASSERT_LE(span, memory_.size());
@@ -99,8 +86,7 @@ public:
         EXPECT_FALSE(memory_.touched()) << "GL reads before the first pixel";
         const size_t missing = unreadAtTheEnd(image.type) + 1;
         runAt(memory_.end() - span + missing,
-              std::vector<uint8_t>(client.begin(), client.end() - static_cast<ptrdiff_t>(missing)),
-              0, upload);
+              std::vector<uint8_t>(client.begin(), client.end() - static_cast<ptrdiff_t>(missing)), 0, upload);
         EXPECT_TRUE(memory_.touched()) << "GL does not read the last byte of spanBytes";
 
         setPixelStore(Direction::Unpack, tightStore(), api_);
@@ -114,10 +100,8 @@ public:
 
 private:
     // Calls GL with `pointer`; the bytes start at offset `first`.
-    void
-    runAt(uint8_t* pointer, const std::vector<uint8_t>& bytes, size_t first, const Upload& upload) {
-        if (bytes.size() > first)
-            std::memcpy(pointer + first, bytes.data() + first, bytes.size() - first);
+    void runAt(uint8_t* pointer, const std::vector<uint8_t>& bytes, size_t first, const Upload& upload) {
+        if (bytes.size() > first) std::memcpy(pointer + first, bytes.data() + first, bytes.size() - first);
         memory_.close();
         upload(pointer);
     }
@@ -196,13 +180,11 @@ constexpr GLenum kInternalFormats[] = {GL_RGBA32F,
 // 0: GL has no texture of this format and type.
 GLenum internalFormatFor(GLenum format, GLenum type) {
     const auto accepted = [&](GLenum internalformat) {
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalformat), 1, 1, 0, format, type,
-                     nullptr);
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalformat), 1, 1, 0, format, type, nullptr);
         return !takeErrors();
     };
     for (GLenum internalformat : kInternalFormats)
-        if (accepted(internalformat))
-            return internalformat;
+        if (accepted(internalformat)) return internalformat;
     return accepted(format) ? format : 0;
 }
 
@@ -213,16 +195,11 @@ std::vector<uint8_t> textureBytes(GLenum target, GLenum format, GLenum type, siz
     return bytes;
 }
 
-void checkTextures(
-    Checker& checker, TestApi api, GLenum format, GLenum type, GLenum internalformat) {
+void checkTextures(Checker& checker, TestApi api, GLenum format, GLenum type, GLenum internalformat) {
     for (int dims : {1, 2, 3}) {
-        if (dims == 1 && api != TestApi::Compatibility)
-            continue;
-        if (dims == 3 && api == TestApi::Es1)
-            continue;
-        const GLenum target = dims == 1   ? GL_TEXTURE_1D
-                              : dims == 2 ? GL_TEXTURE_2D
-                                          : GL_TEXTURE_2D_ARRAY;
+        if (dims == 1 && api != TestApi::Compatibility) continue;
+        if (dims == 3 && api == TestApi::Es1) continue;
+        const GLenum target = dims == 1 ? GL_TEXTURE_1D : dims == 2 ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
         for (int round = 0; round < 3; ++round) {
             // Pixels with shared chroma occur in pairs.
             const int step = internalformat == GL_YCBCR_MESA ? 2 : 1;
@@ -234,22 +211,16 @@ void checkTextures(
                               dims};
             const auto internal = static_cast<GLint>(internalformat);
             const Upload upload = [&](const void* pixels) {
-                if (dims == 1)
-                    glTexImage1D(target, 0, internal, image.width, 0, format, type, pixels);
-                if (dims == 2)
-                    glTexImage2D(target, 0, internal, image.width, image.height, 0, format, type,
-                                 pixels);
+                if (dims == 1) glTexImage1D(target, 0, internal, image.width, 0, format, type, pixels);
+                if (dims == 2) glTexImage2D(target, 0, internal, image.width, image.height, 0, format, type, pixels);
                 if (dims == 3)
-                    glTexImage3D(target, 0, internal, image.width, image.height, image.depth, 0,
-                                 format, type, pixels);
+                    glTexImage3D(target, 0, internal, image.width, image.height, image.depth, 0, format, type, pixels);
             };
             upload(nullptr);
-            if (takeErrors())
-                break; // not for this kind of texture
+            if (takeErrors()) break; // not for this kind of texture
             Snapshot snapshot;
-            const size_t pixels = static_cast<size_t>(image.width) *
-                                  static_cast<size_t>(image.height) *
-                                  static_cast<size_t>(image.depth);
+            const size_t pixels =
+                static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * static_cast<size_t>(image.depth);
             if (api == TestApi::Compatibility && format != GL_COLOR_INDEX)
                 snapshot = [&, pixels] { return textureBytes(target, format, type, pixels); };
             checker.check(image, upload, snapshot);
@@ -259,83 +230,59 @@ void checkTextures(
 
 void checkAllTextures(TestApi api) {
     const TestContext context(api);
-    if (!context.valid())
-        GTEST_SKIP() << "no such context over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no such context over EGL surfaceless here";
     Checker checker(api);
     int pairs = 0;
     for (GLenum format : knownFormats())
         for (GLenum type : knownTypes()) {
             const GLenum internalformat = internalFormatFor(format, type);
-            if (internalformat == 0 || type == GL_BITMAP)
-                continue; // as in drawPixels
-            ASSERT_NE(groupBytes(format, type), 0u)
-                << std::hex << "GL takes format " << format << " type " << type;
+            if (internalformat == 0 || type == GL_BITMAP) continue; // as in drawPixels
+            ASSERT_NE(groupBytes(format, type), 0u) << std::hex << "GL takes format " << format << " type " << type;
             SCOPED_TRACE("internal format " + std::to_string(internalformat));
             checkTextures(checker, api, format, type, internalformat);
-            if (testing::Test::HasFailure())
-                return;
+            if (testing::Test::HasFailure()) return;
             ++pairs;
         }
     std::printf("%d pairs of format and type\n", pairs);
     EXPECT_GE(pairs, api == TestApi::Es1 ? 5 : 50);
 }
 
-TEST(SizesImageUploadGl, matchesTexturesOfTheCompatibilityProfile) {
-    checkAllTextures(TestApi::Compatibility);
-}
-TEST(SizesImageUploadGl, matchesTexturesOfOpenGlEs3) {
-    checkAllTextures(TestApi::Es3);
-}
-TEST(SizesImageUploadGl, matchesTexturesOfOpenGlEs1) {
-    checkAllTextures(TestApi::Es1);
-}
+TEST(SizesImageUploadGl, matchesTexturesOfTheCompatibilityProfile) { checkAllTextures(TestApi::Compatibility); }
+TEST(SizesImageUploadGl, matchesTexturesOfOpenGlEs3) { checkAllTextures(TestApi::Es3); }
+TEST(SizesImageUploadGl, matchesTexturesOfOpenGlEs1) { checkAllTextures(TestApi::Es1); }
 
 // Formats and types that GL accepts and the sizes do not know.
 void findUnknown(TestApi api) {
     const TestContext context(api);
-    if (!context.valid())
-        GTEST_SKIP() << "no such context over EGL surfaceless here";
-    constexpr GLenum kSomeFormats[] = {
-        GL_RGBA,       GL_RGB,         GL_RED, GL_DEPTH_STENCIL, GL_DEPTH_COMPONENT,
-        GL_YCBCR_MESA, GL_RGBA_INTEGER};
+    if (!context.valid()) GTEST_SKIP() << "no such context over EGL surfaceless here";
+    constexpr GLenum kSomeFormats[] = {GL_RGBA,       GL_RGB,         GL_RED, GL_DEPTH_STENCIL, GL_DEPTH_COMPONENT,
+                                       GL_YCBCR_MESA, GL_RGBA_INTEGER};
     constexpr GLenum kSomeTypes[] = {GL_UNSIGNED_BYTE,        GL_FLOAT,
                                      GL_UNSIGNED_INT_24_8,    GL_UNSIGNED_SHORT_8_8_MESA,
                                      GL_UNSIGNED_SHORT_5_6_5, GL_UNSIGNED_SHORT_4_4_4_4};
-    constexpr GLenum kSomeInternal[] = {GL_RGBA, GL_RGB, GL_RGBA32UI, GL_DEPTH24_STENCIL8,
-                                        GL_YCBCR_MESA};
+    constexpr GLenum kSomeInternal[] = {GL_RGBA, GL_RGB, GL_RGBA32UI, GL_DEPTH24_STENCIL8, GL_YCBCR_MESA};
     const auto accepts = [](GLenum internalformat, GLenum format, GLenum type) {
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalformat), 1, 1, 0, format, type,
-                     nullptr);
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalformat), 1, 1, 0, format, type, nullptr);
         return !takeErrors();
     };
     for (GLenum value = 0; value <= 0xffff; ++value) {
         for (GLenum type : kSomeTypes) {
-            if (componentsOf(value) != 0)
-                break;
-            EXPECT_FALSE(accepts(value, value, type))
-                << std::hex << "format " << value << " type " << type;
+            if (componentsOf(value) != 0) break;
+            EXPECT_FALSE(accepts(value, value, type)) << std::hex << "format " << value << " type " << type;
             for (GLenum internal : kSomeInternal)
-                EXPECT_FALSE(accepts(internal, value, type))
-                    << std::hex << "format " << value << " type " << type;
+                EXPECT_FALSE(accepts(internal, value, type)) << std::hex << "format " << value << " type " << type;
         }
         for (GLenum format : kSomeFormats) {
-            if (swapUnitBytes(value) != 0)
-                break;
-            EXPECT_FALSE(accepts(format, format, value))
-                << std::hex << "format " << format << " type " << value;
+            if (swapUnitBytes(value) != 0) break;
+            EXPECT_FALSE(accepts(format, format, value)) << std::hex << "format " << format << " type " << value;
             for (GLenum internal : kSomeInternal)
-                EXPECT_FALSE(accepts(internal, format, value))
-                    << std::hex << "format " << format << " type " << value;
+                EXPECT_FALSE(accepts(internal, format, value)) << std::hex << "format " << format << " type " << value;
         }
     }
 }
 
-TEST(SizesImageUploadGl, knowsEveryFormatAndType) {
-    findUnknown(TestApi::Compatibility);
-}
-TEST(SizesImageUploadGl, knowsEveryFormatAndTypeOfOpenGlEs) {
-    findUnknown(TestApi::Es3);
-}
+TEST(SizesImageUploadGl, knowsEveryFormatAndType) { findUnknown(TestApi::Compatibility); }
+TEST(SizesImageUploadGl, knowsEveryFormatAndTypeOfOpenGlEs) { findUnknown(TestApi::Es3); }
 
 // A framebuffer with all kinds of buffers for glDrawPixels and glBitmap.
 class DrawTarget {
@@ -350,10 +297,8 @@ public:
         attach(buffers_[1], GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL_ATTACHMENT);
         glViewport(0, 0, kSize, kSize);
         float ramp[256];
-        for (int i = 0; i < 256; ++i)
-            ramp[i] = static_cast<float>(i) / 255;
-        for (GLenum map :
-             {GL_PIXEL_MAP_I_TO_R, GL_PIXEL_MAP_I_TO_G, GL_PIXEL_MAP_I_TO_B, GL_PIXEL_MAP_I_TO_A})
+        for (int i = 0; i < 256; ++i) ramp[i] = static_cast<float>(i) / 255;
+        for (GLenum map : {GL_PIXEL_MAP_I_TO_R, GL_PIXEL_MAP_I_TO_G, GL_PIXEL_MAP_I_TO_B, GL_PIXEL_MAP_I_TO_A})
             glPixelMapfv(map, 256, ramp);
     }
     ~DrawTarget() {
@@ -372,8 +317,7 @@ public:
         setPixelStore(Direction::Pack, tightStore(), TestApi::Compatibility);
         std::vector<uint8_t> bytes(size_t{kSize} * kSize * 8);
         glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
-        glReadPixels(0, 0, kSize, kSize, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
-                     bytes.data() + bytes.size() / 2);
+        glReadPixels(0, 0, kSize, kSize, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, bytes.data() + bytes.size() / 2);
         return bytes;
     }
 
@@ -389,32 +333,26 @@ private:
 
 TEST(SizesImageUploadGl, matchesDrawPixels) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
     const DrawTarget target;
     Checker checker(TestApi::Compatibility);
     const std::vector<uint8_t> zeros(64);
     int pairs = 0;
     for (GLenum format : knownFormats())
         for (GLenum type : knownTypes()) {
-            if (type == GL_BITMAP)
-                continue; // Mesa accepts bits here, and reports on stderr that they are unsupported
+            if (type == GL_BITMAP) continue; // Mesa accepts bits here, and reports on stderr that they are unsupported
             setPixelStore(Direction::Unpack, tightStore(), TestApi::Compatibility);
             glDrawPixels(1, 1, format, type, zeros.data());
-            if (takeErrors())
-                continue;
+            if (takeErrors()) continue;
             for (int round = 0; round < 3; ++round) {
-                const Image image{
-                    format, type, checker.random().between(1, 29), checker.random().between(1, 9),
-                    1,      2};
+                const Image image{format, type, checker.random().between(1, 29), checker.random().between(1, 9), 1, 2};
                 const Upload draw = [&](const void* pixels) {
                     DrawTarget::clear();
                     glDrawPixels(image.width, image.height, format, type, pixels);
                 };
                 checker.check(image, draw, DrawTarget::read);
             }
-            if (HasFailure())
-                return;
+            if (HasFailure()) return;
             ++pairs;
         }
     std::printf("%d pairs of format and type\n", pairs);
@@ -423,36 +361,27 @@ TEST(SizesImageUploadGl, matchesDrawPixels) {
 
 TEST(SizesImageUploadGl, matchesBitmaps) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
     const DrawTarget target;
     Checker checker(TestApi::Compatibility);
     for (int round = 0; round < 100; ++round) {
-        const Image image{GL_COLOR_INDEX,
-                          GL_BITMAP,
-                          checker.random().between(1, 30),
-                          checker.random().between(1, 30),
-                          1,
-                          2};
+        const Image image{
+            GL_COLOR_INDEX, GL_BITMAP, checker.random().between(1, 30), checker.random().between(1, 30), 1, 2};
         const Upload draw = [&](const void* bits) {
             DrawTarget::clear();
             glBitmap(image.width, image.height, 0, 0, 0, 0, static_cast<const GLubyte*>(bits));
             glFlush(); // Mesa batches small bitmaps
         };
         checker.check(image, draw, DrawTarget::read);
-        if (HasFailure())
-            return;
+        if (HasFailure()) return;
     }
 }
 
 TEST(SizesImageUploadGl, matchesPolygonStipples) {
     const TestContext context(TestApi::Compatibility);
-    if (!context.valid())
-        GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
+    if (!context.valid()) GTEST_SKIP() << "no compatibility profile over EGL surfaceless here";
     Checker checker(TestApi::Compatibility);
-    const Upload stipple = [](const void* bits) {
-        glPolygonStipple(static_cast<const GLubyte*>(bits));
-    };
+    const Upload stipple = [](const void* bits) { glPolygonStipple(static_cast<const GLubyte*>(bits)); };
     const Snapshot stippleBits = [] {
         setPixelStore(Direction::Pack, tightStore(), TestApi::Compatibility);
         std::vector<uint8_t> bytes(128);

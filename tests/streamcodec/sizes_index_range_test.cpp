@@ -43,8 +43,7 @@ TEST(SizesIndexRange, ignoresARestartIndexBeyondTheType) {
 TEST(SizesIndexRange, isEmptyWithoutIndices) {
     expectEmpty(scanIndices(nullptr, GL_UNSIGNED_INT, 0, false, 0));
     const uint16_t restarts[] = {0xffff, 0xffff};
-    expectEmpty(
-        scanIndices(restarts, GL_UNSIGNED_SHORT, 2, true, fixedRestartIndex(GL_UNSIGNED_SHORT)));
+    expectEmpty(scanIndices(restarts, GL_UNSIGNED_SHORT, 2, true, fixedRestartIndex(GL_UNSIGNED_SHORT)));
     expectEmpty(scanIndices(restarts, GL_FLOAT, 2, false, 0));
 }
 
@@ -61,20 +60,17 @@ template <class Value> void compareWithPlainLoop(GLenum type, Random& random) {
         std::vector<uint8_t> memory = random.bytes(count * sizeof(Value) + misaligned);
         const bool restart = random.oneIn(2);
         Value restartIndex = static_cast<Value>(random.byte());
-        if (count > 0)
-            std::memcpy(&restartIndex, memory.data() + misaligned, sizeof restartIndex);
+        if (count > 0) std::memcpy(&restartIndex, memory.data() + misaligned, sizeof restartIndex);
         IndexRange expected;
         for (size_t i = 0; i < count; ++i) {
             Value index = 0;
             std::memcpy(&index, memory.data() + misaligned + i * sizeof index, sizeof index);
-            if (restart && index == restartIndex)
-                continue;
+            if (restart && index == restartIndex) continue;
             expected.any = true;
             expected.min = std::min<uint32_t>(expected.min, index);
             expected.max = std::max<uint32_t>(expected.max, index);
         }
-        const IndexRange range =
-            scanIndices(memory.data() + misaligned, type, count, restart, restartIndex);
+        const IndexRange range = scanIndices(memory.data() + misaligned, type, count, restart, restartIndex);
         ASSERT_EQ(range.any, expected.any);
         ASSERT_EQ(range.min, expected.min);
         ASSERT_EQ(range.max, expected.max);

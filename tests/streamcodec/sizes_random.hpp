@@ -12,20 +12,16 @@ namespace mural::sizes {
 
 class Random {
 public:
-    explicit Random(uint32_t seed)
-        : engine_(seed) {}
+    explicit Random(uint32_t seed) : engine_(seed) {}
 
     int upTo(int most) { return std::uniform_int_distribution<int>(0, most)(engine_); }
-    int between(int least, int most) {
-        return std::uniform_int_distribution<int>(least, most)(engine_);
-    }
+    int between(int least, int most) { return std::uniform_int_distribution<int>(least, most)(engine_); }
     bool oneIn(int n) { return upTo(n - 1) == 0; }
     uint8_t byte() { return static_cast<uint8_t>(upTo(255)); }
 
     std::vector<uint8_t> bytes(size_t size) {
         std::vector<uint8_t> result(size);
-        for (uint8_t& b : result)
-            b = byte();
+        for (uint8_t& b : result) b = byte();
         return result;
     }
 
@@ -48,10 +44,9 @@ private:
 };
 
 inline std::string describe(const PixelStore& s) {
-    return "alignment " + std::to_string(s.alignment) + " rowLength " +
-           std::to_string(s.rowLength) + " skip " + std::to_string(s.skipPixels) + "," +
-           std::to_string(s.skipRows) + "," + std::to_string(s.skipImages) + " imageHeight " +
-           std::to_string(s.imageHeight) + (s.swapBytes ? " swapped" : "") +
+    return "alignment " + std::to_string(s.alignment) + " rowLength " + std::to_string(s.rowLength) + " skip " +
+           std::to_string(s.skipPixels) + "," + std::to_string(s.skipRows) + "," + std::to_string(s.skipImages) +
+           " imageHeight " + std::to_string(s.imageHeight) + (s.swapBytes ? " swapped" : "") +
            (s.lsbFirst ? " lsbFirst" : "") + (s.invert ? " inverted" : "");
 }
 

@@ -56,15 +56,13 @@ TEST(SizesEvaluatorMaps, copyWithoutGaps) {
     const float curve[] = {1, 2, 0, 3, 4, 0, 5, 6};
     float tight[6] = {};
     EXPECT_EQ(packMap1(tight, curve, GL_MAP1_TEXTURE_COORD_2, 3, 3), 6u);
-    for (int i = 0; i < 6; ++i)
-        EXPECT_EQ(tight[i], static_cast<float>(i + 1));
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(tight[i], static_cast<float>(i + 1));
 
     // 2 rows (u) of 3 points (v), stored with u within v
     const double surface[] = {1, 4, -1, 2, 5, -1, 3, 6};
     double flat[6] = {};
     EXPECT_EQ(packMap2(flat, surface, GL_MAP2_INDEX, 1, 2, 3, 3), 6u);
-    for (int i = 0; i < 6; ++i)
-        EXPECT_EQ(flat[i], i + 1.0);
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(flat[i], i + 1.0);
     EXPECT_EQ(packMap2(flat, surface, GL_MAP2_INDEX, 1, 0, 3, 3), 0u);
 }
 

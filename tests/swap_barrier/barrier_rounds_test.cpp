@@ -91,7 +91,8 @@ TEST(BarrierRounds, survivesRandomSchedules) {
             nowNs += static_cast<int64_t>(random() % 20);
             std::vector<int> free;
             for (int m = 0; m < members; ++m)
-                if (!waiting.contains(m) && !dead.contains(m) && at[static_cast<size_t>(m)] < kFrames) free.push_back(m);
+                if (!waiting.contains(m) && !dead.contains(m) && at[static_cast<size_t>(m)] < kFrames)
+                    free.push_back(m);
             if (free.empty() || random() % 50 == 0) {
                 nowNs += kPatienceNs; // absent members are late
                 apply(rounds.tick(nowNs));
@@ -111,7 +112,8 @@ TEST(BarrierRounds, survivesRandomSchedules) {
         // members that have shown all frames do not return
         for (int i = 0; i < 100; ++i) apply(rounds.tick(nowNs += kPatienceNs));
         EXPECT_TRUE(waiting.empty()) << "seed " << seed;
-        for (int m = 0; m < members; ++m) EXPECT_TRUE(dead.contains(m) || at[static_cast<size_t>(m)] == kFrames) << "seed " << seed;
+        for (int m = 0; m < members; ++m)
+            EXPECT_TRUE(dead.contains(m) || at[static_cast<size_t>(m)] == kFrames) << "seed " << seed;
     }
 }
 

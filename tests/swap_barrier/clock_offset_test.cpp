@@ -30,7 +30,9 @@ TEST(ClockOffset, staysWithinItsReportedError) {
         int64_t nowNs = 0;
         for (int i = 0; i < 100; ++i) {
             nowNs += static_cast<int64_t>(random() % 20'000'000);
-            const auto way = [&] { return static_cast<int64_t>(20'000 + random() % (i % 7 == 0 ? 10'000'000 : 200'000)); };
+            const auto way = [&] {
+                return static_cast<int64_t>(20'000 + random() % (i % 7 == 0 ? 10'000'000 : 200'000));
+            };
             clock.add(sampleOf(nowNs, offset, way(), static_cast<int64_t>(random() % 30'000'000), way()));
             EXPECT_LE(std::abs(clock.offsetNs() - offset), clock.errorNs());
         }
@@ -46,7 +48,8 @@ TEST(ClockOffset, rejectsRepliesFromBeforeTheRequest) {
 
 TEST(ClockOffset, followsADriftingClock) {
     ClockOffset clock;
-    for (int i = 0; i < 1000; ++i) clock.add(sampleOf(i * 16'000'000LL, i * 1600LL, 50'000, 1'000'000, 50'000)); // 100 us per s
+    for (int i = 0; i < 1000; ++i)
+        clock.add(sampleOf(i * 16'000'000LL, i * 1600LL, 50'000, 1'000'000, 50'000)); // 100 us per s
     EXPECT_NEAR(static_cast<double>(clock.offsetNs()), 999 * 1600.0, 64 * 1600.0);
 }
 

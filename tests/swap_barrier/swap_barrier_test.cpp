@@ -38,7 +38,8 @@ private:
 };
 
 std::unique_ptr<SwapBarrier> followerOf(const BarrierLeader& leader, int rank, Lines& lines) {
-    auto follower = BarrierFollower::connect(rank, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(5000), lines.log());
+    auto follower =
+        BarrierFollower::connect(rank, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(5000), lines.log());
     EXPECT_TRUE(follower.ok()) << (follower ? "" : follower.error().message);
     return follower ? std::move(*follower) : nullptr;
 }
@@ -66,7 +67,8 @@ TEST(SwapBarrier, showsAFrameOnAllMembersTogether) {
         }
     };
     std::vector<std::thread> threads;
-    for (int rank = 1; rank < kMembers; ++rank) threads.emplace_back([&, rank] { run(*followers[static_cast<size_t>(rank) - 1], rank); });
+    for (int rank = 1; rank < kMembers; ++rank)
+        threads.emplace_back([&, rank] { run(*followers[static_cast<size_t>(rank) - 1], rank); });
     run(leader, 0);
     for (auto& thread : threads) thread.join();
     EXPECT_EQ(early, 0);
@@ -145,9 +147,11 @@ TEST(SwapBarrier, rejectsForeignConnections) {
     Lines lines;
     BarrierLeader leader(2, secretOf(1), lines.log());
     ASSERT_TRUE(leader.listen(true).ok());
-    EXPECT_FALSE(BarrierFollower::connect(1, secretOf(2), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
+    EXPECT_FALSE(
+        BarrierFollower::connect(1, secretOf(2), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
     // an invalid rank
-    EXPECT_FALSE(BarrierFollower::connect(2, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
+    EXPECT_FALSE(
+        BarrierFollower::connect(2, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
 }
 
 } // namespace

@@ -34,8 +34,10 @@ TEST(RecordText, showsValuesAndTexts) {
     EXPECT_EQ(textOf(op::glVertex2fv, {0x3f800000, 0xbf000000}), "glVertex2fv(v=[1, -0.5])");
     EXPECT_EQ(textOf(op::glDeleteTextures, {2, 8, 5, 6}), "glDeleteTextures(n=2, textures=[5, 6])");
     EXPECT_EQ(textOf(op::glDeleteTextures, {2, record::kTagNull}), "glDeleteTextures(n=2, textures=NULL)");
-    EXPECT_EQ(textOf(op::glDrawElements, {GL_LINES, 2, GL_UNSIGNED_BYTE, record::kTagOffset, 16, 0}), "glDrawElements(mode=GL_LINES, count=2, type=GL_UNSIGNED_BYTE, indices=offset 16)");
-    EXPECT_EQ(textOf(op::glShaderSource, {3, 1, 8, 4, 0x0a226f76}), "glShaderSource(shader=3, count=1, string=[\"vo\\\"\\n\"])");
+    EXPECT_EQ(textOf(op::glDrawElements, {GL_LINES, 2, GL_UNSIGNED_BYTE, record::kTagOffset, 16, 0}),
+              "glDrawElements(mode=GL_LINES, count=2, type=GL_UNSIGNED_BYTE, indices=offset 16)");
+    EXPECT_EQ(textOf(op::glShaderSource, {3, 1, 8, 4, 0x0a226f76}),
+              "glShaderSource(shader=3, count=1, string=[\"vo\\\"\\n\"])");
     EXPECT_EQ(textOf(op::glCreateShader, {GL_VERTEX_SHADER, 9}), "glCreateShader(type=GL_VERTEX_SHADER, made=9)");
     EXPECT_EQ(textOf(wire::kOpSwap, {1, 5}), "Mural.Swap(window=1, frame=5)");
 }
@@ -50,7 +52,8 @@ TEST(RecordText, marksMalformedRecords) {
 
 TEST(ValueText, isShortForLongValues) {
     const std::vector<uint16_t> many(1000, 7);
-    EXPECT_EQ(arrayText(Element::U16, 0, std::as_bytes(std::span(many))), "[7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, … 1000 in all]");
+    EXPECT_EQ(arrayText(Element::U16, 0, std::as_bytes(std::span(many))),
+              "[7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, … 1000 in all]");
     EXPECT_EQ(arrayText(Element::Bytes, 0, std::as_bytes(std::span(many))), "<2000 bytes>");
     const std::string text(200, 'x');
     EXPECT_EQ(quoted(std::as_bytes(std::span(text))), "\"" + std::string(120, 'x') + "…\" (200 bytes)");
@@ -63,7 +66,9 @@ protected:
         auto writer = TraceWriter::create("/proc/self/fd/" + std::to_string(file_.get()));
         ASSERT_TRUE(writer);
         ASSERT_TRUE((*writer)->begin({}, wire::kVersion, registryDigest()));
-        const auto append = [&](const PacketBuilder& packet) { ASSERT_TRUE((*writer)->append({wire::streamOf(1, 0), 0, packet.bytes()})); };
+        const auto append = [&](const PacketBuilder& packet) {
+            ASSERT_TRUE((*writer)->append({wire::streamOf(1, 0), 0, packet.bytes()}));
+        };
         append(PacketBuilder().window(1, 20, 10).record(op::glClear, {GL_COLOR_BUFFER_BIT}).swap(1, 1));
         append(PacketBuilder().record(op::glDepthMask, {1}).swap(1, 2).append(behind));
         ASSERT_TRUE((*writer)->flush());
@@ -89,7 +94,8 @@ protected:
 TEST_F(Dumped, reportsMissingFrames) {
     write({});
     EXPECT_EQ(saidOf(2), "");
-    for (const int64_t last : {int64_t{3}, int64_t{99}, INT64_MAX}) EXPECT_EQ(saidOf(last), "the recording has 2 frames; give some of them, such as 1-2") << last;
+    for (const int64_t last : {int64_t{3}, int64_t{99}, INT64_MAX})
+        EXPECT_EQ(saidOf(last), "the recording has 2 frames; give some of them, such as 1-2") << last;
 }
 
 TEST_F(Dumped, treatsRecordsAfterTheLastFrameAsOneMore) {
@@ -113,8 +119,10 @@ TEST_F(Dumped, reportsMissingCalls) {
 }
 
 TEST(DumpedCalls, haveKnownNames) {
-    for (const char* pattern : {"glClear", "glTexImage*", "*Vertex*", "Mural.Swap", "Mural.*", "*", "glGetError"}) EXPECT_TRUE(fitsSomeCall(pattern)) << pattern;
-    for (const char* pattern : {"nosuch", "glclear", "Swap", "glClear*Nothing", "glXSwapBuffers", " glClear", ""}) EXPECT_FALSE(fitsSomeCall(pattern)) << pattern;
+    for (const char* pattern : {"glClear", "glTexImage*", "*Vertex*", "Mural.Swap", "Mural.*", "*", "glGetError"})
+        EXPECT_TRUE(fitsSomeCall(pattern)) << pattern;
+    for (const char* pattern : {"nosuch", "glclear", "Swap", "glClear*Nothing", "glXSwapBuffers", " glClear", ""})
+        EXPECT_FALSE(fitsSomeCall(pattern)) << pattern;
 }
 
 } // namespace

@@ -9,7 +9,8 @@ namespace {
 
 class RecordingFile : public testing::Test {
 protected:
-    RecordingFile() : folder_(std::filesystem::temp_directory_path() / ("mural-recording-test." + std::to_string(getpid()))) {
+    RecordingFile()
+        : folder_(std::filesystem::temp_directory_path() / ("mural-recording-test." + std::to_string(getpid()))) {
         std::filesystem::create_directories(folder_);
     }
     ~RecordingFile() override { std::filesystem::remove_all(folder_); }
@@ -29,7 +30,8 @@ protected:
         add(0, eventBytes({Event::ClientCame, 1, 77, "first"}));
         add(wire::streamOf(1, 0), PacketBuilder().window(1, 20, 10).swap(1, 1).bytes());
         add(0, eventBytes({Event::ClientCame, 2, 78, "second"}));
-        add(wire::streamOf(2, 3), PacketBuilder().window(5, 4, 4).swap(5, 1).longRecord(wire::kOpBlobData, {4, 42}).bytes());
+        add(wire::streamOf(2, 3),
+            PacketBuilder().window(5, 4, 4).swap(5, 1).longRecord(wire::kOpBlobData, {4, 42}).bytes());
         EXPECT_TRUE(w.flush());
         add(wire::streamOf(1, 1), PacketBuilder().swap(1, 2).swap(1, 3).bytes());
         add(0, eventBytes({Event::ClientGone, 1, 0, ""}));
@@ -109,12 +111,19 @@ TEST_F(RecordingFile, reportsProblemAndRemedy) {
         auto reader = readerOf(changed);
         return reader ? "" : reader.error().message;
     };
-    EXPECT_EQ(said(offsetof(Header, version), 2), "recording in memory has version 2 of the format, this Mural reads version 1; use the Mural that it was made with, or a newer one");
-    EXPECT_EQ(said(0, 0x464c457f), "in memory is not a recording of Mural; give a file that mural run --record has made");
-    EXPECT_EQ(said(offsetof(Header, aboutBytes), 0xffffffff), "recording in memory is damaged at byte 0: its header is longer than the file; take another copy of it, or record again");
-    EXPECT_EQ(TraceReader::open("/nowhere.mural").error().message, "recording /nowhere.mural: can't be read: No such file or directory; check the name");
-    EXPECT_EQ(TraceReader::open("/").error().message, "recording /: is not a file; give one that mural run --record has made");
-    EXPECT_EQ(TraceWriter::create("/nowhere/a.mural").error().message, "recording /nowhere/a.mural: can't be written: No such file or directory; give another place");
+    EXPECT_EQ(said(offsetof(Header, version), 2), "recording in memory has version 2 of the format, this Mural reads "
+                                                  "version 1; use the Mural that it was made with, or a newer one");
+    EXPECT_EQ(said(0, 0x464c457f),
+              "in memory is not a recording of Mural; give a file that mural run --record has made");
+    EXPECT_EQ(said(offsetof(Header, aboutBytes), 0xffffffff),
+              "recording in memory is damaged at byte 0: its header is longer than the file; take another copy of it, "
+              "or record again");
+    EXPECT_EQ(TraceReader::open("/nowhere.mural").error().message,
+              "recording /nowhere.mural: can't be read: No such file or directory; check the name");
+    EXPECT_EQ(TraceReader::open("/").error().message,
+              "recording /: is not a file; give one that mural run --record has made");
+    EXPECT_EQ(TraceWriter::create("/nowhere/a.mural").error().message,
+              "recording /nowhere/a.mural: can't be written: No such file or directory; give another place");
 }
 
 TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
@@ -129,14 +138,20 @@ TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
         EXPECT_EQ(entriesOf(**reader).size(), blocks[0].entries) << at;
         const auto verified = (*reader)->verify();
         ASSERT_FALSE(verified) << at;
-        EXPECT_TRUE(verified.error().message.starts_with("recording in memory is damaged at byte " + std::to_string(blocks[1].offset) + ": ")) << verified.error().message;
-        EXPECT_TRUE(verified.error().message.ends_with("; the frames before it are good (1): keep them by mural trim in memory 1 -o good.mural, take another copy of it, or record again"))
+        EXPECT_TRUE(verified.error().message.starts_with("recording in memory is damaged at byte " +
+                                                         std::to_string(blocks[1].offset) + ": "))
+            << verified.error().message;
+        EXPECT_TRUE(
+            verified.error().message.ends_with("; the frames before it are good (1): keep them by mural trim in memory "
+                                               "1 -o good.mural, take another copy of it, or record again"))
             << verified.error().message;
     }
     Bytes changed = whole;
     changed[blocks[0].offset + sizeof(BlockHeader)] ^= std::byte{0xff};
-    EXPECT_EQ((*readerOf(changed))->verify().error().message, "recording in memory is damaged at byte " + std::to_string(blocks[0].offset) +
-                                                                  ": a block is not as it was written, and no frame ends before it; take another copy of it, or record again");
+    EXPECT_EQ((*readerOf(changed))->verify().error().message,
+              "recording in memory is damaged at byte " + std::to_string(blocks[0].offset) +
+                  ": a block is not as it was written, and no frame ends before it; take another copy of it, or record "
+                  "again");
 }
 
 TEST_F(RecordingFile, explainsMissingFrames) {
@@ -145,12 +160,17 @@ TEST_F(RecordingFile, explainsMissingFrames) {
     const uint64_t first = (*TraceReader::open(path()))->blocks()[0].offset;
     const size_t bytes = first + sizeof(BlockHeader) + 1;
     EXPECT_EQ((*readerOf(std::span(whole).first(bytes)))->noSuchFrames(0).message,
-              "recording in memory has no whole frame: its end is missing (was the head killed, or the file cut?), what is whole ends at byte " + std::to_string(first) + " of " +
-                  std::to_string(bytes) + "; take another copy of it, or record again");
-    EXPECT_EQ((*readerOf(whole))->noSuchFrames(0).message, "recording in memory has no frame: its program showed no picture; mural dump prints its calls");
-    EXPECT_EQ((*readerOf(whole))->noSuchFrames(3).message, "the recording has 3 frames; give some of them, such as 1-3");
+              "recording in memory has no whole frame: its end is missing (was the head killed, or the file cut?), "
+              "what is whole ends at byte " +
+                  std::to_string(first) + " of " + std::to_string(bytes) +
+                  "; take another copy of it, or record again");
+    EXPECT_EQ((*readerOf(whole))->noSuchFrames(0).message,
+              "recording in memory has no frame: its program showed no picture; mural dump prints its calls");
+    EXPECT_EQ((*readerOf(whole))->noSuchFrames(3).message,
+              "the recording has 3 frames; give some of them, such as 1-3");
     EXPECT_EQ((*readerOf(std::span(whole).first(whole.size() - 1)))->noSuchFrames(3).message,
-              "the recording has 3 frames, as its end is missing (was the head killed, or the file cut?); give some of them, such as 1-3");
+              "the recording has 3 frames, as its end is missing (was the head killed, or the file cut?); give some of "
+              "them, such as 1-3");
 }
 
 TEST_F(RecordingFile, rejectsOtherCommandTables) {
@@ -159,7 +179,9 @@ TEST_F(RecordingFile, rejectsOtherCommandTables) {
     ASSERT_TRUE((*writer)->finish());
     auto reader = TraceReader::open(path());
     ASSERT_FALSE(reader);
-    EXPECT_EQ(reader.error().message, "recording " + path() + " was made by a Mural with other commands (version 9.9); use that one to read it, or record again");
+    EXPECT_EQ(reader.error().message,
+              "recording " + path() +
+                  " was made by a Mural with other commands (version 9.9); use that one to read it, or record again");
 }
 
 TEST_F(RecordingFile, dividesLargeFramesIntoBoundedBlocks) {
@@ -200,10 +222,14 @@ TEST(RecordWalk, stopsAtAnInvalidRecord) {
 
 TEST(RecordedFrames, countTheMainWindowOnly) {
     WallFrames frames;
-    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().window(1, 10, 10).window(2, 20, 20).swap(1, 1).bytes()), 1u);
+    EXPECT_EQ(
+        frames.packet(wire::streamOf(1, 0), PacketBuilder().window(1, 10, 10).window(2, 20, 20).swap(1, 1).bytes()),
+        1u);
     // the larger one is now the main window
     EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(2, 2).swap(1, 3).bytes()), 1u);
-    EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().record(wire::kOpDestroyWindow, {2}).swap(1, 4).bytes()), 1u);
+    EXPECT_EQ(
+        frames.packet(wire::streamOf(1, 0), PacketBuilder().record(wire::kOpDestroyWindow, {2}).swap(1, 4).bytes()),
+        1u);
     EXPECT_EQ(frames.packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 0).bytes()), 0u); // not shown
     EXPECT_EQ(frames.frames(), 3);
 }

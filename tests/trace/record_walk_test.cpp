@@ -15,7 +15,7 @@ namespace {
 
 struct Passed {
     std::map<uint16_t, size_t> opcodes; // number per opcode
-    std::vector<size_t> looked; // offsets of the opcodes in kLooked
+    std::vector<size_t> looked;         // offsets of the opcodes in kLooked
     size_t at = 0;
     RecordOffsets walked;
 };
@@ -23,7 +23,8 @@ struct Passed {
 constexpr uint16_t kLooked = 99;
 
 std::vector<std::byte> someRecords(std::mt19937& random) {
-    std::vector<std::byte> packet = mural::testing::recordRounds(random, [](auto& p) { mural::testing::putRecord(p, kLooked, 2); });
+    std::vector<std::byte> packet =
+        mural::testing::recordRounds(random, [](auto& p) { mural::testing::putRecord(p, kLooked, 2); });
     const auto below = [&](uint32_t n) { return random() % n; };
     if (below(4) == 0) mural::testing::putRecord(packet, 1, 0); // an invalid record
     // truncates the last one
@@ -61,8 +62,7 @@ void expectPassed(const RecordWalk& walk, const Passed& right) {
     EXPECT_EQ(whole->longAt, right.walked.longAt);
 }
 
-template <typename Each>
-void forRandomPackets(const Each& each) {
+template <typename Each> void forRandomPackets(const Each& each) {
     for (uint32_t seed = 0; seed < 3000 && !::testing::Test::HasFailure(); ++seed) {
         SCOPED_TRACE(seed);
         std::mt19937 random(seed);
@@ -95,14 +95,15 @@ TEST(RecordWalk, reportsSelectedRecords) {
         const Passed right = byOne(packet, most);
         std::vector<size_t> looked;
         RecordWalk walk(packet);
-        walk.pass([](uint16_t opcode) { return opcode == kLooked ? RecordWalk::Interest::Look : RecordWalk::Interest::None; },
-                  [&](const RecordView& r) {
-                      if (looked.size() == most) return false;
-                      EXPECT_EQ(r.opcode, kLooked);
-                      EXPECT_EQ(r.arguments.size(), r.sizeBytes - 4);
-                      looked.push_back(r.offset);
-                      return true;
-                  });
+        walk.pass(
+            [](uint16_t opcode) { return opcode == kLooked ? RecordWalk::Interest::Look : RecordWalk::Interest::None; },
+            [&](const RecordView& r) {
+                if (looked.size() == most) return false;
+                EXPECT_EQ(r.opcode, kLooked);
+                EXPECT_EQ(r.arguments.size(), r.sizeBytes - 4);
+                looked.push_back(r.offset);
+                return true;
+            });
         looks += looked.size();
         ASSERT_EQ(looked, right.looked);
         expectPassed(walk, right);
@@ -118,7 +119,8 @@ TEST(RecordWalk, skipsRoundsWithRepeatedCommands) {
             std::vector<std::byte> packet;
             for (size_t i = 0; i < 1000 * round.size(); ++i) {
                 const char command = round[(from + i) % round.size()];
-                mural::testing::putRecord(packet, static_cast<uint32_t>(command), 1 + static_cast<uint32_t>(command % 3));
+                mural::testing::putRecord(packet, static_cast<uint32_t>(command),
+                                          1 + static_cast<uint32_t>(command % 3));
             }
             size_t asked = 0, passed = 0;
             RecordWalk walk(packet);

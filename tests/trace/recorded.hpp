@@ -64,14 +64,16 @@ inline Bytes readWhole(const std::string& path) {
     FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr) return bytes;
     std::byte buffer[65536];
-    for (size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;) bytes.insert(bytes.end(), buffer, buffer + n);
+    for (size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+        bytes.insert(bytes.end(), buffer, buffer + n);
     std::fclose(file);
     return bytes;
 }
 
 inline Result<std::unique_ptr<TraceReader>> readerOf(std::span<const std::byte> bytes) {
     FileDescriptor file(memfd_create("recording", MFD_CLOEXEC));
-    if (write(file.get(), bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) return Error{"no memory for the file"};
+    if (write(file.get(), bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+        return Error{"no memory for the file"};
     return TraceReader::open(std::move(file), "in memory");
 }
 
@@ -93,7 +95,8 @@ inline std::vector<Written> entriesOf(TraceReader& reader, std::string* problem 
         }
         EntryWalk walk(*block);
         Entry entry;
-        while (walk.next(entry)) entries.push_back({entry.stream, entry.timeNs, Bytes(entry.payload.begin(), entry.payload.end())});
+        while (walk.next(entry))
+            entries.push_back({entry.stream, entry.timeNs, Bytes(entry.payload.begin(), entry.payload.end())});
     }
     return entries;
 }

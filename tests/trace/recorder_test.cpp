@@ -10,7 +10,10 @@ namespace {
 
 class Recorder : public ::testing::Test {
 protected:
-    Recorder() : path_((std::filesystem::temp_directory_path() / ("mural-recorder-test." + std::to_string(getpid()))).string()) {}
+    Recorder()
+        : path_(
+              (std::filesystem::temp_directory_path() / ("mural-recorder-test." + std::to_string(getpid()))).string()) {
+    }
     ~Recorder() override { std::filesystem::remove(path_); }
 
     std::unique_ptr<StreamRecorder> recorder(RecorderConfig config = {}, const std::string& path = "") {
@@ -68,7 +71,8 @@ TEST_F(Recorder, stopsWithOneLineOnAFullDisk) {
     r->finish(Deadline::inMs(20'000));
     r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 101).bytes());
     ASSERT_EQ(said_.size(), 1u);
-    EXPECT_EQ(said_[0], "recording /dev/full: can't be written: No space left on device; make room there, or give another place; the recording ends after 0 frames, the program goes on");
+    EXPECT_EQ(said_[0], "recording /dev/full: can't be written: No space left on device; make room there, or give "
+                        "another place; the recording ends after 0 frames, the program goes on");
 }
 
 TEST_F(Recorder, stopsWithOneLineOnABlockedDisk) {

@@ -19,8 +19,12 @@ public:
         PacketBuilder p;
         p.context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1});
         for (uint32_t name = 1; name <= kNames; ++name) {
-            p.record(op::glGenTextures, {1, 4, name}).record(op::glBindTexture, {GL_TEXTURE_2D, name}).record(op::glTexImage2D, image(name));
-            p.record(op::glGenBuffers, {1, 4, name}).record(op::glGenQueries, {1, 4, name}).record(op::glCreateProgram, {name});
+            p.record(op::glGenTextures, {1, 4, name})
+                .record(op::glBindTexture, {GL_TEXTURE_2D, name})
+                .record(op::glTexImage2D, image(name));
+            p.record(op::glGenBuffers, {1, 4, name})
+                .record(op::glGenQueries, {1, 4, name})
+                .record(op::glCreateProgram, {name});
         }
         for (uint32_t name = 1; name <= 2; ++name) {
             p.record(op::glGenFramebuffers, {1, 4, name}).record(op::glBindFramebuffer, {GL_FRAMEBUFFER, name});
@@ -39,7 +43,9 @@ public:
 
 private:
     uint32_t below(uint32_t n) { return random_() % n; }
-    static std::vector<uint32_t> image(uint32_t value) { return {GL_TEXTURE_2D, 0, GL_RGBA, value + 1, 8, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}; }
+    static std::vector<uint32_t> image(uint32_t value) {
+        return {GL_TEXTURE_2D, 0, GL_RGBA, value + 1, 8, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull};
+    }
     uint32_t cap() { return std::array{GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_FOG}[below(4)]; }
 
     void state(PacketBuilder& p) {
@@ -65,10 +71,16 @@ private:
         case 5: p.record(op::glBufferData, {GL_ARRAY_BUFFER, 8, 0, 8, below(26), 0, GL_STATIC_DRAW}); return;
         case 6: p.record(op::glBufferSubData, {GL_ARRAY_BUFFER, below(3) * 4, 0, 4, 0, 4, below(999)}); return;
         case 7:
-            if (below(3) == 0) p.record(op::glClear, {GL_COLOR_BUFFER_BIT}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            if (below(3) == 0)
+                p.record(op::glClear, {GL_COLOR_BUFFER_BIT}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
             return;
         case 8: p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}); return;
-        case 9: p.record(op::glBegin, {GL_POINTS}).record(op::glColor3f, {below(9), 0, 0}).record(op::glVertex2f, {0, 0}).record(op::glEnd, {}); return;
+        case 9:
+            p.record(op::glBegin, {GL_POINTS})
+                .record(op::glColor3f, {below(9), 0, 0})
+                .record(op::glVertex2f, {0, 0})
+                .record(op::glEnd, {});
+            return;
         case 10: p.record(op::glBindFramebuffer, {GL_FRAMEBUFFER, below(3)}); return;
         case 11: return brackets(p);
         case 12:
@@ -85,24 +97,36 @@ private:
         switch (below(5)) {
         case 0: p.record(op::glPushMatrix, {}); break;
         case 1: p.record(op::glPopMatrix, {}); break;
-        case 2: p.record(op::glPushAttrib, {std::array<uint32_t, 4>{GL_ENABLE_BIT, GL_TEXTURE_BIT, GL_ENABLE_BIT | GL_CURRENT_BIT | GL_TRANSFORM_BIT, GL_ALL_ATTRIB_BITS}[below(4)]}); break;
+        case 2:
+            p.record(op::glPushAttrib, {std::array<uint32_t, 4>{GL_ENABLE_BIT, GL_TEXTURE_BIT,
+                                                                GL_ENABLE_BIT | GL_CURRENT_BIT | GL_TRANSFORM_BIT,
+                                                                GL_ALL_ATTRIB_BITS}[below(4)]});
+            break;
         case 3: p.record(op::glPopAttrib, {}); break;
         default:
-            p.record(op::glBeginQuery, {GL_SAMPLES_PASSED, 1 + below(kNames)}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).record(op::glEndQuery, {GL_SAMPLES_PASSED});
+            p.record(op::glBeginQuery, {GL_SAMPLES_PASSED, 1 + below(kNames)})
+                .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                .record(op::glEndQuery, {GL_SAMPLES_PASSED});
         }
     }
     void listed(PacketBuilder& p) {
         p.record(op::glNewList, {1 + below(2), GL_COMPILE});
         for (uint32_t i = below(6); i > 0; --i) {
-            if (below(3) == 0) p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
-            else if (below(4) == 0) p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + below(kNames)});
-            else state(p);
+            if (below(3) == 0)
+                p.record(op::glDrawArrays, {GL_TRIANGLES, 0, 3});
+            else if (below(4) == 0)
+                p.record(op::glBindTexture, {GL_TEXTURE_2D, 1 + below(kNames)});
+            else
+                state(p);
         }
         p.record(op::glEndList, {});
     }
     void remade(PacketBuilder& p) {
         const uint32_t name = 1 + below(kNames);
-        p.record(op::glDeleteTextures, {1, 4, name}).record(op::glGenTextures, {1, 4, name}).record(op::glBindTexture, {GL_TEXTURE_2D, name}).record(op::glTexImage2D, image(below(50)));
+        p.record(op::glDeleteTextures, {1, 4, name})
+            .record(op::glGenTextures, {1, 4, name})
+            .record(op::glBindTexture, {GL_TEXTURE_2D, name})
+            .record(op::glTexImage2D, image(below(50)));
     }
 
     std::mt19937 random_;

@@ -25,14 +25,18 @@ public:
     [[nodiscard]] std::string text() const {
         std::string s = state() + " colour " + std::to_string(window_);
         for (const auto& [name, t] : textures_)
-            if (name < kGone) s += " texture " + std::to_string(name) + " " + std::to_string(t.content) + numbers(t.parameters);
+            if (name < kGone)
+                s += " texture " + std::to_string(name) + " " + std::to_string(t.content) + numbers(t.parameters);
         for (const auto& [name, b] : buffers_) s += " buffer " + std::to_string(name) + bytes(b);
-        for (const auto& [name, result] : queries_) s += " query " + std::to_string(name) + " " + std::to_string(result);
+        for (const auto& [name, result] : queries_)
+            s += " query " + std::to_string(name) + " " + std::to_string(result);
         for (const auto& [name, texture] : framebuffers_) {
             const auto t = textures_.find(texture);
-            s += " framebuffer " + std::to_string(name) + " " + (t == textures_.end() ? "none" : std::to_string(t->second.content));
+            s += " framebuffer " + std::to_string(name) + " " +
+                 (t == textures_.end() ? "none" : std::to_string(t->second.content));
         }
-        for (const auto& [name, list] : lists_) s += " list " + std::to_string(name) + " " + std::to_string(list.size());
+        for (const auto& [name, list] : lists_)
+            s += " list " + std::to_string(name) + " " + std::to_string(list.size());
         for (const auto& saved : attribs_) s += " saved" + numbers(saved.caps);
         return s;
     }
@@ -73,7 +77,8 @@ private:
 
     // The state of the context itself.
     [[nodiscard]] std::string state() const {
-        std::string s = "unit " + std::to_string(unit_) + " mode " + std::to_string(mode_) + " program " + std::to_string(program_) + " target " + std::to_string(framebuffer_) + " array " +
+        std::string s = "unit " + std::to_string(unit_) + " mode " + std::to_string(mode_) + " program " +
+                        std::to_string(program_) + " target " + std::to_string(framebuffer_) + " array " +
                         std::to_string(array_) + " colour " + std::to_string(colour_) + " caps" + numbers(caps_);
         for (const auto& [unit, t] : bound_) s += " bound " + std::to_string(unit) + " " + std::to_string(t);
         for (const auto& [mode, stack] : matrices_)
@@ -85,7 +90,9 @@ private:
         uint64_t h = hash(state());
         // Programs without sampler values use the first unit.
         for (const auto& [unit, name] : bound_)
-            if (const auto t = textures_.find(name); t != textures_.end() && framebuffer_ == 0 && (program_ == 0 || unit == GL_TEXTURE0)) h = mix(mix(h, t->second.content), hash(numbers(t->second.parameters)));
+            if (const auto t = textures_.find(name);
+                t != textures_.end() && framebuffer_ == 0 && (program_ == 0 || unit == GL_TEXTURE0))
+                h = mix(mix(h, t->second.content), hash(numbers(t->second.parameters)));
         for (const auto& [name, b] : buffers_) h = mix(h, hash(bytes(b)));
         uint64_t* const target = targetContent();
         if (target != nullptr) *target = mix(*target, h);
@@ -103,10 +110,12 @@ private:
     }
     void record(const RecordView& r) {
         if (list_ != 0 && r.opcode != op::glEndList) {
-            lists_[list_].push_back({r.opcode, {argumentWord(r, 0), argumentWord(r, 1), argumentWord(r, 2), argumentWord(r, 3)}});
+            lists_[list_].push_back(
+                {r.opcode, {argumentWord(r, 0), argumentWord(r, 1), argumentWord(r, 2), argumentWord(r, 3)}});
             return;
         }
-        call(r.opcode, {argumentWord(r, 0), argumentWord(r, 1), argumentWord(r, 2), argumentWord(r, 3), argumentWord(r, 4), argumentWord(r, 5), argumentWord(r, 6)});
+        call(r.opcode, {argumentWord(r, 0), argumentWord(r, 1), argumentWord(r, 2), argumentWord(r, 3),
+                        argumentWord(r, 4), argumentWord(r, 5), argumentWord(r, 6)});
     }
     void call(uint16_t opcode, const std::array<uint32_t, 7>& a) {
         const auto boundTexture = [&]() -> Texture* {
@@ -141,7 +150,8 @@ private:
             if (array_ != 0) buffers_[array_].assign(a[1], static_cast<uint8_t>(a[4]));
             return;
         case op::glBufferSubData:
-            for (uint32_t i = 0; array_ != 0 && i < a[3] && a[1] + i < buffers_[array_].size(); ++i) buffers_[array_][a[1] + i] = static_cast<uint8_t>(a[5] >> 2);
+            for (uint32_t i = 0; array_ != 0 && i < a[3] && a[1] + i < buffers_[array_].size(); ++i)
+                buffers_[array_][a[1] + i] = static_cast<uint8_t>(a[5] >> 2);
             return;
         case op::glCreateProgram: uniforms_[a[0]]; return;
         case op::glUseProgram: program_ = a[0]; return;
@@ -196,7 +206,8 @@ private:
 
     static constexpr uint32_t kGone = 1000; // stands for deleted textures
     uint32_t gone_ = 0;
-    uint32_t unit_ = GL_TEXTURE0, mode_ = GL_MODELVIEW, program_ = 0, framebuffer_ = 0, array_ = 0, query_ = 0, list_ = 0;
+    uint32_t unit_ = GL_TEXTURE0, mode_ = GL_MODELVIEW, program_ = 0, framebuffer_ = 0, array_ = 0, query_ = 0,
+             list_ = 0;
     uint64_t colour_ = 0, window_ = 0, clearColor_ = 0;
     Numbers caps_{{GL_BLEND, 0}, {GL_CULL_FACE, 0}, {GL_FOG, 0}, {GL_SCISSOR_TEST, 0}};
     std::map<uint32_t, uint32_t> bound_{{GL_TEXTURE0, 0}, {GL_TEXTURE1, 0}};

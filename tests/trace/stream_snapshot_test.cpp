@@ -33,7 +33,12 @@ protected:
         }
         return n;
     }
-    void frame() { give(PacketBuilder().record(op::glClear, {GL_COLOR_BUFFER_BIT}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, ++frame_)); }
+    void frame() {
+        give(PacketBuilder()
+                 .record(op::glClear, {GL_COLOR_BUFFER_BIT})
+                 .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
+                 .swap(1, ++frame_));
+    }
 
     std::vector<std::string> said_;
     KeptStream stream_{size_t{1} << 20, [this](const std::string& line) { said_.push_back(line); }};
@@ -59,7 +64,10 @@ TEST_F(Kept, dropsSwaps) {
 
 TEST_F(Kept, dropsObjectsWhenTheirNamesAreDeleted) {
     for (int i = 0; i < 5; ++i) {
-        give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9}).record(op::glBufferData, {GL_ARRAY_BUFFER, 4, 0, 4, 1, GL_STATIC_DRAW}));
+        give(PacketBuilder()
+                 .record(op::glGenBuffers, {1, 4, 9})
+                 .record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9})
+                 .record(op::glBufferData, {GL_ARRAY_BUFFER, 4, 0, 4, 1, GL_STATIC_DRAW}));
         give(PacketBuilder().record(op::glBindBuffer, {GL_ARRAY_BUFFER, 0}).record(op::glDeleteBuffers, {1, 4, 9}));
     }
     EXPECT_EQ(left(op::glGenBuffers), 0u);
@@ -69,9 +77,15 @@ TEST_F(Kept, dropsObjectsWhenTheirNamesAreDeleted) {
 
 // Nodes that divide draws check whether shaders may ever have written to memory (nodes/replay/features/sort_last.cpp).
 TEST_F(Kept, remembersThatDeletedMemoryWasBound) {
-    give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBufferBase, {GL_SHADER_STORAGE_BUFFER, 2, 9}).record(op::glDeleteBuffers, {1, 4, 9}));
+    give(PacketBuilder()
+             .record(op::glGenBuffers, {1, 4, 9})
+             .record(op::glBindBufferBase, {GL_SHADER_STORAGE_BUFFER, 2, 9})
+             .record(op::glDeleteBuffers, {1, 4, 9}));
     EXPECT_EQ(left(op::glBindBufferBase), 1u);
-    give(PacketBuilder().record(op::glGenTextures, {1, 4, 9}).record(op::glBindImageTexture, {0, 9, 0, 0, 0, GL_READ_WRITE, GL_RGBA8}).record(op::glBindImageTexture, {0, 0, 0, 0, 0, GL_READ_WRITE, GL_RGBA8}));
+    give(PacketBuilder()
+             .record(op::glGenTextures, {1, 4, 9})
+             .record(op::glBindImageTexture, {0, 9, 0, 0, 0, GL_READ_WRITE, GL_RGBA8})
+             .record(op::glBindImageTexture, {0, 0, 0, 0, 0, GL_READ_WRITE, GL_RGBA8}));
     give(PacketBuilder().record(op::glDeleteTextures, {1, 4, 9}));
     EXPECT_EQ(left(op::glBindImageTexture), 1u);
 }
@@ -85,10 +99,14 @@ TEST_F(Kept, dropsAWindowsPictureWhenItIsMadeAgain) {
 }
 
 TEST_F(Kept, dropsProxies) {
-    const auto image = [](uint32_t target) { return PacketBuilder().record(op::glTexImage2D, {target, 0, GL_RGBA, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4, 7}); };
+    const auto image = [](uint32_t target) {
+        return PacketBuilder().record(op::glTexImage2D, {target, 0, GL_RGBA, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4, 7});
+    };
     give(PacketBuilder().record(op::glGenTextures, {1, 4, 9}).record(op::glBindTexture, {GL_TEXTURE_2D, 9}));
     give(image(GL_TEXTURE_2D));
-    for (const uint32_t proxy : {GL_PROXY_TEXTURE_2D, GL_PROXY_TEXTURE_CUBE_MAP, GL_PROXY_TEXTURE_RECTANGLE, GL_PROXY_TEXTURE_1D_ARRAY}) give(image(proxy));
+    for (const uint32_t proxy :
+         {GL_PROXY_TEXTURE_2D, GL_PROXY_TEXTURE_CUBE_MAP, GL_PROXY_TEXTURE_RECTANGLE, GL_PROXY_TEXTURE_1D_ARRAY})
+        give(image(proxy));
     EXPECT_EQ(left(op::glTexImage2D), 1u);
 }
 
@@ -105,8 +123,14 @@ TEST_F(Kept, keepsABlobWithItsCommand) {
 }
 
 TEST_F(Kept, keepsDeletedShadersOfALivingProgram) {
-    give(PacketBuilder().record(op::glCreateProgram, {1}).record(op::glCreateShader, {GL_VERTEX_SHADER, 2}).record(op::glCompileShader, {2}));
-    give(PacketBuilder().record(op::glAttachShader, {1, 2}).record(op::glDeleteShader, {2}).record(op::glLinkProgram, {1}));
+    give(PacketBuilder()
+             .record(op::glCreateProgram, {1})
+             .record(op::glCreateShader, {GL_VERTEX_SHADER, 2})
+             .record(op::glCompileShader, {2}));
+    give(PacketBuilder()
+             .record(op::glAttachShader, {1, 2})
+             .record(op::glDeleteShader, {2})
+             .record(op::glLinkProgram, {1}));
     EXPECT_EQ(left(op::glCompileShader), 1u);
     EXPECT_EQ(left(op::glDeleteShader), 1u);
     give(PacketBuilder().record(op::glDeleteProgram, {1}));
@@ -116,7 +140,9 @@ TEST_F(Kept, keepsDeletedShadersOfALivingProgram) {
 
 // A request makes the driver draw its collected bitmaps, with the state of that moment.
 TEST_F(Kept, keepsRequestsAfterBitmaps) {
-    const auto ask = [&] { give(PacketBuilder().record(wire::kOpRequestTexImage, {1, 0, GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4})); };
+    const auto ask = [&] {
+        give(PacketBuilder().record(wire::kOpRequestTexImage, {1, 0, GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4}));
+    };
     ask();
     EXPECT_EQ(left(wire::kOpRequestTexImage), 0u);
     give(PacketBuilder().record(op::glBitmap, {8, 8, 0, 0, 0, 0, 0}));
@@ -145,9 +171,15 @@ TEST_F(Kept, reportsOnceThatItIsTooLarge) {
 // ---- handles of textures, sparse pages
 
 PacketBuilder sparseTexture(uint32_t name) {
-    return PacketBuilder().record(op::glGenTextures, {1, 4, name}).record(op::glBindTexture, {GL_TEXTURE_2D, name}).record(op::glTexStorage2D, {GL_TEXTURE_2D, 1, GL_RGBA8, 256, 256});
+    return PacketBuilder()
+        .record(op::glGenTextures, {1, 4, name})
+        .record(op::glBindTexture, {GL_TEXTURE_2D, name})
+        .record(op::glTexStorage2D, {GL_TEXTURE_2D, 1, GL_RGBA8, 256, 256});
 }
-PacketBuilder uploadTo(uint32_t x) { return PacketBuilder().record(op::glTexSubImage2D, {GL_TEXTURE_2D, 0, x, 0, 128, 256, GL_RGBA, GL_UNSIGNED_BYTE, 4, x}); }
+PacketBuilder uploadTo(uint32_t x) {
+    return PacketBuilder().record(op::glTexSubImage2D,
+                                  {GL_TEXTURE_2D, 0, x, 0, 128, 256, GL_RGBA, GL_UNSIGNED_BYTE, 4, x});
+}
 
 // Drivers number handles in order of creation. Handles of deleted textures count too, but not the contents of these
 // textures.
@@ -155,7 +187,9 @@ TEST_F(Kept, createsHandlesInTheSameOrder) {
     for (uint32_t i = 0; i < 3; ++i) {
         give(sparseTexture(9));
         give(uploadTo(0));
-        give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}).record(op::glMakeTextureHandleResidentARB, {5, 0}));
+        give(PacketBuilder()
+                 .record(op::glGetTextureHandleARB, {9, 5, 0})
+                 .record(op::glMakeTextureHandleResidentARB, {5, 0}));
         give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0})); // again: creates no handle
         give(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 0}).record(op::glDeleteTextures, {1, 4, 9}));
     }
@@ -168,7 +202,10 @@ TEST_F(Kept, createsHandlesInTheSameOrder) {
 TEST_F(Kept, keepsTheLastResidency) {
     give(sparseTexture(9));
     give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}));
-    for (int i = 0; i < 4; ++i) give(PacketBuilder().record(op::glMakeTextureHandleResidentARB, {5, 0}).record(op::glMakeTextureHandleNonResidentARB, {5, 0}));
+    for (int i = 0; i < 4; ++i)
+        give(PacketBuilder()
+                 .record(op::glMakeTextureHandleResidentARB, {5, 0})
+                 .record(op::glMakeTextureHandleNonResidentARB, {5, 0}));
     give(PacketBuilder().record(op::glMakeTextureHandleResidentARB, {5, 0}));
     EXPECT_EQ(left(op::glMakeTextureHandleResidentARB), 1u);
     EXPECT_EQ(left(op::glMakeTextureHandleNonResidentARB), 0u);
@@ -178,18 +215,28 @@ TEST_F(Kept, keepsTheLastResidency) {
 // bound.
 TEST_F(Kept, drawsDependOnResidentTextures) {
     give(sparseTexture(7)); // the target
-    give(PacketBuilder().record(op::glGenFramebuffers, {1, 4, 3}).record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 3}).record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 7, 0}));
+    give(PacketBuilder()
+             .record(op::glGenFramebuffers, {1, 4, 3})
+             .record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 3})
+             .record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 7, 0}));
     give(sparseTexture(9));
-    give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}).record(op::glMakeTextureHandleResidentARB, {5, 0}));
+    give(PacketBuilder()
+             .record(op::glGetTextureHandleARB, {9, 5, 0})
+             .record(op::glMakeTextureHandleResidentARB, {5, 0}));
     give(uploadTo(0));
-    give(PacketBuilder().record(op::glActiveTexture, {GL_TEXTURE0}).record(op::glBindTexture, {GL_TEXTURE_2D, 0}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
+    give(PacketBuilder()
+             .record(op::glActiveTexture, {GL_TEXTURE0})
+             .record(op::glBindTexture, {GL_TEXTURE_2D, 0})
+             .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     give(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 9}));
     give(uploadTo(0));
     EXPECT_EQ(left(op::glTexSubImage2D), 2u);
 }
 
 TEST_F(Kept, keepsThePagesThatUploadsNeed) {
-    const auto commit = [](uint32_t x, uint32_t committed) { return PacketBuilder().record(op::glTexPageCommitmentARB, {GL_TEXTURE_2D, 0, x, 0, 0, 128, 256, 1, committed}); };
+    const auto commit = [](uint32_t x, uint32_t committed) {
+        return PacketBuilder().record(op::glTexPageCommitmentARB, {GL_TEXTURE_2D, 0, x, 0, 0, 128, 256, 1, committed});
+    };
     give(sparseTexture(9));
     for (int i = 0; i < 5; ++i) {
         give(commit(0, 1));
@@ -206,7 +253,10 @@ TEST_F(Kept, keepsThePagesThatUploadsNeed) {
 }
 
 TEST_F(Kept, keepsPagesOfBuffers) {
-    give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9}).record(op::glBufferStorage, {GL_ARRAY_BUFFER, 0x20000, 0, 0, 0x400}));
+    give(PacketBuilder()
+             .record(op::glGenBuffers, {1, 4, 9})
+             .record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9})
+             .record(op::glBufferStorage, {GL_ARRAY_BUFFER, 0x20000, 0, 0, 0x400}));
     for (uint32_t i = 0; i < 4; ++i) {
         give(PacketBuilder().record(op::glBufferPageCommitmentARB, {GL_ARRAY_BUFFER, 0, 0, 0x10000, 0, 1}));
         give(PacketBuilder().record(op::glBufferSubData, {GL_ARRAY_BUFFER, 0, 0, 4, 0, 4, i}));

@@ -74,9 +74,13 @@ TEST_F(Trim, dropsWhatALaterClearCovers) {
     for (int i = 0; i < 4; ++i) frame();
     const auto lines = trimmed(3, 3);
     const std::vector<std::string> wanted{
-        "Mural.CreateContext(context=1, share=0, api=0, major=0, minor=0, profile=0x0, flags=0x0, config=0x0 rgba 0,0,0,0 depth 0 stencil 0 samples 0 single)",
-        "Mural.Window(window=1, config=20x10 rgba 8,8,8,0 depth 0 stencil 0 samples 0 double)", "Mural.MakeCurrent(context=1, draw=1, read=1)",
-        "glClear(mask=GL_DEPTH_BUFFER_BIT|GL_STENCIL_BUFFER_BIT|GL_COLOR_BUFFER_BIT)", "glDrawArrays(mode=GL_TRIANGLES, first=0, count=3)", "Mural.Swap(window=1, frame=1)"};
+        "Mural.CreateContext(context=1, share=0, api=0, major=0, minor=0, profile=0x0, flags=0x0, config=0x0 rgba "
+        "0,0,0,0 depth 0 stencil 0 samples 0 single)",
+        "Mural.Window(window=1, config=20x10 rgba 8,8,8,0 depth 0 stencil 0 samples 0 double)",
+        "Mural.MakeCurrent(context=1, draw=1, read=1)",
+        "glClear(mask=GL_DEPTH_BUFFER_BIT|GL_STENCIL_BUFFER_BIT|GL_COLOR_BUFFER_BIT)",
+        "glDrawArrays(mode=GL_TRIANGLES, first=0, count=3)",
+        "Mural.Swap(window=1, frame=1)"};
     EXPECT_EQ(lines, wanted);
     EXPECT_EQ(frames_, 1);
     EXPECT_EQ((report_.drawsBefore - report_.drawsKept), 2u);
@@ -104,7 +108,7 @@ TEST_F(Trim, keepsDepthOnceItIsTested) {
     EXPECT_EQ(dropped(3, 3), 2u);
     begin().record(op::glEnable, {GL_DEPTH_TEST});
     for (int i = 0; i < 3; ++i) frame(GL_COLOR_BUFFER_BIT); // frames 4 to 6
-    EXPECT_EQ(dropped(6, 6), 3u); // those before the test was enabled
+    EXPECT_EQ(dropped(6, 6), 3u);                           // those before the test was enabled
     clear(GL_DEPTH_BUFFER_BIT);
     frame(GL_COLOR_BUFFER_BIT);
     EXPECT_EQ(dropped(7, 7), 6u);
@@ -140,7 +144,10 @@ TEST_F(Trim, keepsWhatIsRead) {
 }
 
 TEST_F(Trim, keepsDrawsToOtherTargets) {
-    begin().record(op::glGenTextures, {1, 4, 5}).record(op::glBindTexture, {GL_TEXTURE_2D, 5}).record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 7});
+    begin()
+        .record(op::glGenTextures, {1, 4, 5})
+        .record(op::glBindTexture, {GL_TEXTURE_2D, 5})
+        .record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 7});
     begin().record(op::glFramebufferTexture2D, {GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 5, 0});
     draw();
     begin().record(op::glBindFramebuffer, {GL_FRAMEBUFFER, 0});
@@ -171,7 +178,11 @@ TEST_F(Trim, keepsEverythingBeforeAnUnknownCommand) {
 }
 
 TEST_F(Trim, dropsVerticesAndKeepsCurrentValues) {
-    clear().record(op::glBegin, {GL_TRIANGLES}).record(op::glColor3f, {0, 0, 0}).record(op::glVertex2f, {0, 0}).record(op::glEnd, {});
+    clear()
+        .record(op::glBegin, {GL_TRIANGLES})
+        .record(op::glColor3f, {0, 0, 0})
+        .record(op::glVertex2f, {0, 0})
+        .record(op::glEnd, {});
     swap();
     frame();
     const auto lines = trimmed(2, 2);
@@ -184,8 +195,14 @@ TEST_F(Trim, dropsVerticesAndKeepsCurrentValues) {
 TEST_F(Trim, dropsBlobsWithTheirDraw) {
     begin().record(op::glGenBuffers, {1, 4, 1});
     // Two blobs: the first belongs to a draw, the second to a buffer.
-    begin().record(wire::kOpBlobBegin, {4, 0}).record(wire::kOpBlobData, {4, 11}).record(op::glDrawElements, {GL_TRIANGLES, 1, GL_UNSIGNED_INT, record::kTagBlob});
-    begin().record(wire::kOpBlobBegin, {4, 0}).record(wire::kOpBlobData, {4, 22}).record(wire::kOpBufferBytes, {1, 0, 0, record::kTagBlob});
+    begin()
+        .record(wire::kOpBlobBegin, {4, 0})
+        .record(wire::kOpBlobData, {4, 11})
+        .record(op::glDrawElements, {GL_TRIANGLES, 1, GL_UNSIGNED_INT, record::kTagBlob});
+    begin()
+        .record(wire::kOpBlobBegin, {4, 0})
+        .record(wire::kOpBlobData, {4, 22})
+        .record(wire::kOpBufferBytes, {1, 0, 0, record::kTagBlob});
     frame();
     frame();
     const auto lines = trimmed(2, 2);
@@ -204,7 +221,8 @@ TEST_F(Trim, reportsMissingFrames) {
 TEST_F(Trim, explainsTracesWithoutFrames) {
     draw();
     trimmed(2, 5);
-    EXPECT_EQ(error_, "recording " + (folder_ / "a").string() + " has no frame: its program showed no picture; mural dump prints its calls");
+    EXPECT_EQ(error_, "recording " + (folder_ / "a").string() +
+                          " has no frame: its program showed no picture; mural dump prints its calls");
 }
 
 TEST_F(Trim, keepsFramesBeforeADamagedBlock) {
@@ -224,7 +242,8 @@ TEST_F(Trim, keepsFramesBeforeADamagedBlock) {
     ASSERT_TRUE(reader) << reader.error().message;
     const auto tooMany = trim(**reader, 1, 3, part);
     ASSERT_FALSE(tooMany);
-    EXPECT_NE(tooMany.error().message.find("mural trim in memory 1-2 -o good.mural"), std::string::npos) << tooMany.error().message;
+    EXPECT_NE(tooMany.error().message.find("mural trim in memory 1-2 -o good.mural"), std::string::npos)
+        << tooMany.error().message;
     const auto good = trim(**reader, 1, 2, part); // as the message advises
     ASSERT_TRUE(good) << good.error().message;
     EXPECT_TRUE((*TraceReader::open(part))->verify());

@@ -16,9 +16,9 @@ namespace {
 
 struct Ring {
     explicit Ring(size_t capacityBytes)
-        : bytes(capacityBytes)
-        , writer(control, bytes.data(), capacityBytes)
-        , reader(control, bytes.data(), capacityBytes) {}
+        : bytes(capacityBytes),
+          writer(control, bytes.data(), capacityBytes),
+          reader(control, bytes.data(), capacityBytes) {}
     RingControl control{};
     std::vector<std::byte> bytes;
     RingWriter writer;
@@ -101,16 +101,14 @@ TEST(ByteRing, wakesASleepingReaderAndASleepingWriter) {
     Ring ring(4096);
     std::vector<std::byte> bytes(4096);
     const auto untilAsleep = [](const std::atomic<pid_t>& id) {
-        while (id == 0)
-            std::this_thread::yield();
+        while (id == 0) std::this_thread::yield();
         ASSERT_TRUE(waitUntilAsleep(id, Deadline::inMs(20000)));
     };
     const int64_t beginNs = monotonicNowNs();
     std::atomic<pid_t> id = 0;
     std::thread reader([&] {
         id = currentThread();
-        while (!ring.reader.hasData())
-            ring.reader.sleepUntilData(60 * kNsPerS);
+        while (!ring.reader.hasData()) ring.reader.sleepUntilData(60 * kNsPerS);
     });
     untilAsleep(id);
     ring.writer.write(bytes);
@@ -119,8 +117,7 @@ TEST(ByteRing, wakesASleepingReaderAndASleepingWriter) {
     id = 0;
     std::thread writer([&] {
         id = currentThread();
-        while (!ring.writer.hasRoom())
-            ring.writer.sleepUntilRoom(60 * kNsPerS);
+        while (!ring.writer.hasRoom()) ring.writer.sleepUntilRoom(60 * kNsPerS);
     });
     untilAsleep(id);
     EXPECT_EQ(ring.reader.read(bytes), bytes.size());

@@ -15,20 +15,14 @@ namespace {
 constexpr int kRounds = 9;
 
 void require(bool ok, const char* what) {
-    if (ok)
-        return;
+    if (ok) return;
     std::fprintf(stderr, "connection_bench: %s\n", what);
     std::exit(1);
 }
 
-double seconds(int64_t beginNs) {
-    return static_cast<double>(monotonicNowNs() - beginNs) / kNsPerS;
-}
+double seconds(int64_t beginNs) { return static_cast<double>(monotonicNowNs() - beginNs) / kNsPerS; }
 
-double copySeconds(const std::vector<std::byte>& from,
-                   std::vector<std::byte>& to,
-                   size_t total,
-                   size_t piece) {
+double copySeconds(const std::vector<std::byte>& from, std::vector<std::byte>& to, size_t total, size_t piece) {
     const int64_t beginNs = monotonicNowNs();
     for (size_t done = 0; done < total; done += piece) {
         const size_t at = done % (from.size() - piece + 1);
@@ -38,18 +32,14 @@ double copySeconds(const std::vector<std::byte>& from,
     return seconds(beginNs);
 }
 
-double streamSeconds(LinkedPair& link,
-                     const std::vector<std::byte>& from,
-                     std::vector<std::byte>& to,
-                     size_t total,
+double streamSeconds(LinkedPair& link, const std::vector<std::byte>& from, std::vector<std::byte>& to, size_t total,
                      size_t piece) {
     const Deadline deadline = Deadline::inMs(60000);
     const int64_t beginNs = monotonicNowNs();
     std::thread writer([&] {
         for (size_t done = 0; done < total; done += piece) {
             const size_t at = done % (from.size() - piece + 1);
-            require(link.a->write(std::span(from).subspan(at, piece), deadline).ok(),
-                    "write failed");
+            require(link.a->write(std::span(from).subspan(at, piece), deadline).ok(), "write failed");
         }
         link.a->flush();
     });
@@ -59,8 +49,7 @@ double streamSeconds(LinkedPair& link,
     }
     writer.join();
     const double took = seconds(beginNs);
-    require(std::memcmp(from.data(), to.data(), std::min(total, from.size()) / piece * piece) == 0,
-            "bytes differ");
+    require(std::memcmp(from.data(), to.data(), std::min(total, from.size()) / piece * piece) == 0, "bytes differ");
     return took;
 }
 
@@ -81,8 +70,8 @@ void benchStream(LinkKind kind, size_t capacityBytes, size_t piece, size_t total
     }
     std::sort(ratios.begin(), ratios.end());
     std::sort(rates.begin(), rates.end());
-    std::printf("%s,%zu,%zu,%.2f,%.2f,%.2f,%.2f\n", linkName(kind).c_str(), capacityBytes, piece,
-                rates[kRounds / 2], ratios[kRounds / 2], ratios.front(), ratios.back());
+    std::printf("%s,%zu,%zu,%.2f,%.2f,%.2f,%.2f\n", linkName(kind).c_str(), capacityBytes, piece, rates[kRounds / 2],
+                ratios[kRounds / 2], ratios.front(), ratios.back());
 }
 
 void benchAnswers(LinkKind kind) {
@@ -121,15 +110,16 @@ int main(int count, char** arguments) {
     for (const LinkKind kind : kAllLinkKinds) {
         if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), linkName(kind)) == wanted.end()) continue;
         const std::string why = whyNoLinks(kind);
-        if (why.empty()) kinds.push_back(kind);
-        else std::fprintf(stderr, "no %s: %s\n", linkName(kind).c_str(), why.c_str());
+        if (why.empty())
+            kinds.push_back(kind);
+        else
+            std::fprintf(stderr, "no %s: %s\n", linkName(kind).c_str(), why.c_str());
     }
     require(kinds.size() >= std::max<size_t>(wanted.size(), 1), "a kind that was named is missing");
     std::printf("kind,capacityBytes,pieceBytes,GB/s,ratioToMemcpy,ratioMin,ratioMax\n");
     for (const LinkKind kind : kinds) {
         for (const size_t capacity : {size_t{1} << 20, size_t{16} << 20}) {
-            if ((kind == LinkKind::Tcp || kind == LinkKind::Fabric) && capacity != size_t{1} << 20)
-                continue;
+            if ((kind == LinkKind::Tcp || kind == LinkKind::Fabric) && capacity != size_t{1} << 20) continue;
             benchStream(kind, capacity, 64, size_t{32} << 20);
             benchStream(kind, capacity, 4096, size_t{256} << 20);
             benchStream(kind, capacity, size_t{1} << 20, size_t{512} << 20);
@@ -137,7 +127,6 @@ int main(int count, char** arguments) {
         }
     }
     std::printf("kind,microsecondsPerQuestionAndAnswer\n");
-    for (const LinkKind kind : kinds)
-        benchAnswers(kind);
+    for (const LinkKind kind : kinds) benchAnswers(kind);
     return 0;
 }

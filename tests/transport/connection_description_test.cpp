@@ -20,7 +20,10 @@ TEST(ConnectionDescription, parsesItsOwnOutput) {
         {.kind = Kind::Tcp, .host = "fe80::1%eth0", .port = 4000},
         {.kind = Kind::Tcp, .host = "", .port = 0},
         {.kind = Kind::Rsp, .host = "239.255.77.85", .port = 4277},
-        {.kind = Kind::Rsp, .host = "ff15::4d:1", .port = 4277, .parameters = {{"interface", "eth1"}, {"rate", "800mbit"}}},
+        {.kind = Kind::Rsp,
+         .host = "ff15::4d:1",
+         .port = 4277,
+         .parameters = {{"interface", "eth1"}, {"rate", "800mbit"}}},
         {.kind = Kind::Plugin, .host = "::1", .port = 4000, .parameters = {{"provider", "tcp"}}, .scheme = "fabric"},
     };
     for (const auto& each : all) {
@@ -66,7 +69,9 @@ TEST(ConnectionDescription, rejectsInvalidTextWithAReason) {
 
 TEST(ConnectionDescription, parsesGroupParameters) {
     const auto options = [](const char* text) { return rsp::groupOptionsOf(parseConnectionDescription(text).value()); };
-    auto good = options("rsp://239.0.0.1:5000?interface=eth1&rate=800mbit&seal=siphash&stalled=wait&stalled-ms=70&window=128&multicast=off&parity=off");
+    auto good = options("rsp://"
+                        "239.0.0.1:5000?interface=eth1&rate=800mbit&seal=siphash&stalled=wait&stalled-ms=70&window=128&"
+                        "multicast=off&parity=off");
     ASSERT_TRUE(good) << good.error().message;
     EXPECT_EQ(good->group, "239.0.0.1:5000");
     EXPECT_EQ(good->interface, "eth1");
@@ -95,7 +100,8 @@ TEST(ConnectionDescription, parsesGroupParameters) {
 }
 
 TEST(ConnectionDescription, failsToConnectWithoutAPeer) {
-    for (const char* text : {"pipe:", "shm:", "tcp://:80", "tcp://localhost:0", "nonsense", "rsp://239.0.0.1:5000", "nobodyhas://a:1"}) {
+    for (const char* text :
+         {"pipe:", "shm:", "tcp://:80", "tcp://localhost:0", "nonsense", "rsp://239.0.0.1:5000", "nobodyhas://a:1"}) {
         EXPECT_FALSE(connectTo(text, Deadline::inMs(100))) << text;
     }
     EXPECT_FALSE(listenAt("shm:"));

@@ -15,12 +15,8 @@ constexpr size_t kCapacityBytes = 4096;
 // More than both kernel buffers of a TCP connection hold.
 constexpr size_t kMoreThanFitsBytes = size_t{96} << 20;
 
-Deadline soon() {
-    return Deadline::inMs(30);
-}
-Deadline late() {
-    return Deadline::inMs(20000);
-}
+Deadline soon() { return Deadline::inMs(30); }
+Deadline late() { return Deadline::inMs(20000); }
 
 class ConnectionTest : public ::testing::TestWithParam<LinkKind> {
 protected:
@@ -36,10 +32,10 @@ protected:
     LinkedPair pair_;
 };
 
-#define EXPECT_OK(expression)                                                                      \
-    do {                                                                                           \
-        const auto result_ = (expression);                                                         \
-        EXPECT_TRUE(result_.ok()) << result_.error().message;                                      \
+#define EXPECT_OK(expression)                                                                                          \
+    do {                                                                                                               \
+        const auto result_ = (expression);                                                                             \
+        EXPECT_TRUE(result_.ok()) << result_.error().message;                                                          \
     } while (false)
 
 std::vector<std::byte> bytesOf(std::string_view text) {
@@ -71,8 +67,7 @@ void streamThrough(Connection& from, Connection& to, uint64_t seed, size_t total
         const auto piece = std::span(sink).first(std::min(randomSize(random, most), total - done));
         const auto result = to.read(piece, late());
         EXPECT_TRUE(result) << result.error().message;
-        if (!result)
-            break;
+        if (!result) break;
         received.add(piece);
         done += piece.size();
     }
@@ -171,8 +166,7 @@ TEST_P(ConnectionTest, reportsPartialWritesAtTheDeadline) {
     const std::vector<std::byte> all(kMoreThanFitsBytes);
     const auto result = a().write(all, Deadline::inMs(100));
     ASSERT_FALSE(result);
-    EXPECT_NE(result.error().message.find("middle of a message"), std::string::npos)
-        << result.error().message;
+    EXPECT_NE(result.error().message.find("middle of a message"), std::string::npos) << result.error().message;
     EXPECT_FALSE(a().timedOut()) << "that would mean: usable";
     EXPECT_FALSE(a().alive());
     EXPECT_FALSE(a().write(bytesOf("x"), soon()));
@@ -232,8 +226,7 @@ TEST_P(ConnectionTest, continuesAfterAWriteThatTimedOutBeforeItsFirstByte) {
         for (int i = 0; i < 10000 && !full; ++i) {
             const auto value = static_cast<std::byte>(written);
             full = !a().write(std::span(&value, 1), deadline);
-            if (!full)
-                ++written;
+            if (!full) ++written;
         }
     }
     EXPECT_TRUE(a().timedOut());
@@ -248,8 +241,7 @@ TEST_P(ConnectionTest, continuesAfterAWriteThatTimedOutBeforeItsFirstByte) {
     a().flush();
     reader.join();
     size_t wrong = 0;
-    for (size_t i = 0; i < all.size(); ++i)
-        wrong += all[i] != static_cast<std::byte>(i) ? 1 : 0;
+    for (size_t i = 0; i < all.size(); ++i) wrong += all[i] != static_cast<std::byte>(i) ? 1 : 0;
     EXPECT_EQ(wrong, 0U) << "of " << all.size();
 }
 
@@ -274,8 +266,7 @@ TEST_P(ConnectionTest, deliversTheLastByteBeforeAConcurrentClose) {
         link();
         std::atomic<bool> go = false;
         std::thread writer([&] {
-            while (!go) {
-            }
+            while (!go) {}
             const std::byte last{1};
             (void)a().write(std::span(&last, 1), late());
             a().close();
@@ -310,8 +301,7 @@ template <class Blocked> void expectCloseWakes(Blocked blocked, Connection& clos
         failed = !blocked();
         endNs = monotonicNowNs();
     });
-    while (id == 0)
-        std::this_thread::yield();
+    while (id == 0) std::this_thread::yield();
     EXPECT_TRUE(waitUntilAsleep(id, late()));
     const int64_t beginNs = monotonicNowNs();
     closing.close();
@@ -338,9 +328,7 @@ TEST_P(ConnectionTest, wakesABlockedWriterWhenEitherEndCloses) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllKinds,
-                         ConnectionTest,
-                         ::testing::ValuesIn(kAllLinkKinds),
+INSTANTIATE_TEST_SUITE_P(AllKinds, ConnectionTest, ::testing::ValuesIn(kAllLinkKinds),
                          [](const auto& param) { return linkName(param.param); });
 
 } // namespace mural::test

@@ -22,21 +22,17 @@ namespace mural::test {
 namespace {
 
 template <class T> bool worked(const Result<T>& result) {
-    if (!result)
-        std::fprintf(stderr, "%s\n", result.error().message.c_str());
+    if (!result) std::fprintf(stderr, "%s\n", result.error().message.c_str());
     return result.ok();
 }
 
 LinkedPair makeTcpPair() {
     auto listener = listenTcp("127.0.0.1", 0);
-    if (!worked(listener))
-        return {};
+    if (!worked(listener)) return {};
     auto a = connectTo((*listener)->describe(), Deadline::inMs(5000));
-    if (!worked(a))
-        return {};
+    if (!worked(a)) return {};
     auto b = (*listener)->accept(Deadline::inMs(5000));
-    if (!worked(b))
-        return {};
+    if (!worked(b)) return {};
     return {std::move(*a), std::move(*b)};
 }
 
@@ -46,7 +42,8 @@ LinkedPair makeSecurePair() {
     const ChannelSecret secret{std::byte{7}};
     std::unique_ptr<Connection> b;
     std::thread accepting([&] {
-        auto made = SecureConnection::accepting(std::move(plain.b), [&](const std::string&) { return std::optional(secret); }, Deadline::inMs(5000));
+        auto made = SecureConnection::accepting(
+            std::move(plain.b), [&](const std::string&) { return std::optional(secret); }, Deadline::inMs(5000));
         if (worked(made)) b = std::move(*made);
     });
     auto a = SecureConnection::connecting(std::move(plain.a), "a", secret, Deadline::inMs(5000));
@@ -116,26 +113,19 @@ std::string whyNoLinks(LinkKind kind) {
 }
 
 LinkedPair makeLinkedPair(LinkKind kind, size_t capacityBytes) {
-    if (kind == LinkKind::Tcp)
-        return makeTcpPair();
-    if (kind == LinkKind::Secure)
-        return makeSecurePair();
-    if (kind == LinkKind::Fabric)
-        return makeFabricPair();
-    if (kind == LinkKind::Rsp)
-        return makeRspPair();
+    if (kind == LinkKind::Tcp) return makeTcpPair();
+    if (kind == LinkKind::Secure) return makeSecurePair();
+    if (kind == LinkKind::Fabric) return makeFabricPair();
+    if (kind == LinkKind::Rsp) return makeRspPair();
     if (kind == LinkKind::Pipe) {
         auto pair = makePipe(capacityBytes);
-        if (!worked(pair))
-            return {};
+        if (!worked(pair)) return {};
         return {std::move(pair->a), std::move(pair->b)};
     }
     auto offer = offerSharedMemory(capacityBytes);
-    if (!worked(offer))
-        return {};
+    if (!worked(offer)) return {};
     auto b = openSharedMemory(offer->peerFd);
-    if (!worked(b))
-        return {};
+    if (!worked(b)) return {};
     return {std::move(offer->connection), std::move(*b)};
 }
 
@@ -155,8 +145,7 @@ uint8_t ByteStream::nextByte() {
 }
 
 void ByteStream::fill(std::span<std::byte> into) {
-    for (std::byte& each : into)
-        each = std::byte{nextByte()};
+    for (std::byte& each : into) each = std::byte{nextByte()};
 }
 
 void Checksum::add(std::span<const std::byte> bytes) {
@@ -170,8 +159,7 @@ void Checksum::add(std::span<const std::byte> bytes) {
         }
         rest_[restBytes_++] = bytes.front();
         bytes = bytes.subspan(1);
-        if (restBytes_ < 8)
-            continue;
+        if (restBytes_ < 8) continue;
         addWord(std::bit_cast<uint64_t>(rest_));
         restBytes_ = 0;
     }
@@ -187,8 +175,7 @@ uint64_t Checksum::value() const {
 
 uint64_t testSeed() {
     const char* given = std::getenv("MURAL_TEST_SEED");
-    const uint64_t seed =
-        given != nullptr ? std::strtoull(given, nullptr, 10) : std::random_device()();
+    const uint64_t seed = given != nullptr ? std::strtoull(given, nullptr, 10) : std::random_device()();
     std::printf("MURAL_TEST_SEED=%llu\n", static_cast<unsigned long long>(seed));
     return seed;
 }
@@ -204,15 +191,12 @@ bool waitUntilAsleep(pid_t thread, Deadline deadline) {
         std::string line;
         std::getline(std::ifstream(path) >> std::ws, line);
         const size_t name = line.rfind(") ");
-        if (name != std::string::npos && line.size() > name + 2 && line[name + 2] == 'S')
-            return true;
+        if (name != std::string::npos && line.size() > name + 2 && line[name + 2] == 'S') return true;
         sched_yield();
     }
     return false;
 }
 
-pid_t currentThread() {
-    return static_cast<pid_t>(syscall(SYS_gettid));
-}
+pid_t currentThread() { return static_cast<pid_t>(syscall(SYS_gettid)); }
 
 } // namespace mural::test

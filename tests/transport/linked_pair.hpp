@@ -16,7 +16,7 @@ namespace mural::test {
 
 enum class LinkKind { Pipe, SharedMemory, Tcp, Secure, Fabric, Rsp };
 inline constexpr std::array kAllLinkKinds = {LinkKind::Pipe,   LinkKind::SharedMemory, LinkKind::Tcp,
-                                            LinkKind::Secure, LinkKind::Fabric,       LinkKind::Rsp};
+                                             LinkKind::Secure, LinkKind::Fabric,       LinkKind::Rsp};
 std::string linkName(LinkKind kind);
 // Why this build or machine lacks such links; empty: available. Only plug-ins may be missing.
 std::string whyNoLinks(LinkKind kind);
@@ -31,8 +31,7 @@ LinkedPair makeLinkedPair(LinkKind kind, size_t capacityBytes);
 // A deterministic byte sequence: fills `into` with its continuation.
 class ByteStream {
 public:
-    explicit ByteStream(uint64_t seed)
-        : state_(seed) {}
+    explicit ByteStream(uint64_t seed) : state_(seed) {}
     void fill(std::span<std::byte> into);
 
 private:

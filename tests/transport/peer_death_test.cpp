@@ -17,13 +17,10 @@ namespace {
 
 using Role = std::function<void(Connection&)>;
 
-Deadline late() {
-    return Deadline::inMs(20000);
-}
+Deadline late() { return Deadline::inMs(20000); }
 
 [[noreturn]] void waitToBeKilled() {
-    while (true)
-        pause();
+    while (true) pause();
 }
 
 // A process that runs `role` at the other end. The destructor kills and reaps it.
@@ -41,8 +38,7 @@ public:
     ~PeerProcess() { kill(); }
 
     void kill() {
-        if (pid_ <= 0)
-            return;
+        if (pid_ <= 0) return;
         ::kill(pid_, SIGKILL);
         await();
     }
@@ -56,14 +52,12 @@ public:
 private:
     void startSharedMemory(size_t capacityBytes, const Role& role) {
         auto offer = offerSharedMemory(capacityBytes);
-        if (!offer)
-            return;
+        if (!offer) return;
         pid_ = fork();
         if (pid_ == 0) {
             offer->connection.reset(); // the child's copy of this end
             auto end = openSharedMemory(offer->peerFd);
-            if (!end)
-                _exit(1);
+            if (!end) _exit(1);
             role(**end);
             _exit(0);
         }
@@ -73,19 +67,16 @@ private:
 
     void startListening(const char* at, const Role& role) {
         auto listener = listenAt(at);
-        if (!listener)
-            return;
+        if (!listener) return;
         pid_ = fork();
         if (pid_ == 0) {
             auto end = connectTo((*listener)->describe(), late());
-            if (!end)
-                _exit(1);
+            if (!end) _exit(1);
             role(**end);
             _exit(0);
         }
         auto end = (*listener)->accept(late());
-        if (end)
-            connection_ = std::move(*end);
+        if (end) connection_ = std::move(*end);
     }
 
     pid_t pid_ = 0;
@@ -108,8 +99,7 @@ template <class Blocked> int64_t killWhileBlockedNs(PeerProcess& peer, Blocked b
         EXPECT_FALSE(blocked());
         endNs = monotonicNowNs();
     });
-    while (id == 0)
-        std::this_thread::yield();
+    while (id == 0) std::this_thread::yield();
     EXPECT_TRUE(waitUntilAsleep(id, late()));
     const int64_t beginNs = monotonicNowNs();
     peer.kill();
@@ -126,8 +116,7 @@ TEST_P(PeerDeathTest, endsAWaitingRead) {
     PeerProcess peer(GetParam(), 4096, [](Connection&) { waitToBeKilled(); });
     ASSERT_TRUE(peer.linked());
     std::vector<std::byte> one(1);
-    const int64_t tookNs =
-        killWhileBlockedNs(peer, [&] { return peer.connection().read(one, late()).ok(); });
+    const int64_t tookNs = killWhileBlockedNs(peer, [&] { return peer.connection().read(one, late()).ok(); });
     EXPECT_LT(tookNs, kNoticedNs);
     EXPECT_FALSE(peer.connection().timedOut());
     EXPECT_FALSE(peer.connection().alive());
@@ -138,8 +127,7 @@ TEST_P(PeerDeathTest, endsAWaitingWrite) {
     PeerProcess peer(GetParam(), 4096, [](Connection&) { waitToBeKilled(); });
     ASSERT_TRUE(peer.linked());
     const std::vector<std::byte> all(size_t{96} << 20);
-    const int64_t tookNs =
-        killWhileBlockedNs(peer, [&] { return peer.connection().write(all, late()).ok(); });
+    const int64_t tookNs = killWhileBlockedNs(peer, [&] { return peer.connection().write(all, late()).ok(); });
     EXPECT_LT(tookNs, kNoticedNs);
     EXPECT_FALSE(peer.connection().write(all, late())) << "and no SIGPIPE";
     EXPECT_FALSE(peer.connection().timedOut());
@@ -150,8 +138,7 @@ TEST_P(PeerDeathTest, isReportedAfterThePeersLastBytes) {
     PeerProcess peer(GetParam(), size_t{1} << 20, [](Connection& end) {
         std::vector<std::byte> last(kBytes);
         ByteStream(5).fill(last);
-        if (!end.write(last, late()))
-            _exit(1);
+        if (!end.write(last, late())) _exit(1);
         end.flush();
         raise(SIGKILL);
     });
@@ -182,8 +169,7 @@ TEST_P(PeerDeathTest, isDetectedWithShortDeadlines) {
 TEST_P(PeerDeathTest, endsAPartialMessage) {
     PeerProcess peer(GetParam(), 4096, [](Connection& end) {
         const std::vector<std::byte> some(100);
-        if (!end.write(some, late()))
-            _exit(1);
+        if (!end.write(some, late())) _exit(1);
         end.flush();
         raise(SIGKILL);
     });
@@ -191,12 +177,10 @@ TEST_P(PeerDeathTest, endsAPartialMessage) {
     std::vector<std::byte> more(101);
     const auto result = peer.connection().read(more, late());
     ASSERT_FALSE(result);
-    EXPECT_NE(result.error().message.find("100 of 101"), std::string::npos)
-        << result.error().message;
+    EXPECT_NE(result.error().message.find("100 of 101"), std::string::npos) << result.error().message;
 }
 
-INSTANTIATE_TEST_SUITE_P(BetweenProcesses,
-                         PeerDeathTest,
+INSTANTIATE_TEST_SUITE_P(BetweenProcesses, PeerDeathTest,
                          testing::Values(LinkKind::SharedMemory, LinkKind::Tcp, LinkKind::Fabric),
                          [](const auto& param) { return linkName(param.param); });
 

@@ -43,7 +43,7 @@ struct Pair {
         }
     }
     bool move(SecureChannel& from, SecureChannel& to, std::vector<Bytes>& messages, size_t pieceBytes,
-        const std::function<void(Bytes&)>& change) {
+              const std::function<void(Bytes&)>& change) {
         Bytes bytes = from.takeOutput();
         if (bytes.empty()) return false;
         if (change) change(bytes);

@@ -14,9 +14,7 @@ namespace mural {
 
 namespace {
 
-Deadline late() {
-    return Deadline::inMs(20000);
-}
+Deadline late() { return Deadline::inMs(20000); }
 
 // Sends one byte in each direction.
 void expectTalk(Listener& listener, const std::string& description) {
@@ -34,8 +32,7 @@ void expectTalk(Listener& listener, const std::string& description) {
 
 bool hasIpv6() {
     const int fd = socket(AF_INET6, SOCK_STREAM, 0);
-    if (fd >= 0)
-        close(fd);
+    if (fd >= 0) close(fd);
     return fd >= 0 && listenTcp("::1", 0).ok();
 }
 
@@ -55,8 +52,7 @@ TEST(TcpConnection, connectsOverIpv4) {
 }
 
 TEST(TcpConnection, connectsOverIpv6) {
-    if (!hasIpv6())
-        GTEST_SKIP() << "this machine has no IPv6 loopback";
+    if (!hasIpv6()) GTEST_SKIP() << "this machine has no IPv6 loopback";
     auto listener = listenTcp("::1", 0);
     ASSERT_TRUE(listener) << listener.error().message;
     EXPECT_TRUE((*listener)->describe().starts_with("tcp://[::1]:")) << (*listener)->describe();
@@ -81,8 +77,7 @@ TEST(TcpConnection, reportsAHostNameWhenListeningOnAllAddresses) {
         gethostname(name, sizeof name - 1);
         EXPECT_EQ(description.value().host, name);
         expectTalk(**listener, tcpText("127.0.0.1", description.value().port));
-        if (hasIpv6())
-            expectTalk(**listener, tcpText("::1", description.value().port));
+        if (hasIpv6()) expectTalk(**listener, tcpText("::1", description.value().port));
     }
 }
 
@@ -90,13 +85,11 @@ TEST(TcpConnection, explainsAFailedConnect) {
     const uint16_t port = closedPort();
     const auto refused = connectTcp("127.0.0.1", port, late());
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find(tcpText("127.0.0.1", port) + ": can't connect"),
-              std::string::npos)
+    EXPECT_NE(refused.error().message.find(tcpText("127.0.0.1", port) + ": can't connect"), std::string::npos)
         << refused.error().message;
     const auto unknown = connectTcp("no-such-host.invalid", 80, late());
     ASSERT_FALSE(unknown);
-    EXPECT_NE(unknown.error().message.find("can't find the host"), std::string::npos)
-        << unknown.error().message;
+    EXPECT_NE(unknown.error().message.find("can't find the host"), std::string::npos) << unknown.error().message;
 }
 
 // With a full backlog further connects hang, as with a silent host.
@@ -139,8 +132,7 @@ TEST(TcpConnection, failsToListenOnATakenPort) {
     const uint16_t port = parseConnectionDescription((*listener)->describe()).value().port;
     const auto second = listenTcp("127.0.0.1", port);
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().message.find("can't listen"), std::string::npos)
-        << second.error().message;
+    EXPECT_NE(second.error().message.find("can't listen"), std::string::npos) << second.error().message;
     EXPECT_FALSE(listenTcp("192.0.2.1", 0)) << "an address of nobody";
 }
 

@@ -34,7 +34,8 @@ int64_t nowNs() {
 double cpuS() {
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
-    return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec) * 1e-6;
+    return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+           static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec) * 1e-6;
 }
 
 int failed(const char* what) {
@@ -80,7 +81,8 @@ int main(int count, char** words) {
     group.sin_family = AF_INET;
     group.sin_port = htons(static_cast<uint16_t>(std::atoi(words[2])));
     ip_mreq membership{};
-    if (inet_pton(AF_INET, words[1], &group.sin_addr) != 1 || inet_pton(AF_INET, words[3], &membership.imr_interface) != 1) {
+    if (inet_pton(AF_INET, words[1], &group.sin_addr) != 1 ||
+        inet_pton(AF_INET, words[3], &membership.imr_interface) != 1) {
         std::fprintf(stderr, "bare_receiver: \"%s\" or \"%s\" is no IPv4 address\n", words[1], words[3]);
         return 2;
     }
@@ -90,7 +92,8 @@ int main(int count, char** words) {
     if (setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kSocketBytes, sizeof kSocketBytes) != 0)
         setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &kSocketBytes, sizeof kSocketBytes);
     if (bind(socket, reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) return failed("can't bind");
-    if (setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) return failed("can't join");
+    if (setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0)
+        return failed("can't join");
 
     Messages messages(kPlaceBytes);
     const int64_t startNs = nowNs();
@@ -117,6 +120,8 @@ int main(int count, char** words) {
         return 1;
     }
     const double gigabytes = static_cast<double>(bytes) * 1e-9;
-    std::printf("gbit=%.3f cpu_s_per_GB=%.3f\n", gigabytes * 8 * static_cast<double>(kNsPerS) / static_cast<double>(lastNs - firstNs), (cpuS() - cpuBeganS) / gigabytes);
+    std::printf("gbit=%.3f cpu_s_per_GB=%.3f\n",
+                gigabytes * 8 * static_cast<double>(kNsPerS) / static_cast<double>(lastNs - firstNs),
+                (cpuS() - cpuBeganS) / gigabytes);
     return 0;
 }

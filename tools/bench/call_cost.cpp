@@ -76,7 +76,7 @@ void callTextures(int steps) {
 
 struct Case {
     const char* name;
-    int calls; // per step
+    int calls;    // per step
     size_t bytes; // of a captured step: opcode and arguments
     void (*run)(int steps);
     bool shader; // with the GLSL program bound
@@ -133,7 +133,8 @@ double measureCopy(const Case& c, const Options& options) {
             std::memcpy(&ring[at], source, sizeBytes);
             at += c.bytes;
         }
-        cpu.push_back(static_cast<double>(nowNs(CLOCK_THREAD_CPUTIME_ID) - cpuNs) / (static_cast<double>(c.calls) * options.steps));
+        cpu.push_back(static_cast<double>(nowNs(CLOCK_THREAD_CPUTIME_ID) - cpuNs) /
+                      (static_cast<double>(c.calls) * options.steps));
     }
     return median(cpu);
 }
@@ -149,7 +150,10 @@ bool pictureIsRight(GLuint program, GlWindow& window) {
     const GLenum error = glGetError();
     window.show();
     if (pixel[0] == 0 && pixel[1] == 255 && pixel[2] == 0 && error == GL_NO_ERROR) return true;
-    std::fprintf(stderr, "call_cost: the quad should be 0 255 0 and is %d %d %d, GL error 0x%x; the calls were not all executed\n", pixel[0], pixel[1], pixel[2], error);
+    std::fprintf(
+        stderr,
+        "call_cost: the quad should be 0 255 0 and is %d %d %d, GL error 0x%x; the calls were not all executed\n",
+        pixel[0], pixel[1], pixel[2], error);
     return false;
 }
 
@@ -166,7 +170,8 @@ void printTable(const std::vector<Cost>& costs) {
     std::printf("%-36s %10s %10s %12s %12s\n", "call", "bytes", "CPU ns", "elapsed ns", "copy ns");
     for (size_t i = 0; i < costs.size(); ++i) {
         const Case& c = kCases[i];
-        std::printf("%-36s %10.0f %10.1f %12.1f %12.1f\n", c.name, static_cast<double>(c.bytes) / c.calls, costs[i].cpuNs, costs[i].wallNs, costs[i].copyNs);
+        std::printf("%-36s %10.0f %10.1f %12.1f %12.1f\n", c.name, static_cast<double>(c.bytes) / c.calls,
+                    costs[i].cpuNs, costs[i].wallNs, costs[i].copyNs);
     }
 }
 
@@ -179,7 +184,9 @@ bool writeJson(const std::string& path, const std::vector<Cost>& costs) {
     std::fputs("{\"calls\":[", file);
     for (size_t i = 0; i < costs.size(); ++i) {
         const Case& c = kCases[i];
-        std::fprintf(file, "%s{\"name\":\"%s\",\"bytes\":%.1f,\"cpuNs\":%.3f,\"wallNs\":%.3f,\"copyNs\":%.3f}", i == 0 ? "" : ",", c.name, static_cast<double>(c.bytes) / c.calls, costs[i].cpuNs, costs[i].wallNs, costs[i].copyNs);
+        std::fprintf(file, "%s{\"name\":\"%s\",\"bytes\":%.1f,\"cpuNs\":%.3f,\"wallNs\":%.3f,\"copyNs\":%.3f}",
+                     i == 0 ? "" : ",", c.name, static_cast<double>(c.bytes) / c.calls, costs[i].cpuNs, costs[i].wallNs,
+                     costs[i].copyNs);
     }
     std::fputs("]}\n", file);
     return std::fclose(file) == 0;
@@ -190,17 +197,22 @@ int usage(FILE* to) {
                "Nanoseconds per OpenGL call, of the calling thread's CPU time (medians over frames).\n"
                "  --steps N    calls (or pairs of calls) in each frame (4000)\n"
                "  --frames N   measured frames per kind of call (100)\n"
-               "  --json FILE  the numbers as JSON too\n", to);
+               "  --json FILE  the numbers as JSON too\n",
+               to);
     return to == stdout ? 0 : 2;
 }
 
 bool readOptions(int count, char** words, Options& options) {
     for (int i = 1; i + 1 < count; i += 2) {
         const std::string option = words[i];
-        if (option == "--steps") options.steps = std::atoi(words[i + 1]);
-        else if (option == "--frames") options.frames = std::atoi(words[i + 1]);
-        else if (option == "--json") options.jsonFile = words[i + 1];
-        else return false;
+        if (option == "--steps")
+            options.steps = std::atoi(words[i + 1]);
+        else if (option == "--frames")
+            options.frames = std::atoi(words[i + 1]);
+        else if (option == "--json")
+            options.jsonFile = words[i + 1];
+        else
+            return false;
     }
     return count % 2 == 1 && options.steps > 0 && options.frames > 0;
 }

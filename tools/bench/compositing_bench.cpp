@@ -15,8 +15,11 @@ int main(int argc, char** argv) {
     app.add_option("FOLDER", folder, "with *.plane files of plane_capture")->required();
     app.add_flag("--quick", options.quick, "few turns: are the results right?");
     app.add_option("--turns", options.turns, "of each measurement")->check(CLI::Range(1, 1000))->capture_default_str();
-    app.add_option("--only", only, "codecs, kernels, selector, ranks")->delimiter(',')->check(CLI::IsMember({"codecs", "kernels", "selector", "ranks"}));
-    app.add_option("--icet-kernels", options.icetLibrary, "icet_kernels.c built against IceT, to be measured beside ours");
+    app.add_option("--only", only, "codecs, kernels, selector, ranks")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"codecs", "kernels", "selector", "ranks"}));
+    app.add_option("--icet-kernels", options.icetLibrary,
+                   "icet_kernels.c built against IceT, to be measured beside ours");
     CLI11_PARSE(app, argc, argv);
     if (options.quick) options.turns = 2;
     const auto wanted = [&](const char* part) { return only.empty() || std::ranges::find(only, part) != only.end(); };

@@ -1,5 +1,5 @@
-/* IceT's blending of two images, for compositing_bench to time beside ours. Built by tools/bench/compositing --icet DIR, against
- * the sources of IceT 2 that lie in DIR; nothing of IceT comes into Mural's tree or programs. */
+/* IceT's blending of two images, for compositing_bench to time beside ours. Built by tools/bench/compositing --icet
+ * DIR, against the sources of IceT 2 that lie in DIR; nothing of IceT comes into Mural's tree or programs. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,7 +44,8 @@ __attribute__((visibility("default"))) int icet_bench_open(int width, int height
     icetCompositeMode(ICET_COMPOSITE_MODE_BLEND);
     bench.width = width;
     bench.height = height;
-    const size_t image_bytes = (size_t)icetImageBufferSize(width, height), sparse_bytes = (size_t)icetSparseImageBufferSize(width, height);
+    const size_t image_bytes = (size_t)icetImageBufferSize(width, height),
+                 sparse_bytes = (size_t)icetSparseImageBufferSize(width, height);
     void* memory[5];
     for (int i = 0; i < 5; ++i) {
         memory[i] = calloc(1, i < 2 ? image_bytes : sparse_bytes);
@@ -70,4 +71,6 @@ __attribute__((visibility("default"))) void icet_bench_load(const void* back, co
 __attribute__((visibility("default"))) void icet_bench_blend(void) { icetComposite(bench.back, bench.front, 1); }
 
 /* Two compressed ones into a third, as IceT's strategies do. */
-__attribute__((visibility("default"))) void icet_bench_blend_compressed(void) { icetCompressedCompressedComposite(bench.sparse_front, bench.sparse_back, bench.sparse_result); }
+__attribute__((visibility("default"))) void icet_bench_blend_compressed(void) {
+    icetCompressedCompressedComposite(bench.sparse_front, bench.sparse_back, bench.sparse_result);
+}

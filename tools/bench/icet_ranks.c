@@ -1,4 +1,5 @@
-/* IceT among processes, over links that the bench gives it: the communicator, and one picture put together. Built with icet_kernels.c. */
+/* IceT among processes, over links that the bench gives it: the communicator, and one picture put together. Built with
+ * icet_kernels.c. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,12 +26,16 @@ struct request {
 };
 
 static struct group* group_of(IceTCommunicator self) { return (struct group*)self; }
-static uint64_t tag_of(const struct group* g, int tag) { return (g->context << 32 | (uint32_t)tag) & ~((uint64_t)1 << 63); }
+static uint64_t tag_of(const struct group* g, int tag) {
+    return (g->context << 32 | (uint32_t)tag) & ~((uint64_t)1 << 63);
+}
 static size_t bytes_of(int count, IceTEnum type) {
     switch (type) {
     case ICET_SHORT: return 2 * (size_t)count;
-    case ICET_INT: case ICET_FLOAT: return 4 * (size_t)count;
-    case ICET_DOUBLE: case ICET_POINTER: return 8 * (size_t)count;
+    case ICET_INT:
+    case ICET_FLOAT: return 4 * (size_t)count;
+    case ICET_DOUBLE:
+    case ICET_POINTER: return 8 * (size_t)count;
     default: return (size_t)count; /* ICET_BYTE, ICET_BOOLEAN */
     }
 }
@@ -39,22 +44,32 @@ static void send_bytes(struct group* g, const void* from, size_t bytes, int to, 
     const int peer = g->members[to];
     g->links->wait_sent(g->links->self, peer, g->links->post(g->links->self, peer, tag_of(g, tag), from, bytes));
 }
-static void receive_bytes(struct group* g, void* into, size_t bytes, int from, int tag) { g->links->take(g->links->self, g->members[from], tag_of(g, tag), into, bytes); }
+static void receive_bytes(struct group* g, void* into, size_t bytes, int from, int tag) {
+    g->links->take(g->links->self, g->members[from], tag_of(g, tag), into, bytes);
+}
 
 static void barrier(IceTCommunicator self) {
     struct group* g = group_of(self);
     char token = 0;
     for (int r = 1; r < g->count; ++r) {
-        if (g->own == 0) receive_bytes(g, &token, 1, r, -2);
-        else if (g->own == r) send_bytes(g, &token, 1, 0, -2);
+        if (g->own == 0)
+            receive_bytes(g, &token, 1, r, -2);
+        else if (g->own == r)
+            send_bytes(g, &token, 1, 0, -2);
     }
     for (int r = 1; r < g->count; ++r) {
-        if (g->own == 0) send_bytes(g, &token, 1, r, -3);
-        else if (g->own == r) receive_bytes(g, &token, 1, 0, -3);
+        if (g->own == 0)
+            send_bytes(g, &token, 1, r, -3);
+        else if (g->own == r)
+            receive_bytes(g, &token, 1, 0, -3);
     }
 }
-static void send_function(IceTCommunicator self, const void* from, int count, IceTEnum type, int to, int tag) { send_bytes(group_of(self), from, bytes_of(count, type), to, tag); }
-static void receive_function(IceTCommunicator self, void* into, int count, IceTEnum type, int from, int tag) { receive_bytes(group_of(self), into, bytes_of(count, type), from, tag); }
+static void send_function(IceTCommunicator self, const void* from, int count, IceTEnum type, int to, int tag) {
+    send_bytes(group_of(self), from, bytes_of(count, type), to, tag);
+}
+static void receive_function(IceTCommunicator self, void* into, int count, IceTEnum type, int from, int tag) {
+    receive_bytes(group_of(self), into, bytes_of(count, type), from, tag);
+}
 
 static IceTCommRequest request_of(int sends, int peer, uint64_t number, uint64_t tag, void* into, size_t bytes) {
     struct request* r = calloc(1, sizeof *r);
@@ -70,7 +85,8 @@ static IceTCommRequest request_of(int sends, int peer, uint64_t number, uint64_t
 static IceTCommRequest isend(IceTCommunicator self, const void* from, int count, IceTEnum type, int to, int tag) {
     struct group* g = group_of(self);
     const int peer = g->members[to];
-    return request_of(1, peer, g->links->post(g->links->self, peer, tag_of(g, tag), from, bytes_of(count, type)), 0, NULL, 0);
+    return request_of(1, peer, g->links->post(g->links->self, peer, tag_of(g, tag), from, bytes_of(count, type)), 0,
+                      NULL, 0);
 }
 static IceTCommRequest ireceive(IceTCommunicator self, void* into, int count, IceTEnum type, int from, int tag) {
     struct group* g = group_of(self);
@@ -80,8 +96,10 @@ static void wait_for(IceTCommunicator self, IceTCommRequest* which) {
     const struct icet_links* l = group_of(self)->links;
     struct request* r = (struct request*)*which;
     if (!r) return;
-    if (r->sends) l->wait_sent(l->self, r->peer, r->number);
-    else l->take(l->self, r->peer, r->tag, r->into, r->bytes);
+    if (r->sends)
+        l->wait_sent(l->self, r->peer, r->number);
+    else
+        l->take(l->self, r->peer, r->tag, r->into, r->bytes);
     free(r);
     *which = ICET_COMM_REQUEST_NULL;
 }
@@ -106,12 +124,14 @@ static int wait_any(IceTCommunicator self, int count, IceTCommRequest* all) {
     free(peers);
     return -1;
 }
-static void send_receive(IceTCommunicator self, const void* from, int count, IceTEnum type, int to, int tag, void* into, int into_count, IceTEnum into_type, int source, int into_tag) {
+static void send_receive(IceTCommunicator self, const void* from, int count, IceTEnum type, int to, int tag, void* into,
+                         int into_count, IceTEnum into_type, int source, int into_tag) {
     IceTCommRequest sent = isend(self, from, count, type, to, tag);
     receive_function(self, into, into_count, into_type, source, into_tag);
     wait_for(self, &sent);
 }
-static void gatherv(IceTCommunicator self, const void* from, int count, IceTEnum type, void* into, const int* counts, const int* offsets, int root) {
+static void gatherv(IceTCommunicator self, const void* from, int count, IceTEnum type, void* into, const int* counts,
+                    const int* offsets, int root) {
     struct group* g = group_of(self);
     if (g->own != root) {
         send_bytes(g, from, bytes_of(count, type), root, -4);
@@ -119,8 +139,10 @@ static void gatherv(IceTCommunicator self, const void* from, int count, IceTEnum
     }
     for (int r = 0; r < g->count; ++r) {
         char* at = (char*)into + bytes_of(offsets[r], type);
-        if (r != root) receive_bytes(g, at, bytes_of(counts[r], type), r, -4);
-        else if (from != ICET_IN_PLACE_COLLECT) memcpy(at, from, bytes_of(count, type));
+        if (r != root)
+            receive_bytes(g, at, bytes_of(counts[r], type), r, -4);
+        else if (from != ICET_IN_PLACE_COLLECT)
+            memcpy(at, from, bytes_of(count, type));
     }
 }
 static void gather(IceTCommunicator self, const void* from, int count, IceTEnum type, void* into, int root) {
@@ -143,8 +165,10 @@ static void allgather(IceTCommunicator self, const void* from, int count, IceTEn
     gather(self, copy, count, type, into, 0);
     free(copy);
     for (int r = 1; r < g->count; ++r) {
-        if (g->own == 0) send_bytes(g, into, bytes * (size_t)g->count, r, -5);
-        else if (g->own == r) receive_bytes(g, into, bytes * (size_t)g->count, 0, -5);
+        if (g->own == 0)
+            send_bytes(g, into, bytes * (size_t)g->count, r, -5);
+        else if (g->own == r)
+            receive_bytes(g, into, bytes * (size_t)g->count, 0, -5);
     }
 }
 static void alltoall(IceTCommunicator self, const void* from, int count, IceTEnum type, void* into) {
@@ -155,8 +179,10 @@ static void alltoall(IceTCommunicator self, const void* from, int count, IceTEnu
         if (r != g->own) sent[r] = isend(self, (const char*)from + bytes * (size_t)r, (int)bytes, ICET_BYTE, r, -6);
     for (int r = 0; r < g->count; ++r) {
         char* at = (char*)into + bytes * (size_t)r;
-        if (r == g->own) memcpy(at, (const char*)from + bytes * (size_t)r, bytes);
-        else receive_bytes(g, at, bytes, r, -6);
+        if (r == g->own)
+            memcpy(at, (const char*)from + bytes * (size_t)r, bytes);
+        else
+            receive_bytes(g, at, bytes, r, -6);
     }
     for (int r = 0; r < g->count; ++r) wait_for(self, &sent[r]);
     free(sent);
@@ -174,7 +200,9 @@ static IceTCommunicator subset(IceTCommunicator self, int count, const IceTInt32
 static struct group* group_with(const struct icet_links* links, uint64_t context, int count) {
     struct group* g = calloc(1, sizeof *g);
     if (!g) abort();
-    const struct IceTCommunicatorStruct functions = {duplicate, destroy, subset, barrier, send_function, receive_function, send_receive, gather, gatherv, allgather, alltoall, isend, ireceive, wait_for, wait_any, size_function, rank_function, NULL};
+    const struct IceTCommunicatorStruct functions = {
+        duplicate, destroy,  subset, barrier,  send_function, receive_function, send_receive,  gather,        gatherv,
+        allgather, alltoall, isend,  ireceive, wait_for,      wait_any,         size_function, rank_function, NULL};
     g->functions = functions;
     g->links = links;
     g->context = context & 0x7fffffff;
@@ -203,7 +231,8 @@ static IceTCommunicator subset(IceTCommunicator self, int count, const IceTInt32
     return ICET_COMM_NULL;
 }
 
-__attribute__((visibility("default"))) int icet_ranks_open(const struct icet_links* links, int width, int height, enum icet_way way) {
+__attribute__((visibility("default"))) int icet_ranks_open(const struct icet_links* links, int width, int height,
+                                                           enum icet_way way) {
     struct group* world = group_with(links, 1, links->ranks);
     for (int r = 0; r < links->ranks; ++r) world->members[r] = r;
     world->own = links->own;
@@ -218,7 +247,8 @@ __attribute__((visibility("default"))) int icet_ranks_open(const struct icet_lin
     icetCompositeMode(ICET_COMPOSITE_MODE_Z_BUFFER);
     icetDisable(ICET_ORDERED_COMPOSITE);
     icetStrategy(way == ICET_WAY_SERIAL ? ICET_STRATEGY_DIRECT : ICET_STRATEGY_SEQUENTIAL);
-    icetSingleImageStrategy(way == ICET_WAY_SWAP ? ICET_SINGLE_IMAGE_STRATEGY_BSWAP : ICET_SINGLE_IMAGE_STRATEGY_RADIXK);
+    icetSingleImageStrategy(way == ICET_WAY_SWAP ? ICET_SINGLE_IMAGE_STRATEGY_BSWAP
+                                                 : ICET_SINGLE_IMAGE_STRATEGY_RADIXK);
     return icetGetError() == ICET_NO_ERROR;
 }
 

@@ -91,9 +91,12 @@ struct Hashes : Way {
 // The kernel marks and lists written pages, which are compared with the copy.
 struct Watch : Comparison {
     mural::WriteWatch watch;
-    bool begin(std::byte* memory, size_t size) override { return Comparison::begin(memory, size) && watch.begin(memory, size); }
+    bool begin(std::byte* memory, size_t size) override {
+        return Comparison::begin(memory, size) && watch.begin(memory, size);
+    }
     void beforeDraw() override {
-        const bool told = watch.lock(0, size_, [](void* self, size_t from, size_t end) { static_cast<Watch*>(self)->compare(from, end); }, this);
+        const bool told = watch.lock(
+            0, size_, [](void* self, size_t from, size_t end) { static_cast<Watch*>(self)->compare(from, end); }, this);
         if (!told) std::abort();
     }
 };
@@ -103,7 +106,8 @@ struct Chosen : Way {
     mural::MapChanges changes;
     bool begin(std::byte* memory, size_t size) override { return changes.begin(memory, size); }
     void beforeDraw() override {
-        changes.collect(false, [](void*, size_t, const std::byte* bytes, size_t size) { copyOut(bytes, size); }, nullptr);
+        changes.collect(
+            false, [](void*, size_t, const std::byte* bytes, size_t size) { copyOut(bytes, size); }, nullptr);
     }
 };
 
@@ -170,7 +174,8 @@ struct Answered : Marked {
         uffd = static_cast<int>(syscall(SYS_userfaultfd, O_CLOEXEC | O_NONBLOCK | 1));
         uint64_t api[3] = {0xAA, 0, 0};
         uint64_t range[4] = {reinterpret_cast<uint64_t>(memory), size, 2, 0};
-        if (uffd < 0 || ioctl(uffd, _IOC(3, 0xAA, 0x3F, 24), api) || ioctl(uffd, _IOC(3, 0xAA, 0, 32), range)) return false;
+        if (uffd < 0 || ioctl(uffd, _IOC(3, 0xAA, 0x3F, 24), api) || ioctl(uffd, _IOC(3, 0xAA, 0, 32), range))
+            return false;
         int ends[2];
         if (pipe2(ends, O_CLOEXEC)) return false;
         end = ends[1];
@@ -203,10 +208,14 @@ void* Answered::answer(void* self) {
 
 // Soft-dirty bits of /proc/self/pagemap; clear_refs clears them for the whole process.
 struct SoftDirty : Comparison {
-    int pagemap = open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC), clear = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
+    int pagemap = open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC),
+        clear = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
     std::vector<uint64_t> entries;
     ~SoftDirty() override { close(pagemap), close(clear); }
-    bool read() { return pread(pagemap, entries.data(), entries.size() * 8, static_cast<off_t>(reinterpret_cast<uint64_t>(memory_) / kPage * 8)) > 0; }
+    bool read() {
+        return pread(pagemap, entries.data(), entries.size() * 8,
+                     static_cast<off_t>(reinterpret_cast<uint64_t>(memory_) / kPage * 8)) > 0;
+    }
     bool begin(std::byte* memory, size_t size) override {
         Comparison::begin(memory, size);
         entries.resize(size / kPage);
@@ -239,7 +248,8 @@ struct Writer {
     size_t at = 0;
     uint8_t value = 1;
     void draw() {
-        const size_t bytes = std::max<size_t>(64, static_cast<size_t>(static_cast<double>(job.size) * job.share / job.draws) / 64 * 64);
+        const size_t bytes =
+            std::max<size_t>(64, static_cast<size_t>(static_cast<double>(job.size) * job.share / job.draws) / 64 * 64);
         for (size_t left = bytes; left > 0;) {
             const size_t now = std::min(left, job.size - at);
             std::memset(memory + at, ++value, now);
@@ -271,8 +281,10 @@ template <class Made> void measure(const Job& job, std::byte* memory, int64_t li
         const double now = std::max(perDraw(job, memory, &way, limitNs) - bare, 1.0);
         best = best < 0 ? now : std::min(best, now);
     }
-    if (best < 0) std::printf(" %11s", "-");
-    else std::printf(" %11.2f", best / 1000);
+    if (best < 0)
+        std::printf(" %11s", "-");
+    else
+        std::printf(" %11.2f", best / 1000);
     std::fflush(stdout);
 }
 
@@ -300,8 +312,10 @@ int main(int argc, char** argv) {
     const int64_t limitNs = quick ? 2'000'000 : 60'000'000;
     sink.resize(1 << 20);
     std::printf("microseconds per draw beyond the program's writes (least of 3)\n");
-    std::printf("%8s %6s %6s %11s %11s %11s %11s %11s %11s %11s\n", "KiB", "draws", "% new", "compare", "hash", "watch", "chosen", "uffd thread", "SIGSEGV", "soft-dirty");
-    const std::vector<size_t> sizes = quick ? std::vector<size_t>{64, 4096} : std::vector<size_t>{4, 16, 64, 4096, 65536, 262144};
+    std::printf("%8s %6s %6s %11s %11s %11s %11s %11s %11s %11s\n", "KiB", "draws", "% new", "compare", "hash", "watch",
+                "chosen", "uffd thread", "SIGSEGV", "soft-dirty");
+    const std::vector<size_t> sizes =
+        quick ? std::vector<size_t>{64, 4096} : std::vector<size_t>{4, 16, 64, 4096, 65536, 262144};
     for (const size_t kib : sizes) {
         for (const int draws : {1, 100, 10000}) {
             for (const double share : {0.001, 0.1, 1.0}) row({kib * 1024, draws, share}, limitNs);

@@ -1,12 +1,13 @@
-/* Preloaded into a GL program: writes colour and depth of chosen frames as they stand before the swap, then ends the program.
- * What tools/bench/compositing measures codecs on.
+/* Preloaded into a GL program: writes colour and depth of chosen frames as they stand before the swap, then ends the
+ * program. What tools/bench/compositing measures codecs on.
  *
  *   PLANE_CAPTURE_OUT=PREFIX   files PREFIX.RGBA8.plane, PREFIX.D24S8.plane, PREFIX.D32F.plane: one line
  *                              "plane FORMAT WIDTH HEIGHT", then the rows, lowest first
  *   PLANE_CAPTURE_FRAME=N      the swap before which they are written (from 1; default 10)
  *   PLANE_CAPTURE_NEXT=1       writes frame N+1 as PREFIX.next.… too
  *
- * Programs find glXSwapBuffers by linking, by dlsym, or by glXGetProcAddress, and EGL's likewise: all ways are caught. */
+ * Programs find glXSwapBuffers by linking, by dlsym, or by glXGetProcAddress, and EGL's likewise: all ways are caught.
+ */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stdint.h>
@@ -17,8 +18,21 @@
 
 #define EXPORT __attribute__((visibility("default")))
 
-enum { kViewport = 0x0BA2, kRgba = 0x1908, kUnsignedByte = 0x1401, kDepthStencil = 0x84F9, kUnsignedInt248 = 0x84FA, kDepth = 0x1902, kFloat = 0x1406,
-       kPackAlignment = 0x0D05, kPackRowLength = 0x0D02, kPackBuffer = 0x88EB, kPackBufferBinding = 0x88ED, kReadFramebuffer = 0x8CA8, kReadFramebufferBinding = 0x8CAA };
+enum {
+    kViewport = 0x0BA2,
+    kRgba = 0x1908,
+    kUnsignedByte = 0x1401,
+    kDepthStencil = 0x84F9,
+    kUnsignedInt248 = 0x84FA,
+    kDepth = 0x1902,
+    kFloat = 0x1406,
+    kPackAlignment = 0x0D05,
+    kPackRowLength = 0x0D02,
+    kPackBuffer = 0x88EB,
+    kPackBufferBinding = 0x88ED,
+    kReadFramebuffer = 0x8CA8,
+    kReadFramebufferBinding = 0x8CAA
+};
 
 typedef void (*function)(void);
 typedef void* (*dlsym_function)(void*, const char*);
@@ -51,14 +65,16 @@ static void write_plane(const char* prefix, const char* format, int width, int h
         return;
     }
     fprintf(file, "plane %s %d %d\n", format, width, height);
-    if (fwrite(pixels, 4, (size_t)width * (size_t)height, file) != (size_t)width * (size_t)height) fprintf(stderr, "plane_capture: %s is cut short; is the disk full?\n", path);
+    if (fwrite(pixels, 4, (size_t)width * (size_t)height, file) != (size_t)width * (size_t)height)
+        fprintf(stderr, "plane_capture: %s is cut short; is the disk full?\n", path);
     fclose(file);
 }
 
 static void read_planes(const char* prefix) {
     void (*get)(unsigned, int*) = (void (*)(unsigned, int*))gl("glGetIntegerv");
     void (*store)(unsigned, int) = (void (*)(unsigned, int))gl("glPixelStorei");
-    void (*read_pixels)(int, int, int, int, unsigned, unsigned, void*) = (void (*)(int, int, int, int, unsigned, unsigned, void*))gl("glReadPixels");
+    void (*read_pixels)(int, int, int, int, unsigned, unsigned, void*) =
+        (void (*)(int, int, int, int, unsigned, unsigned, void*))gl("glReadPixels");
     void (*bind_buffer)(unsigned, unsigned) = (void (*)(unsigned, unsigned))gl("glBindBuffer");
     void (*bind_framebuffer)(unsigned, unsigned) = (void (*)(unsigned, unsigned))gl("glBindFramebuffer");
     if (!get || !store || !read_pixels) {

@@ -77,8 +77,10 @@ Result<Counted> run(Way& way, const char* path, int64_t warm, Frames& frames) {
         (start ? frames.startRaw : frames.raw) += std::exchange(frameRaw, 0);
         ++(start ? frames.start : frames.counted);
         auto bytes = way.frameEnds();
-        if (!bytes) wrong = "frame " + std::to_string(frame) + ": " + bytes.error().message;
-        else (start ? counted.startBytes : counted.bytes) += static_cast<double>(*bytes);
+        if (!bytes)
+            wrong = "frame " + std::to_string(frame) + ": " + bytes.error().message;
+        else
+            (start ? counted.startBytes : counted.bytes) += static_cast<double>(*bytes);
         if (start) counted.startCpuNs = static_cast<double>(way.cpuNs());
     };
     if (auto read = readFrames(path, to); !read) return read.error();
@@ -87,7 +89,8 @@ Result<Counted> run(Way& way, const char* path, int64_t warm, Frames& frames) {
     FrameReader again;
     again.packet = [&](const StreamPacket& p) {
         if (!wrong.empty() || shown >= frames.start + frames.counted) return; // nothing is sent after the last frame
-        if (auto same = way.comesOut(p); !same) wrong = "frame " + std::to_string(shown + 1) + ": " + same.error().message;
+        if (auto same = way.comesOut(p); !same)
+            wrong = "frame " + std::to_string(shown + 1) + ": " + same.error().message;
     };
     again.ended = [&](int64_t frame) { shown = frame; };
     if (auto read = readFrames(path, again); !read) return read.error();
@@ -113,7 +116,8 @@ int fail(const std::string& why, int status = 2) {
 
 int main(int argc, char** argv) {
     keepFreedMemory(); // as in the head
-    if (argc < 2 || argc > 3) return fail("give a recording that mural run --record has made, and how many frames are start-up");
+    if (argc < 2 || argc > 3)
+        return fail("give a recording that mural run --record has made, and how many frames are start-up");
     const int64_t warm = argc > 2 ? std::strtoll(argv[2], nullptr, 10) : 10;
     Frames frames;
     std::vector<std::string> names(kWays);
@@ -130,7 +134,9 @@ int main(int argc, char** argv) {
             all[i].push_back(*counted);
         }
     if (frames.counted == 0)
-        return fail(std::string(argv[1]) + " has " + std::to_string(frames.start) + " frames, no more than are start-up; record more", kNothingToMeasure);
+        return fail(std::string(argv[1]) + " has " + std::to_string(frames.start) +
+                        " frames, no more than are start-up; record more",
+                    kNothingToMeasure);
 
     const auto count = static_cast<double>(frames.counted);
     nlohmann::json report;

@@ -29,7 +29,8 @@ std::string roundTripText(const std::map<std::string, int64_t>& countsBy) {
     for (const auto& [command, count] : countsBy) order.emplace_back(-count, command);
     std::sort(order.begin(), order.end());
     std::string text;
-    for (const auto& [negative, command] : order) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", command, -negative);
+    for (const auto& [negative, command] : order)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", command, -negative);
     return text;
 }
 
@@ -68,63 +69,95 @@ namespace {
 // "not verified: 3 frames (front buffer 2, window not current 1)"
 std::string uncomparedText(const SessionReport& r) {
     std::string reasons;
-    for (const auto& [reason, count] : r.uncomparedFramesBy) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", reason, count);
-    return fmt::format("not verified: {} frame{}{}", r.uncomparedFrames, plural(r.uncomparedFrames), reasons.empty() ? "" : " (" + reasons + ")");
+    for (const auto& [reason, count] : r.uncomparedFramesBy)
+        reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", reason, count);
+    return fmt::format("not verified: {} frame{}{}", r.uncomparedFrames, plural(r.uncomparedFrames),
+                       reasons.empty() ? "" : " (" + reasons + ")");
 }
 
 } // namespace
 
 std::vector<std::string> reportLines(const SessionReport& r) {
     std::vector<std::string> lines;
-    std::string first = fmt::format("{} frame{} in {:.1f} s, {:.1f} frames/s, {} per frame to each node, {} round trip{}", r.frames, plural(r.frames),
-                                    r.seconds, r.framesPerSecond, sizeText(r.bytesPerFrame), r.roundTrips, plural(r.roundTrips));
+    std::string first = fmt::format(
+        "{} frame{} in {:.1f} s, {:.1f} frames/s, {} per frame to each node, {} round trip{}", r.frames,
+        plural(r.frames), r.seconds, r.framesPerSecond, sizeText(r.bytesPerFrame), r.roundTrips, plural(r.roundTrips));
     if (r.roundTrips > 0 && r.frames > 0)
-        first += fmt::format(" ({:.2f} per frame: {})", static_cast<double>(r.roundTrips) / static_cast<double>(r.frames), roundTripText(r.roundTripsBy));
+        first +=
+            fmt::format(" ({:.2f} per frame: {})", static_cast<double>(r.roundTrips) / static_cast<double>(r.frames),
+                        roundTripText(r.roundTripsBy));
     lines.push_back(first);
     if (r.economy.on && r.frames > 0) {
         const EconomyReport& e = r.economy;
         const auto frames = static_cast<double>(r.frames);
-        lines.push_back(fmt::format("economy: of {} per frame {} were new to the nodes, {} compressed; {:.0f} of {:.0f} pages they had; packing took {:.0f} us per frame, {:.0f} ns per call",
-                                    sizeText(e.rawBytes / frames), sizeText(e.stagedBytes / frames), sizeText(e.wireBytes / frames), e.storeHits, e.storeHits + e.newPages,
-                                    1e6 * e.encodeSeconds / frames, e.records > 0 ? 1e9 * e.encodeSeconds / e.records : 0.0));
+        lines.push_back(fmt::format("economy: of {} per frame {} were new to the nodes, {} compressed; {:.0f} of "
+                                    "{:.0f} pages they had; packing took {:.0f} us per frame, {:.0f} ns per call",
+                                    sizeText(e.rawBytes / frames), sizeText(e.stagedBytes / frames),
+                                    sizeText(e.wireBytes / frames), e.storeHits, e.storeHits + e.newPages,
+                                    1e6 * e.encodeSeconds / frames,
+                                    e.records > 0 ? 1e9 * e.encodeSeconds / e.records : 0.0));
         if (e.heldRecords + e.leftOutRecords > 0)
-            lines.push_back(fmt::format("held back: {:.0f} record{} waited for {} first use", e.heldRecords, plural(static_cast<int64_t>(e.heldRecords)), e.heldRecords == 1 ? "its" : "their") +
-                            (e.leftOutRecords > 0 ? fmt::format("; {:.0f} of {} never went, as nobody needed them", e.leftOutRecords, sizeText(e.leftOutBytes)) : ""));
+            lines.push_back(fmt::format("held back: {:.0f} record{} waited for {} first use", e.heldRecords,
+                                        plural(static_cast<int64_t>(e.heldRecords)),
+                                        e.heldRecords == 1 ? "its" : "their") +
+                            (e.leftOutRecords > 0 ? fmt::format("; {:.0f} of {} never went, as nobody needed them",
+                                                                e.leftOutRecords, sizeText(e.leftOutBytes))
+                                                  : ""));
     }
     double packed = 0, raw = 0;
     for (const NodeReport& n : r.nodes) packed += n.pictureBytes, raw += n.pictureRawBytes;
     if (raw > 0 && r.frames > 0)
-        lines.push_back(fmt::format("pictures: {} per frame came packed into {}", sizeText(raw / static_cast<double>(r.frames)), sizeText(packed / static_cast<double>(r.frames))));
+        lines.push_back(fmt::format("pictures: {} per frame came packed into {}",
+                                    sizeText(raw / static_cast<double>(r.frames)),
+                                    sizeText(packed / static_cast<double>(r.frames))));
     for (const QueueReport& q : r.queues) {
         if (q.columns == 0) continue;
         std::string nodes;
-        for (const auto& [node, tiles] : q.nodes) nodes += fmt::format("{}node {} has {}", nodes.empty() ? "" : ", ", node, tiles);
-        const std::string pieces = q.of == "chunks" ? fmt::format("{} chunks", q.columns) : fmt::format("{}x{} tiles of {}x{} pixels", q.columns, q.rows, q.tileWidth, q.tileHeight);
-        lines.push_back(fmt::format("queue \"{}\": {} moved after {} of {} frame{}, {:.2f} {} per frame; in the end {}", q.name, pieces, q.moves, q.frames, plural(q.frames),
-                                    q.frames > 0 ? static_cast<double>(q.tilesMoved) / static_cast<double>(q.frames) : 0.0, q.of, nodes));
+        for (const auto& [node, tiles] : q.nodes)
+            nodes += fmt::format("{}node {} has {}", nodes.empty() ? "" : ", ", node, tiles);
+        const std::string pieces =
+            q.of == "chunks" ? fmt::format("{} chunks", q.columns)
+                             : fmt::format("{}x{} tiles of {}x{} pixels", q.columns, q.rows, q.tileWidth, q.tileHeight);
+        lines.push_back(fmt::format(
+            "queue \"{}\": {} moved after {} of {} frame{}, {:.2f} {} per frame; in the end {}", q.name, pieces,
+            q.moves, q.frames, plural(q.frames),
+            q.frames > 0 ? static_cast<double>(q.tilesMoved) / static_cast<double>(q.frames) : 0.0, q.of, nodes));
     }
     if (r.verifiedFrames > 0) {
-        std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames, plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
+        std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames,
+                                       plural(r.verifiedFrames), r.verifiedPixels, r.differingPixels);
         if (r.differingPixels > 0) line += fmt::format(", by up to {} of 255", r.largestDifference);
-        if (r.squaredDifference > 0) line += fmt::format(", PSNR {:.1f} dB", 10 * std::log10(255.0 * 255 * 4 * static_cast<double>(r.verifiedPixels) / static_cast<double>(r.squaredDifference)));
+        if (r.squaredDifference > 0)
+            line += fmt::format(", PSNR {:.1f} dB",
+                                10 * std::log10(255.0 * 255 * 4 * static_cast<double>(r.verifiedPixels) /
+                                                static_cast<double>(r.squaredDifference)));
         lines.push_back(line);
     }
     if (r.uncomparedFrames > 0) lines.push_back(uncomparedText(r));
     if (r.savedPictures > 0) {
-        lines.push_back(fmt::format("saved {} picture{}, the last in {}", r.savedPictures, plural(r.savedPictures), r.lastPicture));
+        lines.push_back(
+            fmt::format("saved {} picture{}, the last in {}", r.savedPictures, plural(r.savedPictures), r.lastPicture));
     }
     if (!r.recording.empty()) {
-        lines.push_back(fmt::format("recorded {} frame{} in {}, {}", r.recordedFrames, plural(r.recordedFrames), r.recording, sizeText(static_cast<double>(r.recordedBytes))));
+        lines.push_back(fmt::format("recorded {} frame{} in {}, {}", r.recordedFrames, plural(r.recordedFrames),
+                                    r.recording, sizeText(static_cast<double>(r.recordedBytes))));
     }
     if (r.callsUnsupported > 0) {
-        lines.push_back(fmt::format("{} call{} of commands that Mural does not carry yet; see mural list-commands --unsupported", r.callsUnsupported, plural(r.callsUnsupported)));
+        lines.push_back(
+            fmt::format("{} call{} of commands that Mural does not carry yet; see mural list-commands --unsupported",
+                        r.callsUnsupported, plural(r.callsUnsupported)));
     }
     for (const NodeReport& n : r.nodes) {
         if (n.swaps.swaps > 0)
-            lines.push_back(fmt::format("swap barrier: {} nodes showed {} frame{} within {:.2f} ms of each other (median), {:.2f} ms (99 %), {:.2f} ms at most; clocks known to {:.3f} ms", n.swaps.members,
-                                        n.swaps.swaps, plural(n.swaps.swaps), n.swaps.medianNs / 1e6, n.swaps.p99Ns / 1e6, n.swaps.mostNs / 1e6, n.swaps.clockErrorNs / 1e6));
-        if (n.joins > 0) lines.push_back(fmt::format("node {} came back {} time{}, the last time in {:.1f} s, given {}", n.node, n.joins, plural(n.joins), n.secondsToBack, sizeText(n.snapshotBytes)));
-        if (n.lost) lines.push_back(fmt::format("node {} was lost after {} frame{}", n.node, n.frames, plural(n.frames)));
+            lines.push_back(fmt::format("swap barrier: {} nodes showed {} frame{} within {:.2f} ms of each other "
+                                        "(median), {:.2f} ms (99 %), {:.2f} ms at most; clocks known to {:.3f} ms",
+                                        n.swaps.members, n.swaps.swaps, plural(n.swaps.swaps), n.swaps.medianNs / 1e6,
+                                        n.swaps.p99Ns / 1e6, n.swaps.mostNs / 1e6, n.swaps.clockErrorNs / 1e6));
+        if (n.joins > 0)
+            lines.push_back(fmt::format("node {} came back {} time{}, the last time in {:.1f} s, given {}", n.node,
+                                        n.joins, plural(n.joins), n.secondsToBack, sizeText(n.snapshotBytes)));
+        if (n.lost)
+            lines.push_back(fmt::format("node {} was lost after {} frame{}", n.node, n.frames, plural(n.frames)));
     }
     return lines;
 }

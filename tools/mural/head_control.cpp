@@ -17,8 +17,8 @@ constexpr size_t kMaxLineBytes = size_t{1} << 20;
 
 } // namespace
 
-Result<std::unique_ptr<HeadControl>>
-HeadControl::start(const std::vector<std::string>& command, const launch::Environment& environment) {
+Result<std::unique_ptr<HeadControl>> HeadControl::start(const std::vector<std::string>& command,
+                                                        const launch::Environment& environment) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
         return Error{"no socket for the head: " + std::string(std::strerror(errno))};
@@ -30,7 +30,7 @@ HeadControl::start(const std::vector<std::string>& command, const launch::Enviro
     request.environment = environment.entries();
     request.keptFds = {ends[1]};
     request.outputFd = STDERR_FILENO; // standard output belongs to the program
-    request.ownSession = true; // Ctrl-C reaches the program only; the head ends after it, in order
+    request.ownSession = true;        // Ctrl-C reaches the program only; the head ends after it, in order
     auto process = launch::ChildProcess::start(request);
     close(ends[1]);
     if (!process) {

@@ -15,8 +15,8 @@ namespace mural::cli {
 class HeadControl {
 public:
     // command: program and arguments; "--control-fd N" is appended.
-    static Result<std::unique_ptr<HeadControl>>
-    start(const std::vector<std::string>& command, const launch::Environment& environment);
+    static Result<std::unique_ptr<HeadControl>> start(const std::vector<std::string>& command,
+                                                      const launch::Environment& environment);
     HeadControl(const HeadControl&) = delete;
     HeadControl& operator=(const HeadControl&) = delete;
     // Ends the head and its nodes, in order first, then by signals.

@@ -41,7 +41,17 @@ HeadEvent::Kind kindOf(const std::string& name) {
 
 EconomyReport economyFrom(const Json& j) {
     if (!j.is_object()) return {};
-    return {true, real(j, "records"), real(j, "rawBytes"), real(j, "stagedBytes"), real(j, "wireBytes"), real(j, "storeHits"), real(j, "newPages"), real(j, "encodeSeconds"), real(j, "heldRecords"), real(j, "leftOutRecords"), real(j, "leftOutBytes")};
+    return {true,
+            real(j, "records"),
+            real(j, "rawBytes"),
+            real(j, "stagedBytes"),
+            real(j, "wireBytes"),
+            real(j, "storeHits"),
+            real(j, "newPages"),
+            real(j, "encodeSeconds"),
+            real(j, "heldRecords"),
+            real(j, "leftOutRecords"),
+            real(j, "leftOutBytes")};
 }
 
 std::vector<QueueReport> queuesFrom(const Json& list) {
@@ -49,7 +59,16 @@ std::vector<QueueReport> queuesFrom(const Json& list) {
     if (!list.is_array()) return queues;
     for (const Json& q : list) {
         if (!q.is_object()) continue;
-        queues.push_back({text(q, "name"), text(q, "of"), whole(q, "columns"), whole(q, "rows"), whole(q, "tileWidth"), whole(q, "tileHeight"), whole(q, "frames"), whole(q, "moves"), whole(q, "tilesMoved"), {}});
+        queues.push_back({text(q, "name"),
+                          text(q, "of"),
+                          whole(q, "columns"),
+                          whole(q, "rows"),
+                          whole(q, "tileWidth"),
+                          whole(q, "tileHeight"),
+                          whole(q, "frames"),
+                          whole(q, "moves"),
+                          whole(q, "tilesMoved"),
+                          {}});
         const auto nodes = q.find("nodes");
         if (nodes == q.end() || !nodes->is_array()) continue;
         for (const Json& n : *nodes)
@@ -60,7 +79,8 @@ std::vector<QueueReport> queuesFrom(const Json& list) {
 
 SwapReport swapsFrom(const Json& j) {
     if (!j.is_object()) return {};
-    return {whole(j, "members"), whole(j, "swaps"), real(j, "medianNs"), real(j, "p99Ns"), real(j, "mostNs"), real(j, "clockErrorNs")};
+    return {whole(j, "members"), whole(j, "swaps"), real(j, "medianNs"),
+            real(j, "p99Ns"),    real(j, "mostNs"), real(j, "clockErrorNs")};
 }
 
 std::map<std::string, int64_t> countsFrom(const Json& j, const char* name) {
@@ -99,7 +119,10 @@ SessionReport reportFrom(const Json& j) {
         for (const Json& n : *nodes) {
             if (!n.is_object()) continue;
             const auto swaps = n.find("swapBarrier");
-            r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"), swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"), real(n, "secondsToBack"), real(n, "snapshotBytes"), real(n, "pictureBytes"), real(n, "pictureRawBytes")});
+            r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"),
+                               swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"),
+                               real(n, "secondsToBack"), real(n, "snapshotBytes"), real(n, "pictureBytes"),
+                               real(n, "pictureRawBytes")});
         }
     }
     return r;

@@ -34,10 +34,10 @@ struct EconomyReport {
     double records = 0;
     double rawBytes = 0;
     double stagedBytes = 0; // size after replacement by references
-    double wireBytes = 0; // size after compression
+    double wireBytes = 0;   // size after compression
     double storeHits = 0, newPages = 0;
     double encodeSeconds = 0;
-    double heldRecords = 0; // records deferred until their first use
+    double heldRecords = 0;                      // records deferred until their first use
     double leftOutRecords = 0, leftOutBytes = 0; // deferred records that were never needed
 };
 
@@ -45,7 +45,7 @@ struct EconomyReport {
 struct QueueReport {
     std::string name;
     std::string of;                        // "tiles" or "chunks"
-    int64_t columns = 0, rows = 0; // 0: no tile was assigned
+    int64_t columns = 0, rows = 0;         // 0: no tile was assigned
     int64_t tileWidth = 0, tileHeight = 0; // pixels
     int64_t frames = 0, moves = 0, tilesMoved = 0;
     std::vector<std::pair<int64_t, int64_t>> nodes; // node, and its number of tiles
@@ -64,7 +64,7 @@ struct SessionReport {
     int64_t differingPixels = 0;
     int64_t squaredDifference = 0; // sum over all components, including alpha
     int64_t largestDifference = 0;
-    int64_t uncomparedFrames = 0; // frames that `--verify` could not compare
+    int64_t uncomparedFrames = 0;                      // frames that `--verify` could not compare
     std::map<std::string, int64_t> uncomparedFramesBy; // number of frames by reason
     int64_t savedPictures = 0;
     std::string lastPicture;

@@ -13,7 +13,8 @@ int listCommandsCommand(bool onlyUnsupported) {
     for (const CommandInfo& command : commandTable()) {
         (command.carried ? carried : left) += 1;
         if (onlyUnsupported && command.carried) continue;
-        fmt::print("{}\t{}{}{}\n", command.name, command.commandClass, *command.reason != '\0' ? "\t" : "", command.reason);
+        fmt::print("{}\t{}{}{}\n", command.name, command.commandClass, *command.reason != '\0' ? "\t" : "",
+                   command.reason);
     }
     if (onlyUnsupported)
         for (const LocalExtension& e : kLocalWindowExtensions) fmt::print("{}\textension\t{}\n", e.name, e.why);

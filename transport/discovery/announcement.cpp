@@ -47,7 +47,9 @@ std::vector<std::byte> encode(const Announcement& a) {
 
 std::optional<Announcement> decodeAnnouncement(std::span<const std::byte> bytes) {
     if (bytes.size() < kHeadBytes || bytes.size() > kMaxAnnouncementBytes) return {};
-    if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0 || bytes[7] != kVersion || bytes[9] != std::byte{0}) return {};
+    if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0 || bytes[7] != kVersion ||
+        bytes[9] != std::byte{0})
+        return {};
     Announcement a;
     a.kind = static_cast<AnnouncementKind>(bytes[8]);
     if (a.kind < AnnouncementKind::Here || a.kind > AnnouncementKind::Gone) return {};

@@ -16,16 +16,16 @@
 namespace mural {
 
 enum class AnnouncementKind : uint8_t {
-    Here = 1, // a node waits
+    Here = 1,  // a node waits
     Asked = 2, // a search for nodes; other fields are ignored
-    Gone = 3, // the node no longer waits
+    Gone = 3,  // the node no longer waits
 };
 
 struct Announcement {
     AnnouncementKind kind = AnnouncementKind::Here;
     uint16_t port = 0; // TCP port
     Uuid uuid{};
-    std::string name; // host name
+    std::string name;    // host name
     std::string version; // Mural's version
 };
 

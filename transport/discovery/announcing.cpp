@@ -14,7 +14,10 @@ namespace {
 constexpr int64_t kLookAtCardsNs = 5 * kNsPerS;
 constexpr int64_t kMaxWaitNs = kNsPerS;
 
-Deadline until(int64_t atNs) { return Deadline::inMs(std::clamp<int64_t>((atNs - monotonicNowNs() + kNsPerMs - 1) / kNsPerMs, 0, kMaxWaitNs / kNsPerMs)); }
+Deadline until(int64_t atNs) {
+    return Deadline::inMs(
+        std::clamp<int64_t>((atNs - monotonicNowNs() + kNsPerMs - 1) / kNsPerMs, 0, kMaxWaitNs / kNsPerMs));
+}
 } // namespace
 
 Result<std::unique_ptr<Announcing>> Announcing::start(const Announcement& self, const DiscoveryOptions& options) {
@@ -23,7 +26,8 @@ Result<std::unique_ptr<Announcing>> Announcing::start(const Announcement& self, 
     return std::unique_ptr<Announcing>(new Announcing(self, options, std::move(stop)));
 }
 
-Announcing::Announcing(const Announcement& self, const DiscoveryOptions& options, FileDescriptor stop) : self_(self), options_(options), stop_(std::move(stop)) {
+Announcing::Announcing(const Announcement& self, const DiscoveryOptions& options, FileDescriptor stop)
+    : self_(self), options_(options), stop_(std::move(stop)) {
     self_.kind = AnnouncementKind::Here;
     if (options_.avahi) publisher_ = std::make_unique<AvahiPublisher>(self_);
     if (options_.beacon) thread_ = std::thread([this] { run(); });
@@ -55,7 +59,8 @@ void Announcing::run() {
             continue;
         }
         while (true) {
-            const int64_t nextNs = announcer.tick(monotonicNowNs(), [&](std::span<const std::byte> bytes) { sockets->say(bytes); });
+            const int64_t nextNs =
+                announcer.tick(monotonicNowNs(), [&](std::span<const std::byte> bytes) { sockets->say(bytes); });
             const auto hear = [&](const Announcement& a, const std::string&) { announcer.heard(a, monotonicNowNs()); };
             if (sockets->listen(until(nextNs), stop_.get(), hear)) {
                 sockets->say(announcer.farewell());

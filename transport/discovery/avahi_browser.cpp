@@ -24,20 +24,25 @@ struct AvahiBrowser::Search {
         avahi->free(value);
         return text;
     }
-    static void browsed(AvahiServiceBrowser* browser, AvahiIfIndex interface, AvahiProtocol protocol, AvahiBrowserEvent event, const char* name, const char* type, const char* domain,
-        AvahiLookupResultFlags flags, void* data);
-    static void resolved(AvahiServiceResolver* resolver, AvahiIfIndex interface, AvahiProtocol protocol, AvahiResolverEvent event, const char* name, const char* type, const char* domain,
-        const char* host, const AvahiAddress* address, uint16_t port, AvahiStringList* facts, AvahiLookupResultFlags flags, void* data);
+    static void browsed(AvahiServiceBrowser* browser, AvahiIfIndex interface, AvahiProtocol protocol,
+                        AvahiBrowserEvent event, const char* name, const char* type, const char* domain,
+                        AvahiLookupResultFlags flags, void* data);
+    static void resolved(AvahiServiceResolver* resolver, AvahiIfIndex interface, AvahiProtocol protocol,
+                         AvahiResolverEvent event, const char* name, const char* type, const char* domain,
+                         const char* host, const AvahiAddress* address, uint16_t port, AvahiStringList* facts,
+                         AvahiLookupResultFlags flags, void* data);
 
     AvahiClient* client = nullptr;
 };
 
-void AvahiBrowser::Search::browsed(AvahiServiceBrowser*, AvahiIfIndex interface, AvahiProtocol protocol, AvahiBrowserEvent event, const char* name, const char* type, const char* domain,
-    AvahiLookupResultFlags, void* data) {
+void AvahiBrowser::Search::browsed(AvahiServiceBrowser*, AvahiIfIndex interface, AvahiProtocol protocol,
+                                   AvahiBrowserEvent event, const char* name, const char* type, const char* domain,
+                                   AvahiLookupResultFlags, void* data) {
     auto& s = *static_cast<Search*>(data);
     if (event == AVAHI_BROWSER_NEW) {
         // It gives itself back when it has answered.
-        (void)s.avahi->serviceResolverNew(s.client, interface, protocol, name, type, domain, AVAHI_PROTO_UNSPEC, static_cast<AvahiLookupFlags>(0), resolved, data);
+        (void)s.avahi->serviceResolverNew(s.client, interface, protocol, name, type, domain, AVAHI_PROTO_UNSPEC,
+                                          static_cast<AvahiLookupFlags>(0), resolved, data);
     } else if (event == AVAHI_BROWSER_REMOVE) {
         if (const auto at = s.known.find(name); at != s.known.end()) {
             s.lost(at->second);
@@ -46,8 +51,10 @@ void AvahiBrowser::Search::browsed(AvahiServiceBrowser*, AvahiIfIndex interface,
     }
 }
 
-void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex interface, AvahiProtocol, AvahiResolverEvent event, const char* name, const char*, const char*, const char*,
-    const AvahiAddress* address, uint16_t port, AvahiStringList* facts, AvahiLookupResultFlags, void* data) {
+void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex interface, AvahiProtocol,
+                                    AvahiResolverEvent event, const char* name, const char*, const char*, const char*,
+                                    const AvahiAddress* address, uint16_t port, AvahiStringList* facts,
+                                    AvahiLookupResultFlags, void* data) {
     auto& s = *static_cast<Search*>(data);
     const auto uuid = event == AVAHI_RESOLVER_FOUND ? uuidFromText(s.fact(facts, "uuid")) : std::nullopt;
     if (uuid && address && port != 0) {
@@ -55,7 +62,8 @@ void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex
         s.avahi->addressSnprint(text, sizeof text, address);
         std::string where = text;
         char card[IF_NAMESIZE] = {};
-        if (where.starts_with("fe80:") && interface >= 0 && if_indextoname(static_cast<unsigned>(interface), card)) where += std::string("%") + card;
+        if (where.starts_with("fe80:") && interface >= 0 && if_indextoname(static_cast<unsigned>(interface), card))
+            where += std::string("%") + card;
         // Validates as strictly as the beacon, because the texts are shown on terminals.
         const Announcement told{AnnouncementKind::Here, port, *uuid, s.fact(facts, "name"), s.fact(facts, "version")};
         if (const auto a = decodeAnnouncement(encode(told))) {
@@ -66,16 +74,22 @@ void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex
     s.avahi->serviceResolverFree(resolver);
 }
 
-AvahiBrowser::AvahiBrowser(Found found, Lost lost) : AvahiBrowser(std::make_shared<Search>(Search{std::move(found), std::move(lost), nullptr, nullptr, {}, nullptr})) {}
+AvahiBrowser::AvahiBrowser(Found found, Lost lost)
+    : AvahiBrowser(std::make_shared<Search>(Search{std::move(found), std::move(lost), nullptr, nullptr, {}, nullptr})) {
+}
 
 AvahiBrowser::AvahiBrowser(const std::shared_ptr<Search>& search)
-    : thread_([search](const AvahiLibrary& avahi, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
-          search->avahi = &avahi;
-          search->client = client;
-          if (search->browser) return;
-          search->browser = avahi.serviceBrowserNew(client, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, kAvahiServiceType, nullptr, static_cast<AvahiLookupFlags>(0), Search::browsed, search.get());
-          if (!search->browser) shared->setTrouble(std::string("Avahi: ") + avahi.strerror(avahi.clientErrno(client)));
-      },
-      [search] { search->browser = nullptr; }) {}
+    : thread_(
+          [search](const AvahiLibrary& avahi, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
+              search->avahi = &avahi;
+              search->client = client;
+              if (search->browser) return;
+              search->browser =
+                  avahi.serviceBrowserNew(client, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, kAvahiServiceType, nullptr,
+                                          static_cast<AvahiLookupFlags>(0), Search::browsed, search.get());
+              if (!search->browser)
+                  shared->setTrouble(std::string("Avahi: ") + avahi.strerror(avahi.clientErrno(client)));
+          },
+          [search] { search->browser = nullptr; }) {}
 
 } // namespace mural

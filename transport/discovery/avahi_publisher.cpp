@@ -21,7 +21,9 @@ void AvahiPublisher::Service::add() {
     facts = avahi->stringListAddPair(facts, "uuid", uuidText(self.uuid).c_str());
     facts = avahi->stringListAddPair(facts, "version", self.version.c_str());
     facts = avahi->stringListAddPair(facts, "name", self.name.c_str());
-    int code = avahi->entryGroupAddService(group, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, static_cast<AvahiPublishFlags>(0), name.c_str(), kAvahiServiceType, nullptr, nullptr, self.port, facts);
+    int code =
+        avahi->entryGroupAddService(group, AVAHI_IF_UNSPEC, AVAHI_PROTO_UNSPEC, static_cast<AvahiPublishFlags>(0),
+                                    name.c_str(), kAvahiServiceType, nullptr, nullptr, self.port, facts);
     avahi->stringListFree(facts);
     if (code == 0) code = avahi->entryGroupCommit(group);
     if (code == AVAHI_ERR_COLLISION) return changed(group, AVAHI_ENTRY_GROUP_COLLISION, this);
@@ -43,17 +45,21 @@ void AvahiPublisher::Service::changed(AvahiEntryGroup* g, AvahiEntryGroupState s
     }
 }
 
-AvahiPublisher::AvahiPublisher(const Announcement& self) : AvahiPublisher(std::make_shared<Service>(Service{self, self.name, nullptr, nullptr, nullptr})) {}
+AvahiPublisher::AvahiPublisher(const Announcement& self)
+    : AvahiPublisher(std::make_shared<Service>(Service{self, self.name, nullptr, nullptr, nullptr})) {}
 
 AvahiPublisher::AvahiPublisher(const std::shared_ptr<Service>& service)
-    : thread_([service](const AvahiLibrary& avahi, AvahiClient* client, const std::shared_ptr<AvahiThread::Shared>& shared) {
-          service->avahi = &avahi;
-          service->shared = shared;
-          if (!service->group) service->group = avahi.entryGroupNew(client, Service::changed, service.get());
-          if (!service->group) return shared->setTrouble(std::string("Avahi: ") + avahi.strerror(avahi.clientErrno(client)));
-          avahi.entryGroupReset(service->group);
-          service->add();
-      },
-      [service] { service->group = nullptr; }) {}
+    : thread_(
+          [service](const AvahiLibrary& avahi, AvahiClient* client,
+                    const std::shared_ptr<AvahiThread::Shared>& shared) {
+              service->avahi = &avahi;
+              service->shared = shared;
+              if (!service->group) service->group = avahi.entryGroupNew(client, Service::changed, service.get());
+              if (!service->group)
+                  return shared->setTrouble(std::string("Avahi: ") + avahi.strerror(avahi.clientErrno(client)));
+              avahi.entryGroupReset(service->group);
+              service->add();
+          },
+          [service] { service->group = nullptr; }) {}
 
 } // namespace mural

@@ -35,12 +35,14 @@ void clientChanged(AvahiClient* client, AvahiClientState state, void* data) {
 }
 
 // Runs until the daemon ends, or the thread is stopped.
-void talk(const AvahiLibrary& avahi, const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready, const AvahiThread::Lost& lost) {
+void talk(const AvahiLibrary& avahi, const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready,
+          const AvahiThread::Lost& lost) {
     AvahiSimplePoll* poll = avahi.simplePollNew();
     if (!poll) return shared->setTrouble("Avahi: no memory");
     Conversation c{avahi, shared, ready};
     int code = 0;
-    if (AvahiClient* client = avahi.clientNew(avahi.simplePollGet(poll), static_cast<AvahiClientFlags>(0), clientChanged, &c, &code)) {
+    if (AvahiClient* client =
+            avahi.clientNew(avahi.simplePollGet(poll), static_cast<AvahiClientFlags>(0), clientChanged, &c, &code)) {
         while (!shared->stop && !c.failed && avahi.simplePollIterate(poll, kSliceMs) == 0) {}
         lost();
         avahi.clientFree(client);
@@ -56,7 +58,8 @@ void run(const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready,
     if (!avahi) shared->setTrouble(why);
     while (avahi && !shared->stop) {
         talk(*avahi, shared, ready, lost);
-        for (const Deadline again = Deadline::inMs(kAgainMs); !shared->stop && !again.passed();) std::this_thread::sleep_for(std::chrono::milliseconds(kSliceMs));
+        for (const Deadline again = Deadline::inMs(kAgainMs); !shared->stop && !again.passed();)
+            std::this_thread::sleep_for(std::chrono::milliseconds(kSliceMs));
     }
     const std::lock_guard lock(shared->mutex);
     shared->ended = true;
@@ -66,7 +69,9 @@ void run(const std::shared_ptr<Shared>& shared, const AvahiThread::Ready& ready,
 } // namespace
 
 AvahiThread::AvahiThread(Ready ready, Lost lost) : shared_(std::make_shared<Shared>()) {
-    std::thread([shared = shared_, ready = std::move(ready), lost = std::move(lost)] { run(shared, ready, lost); }).detach();
+    std::thread([shared = shared_, ready = std::move(ready), lost = std::move(lost)] {
+        run(shared, ready, lost);
+    }).detach();
 }
 
 AvahiThread::~AvahiThread() {

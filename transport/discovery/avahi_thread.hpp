@@ -31,7 +31,8 @@ public:
     };
     // Called in the thread for each new client, also after the daemon has returned. `library` lives forever; objects
     // made for `client` end with it.
-    using Ready = std::function<void(const AvahiLibrary& library, AvahiClient* client, const std::shared_ptr<Shared>& shared)>;
+    using Ready =
+        std::function<void(const AvahiLibrary& library, AvahiClient* client, const std::shared_ptr<Shared>& shared)>;
     // Called before a client is destroyed.
     using Lost = std::function<void()>;
 

@@ -19,8 +19,10 @@ void BeaconSockets::openOn(const rsp::NetworkInterface& interface) {
         if (!group || !interface.address(group->family())) continue;
         auto own = rsp::UdpSocket::openOwn(interface, group->family(), kBufferBytes);
         auto listening = rsp::UdpSocket::openGroup(*group, interface, kBufferBytes);
-        if (own && listening) links_.push_back({std::move(*own), std::move(*listening), *group});
-        else trouble_ = own ? listening.error().message : own.error().message;
+        if (own && listening)
+            links_.push_back({std::move(*own), std::move(*listening), *group});
+        else
+            trouble_ = own ? listening.error().message : own.error().message;
     }
 }
 
@@ -30,7 +32,8 @@ Result<BeaconSockets> BeaconSockets::open(const std::string& wanted) {
     BeaconSockets sockets;
     std::string known;
     const auto isWanted = [&](const rsp::NetworkInterface& i) {
-        return i.name == wanted || std::ranges::any_of(i.addresses, [&](const SocketAddress& a) { return numericText(a) == wanted; });
+        return i.name == wanted ||
+               std::ranges::any_of(i.addresses, [&](const SocketAddress& a) { return numericText(a) == wanted; });
     };
     for (const rsp::NetworkInterface& i : *all) {
         known += (known.empty() ? "" : ", ") + i.name;
@@ -43,7 +46,8 @@ Result<BeaconSockets> BeaconSockets::open(const std::string& wanted) {
     }
     if (!sockets.links_.empty()) return sockets;
     if (!sockets.trouble_.empty()) return Error{sockets.trouble_};
-    if (!wanted.empty()) return Error{"there is no network interface \"" + wanted + "\" that is up; there are: " + known};
+    if (!wanted.empty())
+        return Error{"there is no network interface \"" + wanted + "\" that is up; there are: " + known};
     return Error{"no network interface is up that could do multicast; there are: " + known};
 }
 

@@ -27,7 +27,8 @@ int64_t sooner(Deadline deadline, int64_t ms) { return std::min(ms, deadline.lef
 
 } // namespace
 
-Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline, const std::function<bool(const std::vector<FoundNode>&)>& enough) {
+Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline,
+                         const std::function<bool(const std::vector<FoundNode>&)>& enough) {
     Discovered result;
     const auto found = std::make_shared<Found>();
     std::optional<AvahiBrowser> browser;
@@ -45,8 +46,10 @@ Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline, con
     std::optional<BeaconSockets> sockets;
     if (options.beacon) {
         auto opened = BeaconSockets::open(options.interface);
-        if (opened) sockets.emplace(std::move(*opened));
-        else result.beaconTrouble = opened.error().message;
+        if (opened)
+            sockets.emplace(std::move(*opened));
+        else
+            result.beaconTrouble = opened.error().message;
     }
     Announcement question;
     question.kind = AnnouncementKind::Asked;

@@ -23,6 +23,7 @@ struct Discovered {
 };
 
 // Searches until the deadline, or until `enough` (may be empty) returns true.
-Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline, const std::function<bool(const std::vector<FoundNode>&)>& enough = {});
+Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline,
+                         const std::function<bool(const std::vector<FoundNode>&)>& enough = {});
 
 } // namespace mural

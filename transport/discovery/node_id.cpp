@@ -34,10 +34,12 @@ std::optional<Uuid> fromMachineId(const std::string& path) {
     // The file contains "uninitialized" until the first boot has finished.
     const auto isDigit = [](unsigned char c) { return std::isxdigit(c) != 0; };
     if (id.size() != kMachineIdDigits || !std::ranges::all_of(id, isDigit)) return {};
-    static_assert(kPurpose.size() <= crypto_generichash_KEYBYTES_MAX && kPurpose.size() >= crypto_generichash_KEYBYTES_MIN);
+    static_assert(kPurpose.size() <= crypto_generichash_KEYBYTES_MAX &&
+                  kPurpose.size() >= crypto_generichash_KEYBYTES_MIN);
     Uuid uuid{};
-    crypto_generichash(reinterpret_cast<unsigned char*>(uuid.data()), uuid.size(), reinterpret_cast<const unsigned char*>(id.data()), id.size(),
-        reinterpret_cast<const unsigned char*>(kPurpose.data()), kPurpose.size());
+    crypto_generichash(reinterpret_cast<unsigned char*>(uuid.data()), uuid.size(),
+                       reinterpret_cast<const unsigned char*>(id.data()), id.size(),
+                       reinterpret_cast<const unsigned char*>(kPurpose.data()), kPurpose.size());
     return markedUuid(uuid);
 }
 
@@ -59,7 +61,9 @@ Result<Uuid> kept(const std::string& folder) {
     const std::string advice = "; set XDG_STATE_HOME to a folder that can be written";
     std::error_code failed;
     if (!folder.empty()) std::filesystem::create_directories(folder, failed);
-    if (folder.empty() || failed) return Error{"no place to keep this machine's id: " + (folder.empty() ? "HOME is not set" : folder + ": " + failed.message()) + advice};
+    if (folder.empty() || failed)
+        return Error{"no place to keep this machine's id: " +
+                     (folder.empty() ? "HOME is not set" : folder + ": " + failed.message()) + advice};
     Uuid fresh{};
     randombytes_buf(fresh.data(), fresh.size());
     fresh = markedUuid(fresh);

@@ -19,10 +19,10 @@ bool isEnd(long code) {
 } // namespace
 
 Channel::Channel(std::unique_ptr<Endpoint> endpoint, Greeting peer)
-    : endpoint_(std::move(endpoint))
-    , messageBytes_(std::min<size_t>(kMessageBytes, peer.messageBytes))
-    , window_(peer.window)
-    , credits_(peer.window) {
+    : endpoint_(std::move(endpoint)),
+      messageBytes_(std::min<size_t>(kMessageBytes, peer.messageBytes)),
+      window_(peer.window),
+      credits_(peer.window) {
     for (size_t i = 0; i < kSends; ++i) freeSends_.push_back(kReceives + i);
 }
 
@@ -68,24 +68,26 @@ unsigned Channel::onReceived(const Endpoint::Completion& completion) {
     const auto kind = bytes.size() < kHeadBytes ? MessageKind{} : static_cast<MessageKind>(bytes[0]);
     switch (kind) {
     case MessageKind::Data:
-        if (closedHere_) receiveInto(slot); // no reader
-        else received_.push_back({slot, bytes.subspan(kHeadBytes)});
+        if (closedHere_)
+            receiveInto(slot); // no reader
+        else
+            received_.push_back({slot, bytes.subspan(kHeadBytes)});
         return kReading;
     case MessageKind::Credit:
         onCredits(loadLittle<uint16_t>(bytes.data() + 2));
         receiveInto(slot);
         return kWriting;
-    case MessageKind::Bye:
-        end(0);
-        break;
+    case MessageKind::Bye: end(0); break;
     default: end("the other end sent what no Mural sends; check what listens there");
     }
     return kReading | kWriting;
 }
 
 void Channel::onCredits(uint16_t credits) {
-    if (credits > window_ - credits_) end("the other end gave more credits than it has buffers; check what listens there");
-    else credits_ = static_cast<uint16_t>(credits_ + credits);
+    if (credits > window_ - credits_)
+        end("the other end gave more credits than it has buffers; check what listens there");
+    else
+        credits_ = static_cast<uint16_t>(credits_ + credits);
 }
 
 void Channel::receiveInto(Endpoint::Slot slot) {

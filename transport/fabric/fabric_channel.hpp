@@ -85,19 +85,19 @@ private:
     std::condition_variable changed_;
     std::unique_ptr<Endpoint> endpoint_;
     unsigned sleeper_ = 0; // Side that sleeps at the descriptors; 0: none
-    int waiting_ = 0; // threads on the condition variable
+    int waiting_ = 0;      // threads on the condition variable
     bool lookAtEvents_ = false;
 
     std::deque<Message> received_;
     uint16_t owedCredits_ = 0;
 
     const size_t messageBytes_; // including its head; the minimum of both ends
-    const uint16_t window_; // credits of the peer
+    const uint16_t window_;     // credits of the peer
     uint16_t credits_;
     std::vector<Endpoint::Slot> freeSends_;
     size_t sendsUnderWay_ = 0;
     Endpoint::Slot gathering_ = 0; // 0: none, because slot 0 is for receiving
-    size_t gatheredBytes_ = 0; // including the head
+    size_t gatheredBytes_ = 0;     // including the head
 
     bool closedHere_ = false;
     bool byeSent_ = false;

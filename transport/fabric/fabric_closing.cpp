@@ -64,7 +64,8 @@ private:
         Channel* raw = channel.get();
         channel.reset();
         const std::lock_guard lock(mutex_); // destroys the endpoint, unless its connection still owns it
-        draining_.erase(std::find_if(draining_.begin(), draining_.end(), [raw](const auto& each) { return each.get() == raw; }));
+        draining_.erase(
+            std::find_if(draining_.begin(), draining_.end(), [raw](const auto& each) { return each.get() == raw; }));
         changed_.notify_all();
     }
 

@@ -15,7 +15,8 @@ Result<std::unique_ptr<Connection>> connectBy(fi_info& info, const ConnectionDes
     if (!endpoint) return Error{text + ": " + endpoint.error().message};
     const auto greeting = (*endpoint)->connect(deadline);
     if (!greeting) return Error{text + ": " + greeting.error().message};
-    return std::unique_ptr<Connection>(std::make_unique<FabricConnection>(std::move(*endpoint), greeting.value(), text));
+    return std::unique_ptr<Connection>(
+        std::make_unique<FabricConnection>(std::move(*endpoint), greeting.value(), text));
 }
 
 } // namespace

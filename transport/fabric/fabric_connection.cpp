@@ -18,9 +18,9 @@ using End = Channel::End;
 } // namespace
 
 FabricConnection::FabricConnection(std::unique_ptr<Endpoint> endpoint, Greeting peer, std::string description)
-    : channel_(std::make_shared<Channel>(std::move(endpoint), peer))
-    , description_(std::move(description))
-    , ownerPid_(getpid()) {}
+    : channel_(std::make_shared<Channel>(std::move(endpoint), peer)),
+      description_(std::move(description)),
+      ownerPid_(getpid()) {}
 
 // A forked child has a copy of this object. The card's resources belong to the parent and are left alone.
 FabricConnection::~FabricConnection() {
@@ -60,7 +60,9 @@ Result<void> FabricConnection::read(std::span<std::byte> into, Deadline deadline
     auto lock = channel_->lock();
     while (true) {
         if (std::exchange(reading_, false)) channel_->giveBack(message_.slot);
-        const End end = closed_ ? End::Ended : channel_->waitUntil(lock, Side::Reading, deadline, [&] { return channel_->hasMessage(); });
+        const End end =
+            closed_ ? End::Ended
+                    : channel_->waitUntil(lock, Side::Reading, deadline, [&] { return channel_->hasMessage(); });
         if (end != End::Ready) {
             bytesRead_.fetch_add(done, std::memory_order_relaxed);
             if (end == End::DeadlinePassed && done == 0) readTimedOut_.store(true);
@@ -97,8 +99,9 @@ void FabricConnection::flush() {
     auto lock = channel_->lock();
     if (channel_->ended() || (channel_->sendGathered() && channel_->allSent())) return;
     const bool longer = lastWriteDeadline_.leftNs() > kFlushGraceMs * kNsPerMs;
-    const End end = channel_->waitUntil(lock, Side::Writing, longer ? lastWriteDeadline_ : Deadline::inMs(kFlushGraceMs),
-                                        [&] { return channel_->sendGathered() && channel_->allSent(); });
+    const End end =
+        channel_->waitUntil(lock, Side::Writing, longer ? lastWriteDeadline_ : Deadline::inMs(kFlushGraceMs),
+                            [&] { return channel_->sendGathered() && channel_->allSent(); });
     if (end == End::DeadlinePassed) writeTimedOut_.store(true);
 }
 
@@ -116,9 +119,12 @@ Error FabricConnection::failed(Channel::Lock& lock, const char* verb, End end, s
     const bool cutInHalf = end == End::DeadlinePassed && doneBytes > 0;
     if (cutInHalf) endStream(lock);
     std::string reason = ending::kPeerGone;
-    if (here) reason = ending::kClosedHere;
-    else if (end == End::DeadlinePassed) reason = cutInHalf ? ending::kCutInHalf : ending::kIdle;
-    else if (!channel_->fault().empty()) reason += " (" + channel_->fault() + ")";
+    if (here)
+        reason = ending::kClosedHere;
+    else if (end == End::DeadlinePassed)
+        reason = cutInHalf ? ending::kCutInHalf : ending::kIdle;
+    else if (!channel_->fault().empty())
+        reason += " (" + channel_->fault() + ")";
     return connectionError(description_, verb, doneBytes, wantedBytes, reason);
 }
 

@@ -15,7 +15,8 @@ constexpr size_t kPageBytes = 4096;
 constexpr int64_t kSliceMs = 1000; // bounds the damage of a provider that misses a wake-up
 
 Error cannot(const std::string& provider, const char* what, long code) {
-    return Error{"fabric (" + provider + "): can't " + what + ": " + codeText(code) + "; try another provider by provider=NAME"};
+    return Error{"fabric (" + provider + "): can't " + what + ": " + codeText(code) +
+                 "; try another provider by provider=NAME"};
 }
 
 } // namespace
@@ -32,7 +33,8 @@ Result<std::unique_ptr<Endpoint>> Endpoint::open(const SharedFabric& fabric, fi_
     made->wake_ = FileDescriptor(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
     if (!made->wake_.valid()) return Error{"fabric: no descriptor is left; raise the limit of open files (ulimit -n)"};
     fid_domain* domain = nullptr;
-    if (const int code = fi_domain(fabric.get(), &info, &domain, nullptr); code != 0) return cannot(made->provider_, "open the card", code);
+    if (const int code = fi_domain(fabric.get(), &info, &domain, nullptr); code != 0)
+        return cannot(made->provider_, "open the card", code);
     made->domain_.reset(domain);
     if (auto r = made->openQueue(domain); !r) return r.error();
     if (auto r = made->openMemory(domain); !r) return r.error();
@@ -49,7 +51,8 @@ Result<void> Endpoint::openQueue(fid_domain* domain) {
     attributes.format = FI_CQ_FORMAT_MSG;
     attributes.wait_obj = FI_WAIT_FD;
     fid_cq* queue = nullptr;
-    if (const int code = fi_cq_open(domain, &attributes, &queue, nullptr); code != 0) return cannot(provider_, "open a completion queue", code);
+    if (const int code = fi_cq_open(domain, &attributes, &queue, nullptr); code != 0)
+        return cannot(provider_, "open a completion queue", code);
     queue_.reset(queue);
     if (const int code = fi_control(&queue->fid, FI_GETWAIT, &queueDescriptor_); code != 0)
         return cannot(provider_, "wait for completions by a descriptor", code);
@@ -61,7 +64,8 @@ Result<void> Endpoint::openMemory(fid_domain* domain) {
     memory_.reset(static_cast<std::byte*>(std::aligned_alloc(kPageBytes, sizeBytes)));
     if (!memory_) return cannot(provider_, "have memory for messages", FI_ENOMEM);
     fid_mr* registered = nullptr;
-    if (const int code = fi_mr_reg(domain, memory_.get(), sizeBytes, FI_SEND | FI_RECV, 0, 1, 0, &registered, nullptr); code != 0)
+    if (const int code = fi_mr_reg(domain, memory_.get(), sizeBytes, FI_SEND | FI_RECV, 0, 1, 0, &registered, nullptr);
+        code != 0)
         return cannot(provider_, "register memory (is the limit of locked memory, ulimit -l, too low?)", code);
     registered_.reset(registered);
     return {};
@@ -69,7 +73,8 @@ Result<void> Endpoint::openMemory(fid_domain* domain) {
 
 Result<void> Endpoint::openEndpoint(fid_domain* domain, fi_info& info) {
     fid_ep* endpoint = nullptr;
-    if (const int code = fi_endpoint(domain, &info, &endpoint, nullptr); code != 0) return cannot(provider_, "open an endpoint", code);
+    if (const int code = fi_endpoint(domain, &info, &endpoint, nullptr); code != 0)
+        return cannot(provider_, "open an endpoint", code);
     endpoint_.reset(endpoint);
     int code = fi_ep_bind(endpoint, &events_.get()->fid, 0);
     if (code == 0) code = fi_ep_bind(endpoint, &queue_->fid, FI_TRANSMIT | FI_RECV);
@@ -93,7 +98,8 @@ Result<Greeting> Endpoint::connect(Deadline deadline) {
 
 Result<void> Endpoint::accept(Deadline deadline) {
     const auto own = makeGreeting();
-    if (const int code = fi_accept(endpoint_.get(), own.data(), own.size()); code != 0) return Error{"can't accept: " + codeText(code)};
+    if (const int code = fi_accept(endpoint_.get(), own.data(), own.size()); code != 0)
+        return Error{"can't accept: " + codeText(code)};
     const auto connected = awaitConnected(deadline);
     if (!connected) return connected.error();
     return {};
@@ -103,14 +109,17 @@ Result<std::vector<std::byte>> Endpoint::awaitConnected(Deadline deadline) {
     Event event = events_.next(deadline);
     switch (event.kind) {
     case Event::Kind::Connected: return std::move(event.greeting);
-    case Event::Kind::Failed: return Error{"can't connect: " + codeText(event.code) + "; check that the other side listens there"};
-    case Event::Kind::None: return Error{"deadline passed without an answer; check the address, and that the other side accepts"};
+    case Event::Kind::Failed:
+        return Error{"can't connect: " + codeText(event.code) + "; check that the other side listens there"};
+    case Event::Kind::None:
+        return Error{"deadline passed without an answer; check the address, and that the other side accepts"};
     default: return Error{"the other end went while it was connected; its own messages say why"};
     }
 }
 
 long Endpoint::receive(Slot slot) {
-    return fi_recv(endpoint_.get(), memory(slot).data(), kMessageBytes, fi_mr_desc(registered_.get()), 0, &contexts_[slot]);
+    return fi_recv(endpoint_.get(), memory(slot).data(), kMessageBytes, fi_mr_desc(registered_.get()), 0,
+                   &contexts_[slot]);
 }
 
 long Endpoint::send(Slot slot, size_t sizeBytes) {

@@ -35,7 +35,9 @@ public:
     Result<Greeting> connect(Deadline deadline);
     Result<void> accept(Deadline deadline);
 
-    [[nodiscard]] std::span<std::byte> memory(Slot slot) { return {memory_.get() + slot * kMessageBytes, kMessageBytes}; }
+    [[nodiscard]] std::span<std::byte> memory(Slot slot) {
+        return {memory_.get() + slot * kMessageBytes, kMessageBytes};
+    }
     // Returns 0 or an error; -FI_EAGAIN: retry later.
     long receive(Slot slot);
     long send(Slot slot, size_t sizeBytes);

@@ -11,7 +11,7 @@ namespace mural::fabric {
 namespace {
 
 constexpr size_t kMaxDataBytes = 256; // largest data of a connection request
-constexpr int64_t kSliceMs = 100; // some providers progress only when polled
+constexpr int64_t kSliceMs = 100;     // some providers progress only when polled
 
 struct alignas(fi_eq_cm_entry) EventBytes {
     std::byte bytes[sizeof(fi_eq_cm_entry) + kMaxDataBytes];
@@ -39,7 +39,9 @@ Result<EventQueue> EventQueue::open(const SharedFabric& fabric) {
         queue.queue_.reset(made);
         code = fi_control(&made->fid, FI_GETWAIT, &queue.descriptor_);
     }
-    if (code != 0) return Error{"fabric: can't open an event queue with a descriptor: " + codeText(code) + "; try another provider"};
+    if (code != 0)
+        return Error{"fabric: can't open an event queue with a descriptor: " + codeText(code) +
+                     "; try another provider"};
     return queue;
 }
 
@@ -54,7 +56,8 @@ Event EventQueue::look() {
         std::memcpy(&entry, room.bytes, std::min(sizeof entry, static_cast<size_t>(got)));
         if (event.kind == Event::Kind::Request) event.info.reset(entry.info);
         const std::byte* data = room.bytes + sizeof entry;
-        if (static_cast<size_t>(got) > sizeof entry) event.greeting.assign(data, static_cast<const std::byte*>(room.bytes) + got);
+        if (static_cast<size_t>(got) > sizeof entry)
+            event.greeting.assign(data, static_cast<const std::byte*>(room.bytes) + got);
     } else if (got == -FI_EAVAIL) {
         fi_eq_err_entry why{};
         fi_eq_readerr(queue_.get(), &why, 0);

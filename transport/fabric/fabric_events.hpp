@@ -13,10 +13,10 @@ namespace mural::fabric {
 
 struct Event {
     enum class Kind { None, Request, Connected, Shutdown, Failed };
-    Kind kind = Kind::None; // None: the deadline passed
-    Info info; // for Request
-    std::vector<std::byte> greeting; // data of a Request or Connected
-    long code = 0; // for Failed
+    Kind kind = Kind::None;                                 // None: the deadline passed
+    Info info;                                              // for Request
+    std::vector<std::byte> greeting;                        // data of a Request or Connected
+    long code = 0;                                          // for Failed
     [[nodiscard]] bool passing() const { return code > 0; } // Failed: a single request; negative: the queue itself
 };
 

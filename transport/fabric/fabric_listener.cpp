@@ -83,7 +83,9 @@ Result<std::unique_ptr<Connection>> FabricListener::accept(Deadline deadline) {
             auto made = accept(std::move(event), deadline);
             if (made || deadline.passed()) return made;
         } else if (event.kind == Event::Kind::None) {
-            return Error{description_ + ": deadline passed, nobody connected; check that the other side was started and may reach this port"};
+            return Error{
+                description_ +
+                ": deadline passed, nobody connected; check that the other side was started and may reach this port"};
         } else if (event.kind == Event::Kind::Failed && !event.passing()) {
             return Error{description_ + ": accept: " + codeText(event.code) + "; listen again"};
         }
@@ -102,9 +104,11 @@ Result<std::unique_ptr<Connection>> FabricListener::accept(Event request, Deadli
         return Error{description_ + ": " + endpoint.error().message};
     }
     const int64_t leftMs = deadline.leftNs(kHandshakeMs * kNsPerMs) / kNsPerMs + 1;
-    if (auto connected = (*endpoint)->accept(Deadline::inMs(leftMs)); !connected) return Error{description_ + ": " + connected.error().message};
+    if (auto connected = (*endpoint)->accept(Deadline::inMs(leftMs)); !connected)
+        return Error{description_ + ": " + connected.error().message};
     std::string peer = (*endpoint)->peerText(description_);
-    return std::unique_ptr<Connection>(std::make_unique<FabricConnection>(std::move(*endpoint), *greeting, std::move(peer)));
+    return std::unique_ptr<Connection>(
+        std::make_unique<FabricConnection>(std::move(*endpoint), *greeting, std::move(peer)));
 }
 
 } // namespace

@@ -19,7 +19,7 @@ namespace mural::fabric {
 
 inline constexpr size_t kHeadBytes = 8;
 inline constexpr size_t kMessageBytes = size_t{64} << 10; // including its head; size of a buffer at either end
-inline constexpr uint16_t kWindow = 16; // unread Data messages
+inline constexpr uint16_t kWindow = 16;                   // unread Data messages
 inline constexpr uint16_t kCreditsAtOnce = kWindow / 4;
 inline constexpr size_t kControls = 6;
 inline constexpr size_t kReceives = kWindow + kControls;

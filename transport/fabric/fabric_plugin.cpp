@@ -3,6 +3,7 @@
 #include "transport/plugin/exported_transport.hpp"
 
 extern "C" __attribute__((visibility("default"))) const mural_transport_plugin* mural_get_transport_plugin() {
-    static const auto table = mural::exportedTransport<mural::fabric::connectFabric, mural::fabric::listenFabric>("fabric");
+    static const auto table =
+        mural::exportedTransport<mural::fabric::connectFabric, mural::fabric::listenFabric>("fabric");
     return &table;
 }

@@ -17,7 +17,8 @@ constexpr const char* kProvider = "provider";
 Result<std::string> providerWanted(const ConnectionDescription& description) {
     std::string wanted;
     for (const auto& [name, value] : description.parameters) {
-        if (name != kProvider) return Error{toText(description) + ": there is no parameter \"" + name + "\"; there is provider"};
+        if (name != kProvider)
+            return Error{toText(description) + ": there is no parameter \"" + name + "\"; there is provider"};
         wanted = value;
     }
     return wanted;
@@ -42,7 +43,8 @@ Info makeHints(const std::string& provider) {
 // Resolves names first, because libfabric would do so without a deadline.
 Result<std::vector<std::string>> numbersOf(const ConnectionDescription& description, Role role, Deadline deadline) {
     if (description.host.empty() || description.host == "*") return std::vector<std::string>{""};
-    auto found = resolveTcp(description.host, description.port, role == Role::Listen ? TcpRole::Listen : TcpRole::Connect, deadline);
+    auto found = resolveTcp(description.host, description.port,
+                            role == Role::Listen ? TcpRole::Listen : TcpRole::Connect, deadline);
     if (!found) { // its text begins with tcp://...
         const size_t reason = tcpText(description.host, description.port).size();
         return Error{toText(description) + found.error().message.substr(reason)};
@@ -67,7 +69,8 @@ Result<std::vector<Info>> findProviders(const ConnectionDescription& description
     for (const std::string& number : numbers.value()) {
         fi_info* list = nullptr;
         const uint64_t flags = (role == Role::Listen ? FI_SOURCE : 0) | (number.empty() ? 0 : FI_NUMERICHOST);
-        const int answer = fi_getinfo(kApiVersion, number.empty() ? nullptr : number.c_str(), port.c_str(), flags, hints.get(), &list);
+        const int answer =
+            fi_getinfo(kApiVersion, number.empty() ? nullptr : number.c_str(), port.c_str(), flags, hints.get(), &list);
         if (answer != 0) code = answer;
         while (list) { // splits the list into single entries
             fi_info* next = std::exchange(list->next, nullptr);
@@ -76,14 +79,15 @@ Result<std::vector<Info>> findProviders(const ConnectionDescription& description
         }
     }
     if (!all.empty()) return all;
-    return Error{toText(description) + ": libfabric has no provider for it" + (code == 0 ? "" : " (" + codeText(code) + ")") +
-                 "; fi_info -t FI_EP_MSG lists what there is"};
+    return Error{toText(description) + ": libfabric has no provider for it" +
+                 (code == 0 ? "" : " (" + codeText(code) + ")") + "; fi_info -t FI_EP_MSG lists what there is"};
 }
 
 Result<SharedFabric> openFabric(const fi_info& info) {
     fid_fabric* fabric = nullptr;
     if (const int code = fi_fabric(info.fabric_attr, &fabric, nullptr); code != 0)
-        return Error{"fabric: can't open the provider " + providerOf(info) + ": " + codeText(code) + "; try another by provider=NAME"};
+        return Error{"fabric: can't open the provider " + providerOf(info) + ": " + codeText(code) +
+                     "; try another by provider=NAME"};
     return SharedFabric(fabric, CloseFid());
 }
 
@@ -91,7 +95,8 @@ std::string fabricText(const std::string& host, uint16_t port, const std::string
     return "fabric://" + endpointText(host, port) + "?" + kProvider + "=" + provider;
 }
 
-std::string fabricText(const void* address, size_t sizeBytes, const std::string& provider, const std::string& otherwise) {
+std::string fabricText(const void* address, size_t sizeBytes, const std::string& provider,
+                       const std::string& otherwise) {
     SocketAddress ip;
     ip.sizeBytes = static_cast<socklen_t>(std::min(sizeBytes, sizeof ip.storage));
     std::memcpy(&ip.storage, address, ip.sizeBytes);

@@ -20,7 +20,8 @@ Result<SharedFabric> openFabric(const fi_info& info);
 // Returns "fabric://host:port?provider=tcp".
 std::string fabricText(const std::string& host, uint16_t port, const std::string& provider);
 // The same for a libfabric address; `otherwise` if it is not an IP address.
-std::string fabricText(const void* address, size_t sizeBytes, const std::string& provider, const std::string& otherwise);
+std::string fabricText(const void* address, size_t sizeBytes, const std::string& provider,
+                       const std::string& otherwise);
 std::string providerOf(const fi_info& info);
 
 } // namespace mural::fabric

@@ -21,7 +21,9 @@ int failed(mural_transport_error* error, const Error& why) {
     return 0;
 }
 
-int done(const Result<void>& result, mural_transport_error* error) { return result ? 1 : failed(error, result.error()); }
+int done(const Result<void>& result, mural_transport_error* error) {
+    return result ? 1 : failed(error, result.error());
+}
 
 int give(Result<std::unique_ptr<Connection>> made, mural_transport_connection** into, mural_transport_error* error) {
     if (!made) return failed(error, made.error());
@@ -32,7 +34,8 @@ int give(Result<std::unique_ptr<Connection>> made, mural_transport_connection** 
 
 } // namespace
 
-int connect(ConnectFunction function, const char* text, int64_t deadlineNs, mural_transport_connection** into, mural_transport_error* error) {
+int connect(ConnectFunction function, const char* text, int64_t deadlineNs, mural_transport_connection** into,
+            mural_transport_error* error) {
     auto description = parseConnectionDescription(text);
     if (!description) return failed(error, description.error());
     return give(function(*description, Deadline::at(deadlineNs)), into, error);
@@ -55,14 +58,17 @@ mural_transport_plugin table(const char* scheme) {
     plugin.version = MURAL_TRANSPORT_PLUGIN_VERSION;
     plugin.size_bytes = sizeof plugin;
     plugin.scheme = scheme;
-    plugin.accept = [](L* l, int64_t deadlineNs, C** into, mural_transport_error* error) { return give(l->listener->accept(Deadline::at(deadlineNs)), into, error); };
+    plugin.accept = [](L* l, int64_t deadlineNs, C** into, mural_transport_error* error) {
+        return give(l->listener->accept(Deadline::at(deadlineNs)), into, error);
+    };
     plugin.listener_description = [](const L* l) { return l->description.c_str(); };
     plugin.free_listener = [](L* l) { delete l; };
     plugin.read = [](C* c, void* into, size_t sizeBytes, int64_t deadlineNs, mural_transport_error* error) {
         return done(c->connection->read({static_cast<std::byte*>(into), sizeBytes}, Deadline::at(deadlineNs)), error);
     };
     plugin.write = [](C* c, const void* bytes, size_t sizeBytes, int64_t deadlineNs, mural_transport_error* error) {
-        return done(c->connection->write({static_cast<const std::byte*>(bytes), sizeBytes}, Deadline::at(deadlineNs)), error);
+        return done(c->connection->write({static_cast<const std::byte*>(bytes), sizeBytes}, Deadline::at(deadlineNs)),
+                    error);
     };
     plugin.flush = [](C* c) { c->connection->flush(); };
     plugin.close = [](C* c) { c->connection->close(); };

@@ -16,15 +16,18 @@ using ConnectFunction = Result<std::unique_ptr<Connection>> (*)(const Connection
 using ListenFunction = Result<std::unique_ptr<Listener>> (*)(const ConnectionDescription&);
 
 namespace exported {
-int connect(ConnectFunction function, const char* text, int64_t deadlineNs, mural_transport_connection** into, mural_transport_error* error);
+int connect(ConnectFunction function, const char* text, int64_t deadlineNs, mural_transport_connection** into,
+            mural_transport_error* error);
 int listen(ListenFunction function, const char* text, mural_transport_listener** into, mural_transport_error* error);
 // Returns the table without connect and listen.
 mural_transport_plugin table(const char* scheme);
 } // namespace exported
 
-template <ConnectFunction connectFunction, ListenFunction listenFunction> mural_transport_plugin exportedTransport(const char* scheme) {
+template <ConnectFunction connectFunction, ListenFunction listenFunction>
+mural_transport_plugin exportedTransport(const char* scheme) {
     mural_transport_plugin plugin = exported::table(scheme);
-    plugin.connect = [](const char* text, int64_t deadlineNs, mural_transport_connection** into, mural_transport_error* error) {
+    plugin.connect = [](const char* text, int64_t deadlineNs, mural_transport_connection** into,
+                        mural_transport_error* error) {
         return exported::connect(connectFunction, text, deadlineNs, into, error);
     };
     plugin.listen = [](const char* text, mural_transport_listener** into, mural_transport_error* error) {

@@ -13,7 +13,8 @@ Error said(mural_transport_error& error) {
 
 class PluginConnection final : public Connection {
 public:
-    PluginConnection(const Plugin& plugin, mural_transport_connection* connection) : plugin_(plugin), connection_(connection) {}
+    PluginConnection(const Plugin& plugin, mural_transport_connection* connection)
+        : plugin_(plugin), connection_(connection) {}
     ~PluginConnection() override { plugin_.free_connection(connection_); }
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override {
@@ -59,7 +60,8 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Connection>> connectByPlugin(const Plugin& plugin, const std::string& description, Deadline deadline) {
+Result<std::unique_ptr<Connection>> connectByPlugin(const Plugin& plugin, const std::string& description,
+                                                    Deadline deadline) {
     mural_transport_error error{};
     mural_transport_connection* made = nullptr;
     if (!plugin.connect(description.c_str(), deadline.atNs(), &made, &error)) return said(error);

@@ -9,7 +9,8 @@
 
 namespace mural {
 
-Result<std::unique_ptr<Connection>> connectByPlugin(const mural_transport_plugin& plugin, const std::string& description, Deadline deadline);
+Result<std::unique_ptr<Connection>> connectByPlugin(const mural_transport_plugin& plugin,
+                                                    const std::string& description, Deadline deadline);
 Result<std::unique_ptr<Listener>> listenByPlugin(const mural_transport_plugin& plugin, const std::string& description);
 
 } // namespace mural

@@ -1,12 +1,12 @@
-/* The C interface of transport plug-ins. The library libmural_transport_SCHEME.so in the folder of Mural's own libraries
- * provides the connections SCHEME://host:port?name=value&… It exports one C function:
+/* The C interface of transport plug-ins. The library libmural_transport_SCHEME.so in the folder of Mural's own
+ * libraries provides the connections SCHEME://host:port?name=value&… It exports one C function:
  *
  *     const struct mural_transport_plugin* mural_get_transport_plugin(void);
  *
  * The interface is plain C, so plug-in and Mural may use different compilers and C++ libraries. For plug-ins in C++,
- * exported_transport.hpp builds the table from a Connection and a Listener. Each function has the contract of the method of
- * the same name in transport/connection.hpp: one thread may read while another writes, any thread may call flush and close,
- * and every wait ends at its deadline_ns.
+ * exported_transport.hpp builds the table from a Connection and a Listener. Each function has the contract of the
+ * method of the same name in transport/connection.hpp: one thread may read while another writes, any thread may call
+ * flush and close, and every wait ends at its deadline_ns.
  */
 #ifndef MURAL_TRANSPORT_PLUGIN_H
 #define MURAL_TRANSPORT_PLUGIN_H
@@ -40,15 +40,19 @@ struct mural_transport_plugin {
     const char* scheme;  /* as in the library's name */
 
     /* description: the complete text as the user wrote it. */
-    int (*connect)(const char* description, int64_t deadline_ns, struct mural_transport_connection** into, struct mural_transport_error* error);
+    int (*connect)(const char* description, int64_t deadline_ns, struct mural_transport_connection** into,
+                   struct mural_transport_error* error);
     int (*listen)(const char* description, struct mural_transport_listener** into, struct mural_transport_error* error);
 
-    int (*accept)(struct mural_transport_listener*, int64_t deadline_ns, struct mural_transport_connection** into, struct mural_transport_error* error);
+    int (*accept)(struct mural_transport_listener*, int64_t deadline_ns, struct mural_transport_connection** into,
+                  struct mural_transport_error* error);
     const char* (*listener_description)(const struct mural_transport_listener*); /* valid until free_listener */
     void (*free_listener)(struct mural_transport_listener*);
 
-    int (*read)(struct mural_transport_connection*, void* into, size_t size_bytes, int64_t deadline_ns, struct mural_transport_error* error);
-    int (*write)(struct mural_transport_connection*, const void* bytes, size_t size_bytes, int64_t deadline_ns, struct mural_transport_error* error);
+    int (*read)(struct mural_transport_connection*, void* into, size_t size_bytes, int64_t deadline_ns,
+                struct mural_transport_error* error);
+    int (*write)(struct mural_transport_connection*, const void* bytes, size_t size_bytes, int64_t deadline_ns,
+                 struct mural_transport_error* error);
     void (*flush)(struct mural_transport_connection*);
     void (*close)(struct mural_transport_connection*);
     int (*timed_out)(const struct mural_transport_connection*);

@@ -60,7 +60,8 @@ Result<void> Group::waitForMembers(size_t count, Deadline deadline) {
     while (state_->core->members().size() < count) {
         if (!state_->failure.empty()) return Error{state_->failure};
         if (deadline.passed())
-            return tooLate(std::to_string(count) + " members; " + std::to_string(state_->core->members().size()) + " are there");
+            return tooLate(std::to_string(count) + " members; " + std::to_string(state_->core->members().size()) +
+                           " are there");
         state_->changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
     }
     return {};
@@ -131,7 +132,8 @@ Result<void> Group::waitArrived(Deadline deadline) {
 }
 
 // Returns the readable pieces of a member's stream in place; waits for the first. 0: end of the stream.
-Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline) {
+Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, MemberId from,
+                                      std::span<std::span<const std::byte>> pieces, Deadline deadline) {
     while (true) {
         const Receiver* r = core->receiver(from);
         if (const size_t count = r ? r->readable(pieces) : 0; count > 0) return count;

@@ -23,14 +23,14 @@ constexpr size_t kMaxDatagramBytes = 8972; // a longer datagram would lose more 
 
 struct GroupOptions {
     std::string group = "239.255.77.85:4277"; // multicast address and port; IPv6 in brackets
-    std::string interface; // name or address; empty: the first interface with multicast
-    std::string control = ":0"; // host: listening address; member: the host's address
-    std::string name = "member"; // identifies the member's secret to the host
+    std::string interface;                    // name or address; empty: the first interface with multicast
+    std::string control = ":0";               // host: listening address; member: the host's address
+    std::string name = "member";              // identifies the member's secret to the host
     ChannelSecret secret{};
     bool multicast = true;
     // Settings of the host:
     Seal seal = Seal::None;
-    double bytesPerS = 0; // maximum rate; 0: 0.9 of the interface's rate, unlimited if that is unknown
+    double bytesPerS = 0;     // maximum rate; 0: 0.9 of the interface's rate, unlimited if that is unknown
     size_t datagramBytes = 0; // UDP payload; 0: from the interface's MTU
     uint32_t windowDatagrams = 4096;
     size_t socketBytes = size_t{8} << 20;
@@ -71,7 +71,7 @@ struct MemberEvent {
     enum class Kind { Came, Rerouted, Gone };
     Kind kind = Kind::Came;
     MemberId id = 0;
-    MemberInfo info; // multicast: reachable by multicast
+    MemberInfo info;                      // multicast: reachable by multicast
     GoneReason reason = GoneReason::Left; // for Gone
 };
 

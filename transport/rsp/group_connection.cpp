@@ -18,14 +18,21 @@ Deadline inSlice(Deadline deadline) { return Deadline::inMs(deadline.leftNs(kLoo
 // `whole`: this is the member's own end, and owns its group; otherwise one connection of the host.
 class GroupConnection final : public Connection {
 public:
-    GroupConnection(std::shared_ptr<Group> group, MemberId from, bool whole, std::string description, std::vector<std::byte> first = {})
-        : group_(std::move(group)), from_(from), whole_(whole), description_(std::move(description)), first_(std::move(first)) {}
+    GroupConnection(std::shared_ptr<Group> group, MemberId from, bool whole, std::string description,
+                    std::vector<std::byte> first = {})
+        : group_(std::move(group)),
+          from_(from),
+          whole_(whole),
+          description_(std::move(description)),
+          first_(std::move(first)) {}
     ~GroupConnection() override { GroupConnection::close(); }
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override {
         readTimedOut_ = false;
         size_t done = takeFirst(into);
-        const auto failed = [&](const std::string& why) { return connectionError(description_, "read", done, into.size(), why); };
+        const auto failed = [&](const std::string& why) {
+            return connectionError(description_, "read", done, into.size(), why);
+        };
         while (done < into.size()) {
             if (closed_) return failed(ending::kClosedHere);
             const Deadline slice = inSlice(deadline);
@@ -51,7 +58,9 @@ public:
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline) override {
         writeTimedOut_ = false;
         size_t done = 0;
-        const auto failed = [&](const std::string& why) { return connectionError(description_, "write", done, bytes.size(), why); };
+        const auto failed = [&](const std::string& why) {
+            return connectionError(description_, "write", done, bytes.size(), why);
+        };
         while (done < bytes.size()) {
             if (closed_) return failed(ending::kClosedHere);
             if (!alive()) return failed(ending::kPeerGone);
@@ -100,8 +109,10 @@ private:
 
     void endStream() {
         if (closed_.exchange(true)) return;
-        if (whole_) group_->leave();
-        else group_->remove(from_, "the host has closed its connection");
+        if (whole_)
+            group_->leave();
+        else
+            group_->remove(from_, "the host has closed its connection");
     }
 
     const std::shared_ptr<Group> group_;
@@ -118,17 +129,20 @@ private:
     std::atomic<uint64_t> bytesRead_{0};
 };
 
-std::string textOf(const GroupOptions& options, const std::string& control) { return "rsp://" + options.group + "?control=" + control; }
+std::string textOf(const GroupOptions& options, const std::string& control) {
+    return "rsp://" + options.group + "?control=" + control;
+}
 
 class GroupListener final : public Listener {
 public:
-    GroupListener(std::shared_ptr<Group> group, std::string description) : group_(std::move(group)), description_(std::move(description)) {}
+    GroupListener(std::shared_ptr<Group> group, std::string description)
+        : group_(std::move(group)), description_(std::move(description)) {}
 
     Result<std::unique_ptr<Connection>> accept(Deadline deadline) override {
         auto member = group_->accept(deadline);
         if (!member) return Error{description_ + ": " + member.error().message};
-        return std::unique_ptr<Connection>(
-            std::make_unique<GroupConnection>(group_, *member, false, description_ + ", member " + std::to_string(*member)));
+        return std::unique_ptr<Connection>(std::make_unique<GroupConnection>(
+            group_, *member, false, description_ + ", member " + std::to_string(*member)));
     }
     [[nodiscard]] std::string describe() const override { return description_; }
 
@@ -145,8 +159,10 @@ Result<std::unique_ptr<Connection>> joinGroup(const GroupOptions& options, Deadl
     return streamOfHost(std::move(*group), options, {});
 }
 
-std::unique_ptr<Connection> streamOfHost(std::unique_ptr<Group> group, const GroupOptions& options, std::vector<std::byte> first) {
-    return std::make_unique<GroupConnection>(std::move(group), kHost, true, textOf(options, options.control), std::move(first));
+std::unique_ptr<Connection> streamOfHost(std::unique_ptr<Group> group, const GroupOptions& options,
+                                         std::vector<std::byte> first) {
+    return std::make_unique<GroupConnection>(std::move(group), kHost, true, textOf(options, options.control),
+                                             std::move(first));
 }
 
 Result<std::unique_ptr<Listener>> hostGroup(const GroupOptions& options) {

@@ -16,7 +16,8 @@ namespace mural::rsp {
 // Joins a group and reads the host's stream. Errors: no host, wrong secret, deadline.
 Result<std::unique_ptr<Connection>> joinGroup(const GroupOptions& options, Deadline deadline);
 // Returns a connection to the host's stream. `first`: bytes already read, returned first.
-std::unique_ptr<Connection> streamOfHost(std::unique_ptr<Group> group, const GroupOptions& options, std::vector<std::byte> first);
+std::unique_ptr<Connection> streamOfHost(std::unique_ptr<Group> group, const GroupOptions& options,
+                                         std::vector<std::byte> first);
 // Hosts a group. accept() returns each member after its stream has begun; describe() contains the control address for
 // members.
 Result<std::unique_ptr<Listener>> hostGroup(const GroupOptions& options);

@@ -41,8 +41,10 @@ constexpr int64_t kMaxWindowDatagrams = 65'536;
 
 const std::array<std::pair<const char*, Set>, 15> kParameters{{
     {"control", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.control = v, Result<void>(); }},
-    {"datagram", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxDatagramBytesAsked), o.datagramBytes); }},
-    {"interface", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.interface = v, Result<void>(); }},
+    {"datagram",
+     [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxDatagramBytesAsked), o.datagramBytes); }},
+    {"interface",
+     [](GroupOptions& o, const std::string& v) -> Result<void> { return o.interface = v, Result<void>(); }},
     {"multicast", [](GroupOptions& o, const std::string& v) { return choose(v, "on", "off", o.multicast); }},
     {"name", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.name = v, Result<void>(); }},
     {"parity", [](GroupOptions& o, const std::string& v) { return choose(v, "on", "off", o.parity); }},
@@ -52,14 +54,16 @@ const std::array<std::pair<const char*, Set>, 15> kParameters{{
     {"secret", [](GroupOptions& o, const std::string& v) { return put(readSecret(v), o.secret); }},
     {"silent-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxMs), o.silentMs); }},
     {"socket", [](GroupOptions& o, const std::string& v) { return put(parseSize(v), o.socketBytes); }},
-    {"stalled", [](GroupOptions& o, const std::string& v) -> Result<void> {
+    {"stalled",
+     [](GroupOptions& o, const std::string& v) -> Result<void> {
          bool eject = true;
          if (auto r = choose(v, "eject", "wait", eject); !r) return r;
          o.stalled = eject ? StallPolicy::Eject : StallPolicy::Wait;
          return {};
      }},
     {"stalled-ms", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxMs), o.stalledMs); }},
-    {"window", [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxWindowDatagrams), o.windowDatagrams); }},
+    {"window",
+     [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxWindowDatagrams), o.windowDatagrams); }},
 }};
 
 std::string allNames() {
@@ -74,10 +78,14 @@ Result<GroupOptions> groupOptionsOf(const ConnectionDescription& description) {
     GroupOptions options;
     options.group = endpointText(description.host, description.port);
     options.seal = bestEncryption(); // default
-    const auto wrong = [&](const std::string& what) { return Error{"connection \"" + toText(description) + "\": " + what}; };
+    const auto wrong = [&](const std::string& what) {
+        return Error{"connection \"" + toText(description) + "\": " + what};
+    };
     auto group = numericEndpoint(options.group);
     if (!group) return wrong(group.error().message);
-    if (!group->isMulticast()) return wrong(description.host + " is no multicast address; those are 224.0.0.0 to 239.255.255.255, and ff00:: and up");
+    if (!group->isMulticast())
+        return wrong(description.host +
+                     " is no multicast address; those are 224.0.0.0 to 239.255.255.255, and ff00:: and up");
     for (const auto& [name, value] : description.parameters) {
         const auto found = std::ranges::find(kParameters, name, [](const auto& p) { return std::string(p.first); });
         if (found == kParameters.end()) return wrong("there is no parameter \"" + name + "\"; there are " + allNames());

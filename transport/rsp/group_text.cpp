@@ -23,7 +23,8 @@ constexpr size_t kMinSecretBytes = 16;
 using Unit = std::pair<std::string_view, double>;
 
 // Parses a non-negative number with a unit, case-insensitively.
-template <size_t N> Result<double> numberWithUnit(const std::string& text, const std::array<Unit, N>& units, const char* example) {
+template <size_t N>
+Result<double> numberWithUnit(const std::string& text, const std::array<Unit, N>& units, const char* example) {
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     std::string unit(end, text.data() + text.size());
@@ -37,8 +38,9 @@ template <size_t N> Result<double> numberWithUnit(const std::string& text, const
 } // namespace
 
 Result<double> parseRate(const std::string& text) {
-    static constexpr std::array<Unit, 7> units{Unit{"kbit", 125}, Unit{"mbit", 125e3}, Unit{"gbit", 125e6}, Unit{"kb", 1e3},
-        Unit{"mb", 1e6}, Unit{"gb", 1e9}, Unit{"", 1}};
+    static constexpr std::array<Unit, 7> units{Unit{"kbit", 125}, Unit{"mbit", 125e3}, Unit{"gbit", 125e6},
+                                               Unit{"kb", 1e3},   Unit{"mb", 1e6},     Unit{"gb", 1e9},
+                                               Unit{"", 1}};
     return numberWithUnit(text, units, "200mbit, 1gbit or 25MB");
 }
 
@@ -66,19 +68,28 @@ Result<ChannelSecret> readSecret(const std::string& path) {
         bytes.assign(std::istreambuf_iterator<char>(std::cin), {});
     } else {
         std::ifstream file(path, std::ios::binary);
-        if (!file) return Error{path + ": can't read the secret; make one with: (umask 077; head -c 32 /dev/urandom | base64 > " + path + ")"};
+        if (!file)
+            return Error{path +
+                         ": can't read the secret; make one with: (umask 077; head -c 32 /dev/urandom | base64 > " +
+                         path + ")"};
         using std::filesystem::perms;
         std::error_code unknown;
-        if ((std::filesystem::status(path, unknown).permissions() & (perms::others_read | perms::others_write)) != perms::none && !unknown)
-            return Error{path + ": every user of this machine can read or change this secret; make a new one, or if nobody has: chmod 600 " + path};
+        if ((std::filesystem::status(path, unknown).permissions() & (perms::others_read | perms::others_write)) !=
+                perms::none &&
+            !unknown)
+            return Error{path +
+                         ": every user of this machine can read or change this secret; make a new one, or if nobody "
+                         "has: chmod 600 " +
+                         path};
         bytes.assign(std::istreambuf_iterator<char>(file), {});
     }
     while (!bytes.empty() && (bytes.back() == '\n' || bytes.back() == '\r')) bytes.pop_back();
-    if (bytes.size() < kMinSecretBytes) return Error{path + ": a secret has 16 bytes at least; make one with: head -c 32 /dev/urandom | base64"};
+    if (bytes.size() < kMinSecretBytes)
+        return Error{path + ": a secret has 16 bytes at least; make one with: head -c 32 /dev/urandom | base64"};
     ChannelSecret secret;
     if (sodium_init() < 0) return Error{"libsodium can't be used here"};
-    crypto_generichash(reinterpret_cast<unsigned char*>(secret.data()), secret.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
-        bytes.size(), nullptr, 0);
+    crypto_generichash(reinterpret_cast<unsigned char*>(secret.data()), secret.size(),
+                       reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), nullptr, 0);
     return secret;
 }
 

@@ -25,7 +25,8 @@ using Hash = std::array<std::byte, kProofBytes>;
 unsigned char* raw(std::byte* at) { return reinterpret_cast<unsigned char*>(at); }
 const unsigned char* raw(const std::byte* at) { return reinterpret_cast<const unsigned char*>(at); }
 
-Hash keyedHash(const ChannelSecret& secret, std::string_view what, std::span<const std::byte> a, std::span<const std::byte> b = {}) {
+Hash keyedHash(const ChannelSecret& secret, std::string_view what, std::span<const std::byte> a,
+               std::span<const std::byte> b = {}) {
     Hash hash;
     crypto_generichash_state state;
     crypto_generichash_init(&state, raw(secret.data()), secret.size(), hash.size());
@@ -85,7 +86,8 @@ bool SecureChannel::State::agree(std::span<const std::byte> peerKey) {
     std::array<std::byte, crypto_kx_SESSIONKEYBYTES> receive;
     std::array<std::byte, crypto_kx_SESSIONKEYBYTES> send;
     const auto exchange = host ? crypto_kx_server_session_keys : crypto_kx_client_session_keys;
-    if (exchange(raw(receive.data()), raw(send.data()), raw(publicKey.data()), raw(secretKey.data()), raw(peerKey.data())) != 0)
+    if (exchange(raw(receive.data()), raw(send.data()), raw(publicKey.data()), raw(secretKey.data()),
+                 raw(peerKey.data())) != 0)
         return false;
     receiveKey = keyedHash(secret, "record", receive, transcript);
     startSending(keyedHash(secret, "record", send, transcript));
@@ -133,7 +135,8 @@ Result<size_t> SecureChannel::State::takeHostKey() {
     const Hash expected = keyedHash(secret, "host", transcript);
     if (sodium_memcmp(expected.data(), in.data() + kPublicBytes, kProofBytes) != 0)
         return Error{"the host does not know this session's secret; give both ends the same one"};
-    if (!agree(std::span(in).first(kPublicBytes))) return Error{"the host's key is not valid; its connection is not trusted"};
+    if (!agree(std::span(in).first(kPublicBytes)))
+        return Error{"the host's key is not valid; its connection is not trusted"};
     step = Step::Header;
     return bytes;
 }
@@ -165,8 +168,8 @@ Result<size_t> SecureChannel::State::takeRecord(std::vector<Bytes>& messages) {
     if (in.size() < kLengthBytes + bytes) return size_t{0};
     Bytes message(bytes - kOverheadBytes);
     unsigned char tag = 0;
-    if (crypto_secretstream_xchacha20poly1305_pull(
-            &receiving, raw(message.data()), nullptr, &tag, raw(in.data()) + kLengthBytes, bytes, nullptr, 0) != 0)
+    if (crypto_secretstream_xchacha20poly1305_pull(&receiving, raw(message.data()), nullptr, &tag,
+                                                   raw(in.data()) + kLengthBytes, bytes, nullptr, 0) != 0)
         return Error{"a record was changed on the way"};
     if (tag == crypto_secretstream_xchacha20poly1305_TAG_FINAL)
         finished = true;
@@ -191,7 +194,10 @@ Result<size_t> SecureChannel::State::takeNext(std::vector<Bytes>& messages) {
 size_t SecureChannel::State::stepBytes() const {
     constexpr size_t kHelloHeadBytes = kMagic.size() + 1;
     switch (step) {
-    case Step::Hello: return in.size() < kHelloHeadBytes ? kHelloHeadBytes : kHelloHeadBytes + std::to_integer<size_t>(in[kMagic.size()]) + kPublicBytes;
+    case Step::Hello:
+        return in.size() < kHelloHeadBytes
+                   ? kHelloHeadBytes
+                   : kHelloHeadBytes + std::to_integer<size_t>(in[kMagic.size()]) + kPublicBytes;
     case Step::HostKey: return kPublicBytes + kProofBytes;
     case Step::MemberProof: return kProofBytes;
     case Step::Header: return kHeaderBytes;
@@ -254,8 +260,9 @@ Result<void> SecureChannel::send(std::span<const std::byte> message) {
     append(s.out, length);
     const size_t at = s.out.size();
     s.out.resize(at + message.size() + kOverheadBytes);
-    crypto_secretstream_xchacha20poly1305_push(&s.sending, raw(s.out.data() + at), nullptr, raw(message.data()), message.size(),
-        nullptr, 0, crypto_secretstream_xchacha20poly1305_TAG_MESSAGE);
+    crypto_secretstream_xchacha20poly1305_push(&s.sending, raw(s.out.data() + at), nullptr, raw(message.data()),
+                                               message.size(), nullptr, 0,
+                                               crypto_secretstream_xchacha20poly1305_TAG_MESSAGE);
     return {};
 }
 
@@ -265,13 +272,15 @@ void SecureChannel::finish() {
     s.ended = true;
     std::array<std::byte, kLengthBytes + kOverheadBytes> record;
     storeLittle(record.data(), static_cast<uint32_t>(kOverheadBytes));
-    crypto_secretstream_xchacha20poly1305_push(&s.sending, raw(record.data() + kLengthBytes), nullptr, nullptr, 0, nullptr, 0,
-        crypto_secretstream_xchacha20poly1305_TAG_FINAL);
+    crypto_secretstream_xchacha20poly1305_push(&s.sending, raw(record.data() + kLengthBytes), nullptr, nullptr, 0,
+                                               nullptr, 0, crypto_secretstream_xchacha20poly1305_TAG_FINAL);
     append(s.out, record);
 }
 
 std::vector<std::byte> SecureChannel::takeOutput() { return std::exchange(state_->out, {}); }
-size_t SecureChannel::wantsBytes() const { return state_->stepBytes() - std::min(state_->in.size(), state_->stepBytes() - 1); }
+size_t SecureChannel::wantsBytes() const {
+    return state_->stepBytes() - std::min(state_->in.size(), state_->stepBytes() - 1);
+}
 bool SecureChannel::open() const { return state_->step == State::Step::Records; }
 bool SecureChannel::finished() const { return state_->finished; }
 const std::string& SecureChannel::name() const { return state_->name; }

@@ -53,7 +53,7 @@ public:
 
     // Returns true after the peer has proven that it knows the secret.
     [[nodiscard]] bool open() const;
-    [[nodiscard]] bool finished() const; // the peer has finished
+    [[nodiscard]] bool finished() const;           // the peer has finished
     [[nodiscard]] const std::string& name() const; // name of the member, at both ends
 
 private:

@@ -24,20 +24,23 @@ SecureConnection::SecureConnection(std::unique_ptr<Connection> over, SecureChann
 
 SecureConnection::~SecureConnection() { SecureConnection::close(); }
 
-Result<std::unique_ptr<SecureConnection>> SecureConnection::connecting(
-    std::unique_ptr<Connection> over, const std::string& name, const ChannelSecret& secret, Deadline deadline) {
+Result<std::unique_ptr<SecureConnection>> SecureConnection::connecting(std::unique_ptr<Connection> over,
+                                                                       const std::string& name,
+                                                                       const ChannelSecret& secret, Deadline deadline) {
     std::unique_ptr<SecureConnection> c(new SecureConnection(std::move(over), SecureChannel::connecting(name, secret)));
     return shakeHands(std::move(c), deadline, {});
 }
 
-Result<std::unique_ptr<SecureConnection>> SecureConnection::accepting(
-    std::unique_ptr<Connection> over, SecureChannel::FindSecret find, Deadline deadline, const Cancelled& cancelled) {
-    std::unique_ptr<SecureConnection> c(new SecureConnection(std::move(over), SecureChannel::accepting(std::move(find))));
+Result<std::unique_ptr<SecureConnection>> SecureConnection::accepting(std::unique_ptr<Connection> over,
+                                                                      SecureChannel::FindSecret find, Deadline deadline,
+                                                                      const Cancelled& cancelled) {
+    std::unique_ptr<SecureConnection> c(
+        new SecureConnection(std::move(over), SecureChannel::accepting(std::move(find))));
     return shakeHands(std::move(c), deadline, cancelled);
 }
 
-Result<std::unique_ptr<SecureConnection>> SecureConnection::shakeHands(
-    std::unique_ptr<SecureConnection> connection, Deadline deadline, const Cancelled& cancelled) {
+Result<std::unique_ptr<SecureConnection>> SecureConnection::shakeHands(std::unique_ptr<SecureConnection> connection,
+                                                                       Deadline deadline, const Cancelled& cancelled) {
     SecureConnection& c = *connection;
     while (true) {
         const auto output = c.channel_.takeOutput();
@@ -49,17 +52,21 @@ Result<std::unique_ptr<SecureConnection>> SecureConnection::shakeHands(
         c.arrived_.resize(c.channel_.wantsBytes());
         const auto got = c.over_->read(c.arrived_, sooner(deadline, Deadline::inMs(kSliceMs)));
         if (!got && !c.over_->timedOut()) return got.error();
-        if (!got && deadline.passed()) return Error{c.over_->describe() + ": the peer did not show in time that it knows the secret"};
+        if (!got && deadline.passed())
+            return Error{c.over_->describe() + ": the peer did not show in time that it knows the secret"};
         if (!got && cancelled && cancelled()) return Error{c.over_->describe() + ": nobody waits for it any longer"};
         if (!got) continue;
-        if (auto good = c.channel_.input(c.arrived_, c.messages_); !good) return Error{c.over_->describe() + ": " + good.error().message};
+        if (auto good = c.channel_.input(c.arrived_, c.messages_); !good)
+            return Error{c.over_->describe() + ": " + good.error().message};
     }
 }
 
 Result<void> SecureConnection::read(std::span<std::byte> into, Deadline deadline) {
     readTimedOut_ = false;
     size_t done = 0;
-    const auto failed = [&](const std::string& why) { return connectionError(describe(), "read", done, into.size(), why); };
+    const auto failed = [&](const std::string& why) {
+        return connectionError(describe(), "read", done, into.size(), why);
+    };
     while (true) {
         const size_t n = std::min(into.size() - done, opened_.size() - openedAt_);
         if (n > 0) std::memcpy(into.data() + done, opened_.data() + openedAt_, n);
@@ -69,7 +76,8 @@ Result<void> SecureConnection::read(std::span<std::byte> into, Deadline deadline
         if (closed_) return failed(ending::kClosedHere);
         const auto got = takeRecord(deadline);
         if (got) continue;
-        if (!deadline.passed() || !over_->timedOut()) return closed_ && !channel_.finished() ? failed(ending::kClosedHere) : failed(got.error().message);
+        if (!deadline.passed() || !over_->timedOut())
+            return closed_ && !channel_.finished() ? failed(ending::kClosedHere) : failed(got.error().message);
         readTimedOut_ = done == 0;
         if (done > 0) endStream();
         return failed(done > 0 ? ending::kCutInHalf : ending::kIdle);
@@ -106,7 +114,9 @@ Result<void> SecureConnection::write(std::span<const std::byte> bytes, Deadline 
     const std::lock_guard lock(writeMutex_);
     lastWriteDeadline_ = deadline;
     size_t done = 0;
-    const auto failed = [&](const std::string& why) { return connectionError(describe(), "write", done, bytes.size(), why); };
+    const auto failed = [&](const std::string& why) {
+        return connectionError(describe(), "write", done, bytes.size(), why);
+    };
     while (done < bytes.size()) {
         if (closed_) return failed(ending::kClosedHere);
         if (gathered_.size() == kRecordBytes) {
@@ -151,7 +161,8 @@ void SecureConnection::close() {
     if (const std::unique_lock lock(writeMutex_, std::try_to_lock); lock.owns_lock() && !closed_) {
         if (sendGathered(Deadline::inMs(0))) {
             channel_.finish();
-            if (const auto last = channel_.takeOutput(); !last.empty()) static_cast<void>(over_->write(last, Deadline::inMs(0)).ok());
+            if (const auto last = channel_.takeOutput(); !last.empty())
+                static_cast<void>(over_->write(last, Deadline::inMs(0)).ok());
         }
     }
     endStream();

@@ -20,10 +20,12 @@ public:
     using Cancelled = std::function<bool()>; // polled every 100 ms; may be empty
 
     // Both return after mutual authentication. Errors: a wrong secret, the deadline, the peer's end.
-    static Result<std::unique_ptr<SecureConnection>> connecting(
-        std::unique_ptr<Connection> over, const std::string& name, const ChannelSecret& secret, Deadline deadline);
-    static Result<std::unique_ptr<SecureConnection>> accepting(
-        std::unique_ptr<Connection> over, SecureChannel::FindSecret find, Deadline deadline, const Cancelled& cancelled = {});
+    static Result<std::unique_ptr<SecureConnection>> connecting(std::unique_ptr<Connection> over,
+                                                                const std::string& name, const ChannelSecret& secret,
+                                                                Deadline deadline);
+    static Result<std::unique_ptr<SecureConnection>> accepting(std::unique_ptr<Connection> over,
+                                                               SecureChannel::FindSecret find, Deadline deadline,
+                                                               const Cancelled& cancelled = {});
     ~SecureConnection() override;
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override;
@@ -44,8 +46,8 @@ public:
 
 private:
     SecureConnection(std::unique_ptr<Connection> over, SecureChannel channel);
-    static Result<std::unique_ptr<SecureConnection>> shakeHands(
-        std::unique_ptr<SecureConnection> connection, Deadline deadline, const Cancelled& cancelled);
+    static Result<std::unique_ptr<SecureConnection>> shakeHands(std::unique_ptr<SecureConnection> connection,
+                                                                Deadline deadline, const Cancelled& cancelled);
 
     Result<void> takeRecord(Deadline deadline);
     Result<void> sendGathered(Deadline deadline);

@@ -21,27 +21,19 @@ uint32_t announceDataFor(size_t capacityBytes) {
     return static_cast<uint32_t>(std::clamp<size_t>(capacityBytes / 8, 1, size_t{64} * 1024));
 }
 
-uint32_t announceRoomFor(size_t capacityBytes) {
-    return static_cast<uint32_t>(std::max<size_t>(capacityBytes / 4, 1));
-}
+uint32_t announceRoomFor(size_t capacityBytes) { return static_cast<uint32_t>(std::max<size_t>(capacityBytes / 4, 1)); }
 
 // Both sides store their own word and then load the other's, sequentially consistent. So the sleeper sees the new
 // position, or the waker sees the flag. One wake-up per sleep.
-bool wakeIfWaiting(std::atomic<uint32_t>& waiting,
-                   std::atomic<uint32_t>& position,
-                   uint32_t positionNow) {
+bool wakeIfWaiting(std::atomic<uint32_t>& waiting, std::atomic<uint32_t>& position, uint32_t positionNow) {
     position.store(positionNow, std::memory_order_seq_cst);
-    if (waiting.load(std::memory_order_seq_cst) == 0)
-        return false;
-    if (waiting.exchange(0, std::memory_order_seq_cst) == 0)
-        return false;
+    if (waiting.load(std::memory_order_seq_cst) == 0) return false;
+    if (waiting.exchange(0, std::memory_order_seq_cst) == 0) return false;
     futexWakeAll(position);
     return true;
 }
 
-void sleepWhileEqual(std::atomic<uint32_t>& waiting,
-                     const std::atomic<uint32_t>& position,
-                     uint32_t unchanged,
+void sleepWhileEqual(std::atomic<uint32_t>& waiting, const std::atomic<uint32_t>& position, uint32_t unchanged,
                      int64_t timeoutNs) {
     waiting.store(1, std::memory_order_seq_cst);
     if (position.load(std::memory_order_seq_cst) == unchanged) {
@@ -58,17 +50,16 @@ void wakeRing(RingControl& control) {
 }
 
 RingWriter::RingWriter(RingControl& control, std::byte* data, size_t capacityBytes)
-    : control_(control)
-    , data_(data)
-    , capacityBytes_(static_cast<uint32_t>(capacityBytes))
-    , pieceBytes_(pieceFor(capacityBytes))
-    , announceBytes_(announceDataFor(capacityBytes)) {}
+    : control_(control),
+      data_(data),
+      capacityBytes_(static_cast<uint32_t>(capacityBytes)),
+      pieceBytes_(pieceFor(capacityBytes)),
+      announceBytes_(announceDataFor(capacityBytes)) {}
 
 // Loads the reader's position only if the cached value is insufficient, so its cache line stays with the reader.
 size_t RingWriter::room(size_t wantedBytes) {
     uint32_t freeBytes = capacityBytes_ - (tail_ - seenHead_);
-    if (freeBytes >= wantedBytes)
-        return freeBytes;
+    if (freeBytes >= wantedBytes) return freeBytes;
     const uint32_t head = control_.head.load(std::memory_order_acquire);
     if (tail_ - head > capacityBytes_) {
         damaged_ = true;
@@ -83,8 +74,7 @@ void RingWriter::copyIn(std::span<const std::byte> bytes) {
     const uint32_t at = tail_ & (capacityBytes_ - 1);
     const size_t first = std::min<size_t>(bytes.size(), capacityBytes_ - at);
     streamingCopy(data_ + at, bytes.data(), first);
-    if (first < bytes.size())
-        streamingCopy(data_, bytes.data() + first, bytes.size() - first);
+    if (first < bytes.size()) streamingCopy(data_, bytes.data() + first, bytes.size() - first);
 }
 
 size_t RingWriter::write(std::span<const std::byte> bytes) {
@@ -92,41 +82,36 @@ size_t RingWriter::write(std::span<const std::byte> bytes) {
     while (done < bytes.size() && !damaged_) {
         const size_t wanted = std::min<size_t>(bytes.size() - done, pieceBytes_);
         const size_t n = std::min(wanted, room(wanted));
-        if (n == 0)
-            break;
+        if (n == 0) break;
         copyIn(bytes.subspan(done, n));
         tail_ += static_cast<uint32_t>(n);
         control_.tail.store(tail_, std::memory_order_release);
         done += n;
         unannouncedBytes_ += static_cast<uint32_t>(n);
-        if (unannouncedBytes_ >= announceBytes_)
-            announce();
+        if (unannouncedBytes_ >= announceBytes_) announce();
     }
     return done;
 }
 
 void RingWriter::announce() {
     unannouncedBytes_ = 0;
-    if (wakeIfWaiting(control_.readerWaiting, control_.tail, tail_))
-        ++wakeUps_;
+    if (wakeIfWaiting(control_.readerWaiting, control_.tail, tail_)) ++wakeUps_;
 }
 
 void RingWriter::sleepUntilRoom(int64_t timeoutNs) {
-    if (unannouncedBytes_ != 0)
-        announce();
+    if (unannouncedBytes_ != 0) announce();
     sleepWhileEqual(control_.writerWaiting, control_.head, tail_ - capacityBytes_, timeoutNs);
 }
 
 RingReader::RingReader(RingControl& control, const std::byte* data, size_t capacityBytes)
-    : control_(control)
-    , data_(data)
-    , capacityBytes_(static_cast<uint32_t>(capacityBytes))
-    , pieceBytes_(pieceFor(capacityBytes))
-    , announceBytes_(announceRoomFor(capacityBytes)) {}
+    : control_(control),
+      data_(data),
+      capacityBytes_(static_cast<uint32_t>(capacityBytes)),
+      pieceBytes_(pieceFor(capacityBytes)),
+      announceBytes_(announceRoomFor(capacityBytes)) {}
 
 size_t RingReader::available(size_t wantedBytes) {
-    if (seenTail_ - head_ >= wantedBytes)
-        return seenTail_ - head_;
+    if (seenTail_ - head_ >= wantedBytes) return seenTail_ - head_;
     const uint32_t tail = control_.tail.load(std::memory_order_acquire);
     if (tail - head_ > capacityBytes_) {
         damaged_ = true;
@@ -140,8 +125,7 @@ void RingReader::copyOut(std::span<std::byte> into) const {
     const uint32_t at = head_ & (capacityBytes_ - 1);
     const size_t first = std::min<size_t>(into.size(), capacityBytes_ - at);
     std::memcpy(into.data(), data_ + at, first);
-    if (first < into.size())
-        std::memcpy(into.data() + first, data_, into.size() - first);
+    if (first < into.size()) std::memcpy(into.data() + first, data_, into.size() - first);
 }
 
 size_t RingReader::read(std::span<std::byte> into) {
@@ -149,28 +133,24 @@ size_t RingReader::read(std::span<std::byte> into) {
     while (done < into.size() && !damaged_) {
         const size_t wanted = std::min<size_t>(into.size() - done, pieceBytes_);
         const size_t n = std::min(wanted, available(wanted));
-        if (n == 0)
-            break;
+        if (n == 0) break;
         copyOut(into.subspan(done, n));
         head_ += static_cast<uint32_t>(n);
         control_.head.store(head_, std::memory_order_release);
         done += n;
         unannouncedBytes_ += static_cast<uint32_t>(n);
-        if (unannouncedBytes_ >= announceBytes_)
-            announce();
+        if (unannouncedBytes_ >= announceBytes_) announce();
     }
     return done;
 }
 
 void RingReader::announce() {
     unannouncedBytes_ = 0;
-    if (wakeIfWaiting(control_.writerWaiting, control_.head, head_))
-        ++wakeUps_;
+    if (wakeIfWaiting(control_.writerWaiting, control_.head, head_)) ++wakeUps_;
 }
 
 void RingReader::sleepUntilData(int64_t timeoutNs) {
-    if (unannouncedBytes_ != 0)
-        announce();
+    if (unannouncedBytes_ != 0) announce();
     sleepWhileEqual(control_.readerWaiting, control_.tail, head_, timeoutNs);
 }
 

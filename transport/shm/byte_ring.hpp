@@ -27,7 +27,7 @@ struct RingControl {
     alignas(64) std::atomic<uint32_t> readerWaiting;
     alignas(64) std::atomic<uint32_t> writerWaiting;
     alignas(64) std::atomic<uint32_t> writerClosed; // the writer has ended
-    std::atomic<uint32_t> readerClosed; // the reader has ended
+    std::atomic<uint32_t> readerClosed;             // the reader has ended
 };
 static_assert(std::atomic<uint32_t>::is_always_lock_free, "needed between processes");
 
@@ -48,9 +48,7 @@ public:
     void sleepUntilRoom(int64_t timeoutNs);
 
     [[nodiscard]] bool damaged() const { return damaged_; }
-    [[nodiscard]] uint64_t wakeUps() const {
-        return wakeUps_;
-    } // system calls that woke the reader
+    [[nodiscard]] uint64_t wakeUps() const { return wakeUps_; } // system calls that woke the reader
 
 private:
     size_t room(size_t wantedBytes);
@@ -59,7 +57,7 @@ private:
     RingControl& control_;
     std::byte* data_;
     uint32_t capacityBytes_;
-    uint32_t pieceBytes_; // unit of publication, so both sides copy concurrently
+    uint32_t pieceBytes_;    // unit of publication, so both sides copy concurrently
     uint32_t announceBytes_; // bytes published between two wake-ups
     uint32_t tail_ = 0;
     uint32_t seenHead_ = 0;

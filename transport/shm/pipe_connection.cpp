@@ -7,10 +7,8 @@
 namespace mural {
 
 Result<PipePair> makePipe(size_t capacityBytes) {
-    auto memory = RingMemory::makePrivate(
-        std::bit_ceil(std::clamp(capacityBytes, kMinRingBytes, kMaxRingBytes)));
-    if (!memory)
-        return memory.error();
+    auto memory = RingMemory::makePrivate(std::bit_ceil(std::clamp(capacityBytes, kMinRingBytes, kMaxRingBytes)));
+    if (!memory) return memory.error();
     PipePair pair;
     pair.a = std::make_unique<RingConnection>(*memory, 0, FileDescriptor(), "pipe:");
     pair.b = std::make_unique<RingConnection>(*memory, 1, FileDescriptor(), "pipe:");

@@ -38,27 +38,22 @@ template <class Ready> bool spinUntil(Ready ready, int& spins) {
 
 } // namespace
 
-RingConnection::RingConnection(std::shared_ptr<RingMemory> memory,
-                               int side,
-                               FileDescriptor peerSocket,
+RingConnection::RingConnection(std::shared_ptr<RingMemory> memory, int side, FileDescriptor peerSocket,
                                std::string description)
-    : memory_(std::move(memory))
-    , outControl_(memory_->control(side))
-    , inControl_(memory_->control(1 - side))
-    , writer_(outControl_, memory_->data(side), memory_->capacityBytes())
-    , reader_(inControl_, memory_->data(1 - side), memory_->capacityBytes())
-    , peerSocket_(std::move(peerSocket))
-    , description_(std::move(description))
-    , ownerPid_(getpid()) {}
+    : memory_(std::move(memory)),
+      outControl_(memory_->control(side)),
+      inControl_(memory_->control(1 - side)),
+      writer_(outControl_, memory_->data(side), memory_->capacityBytes()),
+      reader_(inControl_, memory_->data(1 - side), memory_->capacityBytes()),
+      peerSocket_(std::move(peerSocket)),
+      description_(std::move(description)),
+      ownerPid_(getpid()) {}
 
-RingConnection::~RingConnection() {
-    RingConnection::close();
-}
+RingConnection::~RingConnection() { RingConnection::close(); }
 
 // A forked child has a copy of this object, whose destruction must not end the parent's connection.
 void RingConnection::close() {
-    if (closed_.exchange(true) || getpid() != ownerPid_)
-        return;
+    if (closed_.exchange(true) || getpid() != ownerPid_) return;
     outControl_.writerClosed.store(1, std::memory_order_release);
     inControl_.readerClosed.store(1, std::memory_order_release);
     wakeRing(outControl_);
@@ -67,40 +62,32 @@ void RingConnection::close() {
 
 Result<void> RingConnection::read(std::span<std::byte> into, Deadline deadline) {
     readTimedOut_.store(false, std::memory_order_relaxed);
-    if (closed_.load(std::memory_order_relaxed))
-        return failed("read", WaitEnd::ClosedHere, 0, into.size());
+    if (closed_.load(std::memory_order_relaxed)) return failed("read", WaitEnd::ClosedHere, 0, into.size());
     size_t done = 0;
     while (true) {
         const size_t n = reader_.read(into.subspan(done));
         done += n;
         bytesRead_.fetch_add(n, std::memory_order_relaxed);
-        if (done == into.size())
-            return {};
+        if (done == into.size()) return {};
         const WaitEnd end = waitForData(deadline);
-        if (end == WaitEnd::Ready)
-            continue;
-        if (end == WaitEnd::DeadlinePassed && done == 0)
-            readTimedOut_.store(true);
+        if (end == WaitEnd::Ready) continue;
+        if (end == WaitEnd::DeadlinePassed && done == 0) readTimedOut_.store(true);
         return failed("read", end, done, into.size());
     }
 }
 
 Result<void> RingConnection::write(std::span<const std::byte> bytes, Deadline deadline) {
     writeTimedOut_.store(false, std::memory_order_relaxed);
-    if (closed_.load(std::memory_order_relaxed))
-        return failed("write", WaitEnd::ClosedHere, 0, bytes.size());
+    if (closed_.load(std::memory_order_relaxed)) return failed("write", WaitEnd::ClosedHere, 0, bytes.size());
     size_t done = 0;
     while (outControl_.readerClosed.load(std::memory_order_relaxed) == 0) {
         const size_t n = writer_.write(bytes.subspan(done));
         done += n;
         bytesWritten_.fetch_add(n, std::memory_order_relaxed);
-        if (done == bytes.size())
-            return {};
+        if (done == bytes.size()) return {};
         const WaitEnd end = waitForRoom(deadline);
-        if (end == WaitEnd::Ready)
-            continue;
-        if (end == WaitEnd::DeadlinePassed && done == 0)
-            writeTimedOut_.store(true);
+        if (end == WaitEnd::Ready) continue;
+        if (end == WaitEnd::DeadlinePassed && done == 0) writeTimedOut_.store(true);
         return failed("write", end, done, bytes.size());
     }
     return failed("write", WaitEnd::PeerGone, done, bytes.size());
@@ -108,79 +95,57 @@ Result<void> RingConnection::write(std::span<const std::byte> bytes, Deadline de
 
 // Checks the peer before the deadline, so a caller that polls with short deadlines notices the peer's death too.
 RingConnection::WaitEnd RingConnection::waitForData(Deadline deadline) {
-    if (spinUntil([this] { return reader_.hasData(); }, readSpins_))
-        return WaitEnd::Ready;
+    if (spinUntil([this] { return reader_.hasData(); }, readSpins_)) return WaitEnd::Ready;
     for (bool slept = false;; slept = true) {
-        if (reader_.hasData())
-            return WaitEnd::Ready;
-        if (reader_.damaged())
-            return WaitEnd::Damaged;
-        if (closed_.load(std::memory_order_relaxed))
-            return WaitEnd::ClosedHere;
+        if (reader_.hasData()) return WaitEnd::Ready;
+        if (reader_.damaged()) return WaitEnd::Damaged;
+        if (closed_.load(std::memory_order_relaxed)) return WaitEnd::ClosedHere;
         const int64_t leftNs = deadline.leftNs(kSliceNs);
         if (inControl_.writerClosed.load(std::memory_order_acquire) != 0 ||
             ((slept || leftNs == 0) && peerProcessGone())) {
             // Data written before the peer's end can still be read.
             return reader_.hasData() ? WaitEnd::Ready : WaitEnd::PeerGone;
         }
-        if (leftNs == 0)
-            return WaitEnd::DeadlinePassed;
+        if (leftNs == 0) return WaitEnd::DeadlinePassed;
         reader_.sleepUntilData(leftNs);
     }
 }
 
 RingConnection::WaitEnd RingConnection::waitForRoom(Deadline deadline) {
-    if (spinUntil([this] { return writer_.hasRoom(); }, writeSpins_))
-        return WaitEnd::Ready;
+    if (spinUntil([this] { return writer_.hasRoom(); }, writeSpins_)) return WaitEnd::Ready;
     for (bool slept = false;; slept = true) {
-        if (outControl_.readerClosed.load(std::memory_order_acquire) != 0)
-            return WaitEnd::PeerGone;
-        if (closed_.load(std::memory_order_relaxed))
-            return WaitEnd::ClosedHere;
-        if (writer_.hasRoom())
-            return WaitEnd::Ready;
-        if (writer_.damaged())
-            return WaitEnd::Damaged;
+        if (outControl_.readerClosed.load(std::memory_order_acquire) != 0) return WaitEnd::PeerGone;
+        if (closed_.load(std::memory_order_relaxed)) return WaitEnd::ClosedHere;
+        if (writer_.hasRoom()) return WaitEnd::Ready;
+        if (writer_.damaged()) return WaitEnd::Damaged;
         const int64_t leftNs = deadline.leftNs(kSliceNs);
-        if ((slept || leftNs == 0) && peerProcessGone())
-            return WaitEnd::PeerGone;
-        if (leftNs == 0)
-            return WaitEnd::DeadlinePassed;
+        if ((slept || leftNs == 0) && peerProcessGone()) return WaitEnd::PeerGone;
+        if (leftNs == 0) return WaitEnd::DeadlinePassed;
         writer_.sleepUntilRoom(leftNs);
     }
 }
 
 bool RingConnection::peerProcessGone() const {
-    if (!peerSocket_.valid())
-        return false;
+    if (!peerSocket_.valid()) return false;
     pollfd look{peerSocket_.get(), POLLRDHUP, 0};
-    return poll(&look, 1, 0) > 0 &&
-           (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
+    return poll(&look, 1, 0) > 0 && (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
-bool RingConnection::timedOut() const {
-    return !closed_ && (readTimedOut_ || writeTimedOut_);
-}
+bool RingConnection::timedOut() const { return !closed_ && (readTimedOut_ || writeTimedOut_); }
 
 bool RingConnection::alive() const {
-    return !closed_ && inControl_.writerClosed.load(std::memory_order_acquire) == 0 &&
-           !peerProcessGone();
+    return !closed_ && inControl_.writerClosed.load(std::memory_order_acquire) == 0 && !peerProcessGone();
 }
 
 // A partially transferred message cannot be repaired: the connection ends, which informs the peer. The peer's end alone
 // does not close it, because the other direction may still hold data.
 Error RingConnection::failed(const char* verb, WaitEnd why, size_t doneBytes, size_t wantedBytes) {
-    const bool usable =
-        why == WaitEnd::PeerGone || (why == WaitEnd::DeadlinePassed && doneBytes == 0);
-    if (!usable)
-        close();
+    const bool usable = why == WaitEnd::PeerGone || (why == WaitEnd::DeadlinePassed && doneBytes == 0);
+    if (!usable) close();
     const char* reason = ending::kPeerGone;
-    if (why == WaitEnd::ClosedHere)
-        reason = ending::kClosedHere;
-    if (why == WaitEnd::Damaged)
-        reason = "the other process has damaged the shared memory; end it";
-    if (why == WaitEnd::DeadlinePassed)
-        reason = usable ? ending::kIdle : ending::kCutInHalf;
+    if (why == WaitEnd::ClosedHere) reason = ending::kClosedHere;
+    if (why == WaitEnd::Damaged) reason = "the other process has damaged the shared memory; end it";
+    if (why == WaitEnd::DeadlinePassed) reason = usable ? ending::kIdle : ending::kCutInHalf;
     return connectionError(description_, verb, doneBytes, wantedBytes, reason);
 }
 

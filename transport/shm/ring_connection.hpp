@@ -19,10 +19,7 @@ namespace mural {
 class RingConnection final : public Connection {
 public:
     // side: 0 or 1, see RingMemory. peerSocket: invalid if both ends are in one process.
-    RingConnection(std::shared_ptr<RingMemory> memory,
-                   int side,
-                   FileDescriptor peerSocket,
-                   std::string description);
+    RingConnection(std::shared_ptr<RingMemory> memory, int side, FileDescriptor peerSocket, std::string description);
     ~RingConnection() override;
 
     Result<void> read(std::span<std::byte> into, Deadline deadline) override;
@@ -53,7 +50,7 @@ private:
     FileDescriptor peerSocket_;
     std::string description_;
     pid_t ownerPid_;
-    int readSpins_ = 2; // reader's spins before it sleeps
+    int readSpins_ = 2;  // reader's spins before it sleeps
     int writeSpins_ = 2; // writer's spins
     std::atomic<bool> closed_{false};
     std::atomic<bool> readTimedOut_{false};

@@ -25,18 +25,15 @@ struct alignas(64) Header {
 };
 static_assert(sizeof(Header) + 2 * sizeof(RingControl) <= kControlBytes);
 
-size_t mappingBytes(size_t capacityBytes) {
-    return kControlBytes + 2 * capacityBytes;
-}
+size_t mappingBytes(size_t capacityBytes) { return kControlBytes + 2 * capacityBytes; }
 
 bool validCapacity(size_t bytes) {
     return std::has_single_bit(bytes) && bytes >= kMinRingBytes && bytes <= kMaxRingBytes;
 }
 
 Error badCapacity(size_t bytes) {
-    return Error{"shared memory: capacity " + std::to_string(bytes) +
-                 " bytes: use a power of two from " + std::to_string(kMinRingBytes) + " to " +
-                 std::to_string(kMaxRingBytes)};
+    return Error{"shared memory: capacity " + std::to_string(bytes) + " bytes: use a power of two from " +
+                 std::to_string(kMinRingBytes) + " to " + std::to_string(kMaxRingBytes)};
 }
 
 } // namespace
@@ -46,22 +43,19 @@ Result<std::shared_ptr<RingMemory>> RingMemory::map(int fd, size_t capacityBytes
     const int flags = fd < 0 ? MAP_PRIVATE | MAP_ANONYMOUS : MAP_SHARED;
     void* base = mmap(nullptr, sizeBytes, PROT_READ | PROT_WRITE, flags, fd, 0);
     if (base == MAP_FAILED) {
-        return Error{"shared memory: can't map " + std::to_string(sizeBytes) +
-                     " bytes: " + errnoText(errno) + "; use a smaller capacity"};
+        return Error{"shared memory: can't map " + std::to_string(sizeBytes) + " bytes: " + errnoText(errno) +
+                     "; use a smaller capacity"};
     }
     return std::shared_ptr<RingMemory>(new RingMemory(base, sizeBytes, capacityBytes));
 }
 
 Result<std::shared_ptr<RingMemory>> RingMemory::makePrivate(size_t capacityBytes) {
-    if (!validCapacity(capacityBytes))
-        return badCapacity(capacityBytes);
+    if (!validCapacity(capacityBytes)) return badCapacity(capacityBytes);
     return map(-1, capacityBytes);
 }
 
-Result<std::shared_ptr<RingMemory>> RingMemory::makeShared(size_t capacityBytes,
-                                                           FileDescriptor& memfd) {
-    if (!validCapacity(capacityBytes))
-        return badCapacity(capacityBytes);
+Result<std::shared_ptr<RingMemory>> RingMemory::makeShared(size_t capacityBytes, FileDescriptor& memfd) {
+    if (!validCapacity(capacityBytes)) return badCapacity(capacityBytes);
     FileDescriptor fd(memfd_create("mural-connection", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!fd.valid()) {
         return Error{"shared memory: memfd_create: " + errnoText(errno) +
@@ -72,8 +66,7 @@ Result<std::shared_ptr<RingMemory>> RingMemory::makeShared(size_t capacityBytes,
         return Error{"shared memory: can't size a memfd: " + errnoText(errno)};
     }
     auto memory = map(fd.get(), capacityBytes);
-    if (!memory)
-        return memory.error();
+    if (!memory) return memory.error();
     *reinterpret_cast<Header*>((*memory)->base_) = {kMagic, kVersion, capacityBytes};
     memfd = std::move(fd);
     return memory;
@@ -91,12 +84,10 @@ Result<std::shared_ptr<RingMemory>> RingMemory::openShared(int memfd) {
         return Error{"shared memory: can't read its header: " + errnoText(errno)};
     }
     if (header.magic != kMagic || header.version != kVersion) {
-        return Error{"shared memory: unknown layout (version " + std::to_string(header.version) +
-                     ", this build has " + std::to_string(kVersion) +
-                     "); both ends must be of one build"};
+        return Error{"shared memory: unknown layout (version " + std::to_string(header.version) + ", this build has " +
+                     std::to_string(kVersion) + "); both ends must be of one build"};
     }
-    if (!validCapacity(header.capacityBytes))
-        return badCapacity(header.capacityBytes);
+    if (!validCapacity(header.capacityBytes)) return badCapacity(header.capacityBytes);
     if (static_cast<uint64_t>(status.st_size) < mappingBytes(header.capacityBytes)) {
         return Error{"shared memory: " + std::to_string(status.st_size) +
                      " bytes are too few for its capacity; both ends must be of one build"};
@@ -104,9 +95,7 @@ Result<std::shared_ptr<RingMemory>> RingMemory::openShared(int memfd) {
     return map(memfd, header.capacityBytes);
 }
 
-RingMemory::~RingMemory() {
-    munmap(base_, sizeBytes_);
-}
+RingMemory::~RingMemory() { munmap(base_, sizeBytes_); }
 
 RingControl& RingMemory::control(int ring) const {
     return reinterpret_cast<RingControl*>(base_ + sizeof(Header))[ring];

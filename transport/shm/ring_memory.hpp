@@ -16,8 +16,7 @@ public:
     // For two ends in one process. Capacity per direction, a power of two.
     static Result<std::shared_ptr<RingMemory>> makePrivate(size_t capacityBytes);
     // For two processes; the other one opens `memfd`. Its size is sealed, so no peer can cause an access fault.
-    static Result<std::shared_ptr<RingMemory>> makeShared(size_t capacityBytes,
-                                                          FileDescriptor& memfd);
+    static Result<std::shared_ptr<RingMemory>> makeShared(size_t capacityBytes, FileDescriptor& memfd);
     static Result<std::shared_ptr<RingMemory>> openShared(int memfd);
 
     RingMemory(const RingMemory&) = delete;
@@ -30,9 +29,7 @@ public:
 
 private:
     RingMemory(void* base, size_t sizeBytes, size_t capacityBytes)
-        : base_(static_cast<std::byte*>(base))
-        , sizeBytes_(sizeBytes)
-        , capacityBytes_(capacityBytes) {}
+        : base_(static_cast<std::byte*>(base)), sizeBytes_(sizeBytes), capacityBytes_(capacityBytes) {}
     static Result<std::shared_ptr<RingMemory>> map(int fd, size_t capacityBytes);
 
     std::byte* base_;

@@ -38,8 +38,7 @@ Result<void> sendDescriptor(int socket, int fd) {
     do {
         sent = sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
     } while (sent < 0 && errno == EINTR);
-    if (sent != 1)
-        return Error{"shm: can't pass the memory's descriptor: " + errnoText(errno)};
+    if (sent != 1) return Error{"shm: can't pass the memory's descriptor: " + errnoText(errno)};
     return {};
 }
 
@@ -59,8 +58,7 @@ Result<FileDescriptor> receiveDescriptor(int socket) {
     } while (got < 0 && errno == EINTR);
     const std::string where = "shm: descriptor " + std::to_string(socket);
     if (got < 0) {
-        return Error{where + ": " + errnoText(errno) +
-                     "; pass the one that offerSharedMemory gave"};
+        return Error{where + ": " + errnoText(errno) + "; pass the one that offerSharedMemory gave"};
     }
     const cmsghdr* header = CMSG_FIRSTHDR(&message);
     int fd = -1;
@@ -70,8 +68,7 @@ Result<FileDescriptor> receiveDescriptor(int socket) {
     }
     FileDescriptor memfd(fd);
     if (got != 1 || greeting != kGreeting || !memfd.valid()) {
-        return Error{where +
-                     " carries no shared memory; was it opened before, or is the other end gone?"};
+        return Error{where + " carries no shared memory; was it opened before, or is the other end gone?"};
     }
     return memfd;
 }
@@ -81,18 +78,15 @@ Result<FileDescriptor> receiveDescriptor(int socket) {
 Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes) {
     FileDescriptor memfd;
     auto memory = RingMemory::makeShared(capacityBytes, memfd);
-    if (!memory)
-        return memory.error();
+    if (!memory) return memory.error();
     int ends[2] = {-1, -1};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        return Error{"shm: socketpair: " + errnoText(errno) +
-                     "; raise the limit of open files (ulimit -n)"};
+        return Error{"shm: socketpair: " + errnoText(errno) + "; raise the limit of open files (ulimit -n)"};
     }
     FileDescriptor mine(ends[0]);
     FileDescriptor theirs(ends[1]);
     const auto sent = sendDescriptor(mine.get(), memfd.get());
-    if (!sent)
-        return sent.error();
+    if (!sent) return sent.error();
     if (fcntl(theirs.get(), F_SETFD, 0) != 0) { // inherited on purpose
         return Error{"shm: can't make descriptor inheritable: " + errnoText(errno)};
     }
@@ -111,13 +105,10 @@ Result<std::unique_ptr<Connection>> openSharedMemory(int fd) {
                      "; it must be inherited from the process that offered it"};
     }
     auto memfd = receiveDescriptor(fd);
-    if (!memfd)
-        return memfd.error();
+    if (!memfd) return memfd.error();
     auto memory = RingMemory::openShared(memfd->get());
-    if (!memory)
-        return memory.error();
-    return std::unique_ptr<Connection>(
-        std::make_unique<RingConnection>(*memory, 1, std::move(socket), "shm:"));
+    if (!memory) return memory.error();
+    return std::unique_ptr<Connection>(std::make_unique<RingConnection>(*memory, 1, std::move(socket), "shm:"));
 }
 
 } // namespace mural

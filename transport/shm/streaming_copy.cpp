@@ -48,9 +48,7 @@ void streamingCopy(std::byte* to, const std::byte* from, size_t sizeBytes) {
 
 #else
 
-void streamingCopy(std::byte* to, const std::byte* from, size_t sizeBytes) {
-    std::memcpy(to, from, sizeBytes);
-}
+void streamingCopy(std::byte* to, const std::byte* from, size_t sizeBytes) { std::memcpy(to, from, sizeBytes); }
 
 #endif
 

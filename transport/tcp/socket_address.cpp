@@ -24,13 +24,15 @@ Result<SocketAddress> numericAddress(const std::string& host, uint16_t port) {
 }
 
 bool SocketAddress::isMulticast() const {
-    if (family() == AF_INET) return IN_MULTICAST(ntohl(reinterpret_cast<const sockaddr_in*>(&storage)->sin_addr.s_addr));
+    if (family() == AF_INET)
+        return IN_MULTICAST(ntohl(reinterpret_cast<const sockaddr_in*>(&storage)->sin_addr.s_addr));
     return family() == AF_INET6 && IN6_IS_ADDR_MULTICAST(&reinterpret_cast<const sockaddr_in6*>(&storage)->sin6_addr);
 }
 
 std::string numericText(const SocketAddress& address) {
     std::array<char, NI_MAXHOST> text{};
-    if (getnameinfo(address.get(), address.sizeBytes, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) return {};
+    if (getnameinfo(address.get(), address.sizeBytes, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0)
+        return {};
     constexpr std::string_view kMapped = "::ffff:"; // prefix of an IPv4 peer of an IPv6 socket
     const std::string_view numbers = text.data();
     const bool mapped = numbers.starts_with(kMapped) && numbers.find('.') != std::string_view::npos;
@@ -43,8 +45,10 @@ Result<HostPort> splitHostPort(std::string_view text) {
     if (colon == std::string_view::npos) return wrong;
     std::string_view host = text.substr(0, colon);
     const std::string_view digits = text.substr(colon + 1);
-    if (host.size() >= 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-    else if (host.find(':') != std::string_view::npos) return wrong;
+    if (host.size() >= 2 && host.front() == '[' && host.back() == ']')
+        host = host.substr(1, host.size() - 2);
+    else if (host.find(':') != std::string_view::npos)
+        return wrong;
     HostPort result{std::string(host), 0};
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), result.port);
     if (code != std::errc() || end != digits.data() + digits.size() || digits.empty()) return wrong;

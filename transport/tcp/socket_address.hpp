@@ -14,9 +14,7 @@ struct SocketAddress {
     sockaddr_storage storage{};
     socklen_t sizeBytes = 0;
 
-    [[nodiscard]] const sockaddr* get() const {
-        return reinterpret_cast<const sockaddr*>(&storage);
-    }
+    [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
     [[nodiscard]] sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
     [[nodiscard]] int family() const { return storage.ss_family; }
     [[nodiscard]] bool isMulticast() const;

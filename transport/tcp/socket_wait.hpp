@@ -16,12 +16,9 @@ inline short waitForSocket(int fd, short events, Deadline deadline) {
         const int64_t leftNs = deadline.leftNs(3600 * kNsPerS);
         const int timeoutMs = static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs);
         const int ready = poll(&look, 1, timeoutMs);
-        if (ready > 0)
-            return look.revents;
-        if (ready < 0 && errno != EINTR && errno != EAGAIN)
-            return POLLERR;
-        if (deadline.passed())
-            return 0;
+        if (ready > 0) return look.revents;
+        if (ready < 0 && errno != EINTR && errno != EAGAIN) return POLLERR;
+        if (deadline.passed()) return 0;
     }
 }
 

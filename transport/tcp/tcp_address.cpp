@@ -32,8 +32,7 @@ Lookup lookUp(const std::string& host, uint16_t port, int flags) {
     Lookup result;
     result.code = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
     result.systemCode = errno;
-    if (result.code != 0)
-        return result;
+    if (result.code != 0) return result;
     for (const addrinfo* each = list; each != nullptr; each = each->ai_next) {
         TcpAddress address;
         std::memcpy(&address.storage, each->ai_addr, each->ai_addrlen);
@@ -45,10 +44,8 @@ Lookup lookUp(const std::string& host, uint16_t port, int flags) {
 }
 
 Error lookupError(const std::string& text, const Lookup& lookup) {
-    const std::string reason =
-        lookup.code == EAI_SYSTEM ? errnoText(lookup.systemCode) : gai_strerror(lookup.code);
-    return Error{text + ": can't find the host: " + reason +
-                 "; check its name or give its address"};
+    const std::string reason = lookup.code == EAI_SYSTEM ? errnoText(lookup.systemCode) : gai_strerror(lookup.code);
+    return Error{text + ": can't find the host: " + reason + "; check its name or give its address"};
 }
 
 // Shared by the waiting caller and the lookup thread; the last one frees it.
@@ -60,8 +57,7 @@ struct PendingLookup {
 };
 
 // Returns false after the deadline; the thread then ends on its own.
-bool lookUpOnThread(
-    const std::string& host, uint16_t port, int flags, Deadline deadline, Lookup& into) {
+bool lookUpOnThread(const std::string& host, uint16_t port, int flags, Deadline deadline, Lookup& into) {
     auto pending = std::make_shared<PendingLookup>();
     try {
         std::thread([pending, host, port, flags] {
@@ -78,8 +74,7 @@ bool lookUpOnThread(
     std::unique_lock lock(pending->mutex);
     while (!pending->done) {
         const int64_t leftNs = deadline.leftNs(kNsPerS);
-        if (leftNs == 0)
-            return false;
+        if (leftNs == 0) return false;
         pending->finished.wait_for(lock, std::chrono::nanoseconds(leftNs));
     }
     into = std::move(pending->lookup);
@@ -88,22 +83,18 @@ bool lookUpOnThread(
 
 } // namespace
 
-Result<std::vector<TcpAddress>>
-resolveTcp(const std::string& host, uint16_t port, TcpRole role, Deadline deadline) {
+Result<std::vector<TcpAddress>> resolveTcp(const std::string& host, uint16_t port, TcpRole role, Deadline deadline) {
     const std::string text = tcpText(host, port);
     const int flags = role == TcpRole::Listen ? AI_PASSIVE : 0;
     Lookup lookup = lookUp(host, port, flags | AI_NUMERICHOST);
     if (lookup.code == EAI_NONAME && !lookUpOnThread(host, port, flags, deadline, lookup)) {
         return Error{text + ": deadline passed while looking up the host; give its address"};
     }
-    if (lookup.code != 0)
-        return lookupError(text, lookup);
+    if (lookup.code != 0) return lookupError(text, lookup);
     return std::move(lookup.addresses);
 }
 
-std::string tcpText(const std::string& host, uint16_t port) {
-    return "tcp://" + endpointText(host, port);
-}
+std::string tcpText(const std::string& host, uint16_t port) { return "tcp://" + endpointText(host, port); }
 
 std::string tcpText(const TcpAddress& address) {
     char host[NI_MAXHOST] = "?";

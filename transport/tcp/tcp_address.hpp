@@ -17,8 +17,7 @@ enum class TcpRole { Connect, Listen };
 
 // Returns all addresses of a host in connection order. Lookups run on a separate thread, because the resolver has no
 // deadline.
-Result<std::vector<TcpAddress>>
-resolveTcp(const std::string& host, uint16_t port, TcpRole role, Deadline deadline);
+Result<std::vector<TcpAddress>> resolveTcp(const std::string& host, uint16_t port, TcpRole role, Deadline deadline);
 
 // Returns "tcp://host:port", with IPv6 addresses in brackets.
 std::string tcpText(const std::string& host, uint16_t port);

@@ -21,9 +21,7 @@ namespace {
 
 constexpr size_t kBufferBytes = size_t{64} * 1024;
 
-bool wouldBlock(int code) {
-    return code == EAGAIN || code == EWOULDBLOCK;
-}
+bool wouldBlock(int code) { return code == EAGAIN || code == EWOULDBLOCK; }
 
 } // namespace
 
@@ -41,21 +39,18 @@ bool prepareTcpSocket(int socket) {
 }
 
 TcpConnection::TcpConnection(FileDescriptor socket)
-    : socket_(std::move(socket))
-    , description_(tcpText(peerTcpAddress(socket_.get())))
-    , ownerPid_(getpid())
-    , received_(std::make_unique<std::byte[]>(kBufferBytes)) {
+    : socket_(std::move(socket)),
+      description_(tcpText(peerTcpAddress(socket_.get()))),
+      ownerPid_(getpid()),
+      received_(std::make_unique<std::byte[]>(kBufferBytes)) {
     gathered_.reserve(kBufferBytes);
 }
 
-TcpConnection::~TcpConnection() {
-    TcpConnection::close();
-}
+TcpConnection::~TcpConnection() { TcpConnection::close(); }
 
 // A forked child has a copy of this object, whose destruction must not end the parent's connection.
 void TcpConnection::close() {
-    if (closed_.load() || getpid() != ownerPid_)
-        return;
+    if (closed_.load() || getpid() != ownerPid_) return;
     if (const std::unique_lock lock(writeMutex_, std::try_to_lock); lock.owns_lock()) {
         size_t sentBytes = 0;
         sendAll({}, Deadline::inMs(0), sentBytes);
@@ -64,8 +59,7 @@ void TcpConnection::close() {
 }
 
 void TcpConnection::endStream() {
-    if (!closed_.exchange(true))
-        shutdown(socket_.get(), SHUT_RDWR); // wakes both sides of both ends
+    if (!closed_.exchange(true)) shutdown(socket_.get(), SHUT_RDWR); // wakes both sides of both ends
 }
 
 Result<void> TcpConnection::read(std::span<std::byte> into, Deadline deadline) {
@@ -83,23 +77,20 @@ Result<void> TcpConnection::read(std::span<std::byte> into, Deadline deadline) {
         done += gotBytes;
     }
     bytesRead_.fetch_add(done, std::memory_order_relaxed);
-    if (end == End::DeadlinePassed && done == 0)
-        readTimedOut_.store(true);
+    if (end == End::DeadlinePassed && done == 0) readTimedOut_.store(true);
     return failed("read", end, readCode_, done, into.size());
 }
 
 size_t TcpConnection::takeBuffered(std::span<std::byte> into) {
     const size_t n = std::min(into.size(), receivedEnd_ - receivedAt_);
-    if (n == 0)
-        return 0;
+    if (n == 0) return 0;
     std::memcpy(into.data(), received_.get() + receivedAt_, n);
     receivedAt_ += n;
     return n;
 }
 
 // Receives into the caller's memory, and beyond that into the buffer, with one system call. Requires an empty buffer.
-TcpConnection::End
-TcpConnection::receiveSome(std::span<std::byte> into, Deadline deadline, size_t& gotBytes) {
+TcpConnection::End TcpConnection::receiveSome(std::span<std::byte> into, Deadline deadline, size_t& gotBytes) {
     while (true) {
         iovec parts[2] = {{into.data(), into.size()}, {received_.get(), kBufferBytes}};
         const ssize_t got = readv(socket_.get(), parts, 2);
@@ -109,15 +100,13 @@ TcpConnection::receiveSome(std::span<std::byte> into, Deadline deadline, size_t&
             receivedEnd_ = static_cast<size_t>(got) - gotBytes;
             return End::Done;
         }
-        if (got < 0 && errno == EINTR)
-            continue;
+        if (got < 0 && errno == EINTR) continue;
         if (got == 0 || !wouldBlock(errno)) {
             readCode_ = got == 0 ? 0 : errno;
             return closed_.load() ? End::ClosedHere : End::PeerGone;
         }
         const End end = waitReadable(deadline);
-        if (end != End::Done)
-            return end;
+        if (end != End::Done) return end;
     }
 }
 
@@ -128,10 +117,8 @@ TcpConnection::End TcpConnection::waitReadable(Deadline deadline) {
 // The peer's end counts even while the socket is full: it will accept no more data.
 TcpConnection::End TcpConnection::waitWritable(Deadline deadline) {
     const short events = waitForSocket(socket_.get(), POLLOUT | POLLRDHUP, deadline);
-    if (closed_.load(std::memory_order_relaxed))
-        return End::ClosedHere;
-    if (events == 0)
-        return End::DeadlinePassed;
+    if (closed_.load(std::memory_order_relaxed)) return End::ClosedHere;
+    if (events == 0) return End::DeadlinePassed;
     if ((events & POLLRDHUP) != 0 && (events & POLLOUT) == 0) {
         writeCode_ = 0;
         return End::PeerGone;
@@ -143,8 +130,7 @@ Result<void> TcpConnection::write(std::span<const std::byte> bytes, Deadline dea
     writeTimedOut_.store(false, std::memory_order_relaxed);
     const std::lock_guard lock(writeMutex_);
     lastWriteDeadline_ = deadline;
-    if (closed_.load(std::memory_order_relaxed))
-        return failed("write", End::ClosedHere, 0, 0, bytes.size());
+    if (closed_.load(std::memory_order_relaxed)) return failed("write", End::ClosedHere, 0, 0, bytes.size());
     size_t sentBytes = 0;
     if (gatheredBytes() + bytes.size() <= kBufferBytes) {
         gather(bytes);
@@ -154,8 +140,7 @@ Result<void> TcpConnection::write(std::span<const std::byte> bytes, Deadline dea
         if (restFits) {
             gather(bytes.subspan(sentBytes)); // everything before has been sent
         } else if (end != End::Done) {
-            if (end == End::DeadlinePassed && sentBytes == 0)
-                writeTimedOut_.store(true);
+            if (end == End::DeadlinePassed && sentBytes == 0) writeTimedOut_.store(true);
             return failed("write", end, writeCode_, sentBytes, bytes.size());
         }
     }
@@ -180,8 +165,7 @@ ssize_t TcpConnection::sendOnce(std::span<const std::byte> bytes) {
     return sendmsg(socket_.get(), &message, MSG_NOSIGNAL);
 }
 
-TcpConnection::End
-TcpConnection::sendAll(std::span<const std::byte> bytes, Deadline deadline, size_t& sentBytes) {
+TcpConnection::End TcpConnection::sendAll(std::span<const std::byte> bytes, Deadline deadline, size_t& sentBytes) {
     while (gatheredBytes() + bytes.size() - sentBytes != 0) {
         const ssize_t sent = sendOnce(bytes.subspan(sentBytes));
         if (sent >= 0) {
@@ -190,15 +174,13 @@ TcpConnection::sendAll(std::span<const std::byte> bytes, Deadline deadline, size
             sentBytes += static_cast<size_t>(sent) - ofGathered;
             continue;
         }
-        if (errno == EINTR)
-            continue;
+        if (errno == EINTR) continue;
         if (!wouldBlock(errno)) {
             writeCode_ = errno;
             return closed_.load() ? End::ClosedHere : End::PeerGone;
         }
         const End end = waitWritable(deadline);
-        if (end != End::Done)
-            return end;
+        if (end != End::Done) return end;
     }
     gathered_.clear();
     gatheredAt_ = 0;
@@ -207,14 +189,11 @@ TcpConnection::sendAll(std::span<const std::byte> bytes, Deadline deadline, size
 
 void TcpConnection::flush() {
     const std::lock_guard lock(writeMutex_);
-    if (closed_.load(std::memory_order_relaxed) || gatheredBytes() == 0)
-        return;
+    if (closed_.load(std::memory_order_relaxed) || gatheredBytes() == 0) return;
     const bool longer = lastWriteDeadline_.leftNs() > kFlushGraceMs * kNsPerMs;
     size_t sentBytes = 0;
-    const End end =
-        sendAll({}, longer ? lastWriteDeadline_ : Deadline::inMs(kFlushGraceMs), sentBytes);
-    if (end == End::DeadlinePassed)
-        writeTimedOut_.store(true);
+    const End end = sendAll({}, longer ? lastWriteDeadline_ : Deadline::inMs(kFlushGraceMs), sentBytes);
+    if (end == End::DeadlinePassed) writeTimedOut_.store(true);
 }
 
 NetworkPath TcpConnection::path() const {
@@ -225,33 +204,26 @@ NetworkPath TcpConnection::path() const {
     socklen_t sizeBytes = sizeof info;
     if (getsockopt(socket_.get(), IPPROTO_TCP, TCP_INFO, &info, &sizeBytes) != 0) return {};
     return {numericText(localTcpAddress(socket_.get())),
-            info.tcpi_snd_mss + (info.tcpi_options & TCPI_OPT_TIMESTAMPS ? kTimestampBytes : 0) + kTcpHeadBytes - kUdpHeadBytes};
+            info.tcpi_snd_mss + (info.tcpi_options & TCPI_OPT_TIMESTAMPS ? kTimestampBytes : 0) + kTcpHeadBytes -
+                kUdpHeadBytes};
 }
 
-bool TcpConnection::timedOut() const {
-    return !closed_ && (readTimedOut_ || writeTimedOut_);
-}
+bool TcpConnection::timedOut() const { return !closed_ && (readTimedOut_ || writeTimedOut_); }
 
 bool TcpConnection::alive() const {
-    if (closed_)
-        return false;
+    if (closed_) return false;
     pollfd look{socket_.get(), POLLRDHUP, 0};
     return poll(&look, 1, 0) <= 0 || (look.revents & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
 }
 
 // A partially transferred message cannot be repaired: the connection ends, which informs the peer.
-Error TcpConnection::failed(
-    const char* verb, End end, int code, size_t doneBytes, size_t wantedBytes) {
+Error TcpConnection::failed(const char* verb, End end, int code, size_t doneBytes, size_t wantedBytes) {
     const bool usable = end == End::PeerGone || (end == End::DeadlinePassed && doneBytes == 0);
-    if (!usable)
-        endStream();
+    if (!usable) endStream();
     std::string reason = ending::kPeerGone;
-    if (end == End::PeerGone && code != 0)
-        reason += " (" + errnoText(code) + ")";
-    if (end == End::ClosedHere)
-        reason = ending::kClosedHere;
-    if (end == End::DeadlinePassed)
-        reason = usable ? ending::kIdle : ending::kCutInHalf;
+    if (end == End::PeerGone && code != 0) reason += " (" + errnoText(code) + ")";
+    if (end == End::ClosedHere) reason = ending::kClosedHere;
+    if (end == End::DeadlinePassed) reason = usable ? ending::kIdle : ending::kCutInHalf;
     return connectionError(description_, verb, doneBytes, wantedBytes, reason);
 }
 

@@ -20,8 +20,7 @@ constexpr int kSocketFlags = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
 class TcpListener final : public Listener {
 public:
     TcpListener(FileDescriptor socket, std::string description)
-        : socket_(std::move(socket))
-        , description_(std::move(description)) {}
+        : socket_(std::move(socket)), description_(std::move(description)) {}
 
     Result<std::unique_ptr<Connection>> accept(Deadline deadline) override;
     [[nodiscard]] std::string describe() const override { return description_; }
@@ -33,27 +32,23 @@ private:
 
 // A peer that gives up before it is accepted is not an error of the listener.
 bool passingTrouble(int code) {
-    return code == EINTR || code == EAGAIN || code == EWOULDBLOCK || code == ECONNABORTED ||
-           code == EPROTO || code == ENETDOWN || code == EHOSTUNREACH || code == ENETUNREACH;
+    return code == EINTR || code == EAGAIN || code == EWOULDBLOCK || code == ECONNABORTED || code == EPROTO ||
+           code == ENETDOWN || code == EHOSTUNREACH || code == ENETUNREACH;
 }
 
 Result<std::unique_ptr<Connection>> TcpListener::accept(Deadline deadline) {
     while (true) {
-        FileDescriptor socket(
-            accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+        FileDescriptor socket(accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
         if (socket.valid()) {
-            if (!prepareTcpSocket(socket.get()))
-                continue; // the peer has already gone
+            if (!prepareTcpSocket(socket.get())) continue; // the peer has already gone
             return std::unique_ptr<Connection>(std::make_unique<TcpConnection>(std::move(socket)));
         }
         if (!passingTrouble(errno)) {
-            return Error{description_ + ": accept: " + errnoText(errno) +
-                         "; close connections or listen again"};
+            return Error{description_ + ": accept: " + errnoText(errno) + "; close connections or listen again"};
         }
         if (waitForSocket(socket_.get(), POLLIN, deadline) == 0) {
-            return Error{description_ +
-                         ": deadline passed, nobody connected; check that the other side "
-                         "was started and may reach this port"};
+            return Error{description_ + ": deadline passed, nobody connected; check that the other side "
+                                        "was started and may reach this port"};
         }
     }
 }
@@ -61,18 +56,15 @@ Result<std::unique_ptr<Connection>> TcpListener::accept(Deadline deadline) {
 Result<FileDescriptor> listenOn(const TcpAddress& address) {
     const std::string text = tcpText(address);
     FileDescriptor socket(::socket(address.family(), kSocketFlags, 0));
-    if (!socket.valid())
-        return Error{text + ": socket: " + errnoText(errno)};
+    if (!socket.valid()) return Error{text + ": socket: " + errnoText(errno)};
     const int on = 1;
     const int off = 0;
     setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (address.family() == AF_INET6) {
         setsockopt(socket.get(), IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
     }
-    if (bind(socket.get(), address.get(), address.sizeBytes) != 0 ||
-        ::listen(socket.get(), kBacklog) != 0) {
-        return Error{text + ": can't listen: " + errnoText(errno) +
-                     "; choose another port or address"};
+    if (bind(socket.get(), address.get(), address.sizeBytes) != 0 || ::listen(socket.get(), kBacklog) != 0) {
+        return Error{text + ": can't listen: " + errnoText(errno) + "; choose another port or address"};
     }
     return socket;
 }
@@ -80,40 +72,32 @@ Result<FileDescriptor> listenOn(const TcpAddress& address) {
 // Peers cannot connect to the wildcard address, so the description contains this host's name.
 std::string listenerText(bool anyAddress, const TcpAddress& bound) {
     char name[256] = "";
-    if (!anyAddress || gethostname(name, sizeof name - 1) != 0 || name[0] == 0)
-        return tcpText(bound);
+    if (!anyAddress || gethostname(name, sizeof name - 1) != 0 || name[0] == 0) return tcpText(bound);
     return tcpText(name, tcpPort(bound));
 }
 
 // A connect to a free ephemeral port of the own host can connect to itself.
-bool connectedToItself(int socket) {
-    return sameTcpAddress(localTcpAddress(socket), peerTcpAddress(socket));
-}
+bool connectedToItself(int socket) { return sameTcpAddress(localTcpAddress(socket), peerTcpAddress(socket)); }
 
 Result<FileDescriptor> connectTo(const TcpAddress& address, Deadline deadline) {
     const std::string text = tcpText(address);
     FileDescriptor socket(::socket(address.family(), kSocketFlags, 0));
-    if (!socket.valid())
-        return Error{text + ": socket: " + errnoText(errno)};
+    if (!socket.valid()) return Error{text + ": socket: " + errnoText(errno)};
     int code = 0;
     if (connect(socket.get(), address.get(), address.sizeBytes) != 0) {
         if (errno != EINPROGRESS && errno != EINTR) {
             code = errno;
         } else if (waitForSocket(socket.get(), POLLOUT, deadline) == 0) {
-            return Error{text +
-                         ": deadline passed without an answer; check the address and the firewall"};
+            return Error{text + ": deadline passed without an answer; check the address and the firewall"};
         } else {
             socklen_t sizeBytes = sizeof code;
             getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &code, &sizeBytes);
         }
     }
-    if (code == 0 && connectedToItself(socket.get()))
-        code = ECONNREFUSED;
-    if (code == 0 && !prepareTcpSocket(socket.get()))
-        code = errno;
+    if (code == 0 && connectedToItself(socket.get())) code = ECONNREFUSED;
+    if (code == 0 && !prepareTcpSocket(socket.get())) code = errno;
     if (code != 0) {
-        return Error{text + ": can't connect: " + errnoText(code) +
-                     "; check that the other side listens there"};
+        return Error{text + ": can't connect: " + errnoText(code) + "; check that the other side listens there"};
     }
     return socket;
 }
@@ -128,8 +112,7 @@ Result<std::unique_ptr<Listener>> listenTcp(const std::string& address, uint16_t
         anyAddress ? std::vector<std::string>{"::", "0.0.0.0"} : std::vector<std::string>{address};
     for (const std::string& name : names) {
         auto found = resolveTcp(name, port, TcpRole::Listen, Deadline::inMs(kListenLookupMs));
-        if (!found)
-            return found.error();
+        if (!found) return found.error();
         candidates.insert(candidates.end(), found->begin(), found->end());
     }
     Error first{tcpText(address, port) + ": no address to listen on; check the name"};
@@ -137,28 +120,23 @@ Result<std::unique_ptr<Listener>> listenTcp(const std::string& address, uint16_t
         auto socket = listenOn(candidates[i]);
         if (socket) {
             std::string text = listenerText(anyAddress, localTcpAddress(socket->get()));
-            return std::unique_ptr<Listener>(
-                std::make_unique<TcpListener>(std::move(*socket), std::move(text)));
+            return std::unique_ptr<Listener>(std::make_unique<TcpListener>(std::move(*socket), std::move(text)));
         }
-        if (i == 0)
-            first = socket.error();
+        if (i == 0) first = socket.error();
     }
     return first;
 }
 
 // Divides the remaining time among the host's addresses, so that one without answers (a dead IPv6 route) does not
 // consume all of it.
-Result<std::unique_ptr<Connection>>
-connectTcp(const std::string& host, uint16_t port, Deadline deadline) {
+Result<std::unique_ptr<Connection>> connectTcp(const std::string& host, uint16_t port, Deadline deadline) {
     auto addresses = resolveTcp(host, port, TcpRole::Connect, deadline);
-    if (!addresses)
-        return addresses.error();
+    if (!addresses) return addresses.error();
     Error last{tcpText(host, port) + ": the host has no address; check its name"};
     for (size_t i = 0; i < addresses->size(); ++i) {
         const auto remaining = static_cast<int64_t>(addresses->size() - i);
         const int64_t shareMs = deadline.leftNs(3600 * kNsPerS) / kNsPerMs / remaining;
-        auto socket =
-            connectTo((*addresses)[i], remaining == 1 ? deadline : Deadline::inMs(shareMs));
+        auto socket = connectTo((*addresses)[i], remaining == 1 ? deadline : Deadline::inMs(shareMs));
         if (socket) {
             return std::unique_ptr<Connection>(std::make_unique<TcpConnection>(std::move(*socket)));
         }

@@ -29,7 +29,8 @@ public:
         const TcpAddress& to = addresses_[started_++ % addresses_.size()];
         nextNs_ = nowNs + kBetweenAttemptsNs;
         FileDescriptor socket(::socket(to.family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-        if (socket.valid() && (connect(socket.get(), to.get(), to.sizeBytes) == 0 || errno == EINPROGRESS || errno == EINTR))
+        if (socket.valid() &&
+            (connect(socket.get(), to.get(), to.sizeBytes) == 0 || errno == EINPROGRESS || errno == EINTR))
             attempts_.push_back(std::move(socket));
         else
             failed(errno);
@@ -49,7 +50,8 @@ public:
             socklen_t sizeBytes = sizeof code;
             getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &code, &sizeBytes);
             // A connect to a free port of the own host can connect to itself.
-            if (code == 0 && sameTcpAddress(localTcpAddress(socket.get()), peerTcpAddress(socket.get()))) code = ECONNREFUSED;
+            if (code == 0 && sameTcpAddress(localTcpAddress(socket.get()), peerTcpAddress(socket.get())))
+                code = ECONNREFUSED;
             if (code == 0) return socket;
             failed(code);
         }
@@ -78,10 +80,12 @@ Result<FileDescriptor> connectRacing(std::span<const TcpAddress> addresses, Dead
     Race race(addresses);
     while (true) {
         race.startNext(monotonicNowNs());
-        FileDescriptor socket = race.answered(deadline.leftNs(std::max<int64_t>(0, std::min(kBetweenAttemptsNs, race.nextNs() - monotonicNowNs()))));
+        FileDescriptor socket = race.answered(
+            deadline.leftNs(std::max<int64_t>(0, std::min(kBetweenAttemptsNs, race.nextNs() - monotonicNowNs()))));
         if (socket.valid()) return socket;
         if (race.lost()) return Error{errnoText(race.lastCode()) + "; check that the other side listens there"};
-        if (deadline.passed()) return Error{"the deadline passed without an answer; check the address and the firewall"};
+        if (deadline.passed())
+            return Error{"the deadline passed without an answer; check the address and the firewall"};
     }
 }
 

@@ -12,7 +12,7 @@ struct AttributeWord {
     std::string_view word;
     int32_t value;
     bool takesNumber = false; // a number follows: CORE 2
-    bool old = false; // accepted, but written in another way
+    bool old = false;         // accepted, but written in another way
 };
 
 // Largest number after SOCKET and CORE. Larger numbers would collide with other attribute values.

@@ -36,18 +36,28 @@ private:
         ++at_;
     }
 
-    void add(TokenKind kind, size_t from, size_t size, SourcePosition at) { list_.tokens.push_back({kind, text_.substr(from, size), at}); }
+    void add(TokenKind kind, size_t from, size_t size, SourcePosition at) {
+        list_.tokens.push_back({kind, text_.substr(from, size), at});
+    }
 
     void step() {
         const char c = peek();
-        if (isSilent(c)) advance();
-        else if (c == '#' || (c == '/' && peek(1) == '/')) comment();
-        else if (c == '"') string();
-        else if (c == '\'' && at_ + 2 < text_.size() && text_[at_ + 2] == '\'' && text_[at_ + 1] != '\n') character();
-        else if (std::string_view("{}[]()").find(c) != std::string_view::npos) bracket();
-        else if (startsNumber()) number();
-        else if (isLetter(c)) word();
-        else stray();
+        if (isSilent(c))
+            advance();
+        else if (c == '#' || (c == '/' && peek(1) == '/'))
+            comment();
+        else if (c == '"')
+            string();
+        else if (c == '\'' && at_ + 2 < text_.size() && text_[at_ + 2] == '\'' && text_[at_ + 1] != '\n')
+            character();
+        else if (std::string_view("{}[]()").find(c) != std::string_view::npos)
+            bracket();
+        else if (startsNumber())
+            number();
+        else if (isLetter(c))
+            word();
+        else
+            stray();
     }
 
     void comment() {
@@ -67,13 +77,17 @@ private:
     bool header() {
         const SourcePosition at = here();
         size_t i = at_ + std::string_view("#Equalizer").size();
-        const auto skipBlanks = [&] { while (i < text_.size() && (text_[i] == ' ' || text_[i] == '\t')) ++i; };
+        const auto skipBlanks = [&] {
+            while (i < text_.size() && (text_[i] == ' ' || text_[i] == '\t')) ++i;
+        };
         skipBlanks();
         double version = 0;
-        const auto [end, error] = std::from_chars(text_.data() + i, text_.data() + text_.size(), version, std::chars_format::fixed);
+        const auto [end, error] =
+            std::from_chars(text_.data() + i, text_.data() + text_.size(), version, std::chars_format::fixed);
         i = static_cast<size_t>(end - text_.data());
         skipBlanks();
-        const bool whole = error == std::errc{} && version >= 0 && version < 100 && text_.substr(i).starts_with("ascii");
+        const bool whole =
+            error == std::errc{} && version >= 0 && version < 100 && text_.substr(i).starts_with("ascii");
         if (!whole) {
             diagnostics_.warn(at, "this header is not understood and read as a comment", "write: #Equalizer 1.2 ascii");
             return false;
@@ -150,7 +164,10 @@ private:
     void stray() {
         const size_t from = at_;
         const SourcePosition at = here();
-        const auto known = [&] { return isSilent(peek()) || isLetter(peek()) || isDigit(peek()) || std::string_view("{}[]()\"#").find(peek()) != std::string_view::npos; };
+        const auto known = [&] {
+            return isSilent(peek()) || isLetter(peek()) || isDigit(peek()) ||
+                   std::string_view("{}[]()\"#").find(peek()) != std::string_view::npos;
+        };
         do ++at_;
         while (at_ < text_.size() && !known());
         std::string shown;

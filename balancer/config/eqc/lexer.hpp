@@ -12,10 +12,10 @@ namespace mural::config {
 
 enum class TokenKind : uint8_t {
     Word,
-    Number, // verbatim; the reader of the field interprets it
-    String, // without quotes
+    Number,    // verbatim; the reader of the field interprets it
+    String,    // without quotes
     Character, // the character between single quotes
-    Bracket, // one of { } [ ] ( )
+    Bracket,   // one of { } [ ] ( )
     End,
 };
 
@@ -28,10 +28,10 @@ struct Token {
 };
 
 struct TokenList {
-    double version = 0; // from the header line "#Equalizer 1.2 ascii"; 0: no header
+    double version = 0;               // from the header line "#Equalizer 1.2 ascii"; 0: no header
     std::vector<std::string> heading; // comments before the first token
-    std::vector<Token> tokens; // the last one is End
-    bool failed = false; // a string is unterminated; the tokens stop there
+    std::vector<Token> tokens;        // the last one is End
+    bool failed = false;              // a string is unterminated; the tokens stop there
 };
 
 // The tokens refer to `text`, which must outlive them.

@@ -28,7 +28,8 @@ constexpr auto kRenamed = std::to_array<Renamed>({
 });
 
 // Fields without effect today.
-constexpr auto kGone = std::to_array<std::string_view>({"hint_cuda_GL_interop", "hint_offset", "update_FOV", "format", "displaycluster", "drawable"});
+constexpr auto kGone = std::to_array<std::string_view>(
+    {"hint_cuda_GL_interop", "hint_offset", "update_FOV", "format", "displaycluster", "drawable"});
 
 } // namespace
 
@@ -42,8 +43,11 @@ std::string_view SectionReader::todaysWord(std::string_view section, std::string
 void SectionReader::skipUnknown(std::string_view name, const Token& token) {
     const std::string word(token.text);
     const bool gone = std::find(kGone.begin(), kGone.end(), token.text) != kGone.end();
-    if (gone) tokens_.warn(token.at, word + " has no effect any more", "remove it");
-    else tokens_.warn(token.at, "section " + std::string(name) + " has no field " + word + ", it is left out", "check its spelling, or remove it");
+    if (gone)
+        tokens_.warn(token.at, word + " has no effect any more", "remove it");
+    else
+        tokens_.warn(token.at, "section " + std::string(name) + " has no field " + word + ", it is left out",
+                     "check its spelling, or remove it");
     if (tokens_.peek().kind == TokenKind::Word && isAttributeWord(tokens_.peek().text)) {
         int32_t ignored = 0;
         ValueReader(tokens_, token.text).readAttribute(ignored);
@@ -54,12 +58,15 @@ void SectionReader::skipUnknown(std::string_view name, const Token& token) {
 
 // hints { stereo ON } of 2005 is hint_stereo ON.
 void SectionReader::readPrefixed(std::string_view name, std::string_view prefix, WindowAttributes& attributes) {
-    tokens_.warn(tokens_.peek().at, "section " + std::string(name) + " is part of attributes today", "write " + std::string(prefix) + "... there");
+    tokens_.warn(tokens_.peek().at, "section " + std::string(name) + " is part of attributes today",
+                 "write " + std::string(prefix) + "... there");
     if (!tokens_.expect('{', name)) return;
     while (!tokens_.ended() && !tokens_.peek().is('}')) {
         const Token& token = tokens_.take();
         const std::string word = (token.text.starts_with(prefix) ? "" : std::string(prefix)) + std::string(token.text);
-        if (token.kind != TokenKind::Word) return tokens_.fail(token.at, shown(token) + " belongs to no field of section " + std::string(name), "remove it");
+        if (token.kind != TokenKind::Word)
+            return tokens_.fail(token.at, shown(token) + " belongs to no field of section " + std::string(name),
+                                "remove it");
         if (!readNamed(word, attributes)) skipUnknown(name, token);
     }
     tokens_.expect('}', "section " + std::string(name));
@@ -67,9 +74,12 @@ void SectionReader::readPrefixed(std::string_view name, std::string_view prefix,
 
 bool SectionReader::readOldField(const Token& token, WindowAttributes& attributes) {
     if (!tokens_.peek().is('{')) return false;
-    if (token.text == "hints") readPrefixed("hints", "hint_", attributes);
-    else if (token.text == "planes") readPrefixed("planes", "planes_", attributes);
-    else return false;
+    if (token.text == "hints")
+        readPrefixed("hints", "hint_", attributes);
+    else if (token.text == "planes")
+        readPrefixed("planes", "planes_", attributes);
+    else
+        return false;
     return true;
 }
 
@@ -77,11 +87,16 @@ bool SectionReader::readOldField(const Token& token, Window& window) { return re
 
 bool SectionReader::readOldField(const Token& token, Connection&) {
     std::string_view today;
-    if (token.text == "command" || token.text == "launch_command") today = "launch_command";
-    else if (token.text == "command_quote" || token.text == "launch_command_quote") today = "launch_command_quote";
-    else if (token.text == "timeout" || token.text == "launch_timeout") today = "launch_timeout";
-    else return false;
-    tokens_.warn(token.at, std::string(token.text) + " is an attribute of the node today", "write attributes { " + std::string(today) + " ... } in the node");
+    if (token.text == "command" || token.text == "launch_command")
+        today = "launch_command";
+    else if (token.text == "command_quote" || token.text == "launch_command_quote")
+        today = "launch_command_quote";
+    else if (token.text == "timeout" || token.text == "launch_timeout")
+        today = "launch_timeout";
+    else
+        return false;
+    tokens_.warn(token.at, std::string(token.text) + " is an attribute of the node today",
+                 "write attributes { " + std::string(today) + " ... } in the node");
     return readNamed(today, oldLaunch_);
 }
 
@@ -116,7 +131,8 @@ bool SectionReader::readOldField(const Token& token, ConfigAttributes& attribute
 bool SectionReader::readOldField(const Token& token, Config& config) {
     ConfigAttributes& a = config.attributes;
     if (token.text != "eyeBase" && token.text != "eye_base") return false;
-    tokens_.warn(token.at, std::string(token.text) + " is an attribute of the configuration today", "write attributes { eye_base ... }");
+    tokens_.warn(token.at, std::string(token.text) + " is an attribute of the configuration today",
+                 "write attributes { eye_base ... }");
     return readNamed("eye_base", a);
 }
 
@@ -145,7 +161,8 @@ void fields(auto& walk, LoadBalancer& b) {
 
 std::optional<Equalizer> todaysEqualizer(const LoadBalancer& b, SourcePosition at) {
     for (const auto& s : spellings(SplitMode{})) {
-        if (s.word == b.mode) return LoadEqualizer{s.value, b.damping, b.assembleOnlyLimit, b.boundary, b.resistance, at};
+        if (s.word == b.mode)
+            return LoadEqualizer{s.value, b.damping, b.assembleOnlyLimit, b.boundary, b.resistance, at};
     }
     if (b.mode == "DPLEX" || b.mode == "DPlex") return FramerateEqualizer{at};
     if (b.mode == "DFR") return DfrEqualizer{b.frameRate, b.damping, at};
@@ -160,13 +177,18 @@ void SectionReader::readLoadBalancer(SourcePosition at, std::vector<Equalizer>& 
     if (!tokens_.expect('{', "loadBalancer")) return;
     while (!tokens_.ended() && !tokens_.peek().is('}')) {
         const Token& token = tokens_.take();
-        if (token.kind != TokenKind::Word) return tokens_.fail(token.at, shown(token) + " belongs to no field of section loadBalancer", "remove it");
-        if (token.text == "mode") balancer.mode = tokens_.take().text;
-        else if (!readNamed(token.text, balancer)) skipUnknown("loadBalancer", token);
+        if (token.kind != TokenKind::Word)
+            return tokens_.fail(token.at, shown(token) + " belongs to no field of section loadBalancer", "remove it");
+        if (token.text == "mode")
+            balancer.mode = tokens_.take().text;
+        else if (!readNamed(token.text, balancer))
+            skipUnknown("loadBalancer", token);
     }
     if (!tokens_.expect('}', "section loadBalancer")) return;
     auto equalizer = todaysEqualizer(balancer, at);
-    if (!equalizer) return tokens_.fail(at, "loadBalancer has no mode " + balancer.mode, "it is one of 2D, DB, HORIZONTAL, VERTICAL, DPLEX, DFR, MONITOR");
+    if (!equalizer)
+        return tokens_.fail(at, "loadBalancer has no mode " + balancer.mode,
+                            "it is one of 2D, DB, HORIZONTAL, VERTICAL, DPLEX, DFR, MONITOR");
     const std::string today(std::visit([](const auto& e) { return sectionName(e); }, *equalizer));
     tokens_.warn(at, "loadBalancer is called " + today + " today", "write " + today);
     targets.push_back(std::move(*equalizer));

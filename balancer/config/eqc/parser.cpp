@@ -19,13 +19,16 @@ public:
     Parser(const TokenList& list, Diagnostics& diagnostics) : tokens_(list.tokens, diagnostics), sections_(tokens_) {
         file_.version = list.version;
         file_.heading = list.heading;
-        if (list.version > kCurrentVersion) diagnostics.warn({1, 1}, "the file has a later version of the format than 1.2",
-                                                             "look at what is said to be unknown");
+        if (list.version > kCurrentVersion)
+            diagnostics.warn({1, 1}, "the file has a later version of the format than 1.2",
+                             "look at what is said to be unknown");
     }
 
     ConfigFile run() {
         while (!tokens_.ended()) readTop();
-        if (!haveConfig_ && !tokens_.failed()) tokens_.fail(tokens_.peek().at, "there is no configuration in this file", "it begins with: server { config {");
+        if (!haveConfig_ && !tokens_.failed())
+            tokens_.fail(tokens_.peek().at, "there is no configuration in this file",
+                         "it begins with: server { config {");
         return std::move(file_);
     }
 
@@ -34,14 +37,22 @@ private:
     void readTop() {
         const Token& token = tokens_.take();
         if (token.kind != TokenKind::Word) {
-            if (!haveConfig_) return tokens_.fail(token.at, shown(token) + " stands before any section", "a file begins with global { or server {");
-            return tokens_.warn(token.at, shown(token) + " behind the configuration is left out", "look for a bracket that is missing before, or remove it");
+            if (!haveConfig_)
+                return tokens_.fail(token.at, shown(token) + " stands before any section",
+                                    "a file begins with global { or server {");
+            return tokens_.warn(token.at, shown(token) + " behind the configuration is left out",
+                                "look for a bracket that is missing before, or remove it");
         }
-        if (token.text == "global") readGlobals();
-        else if (token.text == "server") readServer();
-        else if (token.text == "config") readConfig(token);
-        else if (token.text.starts_with("EQ_")) readGlobal(token);
-        else skip(token, "the file");
+        if (token.text == "global")
+            readGlobals();
+        else if (token.text == "server")
+            readServer();
+        else if (token.text == "config")
+            readConfig(token);
+        else if (token.text.starts_with("EQ_"))
+            readGlobal(token);
+        else
+            skip(token, "the file");
     }
 
     // Reads "global { ... }", which may be nested, or a single attribute.
@@ -49,20 +60,27 @@ private:
         if (!tokens_.accept('{')) return;
         for (int depth = 1; depth > 0 && !tokens_.failed();) {
             const Token& token = tokens_.take();
-            if (token.is('}')) --depth;
-            else if (token.is('{')) ++depth;
-            else if (token.kind == TokenKind::Word && token.text != "global") readGlobal(token);
-            else if (token.kind == TokenKind::End) return tokens_.fail(token.at, "section global ends with }, here is the end of the file", "add it");
-            else if (token.kind != TokenKind::Word) return tokens_.fail(token.at, shown(token) + " is no global attribute", "remove it");
+            if (token.is('}'))
+                --depth;
+            else if (token.is('{'))
+                ++depth;
+            else if (token.kind == TokenKind::Word && token.text != "global")
+                readGlobal(token);
+            else if (token.kind == TokenKind::End)
+                return tokens_.fail(token.at, "section global ends with }, here is the end of the file", "add it");
+            else if (token.kind != TokenKind::Word)
+                return tokens_.fail(token.at, shown(token) + " is no global attribute", "remove it");
         }
     }
 
     void readGlobal(const Token& token) {
         const GlobalAttribute* attribute = findGlobalAttribute(token.text);
         if (attribute == nullptr) return skip(token, "global");
-        if (attribute->name != token.text) tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(attribute->name) + " today",
-                                                        "rename it");
-        if (const auto value = readGlobalValue(tokens_, *attribute)) file_.globals[std::string(attribute->name)] = *value;
+        if (attribute->name != token.text)
+            tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(attribute->name) + " today",
+                         "rename it");
+        if (const auto value = readGlobalValue(tokens_, *attribute))
+            file_.globals[std::string(attribute->name)] = *value;
     }
 
     void readServer() {
@@ -94,7 +112,8 @@ private:
     }
 
     void skip(const Token& token, const std::string& where) {
-        tokens_.warn(token.at, "nothing in " + where + " is called " + std::string(token.text) + ", it is left out", "check its spelling, or remove it");
+        tokens_.warn(token.at, "nothing in " + where + " is called " + std::string(token.text) + ", it is left out",
+                     "check its spelling, or remove it");
         tokens_.skipValue();
         // Skips a value that is a word, such as ON. Every word that begins a field is followed by a bracket or a value.
         if (tokens_.peek().kind == TokenKind::Word && isAttributeWord(tokens_.peek().text)) tokens_.take();
@@ -124,7 +143,8 @@ ConfigFile readConfigFile(const std::string& path, Diagnostics& diagnostics) {
         text.resize(static_cast<size_t>(in.gcount()));
     }
     if (!in.eof() && text.size() <= kMaxBytes) {
-        diagnostics.error({}, std::string("can't be read: ") + std::strerror(errno != 0 ? errno : EIO), "check the name and its permissions");
+        diagnostics.error({}, std::string("can't be read: ") + std::strerror(errno != 0 ? errno : EIO),
+                          "check the name and its permissions");
         return {};
     }
     if (text.size() > kMaxBytes) {

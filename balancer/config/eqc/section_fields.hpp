@@ -126,9 +126,7 @@ void fields(auto& walk, Is<Observer> auto& o) {
 }
 
 // Views have this single attribute.
-template <class V> struct ViewAttributes {
-    V& view;
-};
+template <class V> struct ViewAttributes { V& view; };
 template <class V> void fields(auto& walk, ViewAttributes<V>& a) { walk.value("deflect_host", a.view.deflectHost); }
 
 template <Is<View> V> void fields(auto& walk, V& v) {

@@ -13,8 +13,10 @@ public:
     // Reads "{ ... }". `name` and `at` identify the section in messages.
     template <class Section> void readSection(std::string_view name, SourcePosition at, Section& section) {
         if constexpr (requires { section.at; }) section.at = at;
-        if (depth_ >= kDeepest) return tokens_.fail(tokens_.peek().at, "more than " + std::to_string(kDeepest) + " sections stand in each other",
-                                                    "check the brackets");
+        if (depth_ >= kDeepest)
+            return tokens_.fail(tokens_.peek().at,
+                                "more than " + std::to_string(kDeepest) + " sections stand in each other",
+                                "check the brackets");
         ++depth_;
         const std::string_view outer = section_;
         section_ = name;
@@ -39,8 +41,9 @@ public:
         if (isNext(word)) ValueReader(tokens_, word).read(target);
     }
     // Fields that always have a value.
-    template <class T> requires(std::is_same_v<T, Vector3> || std::is_same_v<T, Degrees2> || std::is_same_v<T, double> || std::is_enum_v<T>)
-    void value(std::string_view word, T& target) {
+    template <class T>
+    requires(std::is_same_v<T, Vector3> || std::is_same_v<T, Degrees2> || std::is_same_v<T, double> ||
+             std::is_enum_v<T>) void value(std::string_view word, T& target) {
         if (isNext(word)) ValueReader(tokens_, word).read(target);
     }
     // "eye [ ]" counts as omitted.
@@ -139,7 +142,8 @@ private:
         if (readNamed(token.text, section) || readOldField(token, section)) return;
         if constexpr (requires { section.at; }) {
             if (const std::string_view today = todaysWord(name, token.text); !today.empty()) {
-                tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(today) + " today", "rename it");
+                tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(today) + " today",
+                             "rename it");
                 if (readNamed(today, section)) return;
             }
         }
@@ -172,7 +176,7 @@ private:
     bool matched_ = true;
     int depth_ = 0;
     NodeAttributes oldLaunch_; // launch command in a connection; belongs to the enclosing node
-    Observer oldFocus_; // focus of the configuration; belongs to its observers
+    Observer oldFocus_;        // focus of the configuration; belongs to its observers
 };
 
 } // namespace mural::config

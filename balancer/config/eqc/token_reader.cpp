@@ -17,7 +17,8 @@ bool TokenReader::accept(char bracket) {
 bool TokenReader::expect(char bracket, std::string_view after) {
     if (accept(bracket)) return true;
     const bool opens = bracket == '{' || bracket == '[' || bracket == '(';
-    fail(peek().at, std::string(after) + (opens ? " begins with " : " ends with ") + bracket + ", here is " + shown(peek()),
+    fail(peek().at,
+         std::string(after) + (opens ? " begins with " : " ends with ") + bracket + ", here is " + shown(peek()),
          opens ? "add it" : "add it, or look for a bracket that is missing before");
     return false;
 }
@@ -33,7 +34,8 @@ void TokenReader::skipValue() {
         const Token& token = peek();
         if (token.is('{') || token.is('[') || token.is('(')) {
             skipBrackets();
-        } else if (token.kind == TokenKind::Number || token.kind == TokenKind::String || token.kind == TokenKind::Character) {
+        } else if (token.kind == TokenKind::Number || token.kind == TokenKind::String ||
+                   token.kind == TokenKind::Character) {
             take();
         } else {
             return;

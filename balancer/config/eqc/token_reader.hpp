@@ -8,7 +8,8 @@ namespace mural::config {
 
 class TokenReader {
 public:
-    TokenReader(const std::vector<Token>& tokens, Diagnostics& diagnostics) : tokens_(tokens), diagnostics_(diagnostics) {}
+    TokenReader(const std::vector<Token>& tokens, Diagnostics& diagnostics)
+        : tokens_(tokens), diagnostics_(diagnostics) {}
 
     [[nodiscard]] const Token& peek() const { return tokens_[at_]; }
     [[nodiscard]] bool ended() const { return peek().kind == TokenKind::End; }
@@ -20,8 +21,12 @@ public:
     bool expect(char bracket, std::string_view after);
 
     void fail(SourcePosition at, std::string what, std::string remedy);
-    void warn(SourcePosition at, std::string what, std::string remedy) { diagnostics_.warn(at, std::move(what), std::move(remedy)); }
-    void given(SourcePosition at, std::string_view section, std::string_view field) { diagnostics_.given(at, section, field); }
+    void warn(SourcePosition at, std::string what, std::string remedy) {
+        diagnostics_.warn(at, std::move(what), std::move(remedy));
+    }
+    void given(SourcePosition at, std::string_view section, std::string_view field) {
+        diagnostics_.given(at, section, field);
+    }
 
     // Skips the possible value of an unknown word: numbers, texts, brackets with their contents.
     void skipValue();

@@ -16,7 +16,8 @@ std::string_view withoutPlus(std::string_view text) {
 
 bool sameButCase(std::string_view a, std::string_view b) {
     const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [&](char x, char y) { return lower(x) == lower(y); });
+    return a.size() == b.size() &&
+           std::equal(a.begin(), a.end(), b.begin(), [&](char x, char y) { return lower(x) == lower(y); });
 }
 
 } // namespace
@@ -44,28 +45,37 @@ bool ValueReader::ignoredMember(Buffer) {
 
 void ValueReader::read(std::string& value) {
     const Token& token = tokens_.take();
-    if (token.kind == TokenKind::String) value = token.text;
-    else tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a text in double quotes");
+    if (token.kind == TokenKind::String)
+        value = token.text;
+    else
+        tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a text in double quotes");
 }
 
 void ValueReader::read(char& value) {
     const Token& token = tokens_.take();
-    if (token.kind == TokenKind::Character) value = token.text.front();
-    else tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is one character in single quotes");
+    if (token.kind == TokenKind::Character)
+        value = token.text.front();
+    else
+        tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token),
+                     "it is one character in single quotes");
 }
 
 void ValueReader::read(double& value) {
     const Token& token = tokens_.take();
-    if (token.kind != TokenKind::Number) return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number");
+    if (token.kind != TokenKind::Number)
+        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number");
     const std::string_view text = withoutPlus(token.text);
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc::invalid_argument) return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number");
+    if (error == std::errc::invalid_argument)
+        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number");
     if (error == std::errc::result_out_of_range) {
         // Numbers too small for a double are 0.
         const size_t point = text.find('.');
-        const bool tiny = text.find("e-") != std::string_view::npos || (point != std::string_view::npos && text.find_first_of("123456789") > point);
-        if (!tiny) return tokens_.fail(token.at, std::string(field_) + " is too large a number", "give one that can be meant");
+        const bool tiny = text.find("e-") != std::string_view::npos ||
+                          (point != std::string_view::npos && text.find_first_of("123456789") > point);
+        if (!tiny)
+            return tokens_.fail(token.at, std::string(field_) + " is too large a number", "give one that can be meant");
         number = 0;
     }
     value = number;
@@ -74,16 +84,21 @@ void ValueReader::read(double& value) {
 void ValueReader::read(int32_t& value) {
     const Token& token = tokens_.take();
     const std::string remedy = "it is a whole number";
-    if (token.kind != TokenKind::Number) return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), remedy);
+    if (token.kind != TokenKind::Number)
+        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), remedy);
     std::string_view text = withoutPlus(token.text);
-    if (const size_t point = text.find('.'); point != std::string_view::npos && text.find_first_not_of('0', point + 1) == std::string_view::npos && point > 0) {
+    if (const size_t point = text.find('.'); point != std::string_view::npos &&
+                                             text.find_first_not_of('0', point + 1) == std::string_view::npos &&
+                                             point > 0) {
         tokens_.warn(token.at, std::string(field_) + " is a whole number", "write it without a point");
         text = text.substr(0, point);
     }
     int32_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc::result_out_of_range) return tokens_.fail(token.at, std::string(field_) + " is too large a number", "give one below 2147483648");
-    if (error != std::errc{} || end != text.data() + text.size()) return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), remedy);
+    if (error == std::errc::result_out_of_range)
+        return tokens_.fail(token.at, std::string(field_) + " is too large a number", "give one below 2147483648");
+    if (error != std::errc{} || end != text.data() + text.size())
+        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), remedy);
     value = number;
 }
 
@@ -137,7 +152,8 @@ void ValueReader::read(Reference& value) {
     const Token& token = tokens_.peek();
     if (token.kind == TokenKind::String) return read(value.emplace<std::string>());
     if (token.kind == TokenKind::Number) return read(value.emplace<uint32_t>());
-    tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a name in double quotes, or a number that counts from 0");
+    tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token),
+                 "it is a name in double quotes, or a number that counts from 0");
 }
 
 void ValueReader::read(LayoutReference& value) {
@@ -149,8 +165,10 @@ void ValueReader::read(LayoutReference& value) {
     }
     Reference reference;
     read(reference);
-    if (const auto* name = std::get_if<std::string>(&reference)) value = *name;
-    else value = std::get<uint32_t>(reference);
+    if (const auto* name = std::get_if<std::string>(&reference))
+        value = *name;
+    else
+        value = std::get<uint32_t>(reference);
 }
 
 void ValueReader::read(ChannelReference& value) {
@@ -170,15 +188,20 @@ void ValueReader::readAttribute(int32_t& value) {
     const Token& token = tokens_.peek();
     if (token.kind == TokenKind::Number) return read(value);
     const AttributeWord* word = token.kind == TokenKind::Word ? findAttributeWord(token.text) : nullptr;
-    if (word == nullptr) return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number or a word such as ON, OFF, AUTO");
+    if (word == nullptr)
+        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token),
+                            "it is a number or a word such as ON, OFF, AUTO");
     tokens_.take();
     value = word->value;
-    if (word->old) tokens_.warn(token.at, std::string(token.text) + " is read as its capital word", "write " + attributeText(value, AttributeKind::Switch));
+    if (word->old)
+        tokens_.warn(token.at, std::string(token.text) + " is read as its capital word",
+                     "write " + attributeText(value, AttributeKind::Switch));
     if (word->takesNumber) {
         uint32_t number = 0;
         read(number);
-        if (number > static_cast<uint32_t>(kMaxCores)) return tokens_.fail(token.at,
-            std::string(field_) + " names core or socket " + std::to_string(number), "count them from 0, up to " + std::to_string(kMaxCores));
+        if (number > static_cast<uint32_t>(kMaxCores))
+            return tokens_.fail(token.at, std::string(field_) + " names core or socket " + std::to_string(number),
+                                "count them from 0, up to " + std::to_string(kMaxCores));
         value += static_cast<int32_t>(number);
     }
 }

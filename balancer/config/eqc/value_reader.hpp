@@ -31,7 +31,9 @@ public:
     void read(ChannelReference& value);
 
     // Reads a word of an enumeration. Early releases wrote some words in lower case.
-    template <class E> requires std::is_enum_v<E> void read(E& value) {
+    template <class E>
+    requires std::is_enum_v<E>
+    void read(E& value) {
         const Token& token = tokens_.take();
         for (const auto& s : spellings(E{})) {
             if (token.kind == TokenKind::Word && takesAs(token, s.word)) {

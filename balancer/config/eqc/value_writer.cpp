@@ -29,7 +29,9 @@ std::string valueText(const Vector3& v) { return bracketed(v.x, v.y, v.z); }
 std::string valueText(const Degrees2& v) { return bracketed(v.x, v.y); }
 std::string valueText(const Range& r) { return bracketed(r.start, r.end); }
 std::string valueText(const Zoom& z) { return bracketed(z.x, z.y); }
-std::string valueText(const PixelKernel& k) { return bracketed(unsignedOf(k.x), unsignedOf(k.y), unsignedOf(k.w), unsignedOf(k.h)); }
+std::string valueText(const PixelKernel& k) {
+    return bracketed(unsignedOf(k.x), unsignedOf(k.y), unsignedOf(k.w), unsignedOf(k.h));
+}
 std::string valueText(const SubPixel& s) { return bracketed(unsignedOf(s.index), unsignedOf(s.size)); }
 std::string valueText(const Bezel& b) { return bracketed(b.left, b.right, b.bottom, b.top); }
 
@@ -46,7 +48,8 @@ std::string valueText(const LayoutReference& value) {
 std::string valueText(const ChannelReference& value) {
     if (const auto* name = std::get_if<std::string>(&value)) return valueText(*name);
     std::string text = "(";
-    for (const auto& [step, reference] : std::get<ChannelPath>(value).steps) text += " " + valueText(step) + " " + valueText(reference);
+    for (const auto& [step, reference] : std::get<ChannelPath>(value).steps)
+        text += " " + valueText(step) + " " + valueText(reference);
     return text + " )";
 }
 

@@ -25,7 +25,8 @@ std::string valueText(const Reference& value);
 std::string valueText(const LayoutReference& value);
 std::string valueText(const ChannelReference& value);
 
-template <class E> requires std::is_enum_v<E> std::string valueText(E value) { return std::string(wordOf(value)); }
+template <class E>
+requires std::is_enum_v<E> std::string valueText(E value) { return std::string(wordOf(value)); }
 
 template <class E> std::string valueText(const EnumSet<E>& value) {
     std::string text = "[";

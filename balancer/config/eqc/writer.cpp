@@ -19,15 +19,20 @@ public:
 
     template <class T> void value(std::string_view word, const std::optional<T>& v) {
         if (!v) return;
-        if constexpr (std::is_same_v<T, PixelsOrRange>) value(word, *v);
-        else add(word, valueText(*v));
+        if constexpr (std::is_same_v<T, PixelsOrRange>)
+            value(word, *v);
+        else
+            add(word, valueText(*v));
     }
     void value(std::string_view word, const PixelsOrRange& v) {
         if (v.pixels) add(word, "[ " + valueText(v.pixels->x) + " " + valueText(v.pixels->y) + " ]");
         if (v.range) add(word, valueText(*v.range));
     }
-    template <class T> requires(std::is_same_v<T, Vector3> || std::is_same_v<T, Degrees2> || std::is_same_v<T, double> || std::is_enum_v<T>)
-    void value(std::string_view word, const T& v) { add(word, valueText(v)); }
+    template <class T>
+    requires(std::is_same_v<T, Vector3> || std::is_same_v<T, Degrees2> || std::is_same_v<T, double> ||
+             std::is_enum_v<T>) void value(std::string_view word, const T& v) {
+        add(word, valueText(v));
+    }
     void attribute(std::string_view word, const Attribute& a, AttributeKind kind) {
         if (a) add(word, attributeText(*a, kind));
     }
@@ -49,8 +54,10 @@ public:
     void merged(std::string_view word, const std::optional<Node>& s) { section(word, s); }
     void surface(const std::optional<ProjectionSurface>& s) {
         if (!s) return;
-        if (const auto* wall = std::get_if<Wall>(&*s)) addSection("wall", *wall);
-        else addSection("projection", std::get<Projection>(*s));
+        if (const auto* wall = std::get_if<Wall>(&*s))
+            addSection("wall", *wall);
+        else
+            addSection("projection", std::get<Projection>(*s));
     }
     void equalizers(const std::vector<Equalizer>& all) {
         for (const Equalizer& e : all) std::visit([&](const auto& one) { addSection(sectionName(one), one); }, e);
@@ -90,15 +97,20 @@ private:
 
 std::string globalText(const GlobalValue& value, GlobalKind kind) {
     if (const auto* number = std::get_if<int32_t>(&value)) {
-        const AttributeKind spelling = kind == GlobalKind::Number ? AttributeKind::Number
-            : kind == GlobalKind::Statistics ? AttributeKind::Statistics
-            : kind == GlobalKind::Affinity ? AttributeKind::Affinity : AttributeKind::Switch;
+        const AttributeKind spelling = kind == GlobalKind::Number       ? AttributeKind::Number
+                                       : kind == GlobalKind::Statistics ? AttributeKind::Statistics
+                                       : kind == GlobalKind::Affinity   ? AttributeKind::Affinity
+                                                                        : AttributeKind::Switch;
         return attributeText(*number, spelling);
     }
-    return std::visit([](const auto& v) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, int32_t>) return std::to_string(v);
-        else return valueText(v);
-    }, value);
+    return std::visit(
+        [](const auto& v) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(v)>, int32_t>)
+                return std::to_string(v);
+            else
+                return valueText(v);
+        },
+        value);
 }
 
 } // namespace
@@ -115,7 +127,8 @@ std::string writeConfig(const ConfigFile& file) {
         text += "global\n{\n";
         for (const auto& [name, value] : file.globals) {
             const GlobalAttribute* attribute = findGlobalAttribute(name);
-            text += "    " + name + " " + globalText(value, attribute != nullptr ? attribute->kind : GlobalKind::Word) + "\n";
+            text += "    " + name + " " + globalText(value, attribute != nullptr ? attribute->kind : GlobalKind::Word) +
+                    "\n";
         }
         text += "}\n\n";
     }

@@ -9,7 +9,8 @@ namespace mural::config {
 
 class AttributeFiller {
 public:
-    AttributeFiller(std::string_view section, const GlobalDefaults& defaults) : section_(section), defaults_(defaults) {}
+    AttributeFiller(std::string_view section, const GlobalDefaults& defaults)
+        : section_(section), defaults_(defaults) {}
 
     void attribute(std::string_view word, Attribute& a, AttributeKind) { fill<int32_t>(word, "_IATTR_", a); }
     void value(std::string_view word, std::optional<std::string>& v) { fill<std::string>(word, "_SATTR_", v); }

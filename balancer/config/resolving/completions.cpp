@@ -34,7 +34,8 @@ std::vector<Index> compoundsInOrder(const ResolvedConfig& config, Index root) {
 // Returns true for a compound without tasks, such as one that only holds a swap barrier.
 bool isIdle(const ResolvedConfig& config, Index compound) {
     const ResolvedCompound& c = config.compounds[Resolver::at(compound)];
-    const bool below = std::all_of(c.children.begin(), c.children.end(), [&](Index child) { return isIdle(config, child); });
+    const bool below =
+        std::all_of(c.children.begin(), c.children.end(), [&](Index child) { return isIdle(config, child); });
     return c.tasks && c.tasks->empty() && below;
 }
 
@@ -58,12 +59,16 @@ void useShownChannels(Resolver& r) {
     ResolvedConfig& config = r.out;
     for (size_t i = 0; i < config.compounds.size(); ++i) {
         ResolvedCompound& c = config.compounds[i];
-        if (!isDestination(config, c) || config.channels[Resolver::at(c.channel)].isDestination() || isIdle(config, static_cast<Index>(i))) continue;
+        if (!isDestination(config, c) || config.channels[Resolver::at(c.channel)].isDestination() ||
+            isIdle(config, static_cast<Index>(i)))
+            continue;
         for (size_t channel = 0; channel < config.channels.size(); ++channel) {
             const ResolvedChannel& shown = config.channels[channel];
             if (!shown.isDestination() || config.segments[Resolver::at(shown.segment)].channel != c.channel) continue;
-            const bool used = std::any_of(config.compounds.begin(), config.compounds.end(),
-                                          [&](const ResolvedCompound& other) { return other.channel == static_cast<Index>(channel); });
+            const bool used =
+                std::any_of(config.compounds.begin(), config.compounds.end(), [&](const ResolvedCompound& other) {
+                    return other.channel == static_cast<Index>(channel);
+                });
             if (used) continue;
             c.channel = static_cast<Index>(channel);
             break;
@@ -73,7 +78,9 @@ void useShownChannels(Resolver& r) {
     // In descendants the same name refers to the picture in progress, if it fills the channel: their drawing is part of
     // it.
     for (ResolvedCompound& c : config.compounds) {
-        if (c.channel == kNone || c.channel == c.destination || config.channels[Resolver::at(c.channel)].isDestination()) continue;
+        if (c.channel == kNone || c.channel == c.destination ||
+            config.channels[Resolver::at(c.channel)].isDestination())
+            continue;
         const ResolvedChannel& shown = config.channels[Resolver::at(c.destination)];
         if (!shown.isDestination() || config.segments[Resolver::at(shown.segment)].channel != c.channel) continue;
         if (shown.viewport == config.channels[Resolver::at(c.channel)].viewport) c.channel = c.destination;
@@ -91,7 +98,9 @@ void addOutputCompounds(Resolver& r) {
         Index group = kNone;
         for (size_t channel = 0; channel < used.size(); ++channel) {
             const ResolvedChannel& one = config.channels[channel];
-            if (used[channel] || !one.isDestination() || config.views[Resolver::at(one.view)].layout != static_cast<Index>(layout)) continue;
+            if (used[channel] || !one.isDestination() ||
+                config.views[Resolver::at(one.view)].layout != static_cast<Index>(layout))
+                continue;
             if (group == kNone) {
                 group = addGenerated(config, kNone, config.layouts[layout].name, kNone, config.layouts[layout].at);
                 config.roots.push_back(group);
@@ -162,7 +171,8 @@ void addTileQueues(Resolver& r) {
             config.compounds[i].outputQueues.push_back({name, size, tiles->at});
             for (const Index below : compoundsInOrder(config, static_cast<Index>(i))) {
                 ResolvedCompound& c = config.compounds[Resolver::at(below)];
-                if (c.isLeaf() && below != static_cast<Index>(i) && c.inputQueues.empty()) c.inputQueues.push_back({name, {}, tiles->at});
+                if (c.isLeaf() && below != static_cast<Index>(i) && c.inputQueues.empty())
+                    c.inputQueues.push_back({name, {}, tiles->at});
             }
         }
     }
@@ -175,7 +185,8 @@ void addCopies(Resolver& r) {
         for (const Index i : compoundsInOrder(config, root)) {
             const ResolvedCompound& c = config.compounds[Resolver::at(i)];
             if (!isDestination(config, c) || !config.channels[Resolver::at(c.channel)].isDestination()) continue;
-            const ResolvedSegment& segment = config.segments[Resolver::at(config.channels[Resolver::at(c.channel)].segment)];
+            const ResolvedSegment& segment =
+                config.segments[Resolver::at(config.channels[Resolver::at(c.channel)].segment)];
             const std::vector<Index> copies = segment.copies;
             const SourcePosition at = segment.at;
             if (copies.empty()) continue;

@@ -19,14 +19,20 @@ std::string shown(const Reference& reference) {
 class PathFollower {
 public:
     explicit PathFollower(const Resolver& r)
-        : c_(r.out), segment_(firstOf(c_.canvases, &ResolvedCanvas::segments)), view_(firstOf(c_.layouts, &ResolvedLayout::views)) {}
+        : c_(r.out),
+          segment_(firstOf(c_.canvases, &ResolvedCanvas::segments)),
+          view_(firstOf(c_.layouts, &ResolvedLayout::views)) {}
 
     // Returns the missing step, or an empty text on success.
     std::string follow(const ChannelPath& path) {
         for (const auto& [step, reference] : path.steps) {
             if (take(step, reference)) continue;
-            const bool inCanvas = step == PathStep::Segment && canvas_ != kNone, inLayout = step == PathStep::View && layout_ != kNone;
-            return "there is no " + std::string(wordOf(step)) + " " + shown(reference) + (inCanvas ? " in that canvas" : inLayout ? " in that layout" : "");
+            const bool inCanvas = step == PathStep::Segment && canvas_ != kNone,
+                       inLayout = step == PathStep::View && layout_ != kNone;
+            return "there is no " + std::string(wordOf(step)) + " " + shown(reference) +
+                   (inCanvas   ? " in that canvas"
+                    : inLayout ? " in that layout"
+                               : "");
         }
         if (segment_ == kNone) return "the canvas has no segment";
         if (view_ == kNone) return "the layout has no view";
@@ -43,11 +49,13 @@ private:
 
     // Searches the members of the chosen container, or all elements if none is chosen. Numbers then refer to the first
     // container.
-    template <class T, class Whole> Index find(const Reference& reference, const std::vector<T>& all, const std::vector<Index>* members,
-                                               const std::vector<Whole>& wholes, std::vector<Index> Whole::*of) const {
+    template <class T, class Whole>
+    Index find(const Reference& reference, const std::vector<T>& all, const std::vector<Index>* members,
+               const std::vector<Whole>& wholes, std::vector<Index> Whole::*of) const {
         if (const auto* name = std::get_if<std::string>(&reference)) {
             if (members == nullptr) return Resolver::named(all, *name);
-            const auto found = std::find_if(members->begin(), members->end(), [&](Index i) { return all[Resolver::at(i)].name == *name; });
+            const auto found = std::find_if(members->begin(), members->end(),
+                                            [&](Index i) { return all[Resolver::at(i)].name == *name; });
             return found == members->end() ? kNone : *found;
         }
         if (members == nullptr && !wholes.empty()) members = &(wholes.front().*of);
@@ -73,11 +81,13 @@ private:
             const auto& views = c_.layouts[Resolver::at(layout_)].views;
             view_ = views.empty() ? kNone : views.front();
         } else if (step == PathStep::Segment) {
-            segment_ = find(reference, c_.segments, canvas_ == kNone ? nullptr : &c_.canvases[Resolver::at(canvas_)].segments, c_.canvases,
-                            &ResolvedCanvas::segments);
+            segment_ =
+                find(reference, c_.segments, canvas_ == kNone ? nullptr : &c_.canvases[Resolver::at(canvas_)].segments,
+                     c_.canvases, &ResolvedCanvas::segments);
             return segment_ != kNone;
         } else {
-            view_ = find(reference, c_.views, layout_ == kNone ? nullptr : &c_.layouts[Resolver::at(layout_)].views, c_.layouts, &ResolvedLayout::views);
+            view_ = find(reference, c_.views, layout_ == kNone ? nullptr : &c_.layouts[Resolver::at(layout_)].views,
+                         c_.layouts, &ResolvedLayout::views);
             return view_ != kNone;
         }
         return true;
@@ -91,7 +101,8 @@ private:
 Index channelOf(Resolver& r, const ChannelReference& reference, SourcePosition at) {
     if (const auto* name = std::get_if<std::string>(&reference)) {
         const Index channel = Resolver::named(r.out.channels, *name);
-        if (channel == kNone) r.diagnostics.error(at, "there is no channel \"" + *name + "\"", "define it in a window, or name another");
+        if (channel == kNone)
+            r.diagnostics.error(at, "there is no channel \"" + *name + "\"", "define it in a window, or name another");
         return channel;
     }
     PathFollower way(r);
@@ -104,8 +115,9 @@ Index channelOf(Resolver& r, const ChannelReference& reference, SourcePosition a
         const ResolvedSegment& s = r.out.segments[Resolver::at(way.segment())];
         const ResolvedView& v = r.out.views[Resolver::at(way.view())];
         const std::string& layout = r.out.layouts[Resolver::at(v.layout)].name;
-        r.diagnostics.error(at, "no view of layout \"" + layout + "\" that is meant here is seen on segment \"" + s.name + "\"",
-                            "show the layout on that canvas, or name another segment or view");
+        r.diagnostics.error(
+            at, "no view of layout \"" + layout + "\" that is meant here is seen on segment \"" + s.name + "\"",
+            "show the layout on that canvas, or name another segment or view");
     }
     return channel;
 }
@@ -125,33 +137,44 @@ ResolvedFrame frameOf(Resolver& r, const Frame& f) {
         frame.zoom.reset();
     }
     if (frame.viewport.empty()) {
-        r.diagnostics.warn(f.at, "the viewport of this frame has no size, it is the whole", "give x, y, width and height as parts of 1");
+        r.diagnostics.warn(f.at, "the viewport of this frame has no size, it is the whole",
+                           "give x, y, width and height as parts of 1");
         frame.viewport = {};
     }
     return frame;
 }
 
 // Invalid values count as omitted.
-template <class T, class Good> void take(Resolver& r, const std::optional<T>& given, T& target, SourcePosition at, const char* what,
-                                         const char* remedy, Good good) {
+template <class T, class Good>
+void take(Resolver& r, const std::optional<T>& given, T& target, SourcePosition at, const char* what,
+          const char* remedy, Good good) {
     if (!given) return;
-    if (good(*given)) target = *given;
-    else r.diagnostics.warn(at, std::string(what) + ", it is left out", remedy);
+    if (good(*given))
+        target = *given;
+    else
+        r.diagnostics.warn(at, std::string(what) + ", it is left out", remedy);
 }
 
 void takeParameters(Resolver& r, const Compound& c, ResolvedCompound& to) {
-    take(r, c.viewport, to.viewport, c.at, "the viewport of this compound has no size or lies outside of 0 to 1", "give x, y, width and height as parts of 1",
-         [](const Viewport& v) { return v.w >= 0 && v.h >= 0 && v.x >= 0 && v.y >= 0 && v.x + v.w <= 1.001 && v.y + v.h <= 1.001; });
-    take(r, c.range, to.range, c.at, "the range of this compound ends before it begins or lies outside of 0 to 1", "give two numbers from 0 to 1",
+    take(r, c.viewport, to.viewport, c.at, "the viewport of this compound has no size or lies outside of 0 to 1",
+         "give x, y, width and height as parts of 1", [](const Viewport& v) {
+             return v.w >= 0 && v.h >= 0 && v.x >= 0 && v.y >= 0 && v.x + v.w <= 1.001 && v.y + v.h <= 1.001;
+         });
+    take(r, c.range, to.range, c.at, "the range of this compound ends before it begins or lies outside of 0 to 1",
+         "give two numbers from 0 to 1",
          [](const Range& v) { return v.start >= 0 && v.end >= v.start && v.end <= 1.001; });
     take(r, c.zoom, to.zoom, c.at, "this zoom is not above 0, or above 1000", "give two numbers above 0",
          [](const Zoom& z) { return z.valid() && z.x <= 1000 && z.y <= 1000; });
-    take(r, c.pixel, to.pixel, c.at, "this pixel kernel has no pixel", "give x, y, width and height: 0 <= x < width, 0 <= y < height",
+    take(r, c.pixel, to.pixel, c.at, "this pixel kernel has no pixel",
+         "give x, y, width and height: 0 <= x < width, 0 <= y < height",
          [](const PixelKernel& k) { return k.valid() && k.w <= 4096 && k.h <= 4096; });
-    take(r, c.subPixel, to.subPixel, c.at, "there is no such subpixel", "give its number and how many there are: 0 <= number < count",
+    take(r, c.subPixel, to.subPixel, c.at, "there is no such subpixel",
+         "give its number and how many there are: 0 <= number < count",
          [](const SubPixel& s) { return s.valid() && s.size <= 65536; });
-    if (c.period && *c.period > 0) to.period = c.period;
-    else if (c.period) r.diagnostics.warn(c.at, "a period of 0 frames is none, it is left out", "give 1 or more");
+    if (c.period && *c.period > 0)
+        to.period = c.period;
+    else if (c.period)
+        r.diagnostics.warn(c.at, "a period of 0 frames is none, it is left out", "give 1 or more");
     to.phase = c.phase;
 }
 
@@ -162,23 +185,29 @@ Index addCompound(Resolver& r, const Compound& c, Index parent) {
     compound.tasks = c.tasks;
     compound.eyes = c.eyes;
     compound.buffers = c.buffers;
-    compound.composition = c.composition.value_or(parent == kNone ? std::string() : r.out.compounds[Resolver::at(parent)].composition);
+    compound.composition =
+        c.composition.value_or(parent == kNone ? std::string() : r.out.compounds[Resolver::at(parent)].composition);
     compound.surface = c.surface;
     compound.attributes = c.attributes;
     compound.equalizers = c.equalizers;
     compound.at = c.at;
     takeParameters(r, c, compound);
-    if (c.surface && !screenOf(*c.surface).usable()) r.diagnostics.error(c.at, "the wall or projection of this compound has no area",
-                                                                         "give a rectangle, or distance and angles above 0");
+    if (c.surface && !screenOf(*c.surface).usable())
+        r.diagnostics.error(c.at, "the wall or projection of this compound has no area",
+                            "give a rectangle, or distance and angles above 0");
     if (c.channel) compound.channel = channelOf(r, *c.channel, c.at);
     for (const Frame& f : c.outputFrames) compound.outputFrames.push_back(frameOf(r, f));
     for (const Frame& f : c.inputFrames) compound.inputFrames.push_back(frameOf(r, f));
     for (const TileQueue& q : c.outputTiles) compound.outputQueues.push_back({q.name.value_or(""), q.size, q.at});
     for (const TileQueue& q : c.inputTiles) compound.inputQueues.push_back({q.name.value_or(""), q.size, q.at});
-    if (c.swapBarrier) compound.barrier = ResolvedBarrier{c.swapBarrier->name.value_or(""), c.swapBarrier->nvGroup, c.swapBarrier->nvBarrier};
+    if (c.swapBarrier)
+        compound.barrier =
+            ResolvedBarrier{c.swapBarrier->name.value_or(""), c.swapBarrier->nvGroup, c.swapBarrier->nvBarrier};
     const Index index = Resolver::add(r.out.compounds, compound);
-    if (parent != kNone) r.out.compounds[Resolver::at(parent)].children.push_back(index);
-    else r.out.roots.push_back(index);
+    if (parent != kNone)
+        r.out.compounds[Resolver::at(parent)].children.push_back(index);
+    else
+        r.out.roots.push_back(index);
     for (const Compound& child : c.children) addCompound(r, child, index);
     return index;
 }
@@ -188,7 +217,8 @@ std::string defaultName(const ResolvedConfig& c, Index compound, const std::stri
     for (Index i = compound; i != kNone; i = c.compounds[Resolver::at(i)].parent) {
         const ResolvedCompound& one = c.compounds[Resolver::at(i)];
         if (!one.name.empty()) return kind + "." + one.name;
-        if (one.executing != kNone && !c.channels[Resolver::at(one.executing)].name.empty()) return kind + "." + c.channels[Resolver::at(one.executing)].name;
+        if (one.executing != kNone && !c.channels[Resolver::at(one.executing)].name.empty())
+            return kind + "." + c.channels[Resolver::at(one.executing)].name;
     }
     return kind;
 }
@@ -224,10 +254,13 @@ void nameFrames(Resolver& r) {
                 if (q.name.empty()) q.name = defaultName(config, index, "queue");
             }
         }
-        if (c.barrier && c.barrier->name.empty()) c.barrier->name = rootName.empty() ? "barrier" : "barrier." + rootName;
+        if (c.barrier && c.barrier->name.empty())
+            c.barrier->name = rootName.empty() ? "barrier" : "barrier." + rootName;
         // The compound that shows a segment joins the segment's swap barrier.
-        const bool shows = c.channel != kNone && c.channel == c.destination && config.channels[Resolver::at(c.channel)].isDestination();
-        if (!c.barrier && shows && (c.parent == kNone || config.compounds[Resolver::at(c.parent)].destination == kNone)) {
+        const bool shows = c.channel != kNone && c.channel == c.destination &&
+                           config.channels[Resolver::at(c.channel)].isDestination();
+        if (!c.barrier && shows &&
+            (c.parent == kNone || config.compounds[Resolver::at(c.parent)].destination == kNone)) {
             c.barrier = config.segments[Resolver::at(config.channels[Resolver::at(c.channel)].segment)].barrier;
         }
         for (const Index child : c.children) visit(child, rootName);

@@ -24,15 +24,19 @@ template <class T> Index find(const std::vector<T>& all, const Reference& refere
 Viewport areaOf(Resolver& r, const std::optional<Viewport>& given, SourcePosition at, const char* of) {
     if (!given) return {};
     if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6) return *given;
-    r.diagnostics.warn(at, std::string("the viewport of this ") + of + " has no size, it is the whole", "give x, y, width and height as parts of 1");
+    r.diagnostics.warn(at, std::string("the viewport of this ") + of + " has no size, it is the whole",
+                       "give x, y, width and height as parts of 1");
     return {};
 }
 
 void checkSurface(Resolver& r, const ProjectionSurface& surface) {
     if (screenOf(surface).usable()) return;
-    if (const auto* wall = std::get_if<Wall>(&surface)) r.diagnostics.error(wall->at, "this wall is no rectangle",
-                                                                            "give three corners of one, with right angles and an area");
-    else r.diagnostics.error(std::get<Projection>(surface).at, "this projection shows nothing", "give a distance above 0 and angles between 0 and 180 degrees");
+    if (const auto* wall = std::get_if<Wall>(&surface))
+        r.diagnostics.error(wall->at, "this wall is no rectangle",
+                            "give three corners of one, with right angles and an area");
+    else
+        r.diagnostics.error(std::get<Projection>(surface).at, "this projection shows nothing",
+                            "give a distance above 0 and angles between 0 and 180 degrees");
 }
 
 void addObservers(Resolver& r) {
@@ -48,8 +52,9 @@ void addObservers(Resolver& r) {
         observer.opencvCamera = o.opencvCamera.value_or(value::kOff);
         observer.vrpnTracker = o.vrpnTracker.value_or("");
         observer.at = o.at;
-        if (!(observer.focusDistance > 0)) r.diagnostics.error(o.at, "a focus distance of " + std::to_string(observer.focusDistance) + " m is none",
-                                                               "give one above 0");
+        if (!(observer.focusDistance > 0))
+            r.diagnostics.error(o.at, "a focus distance of " + std::to_string(observer.focusDistance) + " m is none",
+                                "give one above 0");
         r.out.observers.push_back(observer);
     }
 }
@@ -69,7 +74,9 @@ void addViews(Resolver& r, Index layout, const std::vector<View>& views) {
         if (v.surface) checkSurface(r, *v.surface);
         if (v.observer) {
             view.observer = find(r.out.observers, *v.observer);
-            if (view.observer == kNone) r.diagnostics.error(v.at, "there is no observer " + shownReference(*v.observer), "define one, or name another");
+            if (view.observer == kNone)
+                r.diagnostics.error(v.at, "there is no observer " + shownReference(*v.observer),
+                                    "define one, or name another");
         }
         r.out.layouts[Resolver::at(layout)].views.push_back(Resolver::add(r.out.views, view));
     }
@@ -82,10 +89,13 @@ ResolvedBarrier barrierOf(const SwapBarrier& barrier, const std::string& default
 // Reduces a segment to the part within its monitor's frame. The size of its surface converts millimetres to fractions.
 void cutBezel(Resolver& r, ResolvedSegment& s, const Bezel& bezel, bool ownSurface) {
     const Screen screen = screenOf(s.surface);
-    const double widthMm = screen.width * (ownSurface ? 1 : s.outer.w) * 1000, heightMm = screen.height * (ownSurface ? 1 : s.outer.h) * 1000;
-    const Viewport seen{bezel.left / widthMm, bezel.bottom / heightMm, 1 - (bezel.left + bezel.right) / widthMm, 1 - (bezel.bottom + bezel.top) / heightMm};
+    const double widthMm = screen.width * (ownSurface ? 1 : s.outer.w) * 1000,
+                 heightMm = screen.height * (ownSurface ? 1 : s.outer.h) * 1000;
+    const Viewport seen{bezel.left / widthMm, bezel.bottom / heightMm, 1 - (bezel.left + bezel.right) / widthMm,
+                        1 - (bezel.bottom + bezel.top) / heightMm};
     if (std::min({bezel.left, bezel.right, bezel.bottom, bezel.top}) < 0 || seen.empty()) {
-        return r.diagnostics.error(s.at, "bezels leave nothing of this segment, or are negative", "they are millimetres of left, right, bottom and top");
+        return r.diagnostics.error(s.at, "bezels leave nothing of this segment, or are negative",
+                                   "they are millimetres of left, right, bottom and top");
     }
     s.viewport = compose(s.outer, seen);
     s.surfacePart = ownSurface ? seen : s.viewport;
@@ -93,7 +103,8 @@ void cutBezel(Resolver& r, ResolvedSegment& s, const Bezel& bezel, bool ownSurfa
 
 Index namedChannel(Resolver& r, const std::string& name, SourcePosition at) {
     const Index channel = Resolver::named(r.out.channels, name);
-    if (channel == kNone) r.diagnostics.error(at, "there is no channel \"" + name + "\"", "define it in a window, or name another");
+    if (channel == kNone)
+        r.diagnostics.error(at, "there is no channel \"" + name + "\"", "define it in a window, or name another");
     return channel;
 }
 
@@ -107,14 +118,20 @@ void addSegment(Resolver& r, Index canvas, const Canvas& c, const Segment& s) {
     segment.surfacePart = s.surface ? Viewport{} : segment.viewport;
     segment.at = s.at;
     if (s.surface) checkSurface(r, *s.surface);
-    if (const auto& bezel = s.bezel ? s.bezel : c.bezel; bezel && r.diagnostics.errors() == 0) cutBezel(r, segment, *bezel, s.surface.has_value());
-    if (s.channel) segment.channel = namedChannel(r, *s.channel, s.at);
-    else r.diagnostics.warn(s.at, "this segment has no channel and shows nothing", "give it the name of a channel");
+    if (const auto& bezel = s.bezel ? s.bezel : c.bezel; bezel && r.diagnostics.errors() == 0)
+        cutBezel(r, segment, *bezel, s.surface.has_value());
+    if (s.channel)
+        segment.channel = namedChannel(r, *s.channel, s.at);
+    else
+        r.diagnostics.warn(s.at, "this segment has no channel and shows nothing", "give it the name of a channel");
     for (const std::string& copy : s.copies) segment.copies.push_back(namedChannel(r, copy, s.at));
-    const std::string own = segment.name.empty() ? std::to_string(r.out.canvases[Resolver::at(canvas)].segments.size()) : segment.name;
+    const std::string own =
+        segment.name.empty() ? std::to_string(r.out.canvases[Resolver::at(canvas)].segments.size()) : segment.name;
     const std::string whole = c.name && !c.name->empty() ? *c.name : std::to_string(canvas);
-    if (s.swapBarrier) segment.barrier = barrierOf(*s.swapBarrier, "barrier.segment." + own);
-    else if (c.swapBarrier) segment.barrier = barrierOf(*c.swapBarrier, "barrier.canvas." + whole);
+    if (s.swapBarrier)
+        segment.barrier = barrierOf(*s.swapBarrier, "barrier.segment." + own);
+    else if (c.swapBarrier)
+        segment.barrier = barrierOf(*c.swapBarrier, "barrier.canvas." + whole);
     r.out.canvases[Resolver::at(canvas)].segments.push_back(Resolver::add(r.out.segments, segment));
 }
 
@@ -127,16 +144,19 @@ void addCanvas(Resolver& r, const Canvas& c) {
     for (const LayoutReference& l : c.layouts) {
         Index layout = kNone;
         if (!std::holds_alternative<std::monostate>(l)) {
-            const Reference reference = std::holds_alternative<std::string>(l) ? Reference(std::get<std::string>(l)) : Reference(std::get<uint32_t>(l));
+            const Reference reference = std::holds_alternative<std::string>(l) ? Reference(std::get<std::string>(l))
+                                                                               : Reference(std::get<uint32_t>(l));
             layout = find(r.out.layouts, reference);
             if (layout == kNone) {
-                r.diagnostics.error(c.at, "there is no layout " + shownReference(reference), "define it, or name another");
+                r.diagnostics.error(c.at, "there is no layout " + shownReference(reference),
+                                    "define it, or name another");
                 continue;
             }
         }
         canvas.layouts.push_back(layout);
     }
-    if (c.layouts.empty()) r.diagnostics.warn(c.at, "this canvas has no layout and shows nothing", "give it the name of a layout");
+    if (c.layouts.empty())
+        r.diagnostics.warn(c.at, "this canvas has no layout and shows nothing", "give it the name of a layout");
     const Index index = Resolver::add(r.out.canvases, canvas);
     for (const Segment& s : c.segments) addSegment(r, index, c, s);
     addDestinationChannels(r, index);
@@ -145,8 +165,8 @@ void addCanvas(Resolver& r, const Canvas& c) {
 // Returns the part of a channel that shows `area` of its segment.
 Viewport partOfChannel(const Viewport& channel, const Viewport& area) {
     if (!inPixels(channel)) return compose(channel, area);
-    const PixelViewport whole{static_cast<int32_t>(channel.x), static_cast<int32_t>(channel.y), static_cast<int32_t>(channel.w),
-                              static_cast<int32_t>(channel.h)};
+    const PixelViewport whole{static_cast<int32_t>(channel.x), static_cast<int32_t>(channel.y),
+                              static_cast<int32_t>(channel.w), static_cast<int32_t>(channel.h)};
     const PixelViewport part = apply(whole, area);
     return {double(part.x), double(part.y), double(part.w), double(part.h)};
 }

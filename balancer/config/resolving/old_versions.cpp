@@ -39,7 +39,8 @@ void mendVersion10(Resolver& r) {
     std::vector<EyeSet> eyes(config.segments.size());
     for (size_t i = 0; i < config.compounds.size(); ++i) {
         ResolvedCompound& c = config.compounds[i];
-        if (c.channel != kNone && c.channel == c.destination && config.channels[Resolver::at(c.channel)].isDestination()) {
+        if (c.channel != kNone && c.channel == c.destination &&
+            config.channels[Resolver::at(c.channel)].isDestination()) {
             EyeSet own = kAllEyes;
             for (Index up = static_cast<Index>(i); up != kNone; up = config.compounds[Resolver::at(up)].parent) {
                 if (!config.compounds[Resolver::at(up)].eyes) continue;
@@ -50,7 +51,9 @@ void mendVersion10(Resolver& r) {
             segment = segment | own | EyeSet{Eye::Cyclop};
         }
         if (!c.eyes || c.eyes->has(Eye::Cyclop)) continue;
-        eachShownView(config, static_cast<Index>(i), [&](ResolvedChannel& channel) { config.views[Resolver::at(channel.view)].mode = ViewMode::Stereo; });
+        eachShownView(config, static_cast<Index>(i), [&](ResolvedChannel& channel) {
+            config.views[Resolver::at(channel.view)].mode = ViewMode::Stereo;
+        });
     }
     for (ResolvedCompound& c : config.compounds) {
         if (c.eyes) c.eyes->add(Eye::Cyclop);
@@ -67,13 +70,18 @@ void mendVersion11(Resolver& r) {
         const std::string listens = node.connections.empty() ? "" : node.connections.front().hostname.value_or("");
         if (node.isApplication || listens.empty()) continue;
         if (!node.host.empty()) {
-            if (old && node.host != listens) r.diagnostics.warn(node.at,
-                "this node has a host and its connection has one, before version 1.2 the connection's counts", "say #Equalizer 1.2 ascii, or give one of them");
+            if (old && node.host != listens)
+                r.diagnostics.warn(
+                    node.at,
+                    "this node has a host and its connection has one, before version 1.2 the connection's counts",
+                    "say #Equalizer 1.2 ascii, or give one of them");
             if (old) node.host = listens;
             continue;
         }
-        if (!old) r.diagnostics.warn(node.at, "this node has no host, it is started on that of its first connection, " + listens,
-                                     "write host \"" + listens + "\"");
+        if (!old)
+            r.diagnostics.warn(node.at,
+                               "this node has no host, it is started on that of its first connection, " + listens,
+                               "write host \"" + listens + "\"");
         node.host = listens;
     }
 }

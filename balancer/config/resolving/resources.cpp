@@ -11,9 +11,12 @@ namespace {
 // Areas with negative or zero size count as omitted, as in Equalizer.
 Viewport screenAreaOf(Resolver& r, const std::optional<Viewport>& given, SourcePosition at, const char* of) {
     if (!given) return {};
-    if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6 && std::abs(given->x) <= 1e6 && std::abs(given->y) <= 1e6) return *given;
-    r.diagnostics.warn(at, std::string("the viewport of this ") + of + " has no size, or one that no screen has, it is the whole",
-                       "give x, y, width and height in pixels, or as parts of 1");
+    if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6 && std::abs(given->x) <= 1e6 &&
+        std::abs(given->y) <= 1e6)
+        return *given;
+    r.diagnostics.warn(
+        at, std::string("the viewport of this ") + of + " has no size, or one that no screen has, it is the whole",
+        "give x, y, width and height in pixels, or as parts of 1");
     return {};
 }
 
@@ -21,7 +24,9 @@ std::vector<Connection> connectionsOf(Resolver& r, const std::vector<Connection>
     std::vector<Connection> all = given;
     for (Connection& c : all) {
         fillAttributes(c, "CONNECTION", r.defaults);
-        if (c.port && *c.port > 65535) r.diagnostics.error(c.at, "port " + std::to_string(*c.port) + " does not exist", "give one up to 65535, or 0 for any");
+        if (c.port && *c.port > 65535)
+            r.diagnostics.error(c.at, "port " + std::to_string(*c.port) + " does not exist",
+                                "give one up to 65535, or 0 for any");
     }
     return all;
 }
@@ -65,8 +70,9 @@ void addPipes(Resolver& r, Index node, const std::vector<Pipe>& pipes) {
         pipe.at = p.at;
         if (p.viewport) {
             const Viewport v = screenAreaOf(r, p.viewport, p.at, "pipe");
-            if (inPixels(v)) pipe.viewport = PixelViewport{static_cast<int32_t>(v.x), static_cast<int32_t>(v.y), static_cast<int32_t>(v.w),
-                                                           static_cast<int32_t>(v.h)};
+            if (inPixels(v))
+                pipe.viewport = PixelViewport{static_cast<int32_t>(v.x), static_cast<int32_t>(v.y),
+                                              static_cast<int32_t>(v.w), static_cast<int32_t>(v.h)};
         }
         fillAttributes(pipe.attributes, "PIPE", r.defaults);
         const Index index = Resolver::add(r.out.pipes, pipe);

@@ -13,12 +13,17 @@ using namespace bitplane;
 // A plane of larger pixels is treated as a plane of words.
 struct TileGridOf {
     explicit TileGridOf(const PlaneShape& s)
-        : wordsPerPixel(static_cast<unsigned>(bytesPerPixel(s.format) / 4)), columns(static_cast<unsigned>(s.width) * wordsPerPixel), rows(static_cast<unsigned>(s.height)),
-          tilesAcross((columns + kTileColumns - 1) / kTileColumns), tilesUp((rows + kTileRows - 1) / kTileRows), arithmetic(arithmeticOf(s.format)) {}
+        : wordsPerPixel(static_cast<unsigned>(bytesPerPixel(s.format) / 4)),
+          columns(static_cast<unsigned>(s.width) * wordsPerPixel),
+          rows(static_cast<unsigned>(s.height)),
+          tilesAcross((columns + kTileColumns - 1) / kTileColumns),
+          tilesUp((rows + kTileRows - 1) / kTileRows),
+          arithmetic(arithmeticOf(s.format)) {}
 
     [[nodiscard]] size_t count() const { return size_t{tilesAcross} * tilesUp; }
     [[nodiscard]] TileShape shape(unsigned across, unsigned up) const {
-        return {std::min(kTileColumns, columns - across * kTileColumns), std::min(kTileRows, rows - up * kTileRows), wordsPerPixel, arithmetic};
+        return {std::min(kTileColumns, columns - across * kTileColumns), std::min(kTileRows, rows - up * kTileRows),
+                wordsPerPixel, arithmetic};
     }
     // First row of words of a row of tiles, and their number.
     [[nodiscard]] static int32_t firstRow(unsigned up) { return static_cast<int32_t>(kTileRows * up); }
@@ -43,7 +48,8 @@ Result<size_t> BitplaneCodec::encode(const PlaneView& plane, std::span<std::byte
     std::byte* table = into.data();
     for (unsigned up = 0; up < grid.tilesUp; ++up) {
         for (unsigned across = 0; across < grid.tilesAcross; ++across)
-            encoders[across].begin(grid.shape(across, up), plane.row(grid.firstRow(up)) + kTileRowBytes * across, plane.strideBytes, predictor_);
+            encoders[across].begin(grid.shape(across, up), plane.row(grid.firstRow(up)) + kTileRowBytes * across,
+                                   plane.strideBytes, predictor_);
         for (unsigned y = 0; y < grid.rowsOf(up); y += kStripRows)
             for (TileEncoder& encoder : encoders) encoder.strip(y);
         for (TileEncoder& encoder : encoders) {
@@ -82,11 +88,14 @@ private:
     std::span<const std::byte> left_;
 };
 
-const char* decodeRowOfTiles(EncodedTiles& tiles, const TileGridOf& grid, unsigned up, std::span<TileDecoder> decoders, const MutablePlaneView& into) {
+const char* decodeRowOfTiles(EncodedTiles& tiles, const TileGridOf& grid, unsigned up, std::span<TileDecoder> decoders,
+                             const MutablePlaneView& into) {
     std::span<const std::byte> tile;
     for (unsigned across = 0; across < grid.tilesAcross; ++across) {
         if (const char* wrong = tiles.next(tile)) return wrong;
-        if (const char* wrong = decoders[across].begin(grid.shape(across, up), tile, into.row(grid.firstRow(up)) + kTileRowBytes * across, into.strideBytes)) return wrong;
+        if (const char* wrong = decoders[across].begin(
+                grid.shape(across, up), tile, into.row(grid.firstRow(up)) + kTileRowBytes * across, into.strideBytes))
+            return wrong;
     }
     for (unsigned y = 0; y < grid.rowsOf(up); y += kStripRows)
         for (TileDecoder& decoder : decoders)
@@ -99,19 +108,24 @@ const char* decodeRowOfTiles(EncodedTiles& tiles, const TileGridOf& grid, unsign
 } // namespace
 
 Result<void> BitplaneCodec::decode(std::span<const std::byte> bytes, const MutablePlaneView& into) {
-    if (into.empty()) return bytes.empty() ? Result<void>() : damagedPlane(name(), into, bytes.size(), "an empty plane has no bytes");
+    if (into.empty())
+        return bytes.empty() ? Result<void>() : damagedPlane(name(), into, bytes.size(), "an empty plane has no bytes");
     const TileGridOf grid(shapeOf(into));
     if (decoders_.size() < grid.tilesAcross) decoders_.resize(grid.tilesAcross);
     EncodedTiles tiles(bytes, grid);
     const char* wrong = tiles.wrong();
-    for (unsigned up = 0; up < grid.tilesUp && !wrong; ++up) wrong = decodeRowOfTiles(tiles, grid, up, std::span(decoders_).first(grid.tilesAcross), into);
+    for (unsigned up = 0; up < grid.tilesUp && !wrong; ++up)
+        wrong = decodeRowOfTiles(tiles, grid, up, std::span(decoders_).first(grid.tilesAcross), into);
     if (!wrong) wrong = tiles.ends();
     return wrong ? damagedPlane(name(), into, bytes.size(), wrong) : Result<void>();
 }
 
-Result<void> BitplaneCodec::decodeTiles(std::span<const std::byte> bytes, const PlaneShape& shape, const EachTile& each) {
+Result<void> BitplaneCodec::decodeTiles(std::span<const std::byte> bytes, const PlaneShape& shape,
+                                        const EachTile& each) {
     const PlaneView whole{shape.format, shape.width, shape.height, 0, nullptr}; // for error messages
-    if (whole.empty()) return bytes.empty() ? Result<void>() : damagedPlane(name(), whole, bytes.size(), "an empty plane has no bytes");
+    if (whole.empty())
+        return bytes.empty() ? Result<void>()
+                             : damagedPlane(name(), whole, bytes.size(), "an empty plane has no bytes");
     tile_.resize(kTileBytes);
     if (decoders_.empty()) decoders_.resize(1);
     TileDecoder& decoder = decoders_.front();
@@ -128,7 +142,9 @@ Result<void> BitplaneCodec::decodeTiles(std::span<const std::byte> bytes, const 
         for (unsigned y = 0; y < tile.rows && !wrong; y += kStripRows) wrong = decoder.strip(y);
         if (!wrong) wrong = decoder.finish();
         if (wrong) break;
-        const PixelViewport area{static_cast<int32_t>(kTileRowBytes * across) / pixelBytes, grid.firstRow(up), static_cast<int32_t>(tile.columns / tile.wordsPerPixel), static_cast<int32_t>(tile.rows)};
+        const PixelViewport area{static_cast<int32_t>(kTileRowBytes * across) / pixelBytes, grid.firstRow(up),
+                                 static_cast<int32_t>(tile.columns / tile.wordsPerPixel),
+                                 static_cast<int32_t>(tile.rows)};
         each(area, {shape.format, area.w, area.h, kTileRowBytes, tile_.data()});
     }
     if (!wrong) wrong = tiles.ends();

@@ -23,7 +23,8 @@ public:
     // Decodes tile by tile into cache-resident memory and passes each tile with its place to the callback, which can
     // composite it directly; the plane is never written. After an error some tiles have been passed.
     using EachTile = std::function<void(const PixelViewport& area, const PlaneView& tile)>;
-    [[nodiscard]] Result<void> decodeTiles(std::span<const std::byte> bytes, const PlaneShape& shape, const EachTile& each);
+    [[nodiscard]] Result<void> decodeTiles(std::span<const std::byte> bytes, const PlaneShape& shape,
+                                           const EachTile& each);
 
 private:
     [[nodiscard]] const char* name() const { return predictor_ == bitplane::Predictor::Slope ? "slope" : "bitplane"; }

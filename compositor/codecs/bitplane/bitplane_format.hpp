@@ -1,5 +1,5 @@
-// Bit-plane code of a strip: 4 rows of up to 256 words, in blocks of 16 x 4 words. docs/reference/codecs.md describes the
-// whole format.
+// Bit-plane code of a strip: 4 rows of up to 256 words, in blocks of 16 x 4 words. docs/reference/codecs.md describes
+// the whole format.
 //
 // A word is a pixel of 4 bytes, or a part of a larger one. Each word is predicted from the rows above. Each byte of the
 // residuals (a "channel") of a block is stored with as many bits as its largest value needs. All operations are
@@ -29,9 +29,9 @@ constexpr size_t kSlackBytes = 64;
 
 // Arithmetic of the differences.
 enum class Arithmetic : uint8_t {
-    Bytes, // RGBA8; with green subtraction
-    Halves, // RGBA16F
-    Words, // D32F, RGB10A2, RGBA32F
+    Bytes,        // RGBA8; with green subtraction
+    Halves,       // RGBA16F
+    Words,        // D32F, RGB10A2, RGBA32F
     RotatedWords, // D24S8: depth in the low bits, the rarely changing stencil above
 };
 [[nodiscard]] constexpr Arithmetic arithmeticOf(PlaneFormat f) {
@@ -61,7 +61,7 @@ struct StripSource {
 
 // A parsed strip with validated sizes. kSlackBytes after the payload are readable.
 struct ParsedStrip {
-    uint32_t present = 0; // one bit per block
+    uint32_t present = 0;                      // one bit per block
     std::array<uint16_t, kMaxBlocks> widths{}; // per non-zero block: 4 bits per channel
     const std::byte* payload = nullptr;
 };

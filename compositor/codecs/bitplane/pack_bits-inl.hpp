@@ -26,16 +26,24 @@ using Halves16 = hn::Full128<uint16_t>;
 using V16 = hn::Vec<Bytes16>;
 
 // Byte shifts as 16-bit shifts; bits from the neighbour are masked or zero.
-HWY_INLINE V16 left(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftLeftSame(hn::BitCast(Halves16(), v), bits)); }
-HWY_INLINE V16 right(V16 v, int bits) { return hn::BitCast(Bytes16(), hn::ShiftRightSame(hn::BitCast(Halves16(), v), bits)); }
+HWY_INLINE V16 left(V16 v, int bits) {
+    return hn::BitCast(Bytes16(), hn::ShiftLeftSame(hn::BitCast(Halves16(), v), bits));
+}
+HWY_INLINE V16 right(V16 v, int bits) {
+    return hn::BitCast(Bytes16(), hn::ShiftRightSame(hn::BitCast(Halves16(), v), bits));
+}
 
 #if HWY_MAX_BYTES >= 32
 
 using Bytes32 = hn::Simd<uint8_t, 32, 0>;
 using Halves32 = hn::Simd<uint16_t, 16, 0>;
 using V32 = hn::Vec<Bytes32>;
-HWY_INLINE V32 left(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftLeftSame(hn::BitCast(Halves32(), v), bits)); }
-HWY_INLINE V32 right(V32 v, int bits) { return hn::BitCast(Bytes32(), hn::ShiftRightSame(hn::BitCast(Halves32(), v), bits)); }
+HWY_INLINE V32 left(V32 v, int bits) {
+    return hn::BitCast(Bytes32(), hn::ShiftLeftSame(hn::BitCast(Halves32(), v), bits));
+}
+HWY_INLINE V32 right(V32 v, int bits) {
+    return hn::BitCast(Bytes32(), hn::ShiftRightSame(hn::BitCast(Halves32(), v), bits));
+}
 
 // 64 bytes as two vectors. Requires a width of 1 to 8.
 HWY_INLINE uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
@@ -75,12 +83,17 @@ constexpr std::array<uint64_t, 4> fourTimes(uint64_t value) { return {value, val
 constexpr UnpackMasks unpackMasksOf(unsigned width) {
     constexpr uint64_t kEachByte = 0x0101010101010101;
     const unsigned up2 = width & 4, up1 = width & 6;
-    return {fourTimes(width & 4 ? 0x0f * kEachByte : 0), fourTimes(width & 2 ? (3u << up2) * kEachByte : 0), fourTimes(width & 1 ? (1u << up1) * kEachByte : 0),
-            fourTimes(up2), fourTimes(4 - up2), fourTimes(up1)};
+    return {fourTimes(width & 4 ? 0x0f * kEachByte : 0),
+            fourTimes(width & 2 ? (3u << up2) * kEachByte : 0),
+            fourTimes(width & 1 ? (1u << up1) * kEachByte : 0),
+            fourTimes(up2),
+            fourTimes(4 - up2),
+            fourTimes(up1)};
 }
 
-constexpr std::array<UnpackMasks, 8> kUnpackMasks{unpackMasksOf(0), unpackMasksOf(1), unpackMasksOf(2), unpackMasksOf(3),
-                                                  unpackMasksOf(4), unpackMasksOf(5), unpackMasksOf(6), unpackMasksOf(7)};
+constexpr std::array<UnpackMasks, 8> kUnpackMasks{unpackMasksOf(0), unpackMasksOf(1), unpackMasksOf(2),
+                                                  unpackMasksOf(3), unpackMasksOf(4), unpackMasksOf(5),
+                                                  unpackMasksOf(6), unpackMasksOf(7)};
 
 struct Channel {
     V32 low, high; // its 64 bytes
@@ -102,7 +115,8 @@ HWY_INLINE Channel unpackChannel(const uint8_t*& from, unsigned width) {
     const auto p2 = hn::Shr(hn::BitCast(q, hn::LoadDup128(d, at + 8 * (width & 4))), hn::Load(q, kTwos));
     const auto p1 = hn::Set(q, ones);
     const auto low4 = hn::And(p4, loaded(m.four)), high4 = hn::And(hn::ShiftRight<4>(p4), loaded(m.four));
-    const auto low2 = hn::And(hn::Shl(p2, loaded(m.up2)), loaded(m.two)), high2 = hn::And(hn::Shr(p2, loaded(m.down2)), loaded(m.two));
+    const auto low2 = hn::And(hn::Shl(p2, loaded(m.up2)), loaded(m.two)),
+               high2 = hn::And(hn::Shr(p2, loaded(m.down2)), loaded(m.two));
     const auto low1 = hn::And(hn::Shl(hn::Shr(p1, hn::Load(q, kOnes)), loaded(m.up1)), loaded(m.one));
     const auto high1 = hn::And(hn::Shl(hn::Shr(p1, hn::Load(q, kOnesHigh)), loaded(m.up1)), loaded(m.one));
     return {hn::BitCast(d, hn::Or(low4, hn::Or(low2, low1))), hn::BitCast(d, hn::Or(high4, hn::Or(high2, high1)))};
@@ -113,7 +127,8 @@ HWY_INLINE Channel unpackChannel(const uint8_t*& from, unsigned width) {
 // 64 bytes as four vectors.
 HWY_INLINE uint8_t* packChannel(const uint8_t* bytes, unsigned width, uint8_t* into) {
     const Bytes16 d;
-    const V16 a = hn::Load(d, bytes), b = hn::Load(d, bytes + 16), c = hn::Load(d, bytes + 32), e = hn::Load(d, bytes + 48);
+    const V16 a = hn::Load(d, bytes), b = hn::Load(d, bytes + 16), c = hn::Load(d, bytes + 32),
+              e = hn::Load(d, bytes + 48);
     if (width == 8) {
         hn::StoreU(a, d, into);
         hn::StoreU(b, d, into + 16);
@@ -142,7 +157,8 @@ HWY_INLINE const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uin
         return from + 64;
     }
     const hn::Full128<uint64_t> d64;
-    const V16 four = hn::Set(d, width & 4 ? 0x0f : 0), two = hn::Set(d, width & 2 ? 3 : 0), one = hn::Set(d, width & 1 ? 1 : 0);
+    const V16 four = hn::Set(d, width & 4 ? 0x0f : 0), two = hn::Set(d, width & 2 ? 3 : 0),
+              one = hn::Set(d, width & 1 ? 1 : 0);
     const V16 p1 = hn::LoadU(d, from + 8 * (width & 6));
     V16 x = hn::LoadU(d, from + 8 * (width & 4));
     V16 y = hn::BitCast(d, hn::InterleaveLower(d64, hn::BitCast(d64, p1), hn::BitCast(d64, right(p1, 1))));
@@ -150,7 +166,8 @@ HWY_INLINE const uint8_t* unpackChannel(const uint8_t* from, unsigned width, uin
     const int shift2 = static_cast<int>(width & 4), shift1 = static_cast<int>(width & 6);
     for (size_t part = 0; part < 4; ++part) {
         const V16 p4 = part == 0 ? low : part == 1 ? high : right(part == 2 ? low : high, 4);
-        hn::Store(hn::Or(hn::And(p4, four), hn::Or(left(hn::And(x, two), shift2), left(hn::And(y, one), shift1))), d, bytes + 16 * part);
+        hn::Store(hn::Or(hn::And(p4, four), hn::Or(left(hn::And(x, two), shift2), left(hn::And(y, one), shift1))), d,
+                  bytes + 16 * part);
         x = right(x, 2);
         y = right(y, 2);
     }

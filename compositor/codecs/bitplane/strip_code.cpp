@@ -19,8 +19,12 @@ namespace mural::compositor::bitplane::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE // no vectors of known size
 
-size_t encode(const StripSource& source, const StripKind& kind, std::byte* into) { return encodeStripScalar(source, kind, into); }
-void decode(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) { decodeStripScalar(strip, kind, target); }
+size_t encode(const StripSource& source, const StripKind& kind, std::byte* into) {
+    return encodeStripScalar(source, kind, into);
+}
+void decode(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) {
+    decodeStripScalar(strip, kind, target);
+}
 void finishFirst(const StripTarget& target, Arithmetic a, unsigned leftWords) {
     std::array<uint32_t, kTileColumns> sums{};
     for (unsigned x = 0; x < target.blocks * kBlockColumns; ++x) {
@@ -46,7 +50,9 @@ using W = hn::Vec<Words>;
 constexpr size_t kLanes = hn::MaxLanes(Words());
 constexpr size_t kSteps = kBlockColumns / kLanes;
 
-template <Arithmetic A> using Lane = std::conditional_t<A == Arithmetic::Bytes, uint8_t, std::conditional_t<A == Arithmetic::Halves, uint16_t, uint32_t>>;
+template <Arithmetic A>
+using Lane = std::conditional_t<A == Arithmetic::Bytes, uint8_t,
+                                std::conditional_t<A == Arithmetic::Halves, uint16_t, uint32_t>>;
 
 template <Arithmetic A, class V> HWY_INLINE V subtracted(V a, V b) {
     const hn::DFromV<V> words;
@@ -77,12 +83,16 @@ template <Arithmetic A> HWY_INLINE W unfoldedLanes(W v) {
 }
 template <Arithmetic A> HWY_INLINE W loadTurned(const std::byte* at) {
     const W v = hn::LoadU(Words(), reinterpret_cast<const uint32_t*>(at));
-    if constexpr (A == Arithmetic::RotatedWords) return hn::RotateRight<8>(v);
-    else return v;
+    if constexpr (A == Arithmetic::RotatedWords)
+        return hn::RotateRight<8>(v);
+    else
+        return v;
 }
 template <Arithmetic A> HWY_INLINE void storeTurnedBack(W v, std::byte* at) {
-    if constexpr (A == Arithmetic::RotatedWords) hn::StoreU(hn::RotateRight<24>(v), Words(), reinterpret_cast<uint32_t*>(at));
-    else hn::StoreU(v, Words(), reinterpret_cast<uint32_t*>(at));
+    if constexpr (A == Arithmetic::RotatedWords)
+        hn::StoreU(hn::RotateRight<24>(v), Words(), reinterpret_cast<uint32_t*>(at));
+    else
+        hn::StoreU(v, Words(), reinterpret_cast<uint32_t*>(at));
 }
 
 struct Four {
@@ -95,18 +105,24 @@ HWY_INLINE Four transposed(const Four& v) {
     const Words w;
     const hn::Repartition<uint16_t, Words> d16;
     const hn::Repartition<uint8_t, Words> d8;
-    const auto mix16 = [&](W odd, W even) { return hn::BitCast(w, hn::OddEven(hn::BitCast(d16, odd), hn::BitCast(d16, even))); };
-    const auto mix8 = [&](W odd, W even) { return hn::BitCast(w, hn::OddEven(hn::BitCast(d8, odd), hn::BitCast(d8, even))); };
+    const auto mix16 = [&](W odd, W even) {
+        return hn::BitCast(w, hn::OddEven(hn::BitCast(d16, odd), hn::BitCast(d16, even)));
+    };
+    const auto mix8 = [&](W odd, W even) {
+        return hn::BitCast(w, hn::OddEven(hn::BitCast(d8, odd), hn::BitCast(d8, even)));
+    };
     const W t0 = mix16(hn::ShiftLeft<16>(v.c), v.a), t2 = mix16(v.c, hn::ShiftRight<16>(v.a));
     const W t1 = mix16(hn::ShiftLeft<16>(v.d), v.b), t3 = mix16(v.d, hn::ShiftRight<16>(v.b));
-    return {mix8(hn::ShiftLeft<8>(t1), t0), mix8(t1, hn::ShiftRight<8>(t0)), mix8(hn::ShiftLeft<8>(t3), t2), mix8(t3, hn::ShiftRight<8>(t2))};
+    return {mix8(hn::ShiftLeft<8>(t1), t0), mix8(t1, hn::ShiftRight<8>(t0)), mix8(hn::ShiftLeft<8>(t3), t2),
+            mix8(t3, hn::ShiftRight<8>(t2))};
 }
 
 // Returns the residuals of the four rows.
 template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE Four differences(const StripSource& s, size_t byte) {
     const W above = loadTurned<A>(s.above + byte);
     const W r0 = loadTurned<A>(s.rows + byte), r1 = loadTurned<A>(s.rows + s.strideBytes + byte);
-    const W r2 = loadTurned<A>(s.rows + 2 * s.strideBytes + byte), r3 = loadTurned<A>(s.rows + 3 * s.strideBytes + byte);
+    const W r2 = loadTurned<A>(s.rows + 2 * s.strideBytes + byte),
+            r3 = loadTurned<A>(s.rows + 3 * s.strideBytes + byte);
     Four d{subtracted<A>(r0, above), subtracted<A>(r1, r0), subtracted<A>(r2, r1), subtracted<A>(r3, r2)};
     if constexpr (P == Predictor::Slope) {
         d.d = subtracted<A>(d.d, d.c);
@@ -150,7 +166,8 @@ template <class V> HWY_INLINE hn::Vec<Quad> foldedToQuad(V v) {
 HWY_INLINE uint16_t widthsOf(const Four& channels) {
     const Quad d;
     const hn::Full128<uint64_t> d64;
-    const auto a = foldedToQuad(channels.a), b = foldedToQuad(channels.b), c = foldedToQuad(channels.c), e = foldedToQuad(channels.d);
+    const auto a = foldedToQuad(channels.a), b = foldedToQuad(channels.b), c = foldedToQuad(channels.c),
+               e = foldedToQuad(channels.d);
     const auto ab = hn::BitCast(d64, hn::Or(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)));
     const auto ce = hn::BitCast(d64, hn::Or(hn::InterleaveLower(d, c, e), hn::InterleaveUpper(d, c, e)));
     auto v = hn::BitCast(d, hn::Or(hn::InterleaveLower(d64, ab, ce), hn::InterleaveUpper(d64, ab, ce)));
@@ -186,7 +203,9 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
 #pragma GCC unroll 4
         for (size_t s = 0; s < kSteps; ++s) {
             const Four r = residuals<A>(d[s]);
-            const auto keep = [&](W v, unsigned channel) { hn::Store(v, Words(), reinterpret_cast<uint32_t*>(to + channel * kChannelBytes + s * kLanes * 4)); };
+            const auto keep = [&](W v, unsigned channel) {
+                hn::Store(v, Words(), reinterpret_cast<uint32_t*>(to + channel * kChannelBytes + s * kLanes * 4));
+            };
             keep(r.a, 0);
             keep(r.b, 1);
             keep(r.c, 2);
@@ -202,11 +221,13 @@ template <Arithmetic A, Predictor P, bool kFirst> size_t encodeAs(const StripSou
     for (unsigned i = 0; i < count; ++i)
 #pragma GCC unroll 4
         for (unsigned c = 0; c < 4; ++c)
-            if (const unsigned width = widths[i] >> (4 * c) & 15) out = packChannel(channels + i * kBlockBytes + c * kChannelBytes, width, out);
+            if (const unsigned width = widths[i] >> (4 * c) & 15)
+                out = packChannel(channels + i * kBlockBytes + c * kChannelBytes, width, out);
     return static_cast<size_t>(out - reinterpret_cast<uint8_t*>(into));
 }
 
-template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE void rebuild(const StripTarget& t, size_t byte, const Four& difference) {
+template <Arithmetic A, Predictor P, bool kFirst>
+HWY_INLINE void rebuild(const StripTarget& t, size_t byte, const Four& difference) {
     const W above = loadTurned<A>(t.above + byte);
     Four d = difference;
     if constexpr (P == Predictor::Slope) {
@@ -236,7 +257,8 @@ template <Arithmetic A> HWY_INLINE Four differencesOf(const Four& r) {
     }
 }
 
-template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE void rebuildUnchanged(const StripTarget& target, size_t to) {
+template <Arithmetic A, Predictor P, bool kFirst>
+HWY_INLINE void rebuildUnchanged(const StripTarget& target, size_t to) {
     const W zero = hn::Zero(Words());
     for (size_t s = 0; s < kSteps; ++s) rebuild<A, P, kFirst>(target, to + s * kLanes * 4, {zero, zero, zero, zero});
 }
@@ -244,13 +266,19 @@ template <Arithmetic A, Predictor P, bool kFirst> HWY_INLINE void rebuildUnchang
 #if HWY_MAX_BYTES >= 32
 
 template <class D> HWY_INLINE hn::Vec<D> wordsOf(D words, const Channel& channel, size_t step) {
-    if constexpr (hn::MaxLanes(D()) == 16) return hn::BitCast(words, hn::Combine(hn::Repartition<uint8_t, D>(), channel.high, channel.low));
-    else return hn::BitCast(words, step == 0 ? channel.low : channel.high);
+    if constexpr (hn::MaxLanes(D()) == 16)
+        return hn::BitCast(words, hn::Combine(hn::Repartition<uint8_t, D>(), channel.high, channel.low));
+    else
+        return hn::BitCast(words, step == 0 ? channel.low : channel.high);
 }
 
-template <Arithmetic A, Predictor P, bool kFirst, size_t kStep> HWY_INLINE void rebuildStep(const StripTarget& t, size_t to, const Channel& a, const Channel& b, const Channel& c, const Channel& e) {
+template <Arithmetic A, Predictor P, bool kFirst, size_t kStep>
+HWY_INLINE void rebuildStep(const StripTarget& t, size_t to, const Channel& a, const Channel& b, const Channel& c,
+                            const Channel& e) {
     const Words w;
-    rebuild<A, P, kFirst>(t, to + kStep * kLanes * 4, differencesOf<A>({wordsOf(w, a, kStep), wordsOf(w, b, kStep), wordsOf(w, c, kStep), wordsOf(w, e, kStep)}));
+    rebuild<A, P, kFirst>(
+        t, to + kStep * kLanes * 4,
+        differencesOf<A>({wordsOf(w, a, kStep), wordsOf(w, b, kStep), wordsOf(w, c, kStep), wordsOf(w, e, kStep)}));
 }
 
 // Keeps the channels of a block in registers.
@@ -265,7 +293,8 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
             continue;
         }
         const unsigned w = *widths++;
-        const Channel a = unpackChannel(from, w & 15), b = unpackChannel(from, w >> 4 & 15), c = unpackChannel(from, w >> 8 & 15);
+        const Channel a = unpackChannel(from, w & 15), b = unpackChannel(from, w >> 4 & 15),
+                      c = unpackChannel(from, w >> 8 & 15);
         // zero in opaque pictures
         const Channel e = w >> 12 ? unpackChannel(from, w >> 12) : Channel{hn::Zero(Bytes32()), hn::Zero(Bytes32())};
         rebuildStep<A, P, kFirst, 0>(target, to, a, b, c, e);
@@ -283,8 +312,10 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
     for (unsigned i = 0; i < count; ++i)
         for (unsigned c = 0; c < 4; ++c) {
             uint8_t* to = channels + i * kBlockBytes + c * kChannelBytes;
-            if (const unsigned width = strip.widths[i] >> (4 * c) & 15) from = unpackChannel(from, width, to);
-            else std::memset(to, 0, kChannelBytes);
+            if (const unsigned width = strip.widths[i] >> (4 * c) & 15)
+                from = unpackChannel(from, width, to);
+            else
+                std::memset(to, 0, kChannelBytes);
         }
     const uint8_t* next = channels;
     for (unsigned block = 0; block < target.blocks; ++block) {
@@ -294,8 +325,11 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
             continue;
         }
         for (size_t s = 0; s < kSteps; ++s) {
-            const auto channel = [&](unsigned c) { return hn::Load(Words(), reinterpret_cast<const uint32_t*>(next + c * kChannelBytes + s * kLanes * 4)); };
-            rebuild<A, P, kFirst>(target, to + s * kLanes * 4, differencesOf<A>({channel(0), channel(1), channel(2), channel(3)}));
+            const auto channel = [&](unsigned c) {
+                return hn::Load(Words(), reinterpret_cast<const uint32_t*>(next + c * kChannelBytes + s * kLanes * 4));
+            };
+            rebuild<A, P, kFirst>(target, to + s * kLanes * 4,
+                                  differencesOf<A>({channel(0), channel(1), channel(2), channel(3)}));
         }
         next += kBlockBytes;
     }
@@ -305,8 +339,11 @@ template <Arithmetic A, Predictor P, bool kFirst> void decodeAs(const ParsedStri
 
 template <class Do> auto withKind(const StripKind& kind, Do&& each) {
     const auto withPredictor = [&]<Arithmetic A>() {
-        if (kind.predictor == Predictor::Slope) return kind.first ? each.template operator()<A, Predictor::Slope, true>() : each.template operator()<A, Predictor::Slope, false>();
-        return kind.first ? each.template operator()<A, Predictor::Above, true>() : each.template operator()<A, Predictor::Above, false>();
+        if (kind.predictor == Predictor::Slope)
+            return kind.first ? each.template operator()<A, Predictor::Slope, true>()
+                              : each.template operator()<A, Predictor::Slope, false>();
+        return kind.first ? each.template operator()<A, Predictor::Above, true>()
+                          : each.template operator()<A, Predictor::Above, false>();
     };
     switch (kind.arithmetic) {
     case Arithmetic::Bytes: return withPredictor.template operator()<Arithmetic::Bytes>();
@@ -318,7 +355,8 @@ template <class Do> auto withKind(const StripKind& kind, Do&& each) {
 }
 
 size_t encode(const StripSource& source, const StripKind& kind, std::byte* into) {
-    return withKind(kind, [&]<Arithmetic A, Predictor P, bool kFirst>() { return encodeAs<A, P, kFirst>(source, into); });
+    return withKind(kind,
+                    [&]<Arithmetic A, Predictor P, bool kFirst>() { return encodeAs<A, P, kFirst>(source, into); });
 }
 
 void decode(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) {
@@ -340,7 +378,9 @@ template <Arithmetic A> void finishAs(const StripTarget& target, unsigned leftWo
         if (leftWords <= 2) sum = added<A>(sum, hn::ShiftLeftBytes<8>(d, sum));
         sum = added<A>(sum, before);
         hn::Store(subtracted<A>(sum, v), d, changes + x);
-        before = leftWords == 4 ? sum : hn::BitCast(d, hn::InterleaveUpper(d64, hn::BitCast(d64, sum), hn::BitCast(d64, sum)));
+        before = leftWords == 4
+                     ? sum
+                     : hn::BitCast(d, hn::InterleaveUpper(d64, hn::BitCast(d64, sum), hn::BitCast(d64, sum)));
         if (leftWords == 1) before = hn::Broadcast<3>(sum);
     }
     for (unsigned y = 0; y < kStripRows; ++y)
@@ -351,10 +391,14 @@ template <Arithmetic A> void finishAs(const StripTarget& target, unsigned leftWo
 }
 
 void finishFirst(const StripTarget& target, Arithmetic a, unsigned leftWords) {
-    if (a == Arithmetic::Bytes) finishAs<Arithmetic::Bytes>(target, leftWords);
-    else if (a == Arithmetic::Halves) finishAs<Arithmetic::Halves>(target, leftWords);
-    else if (a == Arithmetic::Words) finishAs<Arithmetic::Words>(target, leftWords);
-    else finishAs<Arithmetic::RotatedWords>(target, leftWords);
+    if (a == Arithmetic::Bytes)
+        finishAs<Arithmetic::Bytes>(target, leftWords);
+    else if (a == Arithmetic::Halves)
+        finishAs<Arithmetic::Halves>(target, leftWords);
+    else if (a == Arithmetic::Words)
+        finishAs<Arithmetic::Words>(target, leftWords);
+    else
+        finishAs<Arithmetic::RotatedWords>(target, leftWords);
 }
 
 #endif
@@ -369,10 +413,16 @@ HWY_EXPORT(encode);
 HWY_EXPORT(decode);
 HWY_EXPORT(finishFirst);
 
-size_t encodeStrip(const StripSource& source, const StripKind& kind, std::byte* into) { return HWY_DYNAMIC_DISPATCH(encode)(source, kind, into); }
-void decodeStrip(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) { HWY_DYNAMIC_DISPATCH(decode)(strip, kind, target); }
+size_t encodeStrip(const StripSource& source, const StripKind& kind, std::byte* into) {
+    return HWY_DYNAMIC_DISPATCH(encode)(source, kind, into);
+}
+void decodeStrip(const ParsedStrip& strip, const StripKind& kind, const StripTarget& target) {
+    HWY_DYNAMIC_DISPATCH(decode)(strip, kind, target);
+}
 
-void finishFirstStrip(const StripTarget& target, Arithmetic arithmetic, unsigned leftWords) { HWY_DYNAMIC_DISPATCH(finishFirst)(target, arithmetic, leftWords); }
+void finishFirstStrip(const StripTarget& target, Arithmetic arithmetic, unsigned leftWords) {
+    HWY_DYNAMIC_DISPATCH(finishFirst)(target, arithmetic, leftWords);
+}
 
 } // namespace mural::compositor::bitplane
 #endif

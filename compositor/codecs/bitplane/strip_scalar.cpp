@@ -29,7 +29,8 @@ void packChannel(const uint8_t* bytes, unsigned width, std::byte* into) {
         const unsigned partBytes = kChannelBytes * bits / 8;
         for (unsigned i = 0; i < partBytes; ++i) {
             unsigned packed = 0;
-            for (unsigned part = 0; part < 8 / bits; ++part) packed |= (bytes[i + part * partBytes] >> shift & ((1u << bits) - 1)) << (part * bits);
+            for (unsigned part = 0; part < 8 / bits; ++part)
+                packed |= (bytes[i + part * partBytes] >> shift & ((1u << bits) - 1)) << (part * bits);
             into[i] = static_cast<std::byte>(packed);
         }
         into += partBytes;
@@ -49,7 +50,8 @@ void unpackChannel(const std::byte* from, unsigned width, uint8_t* bytes) {
         const unsigned partBytes = kChannelBytes * bits / 8;
         for (unsigned i = 0; i < kChannelBytes; ++i) {
             const unsigned packed = std::to_integer<unsigned>(from[i % partBytes]);
-            bytes[i] = static_cast<uint8_t>(bytes[i] | (packed >> (i / partBytes * bits) & ((1u << bits) - 1)) << shift);
+            bytes[i] =
+                static_cast<uint8_t>(bytes[i] | (packed >> (i / partBytes * bits) & ((1u << bits) - 1)) << shift);
         }
         from += partBytes;
         shift += bits;
@@ -88,7 +90,9 @@ size_t encodeStripScalar(const StripSource& source, const StripKind& kind, std::
         for (unsigned x = 0; x < kBlockColumns; ++x) {
             const unsigned column = b * kBlockColumns + x;
             uint32_t above = turned(a, wordAt(source.above, column));
-            uint32_t slope = kind.predictor == Predictor::Slope && !kind.first ? subtract(a, above, turned(a, wordAt(source.above2, column))) : 0;
+            uint32_t slope = kind.predictor == Predictor::Slope && !kind.first
+                                 ? subtract(a, above, turned(a, wordAt(source.above2, column)))
+                                 : 0;
             for (unsigned y = 0; y < kStripRows; ++y) {
                 const uint32_t word = turned(a, wordAt(source.rows + y * source.strideBytes, column));
                 const uint32_t difference = subtract(a, word, above);
@@ -135,10 +139,13 @@ void decodeStripScalar(const ParsedStrip& strip, const StripKind& kind, const St
         for (unsigned x = 0; x < kBlockColumns; ++x) {
             const unsigned column = b * kBlockColumns + x;
             uint32_t above = turned(a, wordAt(target.above, column));
-            uint32_t slope = kind.predictor == Predictor::Slope && !kind.first ? subtract(a, above, turned(a, wordAt(target.above2, column))) : 0;
+            uint32_t slope = kind.predictor == Predictor::Slope && !kind.first
+                                 ? subtract(a, above, turned(a, wordAt(target.above2, column)))
+                                 : 0;
             for (unsigned y = 0; y < kStripRows; ++y) {
                 uint32_t residual = 0;
-                for (unsigned c = 0; c < 4; ++c) residual |= uint32_t{channels[c * kChannelBytes + 4 * x + y]} << (8 * c);
+                for (unsigned c = 0; c < 4; ++c)
+                    residual |= uint32_t{channels[c * kChannelBytes + 4 * x + y]} << (8 * c);
                 const uint32_t difference = add(a, differenceOf(a, residual), slope);
                 if (kind.predictor == Predictor::Slope && !(kind.first && y == 0)) slope = difference;
                 above = add(a, above, difference);

@@ -6,16 +6,19 @@
 
 namespace mural::compositor::bitplane {
 
-const char* TileDecoder::begin(const TileShape& shape, std::span<const std::byte> bytes, std::byte* rows, ptrdiff_t strideBytes) {
+const char* TileDecoder::begin(const TileShape& shape, std::span<const std::byte> bytes, std::byte* rows,
+                               ptrdiff_t strideBytes) {
     if (bytes.empty()) return "a tile has no bytes";
     shape_ = shape;
     rows_ = pixels_ = rows;
     strideBytes_ = pixelStrideBytes_ = strideBytes;
     left_ = bytes.subspan(1);
     const auto kind = std::to_integer<unsigned>(bytes[0]);
-    if (kind > static_cast<unsigned>(TileKind::Strips) + static_cast<unsigned>(Predictor::Slope)) return "a tile is of an unknown kind";
+    if (kind > static_cast<unsigned>(TileKind::Strips) + static_cast<unsigned>(Predictor::Slope))
+        return "a tile is of an unknown kind";
     kind_ = kind < static_cast<unsigned>(TileKind::Strips) ? static_cast<TileKind>(kind) : TileKind::Strips;
-    if (kind_ == TileKind::Raw) return left_.size() == shape.rowBytes() * shape.rows ? nullptr : "a raw tile has another size";
+    if (kind_ == TileKind::Raw)
+        return left_.size() == shape.rowBytes() * shape.rows ? nullptr : "a raw tile has another size";
     if (kind_ == TileKind::Uniform) {
         const size_t pixel = shape.pixelBytes();
         if (left_.size() != pixel) return "a uniform tile has another size than its pixel";
@@ -35,14 +38,17 @@ const char* TileDecoder::begin(const TileShape& shape, std::span<const std::byte
 
 const char* TileDecoder::strip(unsigned y) {
     switch (kind_) {
-    case TileKind::Raw: copyRows(y, left_.data() + y * shape_.rowBytes(), static_cast<ptrdiff_t>(shape_.rowBytes())); return nullptr;
+    case TileKind::Raw:
+        copyRows(y, left_.data() + y * shape_.rowBytes(), static_cast<ptrdiff_t>(shape_.rowBytes()));
+        return nullptr;
     case TileKind::Uniform:
         if (!shape_.hasWholeBlocks()) {
             copyRows(y, row_.data(), 0);
             return nullptr;
         }
         strip_.present = 0; // decoded as a strip without differences, which writes four rows at once
-        decodeStrip(strip_, {shape_.arithmetic, Predictor::Above, false}, {rows_ + y * strideBytes_, strideBytes_, row_.data(), nullptr, shape_.wholeBlocks()});
+        decodeStrip(strip_, {shape_.arithmetic, Predictor::Above, false},
+                    {rows_ + y * strideBytes_, strideBytes_, row_.data(), nullptr, shape_.wholeBlocks()});
         return nullptr;
     case TileKind::Strips: break;
     }
@@ -52,7 +58,8 @@ const char* TileDecoder::strip(unsigned y) {
 }
 
 void TileDecoder::copyRows(unsigned y, const std::byte* from, ptrdiff_t fromStrideBytes) {
-    for (unsigned i = 0; i < shape_.rowsFrom(y); ++i) std::memcpy(rows_ + (y + i) * strideBytes_, from + i * fromStrideBytes, shape_.rowBytes());
+    for (unsigned i = 0; i < shape_.rowsFrom(y); ++i)
+        std::memcpy(rows_ + (y + i) * strideBytes_, from + i * fromStrideBytes, shape_.rowBytes());
 }
 
 const char* TileDecoder::packedStrip(unsigned y) {
@@ -67,12 +74,15 @@ const char* TileDecoder::packedStrip(unsigned y) {
     left_ = left_.subspan(size);
     std::byte* row = pixels_ + y * pixelStrideBytes_;
     const StripKind kind{shape_.arithmetic, predictor_, y == 0};
-    const StripTarget target{row, pixelStrideBytes_, y == 0 ? row_.data() : row - pixelStrideBytes_, y == 0 ? nullptr : row - 2 * pixelStrideBytes_, shape_.wholeBlocks()};
+    const StripTarget target{row, pixelStrideBytes_, y == 0 ? row_.data() : row - pixelStrideBytes_,
+                             y == 0 ? nullptr : row - 2 * pixelStrideBytes_, shape_.wholeBlocks()};
     decodeStrip(strip_, kind, target);
     if (y == 0) finishFirstStrip(target, shape_.arithmetic, shape_.wordsPerPixel);
     return nullptr;
 }
 
-const char* TileDecoder::finish() const { return kind_ != TileKind::Strips || left_.empty() ? nullptr : "a tile has bytes behind its end"; }
+const char* TileDecoder::finish() const {
+    return kind_ != TileKind::Strips || left_.empty() ? nullptr : "a tile has bytes behind its end";
+}
 
 } // namespace mural::compositor::bitplane

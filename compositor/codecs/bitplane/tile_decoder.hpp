@@ -35,7 +35,7 @@ private:
     // row -1 of strips, which is zero; or the row of a uniform tile
     alignas(64) std::array<std::byte, kTileRowBytes> row_{};
     std::array<std::byte, kStripBoundBytes + 2 * kSlackBytes> ending_{}; // copy of the last bytes, with slack
-    std::unique_ptr<std::byte[]> padded_; // for a tile at the edge
+    std::unique_ptr<std::byte[]> padded_;                                // for a tile at the edge
 };
 
 } // namespace mural::compositor::bitplane

@@ -17,7 +17,8 @@ bool areUniform(const TileShape& s, unsigned count, const std::byte* rows, ptrdi
     std::memcpy(pattern, repeated, sizeof pattern);
     constexpr uint32_t kWhole[4] = {~0u, ~0u, ~0u, ~0u};
     for (unsigned y = 0; y < count; ++y, rows += strideBytes)
-        if (findFirstDifference(reinterpret_cast<const uint32_t*>(rows), s.columns, pattern, kWhole) != s.columns) return false;
+        if (findFirstDifference(reinterpret_cast<const uint32_t*>(rows), s.columns, pattern, kWhole) != s.columns)
+            return false;
     return true;
 }
 
@@ -58,7 +59,8 @@ void TileEncoder::strip(unsigned y) {
     if (raw_ && !uniform_) return;
     const std::byte* row = pixels_ + y * pixelStrideBytes_;
     const StripKind kind{shape_.arithmetic, predictor_, y == 0};
-    const StripSource source{row, pixelStrideBytes_, y == 0 ? above_.data() : row - pixelStrideBytes_, y == 0 ? nullptr : row - 2 * pixelStrideBytes_, shape_.wholeBlocks()};
+    const StripSource source{row, pixelStrideBytes_, y == 0 ? above_.data() : row - pixelStrideBytes_,
+                             y == 0 ? nullptr : row - 2 * pixelStrideBytes_, shape_.wholeBlocks()};
     const size_t written = encodeStrip(source, kind, strips_.get() + size_);
     size_ += written;
     if (y > 0 && written != kStripHeadBytes) uniform_ = false; // otherwise every row equals the row above
@@ -75,7 +77,8 @@ size_t TileEncoder::finish(std::byte* into) {
     }
     if (raw_) {
         into[0] = static_cast<std::byte>(TileKind::Raw);
-        for (unsigned y = 0; y < shape_.rows; ++y) std::memcpy(into + 1 + y * shape_.rowBytes(), rows_ + y * strideBytes_, shape_.rowBytes());
+        for (unsigned y = 0; y < shape_.rows; ++y)
+            std::memcpy(into + 1 + y * shape_.rowBytes(), rows_ + y * strideBytes_, shape_.rowBytes());
         return rawBytes();
     }
     std::memcpy(into, strips_.get(), size_);

@@ -27,9 +27,9 @@ private:
     ptrdiff_t strideBytes_ = 0;
     const std::byte* pixels_ = nullptr; // the same, in whole blocks
     ptrdiff_t pixelStrideBytes_ = 0;
-    size_t size_ = 0; // of the strips so far, including the kind
-    bool uniform_ = false; // so far
-    bool raw_ = false; // raw rows are smaller
+    size_t size_ = 0;                                          // of the strips so far, including the kind
+    bool uniform_ = false;                                     // so far
+    bool raw_ = false;                                         // raw rows are smaller
     alignas(64) std::array<std::byte, kTileRowBytes> above_{}; // row -1: row 0 is predicted from the pixel to its left
     std::unique_ptr<std::byte[]> strips_;
     std::unique_ptr<std::byte[]> padded_; // for a tile at the edge

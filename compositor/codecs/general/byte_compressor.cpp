@@ -18,27 +18,34 @@ public:
     }
     [[nodiscard]] size_t compress(std::span<const std::byte> bytes, std::span<std::byte> into) override {
         if (bytes.size() > LZ4_MAX_INPUT_SIZE || into.size() > INT_MAX) return 0;
-        return static_cast<size_t>(LZ4_compress_default(chars(bytes.data()), chars(into.data()), static_cast<int>(bytes.size()), static_cast<int>(into.size())));
+        return static_cast<size_t>(LZ4_compress_default(chars(bytes.data()), chars(into.data()),
+                                                        static_cast<int>(bytes.size()), static_cast<int>(into.size())));
     }
     [[nodiscard]] bool decompress(std::span<const std::byte> bytes, std::span<std::byte> into) override {
         if (bytes.size() > INT_MAX || into.size() > LZ4_MAX_INPUT_SIZE) return false;
-        const int size = LZ4_decompress_safe(chars(bytes.data()), chars(into.data()), static_cast<int>(bytes.size()), static_cast<int>(into.size()));
+        const int size = LZ4_decompress_safe(chars(bytes.data()), chars(into.data()), static_cast<int>(bytes.size()),
+                                             static_cast<int>(into.size()));
         return size >= 0 && static_cast<size_t>(size) == into.size();
     }
 };
 
 class Zstd : public ByteCompressor {
 public:
-    explicit Zstd(int level) : level_(level), compressor_(ZSTD_createCCtx(), ZSTD_freeCCtx), decompressor_(ZSTD_createDCtx(), ZSTD_freeDCtx) {}
+    explicit Zstd(int level)
+        : level_(level),
+          compressor_(ZSTD_createCCtx(), ZSTD_freeCCtx),
+          decompressor_(ZSTD_createDCtx(), ZSTD_freeDCtx) {}
     [[nodiscard]] size_t boundBytes(size_t sizeBytes) const override { return ZSTD_compressBound(sizeBytes); }
     [[nodiscard]] size_t compress(std::span<const std::byte> bytes, std::span<std::byte> into) override {
         if (!compressor_) return 0;
-        const size_t size = ZSTD_compressCCtx(compressor_.get(), into.data(), into.size(), bytes.data(), bytes.size(), level_);
+        const size_t size =
+            ZSTD_compressCCtx(compressor_.get(), into.data(), into.size(), bytes.data(), bytes.size(), level_);
         return ZSTD_isError(size) ? 0 : size;
     }
     [[nodiscard]] bool decompress(std::span<const std::byte> bytes, std::span<std::byte> into) override {
         if (!decompressor_) return false;
-        const size_t size = ZSTD_decompressDCtx(decompressor_.get(), into.data(), into.size(), bytes.data(), bytes.size());
+        const size_t size =
+            ZSTD_decompressDCtx(decompressor_.get(), into.data(), into.size(), bytes.data(), bytes.size());
         return !ZSTD_isError(size) && size == into.size();
     }
 

@@ -28,11 +28,15 @@ Result<size_t> CompressedCodec::encode(const PlaneView& plane, std::span<std::by
         head = 4;
     } else if (!isTight(plane)) {
         scratch_.resize(plane.sizeBytes());
-        copyPlane({plane.format, plane.width, plane.height, static_cast<ptrdiff_t>(plane.rowBytes()), scratch_.data()}, plane);
+        copyPlane({plane.format, plane.width, plane.height, static_cast<ptrdiff_t>(plane.rowBytes()), scratch_.data()},
+                  plane);
         bytes = scratch_;
     }
     const size_t size = compressor_->compress(bytes, into.subspan(head));
-    if (size == 0) return Error{"codec " + name_ + ": " + std::to_string(bytes.size()) + " bytes can't be compressed: they are too many, or there is no memory; use smaller pictures or another codec"};
+    if (size == 0)
+        return Error{"codec " + name_ + ": " + std::to_string(bytes.size()) +
+                     " bytes can't be compressed: they are too many, or there is no memory; use smaller pictures or "
+                     "another codec"};
     return head + size;
 }
 
@@ -47,7 +51,9 @@ Result<void> CompressedCodec::decode(std::span<const std::byte> bytes, const Mut
         if (!compressor_->decompress(bytes.subspan(4), scratch_)) return damaged("it can't be decompressed");
         return inner_->decode(scratch_, into);
     }
-    if (isTight(into)) return compressor_->decompress(bytes, {into.pixels, into.sizeBytes()}) ? Result<void>() : damaged("it can't be decompressed");
+    if (isTight(into))
+        return compressor_->decompress(bytes, {into.pixels, into.sizeBytes()}) ? Result<void>()
+                                                                               : damaged("it can't be decompressed");
     scratch_.resize(into.sizeBytes());
     if (!compressor_->decompress(bytes, scratch_)) return damaged("it can't be decompressed");
     copyPlane(into, {into.format, into.width, into.height, static_cast<ptrdiff_t>(into.rowBytes()), scratch_.data()});

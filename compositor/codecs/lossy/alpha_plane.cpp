@@ -14,7 +14,9 @@ size_t pixelsOf(const PlaneView& p) { return static_cast<size_t>(p.width) * stat
 
 } // namespace
 
-size_t AlphaPlane::boundBytes(const PlaneShape& shape) const { return 5 + compressor_->boundBytes(shape.sizeBytes() / 4); }
+size_t AlphaPlane::boundBytes(const PlaneShape& shape) const {
+    return 5 + compressor_->boundBytes(shape.sizeBytes() / 4);
+}
 
 size_t AlphaPlane::encode(const PlaneView& plane, std::span<std::byte> into) {
     scratch_.resize(pixelsOf(plane));

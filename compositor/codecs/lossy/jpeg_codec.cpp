@@ -9,7 +9,10 @@ namespace mural::compositor {
 // A size of 4 bytes, JPEG data, alpha.
 
 JpegCodec::JpegCodec(int quality, bool halfColour)
-    : quality_(quality), subsampling_(halfColour ? TJSAMP_420 : TJSAMP_444), compressor_(tjInitCompress()), decompressor_(tjInitDecompress()) {}
+    : quality_(quality),
+      subsampling_(halfColour ? TJSAMP_420 : TJSAMP_444),
+      compressor_(tjInitCompress()),
+      decompressor_(tjInitDecompress()) {}
 
 JpegCodec::~JpegCodec() {
     if (compressor_) tjDestroy(compressor_);
@@ -24,12 +27,15 @@ size_t JpegCodec::boundBytes(const PlaneShape& shape) const {
 Result<size_t> JpegCodec::encode(const PlaneView& plane, std::span<std::byte> into) {
     if (plane.empty()) return size_t{0};
     const auto failed = [&](const char* why) {
-        return Error{"codec jpeg: a plane of " + std::to_string(plane.width) + "x" + std::to_string(plane.height) + " can't be encoded: " + why + "; use another codec"};
+        return Error{"codec jpeg: a plane of " + std::to_string(plane.width) + "x" + std::to_string(plane.height) +
+                     " can't be encoded: " + why + "; use another codec"};
     };
     if (!compressor_) return failed("no memory");
     auto* to = reinterpret_cast<unsigned char*>(into.data() + 4);
     unsigned long size = tjBufSize(plane.width, plane.height, subsampling_);
-    if (tjCompress2(compressor_, reinterpret_cast<const unsigned char*>(plane.pixels), plane.width, static_cast<int>(plane.strideBytes), plane.height, TJPF_RGBA, &to, &size, subsampling_, quality_, TJFLAG_NOREALLOC) != 0)
+    if (tjCompress2(compressor_, reinterpret_cast<const unsigned char*>(plane.pixels), plane.width,
+                    static_cast<int>(plane.strideBytes), plane.height, TJPF_RGBA, &to, &size, subsampling_, quality_,
+                    TJFLAG_NOREALLOC) != 0)
         return failed(tjGetErrorStr2(compressor_));
     storeLittle(into.data(), static_cast<uint32_t>(size));
     const size_t alpha = alpha_.encode(plane, into.subspan(4 + size));
@@ -46,10 +52,12 @@ Result<void> JpegCodec::decode(std::span<const std::byte> bytes, const MutablePl
     if (size > bytes.size() - 4) return damaged("it is cut short");
     const auto* jpeg = reinterpret_cast<const unsigned char*>(bytes.data() + 4);
     int width = 0, height = 0, subsampling = 0, colours = 0;
-    if (!decompressor_ || tjDecompressHeader3(decompressor_, jpeg, size, &width, &height, &subsampling, &colours) != 0) return damaged("it is no JPEG");
+    if (!decompressor_ || tjDecompressHeader3(decompressor_, jpeg, size, &width, &height, &subsampling, &colours) != 0)
+        return damaged("it is no JPEG");
     if (width != into.width || height != into.height) return damaged("it is of another size");
     // Damaged data decodes with a warning, which counts as an error.
-    if (tjDecompress2(decompressor_, jpeg, size, reinterpret_cast<unsigned char*>(into.pixels), into.width, static_cast<int>(into.strideBytes), into.height, TJPF_RGBA, TJFLAG_LIMITSCANS) != 0)
+    if (tjDecompress2(decompressor_, jpeg, size, reinterpret_cast<unsigned char*>(into.pixels), into.width,
+                      static_cast<int>(into.strideBytes), into.height, TJPF_RGBA, TJFLAG_LIMITSCANS) != 0)
         return damaged(tjGetErrorStr2(decompressor_));
     const size_t alpha = alpha_.decode(bytes.subspan(4 + size), into);
     return alpha != 0 && 4 + size + alpha == bytes.size() ? Result<void>() : damaged("its alpha is damaged");

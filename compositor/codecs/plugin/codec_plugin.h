@@ -1,5 +1,5 @@
-/* The C interface of codec plug-ins. The library libmural_codec_NAME.so provides the codec NAME. It is in the folder that
- * the registry receives, and exports one C function:
+/* The C interface of codec plug-ins. The library libmural_codec_NAME.so provides the codec NAME. It is in the folder
+ * that the registry receives, and exports one C function:
  *
  *     const struct mural_codec_plugin* mural_get_codec_plugin(void);
  *
@@ -62,8 +62,10 @@ struct mural_codec_plugin {
     struct mural_codec* (*create)(struct mural_codec_error* error); /* returns null on failure */
     void (*destroy)(struct mural_codec*);
     uint64_t (*bound_bytes)(const struct mural_codec*, const struct mural_codec_shape*);
-    int (*encode)(struct mural_codec*, const struct mural_codec_plane*, void* into, uint64_t room_bytes, uint64_t* written_bytes, struct mural_codec_error* error);
-    int (*decode)(struct mural_codec*, const void* bytes, uint64_t size_bytes, const struct mural_codec_plane* into, struct mural_codec_error* error);
+    int (*encode)(struct mural_codec*, const struct mural_codec_plane*, void* into, uint64_t room_bytes,
+                  uint64_t* written_bytes, struct mural_codec_error* error);
+    int (*decode)(struct mural_codec*, const void* bytes, uint64_t size_bytes, const struct mural_codec_plane* into,
+                  struct mural_codec_error* error);
 };
 
 typedef const struct mural_codec_plugin* (*mural_codec_plugin_entry)(void);

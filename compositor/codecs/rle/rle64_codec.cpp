@@ -76,7 +76,8 @@ Result<void> Rle64Codec::decode(std::span<const std::byte> bytes, const MutableP
             left = left.subspan(4);
             if ((head & kRun) == 0 && left.size() < 8 * count) return damaged("it is cut short");
             const size_t step = head & kRun ? 0 : 8;
-            for (size_t i = 0; i < count; ++i, ++at) std::memcpy(row + 8 * at, left.data() + step * i, std::min<size_t>(8, rowBytes - 8 * at));
+            for (size_t i = 0; i < count; ++i, ++at)
+                std::memcpy(row + 8 * at, left.data() + step * i, std::min<size_t>(8, rowBytes - 8 * at));
             left = left.subspan(step ? 8 * count : 8);
         }
     }

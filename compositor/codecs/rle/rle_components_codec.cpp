@@ -107,7 +107,9 @@ Result<size_t> RleComponentsCodec::encode(const PlaneView& plane, std::span<std:
 }
 
 Result<void> RleComponentsCodec::decode(std::span<const std::byte> bytes, const MutablePlaneView& into) {
-    const auto damaged = [&](const char* what) { return damagedPlane(swizzled_ ? "rle-swizzled" : "rle-components", into, bytes.size(), what); };
+    const auto damaged = [&](const char* what) {
+        return damagedPlane(swizzled_ ? "rle-swizzled" : "rle-components", into, bytes.size(), what);
+    };
     if (into.empty()) return bytes.empty() ? Result<void>() : damaged("an empty plane has no bytes");
     std::span<const std::byte> streams[kStreams];
     std::span<const std::byte> left = bytes;
@@ -120,7 +122,8 @@ Result<void> RleComponentsCodec::decode(std::span<const std::byte> bytes, const 
         left = left.subspan(size);
     }
     if (!left.empty()) return damaged("there are bytes behind its end");
-    StreamReader readers[kStreams] = {StreamReader(streams[0]), StreamReader(streams[1]), StreamReader(streams[2]), StreamReader(streams[3])};
+    StreamReader readers[kStreams] = {StreamReader(streams[0]), StreamReader(streams[1]), StreamReader(streams[2]),
+                                      StreamReader(streams[3])};
     for (int32_t y = 0; y < into.height; ++y) {
         std::byte* row = into.row(y);
         for (size_t at = 0; at < into.rowBytes(); at += 4) {

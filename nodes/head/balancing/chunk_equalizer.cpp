@@ -13,7 +13,8 @@ constexpr int kMaxChunks = 4096;
 std::vector<TileRegion> evenRuns(int chunks, int nodes) {
     std::vector<TileRegion> runs;
     for (int i = 0; i < nodes; ++i) {
-        const int from = static_cast<int>(int64_t{chunks} * i / nodes), to = static_cast<int>(int64_t{chunks} * (i + 1) / nodes);
+        const int from = static_cast<int>(int64_t{chunks} * i / nodes),
+                  to = static_cast<int>(int64_t{chunks} * (i + 1) / nodes);
         runs.push_back({from, 0, to - from, 1});
     }
     return runs;
@@ -21,7 +22,8 @@ std::vector<TileRegion> evenRuns(int chunks, int nodes) {
 
 } // namespace
 
-ChunkEqualizer::ChunkEqualizer(const SessionPlan& plan, Announce announce, const std::string& plant) : announce_(std::move(announce)), times_(plan.nodes.size()) {
+ChunkEqualizer::ChunkEqualizer(const SessionPlan& plan, Announce announce, const std::string& plant)
+    : announce_(std::move(announce)), times_(plan.nodes.size()) {
     for (const NodePlan& node : plan.nodes) shares_.push_back(node.pass.share);
     for (size_t q = 0; q < plan.chunkQueues.size(); ++q) {
         std::vector<int> nodes;
@@ -48,7 +50,8 @@ void ChunkEqualizer::frameDone(int node, const wire::FrameDoneMessage& message) 
     if (random_) return;
     bool moved = false;
     if (const auto frame = times_.finished(node, message))
-        for (Queue& queue : queues_) moved = queue.chunks.compare(*frame, &wire::FrameDoneMessage::shares, number_) || moved;
+        for (Queue& queue : queues_)
+            moved = queue.chunks.compare(*frame, &wire::FrameDoneMessage::shares, number_) || moved;
     if (moved) announce();
 }
 
@@ -57,7 +60,8 @@ void ChunkEqualizer::layOut(Queue& queue) {
     queue.chunks.begin(times_);
     const auto takers = static_cast<int>(queue.chunks.takers().size());
     if (takers > 0) {
-        const int chunks = std::clamp(static_cast<int>(std::ceil(1 / std::max(queue.plan.part, 1.0 / kMaxChunks) - 1e-9)), takers, kMaxChunks);
+        const int chunks = std::clamp(
+            static_cast<int>(std::ceil(1 / std::max(queue.plan.part, 1.0 / kMaxChunks) - 1e-9)), takers, kMaxChunks);
         queue.chunks.deal(chunks, 1, evenRuns(chunks, takers));
     }
     queue.chunks.count();
@@ -85,7 +89,9 @@ void ChunkEqualizer::announce() {
         if (!queue.chunks.deals()) continue;
         const Range& whole = queue.plan.range;
         const int chunks = queue.chunks.columns();
-        const auto edge = [&](int chunk) { return chunk == chunks ? whole.end : whole.start + (whole.end - whole.start) * chunk / chunks; };
+        const auto edge = [&](int chunk) {
+            return chunk == chunks ? whole.end : whole.start + (whole.end - whole.start) * chunk / chunks;
+        };
         for (const int node : queue.chunks.nodes()) shares_[static_cast<size_t>(node)] = {whole.start, whole.start};
         for (size_t i = 0; i < queue.chunks.takers().size(); ++i) {
             const TileRegion& run = queue.chunks.areas()[i];

@@ -52,7 +52,7 @@ private:
     FrameTimes times_;
     std::vector<Queue> queues_;
     std::vector<Range> shares_; // latest shares, per node
-    uint32_t number_ = 0; // number of the latest shares
+    uint32_t number_ = 0;       // number of the latest shares
     std::optional<std::mt19937> random_;
 };
 

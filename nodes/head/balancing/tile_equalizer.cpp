@@ -45,7 +45,8 @@ void TileEqualizer::frameDone(int node, const wire::FrameDoneMessage& message) {
     if (random_) return;
     bool moved = false;
     if (const auto frame = times_.finished(node, message))
-        for (Queue& queue : queues_) moved = queue.tiles.compare(*frame, &wire::FrameDoneMessage::areas, number_) || moved;
+        for (Queue& queue : queues_)
+            moved = queue.tiles.compare(*frame, &wire::FrameDoneMessage::areas, number_) || moved;
     if (moved) announce();
 }
 
@@ -55,7 +56,9 @@ void TileEqualizer::answered() {
     if (times_.known()) dealAtRandom();
 }
 
-PixelViewport TileEqualizer::pixelsOf(const Queue& queue) const { return apply({0, 0, times_.width(), times_.height()}, queue.plan.area); }
+PixelViewport TileEqualizer::pixelsOf(const Queue& queue) const {
+    return apply({0, 0, times_.width(), times_.height()}, queue.plan.area);
+}
 
 // Starts with equal parts for the living nodes. Doubles the tile size while there are too many tiles.
 void TileEqualizer::layOut(Queue& queue) {
@@ -90,7 +93,9 @@ void TileEqualizer::announce() {
         for (size_t i = 0; i < queue.tiles.takers().size(); ++i) {
             const TileRegion& r = queue.tiles.areas()[i];
             const int x0 = x(r.column), y0 = y(r.row);
-            areas_[static_cast<size_t>(queue.tiles.takers()[i])] = relativeTo(PixelViewport{x0, y0, x(r.column + r.columns) - x0, y(r.row + r.rows) - y0}, PixelViewport{0, 0, times_.width(), times_.height()});
+            areas_[static_cast<size_t>(queue.tiles.takers()[i])] =
+                relativeTo(PixelViewport{x0, y0, x(r.column + r.columns) - x0, y(r.row + r.rows) - y0},
+                           PixelViewport{0, 0, times_.width(), times_.height()});
         }
     }
     if (any) announce_({++number_, areas_});

@@ -30,7 +30,7 @@ public:
     TileEqualizer(const SessionPlan& plan, Announce announce, const std::string& plant = {});
 
     void frameDone(int node, const wire::FrameDoneMessage& message);
-    void answered(); // a reply within a frame; relevant to fault injection only
+    void answered();                                   // a reply within a frame; relevant to fault injection only
     void windowGone(uint32_t client, uint32_t window); // or wire::kAllWindows
     void nodeLost(int node);
     void nodeJoined(int node);
@@ -44,7 +44,7 @@ private:
         WorkQueue tiles;
     };
     void layOut(Queue& queue); // rebuilds its grid
-    void layOutOf(int node); // the queue of this node
+    void layOutOf(int node);   // the queue of this node
     [[nodiscard]] PixelViewport pixelsOf(const Queue& queue) const;
     void dealAtRandom();
     void announce();
@@ -54,7 +54,7 @@ private:
     FrameTimes times_;
     std::vector<Queue> queues_;
     std::vector<Viewport> areas_; // latest areas, per node
-    uint32_t number_ = 0; // number of the latest areas
+    uint32_t number_ = 0;         // number of the latest areas
     std::optional<std::mt19937> random_;
 };
 

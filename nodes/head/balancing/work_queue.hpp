@@ -31,7 +31,9 @@ public:
 
     // Restarts with the living nodes. Nothing is assigned until deal().
     void begin(const FrameTimes& times);
-    void deal(int columns, int rows, std::vector<TileRegion> areas) { pieces_.emplace(columns, rows, std::move(areas)); }
+    void deal(int columns, int rows, std::vector<TileRegion> areas) {
+        pieces_.emplace(columns, rows, std::move(areas));
+    }
     // Assigns pieces at random, ignoring times. inOrder: pieces in one row, in the order of the nodes.
     void dealAtRandom(std::mt19937& random, bool inOrder);
 

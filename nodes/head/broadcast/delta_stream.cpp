@@ -35,20 +35,30 @@ Result<std::unique_ptr<DeltaStream>> DeltaStream::open(const delta::Limits& limi
     return economy;
 }
 
-DeltaStream::DeltaStream(const delta::Limits& limits, std::unique_ptr<Coder> coder) : limits_(limits), holder_(std::min(kMaxHeldBytes, limits.storeBytes / 4), [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) { pack(stream, payload, walked); }), coder_(std::move(coder)) {}
+DeltaStream::DeltaStream(const delta::Limits& limits, std::unique_ptr<Coder> coder)
+    : limits_(limits),
+      holder_(std::min(kMaxHeldBytes, limits.storeBytes / 4),
+              [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
+                  pack(stream, payload, walked);
+              }),
+      coder_(std::move(coder)) {}
 
-DeltaStream::Coder::Coder(const delta::Limits& limits) : packer(limits), encoder([](size_t sizeBytes) { return clockFor(sizeBytes)(); }) {}
+DeltaStream::Coder::Coder(const delta::Limits& limits)
+    : packer(limits), encoder([](size_t sizeBytes) { return clockFor(sizeBytes)(); }) {}
 
 Result<std::unique_ptr<DeltaStream::Coder>> DeltaStream::freshCoder(const delta::Limits& limits) {
     auto coder = std::make_unique<Coder>(limits);
-    if (!coder->packer.ready()) return Error{"no memory for a store of " + std::to_string(limits.storeBytes >> 20) + " MiB; give a smaller one by --store"};
+    if (!coder->packer.ready())
+        return Error{"no memory for a store of " + std::to_string(limits.storeBytes >> 20) +
+                     " MiB; give a smaller one by --store"};
     return coder;
 }
 
 std::unique_ptr<DeltaStream::Coder> DeltaStream::beginAnew(std::unique_ptr<Coder> fresh) {
     const delta::DeltaEncoderCounts& c = coder_->packer.counts();
-    before_ = {before_.packets + c.packets, before_.records + c.records, before_.rawBytes + c.rawBytes, before_.stagedBytes + c.stagedBytes,
-               before_.storeHits + c.storeHits, before_.newPages + c.newPages, before_.patches + c.patches};
+    before_ = {before_.packets + c.packets,         before_.records + c.records,     before_.rawBytes + c.rawBytes,
+               before_.stagedBytes + c.stagedBytes, before_.storeHits + c.storeHits, before_.newPages + c.newPages,
+               before_.patches + c.patches};
     return std::exchange(coder_, std::move(fresh));
 }
 
@@ -88,8 +98,10 @@ void DeltaStream::hold(uint32_t stream, std::span<const std::byte> payload) {
     // for a node that joins now.
     uint32_t words[2] = {};
     std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
-    if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) holder_.clientGone(words[1]);
-    else holder_.releaseAll();
+    if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
+        holder_.clientGone(words[1]);
+    else
+        holder_.releaseAll();
     pack(stream, payload);
 }
 
@@ -107,9 +119,13 @@ void DeltaStream::pack(uint32_t stream, std::span<const std::byte> payload, cons
 }
 
 // Returns whether references already replace most bytes. Another coding then gains little, and loses dictionary space.
-bool DeltaStream::isMostLeftOut() const { return measured_.rawBytes >= kWorthAWayBytes && measured_.leftOutBytes > measured_.rawBytes / 2; }
+bool DeltaStream::isMostLeftOut() const {
+    return measured_.rawBytes >= kWorthAWayBytes && measured_.leftOutBytes > measured_.rawBytes / 2;
+}
 
-bool DeltaStream::full() const { return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes; }
+bool DeltaStream::full() const {
+    return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes;
+}
 
 Result<std::span<const std::byte>> DeltaStream::take() {
     delta::DeltaEncoder& packer = coder_->packer;
@@ -133,11 +149,18 @@ Result<std::span<const std::byte>> DeltaStream::take() {
         delta::ModeSelector& way = coder_->way;
         const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
         // Deferred data costs the same either way.
-        if (isMostLeftOut()) way.leftOut();
-        else if (timesFrame_) way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes, static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
-        else way.unmeasured();
-        if (way.plain() != packer.plain()) small_.disturbed();
-        else small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes, timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
+        if (isMostLeftOut())
+            way.leftOut();
+        else if (timesFrame_)
+            way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes,
+                         static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
+        else
+            way.unmeasured();
+        if (way.plain() != packer.plain())
+            small_.disturbed();
+        else
+            small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes,
+                         timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
         timesFrame_ = way.wantsTime() || small_.wantsTime();
         packer.beginFrame(way.plain(), frameGoesOn);
         measured_ = {0, 0, 0, 0, encodeNs_, holder_.counts().inBytes, 0};
@@ -172,10 +195,12 @@ DeltaCounts DeltaStream::counts() const {
     const auto of = [](const std::atomic<uint64_t>& from) { return from.load(std::memory_order_relaxed); };
     DeltaCounts c;
     c.on = true;
-    c.packer = {of(published_.packets), of(published_.records), of(published_.rawBytes), of(published_.stagedBytes), of(published_.storeHits), of(published_.newPages), of(published_.patches)};
+    c.packer = {of(published_.packets),   of(published_.records),  of(published_.rawBytes), of(published_.stagedBytes),
+                of(published_.storeHits), of(published_.newPages), of(published_.patches)};
     c.wireBytes = of(published_.wireBytes);
     c.encodeNs = of(published_.encodeNs);
-    c.holder = {of(published_.holdInBytes), of(published_.holdOutBytes), of(published_.heldRecords), of(published_.leftOutRecords), of(published_.leftOutBytes), of(published_.heldBytes)};
+    c.holder = {of(published_.holdInBytes),    of(published_.holdOutBytes), of(published_.heldRecords),
+                of(published_.leftOutRecords), of(published_.leftOutBytes), of(published_.heldBytes)};
     return c;
 }
 

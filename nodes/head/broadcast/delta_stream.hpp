@@ -1,5 +1,6 @@
-// Encodes the stream for nodes on a network: delta coding (streamcodec/delta/) replaces data that the nodes have already. Packets
-// are collected into batches, which the caller sends. The filter (streamcodec/filter/) precedes the coding.
+// Encodes the stream for nodes on a network: delta coding (streamcodec/delta/) replaces data that the nodes have
+// already. Packets are collected into batches, which the caller sends. The filter (streamcodec/filter/) precedes the
+// coding.
 #pragma once
 
 #include <atomic>
@@ -26,7 +27,7 @@ struct DeltaCounts {
     delta::DeltaEncoderCounts packer;
     filter::CommandFilterCounts holder;
     uint64_t wireBytes = 0; // compressed, packet headers included
-    uint64_t encodeNs = 0; // CPU time of the coding; for short packets extrapolated from samples
+    uint64_t encodeNs = 0;  // CPU time of the coding; for short packets extrapolated from samples
 };
 
 // Not thread-safe (StreamBroadcaster's lock), except counts().
@@ -42,8 +43,8 @@ public:
         delta::ModeSelector way;
     };
     static Result<std::unique_ptr<Coder>> freshCoder(const delta::Limits& limits); // thread-safe
-    // Replaces the dictionary. Nodes learn it at the same position of the stream (HeadCommand::ResetDictionary). Requires
-    // empty(). Returns the old one, for destruction without the lock.
+    // Replaces the dictionary. Nodes learn it at the same position of the stream (HeadCommand::ResetDictionary).
+    // Requires empty(). Returns the old one, for destruction without the lock.
     [[nodiscard]] std::unique_ptr<Coder> beginAnew(std::unique_ptr<Coder> fresh);
     [[nodiscard]] const delta::Limits& limits() const { return limits_; }
 
@@ -54,7 +55,7 @@ public:
     void sendBy(std::function<void()> send) { send_ = std::move(send); }
     // Updates the filter's state with a packet that is not sent to any node.
     void miss(uint32_t stream, std::span<const std::byte> payload);
-    void holdNothing() { holds_ = false; } // disables the filter; call before the first packet
+    void holdNothing() { holds_ = false; }                  // disables the filter; call before the first packet
     void losesWhatItHolds() { holder_.losesWhatItHolds(); } // fault injection for tests
 
     [[nodiscard]] bool empty() const { return packets_ == 0; }
@@ -81,25 +82,28 @@ private:
     filter::RedundancyTuner small_;
     std::function<void()> send_;
     bool holds_ = true;
-    bool missed_ = false; // output of the current packet
+    bool missed_ = false;                 // output of the current packet
     int64_t (*nowNs_)() = threadCpuNowNs; // clock of the current packet
-    int64_t sendNs_ = 0; // time in send_ since add() began
+    int64_t sendNs_ = 0;                  // time in send_ since add() began
     std::unique_ptr<Coder> coder_;
     delta::DeltaEncoderCounts before_; // counts of earlier dictionaries
     delta::LinkRate link_;
-    size_t packets_ = 0; // packets in the batch
+    size_t packets_ = 0;     // packets in the batch
     bool timesFrame_ = true; // times every packet of this frame; otherwise long packets only
     bool timesPacking_ = false;
-    uint64_t packNs_ = 0; // coding time of the current packet, without the filter
+    uint64_t packNs_ = 0;         // coding time of the current packet, without the filter
     MedianTimersBySize packetNs_; // from timed frames and the first packet of each size; without long packets
-    MedianTimer takeNs_; // the same, per batch
+    MedianTimer takeNs_;          // the same, per batch
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
-        uint64_t rawBytes = 0, pageBytes = 0, leftOutBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0, holdNs = 0;
+        uint64_t rawBytes = 0, pageBytes = 0, leftOutBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0,
+                 holdNs = 0;
     } measured_; // since the last choice of the coding, about one frame
     struct Published {
-        std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0}, patches{0}, wireBytes{0}, encodeNs{0};
-        std::atomic<uint64_t> holdInBytes{0}, holdOutBytes{0}, heldRecords{0}, leftOutRecords{0}, leftOutBytes{0}, heldBytes{0};
+        std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0},
+            patches{0}, wireBytes{0}, encodeNs{0};
+        std::atomic<uint64_t> holdInBytes{0}, holdOutBytes{0}, heldRecords{0}, leftOutRecords{0}, leftOutBytes{0},
+            heldBytes{0};
     } published_;
 };
 

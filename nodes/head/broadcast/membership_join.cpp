@@ -46,7 +46,8 @@ Result<RejoinLog::Snapshot> StreamBroadcaster::beginCatchUp(int node, TurnsAsked
         if (turns) {
             for (NodeConnection* link : links_)
                 if (link->member() && link->alive() && turns->knows(link->place().node)) turns->asked.push_back(link);
-            sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::RequestPhase, std::as_bytes(std::span(&turns->number, 1))));
+            sendLocked(wire::streamOf(0, 0),
+                       commandBytes(wire::HeadCommand::RequestPhase, std::as_bytes(std::span(&turns->number, 1))));
             flushLocked();
         }
         link(node).setFeed(NodeConnection::Feed::Queued);
@@ -109,7 +110,8 @@ void StreamBroadcaster::inviteToGroup(int node) {
     --joining_;
     const auto number = static_cast<uint32_t>(node);
     // other nodes ignore it
-    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::JoinMulticast, std::as_bytes(std::span(&number, 1))));
+    sendLocked(wire::streamOf(0, 0),
+               commandBytes(wire::HeadCommand::JoinMulticast, std::as_bytes(std::span(&number, 1))));
     flushLocked();
 }
 
@@ -124,9 +126,11 @@ bool StreamBroadcaster::changesOver(const NodeMulticast::Change& came) {
     if (!to.alive() || !to.member() || to.byMulticast()) return true;
     sendBatchLocked();
     const uint64_t skipBytes = multicast_->writtenBytes() - came.fromByte;
-    const wire::SwitchToMulticastCommand command{static_cast<uint32_t>(came.node), static_cast<uint32_t>(skipBytes), static_cast<uint32_t>(skipBytes >> 32)};
+    const wire::SwitchToMulticastCommand command{static_cast<uint32_t>(came.node), static_cast<uint32_t>(skipBytes),
+                                                 static_cast<uint32_t>(skipBytes >> 32)};
     changingOver_ = &to;
-    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::SwitchToMulticast, std::as_bytes(std::span(&command, 1))));
+    sendLocked(wire::streamOf(0, 0),
+               commandBytes(wire::HeadCommand::SwitchToMulticast, std::as_bytes(std::span(&command, 1))));
     sendBatchLocked();
     changingOver_ = nullptr;
     flushLinksLocked();

@@ -10,10 +10,10 @@ namespace {
 using wire::NodeMessage;
 
 constexpr int64_t kWatchGapNs = 2 * kNsPerS; // a longer gap between two checks means that the head itself was stopped
-constexpr int64_t kWriteLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
-constexpr int64_t kReadSliceMs = 100; // interval of the check whether the node was given up
-constexpr int64_t kMessageLimitMs = 60'000; // from a message's header to its last byte
-constexpr int64_t kStatusPatienceMs = 300; // a broken connection is detected before the process has ended
+constexpr int64_t kWriteLimitMs = 600'000;   // a last resort: watch() loses silent nodes earlier
+constexpr int64_t kReadSliceMs = 100;        // interval of the check whether the node was given up
+constexpr int64_t kMessageLimitMs = 60'000;  // from a message's header to its last byte
+constexpr int64_t kStatusPatienceMs = 300;   // a broken connection is detected before the process has ended
 constexpr size_t kMaxQueuedBytes = size_t{256} << 20; // limit during resync
 constexpr uint32_t kMaxTextBytes = 1u << 20;
 constexpr uint32_t kMaxDataBytes = (1u << 30) + 4096; // a picture of 16384 x 16384 pixels
@@ -30,16 +30,14 @@ bool rectangleFits(int32_t x, int32_t y, int32_t w, int32_t h, uint64_t pixelByt
 
 } // namespace
 
-NodeConnection::NodeConnection(NodePlace place,
-                   std::unique_ptr<Connection> connection,
-                   std::unique_ptr<NodeProcess> process,
-                   NodeEvents& events)
-    : place_(std::move(place))
-    , connection_(std::move(connection))
-    , process_(std::move(process))
-    , events_(events)
-    , alive_(connection_ != nullptr)
-    , readerEnded_(connection_ == nullptr) {}
+NodeConnection::NodeConnection(NodePlace place, std::unique_ptr<Connection> connection,
+                               std::unique_ptr<NodeProcess> process, NodeEvents& events)
+    : place_(std::move(place)),
+      connection_(std::move(connection)),
+      process_(std::move(process)),
+      events_(events),
+      alive_(connection_ != nullptr),
+      readerEnded_(connection_ == nullptr) {}
 
 NodeConnection::~NodeConnection() { end(); }
 
@@ -155,14 +153,10 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
     switch (static_cast<NodeMessage>(header.type)) {
     case NodeMessage::Ready:
     case NodeMessage::Log:
-    case NodeMessage::Goodbye:
-        return readText(header);
-    case NodeMessage::ReplyPart:
-        return readAnswer(header.sizeBytes);
-    case NodeMessage::Picture:
-        return readPicture(header.sizeBytes);
-    case NodeMessage::PackedPicture:
-        return readPackedPicture(header.sizeBytes);
+    case NodeMessage::Goodbye: return readText(header);
+    case NodeMessage::ReplyPart: return readAnswer(header.sizeBytes);
+    case NodeMessage::Picture: return readPicture(header.sizeBytes);
+    case NodeMessage::PackedPicture: return readPackedPicture(header.sizeBytes);
     case NodeMessage::FrameDone: {
         wire::FrameDoneMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
@@ -176,15 +170,12 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         forgetPictures(message);
         return handle([&] { return events_.nodeWindowGone(place_.node, message); });
     }
-    case NodeMessage::DriverEvent:
-        return readNews(header.sizeBytes);
+    case NodeMessage::DriverEvent: return readNews(header.sizeBytes);
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;
         return {};
-    case NodeMessage::ViewReached:
-        return readInView(header.sizeBytes);
-    case NodeMessage::Turns:
-        return readTurns(header.sizeBytes);
+    case NodeMessage::ViewReached: return readInView(header.sizeBytes);
+    case NodeMessage::Turns: return readTurns(header.sizeBytes);
     case NodeMessage::Synchronized: {
         wire::SynchronizedMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
@@ -202,10 +193,8 @@ Result<void> NodeConnection::readText(const wire::MessageHeader& header) {
     if (!bytes) return bytes.error();
     const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     return handle([&] {
-        if (header.type == static_cast<uint32_t>(NodeMessage::Ready))
-            return events_.nodeReady(place_.node, text);
-        if (header.type == static_cast<uint32_t>(NodeMessage::Log))
-            return events_.nodeLog(place_.node, text);
+        if (header.type == static_cast<uint32_t>(NodeMessage::Ready)) return events_.nodeReady(place_.node, text);
+        if (header.type == static_cast<uint32_t>(NodeMessage::Log)) return events_.nodeLog(place_.node, text);
         auto done = events_.nodeBye(place_.node, text);
         saidBye_ = done.ok();
         return done;
@@ -226,7 +215,9 @@ Result<void> NodeConnection::readTurns(uint32_t sizeBytes) {
     return handle([&] { return events_.nodeTurns(place_.node, number, turns); });
 }
 
-template <class Entry> Result<void> NodeConnection::readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what) {
+template <class Entry>
+Result<void> NodeConnection::readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries,
+                                      const char* what) {
     const size_t entriesBytes = sizeBytes - std::min<size_t>(sizeBytes, sizeof(first));
     if (sizeBytes < sizeof(first) || entriesBytes > kMaxTextBytes || entriesBytes % sizeof(Entry) != 0)
         return Error{std::string("it said ") + what + " in an impossible size"};
@@ -238,7 +229,8 @@ template <class Entry> Result<void> NodeConnection::readList(uint32_t sizeBytes,
 
 Result<void> NodeConnection::readNews(uint32_t sizeBytes) {
     wire::DriverEvent news{};
-    if (sizeBytes < sizeof(news) || sizeBytes > sizeof(news) + kMaxTextBytes) return Error{"it sent news of an impossible size"};
+    if (sizeBytes < sizeof(news) || sizeBytes > sizeof(news) + kMaxTextBytes)
+        return Error{"it sent news of an impossible size"};
     if (auto got = readStruct(news); !got) return got;
     if (news.textBytes != sizeBytes - sizeof(news)) return Error{"it sent news whose size and text do not fit"};
     auto bytes = readBytes(news.textBytes);
@@ -254,9 +246,8 @@ Result<void> NodeConnection::readAnswer(uint32_t sizeBytes) {
     if (auto got = readStruct(header); !got) return got;
     const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
     const bool rectangle = header.kind == static_cast<uint32_t>(wire::ReplyKind::Rectangle);
-    const bool fits = !rectangle || (header.groupBytes <= 64 &&
-                                     rectangleFits(header.x, header.y, header.w, header.h,
-                                                   header.groupBytes, dataBytes));
+    const bool fits = !rectangle || (header.groupBytes <= 64 && rectangleFits(header.x, header.y, header.w, header.h,
+                                                                              header.groupBytes, dataBytes));
     if (!fits) return Error{"it sent an answer whose rectangle and bytes do not fit"};
     auto bytes = readBytes(dataBytes);
     if (!bytes) return bytes.error();
@@ -280,7 +271,8 @@ Result<void> NodeConnection::readPicture(uint32_t sizeBytes) {
 Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
     wire::PictureHeader header{};
     if (!pictures_) return Error{"it sent a packed picture, which nobody has asked for"};
-    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes) return Error{"it sent a picture of an impossible size"};
+    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes)
+        return Error{"it sent a picture of an impossible size"};
     if (auto got = readStruct(header); !got) return got;
     auto packed = readBytes(sizeBytes - static_cast<uint32_t>(sizeof(header)));
     if (!packed) return packed.error();
@@ -290,7 +282,8 @@ Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
     return handle([&]() -> Result<void> {
         ByteBuffer rows = ByteBuffer::ofSize(pixels * 4);
         if (rows.size() != pixels * 4) return Error{"no memory for a picture of " + std::to_string(pixels) + " pixels"};
-        if (auto done = pictures_->unpack(header.client, header.window, size.w, size.h, packed->span(), rows.span()); !done)
+        if (auto done = pictures_->unpack(header.client, header.window, size.w, size.h, packed->span(), rows.span());
+            !done)
             return Error{"it sent a picture that can't be unpacked: " + done.error().message};
         pictureBytes_ += static_cast<int64_t>(packed->size());
         pictureRawBytes_ += static_cast<int64_t>(rows.size());
@@ -300,8 +293,10 @@ Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
 
 void NodeConnection::forgetPictures(const wire::WindowGoneMessage& gone) {
     if (!pictures_) return;
-    if (gone.window == wire::kAllWindows) pictures_->clientGone(gone.client);
-    else pictures_->windowGone(gone.client, gone.window);
+    if (gone.window == wire::kAllWindows)
+        pictures_->clientGone(gone.client);
+    else
+        pictures_->windowGone(gone.client, gone.window);
 }
 
 template <class Header> Result<void> NodeConnection::readStruct(Header& header) {
@@ -310,8 +305,7 @@ template <class Header> Result<void> NodeConnection::readStruct(Header& header) 
 
 Result<ByteBuffer> NodeConnection::readBytes(size_t sizeBytes) {
     ByteBuffer buffer = ByteBuffer::ofSize(sizeBytes);
-    if (buffer.size() != sizeBytes)
-        return Error{"no memory for a message of " + std::to_string(sizeBytes) + " bytes"};
+    if (buffer.size() != sizeBytes) return Error{"no memory for a message of " + std::to_string(sizeBytes) + " bytes"};
     if (sizeBytes == 0) return buffer;
     auto got = connection_->read(buffer.span(), Deadline::inMs(kMessageLimitMs));
     if (!got) return got.error();

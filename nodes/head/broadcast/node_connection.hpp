@@ -36,7 +36,8 @@ public:
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
     virtual Result<void> nodeBye(int node, const std::string& json) = 0;
     virtual Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) = 0;
-    // The node reports the phases and areas of all windows, at the position of the RequestPhase command with that number.
+    // The node reports the phases and areas of all windows, at the position of the RequestPhase command with that
+    // number.
     virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) = 0;
     virtual Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) = 0;
     // The last call for a node that ended without Bye, after all of its messages.
@@ -52,9 +53,9 @@ struct NodePlace {
 class NodeConnection {
 public:
     NodeConnection(NodePlace place,
-             std::unique_ptr<Connection> connection, // null: the node has not connected and counts as lost
-             std::unique_ptr<NodeProcess> process, // null: not a child of this process (tests)
-             NodeEvents& events);
+                   std::unique_ptr<Connection> connection, // null: the node has not connected and counts as lost
+                   std::unique_ptr<NodeProcess> process,   // null: not a child of this process (tests)
+                   NodeEvents& events);
     ~NodeConnection();
 
     // The destination of the node's packets: the connection, none, or a queue that another thread sends during resync.
@@ -138,7 +139,8 @@ private:
     Result<void> readInView(uint32_t sizeBytes);
     Result<void> readTurns(uint32_t sizeBytes);
     // Reads a number followed by a list that fills the message.
-    template <class Entry> Result<void> readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what);
+    template <class Entry>
+    Result<void> readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what);
     template <class Handler> Result<void> handle(Handler&& handler);
     std::string reasonOfEnd();
 
@@ -146,7 +148,7 @@ private:
     const std::unique_ptr<Connection> connection_;
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
-    Zoom way_; // scale of its pictures in transfer
+    Zoom way_;                                  // scale of its pictures in transfer
     std::unique_ptr<PictureUnpacker> pictures_; // null: pictures are not encoded
     std::atomic<int64_t> pictureBytes_{0}, pictureRawBytes_{0};
     std::thread reader_;
@@ -162,12 +164,12 @@ private:
     std::vector<std::vector<std::byte>> queue_;
     size_t queueBytes_ = 0;
     std::atomic<bool> readerEnded_;
-    int64_t watchedNs_ = 0; // time of the last watch()
-    int64_t excusedNs_ = 0; // silence before this time does not count
-    std::atomic<bool> inMessage_{false}; // the reader is inside a message
-    std::atomic<int64_t> heardNs_{0}; // time of the last complete message
+    int64_t watchedNs_ = 0;                   // time of the last watch()
+    int64_t excusedNs_ = 0;                   // silence before this time does not count
+    std::atomic<bool> inMessage_{false};      // the reader is inside a message
+    std::atomic<int64_t> heardNs_{0};         // time of the last complete message
     std::atomic<int64_t> handlingSinceNs_{0}; // 0: the reader is waiting for the node
-    std::atomic<int64_t> lastMessageNs_{0}; // time of the last processed message other than Alive
+    std::atomic<int64_t> lastMessageNs_{0};   // time of the last processed message other than Alive
     std::mutex reasonMutex_;
     std::string reason_;
 };

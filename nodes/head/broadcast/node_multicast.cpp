@@ -20,12 +20,14 @@ std::string machineOf(const std::string& host) { return host.substr(host.find('@
 // Each session uses its own group, so that hosts receive no foreign traffic.
 std::string freshGroup(const std::string& ownAddress) {
     const auto last = std::to_string(std::random_device()() % 254 + 1);
-    return ownAddress.find(':') != std::string::npos ? endpointText("ff15::4d75:7261:" + last, kPort) : endpointText("239.255.77." + last, kPort);
+    return ownAddress.find(':') != std::string::npos ? endpointText("ff15::4d75:7261:" + last, kPort)
+                                                     : endpointText("239.255.77." + last, kPort);
 }
 
 const char* textOf(rsp::GoneReason reason) {
     switch (reason) {
-    case rsp::GoneReason::Silent: return "nothing came from it, neither by multicast nor by its connection (stopped, or its network cut?)";
+    case rsp::GoneReason::Silent:
+        return "nothing came from it, neither by multicast nor by its connection (stopped, or its network cut?)";
     case rsp::GoneReason::Stalled: return "it took nothing of the stream for too long";
     case rsp::GoneReason::Left:
     case rsp::GoneReason::Cut:
@@ -76,15 +78,19 @@ Result<std::unique_ptr<NodeMulticast>> NodeMulticast::open(const std::string& st
 }
 
 NodeMulticast::NodeMulticast(std::unique_ptr<rsp::Group> group, const rsp::GroupOptions& options)
-    : group_(std::move(group))
-    , description_(options.group + " on " + (options.interface.empty() ? "the first network" : options.interface) + ", " + rsp::nameOf(options.seal) +
-                   (options.datagramBytes > 0 ? ", datagrams of " + std::to_string(options.datagramBytes) + " bytes" : ""))
-    , groupAddress_(options.group)
-    , secret_(options.secret) {
+    : group_(std::move(group)),
+      description_(
+          options.group + " on " + (options.interface.empty() ? "the first network" : options.interface) + ", " +
+          rsp::nameOf(options.seal) +
+          (options.datagramBytes > 0 ? ", datagrams of " + std::to_string(options.datagramBytes) + " bytes" : "")),
+      groupAddress_(options.group),
+      secret_(options.secret) {
     if (auto control = splitHostPort(group_->controlAddress())) controlPort_ = control->port;
 }
 
-std::string NodeMulticast::invitation() const { return "rsp://" + groupAddress_ + "?control=" + endpointText("", controlPort_); }
+std::string NodeMulticast::invitation() const {
+    return "rsp://" + groupAddress_ + "?control=" + endpointText("", controlPort_);
+}
 
 Result<void> NodeMulticast::write(std::span<const std::byte> bytes, Deadline deadline) {
     writtenBytes_ += bytes.size();

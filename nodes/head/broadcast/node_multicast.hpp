@@ -46,8 +46,8 @@ public:
         int node = 0;
         Kind kind = Kind::Came;
         bool multicast = false; // multicast reaches it; otherwise its tunnel
-        uint64_t fromByte = 0; // joined: offset of the first byte that it receives
-        std::string why; // left: the reason
+        uint64_t fromByte = 0;  // joined: offset of the first byte that it receives
+        std::string why;        // left: the reason
     };
     std::vector<Change> takeChanges();
     // The nodes whose acknowledgement the stream waits for.

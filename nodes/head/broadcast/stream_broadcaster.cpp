@@ -69,7 +69,8 @@ bool StreamBroadcaster::broadcast(wire::HeadCommand command, Deadline deadline) 
 bool StreamBroadcaster::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
     const bool plain = sendPacketLocked(stream, payload);
     if (!economy_) return plain;
-    const bool batched = std::ranges::any_of(links_, [](const NodeConnection* link) { return link->inBatches() && link->alive(); });
+    const bool batched =
+        std::ranges::any_of(links_, [](const NodeConnection* link) { return link->inBatches() && link->alive(); });
     if (!batched) {
         economy_->miss(stream, payload); // its state must still follow the programs
         return plain;
@@ -84,13 +85,16 @@ bool StreamBroadcaster::sendPacketLocked(uint32_t stream, std::span<const std::b
 }
 
 // Sends to the links that receive batches, or to all others.
-bool StreamBroadcaster::sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload, bool inBatches) {
+bool StreamBroadcaster::sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload,
+                                          bool inBatches) {
     bool any = false;
     bool byMulticast = false;
     for (NodeConnection* link : links_) {
         if (link->inBatches() != inBatches) continue;
-        if (link->byMulticast()) byMulticast = byMulticast || link->alive();
-        else sendTo(*link, header, payload);
+        if (link->byMulticast())
+            byMulticast = byMulticast || link->alive();
+        else
+            sendTo(*link, header, payload);
         byMulticast = byMulticast || link == changingOver_;
         any = any || link->alive();
     }
@@ -113,7 +117,8 @@ void StreamBroadcaster::sendBatchLocked() {
     economy_->wrote(batch->size(), monotonicNowNs() - beganNs);
 }
 
-void StreamBroadcaster::sendTo(NodeConnection& link, std::span<const std::byte> header, std::span<const std::byte> payload) {
+void StreamBroadcaster::sendTo(NodeConnection& link, std::span<const std::byte> header,
+                               std::span<const std::byte> payload) {
     sendingTo_ = link.place().node;
     link.send(header, payload);
 }
@@ -161,14 +166,17 @@ void StreamBroadcaster::flush() {
 bool StreamBroadcaster::flushActionable() {
     const std::lock_guard lock(sendMutex_);
     const bool stays = economy_ && !economy_->empty() && economy_->inValue();
-    if (stays) flushLinksLocked();
-    else flushLocked();
+    if (stays)
+        flushLinksLocked();
+    else
+        flushLocked();
     return !stays;
 }
 
 int StreamBroadcaster::livingCount() const {
-    return static_cast<int>(
-        std::ranges::count_if(links_, [](const NodeConnection* link) { return link->alive() && link->feed() == NodeConnection::Feed::Direct; }));
+    return static_cast<int>(std::ranges::count_if(links_, [](const NodeConnection* link) {
+        return link->alive() && link->feed() == NodeConnection::Feed::Direct;
+    }));
 }
 
 void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted) {
@@ -179,8 +187,10 @@ void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::func
         NodeConnection& link = this->link(change.node);
         if (change.kind == Kind::Came && link.joinsGroup()) comers_.push_back(change);
         if (!link.alive() || link.saidBye() || !link.byMulticast()) continue; // or it has returned by another transport
-        if (change.kind == Kind::Gone) link.lose(change.why);
-        else if (change.kind == Kind::Rerouted || !change.multicast) rerouted(change.node, change.multicast);
+        if (change.kind == Kind::Gone)
+            link.lose(change.why);
+        else if (change.kind == Kind::Rerouted || !change.multicast)
+            rerouted(change.node, change.multicast);
     }
     std::erase_if(comers_, [&](const NodeMulticast::Change& came) {
         if (!changesOver(came)) return false;
@@ -189,7 +199,8 @@ void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::func
     });
     // A writer may be waiting for space in a lost node's connection.
     for (NodeConnection* link : links_)
-        if ((link->byMulticast() || link->joinsGroup()) && !link->alive()) multicast_->remove(link->place().node, "the head has lost it");
+        if ((link->byMulticast() || link->joinsGroup()) && !link->alive())
+            multicast_->remove(link->place().node, "the head has lost it");
 }
 
 void StreamBroadcaster::loseAll(const std::string& why) {

@@ -65,17 +65,17 @@ public:
     // Returns the snapshot for the node, and queues all later packets in its link. If `turns` is set, requests the
     // state of members at this position.
     struct TurnsAsked {
-        uint32_t number = 0; // number of the RequestPhase
+        uint32_t number = 0;                 // number of the RequestPhase
         std::function<bool(int node)> knows; // the member has the same kind of state
-        std::vector<NodeConnection*> asked; // output: the members that will answer if they live
+        std::vector<NodeConnection*> asked;  // output: the members that will answer if they live
     };
     Result<RejoinLog::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
     // Makes the node a member after all packets so far, and informs all nodes. `announce` runs first and may refuse. If
     // the node receives batches, delta coding restarts for all nodes: only an empty dictionary equals the new node's.
     struct Admission {
         bool refused = false;
-        bool first = false; // the first member with this kind of state
-        uint32_t life = 0; // its incarnation
+        bool first = false;           // the first member with this kind of state
+        uint32_t life = 0;            // its incarnation
         std::vector<uint32_t> absent; // nodes that are no members
     };
     Result<void> admit(int node, const std::function<Admission(uint32_t view)>& announce);
@@ -112,15 +112,16 @@ private:
     void keepLocked(uint32_t stream, std::span<const std::byte> payload);
 
     trace::StreamRecorder* recorder_ = nullptr; // null: no recording
-    std::unique_ptr<DeltaStream> economy_; // null: no delta coding
-    std::unique_ptr<NodeMulticast> multicast_; // null: each node has its own stream
+    std::unique_ptr<DeltaStream> economy_;      // null: no delta coding
+    std::unique_ptr<NodeMulticast> multicast_;  // null: each node has its own stream
     // for watch(): group members that still receive their packets on both transports
     std::vector<NodeMulticast::Change> comers_;
-    const NodeConnection* changingOver_ = nullptr; // the link that receives packets on both transports, or null
-    std::unique_ptr<RejoinLog> kept_; // null: lost nodes stay lost
+    const NodeConnection* changingOver_ = nullptr;   // the link that receives packets on both transports, or null
+    std::unique_ptr<RejoinLog> kept_;                // null: lost nodes stay lost
     std::deque<std::atomic<NodeConnection*>> links_; // by node
-    std::vector<std::unique_ptr<NodeConnection>> owned_; // includes links of lost nodes, which other threads may still use
-    uint32_t view_ = 0; // number of returned nodes
+    std::vector<std::unique_ptr<NodeConnection>>
+        owned_;                   // includes links of lost nodes, which other threads may still use
+    uint32_t view_ = 0;           // number of returned nodes
     std::atomic<int> joining_{0}; // resync threads that wait for the mutex
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};

@@ -1,5 +1,5 @@
-// Predicts whether another publication arrives within one nap (common/ipc/capture_ring.hpp). If so, the head's reader naps
-// and polls again, and the program saves the system call of a wake-up.
+// Predicts whether another publication arrives within one nap (common/ipc/capture_ring.hpp). If so, the head's reader
+// naps and polls again, and the program saves the system call of a wake-up.
 #pragma once
 
 #include <cstdint>

@@ -11,9 +11,9 @@
 namespace mural {
 namespace {
 
-constexpr int64_t kPumpSliceNs = 50 * kNsPerMs; // interval of the check whether the program has ended
+constexpr int64_t kPumpSliceNs = 50 * kNsPerMs;     // interval of the check whether the program has ended
 constexpr int64_t kValuePatienceNs = 20 * kNsPerMs; // wait for the rest of a value that nodes can't use alone
-constexpr size_t kFlushBytes = size_t{64} * 1024; // nodes start on partial data of this size
+constexpr size_t kFlushBytes = size_t{64} * 1024;   // nodes start on partial data of this size
 constexpr size_t kMaxQueuedBytes = size_t{1} << 31; // limit of replies that the program does not read
 
 std::string nameOf(pid_t pid) {
@@ -25,17 +25,9 @@ std::string nameOf(pid_t pid) {
 
 } // namespace
 
-CaptureClient::CaptureClient(uint32_t id,
-                             pid_t pid,
-                             std::unique_ptr<CaptureMemory> memory,
-                             StreamBroadcaster& nodes,
+CaptureClient::CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
                              CaptureEvents& events)
-    : id_(id)
-    , pid_(pid)
-    , name_(nameOf(pid))
-    , memory_(std::move(memory))
-    , nodes_(nodes)
-    , events_(events) {}
+    : id_(id), pid_(pid), name_(nameOf(pid)), memory_(std::move(memory)), nodes_(nodes), events_(events) {}
 
 CaptureClient::~CaptureClient() {
     stop();
@@ -110,7 +102,8 @@ void CaptureClient::waitForMore() {
     }
     arrived_ = false;
     const bool soon = pace_.moreSoon(nowNs);
-    memory_->waitPublished(soon ? capture::Reader::Naps : capture::Reader::Sleeps, soon ? capture::kNapNs : kPumpSliceNs);
+    memory_->waitPublished(soon ? capture::Reader::Naps : capture::Reader::Sleeps,
+                           soon ? capture::kNapNs : kPumpSliceNs);
 }
 
 void CaptureClient::reportEnd() {
@@ -154,9 +147,7 @@ bool CaptureClient::drained() const {
     return draining_ && static_cast<int32_t>(memory_->takenHead() - drainTail_) >= 0;
 }
 
-bool CaptureClient::programGone() const {
-    return memory_->programGone();
-}
+bool CaptureClient::programGone() const { return memory_->programGone(); }
 
 void CaptureClient::reply(Reply reply) {
     if (reply.header.kind != capture::kPictureReply && (reply.header.requestId & capture::kAskedAhead) != 0) {

@@ -41,10 +41,7 @@ struct Reply {
 // Thread-safe.
 class CaptureClient {
 public:
-    CaptureClient(uint32_t id,
-                  pid_t pid,
-                  std::unique_ptr<CaptureMemory> memory,
-                  StreamBroadcaster& nodes,
+    CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
                   CaptureEvents& events);
     ~CaptureClient(); // calls stop()
 
@@ -87,8 +84,8 @@ private:
     std::thread pumpThread_;
     std::thread replyThread_;
     size_t unflushedBytes_ = 0; // used by the pump's thread, as the next three
-    bool arrived_ = false; // data arrived since the last wait
-    int64_t arrivedNs_ = 0; // start of the last wait after arrived data
+    bool arrived_ = false;      // data arrived since the last wait
+    int64_t arrivedNs_ = 0;     // start of the last wait after arrived data
     ArrivalRate pace_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> draining_{false};

@@ -22,8 +22,8 @@ constexpr uint64_t kPageBytes = 4096;
 uint64_t roundUp(uint64_t value) { return (value + kPageBytes - 1) / kPageBytes * kPageBytes; }
 
 Error systemError(const char* what) {
-    return Error{std::string("no shared memory for a program: ") + what + ": " +
-                 std::strerror(errno) + "; check the limits of memory, open files and file sizes (ulimit -a)"};
+    return Error{std::string("no shared memory for a program: ") + what + ": " + std::strerror(errno) +
+                 "; check the limits of memory, open files and file sizes (ulimit -a)"};
 }
 
 // Opens a separate file description for the program, with a lock. The lock shows whether any process still has it.
@@ -55,7 +55,8 @@ void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
 std::string commandName(const capture::TripCount& trips) {
     std::string name;
     for (const char c : trips.command) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+        const bool plain =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
         if (!plain) break;
         name += c;
     }
@@ -69,21 +70,17 @@ void store(std::atomic<uint32_t>& word, uint32_t value) {
 
 } // namespace
 
-Result<std::unique_ptr<CaptureMemory>> CaptureMemory::create(uint32_t chunkCount,
-                                                             uint32_t replyBytes) {
+Result<std::unique_ptr<CaptureMemory>> CaptureMemory::create(uint32_t chunkCount, uint32_t replyBytes) {
     FileDescriptor fd(memfd_create("mural-capture", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!fd.valid()) return systemError("memfd_create");
     CaptureHeader layout{};
     writeLayout(layout, chunkCount, replyBytes);
-    if (ftruncate(fd.get(), static_cast<off_t>(layout.totalBytes)) != 0)
-        return systemError("ftruncate");
+    if (ftruncate(fd.get(), static_cast<off_t>(layout.totalBytes)) != 0) return systemError("ftruncate");
     // Without the seals the program could shrink the memory and kill the head with SIGBUS.
-    if (fcntl(fd.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
-        return systemError("sealing");
+    if (fcntl(fd.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) return systemError("sealing");
     auto programFd = openForProgram(fd.get());
     if (!programFd) return programFd.error();
-    void* base =
-        mmap(nullptr, layout.totalBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
+    void* base = mmap(nullptr, layout.totalBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
     if (base == MAP_FAILED) return systemError("mmap");
     auto* header = new (base) CaptureHeader{};
     writeLayout(*header, chunkCount, replyBytes);
@@ -92,18 +89,18 @@ Result<std::unique_ptr<CaptureMemory>> CaptureMemory::create(uint32_t chunkCount
 }
 
 CaptureMemory::CaptureMemory(FileDescriptor fd, FileDescriptor programFd, std::byte* base, const CaptureHeader& layout)
-    : fd_(std::move(fd))
-    , programFd_(std::move(programFd))
-    , base_(base)
-    , shared_(reinterpret_cast<CaptureHeader*>(base))
-    , chunkCount_(layout.chunkCount)
-    , replyCapacity_(layout.replyCapacity)
-    , publicationsAt_(layout.publicationsAt)
-    , freedAt_(layout.freedAt)
-    , repliesAt_(layout.repliesAt)
-    , newsAt_(layout.newsAt)
-    , chunksAt_(layout.chunksAt)
-    , totalBytes_(layout.totalBytes) {
+    : fd_(std::move(fd)),
+      programFd_(std::move(programFd)),
+      base_(base),
+      shared_(reinterpret_cast<CaptureHeader*>(base)),
+      chunkCount_(layout.chunkCount),
+      replyCapacity_(layout.replyCapacity),
+      publicationsAt_(layout.publicationsAt),
+      freedAt_(layout.freedAt),
+      repliesAt_(layout.repliesAt),
+      newsAt_(layout.newsAt),
+      chunksAt_(layout.chunksAt),
+      totalBytes_(layout.totalBytes) {
     auto* freed = reinterpret_cast<uint32_t*>(at(freedAt_));
     for (uint32_t i = 0; i < chunkCount_; ++i) freed[i] = i;
     freedTail_ = chunkCount_;
@@ -124,10 +121,8 @@ CaptureMemory::Next CaptureMemory::next(Range& range) {
     std::memcpy(&p, at(publicationsAt_ + slot * sizeof(Publication)), sizeof(p));
     asm volatile("" ::: "memory"); // the copy is the only read
     const bool whole = p.beginBytes % 4 == 0 && p.endBytes % 4 == 0;
-    if (p.chunk >= chunkCount_ || p.beginBytes > p.endBytes || p.endBytes > kChunkBytes || !whole)
-        return Next::Bad;
-    range.bytes = {at(chunksAt_ + uint64_t{p.chunk} * kChunkBytes + p.beginBytes),
-                   p.endBytes - p.beginBytes};
+    if (p.chunk >= chunkCount_ || p.beginBytes > p.endBytes || p.endBytes > kChunkBytes || !whole) return Next::Bad;
+    range.bytes = {at(chunksAt_ + uint64_t{p.chunk} * kChunkBytes + p.beginBytes), p.endBytes - p.beginBytes};
     range.chunk = p.chunk;
     range.stream = p.stream;
     range.lastOfChunk = p.lastOfChunk != 0;
@@ -148,9 +143,7 @@ bool CaptureMemory::take(const Range& range) {
     return true;
 }
 
-uint32_t CaptureMemory::publishedTail() const {
-    return shared_->publishedTail.load(std::memory_order_acquire);
-}
+uint32_t CaptureMemory::publishedTail() const { return shared_->publishedTail.load(std::memory_order_acquire); }
 
 void CaptureMemory::waitPublished(capture::Reader how, int64_t timeoutNs) {
     shared_->reader.store(static_cast<uint32_t>(how), std::memory_order_relaxed);
@@ -232,9 +225,8 @@ void CaptureMemory::setFramesShown(uint32_t frames) { store(shared_->framesShown
 
 void CaptureMemory::setHeadGone() {
     store(shared_->headGone, 1);
-    for (const auto* word : {&shared_->publishedTail, &shared_->publishedHead, &shared_->freedTail,
-                             &shared_->replyTail, &shared_->replyHead, &shared_->framesDone,
-                             &shared_->framesShown})
+    for (const auto* word : {&shared_->publishedTail, &shared_->publishedHead, &shared_->freedTail, &shared_->replyTail,
+                             &shared_->replyHead, &shared_->framesDone, &shared_->framesShown})
         futexWakeAll(*word);
 }
 
@@ -255,7 +247,8 @@ CaptureCounts CaptureMemory::counts() const {
     c.differingPixels = shared_->differingPixels.load();
     c.squaredDifference = shared_->squaredDifference.load();
     c.largestDifference = shared_->largestDifference.load();
-    for (uint32_t i = 0; i < capture::kUncomparedReasons; ++i) c.uncomparedFrames[i] = shared_->uncomparedFrames[i].load();
+    for (uint32_t i = 0; i < capture::kUncomparedReasons; ++i)
+        c.uncomparedFrames[i] = shared_->uncomparedFrames[i].load();
     c.callsUnsupported = shared_->callsUnsupported.load();
     c.roundTrips = shared_->roundTrips.load();
     for (uint32_t i = 0; i < capture::kWaits; ++i) c.waitNs[i] = shared_->waitNs[i].load();

@@ -32,8 +32,8 @@ struct CaptureCounts {
     std::array<uint64_t, capture::kUncomparedReasons> uncomparedFrames{}; // by capture::Uncompared
     uint64_t callsUnsupported = 0;
     uint64_t roundTrips = 0;
-    std::map<std::string, uint64_t> tripsBy; // number of round trips by command
-    std::array<uint64_t, capture::kWaits> waitNs{}; // by capture::Wait
+    std::map<std::string, uint64_t> tripsBy;           // number of round trips by command
+    std::array<uint64_t, capture::kWaits> waitNs{};    // by capture::Wait
     capture::Wait waitingFor = capture::Wait::Nothing; // current wait of a running program
     uint64_t frameCpuNs = 0;
     uint64_t frameCpuFrames = 0;
@@ -43,8 +43,8 @@ struct CaptureCounts {
 class CaptureMemory {
 public:
     // Requires powers of two.
-    static Result<std::unique_ptr<CaptureMemory>> create(
-        uint32_t chunkCount = capture::kDefaultChunks, uint32_t replyBytes = capture::kReplyBytes);
+    static Result<std::unique_ptr<CaptureMemory>> create(uint32_t chunkCount = capture::kDefaultChunks,
+                                                         uint32_t replyBytes = capture::kReplyBytes);
     CaptureMemory(const CaptureMemory&) = delete;
     CaptureMemory& operator=(const CaptureMemory&) = delete;
     ~CaptureMemory();
@@ -64,7 +64,7 @@ public:
         bool lastOfChunk = false;
     };
     enum class Next { Empty, Ready, Bad };
-    Next next(Range& range); // the oldest publication that was not taken
+    Next next(Range& range);       // the oldest publication that was not taken
     bool take(const Range& range); // releases the publication; false: the ring of freed chunks is corrupt
     [[nodiscard]] uint32_t publishedTail() const;
     [[nodiscard]] uint32_t takenHead() const { return publishedHead_; }
@@ -86,8 +86,8 @@ public:
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);
     void beat() { shared_->headBeat.fetch_add(1, std::memory_order_relaxed); } // heartbeat of the head
-    void setHeadGone(); // also wakes the waiters on all words
-    std::atomic<uint32_t>& lifeWord() { return shared_->headLife; } // the word of a LifeMark
+    void setHeadGone();                                                        // also wakes the waiters on all words
+    std::atomic<uint32_t>& lifeWord() { return shared_->headLife; }            // the word of a LifeMark
     [[nodiscard]] CaptureCounts counts() const;
     // Names of the X displays on which the program has windows, by number.
     [[nodiscard]] std::vector<std::string> displayNames() const;

@@ -32,7 +32,8 @@ Error socketError(const std::string& session, const char* what) {
 Result<FileDescriptor> listenAt(const std::string& session, const sockaddr_un& address, size_t bytes) {
     FileDescriptor fd(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     if (!fd.valid()) return socketError(session, "socket");
-    if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), static_cast<socklen_t>(bytes)) != 0) return socketError(session, "bind");
+    if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), static_cast<socklen_t>(bytes)) != 0)
+        return socketError(session, "bind");
     if (listen(fd.get(), 64) != 0) return socketError(session, "listen");
     return fd;
 }
@@ -41,8 +42,8 @@ Result<FileDescriptor> listenAbstract(const std::string& session) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     if (session.empty() || session.size() >= sizeof(address.sun_path)) {
-        return Error{"the session's name must have 1 to " +
-                     std::to_string(sizeof(address.sun_path) - 1) + " bytes: " + session};
+        return Error{"the session's name must have 1 to " + std::to_string(sizeof(address.sun_path) - 1) +
+                     " bytes: " + session};
     }
     std::memcpy(address.sun_path + 1, session.data(), session.size()); // [0] = 0: abstract
     return listenAt("@" + session, address, offsetof(sockaddr_un, sun_path) + 1 + session.size());
@@ -110,24 +111,24 @@ bool peerOf(int socket, ucred& peer) {
 
 } // namespace
 
-Result<std::unique_ptr<CaptureServer>> CaptureServer::start(const CaptureAddresses& addresses,
-                                                            uint64_t digest,
-                                                            ProgramHost& host,
-                                                            std::function<std::string()> status) {
+Result<std::unique_ptr<CaptureServer>> CaptureServer::start(const CaptureAddresses& addresses, uint64_t digest,
+                                                            ProgramHost& host, std::function<std::string()> status) {
     auto listener = listenAbstract(addresses.abstractName);
     if (!listener) return listener.error();
-    std::unique_ptr<CaptureServer> server(new CaptureServer(std::move(*listener), listenInFolder(addresses.path), addresses.path, digest, host, std::move(status)));
+    std::unique_ptr<CaptureServer> server(new CaptureServer(std::move(*listener), listenInFolder(addresses.path),
+                                                            addresses.path, digest, host, std::move(status)));
     server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
     return server;
 }
 
-CaptureServer::CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest, ProgramHost& host, std::function<std::string()> status)
-    : listener_(std::move(listener))
-    , pathListener_(std::move(pathListener))
-    , path_(std::move(path))
-    , digest_(digest)
-    , host_(host)
-    , status_(std::move(status)) {}
+CaptureServer::CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest,
+                             ProgramHost& host, std::function<std::string()> status)
+    : listener_(std::move(listener)),
+      pathListener_(std::move(pathListener)),
+      path_(std::move(path)),
+      digest_(digest),
+      host_(host),
+      status_(std::move(status)) {}
 
 CaptureServer::~CaptureServer() {
     stop_ = true;
@@ -173,8 +174,8 @@ bool CaptureServer::settle(Newcomer& newcomer, bool readable) {
     if (newcomer.deadline.passed() && !newcomer.mayTakeLong) return true;
     if (!readable) return false;
     auto* hello = reinterpret_cast<std::byte*>(&newcomer.hello);
-    const ssize_t n = recv(newcomer.socket.get(), hello + newcomer.haveBytes,
-                           sizeof(Hello) - newcomer.haveBytes, MSG_DONTWAIT);
+    const ssize_t n =
+        recv(newcomer.socket.get(), hello + newcomer.haveBytes, sizeof(Hello) - newcomer.haveBytes, MSG_DONTWAIT);
     if (n == 0) return true; // the peer has closed the connection
     if (n < 0) return errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR;
     newcomer.haveBytes += static_cast<size_t>(n);
@@ -192,8 +193,7 @@ void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
         sendWelcome(socket.get(), refusal, admission.error().message, -1);
         return;
     }
-    const bool sent =
-        sendWelcome(socket.get(), admission->welcome, admission->extensions, admission->memoryFd);
+    const bool sent = sendWelcome(socket.get(), admission->welcome, admission->extensions, admission->memoryFd);
     host_.programWelcomed(admission->welcome.clientId, sent ? std::move(socket) : FileDescriptor());
 }
 
@@ -209,8 +209,7 @@ Result<Admission> CaptureServer::judge(int socket, const Hello& hello) {
     if (!peerOf(socket, peer)) return Error{"the head can't tell who this program is"};
     if (peer.uid != geteuid())
         return Error{"the session belongs to another user; start the program as the user of `mural run`"};
-    if (hello.magic != capture::kMagic || hello.version != capture::kVersion ||
-        hello.registryDigest != digest_) {
+    if (hello.magic != capture::kMagic || hello.version != capture::kVersion || hello.registryDigest != digest_) {
         return Error{"the preloaded library and `mural head` are of different builds; "
                      "install both from one build"};
     }

@@ -19,7 +19,7 @@ namespace mural {
 
 struct Admission {
     capture::Welcome welcome{}; // the server sets refused, extensionBytes, magic and version
-    int memoryFd = -1; // owned by the ProgramHost
+    int memoryFd = -1;          // owned by the ProgramHost
     std::string extensions;
 };
 
@@ -35,17 +35,15 @@ public:
 
 struct CaptureAddresses {
     std::string abstractName; // reachable from the head's network namespace
-    std::string path; // reachable from its mount namespace; empty: none
+    std::string path;         // reachable from its mount namespace; empty: none
 };
 
 class CaptureServer {
 public:
     // digest: the digest of the command table, which must be equal at both ends.
     // status: returns the session's state as JSON, for `mural stat`; called by the server's thread.
-    static Result<std::unique_ptr<CaptureServer>> start(const CaptureAddresses& addresses,
-                                                        uint64_t digest,
-                                                        ProgramHost& host,
-                                                        std::function<std::string()> status);
+    static Result<std::unique_ptr<CaptureServer>> start(const CaptureAddresses& addresses, uint64_t digest,
+                                                        ProgramHost& host, std::function<std::string()> status);
     CaptureServer(const CaptureServer&) = delete;
     CaptureServer& operator=(const CaptureServer&) = delete;
     ~CaptureServer(); // stops
@@ -59,7 +57,8 @@ private:
         size_t haveBytes = 0; // received bytes of hello
     };
 
-    CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest, ProgramHost& host, std::function<std::string()> status);
+    CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest,
+                  ProgramHost& host, std::function<std::string()> status);
     void serve();
     void acceptOne(int listener);
     bool settle(Newcomer& newcomer, bool readable); // true: accepted or refused

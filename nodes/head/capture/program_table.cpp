@@ -14,9 +14,7 @@ constexpr uint32_t kMaxIds = 65535; // streams carry 16 bits of it, see wire::st
 } // namespace
 
 ProgramTable::ProgramTable(ProgramTerms terms, StreamBroadcaster& nodes, Events events)
-    : terms_(std::move(terms))
-    , nodes_(nodes)
-    , events_(std::move(events)) {}
+    : terms_(std::move(terms)), nodes_(nodes), events_(std::move(events)) {}
 
 ProgramTable::~ProgramTable() { endAll(); }
 
@@ -45,7 +43,7 @@ void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
         if (found == admitted_.end()) return;
         const auto client = found->second;
         admitted_.erase(found);
-        if (!socket.valid()) return; // the program left before it was admitted
+        if (!socket.valid()) return;                   // the program left before it was admitted
         if (headGone_) client->memory().setHeadGone(); // the nodes were lost before its admission
         events_.came(*client);
         started = client->start(std::move(socket));
@@ -63,8 +61,7 @@ void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
         const std::lock_guard lock(mutex_);
         const auto found = clients_.find(id);
         if (found == clients_.end()) return;
-        if (!problem.empty())
-            line = found->second->describe() + " was dropped: " + problem + "; it goes on alone";
+        if (!problem.empty()) line = found->second->describe() + " was dropped: " + problem + "; it goes on alone";
         addCounts(goneCounts_, found->second->memory().counts());
         if (auto names = found->second->memory().displayNames(); !names.empty()) goneDisplays_[id] = std::move(names);
         gone_.push_back(found->second);
@@ -120,7 +117,8 @@ void ProgramTable::tellProgress(CaptureClient& client, const Progress& progress)
     client.memory().setFramesShown(progress.shown);
 }
 
-bool ProgramTable::giveOwnPicture(uint32_t id, uint32_t frame, uint64_t nativeWindow, const Picture& picture, std::function<void()> done) {
+bool ProgramTable::giveOwnPicture(uint32_t id, uint32_t frame, uint64_t nativeWindow, const Picture& picture,
+                                  std::function<void()> done) {
     const auto client = find(id);
     const auto format = client ? client->memory().ownWindow(static_cast<uint32_t>(nativeWindow), frame) : std::nullopt;
     if (!format) return false;
@@ -201,7 +199,7 @@ std::string ProgramTable::displayName(uint32_t client, uint32_t number) const {
     const std::lock_guard lock(mutex_);
     const auto here = clients_.find(client);
     const auto gone = goneDisplays_.find(client);
-    const std::vector<std::string> names = here != clients_.end()      ? here->second->memory().displayNames()
+    const std::vector<std::string> names = here != clients_.end()        ? here->second->memory().displayNames()
                                            : gone != goneDisplays_.end() ? gone->second
                                                                          : std::vector<std::string>();
     return number < names.size() ? names[number] : std::string();

@@ -49,19 +49,20 @@ public:
     void displayBlocked(uint32_t client, bool isBlocked);
     // Returns true if the program itself puts this picture into its window (capture::OwnWindow). `done` is called when
     // the program has the picture.
-    bool giveOwnPicture(uint32_t client, uint32_t frame, uint64_t nativeWindow, const Picture& picture, std::function<void()> done);
-    void beat(); // sends the heartbeat to all programs; called by the main loop
+    bool giveOwnPicture(uint32_t client, uint32_t frame, uint64_t nativeWindow, const Picture& picture,
+                        std::function<void()> done);
+    void beat();         // sends the heartbeat to all programs; called by the main loop
     void tellHeadGone(); // all programs continue without Mural
 
     // Sends everything published before this call to the nodes and ends the pumps. Replies and credit still reach the
     // programs. Calls `tick` meanwhile.
     void drainAll(Deadline deadline, const std::function<void()>& tick);
-    void reap(); // joins the threads of ended programs
+    void reap();   // joins the threads of ended programs
     void endAll(); // informs the programs and joins all threads; requires that no node blocks a pump
 
     // Returns the name of an X display of the program, even after its end. Empty: unknown.
     [[nodiscard]] std::string displayName(uint32_t client, uint32_t number) const;
-    [[nodiscard]] CaptureCounts counts() const; // sum over current and ended programs
+    [[nodiscard]] CaptureCounts counts() const;              // sum over current and ended programs
     [[nodiscard]] std::vector<ProgramStatus> status() const; // current programs, without their frames
 
 private:

@@ -14,8 +14,10 @@ bool FrameTimes::follow(const wire::FrameDoneMessage& m) {
     const auto width = static_cast<int>(m.width), height = static_cast<int>(m.height);
     if (width == 0 || height == 0) return false;
     const bool larger = int64_t{width} * height > int64_t{width_} * height_;
-    if (follows(m)) others_ = 0;
-    else if (!larger && ++others_ <= kOthers) return false;
+    if (follows(m))
+        others_ = 0;
+    else if (!larger && ++others_ <= kOthers)
+        return false;
     if (follows(m) && width == width_ && height == height_) return false;
     followed_ = {m.client, m.window};
     others_ = 0;

@@ -26,7 +26,9 @@ public:
 
     // Call first for each message. Returns true if the followed window or its size has changed.
     bool follow(const wire::FrameDoneMessage& message);
-    [[nodiscard]] bool follows(const wire::FrameDoneMessage& message) const { return Window{message.client, message.window} == followed_; }
+    [[nodiscard]] bool follows(const wire::FrameDoneMessage& message) const {
+        return Window{message.client, message.window} == followed_;
+    }
     void worked(int node, uint64_t busyNs) { workNs_[static_cast<size_t>(node)] += static_cast<double>(busyNs); }
     // For a message of the followed window. Returns the frame if this node was the last to finish it.
     std::optional<Frame> finished(int node, const wire::FrameDoneMessage& message);
@@ -48,7 +50,7 @@ private:
     std::vector<double> workNs_; // per node, since its last frame of the followed window
     Window followed_{};
     int width_ = 0, height_ = 0;       // of it
-    int others_ = 0; // frames of other windows since the last frame of the followed one
+    int others_ = 0;                   // frames of other windows since the last frame of the followed one
     std::map<uint32_t, Frame> frames_; // incomplete frames of the followed window, by number
 };
 

@@ -15,9 +15,7 @@ constexpr size_t kMaxOpenFrames = size_t{1} << 20;
 } // namespace
 
 FrameTracker::FrameTracker(int nodes, Credit credit)
-    : credit_(std::move(credit))
-    , living_(static_cast<size_t>(nodes), true)
-    , framesOf_(static_cast<size_t>(nodes), 0) {}
+    : credit_(std::move(credit)), living_(static_cast<size_t>(nodes), true), framesOf_(static_cast<size_t>(nodes), 0) {}
 
 FrameTracker::Client& FrameTracker::client(uint32_t id) {
     Client& c = clients_[id];
@@ -57,7 +55,8 @@ void FrameTracker::nodeJoins(int node) {
     const std::lock_guard lock(mutex_);
     for (auto& [id, c] : clients_) {
         uint32_t known = c.finished;
-        for (const NodeProgress& other : c.nodes) known = std::max({known, other.done, other.early.empty() ? 0 : *other.early.rbegin()});
+        for (const NodeProgress& other : c.nodes)
+            known = std::max({known, other.done, other.early.empty() ? 0 : *other.early.rbegin()});
         c.nodes[static_cast<size_t>(node)] = {known, known, {}};
     }
     living_[static_cast<size_t>(node)] = true;
@@ -128,7 +127,9 @@ void FrameTracker::giveCredit(uint32_t id, Client& c) {
 void FrameTracker::count(uint32_t id, const Window& window, int64_t nowNs) {
     const auto& natives = client(id).natives;
     const auto native = natives.find(window.id);
-    if (mainWindow_.swapped(id, window.id, window.width, window.height, native == natives.end() ? 0 : native->second) == 0) return;
+    if (mainWindow_.swapped(id, window.id, window.width, window.height, native == natives.end() ? 0 : native->second) ==
+        0)
+        return;
     if (totals_.wallFrames++ == 0) totals_.firstNs = nowNs;
     totals_.latestNs = nowNs;
 }

@@ -17,12 +17,12 @@ namespace mural {
 // The progress of one program.
 struct ClientProgress {
     uint32_t finished = 0; // frames finished by all living nodes
-    uint64_t calls = 0; // GL calls up to the last frame, as reported by the fastest node
+    uint64_t calls = 0;    // GL calls up to the last frame, as reported by the fastest node
 };
 
 struct FrameTotals {
     int64_t wallFrames = 0; // frames of the main window, across changes of that window
-    int64_t firstNs = 0; // completion of the first and the latest of them
+    int64_t firstNs = 0;    // completion of the first and the latest of them
     int64_t latestNs = 0;
 };
 
@@ -64,8 +64,8 @@ private:
     };
     // Frames arrive in order, except from programs that swap in several threads.
     struct NodeProgress {
-        uint32_t done = 0; // all frames up to here are done
-        uint32_t joined = 0; // frames up to here were finished by other nodes
+        uint32_t done = 0;        // all frames up to here are done
+        uint32_t joined = 0;      // frames up to here were finished by other nodes
         std::set<uint32_t> early; // finished frames beyond `done`
     };
     struct Client {
@@ -73,7 +73,7 @@ private:
         std::map<uint32_t, Window> windows; // windows of frames that some nodes have not finished
         std::multiset<uint32_t> held;
         std::map<uint32_t, uint64_t> natives; // window → X window
-        uint32_t finished = 0; // by all living nodes
+        uint32_t finished = 0;                // by all living nodes
         uint64_t calls = 0;
         uint32_t credited = 0; // the last value of `finished` sent to the program
         uint32_t shown = 0;

@@ -35,7 +35,9 @@ private:
 // ones.
 class MedianTimersBySize {
 public:
-    [[nodiscard]] MedianTimer& of(size_t sizeBytes) { return bySize_[std::min<size_t>(std::bit_width(sizeBytes), kSizes - 1)]; }
+    [[nodiscard]] MedianTimer& of(size_t sizeBytes) {
+        return bySize_[std::min<size_t>(std::bit_width(sizeBytes), kSizes - 1)];
+    }
 
 private:
     static constexpr size_t kSizes = 32;

@@ -14,7 +14,8 @@ constexpr std::chrono::milliseconds kSlice{500};
 
 class NativeWindows::Program {
 public:
-    Program(uint32_t client, const NativeWindowsConfig& config) : client_(client), config_(config), thread_([this] { work(); }) {}
+    Program(uint32_t client, const NativeWindowsConfig& config)
+        : client_(client), config_(config), thread_([this] { work(); }) {}
 
     ~Program() {
         drop();
@@ -25,11 +26,12 @@ public:
         std::vector<uint32_t> superseded;
         {
             const std::lock_guard lock(mutex_);
-            if (isBlocked_) std::erase_if(queue_, [&](const WindowPicture& older) {
-                if (!older.picture || older.window != picture.window) return false;
-                superseded.push_back(older.frame);
-                return true;
-            });
+            if (isBlocked_)
+                std::erase_if(queue_, [&](const WindowPicture& older) {
+                    if (!older.picture || older.window != picture.window) return false;
+                    superseded.push_back(older.frame);
+                    return true;
+                });
             queue_.push_back(std::move(picture));
             changed_.notify_all();
         }
@@ -70,8 +72,10 @@ private:
             const WindowPicture picture = std::move(queue_.front());
             queue_.pop_front();
             lock.unlock();
-            if (picture.picture) take(picture);
-            else forget(picture.window);
+            if (picture.picture)
+                take(picture);
+            else
+                forget(picture.window);
             lock.lock();
         }
         queue_.clear();
@@ -131,7 +135,8 @@ private:
     // Returns whether the picture need not be shown any more.
     bool isSuperseded(uint32_t window) {
         const std::lock_guard lock(mutex_);
-        return dropped_ || ending_ || std::ranges::any_of(queue_, [&](const WindowPicture& later) { return later.window == window; });
+        return dropped_ || ending_ ||
+               std::ranges::any_of(queue_, [&](const WindowPicture& later) { return later.window == window; });
     }
 
     void forget(uint32_t window) {
@@ -141,7 +146,7 @@ private:
 
     const uint32_t client_;
     const NativeWindowsConfig& config_;
-    OwnedPicture bothEyes_; // used by thread_, as the next two
+    OwnedPicture bothEyes_;                                    // used by thread_, as the next two
     std::map<uint32_t, std::unique_ptr<PictureSink>> windows_; // null: the window could not be opened
     std::set<uint32_t> complained_;
 

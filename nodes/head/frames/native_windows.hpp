@@ -25,7 +25,7 @@ struct NativeWindowsConfig {
     std::function<Result<std::unique_ptr<PictureSink>>(const WindowPicture& picture)> openWindow;
     // Returns true if the program has grabbed its X server and puts this picture itself. done() follows.
     std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram;
-    std::function<void(uint32_t client, uint32_t frame)> done; // the picture was shown or dropped
+    std::function<void(uint32_t client, uint32_t frame)> done;    // the picture was shown or dropped
     std::function<void(uint32_t client, bool isBlocked)> blocked; // its X server stops or resumes to answer
     std::function<void(const std::string&)> say;
 };

@@ -15,7 +15,7 @@ using wire::PictureHeader;
 constexpr uint32_t kMaxSide = 32768;
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28; // 16384 * 16384
 constexpr size_t kMaxOpenPictures = 4096;
-constexpr size_t kKeptWindows = 8; // more windows rarely swap; per pass
+constexpr size_t kKeptWindows = 8;  // more windows rarely swap; per pass
 constexpr size_t kKeptPictures = 6; // the latest, those in the output's queue, and the shown one
 
 bool sensible(const PictureHeader& h) {
@@ -23,8 +23,8 @@ bool sensible(const PictureHeader& h) {
     if (h.windowWidth == 0 || h.windowHeight == 0) return h.w == 0 || h.h == 0;
     if (h.windowWidth > kMaxSide || h.windowHeight > kMaxSide) return false;
     if (uint64_t{h.windowWidth} * h.windowHeight > kMaxPixels) return false;
-    return h.x >= 0 && h.y >= 0 && h.w >= 0 && h.h >= 0 &&
-           int64_t{h.x} + h.w <= h.windowWidth && int64_t{h.y} + h.h <= h.windowHeight;
+    return h.x >= 0 && h.y >= 0 && h.w >= 0 && h.h >= 0 && int64_t{h.x} + h.w <= h.windowWidth &&
+           int64_t{h.y} + h.h <= h.windowHeight;
 }
 
 PictureFormat formatOf(const PictureHeader& h) { return static_cast<PictureFormat>(h.format); }
@@ -34,18 +34,20 @@ PictureFormat formatOf(const PictureHeader& h) { return static_cast<PictureForma
 PictureAssembler::PictureAssembler(int nodes, Deliver deliver)
     : PictureAssembler(std::vector<int>(static_cast<size_t>(nodes), 0), {}, std::move(deliver)) {}
 
-PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver, std::vector<Compose> others, std::vector<Zoom> sizes)
-    : deliver_(std::move(deliver))
-    , compose_(std::move(compose))
-    , others_(std::move(others))
-    , sizes_(std::move(sizes))
-    , passOf_(std::move(passOf))
-    , passes_(passOf_.empty() ? 1 : 1 + *std::ranges::max_element(passOf_))
-    , views_(passOf_.size()) {}
+PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver,
+                                   std::vector<Compose> others, std::vector<Zoom> sizes)
+    : deliver_(std::move(deliver)),
+      compose_(std::move(compose)),
+      others_(std::move(others)),
+      sizes_(std::move(sizes)),
+      passOf_(std::move(passOf)),
+      passes_(passOf_.empty() ? 1 : 1 + *std::ranges::max_element(passOf_)),
+      views_(passOf_.size()) {}
 
 Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteBuffer rows) {
     const auto index = static_cast<size_t>(node);
-    if (!sensible(header)) return Error{"it sent a part that lies outside of its picture, or of an unknown pixel format"};
+    if (!sensible(header))
+        return Error{"it sent a part that lies outside of its picture, or of an unknown pixel format"};
     const std::lock_guard lock(mutex_);
     if (!views_.lives(node)) return {};
     if (open_.size() >= kMaxOpenPictures) return Error{"it is thousands of pictures ahead"};
@@ -92,7 +94,8 @@ void PictureAssembler::clientGone(uint32_t client) {
     std::erase_if(latest_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });
 }
 
-PictureAssembler::OpenPictures::iterator PictureAssembler::opened(int node, uint32_t client, uint32_t window, uint32_t frame) {
+PictureAssembler::OpenPictures::iterator PictureAssembler::opened(int node, uint32_t client, uint32_t window,
+                                                                  uint32_t frame) {
     const auto [at, fresh] = open_.try_emplace({client, window, frame});
     if (!fresh) return at;
     at->second.awaited = views_.awaited(node);
@@ -143,7 +146,8 @@ void PictureAssembler::assemble(WindowPicture& result, const Open& open) {
     for (const Compose& other : others_) result.others.push_back(composed(other, views));
 }
 
-std::shared_ptr<const OwnedPicture> PictureAssembler::composed(const Compose& compose, const std::vector<Picture>& passes) {
+std::shared_ptr<const OwnedPicture> PictureAssembler::composed(const Compose& compose,
+                                                               const std::vector<Picture>& passes) {
     auto whole = spare();
     try {
         compose(passes, *whole);
@@ -164,12 +168,16 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
     if (any == open.parts.end() && !sizes_.empty()) { // the part belongs to another canvas
         const Zoom& from = sizes_[static_cast<size_t>(seen->pass)];
         const Zoom& to = sizes_[static_cast<size_t>(std::get<2>(key))];
-        size.windowWidth = static_cast<uint32_t>(std::clamp<double>(std::round(size.windowWidth / from.x * to.x), 1, kMaxSide));
-        size.windowHeight = static_cast<uint32_t>(std::clamp<double>(std::round(size.windowHeight / from.y * to.y), 1, kMaxSide));
+        size.windowWidth =
+            static_cast<uint32_t>(std::clamp<double>(std::round(size.windowWidth / from.x * to.x), 1, kMaxSide));
+        size.windowHeight =
+            static_cast<uint32_t>(std::clamp<double>(std::round(size.windowHeight / from.y * to.y), 1, kMaxSide));
     }
     // kernel sizes differ by 1
     const auto near = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; };
-    if (any == open.parts.end() && before && near(before->width(), size.windowWidth) && near(before->height(), size.windowHeight)) return before;
+    if (any == open.parts.end() && before && near(before->width(), size.windowWidth) &&
+        near(before->height(), size.windowHeight))
+        return before;
     const auto width = static_cast<int>(size.windowWidth);
     const auto height = static_cast<int>(size.windowHeight);
     auto format = PictureFormat::Bgra8; // becomes the deepest format of all parts
@@ -192,7 +200,9 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
             std::memset(picture->data(), 0, picture->view().sizeBytes());
     }
     for (const Part& part : open.parts)
-        if (mine(part)) copyInto(*picture, part.header.x, part.header.y, Picture{part.header.w, part.header.h, part.rows.data(), formatOf(part.header)});
+        if (mine(part))
+            copyInto(*picture, part.header.x, part.header.y,
+                     Picture{part.header.w, part.header.h, part.rows.data(), formatOf(part.header)});
     keepLatest(key, picture);
     return picture;
 }
@@ -205,7 +215,8 @@ std::shared_ptr<OwnedPicture> PictureAssembler::spare() {
         return picture;
     }
     auto picture = std::make_shared<OwnedPicture>();
-    if (made_.size() < kKeptPictures * (static_cast<size_t>(compose_ ? passes_ + 1 : passes_) + others_.size())) made_.push_back(picture);
+    if (made_.size() < kKeptPictures * (static_cast<size_t>(compose_ ? passes_ + 1 : passes_) + others_.size()))
+        made_.push_back(picture);
     return picture;
 }
 

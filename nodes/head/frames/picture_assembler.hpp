@@ -45,7 +45,8 @@ public:
     PictureAssembler(int nodes, Deliver deliver);
     // passOf: index of each node's pass. others: functions that compose the pictures of further canvases from the same
     // passes. sizes: zoom of each pass's picture relative to the program's. Empty: all sizes are equal.
-    PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver, std::vector<Compose> others = {}, std::vector<Zoom> sizes = {});
+    PictureAssembler(std::vector<int> passOf, Compose compose, Deliver deliver, std::vector<Compose> others = {},
+                     std::vector<Zoom> sizes = {});
 
     Result<void> part(int node, const wire::PictureHeader& header, ByteBuffer rows);
     void frameDone(int node, uint32_t client, uint32_t window, uint32_t frame);
@@ -56,7 +57,7 @@ public:
     void clientGone(uint32_t client); // no node sends more parts of it
 
 private:
-    using Key = std::tuple<uint32_t, uint32_t, uint32_t>; // client, window, frame
+    using Key = std::tuple<uint32_t, uint32_t, uint32_t>;  // client, window, frame
     using WindowKey = std::tuple<uint32_t, uint32_t, int>; // client, window, pass
 
     struct Part {
@@ -67,8 +68,8 @@ private:
     // Kept until all nodes have finished the frame, because a node reports the end of a frame after its part.
     struct Open {
         std::vector<Part> parts;
-        std::vector<bool> awaited; // per node: it reports this frame and is not lost
-        std::vector<bool> done; // per node: no part is awaited
+        std::vector<bool> awaited;  // per node: it reports this frame and is not lost
+        std::vector<bool> done;     // per node: no part is awaited
         std::vector<bool> finished; // per node: it has reported the frame's end
         bool delivered = false;
     };

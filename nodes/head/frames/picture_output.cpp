@@ -13,12 +13,13 @@ constexpr std::chrono::milliseconds kSlice{500};
 } // namespace
 
 PictureOutput::PictureOutput(PictureOutputConfig config, std::unique_ptr<PictureSink> file)
-    : config_(std::move(config))
-    , saveFrames_(config_.saveFrames.begin(), config_.saveFrames.end())
-    , file_(std::move(file))
-    , canvases_(config_.canvases.size())
-    , natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked, config_.say})
-    , thread_([this] { work(); }) {}
+    : config_(std::move(config)),
+      saveFrames_(config_.saveFrames.begin(), config_.saveFrames.end()),
+      file_(std::move(file)),
+      canvases_(config_.canvases.size()),
+      natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked,
+                config_.say}),
+      thread_([this] { work(); }) {}
 
 PictureOutput::~PictureOutput() {
     drop();
@@ -60,8 +61,7 @@ bool PictureOutput::finish(Deadline deadline) {
     std::unique_lock lock(mutex_);
     finishing_ = true;
     changed_.notify_all();
-    while (!ended_ && !deadline.passed())
-        changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kNsPerS)));
+    while (!ended_ && !deadline.passed()) changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kNsPerS)));
     return ended_;
 }
 
@@ -81,8 +81,10 @@ void PictureOutput::work() {
         queue_.pop_front();
         changed_.notify_all();
         lock.unlock();
-        if (picture.picture) show(picture);
-        else forget(picture);
+        if (picture.picture)
+            show(picture);
+        else
+            forget(picture);
         lock.lock();
     }
     queue_.clear();
@@ -111,9 +113,8 @@ void PictureOutput::finishFile() {
 
 void PictureOutput::show(const WindowPicture& picture) {
     const Picture view = picture.picture->view();
-    const int64_t wallFrame =
-        mainWindow_.swapped(picture.client, picture.window, static_cast<uint32_t>(view.width),
-                            static_cast<uint32_t>(view.height), picture.nativeWindow);
+    const int64_t wallFrame = mainWindow_.swapped(picture.client, picture.window, static_cast<uint32_t>(view.width),
+                                                  static_cast<uint32_t>(view.height), picture.nativeWindow);
     const bool inTime = config_.lastFrame == 0 || wallFrame <= config_.lastFrame;
     const bool wanted = wallFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(wallFrame));
     if (wanted && file_ && !fileFailed_) save(wallFrame, view);
@@ -124,8 +125,10 @@ void PictureOutput::show(const WindowPicture& picture) {
         const std::lock_guard lock(mutex_);
         totals_.wallFrames = wallFrame;
     }
-    if (config_.toNativeWindows && picture.nativeWindow != 0) natives_.show(picture);
-    else config_.done(picture.client, picture.frame);
+    if (config_.toNativeWindows && picture.nativeWindow != 0)
+        natives_.show(picture);
+    else
+        config_.done(picture.client, picture.frame);
 }
 
 // Shows the picture. Rounds to 8 bits per channel for a sink without deep pictures.
@@ -157,8 +160,10 @@ void PictureOutput::showOnWall(int64_t frame, const Picture& picture) {
     if (wallFailed_) return;
     if (!wall_) {
         auto opened = config_.openWall();
-        if (opened) wall_ = std::move(*opened);
-        else config_.say(opened.error().message);
+        if (opened)
+            wall_ = std::move(*opened);
+        else
+            config_.say(opened.error().message);
     }
     const auto shown = wall_ ? give(*wall_, frame, picture, config_.pairs) : Result<void>();
     if (!shown) config_.say(shown.error().message + "; the wall's windows show no further pictures");
@@ -170,18 +175,22 @@ void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& pic
     Shown& shown = canvases_[index];
     if (canvas.file && saves && !shown.fileFailed) {
         if (const auto saved = give(*canvas.file, frame, picture, canvas.pairs); !saved) {
-            config_.say("canvas " + canvas.name + ": " + saved.error().message + "; no further pictures of it are saved");
+            config_.say("canvas " + canvas.name + ": " + saved.error().message +
+                        "; no further pictures of it are saved");
             shown.fileFailed = true;
         }
     }
     if (!canvas.openWall || shown.wallFailed) return;
     if (!shown.wall) {
         auto opened = canvas.openWall();
-        if (opened) shown.wall = std::move(*opened);
-        else config_.say("canvas " + canvas.name + ": " + opened.error().message);
+        if (opened)
+            shown.wall = std::move(*opened);
+        else
+            config_.say("canvas " + canvas.name + ": " + opened.error().message);
     }
     const auto done = shown.wall ? give(*shown.wall, frame, picture, canvas.pairs) : Result<void>();
-    if (!done) config_.say("canvas " + canvas.name + ": " + done.error().message + "; its windows show no further pictures");
+    if (!done)
+        config_.say("canvas " + canvas.name + ": " + done.error().message + "; its windows show no further pictures");
     shown.wallFailed = !shown.wall || !done;
 }
 

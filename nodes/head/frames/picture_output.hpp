@@ -27,20 +27,21 @@ namespace mural {
 // A further canvas. It shows the wall's frames as well.
 struct OtherCanvas {
     std::string name;
-    bool pairs = false; // its pictures contain both eyes (stackEyes)
-    std::shared_ptr<PictureSink> file; // null: not saved
+    bool pairs = false;                                             // its pictures contain both eyes (stackEyes)
+    std::shared_ptr<PictureSink> file;                              // null: not saved
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall; // empty: the head opens no windows of it
 };
 
 struct PictureOutputConfig {
     std::vector<int64_t> saveFrames; // frames of the wall, from 1; empty: all
-    int64_t lastFrame = 0; // last saved frame; more may come before the program ends; 0: no limit
+    int64_t lastFrame = 0;           // last saved frame; more may come before the program ends; 0: no limit
     bool toNativeWindows = false;    // --display app
-    bool pairs = false; // pictures contain both eyes (stackEyes)
+    bool pairs = false;              // pictures contain both eyes (stackEyes)
     // Opens the sink of the native window that this picture belongs to. Uses no other data of the picture.
     std::function<Result<std::unique_ptr<PictureSink>>(const WindowPicture& picture)> openWindow;
     // The functions of NativeWindowsConfig; required with toNativeWindows.
-    std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram = [](const WindowPicture&, const Picture&) { return false; };
+    std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram =
+        [](const WindowPicture&, const Picture&) { return false; };
     std::function<void(uint32_t client, bool isBlocked)> displayBlocked = [](uint32_t, bool) {};
     // Opens the windows of the wall. Empty: the head has no such windows.
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
@@ -64,7 +65,7 @@ public:
     ~PictureOutput(); // calls drop() and waits for the current picture
 
     void add(WindowPicture picture); // does not block
-    void waitForRoom(); // waits until the queue is short or the output ends
+    void waitForRoom();              // waits until the queue is short or the output ends
     void clientGone(uint32_t client);
     void windowGone(uint32_t client, uint32_t window); // called after its last picture
 

@@ -9,13 +9,16 @@ Result<PlacedPicture> placeOnWall(const NodePlan& node, const wire::PictureHeade
     if (node.way.none() && !node.shown) return PlacedPicture{header, std::move(rows)};
     constexpr uint32_t kMaxSide = 32768;
     const ScaledSize size = sizeOnWay(header.w, header.h, node.way);
-    const bool sensible = header.format == static_cast<uint32_t>(PictureFormat::Bgra8) && header.windowWidth <= kMaxSide && header.windowHeight <= kMaxSide && header.w >= 0 && header.h >= 0 &&
-                          static_cast<uint32_t>(header.w) <= header.windowWidth && static_cast<uint32_t>(header.h) <= header.windowHeight && size.bytes() == rows.size();
+    const bool sensible = header.format == static_cast<uint32_t>(PictureFormat::Bgra8) &&
+                          header.windowWidth <= kMaxSide && header.windowHeight <= kMaxSide && header.w >= 0 &&
+                          header.h >= 0 && static_cast<uint32_t>(header.w) <= header.windowWidth &&
+                          static_cast<uint32_t>(header.h) <= header.windowHeight && size.bytes() == rows.size();
     if (!sensible) return Error{"it sent a picture of an impossible size"};
     PlacedPicture placed;
     placed.header = header;
     if (node.shown && size.bytes() > 0) {
-        const PixelViewport window{0, 0, static_cast<int32_t>(header.windowWidth), static_cast<int32_t>(header.windowHeight)};
+        const PixelViewport window{0, 0, static_cast<int32_t>(header.windowWidth),
+                                   static_cast<int32_t>(header.windowHeight)};
         const PixelViewport shown = intersect(apply(window, *node.shown), window);
         placed.header.x = shown.x;
         placed.header.y = shown.y;
@@ -24,7 +27,8 @@ Result<PlacedPicture> placeOnWall(const NodePlan& node, const wire::PictureHeade
     }
     const ScaledSize onWall{placed.header.w, placed.header.h};
     placed.rows = ByteBuffer::ofSize(onWall.bytes());
-    if (placed.rows.size() != onWall.bytes()) return Error{"no memory for a picture of " + std::to_string(onWall.bytes()) + " bytes"};
+    if (placed.rows.size() != onWall.bytes())
+        return Error{"no memory for a picture of " + std::to_string(onWall.bytes()) + " bytes"};
     resizePicture(rows.data(), size.w, size.h, placed.rows.data(), onWall.w, onWall.h);
     return placed;
 }

@@ -11,7 +11,7 @@ namespace mural {
 
 struct PlacedPicture {
     wire::PictureHeader header{}; // the shown area
-    ByteBuffer rows; // rows of that area
+    ByteBuffer rows;              // rows of that area
 };
 
 // rows: received rows, in the size of the node's pictures in transfer. Errors: an invalid size; out of memory.

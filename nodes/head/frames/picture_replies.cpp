@@ -21,7 +21,8 @@ Reply ownPictureReply(uint32_t frame, uint32_t window, const PixelFormat& format
     reply.header.kind = capture::kPictureReply;
     reply.header.x = static_cast<int32_t>(window);
     reply.header.failed = 1;
-    auto converter = isValid(format) ? PixelConverter::make(format) : Result<PixelConverter>(Error{"an impossible format"});
+    auto converter =
+        isValid(format) ? PixelConverter::make(format) : Result<PixelConverter>(Error{"an impossible format"});
     const int width = std::min(picture.width, kLargestSide);
     const int height = std::min(picture.height, kLargestSide);
     if (!converter || width <= 0 || height <= 0) return reply;
@@ -29,7 +30,8 @@ Reply ownPictureReply(uint32_t frame, uint32_t window, const PixelFormat& format
     reply.bytes = ByteBuffer::ofSize(rowBytes * static_cast<size_t>(height));
     if (reply.bytes.size() == 0) return reply;
     for (int line = 0; line < height; ++line) // X has the topmost row first
-        converter->convertRow(picture.format, picture.row(picture.height - 1 - line), width, reply.bytes.data() + rowBytes * static_cast<size_t>(line));
+        converter->convertRow(picture.format, picture.row(picture.height - 1 - line), width,
+                              reply.bytes.data() + rowBytes * static_cast<size_t>(line));
     reply.header.w = width;
     reply.header.h = height;
     reply.header.sizeBytes = reply.bytes.size();

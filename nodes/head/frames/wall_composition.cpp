@@ -38,13 +38,16 @@ void average(std::span<const Picture> samples, OwnedPicture& into) {
 
 // Pixel (i, j) of a kernel picture is pixel (i * columns + its column, j * rows + its row) of the whole.
 void interleave(const PassCounts& counts, std::vector<OwnedPicture>& parts, OwnedPicture& into) {
-    const auto at = [&](int x, int y) -> OwnedPicture& { return parts[static_cast<size_t>(y * counts.kernelWidth + x)]; };
+    const auto at = [&](int x, int y) -> OwnedPicture& {
+        return parts[static_cast<size_t>(y * counts.kernelWidth + x)];
+    };
     int width = 0, height = 0;
     for (int x = 0; x < counts.kernelWidth; ++x) width += at(x, 0).width();
     for (int y = 0; y < counts.kernelHeight; ++y) height += at(0, y).height();
     for (int y = 0; y < counts.kernelHeight; ++y)
         for (int x = 0; x < counts.kernelWidth; ++x)
-            fit(at(x, y), (width - x + counts.kernelWidth - 1) / counts.kernelWidth, (height - y + counts.kernelHeight - 1) / counts.kernelHeight);
+            fit(at(x, y), (width - x + counts.kernelWidth - 1) / counts.kernelWidth,
+                (height - y + counts.kernelHeight - 1) / counts.kernelHeight);
     into.resize(width, height);
     for (int y = 0; y < height; ++y) {
         for (int k = 0; k < counts.kernelWidth; ++k) {
@@ -70,8 +73,10 @@ void composeEye(const PassCounts& counts, std::span<const Picture> pictures, Own
     std::vector<OwnedPicture> parts(static_cast<size_t>(counts.kernelWidth * counts.kernelHeight));
     const auto samples = static_cast<size_t>(counts.samples);
     for (size_t i = 0; i < parts.size(); ++i) average(pictures.subspan(i * samples, samples), parts[i]);
-    if (parts.size() == 1) into = std::move(parts.front());
-    else interleave(counts, parts, into);
+    if (parts.size() == 1)
+        into = std::move(parts.front());
+    else
+        interleave(counts, parts, into);
 }
 
 bool isEmpty(const Picture& p) { return p.empty(); }
@@ -102,7 +107,8 @@ void anaglyph(const WallComposition& wall, const std::vector<Picture>& pictures,
             const compositor::ChannelMask mask = maskOf(part.colours);
             for (int y = area.y; y < area.y + area.h; ++y) {
                 const size_t at = static_cast<size_t>(area.x) * kPictureBytesPerPixel;
-                compositor::maskChannelsRow(into.row(y) + at, whole.view().row(y) + at, static_cast<size_t>(area.w) * kPictureBytesPerPixel, mask);
+                compositor::maskChannelsRow(into.row(y) + at, whole.view().row(y) + at,
+                                            static_cast<size_t>(area.w) * kPictureBytesPerPixel, mask);
             }
         }
     }
@@ -118,7 +124,8 @@ WallComposition compositionOf(const PassCounts& counts) {
     part.counts.stereo = StereoMode::Off;
     for (const Eye eye : eyesOf(counts.stereo)) {
         part.eye = eye;
-        if (wall.stereo == StereoMode::Anaglyph) part.colours = {eye == Eye::Left, eye == Eye::Right, eye == Eye::Right};
+        if (wall.stereo == StereoMode::Anaglyph)
+            part.colours = {eye == Eye::Left, eye == Eye::Right, eye == Eye::Right};
         wall.parts.push_back(part);
         part.firstPicture += picturesOf(part.counts);
     }
@@ -134,8 +141,9 @@ int picturesOf(const WallComposition& wall) {
 void composeWall(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into) {
     into.resize(0, 0);
     OwnedPicture eyes[2]; // left (or only) and right
-    const bool two = std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Left; }) &&
-                     std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Right; });
+    const bool two =
+        std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Left; }) &&
+        std::any_of(wall.parts.begin(), wall.parts.end(), [](const WallPart& p) { return p.eye == Eye::Right; });
     if (two && wall.stereo == StereoMode::Anaglyph) return anaglyph(wall, pictures, into);
     for (const WallPart& part : wall.parts) {
         OwnedPicture whole = pictureOf(part, pictures);
@@ -156,10 +164,14 @@ void composeWall(const WallComposition& wall, const std::vector<Picture>& pictur
     if (two && !eyes[0].view().empty() && !eyes[1].view().empty()) fit(eyes[1], eyes[0].width(), eyes[0].height());
     const bool pair = two && eyes[0].width() == eyes[1].width() && eyes[0].height() == eyes[1].height();
     const EyePair both{eyes[0].view(), pair ? eyes[1].view() : eyes[0].view()};
-    if (wall.stereo == StereoMode::Quad) stackEyes(both, into);
-    else if (!pair) into = std::move(eyes[0]);
-    else if (wall.stereo == StereoMode::TopBottom) topBottom(both, into);
-    else sideBySide(both, into);
+    if (wall.stereo == StereoMode::Quad)
+        stackEyes(both, into);
+    else if (!pair)
+        into = std::move(eyes[0]);
+    else if (wall.stereo == StereoMode::TopBottom)
+        topBottom(both, into);
+    else
+        sideBySide(both, into);
 }
 
 } // namespace mural

@@ -20,8 +20,8 @@ struct WallPart {
     std::string name;
     Viewport area; // on the wall
     Eye eye = Eye::Cyclop;
-    EyeColours colours; // for anaglyph stereo
-    PassCounts counts; // per eye: stereo is off
+    EyeColours colours;   // for anaglyph stereo
+    PassCounts counts;    // per eye: stereo is off
     int firstPicture = 0; // its pictures are consecutive, in the order of pictureOf()
 };
 
@@ -40,6 +40,8 @@ WallComposition compositionOf(const PassCounts& counts);
 void composeWall(const WallComposition& wall, const std::vector<Picture>& pictures, OwnedPicture& into);
 
 // The same for a session that compositionOf() describes.
-inline void composePasses(const PassCounts& counts, const std::vector<Picture>& pictures, OwnedPicture& into) { composeWall(compositionOf(counts), pictures, into); }
+inline void composePasses(const PassCounts& counts, const std::vector<Picture>& pictures, OwnedPicture& into) {
+    composeWall(compositionOf(counts), pictures, into);
+}
 
 } // namespace mural

@@ -43,9 +43,7 @@ Result<std::unique_ptr<NodeAcceptor>> NodeAcceptor::open(bool loopbackOnly) {
 }
 
 NodeAcceptor::NodeAcceptor(std::unique_ptr<Listener> listener, int port)
-    : listener_(std::move(listener))
-    , port_(port)
-    , thread_([this] { acceptAll(); }) {}
+    : listener_(std::move(listener)), port_(port), thread_([this] { acceptAll(); }) {}
 
 NodeAcceptor::~NodeAcceptor() {
     stop_ = true;
@@ -93,8 +91,8 @@ std::optional<SessionSecret> NodeAcceptor::secretOf(const std::string& name) {
 
 void NodeAcceptor::check(std::unique_ptr<Connection> connection) {
     auto shown = SecureConnection::accepting(
-        std::move(connection), [this](const std::string& name) { return secretOf(name); }, Deadline::inMs(kProofPatienceMs),
-        [this] { return stop_.load(); });
+        std::move(connection), [this](const std::string& name) { return secretOf(name); },
+        Deadline::inMs(kProofPatienceMs), [this] { return stop_.load(); });
     if (!shown) return;
     const std::lock_guard lock(mutex_);
     const auto found = expected_.find((*shown)->name());

@@ -28,7 +28,7 @@ public:
     [[nodiscard]] int port() const { return port_; }
     void expect(int node, const SessionSecret& secret);
     std::unique_ptr<Connection> take(int node); // null: not connected yet
-    static std::string nameOf(int node); // the name by which a node identifies itself
+    static std::string nameOf(int node);        // the name by which a node identifies itself
     static std::optional<int> nodeOf(const std::string& name);
 
 private:

@@ -15,9 +15,7 @@ namespace {
 
 constexpr size_t kLocalBytes = size_t{16} << 20; // per direction between head and local node
 
-std::string nameOf(const NodePlan& plan) {
-    return "node " + std::to_string(plan.node) + " (" + plan.where + ")";
-}
+std::string nameOf(const NodePlan& plan) { return "node " + std::to_string(plan.node) + " (" + plan.where + ")"; }
 
 // The host:port at which `host` reaches the gate, or this machine's name if no route is known. The result has no host
 // for a daemon that announces itself: the caller knows the route.
@@ -25,7 +23,8 @@ std::string endpointTowards(const std::string& host, uint16_t port) {
     constexpr int64_t kLookupMs = 5000;
     if (host.starts_with("@")) return endpointText("", port);
     const std::string machine = host.substr(host.find('@') + 1); // user@host
-    if (const auto own = ownAddressTowards(machine, Deadline::inMs(kLookupMs))) return endpointText(numericText(*own), port);
+    if (const auto own = ownAddressTowards(machine, Deadline::inMs(kLookupMs)))
+        return endpointText(numericText(*own), port);
     char name[256] = "localhost";
     gethostname(name, sizeof(name) - 1);
     return endpointText(name, port);
@@ -54,8 +53,8 @@ NodeCommand tcpCommand(const NodePlan& plan, const LaunchOptions& options, uint1
         return command;
     }
     command.arguments = words(options.launchCommand);
-    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"), std::string("--as"), name,
-                                    std::string("--connect"), endpointTowards(plan.where, port)})
+    for (const std::string& word : {plan.where, quoted(options.remoteMural), std::string("node"), std::string("--as"),
+                                    name, std::string("--connect"), endpointTowards(plan.where, port)})
         command.arguments.push_back(word);
     return command;
 }
@@ -111,8 +110,8 @@ Result<bool> lookForConnection(LaunchedNode& node, NodeAcceptor& gate, Deadline 
 }
 
 // Tolerates failed nodes as long as enough others connect.
-Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* gate, const LaunchOptions& options, Deadline deadline,
-                              const std::function<bool()>& cancelled) {
+Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* gate, const LaunchOptions& options,
+                              Deadline deadline, const std::function<bool()>& cancelled) {
     const auto all = static_cast<int>(nodes.size());
     const int enough = options.leastNodes > 0 ? std::min(options.leastNodes, all) : all;
     std::optional<Deadline> late;
@@ -126,8 +125,12 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
             }
             come += node.connection ? 1 : 0;
             gone += node.absence.empty() ? 0 : 1;
-            if (all - gone < enough) return Error{nameOf(node.plan) + " " + node.absence + (enough < all ? "; fewer than --least-nodes " + std::to_string(enough) + " are left" : "")};
-            if (!node.absence.empty() && node.plan.pass.ranges > 1) return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
+            if (all - gone < enough)
+                return Error{
+                    nameOf(node.plan) + " " + node.absence +
+                    (enough < all ? "; fewer than --least-nodes " + std::to_string(enough) + " are left" : "")};
+            if (!node.absence.empty() && node.plan.pass.ranges > 1)
+                return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
         }
         if (come + gone == all) return {};
         if (come >= enough && !late) late = Deadline::inMs(options.lateMs);
@@ -138,7 +141,8 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
     for (LaunchedNode& node : nodes) {
         if (node.connection || !node.absence.empty()) continue;
         node.absence = "did not connect within " + std::to_string(options.lateMs / 1000) + " s of the others";
-        if (node.plan.pass.ranges > 1) return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
+        if (node.plan.pass.ranges > 1)
+            return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
         node.process.reset();
     }
     return {};
@@ -146,9 +150,7 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
 
 } // namespace
 
-Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
-                                              const LaunchOptions& options,
-                                              Deadline deadline,
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, const LaunchOptions& options, Deadline deadline,
                                               const std::function<bool()>& cancelled) {
     auto gate = openGate(plan);
     if (!gate) return gate.error();
@@ -161,7 +163,8 @@ Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
         if (!started) return Error{nameOf(planned) + " did not start: " + started.error().message};
         nodes.push_back(std::move(node));
     }
-    if (auto connected = awaitConnections(nodes, gate->get(), options, deadline, cancelled); !connected) return connected.error();
+    if (auto connected = awaitConnections(nodes, gate->get(), options, deadline, cancelled); !connected)
+        return connected.error();
     return nodes;
 }
 
@@ -174,7 +177,8 @@ Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& option
     starting.node.plan = plan;
     starting.gate = std::move(*gate);
     starting.deadline = deadline;
-    const auto started = starting.gate ? startTcp(starting.node, options, *starting.gate) : startLocal(starting.node, options);
+    const auto started =
+        starting.gate ? startTcp(starting.node, options, *starting.gate) : startLocal(starting.node, options);
     if (!started) return Error{nameOf(plan) + " did not start: " + started.error().message};
     return starting;
 }

@@ -29,17 +29,15 @@ struct StartingNode {
 };
 
 struct LaunchOptions {
-    std::string executable; // path of `mural` on this machine
-    std::string remoteMural; // path of `mural` on other hosts
+    std::string executable;    // path of `mural` on this machine
+    std::string remoteMural;   // path of `mural` on other hosts
     std::string launchCommand; // prefix that runs a command on a host
-    int leastNodes = 0; // the session starts with this many nodes; others have lateMs to connect; 0: all nodes
+    int leastNodes = 0;        // the session starts with this many nodes; others have lateMs to connect; 0: all nodes
     int64_t lateMs = 5'000;
 };
 
 // Call from a thread that outlives the nodes. Polls `cancelled`. Errors: fewer nodes than required have connected.
-Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan,
-                                              const LaunchOptions& options,
-                                              Deadline deadline,
+Result<std::vector<LaunchedNode>> launchNodes(const SessionPlan& plan, const LaunchOptions& options, Deadline deadline,
                                               const std::function<bool()>& cancelled);
 
 // Starts one node without waiting for its connection.

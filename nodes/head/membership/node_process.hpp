@@ -17,8 +17,8 @@ namespace mural {
 
 struct NodeCommand {
     std::vector<std::string> arguments; // [0] is looked up in PATH unless it contains a '/'
-    std::string standardInput; // at most 4096 bytes
-    int inheritFd = -1; // stays open under its number
+    std::string standardInput;          // at most 4096 bytes
+    int inheritFd = -1;                 // stays open under its number
 };
 
 // Call start() from a thread that outlives the nodes: the kernel kills them when that thread ends (PR_SET_PDEATHSIG).
@@ -37,9 +37,7 @@ public:
     void kill(); // kills its descendants as well
 
 private:
-    explicit NodeProcess(launch::ChildProcess process)
-        : pid_(process.pid())
-        , process_(process) {}
+    explicit NodeProcess(launch::ChildProcess process) : pid_(process.pid()), process_(process) {}
 
     const pid_t pid_;
     std::mutex mutex_;

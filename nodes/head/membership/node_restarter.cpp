@@ -12,10 +12,7 @@ constexpr int64_t kStopPatienceMs = 10'000;
 } // namespace
 
 NodeRestarter::NodeRestarter(ReturnTerms terms, StreamBroadcaster& nodes, Hooks hooks)
-    : terms_(std::move(terms))
-    , set_(nodes)
-    , hooks_(std::move(hooks))
-    , nodes_(nodes.size()) {}
+    : terms_(std::move(terms)), set_(nodes), hooks_(std::move(hooks)), nodes_(nodes.size()) {}
 
 NodeRestarter::~NodeRestarter() {
     stop([] {});
@@ -36,7 +33,8 @@ std::string NodeRestarter::memberLost(int node) {
     if (terms_.tries == 0 || !hooks_.start || stopped_) return tiles;
     if (!never.empty()) return tiles + ": " + never;
     if (nowNs - n.memberNs > terms_.steadyMs * kNsPerMs) n.tries = 0;
-    if (n.tries >= terms_.tries) return tiles + ": it was started again " + std::to_string(n.tries) + " times, and each time was lost soon";
+    if (n.tries >= terms_.tries)
+        return tiles + ": it was started again " + std::to_string(n.tries) + " times, and each time was lost soon";
     n.phase = Phase::Waiting;
     n.nextNs = nowNs + terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)] * kNsPerMs;
     return tiles + " until it is back";
@@ -88,13 +86,15 @@ bool NodeRestarter::becomesMember(int node) {
     if (n.phase != Phase::CatchingUp || !n.problem.empty() || stopped_) return false;
     n.phase = Phase::Member;
     n.memberNs = monotonicNowNs();
-    n.numbers = {static_cast<double>(n.memberNs - n.lostNs) / static_cast<double>(kNsPerS), n.catchUp->snapshotBytes(), n.catchUp->queuedBytes(), n.catchUp->framesGiven()};
+    n.numbers = {static_cast<double>(n.memberNs - n.lostNs) / static_cast<double>(kNsPerS), n.catchUp->snapshotBytes(),
+                 n.catchUp->queuedBytes(), n.catchUp->framesGiven()};
     return true;
 }
 
 bool NodeRestarter::awaited() const {
     const std::lock_guard lock(mutex_);
-    return std::ranges::any_of(nodes_, [](const Node& n) { return n.phase != Phase::Member && n.phase != Phase::Over; });
+    return std::ranges::any_of(nodes_,
+                               [](const Node& n) { return n.phase != Phase::Member && n.phase != Phase::Over; });
 }
 
 bool NodeRestarter::onItsWay(int node) const {
@@ -108,8 +108,8 @@ NodeRestarter::Numbers NodeRestarter::numbers(int node) const {
     return nodes_[static_cast<size_t>(node)].numbers;
 }
 
-// ---- Functions of the session's thread. Only this thread changes phases, except when a link ends. Hooks can therefore be
-// called without the lock.
+// ---- Functions of the session's thread. Only this thread changes phases, except when a link ends. Hooks can therefore
+// be called without the lock.
 
 void NodeRestarter::tick(int64_t nowNs) {
     for (size_t node = 0; node < nodes_.size(); ++node) tickNode(static_cast<int>(node), nowNs);
@@ -138,7 +138,8 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
         return;
     case Phase::Starting: return look(node, nowNs);
     case Phase::Readying:
-        if (readyBy.passed()) set_.link(node).lose("it was not ready within " + std::to_string(terms_.readyPatienceMs / 1000) + " s");
+        if (readyBy.passed())
+            set_.link(node).lose("it was not ready within " + std::to_string(terms_.readyPatienceMs / 1000) + " s");
         return;
     case Phase::Ready: return catchUp(node);
     case Phase::Member:
@@ -150,8 +151,10 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
 void NodeRestarter::catchUp(int node) {
     hooks_.introduce(node);
     std::optional<StreamBroadcaster::TurnsAsked> turns;
-    if (const auto kind = hooks_.turns(node); kind != StreamBroadcaster::Turns::None) turns = {++turnsAsked_, [this, kind](int other) { return hooks_.turns(other) == kind; }, {}};
-    const auto catchUp = std::make_shared<NodeResync>(set_, node, std::move(turns), [this, node](uint32_t view) { return hooks_.admitted(node, view); });
+    if (const auto kind = hooks_.turns(node); kind != StreamBroadcaster::Turns::None)
+        turns = {++turnsAsked_, [this, kind](int other) { return hooks_.turns(other) == kind; }, {}};
+    const auto catchUp = std::make_shared<NodeResync>(
+        set_, node, std::move(turns), [this, node](uint32_t view) { return hooks_.admitted(node, view); });
     {
         const std::lock_guard lock(mutex_);
         at(node).catchUp = catchUp;
@@ -204,11 +207,17 @@ void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
         n.phase = again ? Phase::Waiting : Phase::Over;
         const int64_t pauseMs = terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)];
         n.nextNs = nowNs + pauseMs * kNsPerMs;
-        if (again) line += "it is tried again in " + std::to_string(pauseMs / 1000) + " s (" + std::to_string(n.tries + 1) + " of " + std::to_string(terms_.tries) + ")";
-        else line += "after " + std::to_string(n.tries) + (n.tries == 1 ? " try, " : " tries, ") + hooks_.tilesOfLost(node);
+        if (again)
+            line += "it is tried again in " + std::to_string(pauseMs / 1000) + " s (" + std::to_string(n.tries + 1) +
+                    " of " + std::to_string(terms_.tries) + ")";
+        else
+            line +=
+                "after " + std::to_string(n.tries) + (n.tries == 1 ? " try, " : " tries, ") + hooks_.tilesOfLost(node);
     }
-    if (again) hooks_.say(line);
-    else hooks_.gaveUp(node, line);
+    if (again)
+        hooks_.say(line);
+    else
+        hooks_.gaveUp(node, line);
 }
 
 bool NodeRestarter::settled() const {

@@ -14,7 +14,7 @@
 namespace mural {
 
 struct ReturnTerms {
-    int tries = 0; // consecutive attempts per node
+    int tries = 0;             // consecutive attempts per node
     int64_t steadyMs = 30'000; // after this time as a member a node has all attempts again
     int64_t readyPatienceMs = 30'000;
     std::vector<int64_t> pausesMs = {0, 1'000, 3'000, 10'000, 30'000}; // before each attempt; the last value repeats
@@ -24,7 +24,7 @@ struct ReturnTerms {
 class NodeRestarter {
 public:
     struct Hooks {
-        std::function<Result<StartingNode>(int node)> start; // called by tick(); empty: nodes are never restarted
+        std::function<Result<StartingNode>(int node)> start;    // called by tick(); empty: nodes are never restarted
         std::function<void(int node, StartingNode&)> connected; // creates the link and sends the setup
         // Returns the reason why the session can't take the node back. Empty: it can.
         std::function<std::string(int node)> whyNever;
@@ -32,7 +32,8 @@ public:
         std::function<StreamBroadcaster::Turns(int node)> turns;
         // returns the consequence for the node's tiles while it is lost
         std::function<std::string(int node)> tilesOfLost;
-        std::function<StreamBroadcaster::Admission(int node, uint32_t view)> admitted; // called with the lock that orders packets
+        std::function<StreamBroadcaster::Admission(int node, uint32_t view)>
+            admitted; // called with the lock that orders packets
         // Called when the node stays lost; the string is a line for the user.
         std::function<void(int node, const std::string&)> gaveUp;
         std::function<void(const std::string&)> say;

@@ -11,21 +11,18 @@ namespace mural {
 namespace {
 
 constexpr int64_t kShortRoundNs = 20 * kNsPerMs; // a pause of this length is invisible
-constexpr int kMaxRounds = 8; // a node that is no faster than the others never converges
-constexpr int64_t kDrawPatienceMs = 500; // until each window has had a frame
-constexpr int64_t kDirectPatienceMs = 2'000; // after this time the queue is flushed while other nodes wait
-constexpr int64_t kSnapshotMs = 20'000; // limit for the snapshot
-constexpr int64_t kLookMs = 50; // interval of the check that a member is left to report the phase
-constexpr int64_t kSyncLimitMs = 600'000; // a last resort: watch() loses silent nodes earlier
+constexpr int kMaxRounds = 8;                    // a node that is no faster than the others never converges
+constexpr int64_t kDrawPatienceMs = 500;         // until each window has had a frame
+constexpr int64_t kDirectPatienceMs = 2'000;     // after this time the queue is flushed while other nodes wait
+constexpr int64_t kSnapshotMs = 20'000;          // limit for the snapshot
+constexpr int64_t kLookMs = 50;                  // interval of the check that a member is left to report the phase
+constexpr int64_t kSyncLimitMs = 600'000;        // a last resort: watch() loses silent nodes earlier
 
 } // namespace
 
-NodeResync::NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns, Admitted admitted)
-    : nodes_(nodes)
-    , node_(node)
-    , link_(nodes.link(node))
-    , turns_(std::move(turns))
-    , admitted_(std::move(admitted)) {}
+NodeResync::NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns,
+                       Admitted admitted)
+    : nodes_(nodes), node_(node), link_(nodes.link(node)), turns_(std::move(turns)), admitted_(std::move(admitted)) {}
 
 NodeResync::~NodeResync() {
     if (thread_.joinable()) thread_.join();
@@ -56,8 +53,10 @@ void NodeResync::toldTurns(uint32_t number, const std::vector<std::byte>& turns)
 
 void NodeResync::work() {
     auto snapshot = nodes_.beginCatchUp(node_, turns_ ? &*turns_ : nullptr, Deadline::inMs(kSnapshotMs));
-    if (snapshot) sendSnapshot(*snapshot);
-    else link_.lose(snapshot.error().message);
+    if (snapshot)
+        sendSnapshot(*snapshot);
+    else
+        link_.lose(snapshot.error().message);
     bool there = snapshot && synchronize() && sendTurns();
     for (int round = 0; there && round < kMaxRounds; ++round) {
         const int64_t beganNs = monotonicNowNs();

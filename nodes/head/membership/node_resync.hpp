@@ -19,7 +19,8 @@ public:
     // receives the view in which the node becomes a member
     using Admitted = std::function<StreamBroadcaster::Admission(uint32_t view)>;
     // turns: for nodes whose phase or areas members report.
-    NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns, Admitted admitted);
+    NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns,
+               Admitted admitted);
     NodeResync(const NodeResync&) = delete;
     NodeResync& operator=(const NodeResync&) = delete;
     ~NodeResync(); // joins the thread, which ends soon after its link is lost
@@ -28,7 +29,7 @@ public:
 
     void synchronized(const wire::SynchronizedMessage& message); // the node has reached this position; thread-safe
     [[nodiscard]] bool invalid() const { return invalid_; } // the node's frames depend on frames that it has skipped
-    void linkLost(); // thread-safe
+    void linkLost();                                        // thread-safe
     void toldTurns(uint32_t number, const std::vector<std::byte>& turns); // thread-safe
     [[nodiscard]] bool done() const { return done_; }
     [[nodiscard]] uint64_t snapshotBytes() const { return snapshotBytes_; }

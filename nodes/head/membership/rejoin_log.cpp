@@ -19,7 +19,8 @@ std::unique_ptr<trace::StreamSnapshot> emptyStream(uint64_t mostBytes) {
 
 } // namespace
 
-RejoinLog::RejoinLog(uint64_t mostBytes) : mostBytes_(mostBytes), kept_(emptyStream(mostBytes)), thread_([this] { work(); }) {}
+RejoinLog::RejoinLog(uint64_t mostBytes)
+    : mostBytes_(mostBytes), kept_(emptyStream(mostBytes)), thread_([this] { work(); }) {}
 
 RejoinLog::~RejoinLog() {
     {
@@ -64,7 +65,8 @@ void RejoinLog::overflow() {
 void RejoinLog::work() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [this] { return stop_ || (!entries_.empty() && (holds_.empty() || taken_ < *holds_.begin())); });
+        changed_.wait(lock,
+                      [this] { return stop_ || (!entries_.empty() && (holds_.empty() || taken_ < *holds_.begin())); });
         if (stop_) return;
         const Entry entry = std::move(entries_.front());
         entries_.pop_front();
@@ -95,15 +97,19 @@ void RejoinLog::take(const Entry& entry) {
     trace::RecordWalk walk(entry.payload);
     trace::RecordView r;
     while (walk.next(r))
-        if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) frames_[wire::clientOf(entry.stream)] = trace::argumentWord(r, 1);
+        if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
+            frames_[wire::clientOf(entry.stream)] = trace::argumentWord(r, 1);
     kept_->append(entry.stream, entry.payload);
 }
 
 Result<RejoinLog::Snapshot> RejoinLog::snapshot(uint64_t place, Deadline deadline) {
     std::unique_lock lock(mutex_);
-    while (!stop_ && (taken_ < place || inHand_) && !deadline.passed()) changed_.wait_for(lock, std::chrono::milliseconds(kSliceMs));
+    while (!stop_ && (taken_ < place || inHand_) && !deadline.passed())
+        changed_.wait_for(lock, std::chrono::milliseconds(kSliceMs));
     const bool there = complete_ && taken_ == place && !inHand_;
-    Result<Snapshot> result = Error{complete_ ? "what it has to be given was not found out in time" : "programs have sent more than the " + std::to_string(mostBytes_ >> 20) + " MiB that are kept for nodes that come back; --store gives more"};
+    Result<Snapshot> result = Error{complete_ ? "what it has to be given was not found out in time"
+                                              : "programs have sent more than the " + std::to_string(mostBytes_ >> 20) +
+                                                    " MiB that are kept for nodes that come back; --store gives more"};
     if (there) {
         lock.unlock(); // the thread is paused, and no other thread touches the log
         {

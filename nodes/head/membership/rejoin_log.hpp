@@ -67,18 +67,18 @@ private:
     std::condition_variable changed_;
     std::deque<Entry> entries_; // not yet processed
     uint64_t waitingBytes_ = 0;
-    uint64_t taken_ = 0; // number of processed entries
+    uint64_t taken_ = 0;            // number of processed entries
     std::multiset<uint64_t> holds_; // the thread pauses at the first of these positions
-    std::set<uint32_t> programs_; // programs that have sent packets
-    std::set<uint32_t> tooLarge_; // programs whose log was discarded
+    std::set<uint32_t> programs_;   // programs that have sent packets
+    std::set<uint32_t> tooLarge_;   // programs whose log was discarded
     std::atomic<bool> complete_{true};
     std::atomic<uint64_t> keptBytes_{0};
     bool inHand_ = false; // the thread is processing an entry
     bool stop_ = false;
 
     std::unique_ptr<trace::StreamSnapshot> kept_; // owned by the thread; by snapshot() while the thread is paused
-    std::map<uint32_t, uint32_t> frames_; // the same; last frame by program
-    std::mutex snapshots_; // serialises snapshot()
+    std::map<uint32_t, uint32_t> frames_;         // the same; last frame by program
+    std::mutex snapshots_;                        // serialises snapshot()
     std::thread thread_;
 };
 

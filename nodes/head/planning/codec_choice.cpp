@@ -9,9 +9,12 @@ namespace mural {
 namespace {
 
 std::string described(const std::string& codec) {
-    if (codec == kQuickestCodec) return "packed by what gets them there soonest and loses nothing, without tiles that have not changed";
-    if (codec == kLossyCodec) return "packed by what gets them there soonest, and may lose something, without tiles that have not changed";
-    return "packed by " + codec + (mayLose(codec) ? ", which loses something" : "") + ", without tiles that have not changed";
+    if (codec == kQuickestCodec)
+        return "packed by what gets them there soonest and loses nothing, without tiles that have not changed";
+    if (codec == kLossyCodec)
+        return "packed by what gets them there soonest, and may lose something, without tiles that have not changed";
+    return "packed by " + codec + (mayLose(codec) ? ", which loses something" : "") +
+           ", without tiles that have not changed";
 }
 
 } // namespace
@@ -25,7 +28,9 @@ void chooseCodecs(SessionPlan& plan, const std::string& asked) {
         ++nodes[node.pictureCodec];
     }
     for (const auto& [codec, count] : nodes)
-        if (codec != kRawCodec) plan.explain.push_back("pictures of " + std::to_string(count) + (count == 1 ? " node" : " nodes") + " come " + described(codec));
+        if (codec != kRawCodec)
+            plan.explain.push_back("pictures of " + std::to_string(count) + (count == 1 ? " node" : " nodes") +
+                                   " come " + described(codec));
 }
 
 } // namespace mural

@@ -15,9 +15,12 @@ void chooseComposition(SessionPlan& plan, const std::string& wish) {
             continue;
         }
         const bool chosen = asked || node.composition;
-        if (asked) node.composition = asked;
-        else if (!node.composition) node.composition = compositor::chooseStrategy(ranges);
-        plan.explain.push_back("nodes " + std::to_string(node.node) + " to " + std::to_string(node.node + ranges - 1) + " put their picture together by " + nameOf(*node.composition) +
+        if (asked)
+            node.composition = asked;
+        else if (!node.composition)
+            node.composition = compositor::chooseStrategy(ranges);
+        plan.explain.push_back("nodes " + std::to_string(node.node) + " to " + std::to_string(node.node + ranges - 1) +
+                               " put their picture together by " + nameOf(*node.composition) +
                                (chosen ? ", as asked" : std::string(": ") + compositor::whyStrategy(ranges)));
     }
 }

@@ -6,7 +6,8 @@ namespace mural {
 
 Zoom zoomOf(const config::ResolvedConfig& config, compound::Index compound) {
     Zoom zoom;
-    for (compound::Index i = compound; i != config::kNone; i = config.compounds[config::ResolvedConfig::at(i)].parent) zoom = compose(zoom, config.compounds[config::ResolvedConfig::at(i)].zoom);
+    for (compound::Index i = compound; i != config::kNone; i = config.compounds[config::ResolvedConfig::at(i)].parent)
+        zoom = compose(zoom, config.compounds[config::ResolvedConfig::at(i)].zoom);
     return zoom;
 }
 

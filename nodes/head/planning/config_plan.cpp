@@ -34,27 +34,36 @@ constexpr uint32_t kMaxTurns = 64; // bounds periods without a small common mult
 // One draw task of the compound tree.
 struct Draw {
     RenderContext context;
-    Viewport area; // on the canvas
+    Viewport area;                   // on the canvas
     int queue = -1, chunkQueue = -1; // indices into the plan's queues
-    compound::Flow flow; // the path of its frames
-    std::optional<Viewport> shown; // on the canvas, if different from area
-    Zoom way; // scale of its picture in transfer
+    compound::Flow flow;             // the path of its frames
+    std::optional<Viewport> shown;   // on the canvas, if different from area
+    Zoom way;                        // scale of its picture in transfer
     [[nodiscard]] const Viewport& onWall() const { return shown ? *shown : area; }
 };
 
-std::string nameOf(const config::ResolvedChannel& channel, Index index) { return channel.name.empty() ? "channel " + std::to_string(index) : channel.name; }
+std::string nameOf(const config::ResolvedChannel& channel, Index index) {
+    return channel.name.empty() ? "channel " + std::to_string(index) : channel.name;
+}
 
 class Planner {
 public:
     // only: plans this canvas alone; nodesBefore nodes of other canvases precede its nodes.
-    Planner(const LoadedConfig& loaded, const PlanOptions& wishes, Index only = kNone, int nodesBefore = 0) : config_(loaded.resolved), file_(loaded.diagnostics.file()), wishes_(wishes), only_(only), nodesBefore_(nodesBefore) {}
+    Planner(const LoadedConfig& loaded, const PlanOptions& wishes, Index only = kNone, int nodesBefore = 0)
+        : config_(loaded.resolved),
+          file_(loaded.diagnostics.file()),
+          wishes_(wishes),
+          only_(only),
+          nodesBefore_(nodesBefore) {}
 
     Result<SessionPlan> plan() {
         if (auto chosen = chooseLayouts(); !chosen) return chosen.error();
         gather();
         if (auto chosen = chooseCanvas(); !chosen) return chosen.error();
         followFrames();
-        if (draws_.empty()) return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; mural config print --resolved shows what it has"};
+        if (draws_.empty())
+            return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; "
+                                 "mural config print --resolved shows what it has"};
         if (auto done = placeParts(); !done) return done.error();
         lookIntoRoom();
         if (auto placed = placeNodes(); !placed) return placed.error();
@@ -81,7 +90,8 @@ public:
             const config::ResolvedSegment& segment = config_.segments[at(s)];
             if (segment.channel == kNone || segment.viewport.empty()) continue;
             const PixelViewport& pixels = sizes.channels[at(segment.channel)];
-            return {static_cast<int32_t>(std::lround(pixels.w / segment.viewport.w)), static_cast<int32_t>(std::lround(pixels.h / segment.viewport.h))};
+            return {static_cast<int32_t>(std::lround(pixels.w / segment.viewport.w)),
+                    static_cast<int32_t>(std::lround(pixels.h / segment.viewport.h))};
         }
         return {0, 0};
     }
@@ -106,7 +116,9 @@ private:
                     found = true;
                 }
             }
-            if (!found) return Error{"--layout \"" + wanted + "\": no canvas of " + file_ + " has such a layout; mural config print shows them"};
+            if (!found)
+                return Error{"--layout \"" + wanted + "\": no canvas of " + file_ +
+                             " has such a layout; mural config print shows them"};
         }
         return {};
     }
@@ -131,7 +143,13 @@ private:
                     if (task.kind != config::Task::Draw || task.context == kNone) continue;
                     const RenderContext& c = plan.contexts[at(task.context)];
                     if (c.view == kNone || !seen.emplace(c.compound, c.destination, c.view, c.eye).second) continue;
-                    draws_.push_back({c, compose(config_.views[at(c.view)].viewport, c.part), -1, -1, flows[at(task.context)], {}, {}});
+                    draws_.push_back({c,
+                                      compose(config_.views[at(c.view)].viewport, c.part),
+                                      -1,
+                                      -1,
+                                      flows[at(task.context)],
+                                      {},
+                                      {}});
                     if (task.queue != kNone) workers[task.queue].push_back(draws_.size() - 1);
                 }
             }
@@ -151,8 +169,12 @@ private:
         if (only_ != kNone) canvases = {only_};
         Index chosen = canvases.empty() ? kNone : *canvases.begin();
         if (!wishes_.canvas.empty()) {
-            const auto named = std::find_if(canvases.begin(), canvases.end(), [&](Index c) { return c != kNone && config_.canvases[at(c)].name == wishes_.canvas; });
-            if (named == canvases.end()) return Error{"--canvas \"" + wishes_.canvas + "\": " + file_ + " shows nothing on a canvas of this name; mural config print shows them"};
+            const auto named = std::find_if(canvases.begin(), canvases.end(), [&](Index c) {
+                return c != kNone && config_.canvases[at(c)].name == wishes_.canvas;
+            });
+            if (named == canvases.end())
+                return Error{"--canvas \"" + wishes_.canvas + "\": " + file_ +
+                             " shows nothing on a canvas of this name; mural config print shows them"};
             chosen = *named;
             canvases = {chosen};
         }
@@ -173,8 +195,12 @@ private:
         std::map<One, std::vector<const Draw*>> pictures;
         for (const Draw& d : draws_) {
             const RenderContext& c = d.context;
-            if (!steered.contains({c.destination, c.eye})) followed.push_back(d);
-            else pictures[{c.destination, c.eye, c.pixel.x, c.pixel.y, c.pixel.w, c.pixel.h, c.subPixel.index, c.subPixel.size, c.phase}].push_back(&d);
+            if (!steered.contains({c.destination, c.eye}))
+                followed.push_back(d);
+            else
+                pictures[{c.destination, c.eye, c.pixel.x, c.pixel.y, c.pixel.w, c.pixel.h, c.subPixel.index,
+                          c.subPixel.size, c.phase}]
+                    .push_back(&d);
         }
         for (const auto& [key, draws] : pictures) takeApart(draws, followed);
         draws_ = std::move(followed);
@@ -183,27 +209,35 @@ private:
     // A draw whose picture reaches one part of the wall, or several parts with the same scale and offset.
     struct Arrival {
         const Draw* draw;
-        Zoom scale; // from the drawn picture to the part of the wall
+        Zoom scale;  // from the drawn picture to the part of the wall
         double x, y; // position of the drawn picture's corner, in units of the picture's size
         Zoom way;
-        [[nodiscard]] bool moved() const { return std::abs(scale.x - 1) > 1e-6 || std::abs(scale.y - 1) > 1e-6 || std::abs(x) > 1e-6 || std::abs(y) > 1e-6; }
+        [[nodiscard]] bool moved() const {
+            return std::abs(scale.x - 1) > 1e-6 || std::abs(scale.y - 1) > 1e-6 || std::abs(x) > 1e-6 ||
+                   std::abs(y) > 1e-6;
+        }
     };
     static bool alike(const Arrival& a, const Arrival& b) {
         const auto near = [](double v, double w) { return std::abs(v - w) < 1e-6; };
-        return near(a.scale.x, b.scale.x) && near(a.scale.y, b.scale.y) && near(a.x, b.x) && near(a.y, b.y) && near(a.way.x, b.way.x) && near(a.way.y, b.way.y);
+        return near(a.scale.x, b.scale.x) && near(a.scale.y, b.scale.y) && near(a.x, b.x) && near(a.y, b.y) &&
+               near(a.way.x, b.way.x) && near(a.way.y, b.way.y);
     }
 
     void takeApart(std::vector<const Draw*> draws, std::vector<Draw>& into) {
         // the destination's own picture comes first
-        std::stable_partition(draws.begin(), draws.end(), [](const Draw* d) { return d->context.channel == d->context.destination; });
+        std::stable_partition(draws.begin(), draws.end(),
+                              [](const Draw* d) { return d->context.channel == d->context.destination; });
         std::vector<Arrival> arrivals;
         std::vector<compound::Rect> pieces;
         for (const Draw* d : draws) {
-            if (d->flow.parts.empty()) plan_.explain.push_back(placeOf(d->context.compound) + ": no frame takes what is drawn here to the wall");
+            if (d->flow.parts.empty())
+                plan_.explain.push_back(placeOf(d->context.compound) +
+                                        ": no frame takes what is drawn here to the wall");
             for (const compound::ShownPart& p : d->flow.parts) {
                 const Zoom scale{p.to.w / p.from.w, p.to.h / p.from.h};
                 const Arrival a{d, scale, p.to.x - p.from.x * scale.x, p.to.y - p.from.y * scale.y, p.way};
-                auto known = std::find_if(arrivals.begin(), arrivals.end(), [&](const Arrival& other) { return other.draw == d && alike(other, a); });
+                auto known = std::find_if(arrivals.begin(), arrivals.end(),
+                                          [&](const Arrival& other) { return other.draw == d && alike(other, a); });
                 if (known == arrivals.end()) known = arrivals.insert(arrivals.end(), a);
                 pieces.push_back({static_cast<int>(known - arrivals.begin()), compose(d->area, p.to)});
             }
@@ -222,16 +256,26 @@ private:
         for (const compound::Cell& cell : compound::cellsOf(needed)) {
             std::vector<const Arrival*> there;
             for (const int i : cell.of) there.push_back(&arrivals[static_cast<size_t>(i)]);
-            const bool together = std::all_of(there.begin(), there.end(), [&](const Arrival* a) { return alike(*a, *there.front()) && a->draw->area == there.front()->draw->area; }) || std::none_of(there.begin(), there.end(), [&](const Arrival* a) { return a->moved() || !a->way.none(); });
+            const bool together =
+                std::all_of(there.begin(), there.end(),
+                            [&](const Arrival* a) {
+                                return alike(*a, *there.front()) && a->draw->area == there.front()->draw->area;
+                            }) ||
+                std::none_of(there.begin(), there.end(),
+                             [&](const Arrival* a) { return a->moved() || !a->way.none(); });
             if (!together && unlike_.insert(there.front()->draw->context.destination).second)
-                plan_.warnings.push_back(placeOf(there.front()->draw->context.compound) + ": ranges of one picture are put together by depth as large as they are drawn; zoom of their frames has no effect where it is not the same for all of them");
+                plan_.warnings.push_back(
+                    placeOf(there.front()->draw->context.compound) +
+                    ": ranges of one picture are put together by depth as large as they are drawn; zoom of their "
+                    "frames has no effect where it is not the same for all of them");
             for (const Arrival* a : there) {
                 Draw d = *a->draw;
                 d.area = cell.area;
                 if (together) d.way = a->way;
                 if (together && a->moved()) {
                     const Viewport own = relativeTo(cell.area, a->draw->area);
-                    d.area = compose(a->draw->area, Viewport{(own.x - a->x) / a->scale.x, (own.y - a->y) / a->scale.y, own.w / a->scale.x, own.h / a->scale.y});
+                    d.area = compose(a->draw->area, Viewport{(own.x - a->x) / a->scale.x, (own.y - a->y) / a->scale.y,
+                                                             own.w / a->scale.x, own.h / a->scale.y});
                     d.shown = cell.area;
                 }
                 into.push_back(d);
@@ -243,7 +287,9 @@ private:
     // tiles or chunks.
     void dealOut(const FramePlan& plan, const compound::PlannedQueue& queue, const std::vector<size_t>& draws) {
         const RenderContext& divided = plan.contexts[at(queue.context)];
-        const bool chunks = !queue.tiles.empty() && std::any_of(queue.tiles.begin(), queue.tiles.end(), [&](const compound::PlannedTile& t) { return t.range != divided.range; });
+        const bool chunks = !queue.tiles.empty() &&
+                            std::any_of(queue.tiles.begin(), queue.tiles.end(),
+                                        [&](const compound::PlannedTile& t) { return t.range != divided.range; });
         const double n = static_cast<double>(draws.size());
         for (size_t i = 0; i < draws.size(); ++i) {
             Draw& d = draws_[draws[i]];
@@ -254,11 +300,14 @@ private:
         }
         if (queue.tiles.empty()) return;
         if (draws_[draws.front()].flow.ignored)
-            plan_.warnings.push_back(placeOf(draws_[draws.front()].context.compound) + ": what is taken from queue \"" + queue.name +
-                                     "\" is shown where it is drawn, as large as it is drawn; viewport and zoom of frames have no effect there; remove them, or divide the picture without a queue");
+            plan_.warnings.push_back(placeOf(draws_[draws.front()].context.compound) + ": what is taken from queue \"" +
+                                     queue.name +
+                                     "\" is shown where it is drawn, as large as it is drawn; viewport and zoom of "
+                                     "frames have no effect there; remove them, or divide the picture without a queue");
         if (chunks) {
             for (const size_t d : draws) draws_[d].chunkQueue = static_cast<int>(plan_.chunkQueues.size());
-            plan_.chunkQueues.push_back({queue.name, divided.range, queue.tiles.front().range.end - queue.tiles.front().range.start});
+            plan_.chunkQueues.push_back(
+                {queue.name, divided.range, queue.tiles.front().range.end - queue.tiles.front().range.start});
             return;
         }
         TileQueuePlan planned{queue.name, compose(config_.views[at(divided.view)].viewport, divided.part), 0, 0};
@@ -274,7 +323,8 @@ private:
     Result<void> placeParts() {
         using Key = std::tuple<Index, Eye>;
         std::map<Key, std::vector<size_t>> parts;
-        for (size_t i = 0; i < draws_.size(); ++i) parts[{draws_[i].context.destination, draws_[i].context.eye}].push_back(i);
+        for (size_t i = 0; i < draws_.size(); ++i)
+            parts[{draws_[i].context.destination, draws_[i].context.eye}].push_back(i);
         int next = 0;
         for (const auto& [key, draws] : parts) {
             const RenderContext& first = draws_[draws.front()].context;
@@ -283,7 +333,8 @@ private:
             part.name = nameOf(channel, first.destination);
             part.eye = first.eye;
             using config::ColorComponent;
-            part.colours = {first.eyeColors.has(ColorComponent::Red), first.eyeColors.has(ColorComponent::Green), first.eyeColors.has(ColorComponent::Blue)};
+            part.colours = {first.eyeColors.has(ColorComponent::Red), first.eyeColors.has(ColorComponent::Green),
+                            first.eyeColors.has(ColorComponent::Blue)};
             part.area = destinationArea(draws);
             part.counts.kernelWidth = first.pixel.w;
             part.counts.kernelHeight = first.pixel.h;
@@ -294,14 +345,19 @@ private:
                 const RenderContext& c = draws_[i].context;
                 const PassCounts& n = part.counts;
                 if (c.pixel.w != n.kernelWidth || c.pixel.h != n.kernelHeight || c.subPixel.size != n.samples)
-                    return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) + ": channel \"" + part.name + "\" is put together of parts with different pixel or subpixel kernels; give all of them the same"};
+                    return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) +
+                                 ": channel \"" + part.name +
+                                 "\" is put together of parts with different pixel or subpixel kernels; give all of "
+                                 "them the same"};
                 const int picture = next + pictureOf(n, passOf(config_, c));
                 pictures_.resize(draws_.size(), 0);
                 pictures_[i] = picture;
                 made.insert(picture);
             }
             if (static_cast<int>(made.size()) < picturesOf(part.counts))
-                plan_.warnings.push_back(file_ + ": channel \"" + part.name + "\": some pixels or samples of its kernel are drawn by no compound, they stay black");
+                plan_.warnings.push_back(
+                    file_ + ": channel \"" + part.name +
+                    "\": some pixels or samples of its kernel are drawn by no compound, they stay black");
             next += picturesOf(part.counts);
             if (first.stereoMode == compound::StereoMode::Anaglyph) anaglyph_ = true;
             if (first.stereoMode == compound::StereoMode::Quad && first.eye == Eye::Left) quad_ = true;
@@ -333,7 +389,9 @@ private:
             groups[{pictures_[i], draws_[i].context.phase, a.x, a.y, a.w, a.h}].push_back(i);
         }
         for (auto& [key, draws] : groups) {
-            std::sort(draws.begin(), draws.end(), [&](size_t a, size_t b) { return draws_[a].context.range.start < draws_[b].context.range.start; });
+            std::sort(draws.begin(), draws.end(), [&](size_t a, size_t b) {
+                return draws_[a].context.range.start < draws_[b].context.range.start;
+            });
             const auto collector = static_cast<int>(plan_.nodes.size());
             int rank = 0;
             for (const size_t i : draws) {
@@ -343,7 +401,9 @@ private:
                 node.pass = passOf(config_, c);
                 tellTooLarge(c.compound);
                 if (node.pass.zoom != passOf(config_, draws_[draws.front()].context).zoom)
-                    return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) + ": ranges of one picture are zoomed differently and can't be put together by depth; give all of them the same zoom"};
+                    return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) +
+                                 ": ranges of one picture are zoomed differently and can't be put together by depth; "
+                                 "give all of them the same zoom"};
                 node.pass.range = rank++;
                 node.pass.ranges = static_cast<int>(draws.size());
                 node.picture = pictures_[i];
@@ -356,7 +416,8 @@ private:
                 node.collector = collector;
                 if (auto named = takeComposition(node, config_.compounds[at(c.compound)]); !named) return named;
                 if (auto named = takeCodec(node, c.compound); !named) return named;
-                node.answers = node.pass.range == 0 && c.eye != Eye::Right && c.pixel.x == 0 && c.pixel.y == 0 && c.subPixel.index == 0;
+                node.answers = node.pass.range == 0 && c.eye != Eye::Right && c.pixel.x == 0 && c.pixel.y == 0 &&
+                               c.subPixel.index == 0;
                 placeOnHost(node, c);
                 plan_.nodes.push_back(node);
                 channels_.push_back(c.channel);
@@ -374,7 +435,9 @@ private:
     void tellTooLarge(Index compound) {
         const Zoom zoom = zoomOf(config_, compound);
         if ((zoom.x <= kMaxZoom && zoom.y <= kMaxZoom) || !tooLarge_.insert(compound).second) return;
-        plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most " + std::to_string(static_cast<int>(kMaxZoom)) + " times as large as they show; give a smaller zoom");
+        plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most " +
+                                 std::to_string(static_cast<int>(kMaxZoom)) +
+                                 " times as large as they show; give a smaller zoom");
     }
 
     // Without a value in the file, the number of nodes determines the strategy later.
@@ -384,7 +447,8 @@ private:
         if (node.composition) return {};
         std::string names = "auto";
         for (const compositor::Strategy s : compositor::kEveryStrategy) names += std::string(", ") + nameOf(s);
-        return Error{file_ + ":" + std::to_string(compound.at.line) + ": mural_composition \"" + compound.composition + "\": must be one of " + names};
+        return Error{file_ + ":" + std::to_string(compound.at.line) + ": mural_composition \"" + compound.composition +
+                     "\": must be one of " + names};
     }
 
     [[nodiscard]] Index rootOf(Index compound) const {
@@ -403,10 +467,12 @@ private:
                     exact = exact && taken.exact;
                     if (taken.codec != kQuickestCodec) said = &taken;
                 }
-            const std::string place = file_ + ":" + std::to_string(said->at.line) + ": mural_codec \"" + said->codec + "\"";
+            const std::string place =
+                file_ + ":" + std::to_string(said->at.line) + ": mural_codec \"" + said->codec + "\"";
             auto wanted = wantedCodec(said->codec);
             if (!wanted) return Error{place + ": " + wanted.error().message};
-            if (!wanted->lossless && exact) return Error{place + " loses something; say mural_exact OFF in the same frame, or take another codec"};
+            if (!wanted->lossless && exact)
+                return Error{place + " loses something; say mural_exact OFF in the same frame, or take another codec"};
             node.codec = said->codec == kQuickestCodec && !exact ? kLossyCodec : said->codec;
         }
         return {};
@@ -434,29 +500,36 @@ private:
                 ++pictures;
                 drawer = &n;
             }
-            if (!plain || pictures != 1 || drawer->pass.period > 1 || drawer->shown || !drawer->way.none() || !same(*drawer->area, part.area) || !isDestination(*drawer)) return headShowsIt();
+            if (!plain || pictures != 1 || drawer->pass.period > 1 || drawer->shown || !drawer->way.none() ||
+                !same(*drawer->area, part.area) || !isDestination(*drawer))
+                return headShowsIt();
             shows.push_back(drawer);
         }
         for (size_t a = 0; a < shows.size(); ++a)
             for (size_t b = 0; b < a; ++b) {
                 const bool sameChannel = channels_[node(*shows[a])] == channels_[node(*shows[b])];
-                if (sameChannel || (wishes_.here && !intersect(*shows[a]->area, *shows[b]->area).empty())) return headShowsIt();
+                if (sameChannel || (wishes_.here && !intersect(*shows[a]->area, *shows[b]->area).empty()))
+                    return headShowsIt();
             }
         for (NodePlan* n : shows) {
             const Index channel = channels_[node(*n)];
             n->window = windowOf(channel);
-            if (const auto barrier = barriers_.find(config_.channels[at(channel)].window); barrier != barriers_.end()) n->swapBarrier = barrier->second;
+            if (const auto barrier = barriers_.find(config_.channels[at(channel)].window); barrier != barriers_.end())
+                n->swapBarrier = barrier->second;
         }
     }
 
     static bool same(const Viewport& a, const Viewport& b) {
         constexpr double kRounding = 1e-9;
-        return std::abs(a.x - b.x) < kRounding && std::abs(a.y - b.y) < kRounding && std::abs(a.w - b.w) < kRounding && std::abs(a.h - b.h) < kRounding;
+        return std::abs(a.x - b.x) < kRounding && std::abs(a.y - b.y) < kRounding && std::abs(a.w - b.w) < kRounding &&
+               std::abs(a.h - b.h) < kRounding;
     }
     void headShowsIt() { plan_.nodesShowWall = false; }
     static size_t node(const NodePlan& n) { return static_cast<size_t>(n.node); }
 
-    [[nodiscard]] bool isDestination(const NodePlan& n) const { return config_.channels[at(channels_[node(n)])].isDestination(); }
+    [[nodiscard]] bool isDestination(const NodePlan& n) const {
+        return config_.channels[at(channels_[node(n)])].isDestination();
+    }
 
     // If all nodes run on this machine, windows are arranged like the wall.
     [[nodiscard]] NodeWindow windowOf(Index index) const {
@@ -471,7 +544,9 @@ private:
         shown.x = sizes.windows[at(channel.window)].x + sizes.channels[at(index)].x;
         shown.y = sizes.windows[at(channel.window)].y + sizes.channels[at(index)].y;
         shown.fullScreen = window.attributes.hintFullscreen == config::value::kOn;
-        if (pipe.device || pipe.port) shown.displayName = ":" + std::to_string(pipe.port.value_or(0)) + "." + std::to_string(pipe.device.value_or(0));
+        if (pipe.device || pipe.port)
+            shown.displayName =
+                ":" + std::to_string(pipe.port.value_or(0)) + "." + std::to_string(pipe.device.value_or(0));
         return shown;
     }
 
@@ -489,27 +564,39 @@ private:
 
     // True if some screen has another orientation than the first.
     [[nodiscard]] bool standAtAngles() const {
-        const auto normal = [](const RenderContext& c) { return transformDirection(rigidInverse(c.perspectiveHead), {0, 0, 1}); };
-        return std::any_of(draws_.begin(), draws_.end(), [&](const Draw& d) { return dot(normal(d.context), normal(draws_.front().context)) < 1 - 1e-6; });
+        const auto normal = [](const RenderContext& c) {
+            return transformDirection(rigidInverse(c.perspectiveHead), {0, 0, 1});
+        };
+        return std::any_of(draws_.begin(), draws_.end(), [&](const Draw& d) {
+            return dot(normal(d.context), normal(draws_.front().context)) < 1 - 1e-6;
+        });
     }
 
     void lookIntoRoom() {
         const bool atAngles = standAtAngles();
         inRoom_ = wishes_.frusta == Frusta::Room || (wishes_.frusta == Frusta::Auto && atAngles);
-        if (inRoom_) plan_.explain.push_back(std::string(atAngles ? "its screens stand at angles to each other: " : "") + "each screen shows the scene from the observer's eyes (--frusta program: all of them one flat picture)");
-        else if (atAngles) plan_.explain.push_back("its screens stand at angles to each other; the program's picture is laid over them as over a flat wall (--frusta program)");
+        if (inRoom_)
+            plan_.explain.push_back(std::string(atAngles ? "its screens stand at angles to each other: " : "") +
+                                    "each screen shows the scene from the observer's eyes (--frusta program: all of "
+                                    "them one flat picture)");
+        else if (atAngles)
+            plan_.explain.push_back("its screens stand at angles to each other; the program's picture is laid over "
+                                    "them as over a flat wall (--frusta program)");
         if (!inRoom_) return;
         std::set<Index> behind;
         for (const Draw& d : draws_)
             if (d.context.behindScreen && behind.insert(d.context.destination).second)
-                plan_.warnings.push_back(file_ + ": the observer's eyes are behind the screen of channel \"" + nameOf(config_.channels[at(d.context.destination)], d.context.destination) + "\"; it shows its part of the program's own picture");
+                plan_.warnings.push_back(file_ + ": the observer's eyes are behind the screen of channel \"" +
+                                         nameOf(config_.channels[at(d.context.destination)], d.context.destination) +
+                                         "\"; it shows its part of the program's own picture");
     }
 
     [[nodiscard]] std::optional<ScreenView> screenOf(const RenderContext& c) const {
         if (!inRoom_ || c.behindScreen) return {};
         const Frustum& f = c.destinationPerspective;
         const double n = f.nearPlane;
-        const Viewport area = compose(config_.views[at(c.view)].viewport, compound::coverage(config_, config_.channels[at(c.destination)]));
+        const Viewport area = compose(config_.views[at(c.view)].viewport,
+                                      compound::coverage(config_, config_.channels[at(c.destination)]));
         return ScreenView{area, f.left / n, f.right / n, f.bottom / n, f.top / n, c.perspectiveHead};
     }
 
@@ -519,8 +606,10 @@ private:
             const std::string pass = describe(n.pass);
             char area[96];
             std::snprintf(area, sizeof area, "%.9g %.9g %.9g %.9g", n.area->x, n.area->y, n.area->w, n.area->h);
-            plan_.explain.push_back("node " + std::to_string(nodesBefore_ + n.node) + " (" + n.where + ") draws for channel \"" + nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " +
-                                    (pass.empty() ? "" : pass + ", ") + onItsWay(n) + "the part [ " + area + " ] of the wall" + shownElsewhere(n));
+            plan_.explain.push_back(
+                "node " + std::to_string(nodesBefore_ + n.node) + " (" + n.where + ") draws for channel \"" +
+                nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " + (pass.empty() ? "" : pass + ", ") +
+                onItsWay(n) + "the part [ " + area + " ] of the wall" + shownElsewhere(n));
         }
     }
 
@@ -533,7 +622,8 @@ private:
     static std::string shownElsewhere(const NodePlan& n) {
         if (!n.shown) return {};
         char text[112];
-        std::snprintf(text, sizeof text, ", shown in [ %.9g %.9g %.9g %.9g ]", n.shown->x, n.shown->y, n.shown->w, n.shown->h);
+        std::snprintf(text, sizeof text, ", shown in [ %.9g %.9g %.9g %.9g ]", n.shown->x, n.shown->y, n.shown->w,
+                      n.shown->h);
         return text;
     }
 
@@ -545,11 +635,11 @@ private:
     std::set<Index> canvases_; // canvases with content, or the selected one
     FrameInput input_;
     std::vector<Draw> draws_;
-    std::vector<int> pictures_; // per draw
-    std::vector<Index> channels_; // per node
+    std::vector<int> pictures_;             // per draw
+    std::vector<Index> channels_;           // per node
     std::map<Index, std::string> barriers_; // swap barrier by window
-    std::set<Index> tooLarge_; // compounds already reported as too large
-    std::set<Index> unlike_; // destinations already reported for unequal pictures
+    std::set<Index> tooLarge_;              // compounds already reported as too large
+    std::set<Index> unlike_;                // destinations already reported for unequal pictures
     Index canvas_ = kNone;
     bool anaglyph_ = false, quad_ = false;
     bool inRoom_ = false;
@@ -567,7 +657,8 @@ std::string nameOf(const ResolvedConfig& config, Index canvas) {
 
 // Appends the plan of another canvas. Its nodes draw the program's picture at its own resolution.
 void add(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
-    const auto nodes = static_cast<int>(plan.nodes.size()), queues = static_cast<int>(plan.queues.size()), chunkQueues = static_cast<int>(plan.chunkQueues.size());
+    const auto nodes = static_cast<int>(plan.nodes.size()), queues = static_cast<int>(plan.queues.size()),
+               chunkQueues = static_cast<int>(plan.chunkQueues.size());
     int pictures = picturesOf(plan.wall);
     for (const CanvasPlan& c : plan.canvases) pictures = std::max(pictures, picturesOf(c.wall));
     canvas.wall = std::move(other.wall);
@@ -605,19 +696,26 @@ void addCanvases(const LoadedConfig& loaded, const PlanOptions& wishes, const Pl
         const compound::PixelSize size = planner.sizeOf(c);
         auto planned = planner.plan();
         if (!planned || size.w <= 0 || own.w <= 0) {
-            plan.warnings.push_back(name + " is not shown: " + (planned ? "its size is not known; give its channels a viewport in pixels" : planned.error().message));
+            plan.warnings.push_back(
+                name + " is not shown: " +
+                (planned ? "its size is not known; give its channels a viewport in pixels" : planned.error().message));
             continue;
         }
         CanvasPlan canvas;
-        canvas.name = loaded.resolved.canvases[at(c)].name.empty() ? std::to_string(c) : loaded.resolved.canvases[at(c)].name;
+        canvas.name =
+            loaded.resolved.canvases[at(c)].name.empty() ? std::to_string(c) : loaded.resolved.canvases[at(c)].name;
         canvas.shown = {static_cast<double>(size.w) / own.w, static_cast<double>(size.h) / own.h};
         if (canvas.shown.x > kMaxZoom || canvas.shown.y > kMaxZoom) {
-            plan.warnings.push_back(name + " has more than " + std::to_string(static_cast<int>(kMaxZoom)) + " times the pixels of the first one in a direction; it is shown with so many; --canvas shows it alone");
+            plan.warnings.push_back(
+                name + " has more than " + std::to_string(static_cast<int>(kMaxZoom)) +
+                " times the pixels of the first one in a direction; it is shown with so many; --canvas shows it alone");
             canvas.shown = {std::min(canvas.shown.x, kMaxZoom), std::min(canvas.shown.y, kMaxZoom)};
         }
         canvas.offsetX = offsetX;
         offsetX += static_cast<int>(std::lround(canvas.shown.x * (wishes.width > 0 ? wishes.width : own.w)));
-        plan.explain.push_back(name + " shows the program's picture, too, in " + std::to_string(size.w) + "x" + std::to_string(size.h) + " pixels where the first has " + std::to_string(own.w) + "x" + std::to_string(own.h));
+        plan.explain.push_back(name + " shows the program's picture, too, in " + std::to_string(size.w) + "x" +
+                               std::to_string(size.h) + " pixels where the first has " + std::to_string(own.w) + "x" +
+                               std::to_string(own.h));
         add(plan, std::move(*planned), std::move(canvas));
     }
 }
@@ -632,6 +730,8 @@ Result<SessionPlan> planOf(const LoadedConfig& loaded, const PlanOptions& wishes
     return plan;
 }
 
-compound::PixelSize wallSizeOf(const LoadedConfig& loaded, const PlanOptions& wishes) { return Planner(loaded, wishes).wallSize(); }
+compound::PixelSize wallSizeOf(const LoadedConfig& loaded, const PlanOptions& wishes) {
+    return Planner(loaded, wishes).wallSize();
+}
 
 } // namespace mural

@@ -16,6 +16,7 @@ struct DeltaPlan {
 };
 
 // All nodes of the multicast group receive the same encoding.
-DeltaPlan planEconomy(const SessionConfig& config, const SessionPlan& plan, const std::function<bool(int node)>& byMulticast);
+DeltaPlan planEconomy(const SessionConfig& config, const SessionPlan& plan,
+                      const std::function<bool(int node)>& byMulticast);
 
 } // namespace mural

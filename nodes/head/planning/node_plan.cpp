@@ -14,9 +14,7 @@ namespace {
 constexpr int kMaxLocalByDefault = 4;
 constexpr int kMaxNodes = 1 << 20;
 
-std::string countOf(int count, const char* one) {
-    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-}
+std::string countOf(int count, const char* one) { return std::to_string(count) + " " + one + (count == 1 ? "" : "s"); }
 
 std::string describeRegion(const NodePlan& plan) {
     const TileRegion& r = plan.region;
@@ -24,7 +22,8 @@ std::string describeRegion(const NodePlan& plan) {
     if (plan.area) {
         char area[96];
         std::snprintf(area, sizeof area, "%.4g %.4g %.4g %.4g", plan.area->x, plan.area->y, plan.area->w, plan.area->h);
-        return "node " + std::to_string(plan.node) + " (" + plan.where + ") begins with " + (pass.empty() ? "" : pass + ": ") + "the part [ " + area + " ] of the picture";
+        return "node " + std::to_string(plan.node) + " (" + plan.where + ") begins with " +
+               (pass.empty() ? "" : pass + ": ") + "the part [ " + area + " ] of the picture";
     }
     return "node " + std::to_string(plan.node) + " (" + plan.where + ") draws " + (pass.empty() ? "" : pass + ": ") +
            countOf(r.columns * r.rows, "tile") + ": columns " + std::to_string(r.column) + " to " +
@@ -36,7 +35,9 @@ std::string describeRegion(const NodePlan& plan) {
 std::vector<Viewport> evenParts(int n) {
     std::vector<Viewport> parts;
     const auto edge = [n](int i) { return static_cast<double>(i) / n; };
-    for (const TileRegion& r : splitGrid(n, n, n)) parts.push_back({edge(r.column), edge(r.row), edge(r.column + r.columns) - edge(r.column), edge(r.row + r.rows) - edge(r.row)});
+    for (const TileRegion& r : splitGrid(n, n, n))
+        parts.push_back({edge(r.column), edge(r.row), edge(r.column + r.columns) - edge(r.column),
+                         edge(r.row + r.rows) - edge(r.row)});
     return parts;
 }
 
@@ -47,7 +48,9 @@ std::string queueName(RenderPass pass) {
     return of.empty() ? "tiles" : "tiles of " + of;
 }
 
-std::string chunksName(const NodePlan& collector, int ranges) { return "draws of nodes " + std::to_string(collector.node) + " to " + std::to_string(collector.node + ranges - 1); }
+std::string chunksName(const NodePlan& collector, int ranges) {
+    return "draws of nodes " + std::to_string(collector.node) + " to " + std::to_string(collector.node + ranges - 1);
+}
 
 // Returns why the tiles of a queue can't move. Empty: they can.
 std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, int queue) {
@@ -81,7 +84,8 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
     const std::vector<RenderPass> passes = passesOf(config.passes);
     const auto passCount = static_cast<int>(passes.size());
     int localNodes = config.localNodes;
-    if (localNodes == 0 && config.hosts.empty()) localNodes = std::max(passCount * ranges, std::min(tiles, kMaxLocalByDefault));
+    if (localNodes == 0 && config.hosts.empty())
+        localNodes = std::max(passCount * ranges, std::min(tiles, kMaxLocalByDefault));
     const int asked = localNodes + static_cast<int>(config.hosts.size());
     const int wanted = std::max(asked, passCount * ranges);
     const int count = std::min(wanted, tiles * passCount * ranges);
@@ -91,9 +95,11 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
     plan.nodesShowWall = passCount == 1 && !queues; // windows of nodes can't move, unlike tiles of a queue
     for (int p = 0; p < passCount; ++p) {
         const int parts = std::max(1, nodesOfPass(count / ranges, passCount, p));
-        const std::vector<TileRegion> regions = queues ? std::vector<TileRegion>(static_cast<size_t>(parts)) : splitGrid(config.columns, config.rows, parts);
+        const std::vector<TileRegion> regions = queues ? std::vector<TileRegion>(static_cast<size_t>(parts))
+                                                       : splitGrid(config.columns, config.rows, parts);
         const std::vector<Viewport> areas = queues ? evenParts(parts) : std::vector<Viewport>();
-        if (queues && parts > 1) plan.queues.push_back({queueName(passes[static_cast<size_t>(p)]), {}, config.tileWidth, config.tileHeight});
+        if (queues && parts > 1)
+            plan.queues.push_back({queueName(passes[static_cast<size_t>(p)]), {}, config.tileWidth, config.tileHeight});
         for (size_t part = 0; part < regions.size(); ++part) {
             const TileRegion& region = regions[part];
             const auto collector = static_cast<int>(plan.nodes.size());
@@ -120,7 +126,9 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 plan.explain.push_back(describeRegion(node));
                 plan.nodes.push_back(node);
             }
-            if (config.chunks > 0 && ranges > 1) plan.chunkQueues.push_back({chunksName(plan.nodes[static_cast<size_t>(collector)], ranges), {}, 1.0 / config.chunks});
+            if (config.chunks > 0 && ranges > 1)
+                plan.chunkQueues.push_back(
+                    {chunksName(plan.nodes[static_cast<size_t>(collector)], ranges), {}, 1.0 / config.chunks});
         }
     }
     chooseComposition(plan, config.composition);
@@ -142,15 +150,20 @@ void settleChunkQueues(SessionPlan& plan) {
         const auto queue = static_cast<int>(q);
         const auto takes = [queue](const NodePlan& node) { return node.chunkQueue == queue; };
         const auto nodes = std::ranges::count_if(plan.nodes, takes);
-        const bool turns = std::ranges::any_of(plan.nodes, [&](const NodePlan& node) { return takes(node) && node.pass.period > 1; });
+        const bool turns =
+            std::ranges::any_of(plan.nodes, [&](const NodePlan& node) { return takes(node) && node.pass.period > 1; });
         char part[32];
         std::snprintf(part, sizeof part, "%.3g", plan.chunkQueues[q].part);
-        const std::string chunks = "queue \"" + plan.chunkQueues[q].name + "\": its chunks, of " + part + " of the draws, ";
+        const std::string chunks =
+            "queue \"" + plan.chunkQueues[q].name + "\": its chunks, of " + part + " of the draws, ";
         if (nodes > 1 && !turns) {
-            plan.explain.push_back(chunks + "are taken by whoever of " + std::to_string(nodes) + " nodes is free: by the times that the last frames took each");
+            plan.explain.push_back(chunks + "are taken by whoever of " + std::to_string(nodes) +
+                                   " nodes is free: by the times that the last frames took each");
             continue;
         }
-        (nodes < 2 ? plan.explain : plan.warnings).push_back(chunks + "are dealt out evenly, and stay: " + (nodes < 2 ? "one node draws all of them" : "their nodes take turns"));
+        (nodes < 2 ? plan.explain : plan.warnings)
+            .push_back(chunks + "are dealt out evenly, and stay: " +
+                       (nodes < 2 ? "one node draws all of them" : "their nodes take turns"));
         for (NodePlan& node : plan.nodes)
             if (takes(node)) node.chunkQueue = -1;
     }
@@ -164,10 +177,12 @@ void settleQueues(SessionPlan& plan, const SessionConfig& config) {
         const auto queue = static_cast<int>(q);
         const auto nodes = std::ranges::count(plan.nodes, queue, &NodePlan::queue);
         const TileQueuePlan& planned = plan.queues[q];
-        const std::string tiles = "queue \"" + planned.name + "\": its tiles of " + std::to_string(planned.width) + "x" + std::to_string(planned.height) + " pixels ";
+        const std::string tiles = "queue \"" + planned.name + "\": its tiles of " + std::to_string(planned.width) +
+                                  "x" + std::to_string(planned.height) + " pixels ";
         const std::string why = nodes < 2 ? "one node draws all of them" : whyTilesStay(plan, config, queue);
         if (why.empty()) {
-            plan.explain.push_back(tiles + "are taken by whoever of " + std::to_string(nodes) + " nodes is free: by the times that the last frames took each");
+            plan.explain.push_back(tiles + "are taken by whoever of " + std::to_string(nodes) +
+                                   " nodes is free: by the times that the last frames took each");
             continue;
         }
         (nodes < 2 ? plan.explain : plan.warnings).push_back(tiles + "are dealt out evenly, and stay: " + why);
@@ -176,16 +191,22 @@ void settleQueues(SessionPlan& plan, const SessionConfig& config) {
     }
 }
 
-bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) { return config.display == Display::Windows && !plan.nodesShowWall; }
+bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) {
+    return config.display == Display::Windows && !plan.nodesShowWall;
+}
 
-bool headShowsCanvas(const SessionConfig& config, const CanvasPlan& canvas) { return config.display == Display::App || (config.display == Display::Windows && !canvas.nodesShowWall); }
+bool headShowsCanvas(const SessionConfig& config, const CanvasPlan& canvas) {
+    return config.display == Display::App || (config.display == Display::Windows && !canvas.nodesShowWall);
+}
 
 bool headTakesPictures(const SessionConfig& config, const SessionPlan& plan) {
-    return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan) || std::ranges::any_of(plan.canvases, [&](const CanvasPlan& c) { return headShowsCanvas(config, c); });
+    return config.display == Display::App || !config.out.empty() || headShowsWall(config, plan) ||
+           std::ranges::any_of(plan.canvases, [&](const CanvasPlan& c) { return headShowsCanvas(config, c); });
 }
 
 bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
-    const bool nodesShow = node.canvas == 0 ? plan.nodesShowWall : plan.canvases[static_cast<size_t>(node.canvas) - 1].nodesShowWall;
+    const bool nodesShow =
+        node.canvas == 0 ? plan.nodesShowWall : plan.canvases[static_cast<size_t>(node.canvas) - 1].nodesShowWall;
     // only the collector has the picture
     return config.display == Display::Windows && nodesShow && node.pass.range == 0;
 }
@@ -242,7 +263,9 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.partCodec = node.codec;
     setup.readback = config.readback;
     setup.answers = node.answers;
-    setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) { return other.collector == node.collector && other.reach == NodeReach::LaunchCommand; });
+    setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) {
+        return other.collector == node.collector && other.reach == NodeReach::LaunchCommand;
+    });
     setup.eyeBase = config.eyeBase;
     setup.focusDistance = config.focusDistance;
     setup.tiling = config.tiling;
@@ -253,7 +276,8 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
         setup.swapMembers = static_cast<int>(members.size());
         setup.swapRank = static_cast<int>(std::ranges::find(members, node.node, &NodePlan::node) - members.begin());
         setup.swapLeader = members.front()->node;
-        setup.swapHere = std::ranges::none_of(members, [](const NodePlan* m) { return m->reach == NodeReach::LaunchCommand; });
+        setup.swapHere =
+            std::ranges::none_of(members, [](const NodePlan* m) { return m->reach == NodeReach::LaunchCommand; });
     }
     const NodeWindow window = node.window.value_or(NodeWindow{});
     setup.windowTitle = window.title;

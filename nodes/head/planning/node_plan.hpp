@@ -14,7 +14,7 @@ namespace mural {
 
 enum class NodeReach {
     SharedMemory, // a process of this machine
-    Tcp, // a process of this machine that is treated as remote
+    Tcp,          // a process of this machine that is treated as remote
     LaunchCommand // a process of another machine
 };
 
@@ -22,22 +22,22 @@ enum class NodeReach {
 struct NodeWindow {
     std::string title;
     std::string displayName; // empty: the session's
-    bool asOnWall = true; // its position on the screen equals that on the wall; otherwise x, y
-    int x = 0, y = 0; // upper left corner
+    bool asOnWall = true;    // its position on the screen equals that on the wall; otherwise x, y
+    int x = 0, y = 0;        // upper left corner
     bool fullScreen = false;
 };
 
 // A queue of tiles of one picture, or a part of it, for idle nodes.
 struct TileQueuePlan {
     std::string name;
-    Viewport area; // the part of the picture that is divided into tiles
+    Viewport area;             // the part of the picture that is divided into tiles
     int width = 0, height = 0; // of a tile in pixels; the last tile of a row or column may be smaller
 };
 
 // A queue of consecutive runs of a picture's draws, for idle nodes.
 struct ChunkQueuePlan {
     std::string name;
-    Range range; // the part of all draws that is divided into chunks
+    Range range;     // the part of all draws that is divided into chunks
     double part = 1; // size of a chunk, as a fraction of the range
 };
 
@@ -46,30 +46,30 @@ struct CanvasPlan {
     std::string name;
     WallComposition wall;
     bool nodesShowWall = true; // see SessionPlan
-    Zoom shown; // its size relative to the program's picture
-    int offsetX = 0; // horizontal offset of its windows if the windows of all canvases share one screen
+    Zoom shown;                // its size relative to the program's picture
+    int offsetX = 0;           // horizontal offset of its windows if the windows of all canvases share one screen
 };
 
 struct NodePlan {
     int node = 0;
-    int canvas = 0; // 0: the first; n: SessionPlan::canvases[n - 1]
+    int canvas = 0;    // 0: the first; n: SessionPlan::canvases[n - 1]
     std::string where; // "local" or the host
     NodeReach reach = NodeReach::SharedMemory;
     RenderPass pass;
-    int picture = 0; // index of the picture within the pass (WallPart)
+    int picture = 0;     // index of the picture within the pass (WallPart)
     bool answers = true; // answers reads of windows
     TileRegion region;
-    std::optional<Viewport> area; // on the picture, instead of tiles
+    std::optional<Viewport> area;  // on the picture, instead of tiles
     std::optional<Viewport> shown; // place on the wall, if different from area
-    Zoom way; // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
+    Zoom way;            // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
     int chunkQueue = -1; // index into SessionPlan::chunkQueues; -1: its range is fixed
-    int queue = -1; // index into SessionPlan::queues; -1: its area is fixed
+    int queue = -1;      // index into SessionPlan::queues; -1: its area is fixed
     std::optional<ScreenView> screen; // for a screen in a room
     std::optional<NodeWindow> window; // replaces the windows of tiles
-    std::string swapBarrier; // swap barrier of the node's windows; empty: none
+    std::string swapBarrier;          // swap barrier of the node's windows; empty: none
     // the node with the composited picture of all ranges, which has range 0; range r is node collector + r
     int collector = 0;
-    std::string codec = "auto"; // codec of its pictures to other nodes; before chooseCodecs: the file's
+    std::string codec = "auto";       // codec of its pictures to other nodes; before chooseCodecs: the file's
     std::string pictureCodec = "raw"; // codec of its pictures to the head
     std::optional<compositor::Strategy> composition; // strategy of its group; before chooseComposition: the file's
 };
@@ -79,11 +79,11 @@ struct SessionPlan {
     std::vector<TileQueuePlan> queues;
     std::vector<ChunkQueuePlan> chunkQueues;
     WallComposition wall;
-    bool nodesShowWall = true; // each node draws an unscaled part of the wall
-    std::vector<CanvasPlan> canvases; // canvases beside the first
+    bool nodesShowWall = true;                    // each node draws an unscaled part of the wall
+    std::vector<CanvasPlan> canvases;             // canvases beside the first
     std::optional<double> eyeBase, focusDistance; // from the configuration file, metres
-    std::vector<std::string> explain; // lines for --explain
-    std::vector<std::string> warnings; // lines for every user
+    std::vector<std::string> explain;             // lines for --explain
+    std::vector<std::string> warnings;            // lines for every user
 };
 
 // ownHost: this machine's name. Returns how the head reaches a node on `host`, as the user named it.
@@ -106,7 +106,8 @@ void settleQueues(SessionPlan& plan, const SessionConfig& config);
 [[nodiscard]] bool showsWall(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
 
 // The nodes of this node's swap barrier, including itself, the leader first. Empty: no barrier.
-[[nodiscard]] std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
+[[nodiscard]] std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const SessionPlan& plan,
+                                                         const NodePlan& node);
 
 NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node);
 

@@ -11,8 +11,8 @@ struct Cut {
     bool columns = true;
     int at = 0;
     int nodes = 0;
-    double load = 0; // tiles per node on the side with more
-    int uneven = 0; // distance from the middle: among equal cuts the middle one gives squarer parts
+    double load = 0;   // tiles per node on the side with more
+    int uneven = 0;    // distance from the middle: among equal cuts the middle one gives squarer parts
     int otherSide = 0; // length of the cut in tiles: short cuts share fewer edges
 };
 
@@ -31,8 +31,8 @@ void weighCuts(bool columns, int length, int across, int n, Cut& best) {
         const int share = n * at / length;
         for (int nodes : {share, share + 1}) {
             nodes = std::clamp(nodes, fewest, most);
-            const double load = std::max(static_cast<double>(tilesA) / nodes,
-                                         static_cast<double>(tilesB) / (n - nodes));
+            const double load =
+                std::max(static_cast<double>(tilesA) / nodes, static_cast<double>(tilesB) / (n - nodes));
             const Cut cut{columns, at, nodes, load, std::abs(2 * at - length), across};
             if (best.at == 0 || better(cut, best)) best = cut;
         }

@@ -16,7 +16,8 @@ struct Gap {
 
 constexpr std::string_view kNoTransport = "nodes are reached by their host; mural run says how; remove it";
 constexpr std::string_view kNoCounts = "mural stat shows what nodes take";
-constexpr std::string_view kNoBalance = "its areas or ranges are divided evenly; give its compounds a viewport or a range where some are dearer";
+constexpr std::string_view kNoBalance =
+    "its areas or ranges are divided evenly; give its compounds a viewport or a range where some are dearer";
 constexpr std::string_view kAsProgram = "nodes draw as the program's own windows are; change the program's settings";
 
 constexpr std::array kGaps = {
@@ -65,10 +66,12 @@ constexpr std::array kGaps = {
 std::vector<std::string> fieldsWithoutEffect(const config::Diagnostics& read) {
     std::vector<std::string> lines;
     for (const config::GivenField& g : read.fieldsGiven()) {
-        const auto gap = std::ranges::find_if(kGaps, [&](const Gap& c) { return c.field == g.field && (c.section.empty() || c.section == g.section); });
+        const auto gap = std::ranges::find_if(
+            kGaps, [&](const Gap& c) { return c.field == g.field && (c.section.empty() || c.section == g.section); });
         if (gap == kGaps.end()) continue;
         const std::string times = g.times == 1 ? "" : " (" + std::to_string(g.times) + " times)";
-        lines.push_back(read.text({config::Severity::Warning, g.at, g.field + times + " has no effect in a session", std::string(gap->instead)}));
+        lines.push_back(read.text({config::Severity::Warning, g.at, g.field + times + " has no effect in a session",
+                                   std::string(gap->instead)}));
     }
     return lines;
 }

@@ -6,8 +6,8 @@
 namespace mural {
 namespace {
 
-using wire::ReplyPartHeader;
 using wire::ReplyKind;
+using wire::ReplyPartHeader;
 
 constexpr size_t kMaxOpenRequests = 65536;
 constexpr int64_t kMaxReplyBytes = int64_t{1} << 30;
@@ -21,9 +21,7 @@ Error contradiction(const ReplyPartHeader& header) {
 } // namespace
 
 ReplyAssembler::ReplyAssembler(int nodes, Deliver deliver)
-    : deliver_(std::move(deliver))
-    , nodes_(static_cast<size_t>(nodes))
-    , views_(static_cast<size_t>(nodes)) {}
+    : deliver_(std::move(deliver)), nodes_(static_cast<size_t>(nodes)), views_(static_cast<size_t>(nodes)) {}
 
 Result<void> ReplyAssembler::answer(int node, const ReplyPartHeader& header, ByteBuffer bytes) {
     Request complete;
@@ -105,8 +103,7 @@ void ReplyAssembler::nodeLost(int node) {
             Request& request = it->second;
             request.awaited[static_cast<size_t>(node)] = false;
             // Discards a partial answer of kind Bytes: another node sends all bytes.
-            if (request.firstNode == node && !request.last[static_cast<size_t>(node)])
-                request.firstNode = -1;
+            if (request.firstNode == node && !request.last[static_cast<size_t>(node)]) request.firstNode = -1;
             if (!allAnswered(request)) {
                 ++it;
                 continue;
@@ -139,7 +136,8 @@ std::vector<int> ReplyAssembler::missing(uint32_t client) const {
     const auto oldest = requests_.lower_bound({client, 0});
     const bool known = oldest != requests_.end() && oldest->first.first == client;
     for (size_t node = 0; node < nodes_; ++node) {
-        const bool asked = known ? oldest->second.awaited[node] && !oldest->second.last[node] : views_.lives(static_cast<int>(node));
+        const bool asked =
+            known ? oldest->second.awaited[node] && !oldest->second.last[node] : views_.lives(static_cast<int>(node));
         if (asked) nodes.push_back(static_cast<int>(node));
     }
     return nodes;
@@ -184,8 +182,8 @@ void ReplyAssembler::assembleRectangle(const Request& request, Reply& reply) {
         const auto left = static_cast<size_t>(part.rectangle.x - all.x) * pixelBytes;
         const auto bottom = static_cast<size_t>(part.rectangle.y - all.y);
         for (size_t y = 0; y < static_cast<size_t>(part.rectangle.h); ++y) {
-            std::memcpy(reply.bytes.data() + (bottom + y) * rowBytes + left,
-                        part.bytes.data() + y * partRowBytes, partRowBytes);
+            std::memcpy(reply.bytes.data() + (bottom + y) * rowBytes + left, part.bytes.data() + y * partRowBytes,
+                        partRowBytes);
         }
     }
 }

@@ -50,9 +50,9 @@ private:
         uint32_t groupBytes = 0;
         std::vector<Part> parts;
         std::vector<bool> awaited; // per node; false after it is lost
-        std::vector<bool> last; // per node: its answer is complete
-        int firstNode = -1; // the node whose answer counts (ReplyKind::Bytes)
-        bool delivered = false; // later answers are discarded
+        std::vector<bool> last;    // per node: its answer is complete
+        int firstNode = -1;        // the node whose answer counts (ReplyKind::Bytes)
+        bool delivered = false;    // later answers are discarded
     };
 
     Result<void> add(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes, Request& request);

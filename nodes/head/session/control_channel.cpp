@@ -14,9 +14,7 @@ constexpr size_t kMaxUnsentBytes = size_t{1} << 20;
 constexpr int64_t kLastLinesMs = 5000;
 constexpr size_t kMaxLineBytes = size_t{4} << 20;
 
-int pollMs(Deadline deadline) {
-    return static_cast<int>((deadline.leftNs(kNsPerS) + kNsPerMs - 1) / kNsPerMs);
-}
+int pollMs(Deadline deadline) { return static_cast<int>((deadline.leftNs(kNsPerS) + kNsPerMs - 1) / kNsPerMs); }
 
 } // namespace
 

@@ -14,9 +14,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int64_t kTickMs = 50;
-constexpr int64_t kProgressNs = 200 * kNsPerMs;  // at most 5 lines per second
-constexpr int64_t kOutputNewsMs = 20'000; // below the silence after which `mural run` gives up the head
-constexpr int64_t kProcessPatienceMs = 2000; // time between a node's Bye and the end of its process
+constexpr int64_t kProgressNs = 200 * kNsPerMs; // at most 5 lines per second
+constexpr int64_t kOutputNewsMs = 20'000;       // below the silence after which `mural run` gives up the head
+constexpr int64_t kProcessPatienceMs = 2000;    // time between a node's Bye and the end of its process
 
 std::vector<int> picturesOf(const SessionPlan& plan) {
     std::vector<int> pictures;
@@ -31,7 +31,10 @@ PictureAssembler::Compose composeBy(const WallComposition& wall) {
 
 std::vector<PictureAssembler::Compose> composeOthersBy(const SessionPlan& plan) {
     std::vector<PictureAssembler::Compose> others;
-    for (const CanvasPlan& canvas : plan.canvases) others.push_back([wall = canvas.wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); });
+    for (const CanvasPlan& canvas : plan.canvases)
+        others.push_back([wall = canvas.wall](const std::vector<Picture>& passes, OwnedPicture& into) {
+            composeWall(wall, passes, into);
+        });
     return others;
 }
 
@@ -59,62 +62,64 @@ std::string plantOf() {
 
 } // namespace
 
-HeadSession::HeadSession(SessionConfig config,
-                         SessionPlan plan,
-                         std::vector<LaunchedNode> nodes,
-                         ControlChannel& control,
-                         HeadOptions options)
-    : config_(std::move(config))
-    , plan_(std::move(plan))
-    , control_(control)
-    , options_(std::move(options))
-    , nodeCount_(static_cast<int>(nodes.size()))
-    , sendsPictures_(headTakesPictures(config_, plan_))
-    , frames_(nodeCount_,
+HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<LaunchedNode> nodes,
+                         ControlChannel& control, HeadOptions options)
+    : config_(std::move(config)),
+      plan_(std::move(plan)),
+      control_(control),
+      options_(std::move(options)),
+      nodeCount_(static_cast<int>(nodes.size())),
+      sendsPictures_(headTakesPictures(config_, plan_)),
+      frames_(nodeCount_,
               [this](uint32_t client, uint32_t finished, uint32_t shown) {
                   if (serving_) programs_->credit(client, finished, shown);
-              })
-    , answers_(nodeCount_,
+              }),
+      answers_(nodeCount_,
                [this](uint32_t client, Reply reply) {
                    if (serving_) programs_->reply(client, std::move(reply));
-               })
-    , pictures_(picturesOf(plan_),
-                composeBy(plan_.wall),
-                [this](WindowPicture picture) {
-                    frames_.pictureHeld(picture.client, picture.frame);
-                    frames_.isOn(picture.client, picture.window, picture.nativeWindow);
-                    output_->add(std::move(picture));
-                },
-                composeOthersBy(plan_),
-                sizesOf(plan_))
-    , dealer_(plan_,
-              [this](const ViewportAssignment& areas) { nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas)); },
-              plantOf())
-    , chunks_(plan_,
-              [this](const RangeAssignment& shares) { nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(shares)); },
-              plantOf())
-    , advice_(config_, nodeCount_, control_)
-    , absences_(absencesOf(nodes))
-    , views_(nodes.size())
-    , facts_(nodes.size())
-    , ready_(nodes.size(), false)
-    , introduced_(nodes.size(), true)
-    , lives_(nodes.size(), 0)
-    , refusals_(nodes.size())
-    , totals_(nodes.size()) {
+               }),
+      pictures_(
+          picturesOf(plan_), composeBy(plan_.wall),
+          [this](WindowPicture picture) {
+              frames_.pictureHeld(picture.client, picture.frame);
+              frames_.isOn(picture.client, picture.window, picture.nativeWindow);
+              output_->add(std::move(picture));
+          },
+          composeOthersBy(plan_), sizesOf(plan_)),
+      dealer_(
+          plan_,
+          [this](const ViewportAssignment& areas) {
+              nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas));
+          },
+          plantOf()),
+      chunks_(
+          plan_,
+          [this](const RangeAssignment& shares) {
+              nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(shares));
+          },
+          plantOf()),
+      advice_(config_, nodeCount_, control_),
+      absences_(absencesOf(nodes)),
+      views_(nodes.size()),
+      facts_(nodes.size()),
+      ready_(nodes.size(), false),
+      introduced_(nodes.size(), true),
+      lives_(nodes.size(), 0),
+      refusals_(nodes.size()),
+      totals_(nodes.size()) {
     NodeEvents& events = *this; // make_unique can't convert to a private base
     for (int node = 0; node < nodeCount_; ++node) {
         LaunchedNode& launched = nodes[static_cast<size_t>(node)];
         totals_[static_cast<size_t>(node)].node = node;
         ready_[static_cast<size_t>(node)] = !launched.connection; // the start does not wait for an absent node
-        nodes_.add(std::make_unique<NodeConnection>(NodePlace{node, launched.plan.where},
-                                              std::move(launched.connection),
-                                              std::move(launched.process), events));
+        nodes_.add(std::make_unique<NodeConnection>(
+            NodePlace{node, launched.plan.where}, std::move(launched.connection), std::move(launched.process), events));
     }
     ReturnTerms terms;
     terms.tries = config_.restartNodes;
     terms.readyPatienceMs = options_.readyPatienceMs;
-    if (terms.tries > 0 && options_.startNode) nodes_.keepBy(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.storeBytes)));
+    if (terms.tries > 0 && options_.startNode)
+        nodes_.keepBy(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.storeBytes)));
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
     if (!sendsPictures_) return;
     PictureOutputConfig output;
@@ -129,12 +134,15 @@ HeadSession::HeadSession(SessionConfig config,
         canvas.name = plan_.canvases[i].name;
         canvas.pairs = plan_.canvases[i].wall.stereo == StereoMode::Quad;
         if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
-        if (headShowsCanvas(config_, plan_.canvases[i])) canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
+        if (headShowsCanvas(config_, plan_.canvases[i]))
+            canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
     }
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
     output.giveToProgram = [this](const WindowPicture& picture, const Picture& whole) {
-        const auto done = [this, client = picture.client, frame = picture.frame] { frames_.pictureReleased(client, frame); };
+        const auto done = [this, client = picture.client, frame = picture.frame] {
+            frames_.pictureReleased(client, frame);
+        };
         return programs_->giveOwnPicture(picture.client, picture.frame, picture.nativeWindow, whole, done);
     };
     output.say = [this](const std::string& text) { control_.say(text); };
@@ -186,7 +194,9 @@ void HeadSession::watchNodes(int64_t nowNs) {
             multicast ? rerouted_.erase(node) : static_cast<size_t>(rerouted_.insert(node).second);
         }
         control_.say(nodes_.link(node).describe() +
-                     (multicast ? ": multicast reaches it again" : ": it does not answer to multicast; its stream goes through its own connection (TCP); mural doctor --network may say why"));
+                     (multicast ? ": multicast reaches it again"
+                                : ": it does not answer to multicast; its stream goes through its own connection "
+                                  "(TCP); mural doctor --network may say why"));
     });
 }
 
@@ -227,7 +237,8 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
     if (ready_[index]) return Error{"it said twice that it is ready"};
     if (!facts->ownStream.empty()) {
         nodes_.link(node).setByMulticast(false);
-        control_.say(nodes_.link(node).describe() + ": its stream goes through its own connection (TCP), not by multicast: " + facts->ownStream);
+        control_.say(nodes_.link(node).describe() +
+                     ": its stream goes through its own connection (TCP), not by multicast: " + facts->ownStream);
     }
     facts_[index] = std::move(*facts);
     ready_[index] = true;
@@ -328,7 +339,8 @@ void HeadSession::nodeLost(int node, const std::string& why) {
         const std::lock_guard lock(mutex_);
         starting = !serving_;
         const std::string& refusal = refusals_[static_cast<size_t>(node)];
-        if (starting && startFailure_.empty()) startFailure_ = nodes_.link(node).describe() + " did not start: " + (refusal.empty() ? why : refusal);
+        if (starting && startFailure_.empty())
+            startFailure_ = nodes_.link(node).describe() + " did not start: " + (refusal.empty() ? why : refusal);
     }
     if (!starting) loseMember(node, why);
 }
@@ -346,8 +358,7 @@ void HeadSession::finish() {
     finishing_ = true;
     returns_->stop([this] { watchNodes(monotonicNowNs()); });
     programs_->refuseFrom("the session is ending");
-    programs_->drainAll(Deadline::inMs(options_.drainPatienceMs),
-                        [this] { watchNodes(monotonicNowNs()); });
+    programs_->drainAll(Deadline::inMs(options_.drainPatienceMs), [this] { watchNodes(monotonicNowNs()); });
     finishNodes();
     finishOutput();
     server_.reset();

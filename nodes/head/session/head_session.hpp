@@ -40,39 +40,36 @@ namespace mural {
 // A program's own window.
 struct NativeWindow {
     uint32_t client = 0, window = 0; // ids in the stream
-    uint32_t id = 0; // XID on its display
-    std::string display; // name in the program; empty: unknown
+    uint32_t id = 0;                 // XID on its display
+    std::string display;             // name in the program; empty: unknown
 };
 
 struct HeadOptions {
     uint64_t registryDigest = 0;
-    std::unique_ptr<PictureSink> file; // sink of --out; null: none
+    std::unique_ptr<PictureSink> file;        // sink of --out; null: none
     std::function<std::string()> lastPicture; // path of the last file; may be empty
     std::function<Result<std::unique_ptr<PictureSink>>(const NativeWindow& window)> openWindow;
     std::vector<std::shared_ptr<PictureSink>> canvasFiles; // sinks of --out for the further canvases
     // opens wall windows if the head shows the wall (headShowsWall) or a further canvas
     std::function<Result<std::unique_ptr<PictureSink>>(int offsetX)> openWall;
     std::unique_ptr<trace::StreamRecorder> recorder; // --record; null: none
-    std::function<bool()> interrupted; // returns whether a signal requests the end; may be empty
+    std::function<bool()> interrupted;               // returns whether a signal requests the end; may be empty
     // Restarts a lost node. Called by the session's thread. Empty: nodes are not restarted.
     std::function<Result<StartingNode>(const NodePlan&)> startNode;
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
-    int64_t byePatienceMs = 10'000; // silence of a node at the end of the session
+    int64_t byePatienceMs = 10'000;     // silence of a node at the end of the session
     int64_t silencePatienceMs = 20'000; // silence of a node before that; nodes send a heartbeat every 4 s
-    int64_t endPatienceMs = 60'000; // end of all nodes, even if they send messages
+    int64_t endPatienceMs = 60'000;     // end of all nodes, even if they send messages
     int64_t outputPatienceMs = 150'000; // video encoders buffer frames
-    int64_t recordPatienceMs = 60'000; // limit for writing the end of the recording
+    int64_t recordPatienceMs = 60'000;  // limit for writing the end of the recording
 };
 
 // run() must be called by the thread that launched the nodes.
 class HeadSession : private NodeEvents {
 public:
-    HeadSession(SessionConfig config,
-                SessionPlan plan,
-                std::vector<LaunchedNode> nodes,
-                ControlChannel& control,
+    HeadSession(SessionConfig config, SessionPlan plan, std::vector<LaunchedNode> nodes, ControlChannel& control,
                 HeadOptions options);
     ~HeadSession() override;
 
@@ -143,9 +140,9 @@ private:
     HeadOptions options_;
     const int nodeCount_;
     const bool sendsPictures_;
-    std::string placement_; // placement of the head's threads
+    std::string placement_;   // placement of the head's threads
     std::string economyLine_; // for --explain: nodes with delta coding
-    std::string streamLine_; // for --explain: transport of the stream; empty: shared memory only
+    std::string streamLine_;  // for --explain: transport of the stream; empty: shared memory only
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameTracker frames_;
@@ -165,8 +162,8 @@ private:
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
     const std::map<int, std::string> absences_; // nodes absent at the start, with the reason
-    std::set<int> multicastNodes_; // nodes that receive the stream by multicast if it reaches them
-    std::set<int> economical_; // nodes with delta coding
+    std::set<int> multicastNodes_;              // nodes that receive the stream by multicast if it reaches them
+    std::set<int> economical_;                  // nodes with delta coding
     std::string exchangeSecret_; // in hex; for nodes that exchange parts of pictures or share a swap barrier
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;
@@ -175,15 +172,15 @@ private:
     trace::WriterTotals recorded_;
 
     std::mutex membership_; // held while a node becomes a member or is lost; locked before mutex_
-    std::mutex mutex_; // guards the members below
+    std::mutex mutex_;      // guards the members below
     ReplySenders views_;
-    int promisedGlVersion_ = 0; // announced to programs…
+    int promisedGlVersion_ = 0;      // announced to programs…
     std::string promisedExtensions_; // …from the nodes of the start
     std::vector<NodeCapabilities> facts_;
     std::vector<bool> ready_;
-    std::vector<bool> introduced_; // nodes that have the addresses of the other nodes of their picture
-    std::vector<uint32_t> lives_; // number of restarts by node
-    std::set<int> rerouted_; // nodes that multicast does not reach
+    std::vector<bool> introduced_;      // nodes that have the addresses of the other nodes of their picture
+    std::vector<uint32_t> lives_;       // number of restarts by node
+    std::set<int> rerouted_;            // nodes that multicast does not reach
     std::vector<std::string> refusals_; // latest log line of each node before it was ready
     std::vector<NodeTotals> totals_;
     std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // by window: nodes that have not reported its end

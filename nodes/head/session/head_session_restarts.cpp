@@ -26,21 +26,27 @@ std::string seconds(double value) {
 
 NodeRestarter::Hooks HeadSession::returnHooks() {
     NodeRestarter::Hooks hooks;
-    if (options_.startNode) hooks.start = [this](int node) { return options_.startNode(plan_.nodes[static_cast<size_t>(node)]); };
+    if (options_.startNode)
+        hooks.start = [this](int node) { return options_.startNode(plan_.nodes[static_cast<size_t>(node)]); };
     hooks.connected = [this](int node, StartingNode& starting) { linkAgain(node, starting); };
     hooks.introduce = [this](int node) { introduceAgain(node); };
     hooks.whyNever = [this](int) -> std::string {
-        if (!nodes_.canJoin()) return "programs have sent more than the " + std::to_string(config_.storeBytes >> 20) + " MiB that are kept to start a node again; --store gives more";
+        if (!nodes_.canJoin())
+            return "programs have sent more than the " + std::to_string(config_.storeBytes >> 20) +
+                   " MiB that are kept to start a node again; --store gives more";
         return "";
     };
     // Only members know the state of time-multiplexed nodes and of moving areas.
     hooks.turns = [this](int node) {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
-        return plan.pass.period > 1 ? StreamBroadcaster::Turns::OfFrames : plan.queue >= 0 ? StreamBroadcaster::Turns::OfAreas : StreamBroadcaster::Turns::None;
+        return plan.pass.period > 1 ? StreamBroadcaster::Turns::OfFrames
+               : plan.queue >= 0    ? StreamBroadcaster::Turns::OfAreas
+                                    : StreamBroadcaster::Turns::None;
     };
     hooks.tilesOfLost = [this](int node) -> std::string {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
-        if (plan.pass.range > 0) return plan.chunkQueue >= 0 ? "the others take its chunks" : "what it draws is missing";
+        if (plan.pass.range > 0)
+            return plan.chunkQueue >= 0 ? "the others take its chunks" : "what it draws is missing";
         return plan.queue >= 0 ? "the others take its tiles" : "its tiles stay as they were";
     };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
@@ -65,7 +71,8 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     }
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
     NodeEvents& events = *this; // a private base: make_unique could not convert
-    auto link = std::make_unique<NodeConnection>(NodePlace{node, plan.where}, std::move(starting.node.connection), std::move(starting.node.process), events);
+    auto link = std::make_unique<NodeConnection>(NodePlace{node, plan.where}, std::move(starting.node.connection),
+                                                 std::move(starting.node.process), events);
     link->setJoinsBatches(economical_.contains(node));
     link->setJoinsGroup(multicastNodes_.contains(node));
     nodes_.replace(node, std::move(link));
@@ -90,7 +97,8 @@ void HeadSession::introduceAgain(int node) {
         const std::lock_guard lock(mutex_);
         for (int other = plan.collector; other < plan.collector + plan.pass.ranges; ++other) {
             const auto index = static_cast<size_t>(other);
-            if (other != node && introduced_[index] && ready_[index] && nodes_.link(other).alive()) pictures[std::to_string(other)] = facts_[index].exchange;
+            if (other != node && introduced_[index] && ready_[index] && nodes_.link(other).alive())
+                pictures[std::to_string(other)] = facts_[index].exchange;
         }
         introduced_[static_cast<size_t>(node)] = true;
     }
@@ -104,10 +112,12 @@ Result<void> HeadSession::takeAgain(int node, NodeCapabilities facts) {
         const auto index = static_cast<size_t>(node);
         if (ready_[index]) return Error{"it said twice that it is ready"};
         if (!facts_[index].renderer.empty() && facts.renderer != facts_[index].renderer)
-            return Error{"it draws by another GL now (" + facts.renderer + ") than before (" + facts_[index].renderer + "); its pictures would not fit the others'"};
+            return Error{"it draws by another GL now (" + facts.renderer + ") than before (" + facts_[index].renderer +
+                         "); its pictures would not fit the others'"};
         const std::string missing = firstMissing(promisedExtensions_, facts.extensions);
         if (facts.glVersion < promisedGlVersion_ || !missing.empty())
-            return Error{"its GL has less than programs were promised: " + (missing.empty() ? "an older version" : "no " + missing)};
+            return Error{"its GL has less than programs were promised: " +
+                         (missing.empty() ? "an older version" : "no " + missing)};
         facts_[index] = std::move(facts);
         ready_[index] = true;
     }
@@ -129,10 +139,13 @@ StreamBroadcaster::Admission HeadSession::admit(int node, uint32_t view) {
     views_.joins(node, view);
     admission.life = lives_[static_cast<size_t>(node)];
     admission.first = true; // of time-multiplexed nodes or nodes with moving areas
-    for (size_t other = 0; other < plan_.nodes.size(); ++other) admission.first = admission.first && (totals_[other].lost || (plan_.nodes[other].pass.period < 2 && plan_.nodes[other].queue < 0));
+    for (size_t other = 0; other < plan_.nodes.size(); ++other)
+        admission.first = admission.first &&
+                          (totals_[other].lost || (plan_.nodes[other].pass.period < 2 && plan_.nodes[other].queue < 0));
     totals_[static_cast<size_t>(node)].lost = false;
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
-        if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive()) admission.absent.push_back(static_cast<uint32_t>(other));
+        if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive())
+            admission.absent.push_back(static_cast<uint32_t>(other));
     return admission;
 }
 
@@ -169,7 +182,9 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
         totals.secondsToBack = numbers.secondsToBack;
     }
     const bool first = absences_.contains(node) && joins == 1;
-    control_.say(nodes_.link(node).describe() + (first ? " came into the picture " : " is back in the picture ") + seconds(numbers.secondsToBack) + (first ? " after the session began; it was given " : " after it was lost; it was given ") +
+    control_.say(nodes_.link(node).describe() + (first ? " came into the picture " : " is back in the picture ") +
+                 seconds(numbers.secondsToBack) +
+                 (first ? " after the session began; it was given " : " after it was lost; it was given ") +
                  std::to_string((numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20) + " MiB");
     return {};
 }
@@ -191,7 +206,8 @@ void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
         const bool taken = plan_.nodes[static_cast<size_t>(node)].queue >= 0;
-        control_.say(nodes_.link(node).describe() + " is not there yet: it " + why + (taken ? "; the others take its tiles until it comes" : "; its tiles stay empty until it comes"));
+        control_.say(nodes_.link(node).describe() + " is not there yet: it " + why +
+                     (taken ? "; the others take its tiles until it comes" : "; its tiles stay empty until it comes"));
         returns_->notThere(node);
         goOnWithout(node);
     }

@@ -18,11 +18,14 @@ using Json = nlohmann::json;
 const char* explainTiling(Tiling tiling) {
     switch (tiling) {
     case Tiling::Culled:
-        return "tiling culled: as exact, and shaders drop what lies outside of a node's tiles; exact where windows and framebuffer objects have depth buffers";
-    case Tiling::Lean: return "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels may differ, mostly by 1";
+        return "tiling culled: as exact, and shaders drop what lies outside of a node's tiles; exact where windows and "
+               "framebuffer objects have depth buffers";
+    case Tiling::Lean:
+        return "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels may differ, mostly by 1";
     case Tiling::Exact: break;
     }
-    return "tiling exact: every node has a frame buffer of the whole picture and draws its tiles only; no pixel differs from a single machine's";
+    return "tiling exact: every node has a frame buffer of the whole picture and draws its tiles only; no pixel "
+           "differs from a single machine's";
 }
 
 const char* whyOwnStreams(const std::string& stream) {
@@ -37,18 +40,22 @@ Result<void> HeadSession::bringUp() {
     nodes_.startReading();
     openMulticast();
     if (auto opened = openEconomy(); !opened) return opened;
-    if (std::ranges::any_of(plan_.nodes, [this](const NodePlan& n) { return n.pass.ranges > 1 || !swapMembersOf(config_, plan_, n).empty(); })) {
+    if (std::ranges::any_of(plan_.nodes, [this](const NodePlan& n) {
+            return n.pass.ranges > 1 || !swapMembersOf(config_, plan_, n).empty();
+        })) {
         const auto secret = makeSessionSecret();
         if (!secret) return secret.error();
         exchangeSecret_ = toHex(secret.value());
     }
     for (const NodePlan& plan : plan_.nodes)
-        if (nodes_.link(plan.node).alive()) nodes_.sendAlone(plan.node, wire::HeadCommand::Setup, toJson(setupFor(plan)));
+        if (nodes_.link(plan.node).alive())
+            nodes_.sendAlone(plan.node, wire::HeadCommand::Setup, toJson(setupFor(plan)));
     if (auto ready = awaitReady(); !ready) return ready;
     introduceNodes();
     openTables();
     goOnWithoutAbsent();
-    auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_, [this] { return statusOf(status()).dump(); });
+    auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_,
+                                       [this] { return statusOf(status()).dump(); });
     if (!server) return server.error();
     server_ = std::move(*server);
     announceReady();
@@ -74,19 +81,24 @@ void HeadSession::openMulticast() {
     std::erase_if(nodes, [this](int node) { return absences_.contains(node); });
     if (nodes.empty()) {
         multicastNodes_.clear(); // no group is created
-        streamLine_ = config_.hosts.empty() ? "" : std::string("the stream goes to each node by its own connection: ") + whyOwnStreams(config_.stream);
+        streamLine_ = config_.hosts.empty() ? ""
+                                            : std::string("the stream goes to each node by its own connection: ") +
+                                                  whyOwnStreams(config_.stream);
         return;
     }
     NetworkPath path = nodes_.link(nodes.front()).path();
-    for (const int node : nodes) path.datagramBytes = std::min(path.datagramBytes, nodes_.link(node).path().datagramBytes);
+    for (const int node : nodes)
+        path.datagramBytes = std::min(path.datagramBytes, nodes_.link(node).path().datagramBytes);
     auto multicast = NodeMulticast::open(config_.stream, path);
     if (!multicast) {
         multicastNodes_.clear();
-        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message + "; mural doctor --network says what to mend";
+        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message +
+                      "; mural doctor --network says what to mend";
         if (!config_.explain) control_.say(streamLine_);
         return;
     }
-    streamLine_ = "the stream goes to " + std::to_string(nodes.size()) + " nodes at once, by reliable multicast: " + (*multicast)->describe();
+    streamLine_ = "the stream goes to " + std::to_string(nodes.size()) +
+                  " nodes at once, by reliable multicast: " + (*multicast)->describe();
     nodes_.multicastBy(std::move(*multicast));
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
 }
@@ -99,7 +111,8 @@ Result<void> HeadSession::openEconomy() {
     limits.storeBytes = static_cast<uint64_t>(config_.storeBytes);
     auto economy = DeltaStream::open(limits);
     if (!economy) return economy.error();
-    if (const char* const plant = std::getenv("MURAL_PLANT"); plant != nullptr && std::string_view(plant) == "held") (*economy)->losesWhatItHolds();
+    if (const char* const plant = std::getenv("MURAL_PLANT"); plant != nullptr && std::string_view(plant) == "held")
+        (*economy)->losesWhatItHolds();
     nodes_.economizeBy(std::move(*economy));
     for (const int node : plan.nodes) nodes_.link(node).setInBatches(!absences_.contains(node));
     economical_.insert(plan.nodes.begin(), plan.nodes.end());
@@ -134,12 +147,10 @@ Result<void> HeadSession::awaitReady() {
             if (deadline.passed()) {
                 const auto node = static_cast<int>(missing - ready_.begin());
                 return Error{nodes_.link(node).describe() + " was not ready within " +
-                             std::to_string(options_.readyPatienceMs / 1000) +
-                             " s; try --gl osmesa, or fewer nodes"};
+                             std::to_string(options_.readyPatienceMs / 1000) + " s; try --gl osmesa, or fewer nodes"};
             }
         }
-        if (askedToFinish(Deadline::inMs(10)))
-            return Error{"the session was ended before its nodes were ready"};
+        if (askedToFinish(Deadline::inMs(10))) return Error{"the session was ended before its nodes were ready"};
     }
 }
 
@@ -149,7 +160,8 @@ Result<void> HeadSession::checkSize() {
     for (size_t i = 0; config_.tiling != Tiling::Lean && i < facts_.size(); ++i) {
         const int64_t most = facts_[i].mostPixels;
         if (most == 0 || side <= most) continue;
-        return Error{nodes_.link(static_cast<int>(i)).describe() + " draws pictures of at most " + std::to_string(most) + " pixels a side, and the wall has " + std::to_string(config_.width) + "x" +
+        return Error{nodes_.link(static_cast<int>(i)).describe() + " draws pictures of at most " +
+                     std::to_string(most) + " pixels a side, and the wall has " + std::to_string(config_.width) + "x" +
                      std::to_string(config_.height) + "; give a smaller --size"};
     }
     return {};
@@ -180,11 +192,10 @@ void HeadSession::openTables() {
     beginRecording();
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {
-        if (options_.recorder) options_.recorder->event({trace::Event::ClientCame, client.id(), client.pid(), client.name()});
+        if (options_.recorder)
+            options_.recorder->event({trace::Event::ClientCame, client.id(), client.pid(), client.name()});
     };
-    events.countChanged = [this](size_t count) {
-        control_.send({{"event", "clients"}, {"count", count}});
-    };
+    events.countChanged = [this](size_t count) { control_.send({{"event", "clients"}, {"count", count}}); };
     events.gone = [this](uint32_t client, const std::string& line) {
         news_.programGone(client);
         if (options_.recorder) options_.recorder->event({trace::Event::ClientGone, client, 0, ""});
@@ -200,7 +211,9 @@ void HeadSession::beginRecording() {
     about.version = MURAL_VERSION;
     {
         const std::lock_guard lock(mutex_);
-        for (const NodeCapabilities& facts : facts_) about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." + std::to_string(facts.glVersion % 10));
+        for (const NodeCapabilities& facts : facts_)
+            about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." +
+                                  std::to_string(facts.glVersion % 10));
     }
     options_.recorder->begin(about);
     nodes_.setRecorder(options_.recorder.get());
@@ -216,8 +229,11 @@ std::string HeadSession::placeOwnThreads() const {
 std::vector<std::string> HeadSession::explainLines() {
     std::vector<std::string> lines = plan_.explain;
     for (const NodePlan& node : plan_.nodes)
-        if (const auto members = swapMembersOf(config_, plan_, node); !members.empty() && members.front()->node == node.node)
-            lines.push_back("windows of " + std::to_string(members.size()) + " nodes show each frame together: swap barrier \"" + node.swapBarrier + "\", led by node " + std::to_string(node.node));
+        if (const auto members = swapMembersOf(config_, plan_, node);
+            !members.empty() && members.front()->node == node.node)
+            lines.push_back("windows of " + std::to_string(members.size()) +
+                            " nodes show each frame together: swap barrier \"" + node.swapBarrier + "\", led by node " +
+                            std::to_string(node.node));
     lines.push_back(explainTiling(config_.tiling));
     if (!streamLine_.empty()) lines.push_back(streamLine_);
     lines.push_back(economyLine_);
@@ -237,22 +253,21 @@ void HeadSession::announceReady() {
         for (const NodePlan& plan : plan_.nodes) {
             if (absences_.contains(plan.node)) continue;
             const NodeCapabilities& facts = facts_[static_cast<size_t>(plan.node)];
-            nodes.push_back({{"node", plan.node},
-                             {"where", plan.where},
-                             {"pid", facts.pid},
-                             {"gl", facts.renderer}});
+            nodes.push_back({{"node", plan.node}, {"where", plan.where}, {"pid", facts.pid}, {"gl", facts.renderer}});
         }
     }
     for (const std::string& warning : plan_.warnings) control_.say(warning);
     if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
-        control_.say("both eyes are shown side by side: windows of the wall alone have a buffer for each; add --display windows");
+        control_.say("both eyes are shown side by side: windows of the wall alone have a buffer for each; add "
+                     "--display windows");
     control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
 }
 
 Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
     const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
     if (number == capture::kNoDisplay)
-        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer than {} bytes; its window there shows nothing",
+        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer "
+                                 "than {} bytes; its window there shows nothing",
                                  capture::kDisplays, capture::kDisplayNameBytes - 1)};
     NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
     if (serving_) window.display = programs_->displayName(picture.client, number);

@@ -18,7 +18,8 @@ int64_t wholeOf(const Json& json, const char* name) {
 
 Json swapJson(const SwapTotals& s) {
     if (s.members == 0) return nullptr;
-    return {{"members", s.members}, {"swaps", s.swaps}, {"medianNs", s.medianNs}, {"p99Ns", s.p99Ns}, {"mostNs", s.mostNs}, {"clockErrorNs", s.clockErrorNs}};
+    return {{"members", s.members}, {"swaps", s.swaps},   {"medianNs", s.medianNs},
+            {"p99Ns", s.p99Ns},     {"mostNs", s.mostNs}, {"clockErrorNs", s.clockErrorNs}};
 }
 
 double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<double>(kNsPerS); }
@@ -73,7 +74,8 @@ std::string reasonText(capture::Uncompared reason) {
 Json uncomparedJson(const CaptureCounts& counts) {
     Json reasons = Json::object();
     for (uint32_t i = 0; i < capture::kUncomparedReasons; ++i)
-        if (counts.uncomparedFrames[i] > 0) reasons[reasonText(static_cast<capture::Uncompared>(i))] = counts.uncomparedFrames[i];
+        if (counts.uncomparedFrames[i] > 0)
+            reasons[reasonText(static_cast<capture::Uncompared>(i))] = counts.uncomparedFrames[i];
     return reasons;
 }
 
@@ -83,19 +85,30 @@ Json queuesJson(const std::vector<QueueTotals>& queues) {
     for (const QueueTotals& q : queues) {
         Json nodes = Json::array();
         for (const auto& [node, tiles] : q.nodes) nodes.push_back({{"node", node}, {"tiles", tiles}});
-        list.push_back({{"name", q.name},     {"of", q.chunks ? "chunks" : "tiles"}, {"columns", q.columns}, {"rows", q.rows},   {"tileWidth", q.width}, {"tileHeight", q.height},
-                        {"frames", q.frames}, {"moves", q.moves},     {"tilesMoved", q.tilesMoved}, {"taken", q.taken}, {"nodes", nodes}});
+        list.push_back({{"name", q.name},
+                        {"of", q.chunks ? "chunks" : "tiles"},
+                        {"columns", q.columns},
+                        {"rows", q.rows},
+                        {"tileWidth", q.width},
+                        {"tileHeight", q.height},
+                        {"frames", q.frames},
+                        {"moves", q.moves},
+                        {"tilesMoved", q.tilesMoved},
+                        {"taken", q.taken},
+                        {"nodes", nodes}});
     }
     return list;
 }
 
 Json economyJson(const DeltaCounts& c) {
     if (!c.on) return nullptr;
-    return {{"records", c.packer.records},       {"rawBytes", c.packer.rawBytes}, {"stagedBytes", c.packer.stagedBytes},
-            {"wireBytes", c.wireBytes},          {"storeHits", c.packer.storeHits}, {"newPages", c.packer.newPages},
-            {"patches", c.packer.patches},       {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))},
-            {"programBytes", c.holder.inBytes},  {"heldRecords", c.holder.heldRecords}, {"heldBytes", c.holder.heldBytes},
-            {"leftOutRecords", c.holder.leftOutRecords}, {"leftOutBytes", c.holder.leftOutBytes}};
+    return {{"records", c.packer.records},          {"rawBytes", c.packer.rawBytes},
+            {"stagedBytes", c.packer.stagedBytes},  {"wireBytes", c.wireBytes},
+            {"storeHits", c.packer.storeHits},      {"newPages", c.packer.newPages},
+            {"patches", c.packer.patches},          {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))},
+            {"programBytes", c.holder.inBytes},     {"heldRecords", c.holder.heldRecords},
+            {"heldBytes", c.holder.heldBytes},      {"leftOutRecords", c.holder.leftOutRecords},
+            {"leftOutBytes", c.holder.leftOutBytes}};
 }
 
 Json reportOf(const SessionNumbers& n) {
@@ -141,7 +154,8 @@ Json reportOf(const SessionNumbers& n) {
         {"differingPixels", n.programs.differingPixels},
         {"squaredDifference", n.programs.squaredDifference},
         {"largestDifference", n.programs.largestDifference},
-        {"uncomparedFrames", std::accumulate(n.programs.uncomparedFrames.begin(), n.programs.uncomparedFrames.end(), uint64_t{0})},
+        {"uncomparedFrames",
+         std::accumulate(n.programs.uncomparedFrames.begin(), n.programs.uncomparedFrames.end(), uint64_t{0})},
         {"uncomparedFramesBy", uncomparedJson(n.programs)},
         {"drawnWhole", n.drawnWhole},
         {"callsUnsupported", n.programs.callsUnsupported},
@@ -162,8 +176,7 @@ ProgressMeter::Rates ProgressMeter::sample(int64_t nowNs, int64_t frames, uint64
         const int64_t newFrames = now.frames - then.frames;
         const double seconds = secondsOf(now.atNs - then.atNs);
         if (seconds > 0) rates.framesPerSecond = static_cast<double>(newFrames) / seconds;
-        if (newFrames > 0)
-            rates.bytesPerFrame = static_cast<int64_t>(now.bytes - then.bytes) / newFrames;
+        if (newFrames > 0) rates.bytesPerFrame = static_cast<int64_t>(now.bytes - then.bytes) / newFrames;
     }
     samples_.push_back(now);
     while (samples_.size() > 2 && nowNs - samples_.front().atNs > kNsPerS) samples_.erase(samples_.begin());

@@ -17,8 +17,8 @@ namespace mural {
 
 // Numbers of a swap barrier, from its leader.
 struct SwapTotals {
-    int64_t members = 0; // 0: the node leads none
-    int64_t swaps = 0; // swaps shown by more than one member
+    int64_t members = 0;                         // 0: the node leads none
+    int64_t swaps = 0;                           // swaps shown by more than one member
     int64_t medianNs = 0, p99Ns = 0, mostNs = 0; // time between the first and the last member of a swap
     int64_t clockErrorNs = 0;
 };
@@ -30,13 +30,13 @@ struct NodeTotals {
     double replaySeconds = 0;   // CPU time of its replay thread: drawing…
     double readbackSeconds = 0; // …and reading the pictures
     int64_t commands = 0;
-    int64_t exchangeBytes = 0; // picture bytes sent to other nodes
+    int64_t exchangeBytes = 0;                     // picture bytes sent to other nodes
     int64_t pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
     SwapTotals swaps;
     bool lost = false;
-    int64_t joins = 0; // number of returns
+    int64_t joins = 0;         // number of returns
     int64_t snapshotBytes = 0; // at the last return: size of the snapshot…
-    double secondsToBack = 0; // …and time from the loss to the first frame
+    double secondsToBack = 0;  // …and time from the loss to the first frame
 };
 
 // Reads a node's Bye. Missing or invalid values stay 0.

@@ -35,7 +35,9 @@ Json nodeJson(const NodeStatus& node) {
         {"where", node.where},
         {"pid", node.pid},
         {"gl", node.gl},
-        {"state", node.returning ? "coming back" : node.totals.lost ? "lost" : "alive"},
+        {"state", node.returning     ? "coming back"
+                  : node.totals.lost ? "lost"
+                                     : "alive"},
         {"silentSeconds", node.silentSeconds},
         {"stream", node.stream},
         {"frames", node.totals.frames},

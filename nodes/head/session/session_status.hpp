@@ -29,8 +29,8 @@ struct NodeStatus {
     int64_t pid = 0;
     std::string gl;
     double silentSeconds = 0; // since its last message
-    std::string stream; // transport of its packets: memory, TCP, multicast
-    bool returning = false; // lost, and being restarted
+    std::string stream;       // transport of its packets: memory, TCP, multicast
+    bool returning = false;   // lost, and being restarted
 };
 
 struct SessionStatus {

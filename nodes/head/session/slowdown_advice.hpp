@@ -12,7 +12,7 @@
 namespace mural {
 
 class SlowdownAdvice {
-  public:
+public:
     SlowdownAdvice(const SessionConfig& config, int nodeCount, ControlChannel& control)
         : tiling_(config.tiling), nodeCount_(nodeCount), control_(control) {}
 
@@ -21,7 +21,7 @@ class SlowdownAdvice {
 
     bool drawnWhole() const { return drawnWhole_; } // see SessionReport
 
-  private:
+private:
     void countUnshared(uint32_t flags);
 
     const Tiling tiling_;

@@ -25,25 +25,21 @@ namespace mural {
 namespace {
 
 constexpr int64_t kWaitSliceNs = 20 * kNsPerMs; // for kernels without pidfd_open
-constexpr int kUnknownStatus = 255 << 8; // stands for exit status 255
+constexpr int kUnknownStatus = 255 << 8;        // stands for exit status 255
 constexpr int64_t kTermGraceMs = 2000;
 constexpr int kInputBufferBytes = 1 << 20;
 constexpr size_t kLargestText = size_t{4} << 20;
 
-int pollMs(int64_t ns) {
-    return static_cast<int>(std::min<int64_t>((ns + kNsPerMs - 1) / kNsPerMs, 60'000));
-}
+int pollMs(int64_t ns) { return static_cast<int>(std::min<int64_t>((ns + kNsPerMs - 1) / kNsPerMs, 60'000)); }
 
 void closeFd(int& fd) {
-    if (fd >= 0)
-        ::close(fd);
+    if (fd >= 0) ::close(fd);
     fd = -1;
 }
 
 std::string textOf(int fd) {
     struct stat status {};
-    if (fd < 0 || ::fstat(fd, &status) != 0)
-        return {};
+    if (fd < 0 || ::fstat(fd, &status) != 0) return {};
     std::string text(std::min(static_cast<size_t>(status.st_size), kLargestText), '\0');
     const ssize_t read = ::pread(fd, text.data(), text.size(), 0);
     text.resize(read < 0 ? 0 : static_cast<size_t>(read));
@@ -58,8 +54,7 @@ std::string lastLines(const std::string& text) {
         const size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
         const std::string line = text.substr(begin, end - begin);
         begin = end + 1;
-        if (line.empty() || line.find("Last message repeated") != std::string::npos)
-            continue;
+        if (line.empty() || line.find("Last message repeated") != std::string::npos) continue;
         beforeLast = std::exchange(last, line);
     }
     return beforeLast.empty() ? last : beforeLast + "; " + last;
@@ -83,8 +78,7 @@ struct SpawnSettings {
 // Returns an errno value; 0: the child runs.
 int spawn(const std::vector<std::string>& arguments, const int (&fds)[3], pid_t& pid) {
     SpawnSettings settings;
-    for (int target = 0; target < 3; ++target)
-        posix_spawn_file_actions_adddup2(&settings.actions, fds[target], target);
+    for (int target = 0; target < 3; ++target) posix_spawn_file_actions_adddup2(&settings.actions, fds[target], target);
     sigset_t none;
     sigset_t all;
     sigemptyset(&none);
@@ -92,14 +86,12 @@ int spawn(const std::vector<std::string>& arguments, const int (&fds)[3], pid_t&
     posix_spawnattr_setsigmask(&settings.attributes, &none);
     posix_spawnattr_setsigdefault(&settings.attributes, &all);
     posix_spawnattr_setpgroup(&settings.attributes, 0);
-    posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
-                                                       POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setflags(&settings.attributes,
+                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
     std::vector<char*> argv;
-    for (const std::string& argument : arguments)
-        argv.push_back(const_cast<char*>(argument.c_str()));
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
-    return posix_spawn(&pid, argv[0], &settings.actions, &settings.attributes, argv.data(),
-                       environ);
+    return posix_spawn(&pid, argv[0], &settings.actions, &settings.attributes, argv.data(), environ);
 }
 
 } // namespace
@@ -107,26 +99,22 @@ int spawn(const std::vector<std::string>& arguments, const int (&fds)[3], pid_t&
 std::string findProgram(const std::string& name) {
     const auto runnable = [](const std::string& path) {
         struct stat status {};
-        return ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
-               ::access(path.c_str(), X_OK) == 0;
+        return ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) && ::access(path.c_str(), X_OK) == 0;
     };
-    if (name.find('/') != std::string::npos)
-        return runnable(name) ? name : std::string();
+    if (name.find('/') != std::string::npos) return runnable(name) ? name : std::string();
     const char* path = std::getenv("PATH");
     const std::string folders = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
     for (size_t begin = 0; begin <= folders.size();) {
         const size_t end = std::min(folders.find(':', begin), folders.size());
         const std::string folder = folders.substr(begin, end - begin);
         const std::string candidate = (folder.empty() ? "." : folder) + "/" + name;
-        if (runnable(candidate))
-            return candidate;
+        if (runnable(candidate)) return candidate;
         begin = end + 1;
     }
     return {};
 }
 
-Result<std::unique_ptr<EncoderProcess>>
-EncoderProcess::start(const std::vector<std::string>& arguments) {
+Result<std::unique_ptr<EncoderProcess>> EncoderProcess::start(const std::vector<std::string>& arguments) {
     std::unique_ptr<EncoderProcess> process(new EncoderProcess);
     process->program_ = arguments.at(0);
     // A socket instead of a pipe, because only a socket write can suppress SIGPIPE.
@@ -140,15 +128,12 @@ EncoderProcess::start(const std::vector<std::string>& arguments) {
     int failure = process->outputFd_ < 0 || process->errorFd_ < 0 ? errno : 0;
     if (failure == 0) {
         failure = spawn(arguments, {ends[1], process->outputFd_, process->errorFd_}, process->pid_);
-        if (failure != 0)
-            process->pid_ = -1;
+        if (failure != 0) process->pid_ = -1;
     }
     ::close(ends[1]);
-    if (failure != 0)
-        return Error{fmt::format("cannot start {}: {}", arguments[0], std::strerror(failure))};
+    if (failure != 0) return Error{fmt::format("cannot start {}: {}", arguments[0], std::strerror(failure))};
     process->pidFd_ = static_cast<int>(::syscall(SYS_pidfd_open, process->pid_, 0));
-    if (process->pidFd_ >= 0)
-        ::fcntl(process->pidFd_, F_SETFD, FD_CLOEXEC);
+    if (process->pidFd_ >= 0) ::fcntl(process->pidFd_, F_SETFD, FD_CLOEXEC);
     return process;
 }
 
@@ -162,23 +147,19 @@ EncoderProcess::~EncoderProcess() {
 
 Result<void> EncoderProcess::write(std::span<const std::byte> bytes, Deadline deadline) {
     while (!bytes.empty()) {
-        if (inputFd_ < 0 || ended(0))
-            return howItEnded();
-        const ssize_t sent =
-            ::send(inputFd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (inputFd_ < 0 || ended(0)) return howItEnded();
+        const ssize_t sent = ::send(inputFd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent > 0) {
             bytes = bytes.subspan(static_cast<size_t>(sent));
             continue;
         }
-        if (errno == EINTR)
-            continue;
+        if (errno == EINTR) continue;
         if (errno != EAGAIN && errno != EWOULDBLOCK) {
             // The child has closed its input: it is ending.
             (void)ended(deadline.leftNs(kNsPerS));
             return howItEnded();
         }
-        if (deadline.passed())
-            return Error{fmt::format("{} takes no more data", program_)};
+        if (deadline.passed()) return Error{fmt::format("{} takes no more data", program_)};
         pollfd ready{inputFd_, POLLOUT, 0};
         ::poll(&ready, 1, pollMs(deadline.leftNs(kNsPerS)));
     }
@@ -188,21 +169,17 @@ Result<void> EncoderProcess::write(std::span<const std::byte> bytes, Deadline de
 Result<void> EncoderProcess::finish(Deadline deadline) {
     closeFd(inputFd_);
     while (!ended(deadline.leftNs(kNsPerS))) {
-        if (!deadline.passed())
-            continue;
+        if (!deadline.passed()) continue;
         kill();
         return Error{fmt::format("{} did not end in time and was stopped; its file may be "
                                  "incomplete",
                                  program_)};
     }
-    if (WIFEXITED(status_) && WEXITSTATUS(status_) == 0)
-        return {};
+    if (WIFEXITED(status_) && WEXITSTATUS(status_) == 0) return {};
     return howItEnded();
 }
 
-std::string EncoderProcess::output() const {
-    return textOf(outputFd_);
-}
+std::string EncoderProcess::output() const { return textOf(outputFd_); }
 
 // Waits about waitNs at most for the child's end.
 bool EncoderProcess::ended(int64_t waitNs) {
@@ -210,14 +187,12 @@ bool EncoderProcess::ended(int64_t waitNs) {
     while (pid_ >= 0) {
         const pid_t reaped = ::waitpid(pid_, &status_, WNOHANG);
         if (reaped != 0 && !(reaped < 0 && errno == EINTR)) {
-            if (reaped < 0)
-                status_ = kUnknownStatus; // reaped elsewhere
+            if (reaped < 0) status_ = kUnknownStatus; // reaped elsewhere
             pid_ = -1;
             break;
         }
         const int64_t leftNs = untilNs - monotonicNowNs();
-        if (leftNs <= 0)
-            return false;
+        if (leftNs <= 0) return false;
         pollfd ready{pidFd_, POLLIN, 0}; // a negative descriptor turns poll into a sleep
         ::poll(&ready, 1, pollMs(pidFd_ >= 0 ? leftNs : std::min(leftNs, kWaitSliceNs)));
     }
@@ -225,8 +200,7 @@ bool EncoderProcess::ended(int64_t waitNs) {
 }
 
 Error EncoderProcess::howItEnded() {
-    if (pid_ >= 0)
-        return {fmt::format("{} closed its input", program_)};
+    if (pid_ >= 0) return {fmt::format("{} closed its input", program_)};
     std::string how = "ended";
     if (WIFSIGNALED(status_))
         how = fmt::format("was killed by signal {}", WTERMSIG(status_));
@@ -238,11 +212,9 @@ Error EncoderProcess::howItEnded() {
 
 void EncoderProcess::kill() {
     closeFd(inputFd_);
-    if (pid_ < 0 || ended(0))
-        return;
+    if (pid_ < 0 || ended(0)) return;
     ::kill(pid_, SIGTERM);
-    if (ended(kTermGraceMs * kNsPerMs))
-        return;
+    if (ended(kTermGraceMs * kNsPerMs)) return;
     ::kill(pid_, SIGKILL);
     (void)ended(kTermGraceMs * kNsPerMs); // a process in an uninterruptible wait is left to init
 }

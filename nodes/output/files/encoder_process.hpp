@@ -49,8 +49,8 @@ private:
 
     std::string program_;
     pid_t pid_ = -1;
-    int pidFd_ = -1; // -1 without kernel support
-    int inputFd_ = -1; // this process's end of a socket pair
+    int pidFd_ = -1;    // -1 without kernel support
+    int inputFd_ = -1;  // this process's end of a socket pair
     int outputFd_ = -1; // memfds
     int errorFd_ = -1;
     int status_ = 0; // of waitpid, after the child has ended

@@ -30,8 +30,7 @@ public:
     [[nodiscard]] const std::string& lastPath() const { return lastPath_; } // empty: none yet
 
 private:
-    explicit PngFiles(std::string folder)
-        : folder_(std::move(folder)) {}
+    explicit PngFiles(std::string folder) : folder_(std::move(folder)) {}
 
     std::string folder_;
     std::string lastPath_;

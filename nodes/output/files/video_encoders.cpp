@@ -18,8 +18,8 @@ const VideoEncoding kFfv1{"ffv1", {"-c:v", "ffv1", "-level", "3", "-pix_fmt", "b
 const VideoEncoding kQuickTime{"qtrle", {"-c:v", "qtrle", "-pix_fmt", "rgb24"}};
 const VideoEncoding kPng{"png", {"-c:v", "png", "-pix_fmt", "rgb24"}};
 const VideoEncoding kVp9{"libvpx-vp9",
-                         {"-c:v", "libvpx-vp9", "-lossless", "1", "-pix_fmt", "gbrp", "-deadline",
-                          "realtime", "-cpu-used", "8", "-row-mt", "1"}};
+                         {"-c:v", "libvpx-vp9", "-lossless", "1", "-pix_fmt", "gbrp", "-deadline", "realtime",
+                          "-cpu-used", "8", "-row-mt", "1"}};
 
 struct Container {
     const char* suffix;
@@ -39,8 +39,7 @@ const std::array<Container, 5>& containers() {
 
 const Container* findContainer(const std::string& suffix) {
     for (const Container& container : containers())
-        if (suffix == container.suffix)
-            return &container;
+        if (suffix == container.suffix) return &container;
     return nullptr;
 }
 
@@ -48,16 +47,13 @@ const Container* findContainer(const std::string& suffix) {
 
 std::string suffixOf(const std::string& path) {
     std::string suffix = std::filesystem::path(path).extension().string();
-    if (!suffix.empty())
-        suffix.erase(0, 1);
+    if (!suffix.empty()) suffix.erase(0, 1);
     std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return suffix;
 }
 
-bool isVideoSuffix(const std::string& suffix) {
-    return findContainer(suffix) != nullptr;
-}
+bool isVideoSuffix(const std::string& suffix) { return findContainer(suffix) != nullptr; }
 
 // Lines look like " V....D libx264rgb           libx264 H.264 …"; the legend before them contains " = ".
 std::set<std::string> encodersIn(const std::string& listing) {
@@ -68,14 +64,12 @@ std::set<std::string> encodersIn(const std::string& listing) {
         std::istringstream words(line);
         std::string flags;
         std::string name;
-        if (words >> flags >> name && flags.size() == 6 && flags[0] == 'V' && name != "=")
-            names.insert(name);
+        if (words >> flags >> name && flags.size() == 6 && flags[0] == 'V' && name != "=") names.insert(name);
     }
     return names;
 }
 
-Result<VideoEncoding> chooseEncoding(const std::string& suffix,
-                                     const std::set<std::string>& encoders) {
+Result<VideoEncoding> chooseEncoding(const std::string& suffix, const std::set<std::string>& encoders) {
     const Container* container = findContainer(suffix);
     if (container == nullptr) {
         return Error{fmt::format("no video format for the suffix '.{}'; use .mp4, .mkv, .avi, "
@@ -84,8 +78,7 @@ Result<VideoEncoding> chooseEncoding(const std::string& suffix,
     }
     std::string wanted;
     for (const VideoEncoding& encoding : container->encodings) {
-        if (encoders.count(encoding.encoder) != 0)
-            return encoding;
+        if (encoders.count(encoding.encoder) != 0) return encoding;
         wanted += (wanted.empty() ? "" : " or ") + encoding.encoder;
     }
     return Error{fmt::format("this ffmpeg has no lossless encoder for .{} ({}); install Debian's "

@@ -10,7 +10,7 @@
 namespace mural {
 
 struct VideoEncoding {
-    std::string encoder; // ffmpeg's name
+    std::string encoder;                // ffmpeg's name
     std::vector<std::string> arguments; // between the input's arguments and the file name
 };
 
@@ -24,7 +24,6 @@ bool isVideoSuffix(const std::string& suffix);
 std::set<std::string> encodersIn(const std::string& listing);
 
 // The fastest available lossless encoding for the container.
-Result<VideoEncoding> chooseEncoding(const std::string& suffix,
-                                     const std::set<std::string>& encoders);
+Result<VideoEncoding> chooseEncoding(const std::string& suffix, const std::set<std::string>& encoders);
 
 } // namespace mural

@@ -14,11 +14,9 @@ constexpr int64_t kDestructorTimeoutMs = 3'000;
 
 Result<std::set<std::string>> listEncoders(const std::string& program) {
     auto process = EncoderProcess::start({program, "-hide_banner", "-encoders"});
-    if (!process)
-        return process.error();
+    if (!process) return process.error();
     Result<void> finished = process.value()->finish(Deadline::inMs(kListTimeoutMs));
-    if (!finished)
-        return finished.error();
+    if (!finished) return finished.error();
     return encodersIn(process.value()->output());
 }
 
@@ -26,8 +24,7 @@ Result<std::set<std::string>> listEncoders(const std::string& program) {
 Result<void> checkFolder(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code error;
-    if (!folder.empty())
-        std::filesystem::create_directories(folder, error);
+    if (!folder.empty()) std::filesystem::create_directories(folder, error);
     if (error) {
         return Error{fmt::format("cannot make the folder {} for the video: {}; choose another one "
                                  "with --out",
@@ -44,33 +41,26 @@ Result<void> checkFolder(const std::string& path) {
 
 Result<std::unique_ptr<VideoFile>> VideoFile::open(VideoConfig config) {
     const std::string suffix = suffixOf(config.path);
-    if (!isVideoSuffix(suffix))
-        return chooseEncoding(suffix, {}).error();
+    if (!isVideoSuffix(suffix)) return chooseEncoding(suffix, {}).error();
     const std::string program = findProgram(config.program);
     if (program.empty()) {
         return Error{fmt::format("cannot write the video {}: no program '{}' in PATH; install "
                                  "Debian's package ffmpeg, or give --out a folder for PNG files",
                                  config.path, config.program)};
     }
-    if (Result<void> folder = checkFolder(config.path); !folder)
-        return folder.error();
+    if (Result<void> folder = checkFolder(config.path); !folder) return folder.error();
     Result<std::set<std::string>> encoders = listEncoders(program);
-    if (!encoders)
-        return encoders.error();
+    if (!encoders) return encoders.error();
     Result<VideoEncoding> encoding = chooseEncoding(suffix, encoders.value());
-    if (!encoding)
-        return encoding.error();
+    if (!encoding) return encoding.error();
     config.program = program;
     return std::unique_ptr<VideoFile>(new VideoFile(std::move(config), encoding.value()));
 }
 
-VideoFile::~VideoFile() {
-    (void)end(kDestructorTimeoutMs);
-}
+VideoFile::~VideoFile() { (void)end(kDestructorTimeoutMs); }
 
 Result<void> VideoFile::show(int64_t frame, const Picture& picture) {
-    if (failure_)
-        return *failure_;
+    if (failure_) return *failure_;
     Result<void> appended = append(frame, picture);
     if (!appended) {
         failure_ = appended.error();
@@ -80,25 +70,21 @@ Result<void> VideoFile::show(int64_t frame, const Picture& picture) {
 }
 
 Result<void> VideoFile::append(int64_t frame, const Picture& picture) {
-    if (picture.empty())
-        return Error{fmt::format("frame {} is empty: nothing to write to {}", frame, config_.path)};
+    if (picture.empty()) return Error{fmt::format("frame {} is empty: nothing to write to {}", frame, config_.path)};
     if (encoder_ && (picture.width != width_ || picture.height != height_)) {
         const std::string before = currentPath_;
-        if (Result<void> ended = end(config_.finishTimeoutMs); !ended)
-            return ended;
+        if (Result<void> ended = end(config_.finishTimeoutMs); !ended) return ended;
         if (config_.say) {
             config_.say(fmt::format("the picture changed from {}x{} to {}x{} at frame {}: {} is "
                                     "complete, the video goes on in {}",
-                                    width_, height_, picture.width, picture.height, frame, before,
-                                    numberedPath()));
+                                    width_, height_, picture.width, picture.height, frame, before, numberedPath()));
         }
     }
     if (!encoder_) {
-        if (Result<void> begun = begin(picture.width, picture.height); !begun)
-            return begun;
+        if (Result<void> begun = begin(picture.width, picture.height); !begun) return begun;
     }
-    Result<void> written = encoder_->write(std::span(picture.bgra, picture.sizeBytes()),
-                                           Deadline::inMs(config_.frameTimeoutMs));
+    Result<void> written =
+        encoder_->write(std::span(picture.bgra, picture.sizeBytes()), Deadline::inMs(config_.frameTimeoutMs));
     if (!written) {
         return Error{fmt::format("cannot write frame {} to {}: {}; check the disk, or choose "
                                  "another --out",
@@ -108,21 +94,17 @@ Result<void> VideoFile::append(int64_t frame, const Picture& picture) {
     return {};
 }
 
-Result<void> VideoFile::finish() {
-    return end(config_.finishTimeoutMs);
-}
+Result<void> VideoFile::finish() { return end(config_.finishTimeoutMs); }
 
 std::string VideoFile::describe() const {
-    return fmt::format("video {} ({}, lossless, {} frames per second)", config_.path,
-                       encoding_.encoder, config_.framesPerSecond);
+    return fmt::format("video {} ({}, lossless, {} frames per second)", config_.path, encoding_.encoder,
+                       config_.framesPerSecond);
 }
 
 std::string VideoFile::numberedPath() const {
-    if (files_ == 0)
-        return config_.path;
+    if (files_ == 0) return config_.path;
     const std::filesystem::path path(config_.path);
-    const std::string name =
-        fmt::format("{}-{}{}", path.stem().string(), files_ + 1, path.extension().string());
+    const std::string name = fmt::format("{}-{}{}", path.stem().string(), files_ + 1, path.extension().string());
     return (path.parent_path() / name).string();
 }
 
@@ -135,28 +117,23 @@ Result<void> VideoFile::begin(int width, int height) {
         // -xerror: without it ffmpeg 5.1 exits with 0 if the disk is full at the end of a short .mkv.
         config_.program, "-hide_banner", "-nostats", "-loglevel", "error", "-xerror", "-y",
         // The input has its bottom row first, hence vflip.
-        "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
-        fmt::format("{}x{}", width, height), "-framerate", std::to_string(config_.framesPerSecond),
-        "-i", "pipe:0", "-vf", "vflip"};
+        "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size", fmt::format("{}x{}", width, height), "-framerate",
+        std::to_string(config_.framesPerSecond), "-i", "pipe:0", "-vf", "vflip"};
     arguments.insert(arguments.end(), encoding_.arguments.begin(), encoding_.arguments.end());
     // "file:" protects names with a colon or a leading minus.
     arguments.push_back("file:" + currentPath_);
     Result<std::unique_ptr<EncoderProcess>> started = EncoderProcess::start(arguments);
-    if (!started)
-        return started.error();
+    if (!started) return started.error();
     encoder_ = std::move(started.value());
     return {};
 }
 
 Result<void> VideoFile::end(int64_t timeoutMs) {
-    if (!encoder_)
-        return {};
+    if (!encoder_) return {};
     Result<void> finished = encoder_->finish(Deadline::inMs(timeoutMs));
     encoder_.reset();
-    if (finished)
-        return {};
-    return Error{
-        fmt::format("the video {} is not complete: {}", currentPath_, finished.error().message)};
+    if (finished) return {};
+    return Error{fmt::format("the video {} is not complete: {}", currentPath_, finished.error().message)};
 }
 
 } // namespace mural

@@ -19,8 +19,8 @@ struct VideoConfig {
     std::string path; // suffix .mp4 .mkv .avi .webm or .mov
     int framesPerSecond = 30;
     std::string program = "ffmpeg";
-    int64_t frameTimeoutMs = 10'000; // limit for the encoder to accept a frame
-    int64_t finishTimeoutMs = 120'000; // encoders buffer frames
+    int64_t frameTimeoutMs = 10'000;             // limit for the encoder to accept a frame
+    int64_t finishTimeoutMs = 120'000;           // encoders buffer frames
     std::function<void(const std::string&)> say; // one line for the user; may be empty
 };
 
@@ -42,8 +42,7 @@ public:
 
 private:
     VideoFile(VideoConfig config, VideoEncoding encoding)
-        : config_(std::move(config))
-        , encoding_(std::move(encoding)) {}
+        : config_(std::move(config)), encoding_(std::move(encoding)) {}
 
     Result<void> append(int64_t frame, const Picture& picture);
     Result<void> begin(int width, int height);

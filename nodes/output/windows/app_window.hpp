@@ -26,12 +26,12 @@
 namespace mural {
 
 struct AppWindowConfig {
-    std::string displayName;   // empty: DISPLAY
-    uint32_t window = 0;       // XID
+    std::string displayName;          // empty: DISPLAY
+    uint32_t window = 0;              // XID
     std::optional<WindowOwner> owner; // pictures are painted only in a window of this program
-    int64_t timeoutMs = 5'000; // limit of open() and of each show(); another client may grab the server
-    bool sharedMemory = true; // used if the server supports it
-    size_t pieceBytes = 32 * 1024; // bytes of pixels per request without shared memory
+    int64_t timeoutMs = 5'000;        // limit of open() and of each show(); another client may grab the server
+    bool sharedMemory = true;         // used if the server supports it
+    size_t pieceBytes = 32 * 1024;    // bytes of pixels per request without shared memory
 };
 
 class AppWindow : public PictureSink {
@@ -60,8 +60,7 @@ private:
     };
     enum class Outcome { Done, Again };
 
-    explicit AppWindow(AppWindowConfig config)
-        : config_(std::move(config)) {}
+    explicit AppWindow(AppWindowConfig config) : config_(std::move(config)) {}
 
     Result<void> connect(Deadline deadline);
     Result<void> showBefore(Deadline deadline, const Picture& picture);
@@ -81,7 +80,7 @@ private:
     AppWindowConfig config_;
     std::unique_ptr<XConnection> x_;
     std::optional<WindowOwnerCheck> owner_;
-    bool ownerChecked_ = false; // the owner was checked before an earlier picture was complete
+    bool ownerChecked_ = false;               // the owner was checked before an earlier picture was complete
     std::optional<PixelConverter> converter_; // for the window's visual
     xcb_gcontext_t gc_ = 0;                   // 0: none yet
     std::unique_ptr<SharedPixels> shared_;
@@ -90,7 +89,7 @@ private:
     std::deque<Put> unanswered_;
     XOwned<xcb_generic_error_t> firstError_; // first error among the puts of one picture
     bool windowGone_ = false;
-    bool isBlocked_ = false; // state of the last show()
+    bool isBlocked_ = false;   // state of the last show()
     bool hasAnswered_ = false; // the server has answered since show() began
 };
 

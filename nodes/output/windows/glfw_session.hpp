@@ -36,8 +36,7 @@ public:
     static std::string takeError();
 
 private:
-    explicit GlfwSession(std::string displayName)
-        : displayName_(std::move(displayName)) {}
+    explicit GlfwSession(std::string displayName) : displayName_(std::move(displayName)) {}
     std::string displayName_;
 };
 

@@ -13,8 +13,7 @@ namespace mural {
 class SharedPixels {
 public:
     // Null without server support: a remote server, no MIT-SHM 1.2, no permission. Not an error.
-    static std::unique_ptr<SharedPixels>
-    attach(XConnection& x, size_t sizeBytes, Deadline deadline);
+    static std::unique_ptr<SharedPixels> attach(XConnection& x, size_t sizeBytes, Deadline deadline);
     SharedPixels(const SharedPixels&) = delete;
     SharedPixels& operator=(const SharedPixels&) = delete;
     ~SharedPixels();
@@ -24,10 +23,7 @@ public:
     [[nodiscard]] xcb_shm_seg_t segment() const { return segment_; }
 
 private:
-    SharedPixels(XConnection& x, std::byte* data, size_t sizeBytes)
-        : x_(x)
-        , data_(data)
-        , sizeBytes_(sizeBytes) {}
+    SharedPixels(XConnection& x, std::byte* data, size_t sizeBytes) : x_(x), data_(data), sizeBytes_(sizeBytes) {}
 
     XConnection& x_;
     std::byte* data_;

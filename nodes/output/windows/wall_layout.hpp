@@ -9,6 +9,7 @@
 namespace mural {
 
 // The windows of the region's tiles, row by row from the lowest. width, height: of the picture.
-[[nodiscard]] std::vector<TileWindow> windowsOfTiles(const TileGrid& grid, const TileRegion& region, int width, int height);
+[[nodiscard]] std::vector<TileWindow> windowsOfTiles(const TileGrid& grid, const TileRegion& region, int width,
+                                                     int height);
 
 } // namespace mural

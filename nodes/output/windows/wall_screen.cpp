@@ -12,24 +12,19 @@ namespace mural {
 Result<std::unique_ptr<WallScreen>> WallScreen::open(const WallWindowsConfig& config) {
     std::unique_ptr<WallScreen> screen(new WallScreen(config));
     Result<std::unique_ptr<GlfwSession>> session = GlfwSession::open(config.displayName);
-    if (!session)
-        return session.error();
+    if (!session) return session.error();
     screen->session_ = std::move(session.value());
     if (config.stereo) {
         const Result<void> opened = screen->openWindows(true, true);
         screen->stereo_ = opened.ok();
-        if (opened)
-            return screen;
+        if (opened) return screen;
         screen->whyNotStereo_ = opened.error().message;
     }
     const bool automatic = config.drawing == WallDrawing::Auto;
-    const bool openGl = automatic ? WallWindow::openGlIsFast(*screen->session_)
-                                  : config.drawing == WallDrawing::OpenGl;
+    const bool openGl = automatic ? WallWindow::openGlIsFast(*screen->session_) : config.drawing == WallDrawing::OpenGl;
     Result<void> opened = screen->openWindows(openGl, false);
-    if (!opened && automatic && openGl)
-        opened = screen->openWindows(false, false);
-    if (!opened)
-        return opened.error();
+    if (!opened && automatic && openGl) opened = screen->openWindows(false, false);
+    if (!opened) return opened.error();
     return screen;
 }
 
@@ -48,8 +43,7 @@ Result<void> WallScreen::openWindows(bool openGl, bool stereo) {
         options.waitForRefresh = config_.waitForRefresh && i == 0;
         options.timeoutMs = config_.showTimeoutMs;
         Result<std::unique_ptr<WallWindow>> window = WallWindow::open(*session_, options);
-        if (!window)
-            return window.error();
+        if (!window) return window.error();
         windows_.push_back(std::move(window.value()));
     }
     return checkDisplay();
@@ -57,13 +51,11 @@ Result<void> WallScreen::openWindows(bool openGl, bool stereo) {
 
 // Upper left corner and size, y down as on the screen.
 PixelViewport WallScreen::placeOf(const TileWindow& tile) const {
-    return {tile.screenX + config_.positionX, tile.screenY + config_.positionY, tile.tile.w,
-            tile.tile.h};
+    return {tile.screenX + config_.positionX, tile.screenY + config_.positionY, tile.tile.w, tile.tile.h};
 }
 
 Result<void> WallScreen::checkDisplay() const {
-    if (session_->sync())
-        return {};
+    if (session_->sync()) return {};
     return Error{fmt::format("the connection to the X display '{}' is lost; restart its server and "
                              "the session",
                              session_->displayName())};
@@ -71,11 +63,9 @@ Result<void> WallScreen::checkDisplay() const {
 
 Result<void> WallScreen::draw(std::vector<TileBuffer>& buffers) {
     drawn_.clear();
-    if (Result<void> there = checkDisplay(); !there)
-        return there;
+    if (Result<void> there = checkDisplay(); !there) return there;
     for (TileBuffer& buffer : buffers) {
-        if (Result<void> drawn = windows_[buffer.tile]->draw(buffer.picture, buffer.right); !drawn)
-            return drawn;
+        if (Result<void> drawn = windows_[buffer.tile]->draw(buffer.picture, buffer.right); !drawn) return drawn;
         drawn_.push_back(buffer.tile);
     }
     return {};
@@ -84,40 +74,33 @@ Result<void> WallScreen::draw(std::vector<TileBuffer>& buffers) {
 Result<void> WallScreen::present(int64_t atNs) {
     sleepUntilNs(atNs);
     for (const size_t tile : drawn_)
-        if (Result<void> shown = windows_[tile]->present(); !shown)
-            return shown;
-    for (const size_t tile : drawn_)
-        windows_[tile]->finish();
+        if (Result<void> shown = windows_[tile]->present(); !shown) return shown;
+    for (const size_t tile : drawn_) windows_[tile]->finish();
     presentedNs_ = monotonicNowNs();
     drawn_.clear();
     return checkDisplay();
 }
 
 Result<void> WallScreen::arrange(const std::vector<TileWindow>& tiles) {
-    if (Result<void> there = checkDisplay(); !there)
-        return there;
+    if (Result<void> there = checkDisplay(); !there) return there;
     config_.tiles = tiles;
     for (size_t i = 0; i < windows_.size(); ++i)
-        if (Result<void> moved = windows_[i]->move(placeOf(tiles[i])); !moved)
-            return moved;
+        if (Result<void> moved = windows_[i]->move(placeOf(tiles[i])); !moved) return moved;
     return checkDisplay();
 }
 
 Result<void> WallScreen::doWork() {
-    if (session_->displayLost())
-        return checkDisplay();
+    if (session_->displayLost()) return checkDisplay();
     session_->guardErrors();
     glfwPollEvents();
     for (const auto& window : windows_)
-        if (Result<void> redrawn = window->redrawIfUncovered(); !redrawn)
-            return redrawn;
+        if (Result<void> redrawn = window->redrawIfUncovered(); !redrawn) return redrawn;
     return {};
 }
 
 bool WallScreen::closeRequested() const {
     for (const auto& window : windows_)
-        if (window->closeRequested())
-            return true;
+        if (window->closeRequested()) return true;
     return false;
 }
 

@@ -43,15 +43,14 @@ public:
     // empty: both eyes show `picture`.
     Result<void> draw(OwnedPicture& picture, OwnedPicture& right);
     Result<void> present(); // makes the drawn picture visible
-    void finish(); // returns when the picture is on its way to the screen
+    void finish();          // returns when the picture is on its way to the screen
 
     Result<void> redrawIfUncovered();
     [[nodiscard]] bool closeRequested() const;
     [[nodiscard]] std::string drawnBy() const;
 
 private:
-    explicit WallWindow(GlfwSession& session)
-        : session_(session) {}
+    explicit WallWindow(GlfwSession& session) : session_(session) {}
 
     Result<void> create(const Options& options);
     Result<void> createFullScreen(const Options& options);
@@ -67,7 +66,7 @@ private:
     int wantedWidth_ = 0; // last requested size; a window manager may refuse it
     int wantedHeight_ = 0;
     std::string title_;
-    OwnedPicture kept_; // the shown picture
+    OwnedPicture kept_;      // the shown picture
     OwnedPicture keptRight_; // empty: both eyes show kept_
     bool stereo_ = false;
     std::unique_ptr<TextureBlit> blit_; // one of the two is set
@@ -94,17 +93,14 @@ public:
 
     // Processes events from the server.
     Result<void> doWork();
-    void waitForEvents(int wakeFd, int64_t timeoutNs) {
-        session_->waitForEvents(wakeFd, timeoutNs);
-    }
+    void waitForEvents(int wakeFd, int64_t timeoutNs) { session_->waitForEvents(wakeFd, timeoutNs); }
     [[nodiscard]] bool closeRequested() const;
     [[nodiscard]] std::string describe() const;
     [[nodiscard]] bool stereo() const { return stereo_; }
     [[nodiscard]] const std::string& whyNotStereo() const { return whyNotStereo_; }
 
 private:
-    explicit WallScreen(WallWindowsConfig config)
-        : config_(std::move(config)) {}
+    explicit WallScreen(WallWindowsConfig config) : config_(std::move(config)) {}
 
     Result<void> openWindows(bool openGl, bool stereo);
     [[nodiscard]] PixelViewport placeOf(const TileWindow& tile) const;

@@ -16,14 +16,17 @@ Result<void> WallSink::reopen(int width, int height) {
 }
 
 Result<void> WallSink::openFor(const Picture& picture) {
-    return windows_ && picture.width == width_ && picture.height == height_ ? Result<void>() : reopen(picture.width, picture.height);
+    return windows_ && picture.width == width_ && picture.height == height_ ? Result<void>()
+                                                                            : reopen(picture.width, picture.height);
 }
 
 Result<void> WallSink::showTiles(const Picture& picture, const Picture& right) {
     std::vector<OwnedPicture> pictures;
     std::vector<WallWindows::TilePicture> shown;
     pictures.reserve(2 * config_.tiles.size());
-    const auto part = [&](const Picture& whole, const PixelViewport& tile) { return whole.empty() ? Picture{} : pictures.emplace_back(cutOut(whole, tile)).view(); };
+    const auto part = [&](const Picture& whole, const PixelViewport& tile) {
+        return whole.empty() ? Picture{} : pictures.emplace_back(cutOut(whole, tile)).view();
+    };
     for (size_t i = 0; i < config_.tiles.size(); ++i) {
         const PixelViewport& tile = config_.tiles[i].tile;
         if (!tile.empty()) shown.push_back({i, part(picture, tile), part(right, tile)});
@@ -43,7 +46,8 @@ Result<void> WallSink::showPair(int64_t frame, const EyePair& eyes) {
     if (windows_->stereo()) return showTiles(eyes.left, eyes.right);
     if (whyNot_.empty()) {
         whyNot_ = windows_->whyNotStereo();
-        say_("both eyes are shown side by side: no window with a buffer for each eye opens (" + whyNot_ + "); a graphics card and a display that take quad-buffered stereo do, and --stereo anaglyph needs none");
+        say_("both eyes are shown side by side: no window with a buffer for each eye opens (" + whyNot_ +
+             "); a graphics card and a display that take quad-buffered stereo do, and --stereo anaglyph needs none");
     }
     return PictureSink::showPair(frame, eyes);
 }

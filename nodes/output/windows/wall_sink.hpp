@@ -15,9 +15,7 @@ class WallSink : public PictureSink {
 public:
     // config: without tiles, which follow from the first picture's size. say: a line for the user.
     WallSink(WallWindowsConfig config, const TileGrid& grid, std::function<void(const std::string&)> say)
-        : config_(std::move(config))
-        , grid_(grid)
-        , say_(std::move(say)) {}
+        : config_(std::move(config)), grid_(grid), say_(std::move(say)) {}
 
     Result<void> show(int64_t frame, const Picture& picture) override;
     Result<void> showPair(int64_t frame, const EyePair& eyes) override;

@@ -32,9 +32,8 @@ std::vector<Monitor> monitorsInOrder() {
         glfwGetMonitorPos(m.monitor, &m.x, &m.y);
         monitors.push_back(m);
     }
-    std::stable_sort(monitors.begin(), monitors.end(), [](const Monitor& a, const Monitor& b) {
-        return std::tie(a.y, a.x) < std::tie(b.y, b.x);
-    });
+    std::stable_sort(monitors.begin(), monitors.end(),
+                     [](const Monitor& a, const Monitor& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); });
     return monitors;
 }
 
@@ -86,15 +85,12 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const
     window->title_ = options.title;
     window->stereo_ = options.stereo;
     setHints(options);
-    Result<void> created =
-        options.fullScreen ? window->createFullScreen(options) : window->create(options);
+    Result<void> created = options.fullScreen ? window->createFullScreen(options) : window->create(options);
     session.guardErrors();
-    if (!created)
-        return created.error();
+    if (!created) return created.error();
     // The background that the server paints before the first picture.
     Display* display = glfwGetX11Display();
-    XSetWindowBackground(display, glfwGetX11Window(window->window_),
-                         BlackPixel(display, DefaultScreen(display)));
+    XSetWindowBackground(display, glfwGetX11Window(window->window_), BlackPixel(display, DefaultScreen(display)));
     glfwSetWindowUserPointer(window->window_, window.get());
     glfwSetWindowRefreshCallback(window->window_, [](GLFWwindow* uncovered) {
         static_cast<WallWindow*>(glfwGetWindowUserPointer(uncovered))->uncovered_ = true;
@@ -103,18 +99,14 @@ Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const
         glfwSetInputMode(window->window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
     else
         glfwShowWindow(window->window_);
-    if (!session.sync())
-        return Error{fmt::format("{}: the display is lost", window->where())};
-    if (Result<void> prepared = window->prepareDrawing(options); !prepared)
-        return prepared.error();
+    if (!session.sync()) return Error{fmt::format("{}: the display is lost", window->where())};
+    if (Result<void> prepared = window->prepareDrawing(options); !prepared) return prepared.error();
     return window;
 }
 
 WallWindow::~WallWindow() {
-    if (window_ == nullptr)
-        return;
-    if (blit_)
-        glfwMakeContextCurrent(window_);
+    if (window_ == nullptr) return;
+    if (blit_) glfwMakeContextCurrent(window_);
     blit_.reset();
     painter_.reset();
     session_.guardErrors();
@@ -125,8 +117,7 @@ Result<void> WallWindow::create(const Options& options) {
     wantedWidth_ = std::max(options.place.w, 1);
     wantedHeight_ = std::max(options.place.h, 1);
     window_ = glfwCreateWindow(wantedWidth_, wantedHeight_, title_.c_str(), nullptr, nullptr);
-    if (window_ == nullptr)
-        return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
+    if (window_ == nullptr) return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
     glfwSetWindowPos(window_, options.place.x, options.place.y);
     return {};
 }
@@ -136,17 +127,14 @@ Result<void> WallWindow::createFullScreen(const Options& options) {
     if (options.monitor < 0 || static_cast<size_t>(options.monitor) >= monitors.size()) {
         return Error{fmt::format("no monitor {} for {}: the X display '{}' has {}; use fewer tiles "
                                  "per machine, or windows instead of the full screen",
-                                 options.monitor + 1, where(), session_.displayName(),
-                                 monitors.size())};
+                                 options.monitor + 1, where(), session_.displayName(), monitors.size())};
     }
     GLFWmonitor* monitor = monitors[static_cast<size_t>(options.monitor)].monitor;
     const GLFWvidmode* mode = glfwGetVideoMode(monitor);
-    if (mode == nullptr)
-        return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
+    if (mode == nullptr) return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
     glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate); // the current rate: no mode change
     window_ = glfwCreateWindow(mode->width, mode->height, title_.c_str(), monitor, nullptr);
-    if (window_ == nullptr)
-        return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
+    if (window_ == nullptr) return Error{fmt::format("cannot open {}: {}", where(), GlfwSession::takeError())};
     return {};
 }
 
@@ -155,8 +143,7 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
         glfwMakeContextCurrent(window_);
         glfwSwapInterval(options.waitForRefresh ? 1 : 0);
         auto blit = TextureBlit::create(glfwGetProcAddress);
-        if (!blit)
-            return blit.error();
+        if (!blit) return blit.error();
         blit_ = std::move(blit.value());
         if (stereo_ && !blit_->stereo())
             return Error{fmt::format("{}: {} gives it no buffer for each eye", where(), blit_->renderer())};
@@ -166,28 +153,24 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
         config.window = static_cast<uint32_t>(glfwGetX11Window(window_));
         config.timeoutMs = options.timeoutMs;
         auto painter = AppWindow::open(config);
-        if (!painter)
-            return painter.error();
+        if (!painter) return painter.error();
         painter_ = std::move(painter.value());
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
         return {};
     }
-    if (Result<void> drawn = drawKept(); !drawn)
-        return drawn;
+    if (Result<void> drawn = drawKept(); !drawn) return drawn;
     return present();
 }
 
 Result<void> WallWindow::move(const PixelViewport& place) {
-    if (fullScreen_)
-        return {};
+    if (fullScreen_) return {};
     glfwSetWindowPos(window_, place.x, place.y);
     resize(std::max(place.w, 1), std::max(place.h, 1));
     return {};
 }
 
 void WallWindow::resize(int width, int height) {
-    if (fullScreen_ || (width == wantedWidth_ && height == wantedHeight_))
-        return;
+    if (fullScreen_ || (width == wantedWidth_ && height == wantedHeight_)) return;
     wantedWidth_ = width;
     wantedHeight_ = height;
     glfwSetWindowSize(window_, width, height);
@@ -197,8 +180,7 @@ void WallWindow::resize(int width, int height) {
         int realWidth = 0;
         int realHeight = 0;
         glfwGetFramebufferSize(window_, &realWidth, &realHeight);
-        if ((realWidth == width && realHeight == height) || deadline.passed())
-            return;
+        if ((realWidth == width && realHeight == height) || deadline.passed()) return;
         session_.waitForEvents(-1, deadline.leftNs());
     }
 }
@@ -221,16 +203,13 @@ Result<void> WallWindow::draw(OwnedPicture& picture, OwnedPicture& right) {
 
 Result<void> WallWindow::drawKept() {
     uncovered_ = false;
-    if (!blit_)
-        return {};
+    if (!blit_) return {};
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
-    if (!stereo_)
-        return drawEye(kept_.view(), TextureBlit::Target::Back, width, height);
+    if (!stereo_) return drawEye(kept_.view(), TextureBlit::Target::Back, width, height);
     Result<void> left = drawEye(kept_.view(), TextureBlit::Target::BackLeft, width, height);
-    if (!left)
-        return left;
+    if (!left) return left;
     const Picture right = keptRight_.view().empty() ? kept_.view() : keptRight_.view();
     return drawEye(right, TextureBlit::Target::BackRight, width, height);
 }
@@ -238,8 +217,7 @@ Result<void> WallWindow::drawKept() {
 // Without a picture, draws black.
 Result<void> WallWindow::drawEye(const Picture& picture, TextureBlit::Target target, int width, int height) {
     if (!picture.empty())
-        if (Result<void> uploaded = blit_->upload(picture); !uploaded)
-            return uploaded;
+        if (Result<void> uploaded = blit_->upload(picture); !uploaded) return uploaded;
     return blit_->draw(target, width, height);
 }
 
@@ -249,39 +227,31 @@ Result<void> WallWindow::present() {
         glfwSwapBuffers(window_);
         return {};
     }
-    if (kept_.view().empty())
-        return {};
+    if (kept_.view().empty()) return {};
     return painter_->show(0, kept_.view());
 }
 
 void WallWindow::finish() {
-    if (!blit_)
-        return;
+    if (!blit_) return;
     glfwMakeContextCurrent(window_);
     blit_->finish();
 }
 
 Result<void> WallWindow::redrawIfUncovered() {
-    if (!uncovered_)
-        return {};
-    if (blit_)
-        glfwMakeContextCurrent(window_);
-    if (Result<void> drawn = drawKept(); !drawn)
-        return drawn;
+    if (!uncovered_) return {};
+    if (blit_) glfwMakeContextCurrent(window_);
+    if (Result<void> drawn = drawKept(); !drawn) return drawn;
     return present();
 }
 
-bool WallWindow::closeRequested() const {
-    return glfwWindowShouldClose(window_) == GLFW_TRUE;
-}
+bool WallWindow::closeRequested() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 
 std::string WallWindow::drawnBy() const {
     return blit_ ? fmt::format("OpenGL, {}", blit_->renderer()) : "drawn by the X server";
 }
 
 std::string WallWindow::where() const {
-    return fmt::format("the wall window '{}' on the X display '{}'", title_,
-                       session_.displayName());
+    return fmt::format("the wall window '{}' on the X display '{}'", title_, session_.displayName());
 }
 
 } // namespace mural

@@ -36,14 +36,11 @@ struct Job {
 // State shared by the windows' thread and its callers. The thread holds a reference, because a thread that an
 // unresponsive server blocks is abandoned.
 struct WallWindows::Shared {
-    explicit Shared(const WallWindowsConfig& c)
-        : config(c)
-        , wakeFd(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+    explicit Shared(const WallWindowsConfig& c) : config(c), wakeFd(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
     Shared(const Shared&) = delete;
     Shared& operator=(const Shared&) = delete;
     ~Shared() {
-        if (wakeFd >= 0)
-            ::close(wakeFd);
+        if (wakeFd >= 0) ::close(wakeFd);
     }
 
     const WallWindowsConfig config;
@@ -79,12 +76,9 @@ namespace {
 
 // Waits for a condition until the deadline. Call with the lock held.
 template <class Condition>
-bool waitUntil(std::condition_variable& changed,
-               std::unique_lock<std::mutex>& lock,
-               Deadline deadline,
+bool waitUntil(std::condition_variable& changed, std::unique_lock<std::mutex>& lock, Deadline deadline,
                Condition condition) {
-    return changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kNsPerS * 3600)),
-                            condition);
+    return changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kNsPerS * 3600)), condition);
 }
 
 Error notInTime(const std::string& displayName) {
@@ -113,13 +107,11 @@ void WallWindows::Shared::serve() {
         while (screen) {
             {
                 const std::lock_guard lock(mutex);
-                if (stop)
-                    break;
+                if (stop) break;
             }
             serveJobs(*screen.value());
             (void)screen.value()->doWork(); // a permanent failure recurs in the next job
-            if (screen.value()->closeRequested())
-                closeRequested = true;
+            if (screen.value()->closeRequested()) closeRequested = true;
             screen.value()->waitForEvents(wakeFd, kIdleNs);
             uint64_t count = 0;
             (void)!::read(wakeFd, &count, sizeof count);
@@ -144,15 +136,13 @@ void WallWindows::Shared::serveJobs(WallScreen& screen) {
     }
 }
 
-Result<void> WallWindows::Shared::run(std::function<Result<void>(WallScreen&)> work,
-                                      Deadline deadline) {
+Result<void> WallWindows::Shared::run(std::function<Result<void>(WallScreen&)> work, Deadline deadline) {
     auto job = std::make_shared<Job>();
     job->work = std::move(work);
     std::unique_lock lock(mutex);
     jobs.push_back(job);
     wake();
-    if (waitUntil(changed, lock, deadline, [&] { return job->done; }))
-        return job->result;
+    if (waitUntil(changed, lock, deadline, [&] { return job->done; })) return job->result;
     std::erase(jobs, job); // cancels it before its start
     return notInTime(config.displayName);
 }
@@ -163,8 +153,7 @@ void WallWindows::Shared::end() {
         std::unique_lock lock(mutex);
         stop = true;
         wake();
-        finished =
-            waitUntil(changed, lock, Deadline::inMs(config.showTimeoutMs), [&] { return ended; });
+        finished = waitUntil(changed, lock, Deadline::inMs(config.showTimeoutMs), [&] { return ended; });
     }
     if (finished)
         thread.join();
@@ -174,8 +163,7 @@ void WallWindows::Shared::end() {
 
 OwnedPicture WallWindows::Shared::takeBuffer() {
     const std::lock_guard lock(mutex);
-    if (buffers.empty())
-        return {};
+    if (buffers.empty()) return {};
     OwnedPicture buffer = std::move(buffers.back());
     buffers.pop_back();
     return buffer;
@@ -185,50 +173,39 @@ void WallWindows::Shared::giveBuffers(std::vector<WallScreen::TileBuffer>& used)
     const std::lock_guard lock(mutex);
     for (WallScreen::TileBuffer& buffer : used)
         for (OwnedPicture* const memory : {&buffer.picture, &buffer.right})
-            if (buffers.size() < kBuffersKept)
-                buffers.push_back(std::move(*memory));
+            if (buffers.size() < kBuffersKept) buffers.push_back(std::move(*memory));
 }
 
 Result<std::unique_ptr<WallWindows>> WallWindows::open(const WallWindowsConfig& config) {
-    if (config.tiles.empty())
-        return Error{"a wall of windows needs at least one tile"};
+    if (config.tiles.empty()) return Error{"a wall of windows needs at least one tile"};
     auto shared = std::make_shared<Shared>(config);
-    if (shared->wakeFd < 0)
-        return Error{"no event descriptor: too many open files; raise ulimit -n"};
+    if (shared->wakeFd < 0) return Error{"no event descriptor: too many open files; raise ulimit -n"};
     shared->thread = std::thread([shared] { shared->serve(); });
     Result<void> opened;
     {
         std::unique_lock lock(shared->mutex);
-        const bool known = waitUntil(shared->changed, lock, Deadline::inMs(config.openTimeoutMs),
-                                     [&] { return shared->openKnown; });
+        const bool known =
+            waitUntil(shared->changed, lock, Deadline::inMs(config.openTimeoutMs), [&] { return shared->openKnown; });
         opened = known ? shared->opened : Result<void>(notInTime(config.displayName));
     }
     std::unique_ptr<WallWindows> windows(new WallWindows(std::move(shared)));
-    if (!opened)
-        return opened.error(); // the destructor ends the thread
+    if (!opened) return opened.error(); // the destructor ends the thread
     return windows;
 }
 
 WallWindows::WallWindows(std::shared_ptr<Shared> shared)
-    : shared_(std::move(shared))
-    , showTimeoutMs_(shared_->config.showTimeoutMs) {}
+    : shared_(std::move(shared)), showTimeoutMs_(shared_->config.showTimeoutMs) {}
 
-WallWindows::~WallWindows() {
-    shared_->end();
-}
+WallWindows::~WallWindows() { shared_->end(); }
 
 Result<void> WallWindows::show(size_t tile, const Picture& picture) {
     const TilePicture one{tile, picture};
     return showAll(std::span(&one, 1));
 }
 
-Result<void> WallWindows::showAll(std::span<const TilePicture> pictures) {
-    return take(pictures, true);
-}
+Result<void> WallWindows::showAll(std::span<const TilePicture> pictures) { return take(pictures, true); }
 
-Result<void> WallWindows::drawAll(std::span<const TilePicture> pictures) {
-    return take(pictures, false);
-}
+Result<void> WallWindows::drawAll(std::span<const TilePicture> pictures) { return take(pictures, false); }
 
 Result<int64_t> WallWindows::present(int64_t atNs) {
     auto presentedNs = std::make_shared<int64_t>(0); // the thread may outlive this call
@@ -240,8 +217,7 @@ Result<int64_t> WallWindows::present(int64_t atNs) {
             return shown;
         },
         deadline);
-    if (!done)
-        return done.error();
+    if (!done) return done.error();
     return *presentedNs;
 }
 
@@ -251,14 +227,11 @@ Result<void> WallWindows::take(std::span<const TilePicture> pictures, bool prese
     const size_t tiles = shared_->config.tiles.size();
     auto buffers = std::make_shared<std::vector<WallScreen::TileBuffer>>();
     for (const TilePicture& shown : pictures) {
-        if (shown.tile >= tiles)
-            return Error{fmt::format("no wall window {}: there are {}", shown.tile, tiles)};
-        if (shown.picture.empty())
-            return Error{fmt::format("the picture for wall window {} is empty", shown.tile)};
+        if (shown.tile >= tiles) return Error{fmt::format("no wall window {}: there are {}", shown.tile, tiles)};
+        if (shown.picture.empty()) return Error{fmt::format("the picture for wall window {} is empty", shown.tile)};
         buffers->push_back({shown.tile, shared_->takeBuffer(), {}});
         buffers->back().picture.assign(shown.picture);
-        if (shown.right.empty())
-            continue;
+        if (shown.right.empty()) continue;
         buffers->back().right = shared_->takeBuffer();
         buffers->back().right.assign(shown.right);
     }
@@ -278,13 +251,10 @@ Result<void> WallWindows::arrange(const std::vector<TileWindow>& tiles) {
                                  "number of tiles",
                                  tiles.size(), shared_->config.tiles.size())};
     }
-    return shared_->run([tiles](WallScreen& screen) { return screen.arrange(tiles); },
-                        Deadline::inMs(showTimeoutMs_));
+    return shared_->run([tiles](WallScreen& screen) { return screen.arrange(tiles); }, Deadline::inMs(showTimeoutMs_));
 }
 
-bool WallWindows::closeRequested() const {
-    return shared_->closeRequested;
-}
+bool WallWindows::closeRequested() const { return shared_->closeRequested; }
 
 bool WallWindows::stereo() const {
     const std::lock_guard lock(shared_->mutex);

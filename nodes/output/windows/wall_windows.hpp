@@ -21,7 +21,7 @@ namespace mural {
 
 struct TileWindow {
     PixelViewport tile; // in pixels of the wall, origin lower left
-    int screenX = 0; // upper left corner on the X screen, without WallWindowsConfig::position
+    int screenX = 0;    // upper left corner on the X screen, without WallWindowsConfig::position
     int screenY = 0;
     std::string title = "Mural";
     int monitor = -1; // full screen: monitor in reading order; -1: the tile's index
@@ -42,7 +42,7 @@ struct WallWindowsConfig {
     int positionY = 0;
     bool fullScreen = false;
     WallDrawing drawing = WallDrawing::Auto;
-    bool stereo = false; // requests a buffer per eye, which needs OpenGl
+    bool stereo = false;        // requests a buffer per eye, which needs OpenGl
     bool waitForRefresh = true; // OpenGl: swaps at the monitor's refresh (once per showAll)
     int64_t openTimeoutMs = 20'000;
     int64_t showTimeoutMs = 5'000; // for show, showAll, arrange, and closing
@@ -52,7 +52,7 @@ class WallWindows {
 public:
     struct TilePicture {
         size_t tile = 0;
-        Picture picture; // of the left eye in stereo
+        Picture picture;    // of the left eye in stereo
         Picture right = {}; // empty: both eyes show `picture`
     };
 

@@ -55,15 +55,18 @@ Result<WindowOwnerCheck::Owned> WindowOwnerCheck::owns(XConnection& x, xcb_windo
     }
     if (!mark) return Owned::WindowGone;
     if (mark->format != 32) return Owned::No;
-    const bool named = names({static_cast<const uint32_t*>(xcb_get_property_value(mark.get())), mark->value_len}, owner_);
+    const bool named =
+        names({static_cast<const uint32_t*>(xcb_get_property_value(mark.get())), mark->value_len}, owner_);
     return named ? Owned::Yes : Owned::No;
 }
 
 Result<void> markWindow(XConnection& x, xcb_window_t window, const WindowOwner& owner, Deadline deadline) {
     auto property = propertyOf(x, owner.client, false, deadline);
     if (!property) return property.error();
-    const std::array<uint32_t, kKeyWords + 1> words{static_cast<uint32_t>(owner.sessionKey), static_cast<uint32_t>(owner.sessionKey >> 32), owner.window};
-    xcb_change_property(x.get(), XCB_PROP_MODE_REPLACE, window, *property, XCB_ATOM_CARDINAL, 32, words.size(), words.data());
+    const std::array<uint32_t, kKeyWords + 1> words{static_cast<uint32_t>(owner.sessionKey),
+                                                    static_cast<uint32_t>(owner.sessionKey >> 32), owner.window};
+    xcb_change_property(x.get(), XCB_PROP_MODE_REPLACE, window, *property, XCB_ATOM_CARDINAL, 32, words.size(),
+                        words.data());
     return {};
 }
 

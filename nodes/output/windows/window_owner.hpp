@@ -18,8 +18,7 @@ struct WindowOwner {
 
 class WindowOwnerCheck {
 public:
-    explicit WindowOwnerCheck(WindowOwner owner)
-        : owner_(owner) {}
+    explicit WindowOwnerCheck(WindowOwner owner) : owner_(owner) {}
     enum class Owned { Yes, No, WindowGone };
     // Takes one round trip, the first time two. Errors: the connection fails.
     Result<Owned> owns(XConnection& x, xcb_window_t window, Deadline deadline);

@@ -23,8 +23,7 @@ enum class XAnswer { Reply, Failed, TimedOut, ConnectionLost };
 class XConnection {
 public:
     // displayName empty: the environment's DISPLAY.
-    static Result<std::unique_ptr<XConnection>> open(const std::string& displayName,
-                                                     Deadline deadline);
+    static Result<std::unique_ptr<XConnection>> open(const std::string& displayName, Deadline deadline);
     XConnection(const XConnection&) = delete;
     XConnection& operator=(const XConnection&) = delete;
     ~XConnection();
@@ -40,9 +39,7 @@ public:
     // Waits for the reply to a request. If the request failed, `error` (unless null) holds the reason. After TimedOut
     // the same request can be waited for again.
     template <class Reply>
-    XAnswer await(unsigned sequence,
-                  Deadline deadline,
-                  XOwned<Reply>* reply,
+    XAnswer await(unsigned sequence, Deadline deadline, XOwned<Reply>* reply,
                   XOwned<xcb_generic_error_t>* error = nullptr) {
         void* raw = nullptr;
         const XAnswer answer = awaitRaw(sequence, deadline, &raw, error);
@@ -69,10 +66,7 @@ public:
 private:
     XConnection(xcb_connection_t* connection, std::string displayName);
 
-    XAnswer awaitRaw(unsigned sequence,
-                     Deadline deadline,
-                     void** reply,
-                     XOwned<xcb_generic_error_t>* error);
+    XAnswer awaitRaw(unsigned sequence, Deadline deadline, void** reply, XOwned<xcb_generic_error_t>* error);
 
     xcb_connection_t* connection_;
     std::string displayName_;

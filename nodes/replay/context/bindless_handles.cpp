@@ -24,7 +24,8 @@ void Replay::dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours) {
     if (!c_->shared || c_->shared->handles.set(of, theirs, ours)) return;
     char text[512];
     snprintf(text, sizeof text,
-             "this node's driver deals other handles of textures than the program's (0x%" PRIx64 " for 0x%" PRIx64 "): what shaders take out of buffers, vertex arrays or "
+             "this node's driver deals other handles of textures than the program's (0x%" PRIx64 " for 0x%" PRIx64
+             "): what shaders take out of buffers, vertex arrays or "
              "whole numbers may be wrong on this node's tiles; let the program and its nodes use the same driver",
              ours, theirs);
     out_.log(text);
@@ -59,16 +60,22 @@ void Replay::settleDriver() {
 
 // Creates a sampler with the parameters of `sampler`, or without one, of the texture. 0: unsupported.
 GLuint Replay::samplerLike(GLuint texture, GLuint sampler) {
-    if (!gl.glGenSamplers || !gl.glSamplerParameteri || !gl.glGetSamplerParameterfv || (!sampler && !gl.glGetTextureParameterfv)) return 0;
+    if (!gl.glGenSamplers || !gl.glSamplerParameteri || !gl.glGetSamplerParameterfv ||
+        (!sampler && !gl.glGetTextureParameterfv))
+        return 0;
     const auto get = [&](GLenum name, GLfloat* value) {
-        if (sampler) gl.glGetSamplerParameterfv(sampler, name, value);
-        else gl.glGetTextureParameterfv(texture, name, value);
+        if (sampler)
+            gl.glGetSamplerParameterfv(sampler, name, value);
+        else
+            gl.glGetTextureParameterfv(texture, name, value);
     };
     GLuint made = 0;
     gl.glGenSamplers(1, &made);
-    for (const GLenum name : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R, GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC,
-                              GL_TEXTURE_MIN_LOD, GL_TEXTURE_MAX_LOD, GL_TEXTURE_LOD_BIAS, GL_TEXTURE_MAX_ANISOTROPY, GL_TEXTURE_SRGB_DECODE_EXT, GL_TEXTURE_CUBE_MAP_SEAMLESS,
-                              GL_TEXTURE_REDUCTION_MODE_ARB}) {
+    for (const GLenum name :
+         {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R,
+          GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC, GL_TEXTURE_MIN_LOD, GL_TEXTURE_MAX_LOD, GL_TEXTURE_LOD_BIAS,
+          GL_TEXTURE_MAX_ANISOTROPY, GL_TEXTURE_SRGB_DECODE_EXT, GL_TEXTURE_CUBE_MAP_SEAMLESS,
+          GL_TEXTURE_REDUCTION_MODE_ARB}) {
         constexpr GLfloat kUnknown = -1e30f; // for drivers without it
         GLfloat value = kUnknown;
         get(name, &value);
@@ -109,7 +116,8 @@ void Replay::askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs) {
     if (!c_->shared) return;
     const auto known = c_->shared->dealt.find(theirs);
     // a repeated request
-    if (known != c_->shared->dealt.end() && known->second.texture == texture && known->second.sampler == sampler) return;
+    if (known != c_->shared->dealt.end() && known->second.texture == texture && known->second.sampler == sampler)
+        return;
     DealtHandle dealt{texture, sampler, 0};
     uint64_t ours = c_->shared->handlesFreed ? equalHandle(texture, sampler, theirs, dealt.made) : 0;
     if (!ours) ours = sampler ? gl.glGetTextureSamplerHandleARB(texture, sampler) : gl.glGetTextureHandleARB(texture);
@@ -137,9 +145,11 @@ void Replay::glGetTextureSamplerHandleARB(GLuint texture, GLuint sampler, uint64
     if (!gl.glGetTextureSamplerHandleARB) return (void)lacking(op::glGetTextureSamplerHandleARB);
     askTextureHandle(name(Kind::Texture, texture), name(Kind::Sampler, sampler), result);
 }
-void Replay::glGetImageHandleARB(GLuint texture, GLint level, GLboolean layered, GLint layer, GLenum format, uint64_t result) {
+void Replay::glGetImageHandleARB(GLuint texture, GLint level, GLboolean layered, GLint layer, GLenum format,
+                                 uint64_t result) {
     if (!gl.glGetImageHandleARB) return (void)lacking(op::glGetImageHandleARB);
-    dealtHandle(HandleTable::Of::Image, result, gl.glGetImageHandleARB(name(Kind::Texture, texture), level, layered, layer, format));
+    dealtHandle(HandleTable::Of::Image, result,
+                gl.glGetImageHandleARB(name(Kind::Texture, texture), level, layered, layer, format));
 }
 
 // ---- residency. An unknown handle is an error, which the program's own GL has reported.
@@ -183,7 +193,8 @@ HandleTable::Of Replay::handlesOfUniform(GLuint program, GLint location) const {
 }
 
 // Converts values to this node's handles. The location is this node's.
-std::vector<GLuint64> Replay::handleValues(GLuint program, GLint location, const GLuint64* values, GLsizei count) const {
+std::vector<GLuint64> Replay::handleValues(GLuint program, GLint location, const GLuint64* values,
+                                           GLsizei count) const {
     std::vector<GLuint64> ours(static_cast<size_t>(count));
     std::memcpy(ours.data(), values, ours.size() * sizeof(GLuint64)); // records are aligned to 4 bytes
     if (!c_->shared || !c_->shared->handles.differ()) return ours;
@@ -201,7 +212,8 @@ void Replay::glUniformHandleui64vARB(GLint location, GLsizei count, const Data& 
     if (!gl.glUniformHandleui64vARB) return (void)lacking(op::glUniformHandleui64vARB);
     if (count <= 0 || value.size() < size_t{8} * static_cast<size_t>(count)) return;
     const GLint at = uniformLocation(location);
-    gl.glUniformHandleui64vARB(at, count, handleValues(name(Kind::Program, c_->program), at, value.as<GLuint64>(), count).data());
+    gl.glUniformHandleui64vARB(at, count,
+                               handleValues(name(Kind::Program, c_->program), at, value.as<GLuint64>(), count).data());
 }
 void Replay::glProgramUniformHandleui64ARB(GLuint program, GLint location, GLuint64 value) {
     if (!gl.glProgramUniformHandleui64ARB) return (void)lacking(op::glProgramUniformHandleui64ARB);

@@ -18,7 +18,9 @@ void Replay::drawTexture(const std::array<GLfloat, 5>& rectangle) {
     gl.glDrawTexfOES(windowX(x), windowY(y), z, width, height);
 }
 
-void Replay::glDrawTexfOES(GLfloat x, GLfloat y, GLfloat z, GLfloat width, GLfloat height) { drawTexture({x, y, z, width, height}); }
+void Replay::glDrawTexfOES(GLfloat x, GLfloat y, GLfloat z, GLfloat width, GLfloat height) {
+    drawTexture({x, y, z, width, height});
+}
 
 void Replay::glDrawTexiOES(GLint x, GLint y, GLint z, GLint width, GLint height) {
     const GLint values[] = {x, y, z, width, height};
@@ -43,13 +45,15 @@ void Replay::glDrawTexfvOES(const GLfloat* coords) {
 
 void Replay::glDrawTexivOES(const GLint* coords) {
     std::array<GLfloat, 5> rectangle{};
-    std::transform(coords, coords + rectangle.size(), rectangle.begin(), [](GLint value) { return static_cast<GLfloat>(value); });
+    std::transform(coords, coords + rectangle.size(), rectangle.begin(),
+                   [](GLint value) { return static_cast<GLfloat>(value); });
     drawTexture(rectangle);
 }
 
 void Replay::glDrawTexsvOES(const GLshort* coords) {
     std::array<GLfloat, 5> rectangle{};
-    std::transform(coords, coords + rectangle.size(), rectangle.begin(), [](GLshort value) { return static_cast<GLfloat>(value); });
+    std::transform(coords, coords + rectangle.size(), rectangle.begin(),
+                   [](GLshort value) { return static_cast<GLfloat>(value); });
     drawTexture(rectangle);
 }
 
@@ -59,9 +63,11 @@ void Replay::glDrawTexxvOES(const GLint* coords) {
     drawTexture(rectangle);
 }
 
-void Replay::glDrawTextureNV(GLuint texture, GLuint sampler, GLfloat x0, GLfloat y0, GLfloat x1, GLfloat y1, GLfloat z, GLfloat s0, GLfloat t0, GLfloat s1, GLfloat t1) {
+void Replay::glDrawTextureNV(GLuint texture, GLuint sampler, GLfloat x0, GLfloat y0, GLfloat x1, GLfloat y1, GLfloat z,
+                             GLfloat s0, GLfloat t0, GLfloat s1, GLfloat t1) {
     if (!gl.glDrawTextureNV) return (void)lacking(op::glDrawTextureNV);
-    gl.glDrawTextureNV(name(Kind::Texture, texture), name(Kind::Sampler, sampler), windowX(x0), windowY(y0), windowX(x1), windowY(y1), z, s0, t0, s1, t1);
+    gl.glDrawTextureNV(name(Kind::Texture, texture), name(Kind::Sampler, sampler), windowX(x0), windowY(y0),
+                       windowX(x1), windowY(y1), z, s0, t0, s1, t1);
 }
 
 } // namespace mural

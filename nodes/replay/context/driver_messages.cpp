@@ -17,18 +17,22 @@ void Replay::listenToDriver() {
 }
 
 // Messages that the program has inserted itself are not reported to it.
-void APIENTRY Replay::hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* inbox) {
+void APIENTRY Replay::hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                                 const GLchar* text, const void* inbox) {
     if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_THIRD_PARTY || !text) return;
     auto& box = *static_cast<DebugInbox*>(const_cast<void*>(inbox));
     const std::lock_guard lock(box.mutex);
     if (box.messages.size() >= kMaxMessages) return;
-    box.messages.push_back({source, type, id, severity, length < 0 ? std::string(text) : std::string(text, static_cast<size_t>(length))});
+    box.messages.push_back(
+        {source, type, id, severity, length < 0 ? std::string(text) : std::string(text, static_cast<size_t>(length))});
     box.any.store(true, std::memory_order_release);
 }
 
 void Replay::tell(wire::DriverEventKind kind, const DebugInbox::Message& m) {
     if (!out_.news) return;
-    out_.news({c_->client, c_->id, static_cast<uint32_t>(kind), m.source, m.type, m.id, m.severity, static_cast<uint32_t>(m.text.size())}, m.text);
+    out_.news({c_->client, c_->id, static_cast<uint32_t>(kind), m.source, m.type, m.id, m.severity,
+               static_cast<uint32_t>(m.text.size())},
+              m.text);
 }
 
 void Replay::tellMessages() {
@@ -120,7 +124,8 @@ void Replay::glPushDebugGroup(GLenum source, GLuint id, GLsizei length, const Da
     if (gl.glPushDebugGroup) gl.glPushDebugGroup(source, id, static_cast<GLsizei>(text.size()), text.c_str());
 }
 // Message ids differ between processes.
-void Replay::glDebugMessageControl(GLenum source, GLenum type, GLenum severity, GLsizei count, const Data&, GLboolean enabled) {
+void Replay::glDebugMessageControl(GLenum source, GLenum type, GLenum severity, GLsizei count, const Data&,
+                                   GLboolean enabled) {
     if (count == 0 && gl.glDebugMessageControl) gl.glDebugMessageControl(source, type, severity, 0, nullptr, enabled);
 }
 
@@ -136,7 +141,8 @@ void Replay::tellTroubles() {
         c_->lost = status != GL_NO_ERROR;
         if (c_->lost) {
             tell(wire::DriverEventKind::ContextLost, {0, status, 0, 0, {}});
-            out_.log("the graphics driver has lost a context (GPU reset): what the program draws with it is missing on this node's tiles; start the program again");
+            out_.log("the graphics driver has lost a context (GPU reset): what the program draws with it is missing on "
+                     "this node's tiles; start the program again");
         }
     }
     tellMessages();

@@ -15,10 +15,13 @@ bool Replay::onCreateImage(Args& in) {
     const auto it = client.contexts.find(context);
     if (it == client.contexts.end()) return true; // its creation failed on this node, which was reported
     const Kind kind = target == EGL_GL_RENDERBUFFER_KHR ? Kind::Renderbuffer : Kind::Texture;
-    const gl::ImageSource source{it->second->context.get(), target, it->second->shared->tables[static_cast<int>(kind)].find(object), level, layer};
+    const gl::ImageSource source{it->second->context.get(), target,
+                                 it->second->shared->tables[static_cast<int>(kind)].find(object), level, layer};
     auto made = platform_->createImage(source);
-    if (made) client.images[image] = std::move(*made);
-    else out_.log("an image of the program's is missing on this node's tiles: " + made.error().message);
+    if (made)
+        client.images[image] = std::move(*made);
+    else
+        out_.log("an image of the program's is missing on this node's tiles: " + made.error().message);
     return true;
 }
 
@@ -36,18 +39,22 @@ void Replay::withImage(uint64_t image, const std::function<void(GLeglImageOES)>&
 }
 
 void Replay::glEGLImageTargetTexture2DOES(GLenum target, uint64_t image) {
-    if (gl.glEGLImageTargetTexture2DOES) withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTexture2DOES(target, i); });
+    if (gl.glEGLImageTargetTexture2DOES)
+        withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTexture2DOES(target, i); });
 }
 void Replay::glEGLImageTargetRenderbufferStorageOES(GLenum target, uint64_t image) {
-    if (gl.glEGLImageTargetRenderbufferStorageOES) withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetRenderbufferStorageOES(target, i); });
+    if (gl.glEGLImageTargetRenderbufferStorageOES)
+        withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetRenderbufferStorageOES(target, i); });
 }
 // No attributes are defined for the list.
 void Replay::glEGLImageTargetTexStorageEXT(GLenum target, uint64_t image, const Data&) {
-    if (gl.glEGLImageTargetTexStorageEXT) withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTexStorageEXT(target, i, nullptr); });
+    if (gl.glEGLImageTargetTexStorageEXT)
+        withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTexStorageEXT(target, i, nullptr); });
 }
 void Replay::glEGLImageTargetTextureStorageEXT(GLuint texture, uint64_t image, const Data&) {
     const GLuint ours = name(Kind::Texture, texture);
-    if (gl.glEGLImageTargetTextureStorageEXT) withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTextureStorageEXT(ours, i, nullptr); });
+    if (gl.glEGLImageTargetTextureStorageEXT)
+        withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTextureStorageEXT(ours, i, nullptr); });
 }
 
 } // namespace mural

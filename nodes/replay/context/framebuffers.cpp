@@ -12,12 +12,23 @@ void Replay::bindFramebuffer(GLenum target, GLuint framebuffer, void (*bind)(GLe
     if (target != GL_DRAW_FRAMEBUFFER) c_->readFramebuffer = framebuffer;
     if (target != GL_READ_FRAMEBUFFER) restoreWindowState();
 }
-void Replay::glBindFramebuffer(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebuffer ? gl.glBindFramebuffer : gl.glBindFramebufferEXT); }
-void Replay::glBindFramebufferEXT(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferEXT ? gl.glBindFramebufferEXT : gl.glBindFramebuffer); }
-void Replay::glBindFramebufferOES(GLenum target, GLuint framebuffer) { bindFramebuffer(target, framebuffer, gl.glBindFramebufferOES ? gl.glBindFramebufferOES : gl.glBindFramebuffer); }
+void Replay::glBindFramebuffer(GLenum target, GLuint framebuffer) {
+    bindFramebuffer(target, framebuffer, gl.glBindFramebuffer ? gl.glBindFramebuffer : gl.glBindFramebufferEXT);
+}
+void Replay::glBindFramebufferEXT(GLenum target, GLuint framebuffer) {
+    bindFramebuffer(target, framebuffer, gl.glBindFramebufferEXT ? gl.glBindFramebufferEXT : gl.glBindFramebuffer);
+}
+void Replay::glBindFramebufferOES(GLenum target, GLuint framebuffer) {
+    bindFramebuffer(target, framebuffer, gl.glBindFramebufferOES ? gl.glBindFramebufferOES : gl.glBindFramebuffer);
+}
 
-void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) { deleteFramebuffers(n, framebuffers, gl.glDeleteFramebuffers); }
-void Replay::glDeleteFramebuffersOES(GLsizei n, const Data& framebuffers) { deleteFramebuffers(n, framebuffers, gl.glDeleteFramebuffersOES ? gl.glDeleteFramebuffersOES : gl.glDeleteFramebuffers); }
+void Replay::glDeleteFramebuffers(GLsizei n, const Data& framebuffers) {
+    deleteFramebuffers(n, framebuffers, gl.glDeleteFramebuffers);
+}
+void Replay::glDeleteFramebuffersOES(GLsizei n, const Data& framebuffers) {
+    deleteFramebuffers(n, framebuffers,
+                       gl.glDeleteFramebuffersOES ? gl.glDeleteFramebuffersOES : gl.glDeleteFramebuffers);
+}
 
 void Replay::deleteFramebuffers(GLsizei n, const Data& framebuffers, void (*remove)(GLsizei, const GLuint*)) {
     if (n <= 0 || !framebuffers.pointer()) return;
@@ -54,7 +65,9 @@ GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
 }
 
 // The name is also valid for glDrawBuffers, which accepts GL_BACK as the only name for several buffers.
-GLenum Replay::onlyBuffer(const gl::Surface& surface) { return surface.colorBuffers() == gl::ColorBuffers::OneNamedBack ? GL_BACK : GL_FRONT_LEFT; }
+GLenum Replay::onlyBuffer(const gl::Surface& surface) {
+    return surface.colorBuffers() == gl::ColorBuffers::OneNamedBack ? GL_BACK : GL_FRONT_LEFT;
+}
 // Returns the only colour buffer of the surface that contains the window's buffer (replay_front.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
@@ -88,7 +101,9 @@ void Replay::drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::
     if (!ofWindow) return call(list.data());
     for (GLenum& b : list) b = bufferOfEye(b, c_->draw);
     // The first buffer selects the surface; in stereo, the first buffer of this node's eye.
-    const auto chosen = c_->draw && c_->draw->config.stereo ? std::ranges::find_if(list, [](GLenum b) { return b != GL_NONE; }) : list.begin();
+    const auto chosen = c_->draw && c_->draw->config.stereo
+                            ? std::ranges::find_if(list, [](GLenum b) { return b != GL_NONE; })
+                            : list.begin();
     const GLenum first = chosen == list.end() ? GLenum{GL_NONE} : *chosen;
     for (GLenum& b : list) b = windowBuffer(b, c_->draw);
     call(list.data());
@@ -109,43 +124,55 @@ void Replay::glReadBufferNV(GLenum mode) {
 }
 void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
     if (framebuffer == 0) buf = bufferOfEye(buf, c_->draw);
-    gl.glNamedFramebufferDrawBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(buf, c_->draw) : buf);
+    gl.glNamedFramebufferDrawBuffer(name(Kind::Framebuffer, framebuffer),
+                                    framebuffer == 0 ? windowBuffer(buf, c_->draw) : buf);
     if (framebuffer == 0) drawBufferOfWindow(buf);
 }
 void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) { gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, ours); });
+    drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) {
+        gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, ours);
+    });
 }
 void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
     if (framebuffer == 0) src = readBufferOfEye(src, c_->read);
-    gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(src, c_->read) : src);
+    gl.glNamedFramebufferReadBuffer(name(Kind::Framebuffer, framebuffer),
+                                    framebuffer == 0 ? windowBuffer(src, c_->read) : src);
     if (framebuffer == 0) readBufferOfWindow(src);
 }
 // The same for EXT_direct_state_access.
 void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
     if (!gl.glFramebufferDrawBufferEXT) return;
     if (framebuffer == 0) mode = bufferOfEye(mode, c_->draw);
-    gl.glFramebufferDrawBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->draw) : mode);
+    gl.glFramebufferDrawBufferEXT(name(Kind::Framebuffer, framebuffer),
+                                  framebuffer == 0 ? windowBuffer(mode, c_->draw) : mode);
     if (framebuffer == 0) drawBufferOfWindow(mode);
 }
 void Replay::glFramebufferDrawBuffersEXT(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    if (gl.glFramebufferDrawBuffersEXT) drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) { gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, ours); });
+    if (gl.glFramebufferDrawBuffersEXT)
+        drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) {
+            gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, ours);
+        });
 }
 void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {
     if (!gl.glFramebufferReadBufferEXT) return;
     if (framebuffer == 0) mode = readBufferOfEye(mode, c_->read);
-    gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer), framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
+    gl.glFramebufferReadBufferEXT(name(Kind::Framebuffer, framebuffer),
+                                  framebuffer == 0 ? windowBuffer(mode, c_->read) : mode);
     if (framebuffer == 0) readBufferOfWindow(mode);
 }
 // Invalidation is only a hint, and could discard the pixels of another tile: ignored for windows.
 void Replay::glInvalidateFramebuffer(GLenum target, GLsizei n, const Data& attachments) {
-    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer) gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateFramebuffer)
+        gl.glInvalidateFramebuffer(target, n, attachments.as<GLenum>());
 }
-void Replay::glInvalidateSubFramebuffer(GLenum target, GLsizei n, const Data& attachments, GLint x, GLint y, GLsizei width, GLsizei height) {
+void Replay::glInvalidateSubFramebuffer(GLenum target, GLsizei n, const Data& attachments, GLint x, GLint y,
+                                        GLsizei width, GLsizei height) {
     if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glInvalidateSubFramebuffer)
         gl.glInvalidateSubFramebuffer(target, n, attachments.as<GLenum>(), x, y, width, height);
 }
 void Replay::glDiscardFramebufferEXT(GLenum target, GLsizei n, const Data& attachments) {
-    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glDiscardFramebufferEXT) gl.glDiscardFramebufferEXT(target, n, attachments.as<GLenum>());
+    if (!drawsWindow() && n > 0 && attachments.pointer() && gl.glDiscardFramebufferEXT)
+        gl.glDiscardFramebufferEXT(target, n, attachments.as<GLenum>());
 }
 
 } // namespace mural

@@ -18,7 +18,8 @@ constexpr GLbitfield kDeep = GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
 } // namespace
 
 bool Replay::hasTwoSurfaces(const Window* w) const {
-    return w && w->surface && w->config.doubleBuffer && w->surface->singleBuffered() && c_->api == wire::Api::Desktop && gl.glBlitFramebuffer && platform_->readsOtherSurfaces();
+    return w && w->surface && w->config.doubleBuffer && w->surface->singleBuffered() && c_->api == wire::Api::Desktop &&
+           gl.glBlitFramebuffer && platform_->readsOtherSurfaces();
 }
 
 // The surface of the window's buffer. Creates the front surface on demand; binding fills it.
@@ -28,7 +29,8 @@ gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
     if (!w->front) {
         auto made = platform_->createSurface(surfaceConfig(w->config, w->surface->width(), w->surface->height()));
         if (!made) {
-            out_.log("no second framebuffer for the front of a window can be made, it shows with the back: " + made.error().message);
+            out_.log("no second framebuffer for the front of a window can be made, it shows with the back: " +
+                     made.error().message);
             return w->surface.get();
         }
         w->front = std::move(*made);
@@ -56,7 +58,8 @@ bool Replay::bindSurfaces(gl::HeldBack heldBack) {
         return false;
     }
     for (Window* w : {boundDraw_, boundRead_}) {
-        if (w && w->front && w->frontStale && (drawSurface_ == w->front.get() || readSurface_ == w->front.get())) beginFront(*w);
+        if (w && w->front && w->frontStale && (drawSurface_ == w->front.get() || readSurface_ == w->front.get()))
+            beginFront(*w);
     }
     if (boundDraw_ && boundDraw_->front && boundDraw_->deep != drawSurface_) {
         copySurface(*boundDraw_->deep, *drawSurface_, kDeep);
@@ -69,9 +72,12 @@ bool Replay::bindSurfaces(gl::HeldBack heldBack) {
 void Replay::buffersChanged(GLenum drawnBefore) {
     if (!bound_ || c_ != bound_) return;
     // The front has the picture that was drawn to both, also if no command has named it yet.
-    if (boundDraw_ && isBoth(drawnBefore) && !isBoth(c_->drawBuffer0) && hasTwoSurfaces(boundDraw_) && surfaceOf(boundDraw_, GL_FRONT) == boundDraw_->front.get())
+    if (boundDraw_ && isBoth(drawnBefore) && !isBoth(c_->drawBuffer0) && hasTwoSurfaces(boundDraw_) &&
+        surfaceOf(boundDraw_, GL_FRONT) == boundDraw_->front.get())
         backToFront(*boundDraw_);
-    if (surfaceOf(boundDraw_, c_->drawBuffer0) != drawSurface_ || surfaceOf(boundRead_, readFrom(c_->readBuffer0)) != readSurface_) (void)bindSurfaces();
+    if (surfaceOf(boundDraw_, c_->drawBuffer0) != drawSurface_ ||
+        surfaceOf(boundRead_, readFrom(c_->readBuffer0)) != readSurface_)
+        (void)bindSurfaces();
 }
 
 // Fills a new or stale front buffer.
@@ -79,7 +85,8 @@ void Replay::beginFront(Window& w) {
     if (w.config.doubleBuffer != wire::kOwnFront) return backToFront(w);
     w.frontStale = false;
     w.moving.front = w.moving.areas;
-    if (platform_->makeCurrent(bound_->context.get(), w.front.get(), w.front.get())) aside([&] { clearToBlack(*w.front); });
+    if (platform_->makeCurrent(bound_->context.get(), w.front.get(), w.front.get()))
+        aside([&] { clearToBlack(*w.front); });
     (void)platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_);
     c_->scissorsDiffer = true; // all viewports' enables were touched
     applyScissors();
@@ -92,7 +99,9 @@ void Replay::clearToBlack(gl::Surface& current) {
     GLboolean mask[4] = {};
     gl.glGetFloatv(GL_COLOR_CLEAR_VALUE, colour);
     gl.glGetBooleanv(GL_COLOR_WRITEMASK, mask);
-    const auto setMask = [&](GLboolean r, GLboolean g, GLboolean b, GLboolean a) { gl.glColorMaski ? gl.glColorMaski(0, r, g, b, a) : gl.glColorMask(r, g, b, a); };
+    const auto setMask = [&](GLboolean r, GLboolean g, GLboolean b, GLboolean a) {
+        gl.glColorMaski ? gl.glColorMaski(0, r, g, b, a) : gl.glColorMask(r, g, b, a);
+    };
     const GLboolean discards = c_->version >= 30 && gl.glIsEnabled(GL_RASTERIZER_DISCARD);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     gl.glDrawBuffer(onlyBuffer(current));

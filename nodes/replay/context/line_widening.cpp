@@ -1,5 +1,6 @@
-// Lean tiles that grow to the window's size. If every node has to draw everything (interposer/memory/shader_writes.hpp), the
-// framebuffer of a lean tile is too small. Windows then get framebuffers of their own size.
+// Lean tiles that grow to the window's size. If every node has to draw everything
+// (interposer/memory/shader_writes.hpp), the framebuffer of a lean tile is too small. Windows then get framebuffers of
+// their own size.
 #include <algorithm>
 #include <utility>
 
@@ -14,7 +15,8 @@ void Replay::widenToWindow(Window& w) {
     const PixelViewport size = surfaceOf(w, false);
     auto made = platform_->createSurface(surfaceConfig(w.config, size.w, size.h));
     if (!made) {
-        out_.log("fragment shaders write to memory, which needs a framebuffer of the whole window (" + std::to_string(w.whole.w) + "x" + std::to_string(w.whole.h) +
+        out_.log("fragment shaders write to memory, which needs a framebuffer of the whole window (" +
+                 std::to_string(w.whole.w) + "x" + std::to_string(w.whole.h) +
                  "), and none can be made: their memory holds this node's part only: " + made.error().message);
         return;
     }
@@ -40,7 +42,9 @@ void Replay::copyTile(const Window& w, gl::Surface& from) {
     gl.glClear(GL_DEPTH_BUFFER_BIT);
     gl.glDepthMask(deep);
     const PixelViewport& r = w.region;
-    const auto blit = [&](GLbitfield planes) { gl.glBlitFramebuffer(0, 0, r.w, r.h, r.x, r.y, r.right(), r.top(), planes, GL_NEAREST); };
+    const auto blit = [&](GLbitfield planes) {
+        gl.glBlitFramebuffer(0, 0, r.w, r.h, r.x, r.y, r.right(), r.top(), planes, GL_NEAREST);
+    };
     for (const GLenum buffer : {GL_FRONT, GL_BACK}) {
         if (buffer == GL_FRONT ? !desktop : desktop && (from.singleBuffered() || !w.config.doubleBuffer)) continue;
         if (desktop) gl.glReadBuffer(windowBuffer(buffer, &w));

@@ -8,9 +8,10 @@ namespace mural {
 namespace {
 
 // In the order of PixelUnpack::values and ContextState::pack; alignment is the sixth.
-constexpr GLenum kUnpackNames[8] = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
-                                    GL_UNPACK_SKIP_PIXELS, GL_UNPACK_ALIGNMENT, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_IMAGE_HEIGHT};
-constexpr GLenum kPackNames[8] = {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
+constexpr GLenum kUnpackNames[8] = {GL_UNPACK_SWAP_BYTES,  GL_UNPACK_LSB_FIRST,   GL_UNPACK_ROW_LENGTH,
+                                    GL_UNPACK_SKIP_ROWS,   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_ALIGNMENT,
+                                    GL_UNPACK_SKIP_IMAGES, GL_UNPACK_IMAGE_HEIGHT};
+constexpr GLenum kPackNames[8] = {GL_PACK_SWAP_BYTES,  GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH,  GL_PACK_SKIP_ROWS,
                                   GL_PACK_SKIP_PIXELS, GL_PACK_ALIGNMENT, GL_PACK_SKIP_IMAGES, GL_PACK_IMAGE_HEIGHT};
 constexpr int kAlignment = 5;
 
@@ -37,7 +38,9 @@ void Replay::pixelStore(GLenum pname, GLint value) {
     gl.glPixelStorei(pname, value);
 }
 void Replay::glPixelStorei(GLenum pname, GLint param) { pixelStore(pname, param); }
-void Replay::glPixelStoref(GLenum pname, GLfloat param) { pixelStore(pname, toInt(param + (param < 0 ? -0.5f : 0.5f))); }
+void Replay::glPixelStoref(GLenum pname, GLfloat param) {
+    pixelStore(pname, toInt(param + (param < 0 ? -0.5f : 0.5f)));
+}
 void Replay::glPixelStorex(GLenum pname, GLint param) { pixelStore(pname, param >> 16); }
 
 void Replay::setUnpack(bool tight) {

@@ -43,7 +43,8 @@ void Replay::unbindPlatform() {
 void Replay::freeDestroyed(Client& client) {
     if (!client.anyDestroyed) return;
     const auto streamHas = [&](auto&& has) {
-        return std::any_of(client.streams.begin(), client.streams.end(), [&](const auto& s) { return s.second.context && has(s.second); });
+        return std::any_of(client.streams.begin(), client.streams.end(),
+                           [&](const auto& s) { return s.second.context && has(s.second); });
     };
     bool left = false;
     for (auto it = client.contexts.begin(); it != client.contexts.end();) {

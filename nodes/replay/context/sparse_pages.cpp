@@ -28,17 +28,23 @@ bool Replay::isError() {
 
 // Extends the box to this driver's pages of the texture (0: the bound one). Returns false without sparse pages.
 bool Replay::enlargeToPages(GLenum target, GLuint texture, PageBox& box) {
-    if (!gl.glGetInternalformativ || !gl.glGetTexLevelParameteriv || (texture && !gl.glGetTextureLevelParameteriv)) return false;
+    if (!gl.glGetInternalformativ || !gl.glGetTexLevelParameteriv || (texture && !gl.glGetTextureLevelParameteriv))
+        return false;
     const auto ofTexture = [&](GLenum name) {
         GLint value = 0;
-        if (texture) gl.glGetTextureParameteriv(texture, name, &value);
-        else gl.glGetTexParameteriv(target, name, &value);
+        if (texture)
+            gl.glGetTextureParameteriv(texture, name, &value);
+        else
+            gl.glGetTexParameteriv(target, name, &value);
         return value;
     };
     const auto ofLevel = [&](GLenum name) {
         GLint value = 0;
-        if (texture) gl.glGetTextureLevelParameteriv(texture, box.level, name, &value);
-        else gl.glGetTexLevelParameteriv(target == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X : target, box.level, name, &value);
+        if (texture)
+            gl.glGetTextureLevelParameteriv(texture, box.level, name, &value);
+        else
+            gl.glGetTexLevelParameteriv(target == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X : target,
+                                        box.level, name, &value);
         return value;
     };
     if (texture) target = static_cast<GLenum>(ofTexture(GL_TEXTURE_TARGET));
@@ -50,7 +56,8 @@ bool Replay::enlargeToPages(GLenum target, GLuint texture, PageBox& box) {
         gl.glGetInternalformativ(target, format, name, kMaxSizes, sizes);
         return index >= 0 && index < kMaxSizes ? sizes[index] : 0;
     };
-    const GLint width = pageSize(GL_VIRTUAL_PAGE_SIZE_X_ARB), height = pageSize(GL_VIRTUAL_PAGE_SIZE_Y_ARB), depth = pageSize(GL_VIRTUAL_PAGE_SIZE_Z_ARB);
+    const GLint width = pageSize(GL_VIRTUAL_PAGE_SIZE_X_ARB), height = pageSize(GL_VIRTUAL_PAGE_SIZE_Y_ARB),
+                depth = pageSize(GL_VIRTUAL_PAGE_SIZE_Z_ARB);
     if (width <= 0 || height <= 0 || depth <= 0) return false;
     enlarge(box.x, box.width, width, ofLevel(GL_TEXTURE_WIDTH));
     enlarge(box.y, box.height, height, ofLevel(GL_TEXTURE_HEIGHT));
@@ -59,7 +66,8 @@ bool Replay::enlargeToPages(GLenum target, GLuint texture, PageBox& box) {
     return true;
 }
 
-void Replay::commitPages(GLenum target, GLuint texture, const PageBox& box, bool commits, const std::function<void(const PageBox&)>& call) {
+void Replay::commitPages(GLenum target, GLuint texture, const PageBox& box, bool commits,
+                         const std::function<void(const PageBox&)>& call) {
     (void)isError();
     call(box);
     if (!isError() || !commits) return;
@@ -68,22 +76,31 @@ void Replay::commitPages(GLenum target, GLuint texture, const PageBox& box, bool
     if (known) call(ours);
     if ((!isError() && known) || saidPages_) return;
     saidPages_ = true;
-    out_.log("pages of a sparse texture of the program's can't be had from this node's driver: what lies there is missing on this node's tiles; "
+    out_.log("pages of a sparse texture of the program's can't be had from this node's driver: what lies there is "
+             "missing on this node's tiles; "
              "let the program and its nodes use the same driver");
 }
 
-void Replay::glTexPageCommitmentARB(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei w, GLsizei h, GLsizei d, GLboolean commit) {
+void Replay::glTexPageCommitmentARB(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei w, GLsizei h,
+                                    GLsizei d, GLboolean commit) {
     if (!gl.glTexPageCommitmentARB) return (void)lacking(op::glTexPageCommitmentARB);
-    commitPages(target, 0, {level, x, y, z, w, h, d}, commit, [&](const PageBox& b) { gl.glTexPageCommitmentARB(target, b.level, b.x, b.y, b.z, b.width, b.height, b.depth, commit); });
+    commitPages(target, 0, {level, x, y, z, w, h, d}, commit, [&](const PageBox& b) {
+        gl.glTexPageCommitmentARB(target, b.level, b.x, b.y, b.z, b.width, b.height, b.depth, commit);
+    });
 }
-void Replay::glTexturePageCommitmentEXT(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei w, GLsizei h, GLsizei d, GLboolean commit) {
+void Replay::glTexturePageCommitmentEXT(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei w, GLsizei h,
+                                        GLsizei d, GLboolean commit) {
     if (!gl.glTexturePageCommitmentEXT) return (void)lacking(op::glTexturePageCommitmentEXT);
     const GLuint ours = name(Kind::Texture, texture);
-    commitPages(0, ours, {level, x, y, z, w, h, d}, commit, [&](const PageBox& b) { gl.glTexturePageCommitmentEXT(ours, b.level, b.x, b.y, b.z, b.width, b.height, b.depth, commit); });
+    commitPages(0, ours, {level, x, y, z, w, h, d}, commit, [&](const PageBox& b) {
+        gl.glTexturePageCommitmentEXT(ours, b.level, b.x, b.y, b.z, b.width, b.height, b.depth, commit);
+    });
 }
 
 // bufferBytes() is called only if page sizes differ.
-void Replay::commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits, const std::function<uint64_t()>& bufferBytes, const std::function<void(uint64_t, uint64_t)>& call) {
+void Replay::commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits,
+                          const std::function<uint64_t()>& bufferBytes,
+                          const std::function<void(uint64_t, uint64_t)>& call) {
     GLint page = 0;
     gl.glGetIntegerv(GL_SPARSE_BUFFER_PAGE_SIZE_ARB, &page);
     const uint64_t step = page > 0 ? static_cast<uint64_t>(page) : 1;
@@ -104,11 +121,14 @@ void Replay::glBufferPageCommitmentARB(GLenum target, GLintptr offset, GLsizeipt
         if (gl.glGetBufferParameteri64v) gl.glGetBufferParameteri64v(target, GL_BUFFER_SIZE, &all);
         return static_cast<uint64_t>(all);
     };
-    commitBuffer(static_cast<uint64_t>(offset), static_cast<uint64_t>(size), commit, bytes,
-                 [&](uint64_t from, uint64_t count) { gl.glBufferPageCommitmentARB(target, static_cast<GLintptr>(from), static_cast<GLsizeiptr>(count), commit); });
+    commitBuffer(
+        static_cast<uint64_t>(offset), static_cast<uint64_t>(size), commit, bytes, [&](uint64_t from, uint64_t count) {
+            gl.glBufferPageCommitmentARB(target, static_cast<GLintptr>(from), static_cast<GLsizeiptr>(count), commit);
+        });
 }
 void Replay::glNamedBufferPageCommitmentARB(GLuint buffer, GLintptr offset, GLsizeiptr size, GLboolean commit) {
-    const auto call = gl.glNamedBufferPageCommitmentARB ? gl.glNamedBufferPageCommitmentARB : gl.glNamedBufferPageCommitmentEXT;
+    const auto call =
+        gl.glNamedBufferPageCommitmentARB ? gl.glNamedBufferPageCommitmentARB : gl.glNamedBufferPageCommitmentEXT;
     if (!call) return (void)lacking(op::glNamedBufferPageCommitmentARB);
     if (offset < 0 || size < 0) return;
     const GLuint ours = name(Kind::Buffer, buffer);
@@ -118,8 +138,12 @@ void Replay::glNamedBufferPageCommitmentARB(GLuint buffer, GLintptr offset, GLsi
         return static_cast<uint64_t>(all);
     };
     commitBuffer(static_cast<uint64_t>(offset), static_cast<uint64_t>(size), commit, bytes,
-                 [&](uint64_t from, uint64_t count) { call(ours, static_cast<GLintptr>(from), static_cast<GLsizeiptr>(count), commit); });
+                 [&](uint64_t from, uint64_t count) {
+                     call(ours, static_cast<GLintptr>(from), static_cast<GLsizeiptr>(count), commit);
+                 });
 }
-void Replay::glNamedBufferPageCommitmentEXT(GLuint buffer, GLintptr offset, GLsizeiptr size, GLboolean commit) { glNamedBufferPageCommitmentARB(buffer, offset, size, commit); }
+void Replay::glNamedBufferPageCommitmentEXT(GLuint buffer, GLintptr offset, GLsizeiptr size, GLboolean commit) {
+    glNamedBufferPageCommitmentARB(buffer, offset, size, commit);
+}
 
 } // namespace mural

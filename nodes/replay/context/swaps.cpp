@@ -48,9 +48,12 @@ bool Replay::onSwap(Args& in, bool front) {
     Client& client = clients_[wire::clientOf(stream_)];
     const auto it = client.windows.find(id);
     Window* const window = it == client.windows.end() ? nullptr : it->second.get();
-    ContextState* const drawer = window && mustBindForSwap(*window, frame, front) ? contextFor(client, *window) : nullptr;
-    if (drawer) swapUnbound(*window, *drawer, id, frame, front);
-    else showWindow(window, id, frame, front);
+    ContextState* const drawer =
+        window && mustBindForSwap(*window, frame, front) ? contextFor(client, *window) : nullptr;
+    if (drawer)
+        swapUnbound(*window, *drawer, id, frame, front);
+    else
+        showWindow(window, id, frame, front);
     answerAskedAhead();
     return true;
 }
@@ -100,18 +103,22 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         f.valid = isValid(w, front);
         if (!front && f.valid) w.frontStaled = false;
         showedInvalid_ = showedInvalid_ || (!f.valid && !w.skipped && w.begun);
-        if (bound_ && &w == boundDraw_ && w.surface) ours = &w, f.format = pictureFormatOf(*bound_, w), f.pixels = [this, &w, front](const PixelViewport& r) {
-            ContextState* const own = std::exchange(c_, bound_);
-            const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
-            const std::byte* pixels = zoomed ? readScaled(w, r, front) : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front) : readShown(w, r, front);
-            c_ = own;
-            return pixels;
-        };
+        if (bound_ && &w == boundDraw_ && w.surface)
+            ours = &w, f.format = pictureFormatOf(*bound_, w), f.pixels = [this, &w, front](const PixelViewport& r) {
+                ContextState* const own = std::exchange(c_, bound_);
+                const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
+                const std::byte* pixels = zoomed                                 ? readScaled(w, r, front)
+                                          : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front)
+                                                                                 : readShown(w, r, front);
+                c_ = own;
+                return pixels;
+            };
         // Without a context or a surface the picture is black. The frame still counts, and the log has the reason.
-        else f.pixels = [black = std::vector<std::byte>()](const PixelViewport& r) mutable {
-            black.assign(static_cast<size_t>(r.area()) * 4, std::byte{0});
-            return static_cast<const std::byte*>(black.data());
-        };
+        else
+            f.pixels = [black = std::vector<std::byte>()](const PixelViewport& r) mutable {
+                black.assign(static_cast<size_t>(r.area()) * 4, std::byte{0});
+                return static_cast<const std::byte*>(black.data());
+            };
     }
     if (window && bound_) flushIfAsked(*window);
     // A frame counts after its draws, because pacing and frame rates depend on that. If its picture is read later, the
@@ -122,13 +129,14 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
     if (!skips_ && !later) waitUntilDrawn();
     tellTroubles();
     bool read = false;
-    if (f.pixels) f.read = [&]() -> std::unique_ptr<PictureRead> {
-        read = true;
-        std::unique_ptr<PictureRead> picture = later ? readLater(*ours, f.region, front) : nullptr;
-        if (!picture) picture = readAtOnce(f, f.region);
-        if (ours && config_.readback == Readback::Auto) ours->readback.took(monotonicNowNs() - beganNs);
-        return picture;
-    };
+    if (f.pixels)
+        f.read = [&]() -> std::unique_ptr<PictureRead> {
+            read = true;
+            std::unique_ptr<PictureRead> picture = later ? readLater(*ours, f.region, front) : nullptr;
+            if (!picture) picture = readAtOnce(f, f.region);
+            if (ours && config_.readback == Readback::Auto) ours->readback.took(monotonicNowNs() - beganNs);
+            return picture;
+        };
     if (shown) out_.frameDone(f);
     if (later && !read) waitUntilDrawn();
     if (window) turnDrawn(*window, front);

@@ -102,7 +102,8 @@ void Replay::restoreWindowState() {
 
 void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     if (width < 0 || height < 0) return;
-    const std::array<GLfloat, 4> v{static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width), static_cast<GLfloat>(height)};
+    const std::array<GLfloat, 4> v{static_cast<GLfloat>(x), static_cast<GLfloat>(y), static_cast<GLfloat>(width),
+                                   static_cast<GLfloat>(height)};
     c_->viewports.fill(v);
     c_->viewportsDiffer = false;
     if (movesPicture()) {
@@ -184,7 +185,8 @@ void Replay::glDisablei(GLenum target, GLuint index) {
 void Replay::glPushAttrib(GLbitfield mask) {
     gl.glPushAttrib(mask);
     if (c_->attributes.size() < 64)
-        c_->attributes.push_back({mask, c_->scissors, c_->listBase, c_->viewports, c_->drawBuffer0, c_->readBuffer0, c_->program, c_->colorMasks});
+        c_->attributes.push_back({mask, c_->scissors, c_->listBase, c_->viewports, c_->drawBuffer0, c_->readBuffer0,
+                                  c_->program, c_->colorMasks});
 }
 void Replay::glPopAttrib() {
     gl.glPopAttrib();
@@ -216,7 +218,8 @@ std::array<GLubyte, 128> turnedStipple(const GLubyte* pattern, int x, int y) {
         const GLubyte* from = pattern + 4 * ((row + y) % 32);
         const uint32_t bits = uint32_t{from[0]} << 24 | uint32_t{from[1]} << 16 | uint32_t{from[2]} << 8 | from[3];
         const uint32_t moved = shift ? bits << shift | bits >> (32 - shift) : bits;
-        for (int k = 0; k < 4; ++k) turned[static_cast<size_t>(4 * row + k)] = static_cast<GLubyte>(moved >> (24 - 8 * k));
+        for (int k = 0; k < 4; ++k)
+            turned[static_cast<size_t>(4 * row + k)] = static_cast<GLubyte>(moved >> (24 - 8 * k));
     }
     return turned;
 }
@@ -227,7 +230,8 @@ std::array<GLubyte, 128> turnedStipple(const GLubyte* pattern, int x, int y) {
 void Replay::glPolygonStipple(const Data& mask) {
     if (!unpackFor(mask)) return;
     const PixelViewport o = origin();
-    if ((o.x % 32 == 0 && o.y % 32 == 0) || (!mask.pointer() && !mask.isOffset())) return gl.glPolygonStipple(mask.as<GLubyte>());
+    if ((o.x % 32 == 0 && o.y % 32 == 0) || (!mask.pointer() && !mask.isOffset()))
+        return gl.glPolygonStipple(mask.as<GLubyte>());
     if (!mask.isOffset()) return gl.glPolygonStipple(turnedStipple(mask.as<GLubyte>(), o.x, o.y).data());
     gl.glPolygonStipple(mask.as<GLubyte>()); // from a buffer: GL sets it, then it is queried
     GLubyte pattern[128] = {};

@@ -35,7 +35,8 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
 bool Replay::own(uint16_t opcode, Args& in) {
     tellMessages(); // before a reply that the program waits for
     if (!leavesBitmaps(opcode)) settleBitmaps();
-    if (opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestTexImage || opcode == wire::kOpRequestBuffer || opcode == wire::kOpFillWindow) {
+    if (opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestTexImage || opcode == wire::kOpRequestBuffer ||
+        opcode == wire::kOpFillWindow) {
         for (Window* const w : {c_->draw, c_->read}) {
             if (!w) continue;
             flushIfAsked(*w);
@@ -100,7 +101,8 @@ bool Replay::onBlobBegin(Args& in) {
 
 bool Replay::onCreateContext(Args& in) {
     const auto id = in.get<uint32_t>(), share = in.get<uint32_t>(), api = in.get<uint32_t>();
-    const auto major = in.get<uint32_t>(), minor = in.get<uint32_t>(), profile = in.get<uint32_t>(), flags = in.get<uint32_t>();
+    const auto major = in.get<uint32_t>(), minor = in.get<uint32_t>(), profile = in.get<uint32_t>(),
+               flags = in.get<uint32_t>();
     const auto* config = in.fixed<wire::WindowConfig>(sizeof(wire::WindowConfig));
     if (!in.ok() || api > 2) return false;
     Client& client = clients_[wire::clientOf(stream_)];
@@ -186,13 +188,16 @@ bool Replay::onWindow(Args& in) {
     // An equal size means that the program's driver has destroyed the drawable and created it again.
     const bool renewed = w.surface && config->width == w.config.width && config->height == w.config.height;
     if (config->stereo && !w.config.stereo && config_.pass.eye == Eye::Cyclop && config_.answers && config_.node == 0)
-        out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side or anaglyph shows both");
+        out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side "
+                 "or anaglyph shows both");
     w.config = *config;
     w.isFlat = config->depth == 0 && config->stencil == 0;
     w.wishedRed = config->red;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
-    if (moves() && (!w.surface || renewed || w.surface->width() != std::max(width, 1) || w.surface->height() != std::max(height, 1))) divideAnew(w);
+    if (moves() && (!w.surface || renewed || w.surface->width() != std::max(width, 1) ||
+                    w.surface->height() != std::max(height, 1)))
+        divideAnew(w);
     w.part = partOf(w, w.moving.areas.get());
     placePart(w);
     const PixelViewport size = surfaceOf(w, w.lean);
@@ -202,7 +207,8 @@ bool Replay::onWindow(Args& in) {
     }
     auto made = platform_->createSurface(surfaceConfig(*config, size.w, size.h));
     if (!made) {
-        out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) + ") can be made: " + made.error().message +
+        out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) +
+                 ") can be made: " + made.error().message +
                  (config_.pass.zoom.x > 1 || config_.pass.zoom.y > 1 ? "; or give the compound a smaller zoom" : ""));
         return true;
     }
@@ -239,7 +245,8 @@ void Replay::takeBitsOfSurface(Window& w) {
     w.config.stencil = static_cast<uint8_t>(there.stencil);
     w.config.samples = static_cast<uint8_t>(there.samples);
     if (differs == std::exchange(toldBits_, differs)) return;
-    out_.log("its GL has no framebuffer like the program's window, which is drawn with " + differs + ": pixels may differ from the native picture's");
+    out_.log("its GL has no framebuffer like the program's window, which is drawn with " + differs +
+             ": pixels may differ from the native picture's");
 }
 
 bool Replay::onClientArrays(Args& in) {
@@ -267,7 +274,8 @@ bool Replay::onClientArrays(Args& in) {
     for (uint32_t i = 0; i < arrayCount; ++i) {
         const ArrayRecord& a = arrays[i];
         const auto first = reinterpret_cast<uintptr_t>(c_->arrayMemory[a.span].data()) + a.offsetBytes;
-        setArrayPointer(a, reinterpret_cast<const std::byte*>(first - static_cast<uintptr_t>(intptr_t{a.firstElement} * a.strideBytes)));
+        setArrayPointer(a, reinterpret_cast<const std::byte*>(
+                               first - static_cast<uintptr_t>(intptr_t{a.firstElement} * a.strideBytes)));
     }
     if (c_->arrayBuffer && gl.glBindBuffer) gl.glBindBuffer(GL_ARRAY_BUFFER, c_->arrayBuffer);
     return true;
@@ -298,9 +306,12 @@ void Replay::setArrayPointer(const client_arrays::ArrayRecord& a, const std::byt
         return;
     }
     const GLuint index = a.slot - kGeneric0;
-    if (a.flags & kInteger) gl.glVertexAttribIPointer(index, a.size, a.type, stride, first);
-    else if (a.flags & kLong) gl.glVertexAttribLPointer(index, a.size, a.type, stride, first);
-    else gl.glVertexAttribPointer(index, a.size, a.type, a.flags & kNormalized, stride, first);
+    if (a.flags & kInteger)
+        gl.glVertexAttribIPointer(index, a.size, a.type, stride, first);
+    else if (a.flags & kLong)
+        gl.glVertexAttribLPointer(index, a.size, a.type, stride, first);
+    else
+        gl.glVertexAttribPointer(index, a.size, a.type, a.flags & kNormalized, stride, first);
 }
 
 bool Replay::onProgramLayout(Args& in) {
@@ -327,8 +338,10 @@ bool Replay::onProgramLayout(Args& in) {
         const GLint here = gl.glGetUniformLocation(ours, text.c_str());
         if (here != location) info.locations[location] = here;
     }
-    if (info.locations.empty()) c_->shared->programs.erase(program);
-    else c_->shared->programs[program] = std::move(info);
+    if (info.locations.empty())
+        c_->shared->programs.erase(program);
+    else
+        c_->shared->programs[program] = std::move(info);
     return true;
 }
 
@@ -345,15 +358,20 @@ bool Replay::onBufferBytes(Args& in) {
     GLint before = 0;
     gl.glGetIntegerv(copyTarget ? GL_COPY_WRITE_BUFFER_BINDING : GL_ARRAY_BUFFER_BINDING, &before);
     gl.glBindBuffer(target, ours);
-    if (copyTarget && onlyCopiesWrite(target)) copyIntoBuffer(target, offset, bytes.span());
-    else gl.glBufferSubData(target, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.pointer());
+    if (copyTarget && onlyCopiesWrite(target))
+        copyIntoBuffer(target, offset, bytes.span());
+    else
+        gl.glBufferSubData(target, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()),
+                           bytes.pointer());
     gl.glBindBuffer(target, static_cast<GLuint>(before));
     return true;
 }
 
 // Detects immutable storage that the program may not write. GL itself may still write there, for example query results.
 bool Replay::onlyCopiesWrite(GLenum target) {
-    if (!gl.glBufferStorage || !gl.glGetBufferParameteriv || !gl.glCopyBufferSubData || c_->api != wire::Api::Desktop || c_->version < 44) return false;
+    if (!gl.glBufferStorage || !gl.glGetBufferParameteriv || !gl.glCopyBufferSubData || c_->api != wire::Api::Desktop ||
+        c_->version < 44)
+        return false;
     GLint immutable = 0, flags = 0;
     gl.glGetBufferParameteriv(target, GL_BUFFER_IMMUTABLE_STORAGE, &immutable);
     if (immutable) gl.glGetBufferParameteriv(target, GL_BUFFER_STORAGE_FLAGS, &flags);
@@ -367,7 +385,8 @@ void Replay::copyIntoBuffer(GLenum target, uint64_t offset, std::span<const std:
     gl.glGenBuffers(1, &between);
     gl.glBindBuffer(GL_COPY_READ_BUFFER, between);
     gl.glBufferData(GL_COPY_READ_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STREAM_COPY);
-    gl.glCopyBufferSubData(GL_COPY_READ_BUFFER, target, 0, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()));
+    gl.glCopyBufferSubData(GL_COPY_READ_BUFFER, target, 0, static_cast<GLintptr>(offset),
+                           static_cast<GLsizeiptr>(bytes.size()));
     gl.glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(before));
     gl.glDeleteBuffers(1, &between);
 }

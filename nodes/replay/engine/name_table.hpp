@@ -24,8 +24,10 @@ public:
         }
     }
     void erase(GLuint name) {
-        if (name < dense_.size()) dense_[name] = 0;
-        else sparse_.erase(name);
+        if (name < dense_.size())
+            dense_[name] = 0;
+        else
+            sparse_.erase(name);
     }
 
 private:
@@ -35,8 +37,17 @@ private:
 };
 
 enum class Kind : uint8_t {
-    Texture, Buffer, Renderbuffer, Sampler, Program, ArbProgram, // shared by contexts
-    Framebuffer, VertexArray, Query, Pipeline, TransformFeedback, // per context
+    Texture,
+    Buffer,
+    Renderbuffer,
+    Sampler,
+    Program,
+    ArbProgram, // shared by contexts
+    Framebuffer,
+    VertexArray,
+    Query,
+    Pipeline,
+    TransformFeedback, // per context
     Count
 };
 constexpr bool isShared(Kind k) { return k <= Kind::ArbProgram; }

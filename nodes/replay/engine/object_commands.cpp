@@ -66,7 +66,8 @@ void Replay::glEdgeFlagPointer(GLsizei stride, uint64_t pointer) {
 void Replay::glPointSizePointerOES(GLenum type, GLsizei stride, uint64_t pointer) {
     arrayPointer(pointer, [&](const void* p) { gl.glPointSizePointerOES(type, stride, p); });
 }
-void Replay::glVertexAttribPointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride, uint64_t pointer) {
+void Replay::glVertexAttribPointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
+                                   uint64_t pointer) {
     arrayPointer(pointer, [&](const void* p) { gl.glVertexAttribPointer(index, size, type, normalized, stride, p); });
 }
 void Replay::glVertexAttribIPointer(GLuint index, GLint size, GLenum type, GLsizei stride, uint64_t pointer) {
@@ -78,7 +79,8 @@ void Replay::glVertexAttribLPointer(GLuint index, GLint size, GLenum type, GLsiz
 
 namespace {
 // Converts the indices of a multi-draw. Returns false if malformed.
-bool indexPointers(const Data& indices, const GLsizei* count, GLenum type, GLsizei drawcount, std::vector<const void*>& out) {
+bool indexPointers(const Data& indices, const GLsizei* count, GLenum type, GLsizei drawcount,
+                   std::vector<const void*>& out) {
     const auto bytes = indices.span();
     if (bytes.size() < 8) return false;
     uint32_t kind = 0;
@@ -109,13 +111,17 @@ bool Replay::indicesFit(const Data& indices) {
 
 void Replay::glMultiDrawElements(GLenum mode, const Data& count, GLenum type, const Data& indices, GLsizei drawcount) {
     std::vector<const void*> pointers;
-    if (drawcount > 0 && count.pointer() && indicesFit(indices) && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
+    if (drawcount > 0 && count.pointer() && indicesFit(indices) &&
+        indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
         gl.glMultiDrawElements(mode, count.as<GLsizei>(), type, pointers.data(), drawcount);
 }
-void Replay::glMultiDrawElementsBaseVertex(GLenum mode, const Data& count, GLenum type, const Data& indices, GLsizei drawcount, const Data& basevertex) {
+void Replay::glMultiDrawElementsBaseVertex(GLenum mode, const Data& count, GLenum type, const Data& indices,
+                                           GLsizei drawcount, const Data& basevertex) {
     std::vector<const void*> pointers;
-    if (drawcount > 0 && count.pointer() && basevertex.pointer() && indicesFit(indices) && indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
-        gl.glMultiDrawElementsBaseVertex(mode, count.as<GLsizei>(), type, pointers.data(), drawcount, basevertex.as<GLint>());
+    if (drawcount > 0 && count.pointer() && basevertex.pointer() && indicesFit(indices) &&
+        indexPointers(indices, count.as<GLsizei>(), type, drawcount, pointers))
+        gl.glMultiDrawElementsBaseVertex(mode, count.as<GLsizei>(), type, pointers.data(), drawcount,
+                                         basevertex.as<GLint>());
 }
 
 // ---- programs
@@ -127,14 +133,22 @@ void Replay::glShaderStorageBlockBinding(GLuint program, GLuint index, GLuint bi
     gl.glShaderStorageBlockBinding(name(Kind::Program, program), index, binding);
 }
 
-void Replay::glCopyImageSubData(GLuint srcName, GLenum srcTarget, GLint srcLevel, GLint srcX, GLint srcY, GLint srcZ, GLuint dstName, GLenum dstTarget, GLint dstLevel, GLint dstX, GLint dstY, GLint dstZ, GLsizei w, GLsizei h, GLsizei d) {
+void Replay::glCopyImageSubData(GLuint srcName, GLenum srcTarget, GLint srcLevel, GLint srcX, GLint srcY, GLint srcZ,
+                                GLuint dstName, GLenum dstTarget, GLint dstLevel, GLint dstX, GLint dstY, GLint dstZ,
+                                GLsizei w, GLsizei h, GLsizei d) {
     if (!gl.glCopyImageSubData) return;
-    const auto ours = [&](GLuint n, GLenum target) { return name(target == GL_RENDERBUFFER ? Kind::Renderbuffer : Kind::Texture, n); };
-    gl.glCopyImageSubData(ours(srcName, srcTarget), srcTarget, srcLevel, srcX, srcY, srcZ, ours(dstName, dstTarget), dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
+    const auto ours = [&](GLuint n, GLenum target) {
+        return name(target == GL_RENDERBUFFER ? Kind::Renderbuffer : Kind::Texture, n);
+    };
+    gl.glCopyImageSubData(ours(srcName, srcTarget), srcTarget, srcLevel, srcX, srcY, srcZ, ours(dstName, dstTarget),
+                          dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
 }
 
-void Replay::glCopyImageSubDataNV(GLuint srcName, GLenum srcTarget, GLint srcLevel, GLint srcX, GLint srcY, GLint srcZ, GLuint dstName, GLenum dstTarget, GLint dstLevel, GLint dstX, GLint dstY, GLint dstZ, GLsizei w, GLsizei h, GLsizei d) {
-    glCopyImageSubData(srcName, srcTarget, srcLevel, srcX, srcY, srcZ, dstName, dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
+void Replay::glCopyImageSubDataNV(GLuint srcName, GLenum srcTarget, GLint srcLevel, GLint srcX, GLint srcY, GLint srcZ,
+                                  GLuint dstName, GLenum dstTarget, GLint dstLevel, GLint dstX, GLint dstY, GLint dstZ,
+                                  GLsizei w, GLsizei h, GLsizei d) {
+    glCopyImageSubData(srcName, srcTarget, srcLevel, srcX, srcY, srcZ, dstName, dstTarget, dstLevel, dstX, dstY, dstZ,
+                       w, h, d);
 }
 
 // ---- synchronisation: one thread replays all contexts in the program's order
@@ -166,8 +180,10 @@ void Replay::glRenderMode(GLenum mode) {
     if (!gl.glRenderMode) return;
     static GLuint nowhere[64];
     static GLfloat nothing[64];
-    if (mode == GL_SELECT) gl.glSelectBuffer(64, nowhere);
-    else gl.glFeedbackBuffer(64, GL_2D, nothing);
+    if (mode == GL_SELECT)
+        gl.glSelectBuffer(64, nowhere);
+    else
+        gl.glFeedbackBuffer(64, GL_2D, nothing);
     gl.glRenderMode(mode);
 }
 
@@ -314,7 +330,6 @@ void Replay::nextNativeList(const std::function<void()>& between) {
     c_->building.items.push_back({.native = next, .record = {}, .blobs = {}});
     gl.glNewList(next, c_->compileMode);
 }
-
 
 void Replay::glCallList(GLuint list) {
     if (listDepth_ == 0) listCommands_ = 0;

@@ -10,7 +10,10 @@
 namespace mural {
 
 Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, ReplayOutputs outputs)
-    : platform_(std::move(platform)), config_(std::move(config)), out_(std::move(outputs)), saidLacking_(op::kLimit, false) {
+    : platform_(std::move(platform)),
+      config_(std::move(config)),
+      out_(std::move(outputs)),
+      saidLacking_(op::kLimit, false) {
     share_ = config_.pass.share;
     knowsTurns_ = knowsCosts_ = knowsAreas_ = !config_.isResyncing;
     if (config_.areas) areas_ = std::make_shared<const ViewportAssignment>(*config_.areas);
@@ -55,14 +58,16 @@ bool Replay::record(std::span<const std::byte> bytes) {
     if (!ok) {
         ++counts_.malformed;
         const char* text = opcode >= wire::kFirstGlOpcode ? glOpcodeName(opcode) : nullptr;
-        out_.log("malformed record: opcode " + std::to_string(opcode) + (text ? std::string(" (") + text + ")" : "") + ", " + std::to_string(bytes.size()) + " bytes");
+        out_.log("malformed record: opcode " + std::to_string(opcode) + (text ? std::string(" (") + text + ")" : "") +
+                 ", " + std::to_string(bytes.size()) + " bytes");
     }
     return ok;
 }
 
 bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, BlobQueue& blobs) {
     Args in(arguments, blobs);
-    const bool drawing = opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow || opcode == wire::kOpDrawAll;
+    const bool drawing =
+        opcode == wire::kOpRequestPixels || opcode == wire::kOpFillWindow || opcode == wire::kOpDrawAll;
     // A read is never part of a list. A native list cannot be ended between glBegin and glEnd, because that would split
     // the primitive.
     const bool readsInPrimitive = opcode == wire::kOpRequestPixels && c_->compilesPrimitive;
@@ -108,8 +113,9 @@ void readPastEnd(size_t sizeBytes) {
 void Replay::offsetObjectNames() {
     constexpr GLsizei kNames = 40;
     GLuint names[kNames];
-    for (const auto generate : {gl.glGenTextures, gl.glGenBuffers, gl.glGenRenderbuffers, gl.glGenSamplers, gl.glGenFramebuffers, gl.glGenVertexArrays, gl.glGenQueries,
-                                gl.glGenProgramPipelines, gl.glGenTransformFeedbacks, gl.glGenProgramsARB})
+    for (const auto generate : {gl.glGenTextures, gl.glGenBuffers, gl.glGenRenderbuffers, gl.glGenSamplers,
+                                gl.glGenFramebuffers, gl.glGenVertexArrays, gl.glGenQueries, gl.glGenProgramPipelines,
+                                gl.glGenTransformFeedbacks, gl.glGenProgramsARB})
         if (generate) generate(kNames, names);
     for (GLsizei i = 0; i < kNames && gl.glCreateProgram; ++i) gl.glCreateProgram();
     while (gl.glGetError() != GL_NO_ERROR) {} // some contexts lack some of these objects
@@ -117,7 +123,8 @@ void Replay::offsetObjectNames() {
 
 // Plants a fault (MURAL_PLANT), which tests must detect. Returns true if the command must be skipped.
 bool Replay::planted(uint16_t opcode) {
-    const bool draws = opcode == op::glBegin || opcode == op::glDrawArrays || opcode == op::glDrawElements || opcode == op::glCallList;
+    const bool draws =
+        opcode == op::glBegin || opcode == op::glDrawArrays || opcode == op::glDrawElements || opcode == op::glCallList;
 #ifdef __SANITIZE_ADDRESS__
     if (config_.plant == "overflow") readPastEnd(counts_.frames + 8);
 #endif
@@ -161,7 +168,9 @@ bool Replay::bindStream(Stream& s) {
 void Replay::loadFunctions() {
     if (loaded_) return;
     loaded_ = true;
-    loadGlFunctions(gl, [](void* self, const char* text) { return static_cast<gl::Platform*>(self)->getProcAddress(text); }, platform_.get());
+    loadGlFunctions(
+        gl, [](void* self, const char* text) { return static_cast<gl::Platform*>(self)->getProcAddress(text); },
+        platform_.get());
 }
 
 void Replay::clientGone(uint32_t client) {
@@ -287,7 +296,8 @@ bool Replay::lacking(uint16_t opcode) {
     if (!saidLacking_[opcode]) {
         saidLacking_[opcode] = true;
         const char* text = glOpcodeName(opcode);
-        out_.log(std::string("this node's driver has no ") + (text ? text : "such command") + "; its effect is missing on this node's tiles");
+        out_.log(std::string("this node's driver has no ") + (text ? text : "such command") +
+                 "; its effect is missing on this node's tiles");
     }
     return true;
 }

@@ -124,8 +124,10 @@ public:
     }
     // Coordinates may be any number, so the difference wraps around instead of being undefined.
     template <class T> static T moved(T value, int32_t by) {
-        if constexpr (std::is_integral_v<T>) return static_cast<T>(int64_t{value} - by);
-        else return static_cast<T>(value - static_cast<T>(by));
+        if constexpr (std::is_integral_v<T>)
+            return static_cast<T>(int64_t{value} - by);
+        else
+            return static_cast<T>(value - static_cast<T>(by));
     }
 
 #include "replay_custom.inc"
@@ -137,17 +139,17 @@ private:
         enum class Phase : uint8_t {
             Fresh, // nothing is drawn
             Split, // each node has drawn its range
-            Whole // composited: the collector draws the rest
+            Whole  // composited: the collector draws the rest
         } phase = Phase::Fresh;
         GLbitfield cleared = 0; // buffers that were cleared whole since the frame began
-        uint64_t cost = 0; // of all draws so far, in vertices
+        uint64_t cost = 0;      // of all draws so far, in vertices
         uint64_t lastTotal = 0; // cost of the previous frame; 0: unknown
-        uint64_t serial = 0; // number of compositions of this window
-        GLenum function = 0; // depth function of all shared draws
-        bool muted = false; // another node draws the current commands
+        uint64_t serial = 0;    // number of compositions of this window
+        GLenum function = 0;    // depth function of all shared draws
+        bool muted = false;     // another node draws the current commands
         bool wasSplit = false;
-        Range share; // this node's part of lastTotal
-        uint32_t shares = 0; // number of the Shares with that part
+        Range share;          // this node's part of lastTotal
+        uint32_t shares = 0;  // number of the Shares with that part
         uint32_t drawnBy = 0; // number of the Shares of the previous frame
         // number of returned nodes of its picture when the frame began; the composition of the frame includes these
         // nodes
@@ -156,57 +158,57 @@ private:
     };
     // This node's part of a window, where it may change (replay_areas.cpp).
     struct MovingPart {
-        std::shared_ptr<const ViewportAssignment> areas; // the current ones
+        std::shared_ptr<const ViewportAssignment> areas;  // the current ones
         std::shared_ptr<const ViewportAssignment> wanted; // the ones to apply at the next full clear
         GLbitfield drawn = 0; // buffers with only this node's part; all other buffers are complete on all nodes
-        bool fixed = false; // the areas never change again
-        int64_t waits = 0; // frames since other areas were announced
+        bool fixed = false;   // the areas never change again
+        int64_t waits = 0;    // frames since other areas were announced
         std::shared_ptr<const ViewportAssignment> front; // of the front, where it has its own surface
     };
     struct Window {
-        bool destroyed = false; // freed when no stream has it current
-        bool lean = false;      // the framebuffer has the region's size
-        bool widens = true; // to the window's size on demand; false after a failure
-        wire::WindowConfig config{}; // with the channel bits of `surface`
-        uint8_t wishedRed = 0;       // red bits of the program's window; equal on all nodes
+        bool destroyed = false;         // freed when no stream has it current
+        bool lean = false;              // the framebuffer has the region's size
+        bool widens = true;             // to the window's size on demand; false after a failure
+        wire::WindowConfig config{};    // with the channel bits of `surface`
+        uint8_t wishedRed = 0;          // red bits of the program's window; equal on all nodes
         ContextState* drawer = nullptr; // the context that was last current with it for drawing; null: destroyed
         bool isFlat = false; // the program's window has no depth and no stencil buffer; this node's surface may
         std::unique_ptr<gl::Surface> surface;
         // the front buffer, created on first use where surfaces have one colour buffer
         std::unique_ptr<gl::Surface> front;
-        bool frontStale = false; // its colours must be copied from `surface`
-        gl::Surface* deep = nullptr; // the surface with the valid depth and stencil; null: `surface`
+        bool frontStale = false;             // its colours must be copied from `surface`
+        gl::Surface* deep = nullptr;         // the surface with the valid depth and stencil; null: `surface`
         std::unique_ptr<gl::Context> filler; // draws depth and stencil if the program's context cannot
-        PixelViewport whole;  // 0, 0, width, height
-        PixelViewport part; // this node's, by the areas or the grid
-        PixelViewport region; // `part` as it is drawn; empty while another node has the turn
+        PixelViewport whole;                 // 0, 0, width, height
+        PixelViewport part;                  // this node's, by the areas or the grid
+        PixelViewport region;                // `part` as it is drawn; empty while another node has the turn
         // pixels inside the scissor: the region, or the driver's bins that contain it (raster_bins.hpp)
         PixelViewport drawn;
         int64_t frames = 0; // number of frames begun, and below of turns begun (replay_turns.cpp)
         int64_t turn = 0;
-        bool turnOver = false; // the frame is complete; the next drawing command begins another
+        bool turnOver = false;  // the frame is complete; the next drawing command begins another
         bool undecided = false; // the frame has only cleared, and may begin the next node's turn
-        bool fresh = false; // the frame has begun the next node's turn
-        int64_t kept = 0; // consecutive frames that built on their predecessor
+        bool fresh = false;     // the frame has begun the next node's turn
+        int64_t kept = 0;       // consecutive frames that built on their predecessor
         GLbitfield cleared = 0; // buffers that were cleared whole since the frame began
-        bool plain = true; // drawn without the kernel of this pass; its pixels are selected at the end
-        bool copied = true; // pixels were read or copied, or selected texture levels: the next frame is plain
-        int askedOfLevels = 0; // draws of this frame that were checked for texture levels (replay_whole_windows.cpp)
-        bool asked = false; // pixels or bytes were requested in this frame
+        bool plain = true;      // drawn without the kernel of this pass; its pixels are selected at the end
+        bool copied = true;     // pixels were read or copied, or selected texture levels: the next frame is plain
+        int askedOfLevels = 0;  // draws of this frame that were checked for texture levels (replay_whole_windows.cpp)
+        bool asked = false;     // pixels or bytes were requested in this frame
         // draws the whole window: a copy must find this pass's own pixels, and other tiles deliver another pass's
         bool drawsAll = true;
         bool filled = true; // the frame had copies: the next one draws the whole window
         RangeFrame range;
         MovingPart moving;
-        bool keepsPicture = false; // one node has the turn permanently
-        bool sceneElsewhere = false; // this frame draws its scene into a framebuffer object (replay_scenes.cpp)
+        bool keepsPicture = false;      // one node has the turn permanently
+        bool sceneElsewhere = false;    // this frame draws its scene into a framebuffer object (replay_scenes.cpp)
         bool sceneWasElsewhere = false; // the previous frame drew its scene into a framebuffer object
-        bool begun = false;        // something was drawn since the last swap
+        bool begun = false;             // something was drawn since the last swap
         ReadbackChoice readback;
-        bool skipped = false; // its frames are not drawn (replay_catch_up.cpp)
-        GLbitfield stale = 0; // buffers with wrong content after skipped frames
-        bool frontStaled = false; // the front buffer is stale as well
-        bool invalid = false; // this frame depends on stale buffers
+        bool skipped = false;             // its frames are not drawn (replay_catch_up.cpp)
+        GLbitfield stale = 0;             // buffers with wrong content after skipped frames
+        bool frontStaled = false;         // the front buffer is stale as well
+        bool invalid = false;             // this frame depends on stale buffers
         std::vector<int16_t> accumulated; // values of `drawn`, rows bottom first; empty: none yet
     };
     struct ProgramInfo {
@@ -214,17 +216,17 @@ private:
     };
     struct ListItem {
         GLuint native = 0;
-        uint32_t vertices = 0; // approximate number that the native list draws
-        bool plain = true; // changes no state that decides whether draws may be shared
-        std::vector<std::byte> record; // a command that the node executes itself; empty: native
+        uint32_t vertices = 0;                     // approximate number that the native list draws
+        bool plain = true;                         // changes no state that decides whether draws may be shared
+        std::vector<std::byte> record;             // a command that the node executes itself; empty: native
         std::vector<std::vector<std::byte>> blobs; // blobs of the record
     };
     struct List {
         std::vector<ListItem> items;
     };
-    struct DealtHandle { // names of this node
+    struct DealtHandle {         // names of this node
         GLuint texture, sampler; // sampler: the program's, or 0
-        GLuint made; // an equal sampler that was created to obtain the handle, or 0
+        GLuint made;             // an equal sampler that was created to obtain the handle, or 0
     };
     struct Shared { // state that contexts share
         NameTable tables[static_cast<int>(Kind::Count)];
@@ -234,24 +236,24 @@ private:
         NameTable framebuffersOfAll;
         // by this node's shader name: contains a module that reads gl_FragCoord
         std::unordered_map<GLuint, bool> placedModules;
-        bool listsHoldBitmaps = false; // at least one list contains a bitmap
-        bool texturesHaveLevels = false; // at least one texture has (replay_whole_windows.cpp)
+        bool listsHoldBitmaps = false;                 // at least one list contains a bitmap
+        bool texturesHaveLevels = false;               // at least one texture has (replay_whole_windows.cpp)
         bool testsDepth = false, testsStencil = false; // some command or list has enabled the test
         // every node draws everything: the program's side requested it, or a module reads gl_FragCoord
         bool allDrawn = false;
         ProgramRewriter tiled;
         ProgramSourcesStore recipes;
         HandleTable handles;
-        std::unordered_map<uint64_t, DealtHandle> dealt; // by the program's texture handle
-        bool handlesFreed = false; // some texture with a handle was deleted
+        std::unordered_map<uint64_t, DealtHandle> dealt;            // by the program's texture handle
+        bool handlesFreed = false;                                  // some texture with a handle was deleted
         std::unordered_map<GLuint, ProjectionDetector> projections; // by the program's name (replay_eyes.cpp)
         // by this node's program name: numbers primitives, so draws are not cut into pieces
         std::unordered_map<GLuint, bool> primitiveIds;
         // by the program's name, after its first use (replay_left_out.cpp)
         std::unordered_map<GLuint, bool> memoryWriters;
-        ProjectionDetector projection; // the last one found in any buffer
+        ProjectionDetector projection;        // the last one found in any buffer
         std::shared_ptr<AsyncReadback> later; // null: unavailable, or not requested yet
-        bool laterAsked = false; // creation was tried once
+        bool laterAsked = false;              // creation was tried once
     };
     struct Scissor {
         bool enabled = false;
@@ -275,7 +277,7 @@ private:
     };
     struct PixelUnpack {
         std::array<GLint, 8> values{}; // in the order of kUnpackNames; alignment is initialised to 4
-        bool tight = false; // the driver currently has tight packing set
+        bool tight = false;            // the driver currently has tight packing set
     };
     struct ClientState {
         GLbitfield mask;
@@ -291,8 +293,8 @@ private:
     struct QueryInfo {
         GLenum target = 0;
         std::vector<QueryPiece> pieces; // the first is the program's own query
-        bool skipped = false; // a frame was skipped while it counted
-        bool passed = true; // result for the whole picture, reported by the program's side
+        bool skipped = false;           // a frame was skipped while it counted
+        bool passed = true;             // result for the whole picture, reported by the program's side
     };
     // Window pixels for the next copy, collected from all nodes (lean tiling and multisampled windows).
     struct Gathered {
@@ -315,22 +317,22 @@ private:
         std::atomic<bool> any{false};
     };
     struct ContextState {
-        DebugInbox debug;    // outlives the context
-        bool debugs = false; // the program requested a debug context
-        bool listens = false; // the driver sends its messages to `debug`
-        bool lost = false;    // the driver has reset it
-        bool heldBack = false; // not flushed when the program releases it
-        uint32_t errorsTold = 0; // number of errors that the program's own GL has reported to it
+        DebugInbox debug;                              // outlives the context
+        bool debugs = false;                           // the program requested a debug context
+        bool listens = false;                          // the driver sends its messages to `debug`
+        bool lost = false;                             // the driver has reset it
+        bool heldBack = false;                         // not flushed when the program releases it
+        uint32_t errorsTold = 0;                       // number of errors that the program's own GL has reported to it
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
         std::vector<AskedAhead> askedAhead;
         std::map<GLenum, GLuint> counting; // active fragment queries: target to the program's query
-        bool countsWhole = false; // value of isReplicatedDraw() at the start of the last piece
-        bool countedWhole = false; // an active query requires the whole picture on every node
+        bool countsWhole = false;          // value of isReplicatedDraw() at the start of the last piece
+        bool countedWhole = false;         // an active query requires the whole picture on every node
         bool conditional = false, conditionMet = false;
         GLuint condition = 0; // this node's name of the deciding query, and its mode
         GLenum conditionMode = 0;
-        GLuint queryBuffer = 0; // this node's name of the buffer for results
-        GLuint nothingCounted = 0;                     // a query whose result is 0
+        GLuint queryBuffer = 0;    // this node's name of the buffer for results
+        GLuint nothingCounted = 0; // a query whose result is 0
         uint32_t client = 0, id = 0;
         bool destroyed = false; // freed when no stream has it current
         std::unique_ptr<gl::Context> context;
@@ -343,11 +345,11 @@ private:
         Window* draw = nullptr;
         Window* read = nullptr;
         bool everCurrent = false;
-        GLuint drawFramebuffer = 0, readFramebuffer = 0; // the program's names
+        GLuint drawFramebuffer = 0, readFramebuffer = 0;          // the program's names
         GLuint arrayBuffer = 0, packBuffer = 0, unpackBuffer = 0; // this node's names
-        GLuint program = 0;                              // the program's name
+        GLuint program = 0;                                       // the program's name
         std::array<Scissor, kViewports> scissors;
-        bool scissorsDiffer = false;                     // indexed commands were used
+        bool scissorsDiffer = false; // indexed commands were used
         std::array<std::array<GLfloat, 4>, kViewports> viewports{};
         bool viewportsDiffer = false;
         ColorMasks colorMasks;
@@ -355,21 +357,21 @@ private:
         PixelUnpack unpack;
         std::array<GLint, 8> pack{};
         bool gathersBitmaps = false; // the driver may have batched some (replay_bitmaps.cpp)
-        bool packsBlocks = false; // the program has set pack parameters of compressed blocks
+        bool packsBlocks = false;    // the program has set pack parameters of compressed blocks
         GLuint listBase = 0;
-        GLuint compiling = 0;                            // name of the list, 0: none
+        GLuint compiling = 0; // name of the list, 0: none
         GLenum compileMode = 0;
-        bool compilesPrimitive = false;                  // between glBegin and glEnd
+        bool compilesPrimitive = false; // between glBegin and glEnd
         List building;
         std::vector<SavedAttributes> attributes;
         std::vector<ClientState> clientAttributes;
         std::vector<std::vector<std::byte>> arrayMemory; // spans of client arrays
         GLuint fillFramebuffer = 0;
         Gathered gathered;
-        GLfloat cullMargin = 16; // in pixels; only grows, because lists and stacks may restore wide lines
-        bool lineStippled = false; // at any time so far: a dropped piece of a strip would shift the pattern
+        GLfloat cullMargin = 16;      // in pixels; only grows, because lists and stacks may restore wide lines
+        bool lineStippled = false;    // at any time so far: a dropped piece of a strip would shift the pattern
         bool clippingCounted = false; // a query counts primitives before or after clipping
-        bool arbPositions = false; // an ARB program reads the window's offset
+        bool arbPositions = false;    // an ARB program reads the window's offset
         bool pipelineBound = false;
         std::set<GLenum> openQueries; // active queries of other counts than samples
         bool feedsBack = false;       // transform feedback may be active
@@ -379,7 +381,7 @@ private:
         bool projectionShifted = false;
         // Sort-last: whether draws may be shared, valid until state changes (replay_range.cpp).
         bool rangeKnown = false, mayShare = false;
-        bool writesMemory = false; // storage or images were bound; vertex shaders may write to them
+        bool writesMemory = false;   // storage or images were bound; vertex shaders may write to them
         bool rangeFeedsBack = false; // transform feedback is active
         int activeQueries = 0;
         bool inPrimitive = false;
@@ -393,7 +395,7 @@ private:
         Window* read = nullptr;
         std::deque<std::vector<std::byte>> blobs;
         uint64_t blobMissing = 0; // bytes of the last blob that have not arrived
-        uint64_t blobBytes = 0; // size of all blobs when complete
+        uint64_t blobBytes = 0;   // size of all blobs when complete
     };
     struct Client {
         std::map<uint32_t, std::unique_ptr<ContextState>> contexts;
@@ -454,7 +456,8 @@ private:
     void answerBytes(uint32_t request, wire::ReplyKind kind, std::span<const std::byte> bytes);
     enum class Beyond : uint8_t { Black, Nothing }; // pixels outside the framebuffer: returned as black, or impossible
     [[nodiscard]] bool isAnswering();
-    const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond = Beyond::Black);
+    const std::byte* readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes,
+                                Beyond beyond = Beyond::Black);
     const std::byte* readShown(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] bool resolves(const Window& w) const;
     const std::byte* readResolved(const PixelViewport& r, GLenum format, const ColourWords& words);
@@ -475,7 +478,8 @@ private:
     const GLfloat* depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels);
     std::vector<GLfloat> depths_;
     gl::Context* fillerOf(Window& w);
-    void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels, GLenum colourType = GL_UNSIGNED_BYTE);
+    void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels,
+                            GLenum colourType = GL_UNSIGNED_BYTE);
     // replay_images.cpp
     bool onCreateImage(Args& in);
     bool onDestroyImage(Args& in);
@@ -489,20 +493,24 @@ private:
     void settleDriver();
     void flushIfAsked(Window& w);
     [[nodiscard]] HandleTable::Of handlesOfUniform(GLuint program, GLint location) const;
-    [[nodiscard]] std::vector<GLuint64> handleValues(GLuint program, GLint location, const GLuint64* values, GLsizei count) const;
+    [[nodiscard]] std::vector<GLuint64> handleValues(GLuint program, GLint location, const GLuint64* values,
+                                                     GLsizei count) const;
     // replay_sparse.cpp
     struct PageBox {
         GLint level, x, y, z;
         GLsizei width, height, depth;
     };
-    void commitPages(GLenum target, GLuint texture, const PageBox& box, bool commits, const std::function<void(const PageBox&)>& call);
+    void commitPages(GLenum target, GLuint texture, const PageBox& box, bool commits,
+                     const std::function<void(const PageBox&)>& call);
     [[nodiscard]] bool isError();
     bool enlargeToPages(GLenum target, GLuint texture, PageBox& box);
-    void commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits, const std::function<uint64_t()>& bufferBytes, const std::function<void(uint64_t, uint64_t)>& call);
+    void commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits, const std::function<uint64_t()>& bufferBytes,
+                      const std::function<void(uint64_t, uint64_t)>& call);
     bool saidPages_ = false;
     // replay_news.cpp
     void listenToDriver();
-    static void APIENTRY hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text, const void* inbox);
+    static void APIENTRY hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                                    const GLchar* text, const void* inbox);
     void tellMessages();
     void tell(wire::DriverEventKind kind, const DebugInbox::Message& message);
     bool takeErrors();
@@ -549,7 +557,8 @@ private:
     void onModules(GLuint ours);
     [[nodiscard]] bool alone() const { // this node's part is the whole picture
         if (config_.area || moves()) return !moves() && config_.area->full() && !takesTurns();
-        return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows && !takesTurns();
+        return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows &&
+               !takesTurns();
     }
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
     void widenToWindow(Window& w);
@@ -580,7 +589,9 @@ private:
     // replay_passes.cpp
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
     // True if the pass does not draw exactly the pixels of this node's part of the window.
-    [[nodiscard]] bool drawsOtherPixels() const { return hasKernel() || !config_.pass.zoom.none() || !config_.pass.shown.none(); }
+    [[nodiscard]] bool drawsOtherPixels() const {
+        return hasKernel() || !config_.pass.zoom.none() || !config_.pass.shown.none();
+    }
     // True if the pixels that other tiles deliver for copies belong to another pass: the answering one.
     [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsOtherPixels() && !takesRanges(); }
     [[nodiscard]] bool interleaves(const Window* w) const { return drawsOtherPixels() && w && !w->plain; }
@@ -665,7 +676,7 @@ private:
     void applyColorMasks();
     void makeOpaque();
     bool alphaHides_ = false; // some window hides its alpha
-    std::string toldBits_; // last logged difference between a window here and the program's
+    std::string toldBits_;    // last logged difference between a window here and the program's
     // replay_accum.cpp
     // x, y, z, width and height, in window coordinates.
     void drawTexture(const std::array<GLfloat, 5>& rectangle);
@@ -734,24 +745,25 @@ private:
     size_t scratchUsed_ = 0;
     std::vector<std::byte> pixels_;
     std::vector<bool> saidLacking_;
-    int listDepth_ = 0; // nested display lists in execution
+    int listDepth_ = 0;         // nested display lists in execution
     uint32_t listCommands_ = 0; // executed since the outermost list began
-    bool hasSkipped_ = false; // began by skipping frames
-    bool skips_ = false; // still skips frames
+    bool hasSkipped_ = false;   // began by skipping frames
+    bool skips_ = false;        // still skips frames
     bool knowsTurns_ = true;
-    Range share_; // this node's part of a frame's draws
+    Range share_;               // this node's part of a frame's draws
     uint32_t sharesNumber_ = 0; // number of the Shares with that part
-    Range plantedShare_; // for a planted fault
-    bool knowsCosts_ = true; // has the costs of earlier frames, as the other nodes of its picture have
+    Range plantedShare_;        // for a planted fault
+    bool knowsCosts_ = true;    // has the costs of earlier frames, as the other nodes of its picture have
     // callbacks of returned nodes of its picture that no composition includes yet
     std::deque<std::function<void()>> returns_;
     uint64_t returnsTaken_ = 0; // number of returns before those
     [[nodiscard]] uint64_t returnsTold() const { return returnsTaken_ + returns_.size(); }
-    std::shared_ptr<const ViewportAssignment> areas_; // current for new windows, wanted by the others; null: areas never change
+    std::shared_ptr<const ViewportAssignment>
+        areas_; // current for new windows, wanted by the others; null: areas never change
     bool knowsAreas_ = true;
-    bool showedInvalid_ = false; // a frame was drawn from its beginning, and still depended on skipped ones
+    bool showedInvalid_ = false;           // a frame was drawn from its beginning, and still depended on skipped ones
     std::unique_ptr<GlFunctions> leftOut_; // functions without effect, for skipped draws; null: not created yet
-    std::unique_ptr<ContextState> none_; // context of streams without one
+    std::unique_ptr<ContextState> none_;   // context of streams without one
 };
 
 } // namespace mural

@@ -26,9 +26,9 @@ namespace mural {
 
 // Limits on the memory and work that a stream may cause on the node, far above the needs of programs.
 struct ReplayLimits {
-    uint64_t blobBytes = uint64_t{4} << 30; // queued in one stream
+    uint64_t blobBytes = uint64_t{4} << 30;   // queued in one stream
     uint64_t answerBytes = uint64_t{2} << 30; // of one answer
-    uint32_t listCommands = 1u << 24; // executed by one call of a display list; nesting multiplies them
+    uint32_t listCommands = 1u << 24;         // executed by one call of a display list; nesting multiplies them
 };
 
 // This node's part of every picture.
@@ -36,22 +36,22 @@ struct ReplayConfig {
     int node = 0;
     TileGrid grid;
     TileRegion region;
-    std::optional<Viewport> area; // replaces grid and region
+    std::optional<Viewport> area;            // replaces grid and region
     std::optional<ViewportAssignment> areas; // replaces `area`; moveAreas() sets the following ones
     RenderPass pass;
-    bool answers = true; // answers requests for pixels; false: nodes of another pass answer them
+    bool answers = true;                      // answers requests for pixels; false: nodes of another pass answer them
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
-    std::optional<ScreenView> screen; // includes the position of the eye
-    bool skips = false; // draws no frames until drawAgain()
+    std::optional<ScreenView> screen;         // includes the position of the eye
+    bool skips = false;                       // draws no frames until drawAgain()
     // The node is in resync, and other nodes have the turns. Until takeTurns() or beginTurns() the node draws all
     // frames and owns none of them. It shares no draws before shareAnew().
     bool isResyncing = false;
-    bool cull = false; // rewritten shaders drop whole primitives outside the region
-    bool lean = false;     // framebuffers of the tile's size; false: of the picture's size (exact)
+    bool cull = false;          // rewritten shaders drop whole primitives outside the region
+    bool lean = false;          // framebuffers of the tile's size; false: of the picture's size (exact)
     bool rastersInBins = false; // the driver draws in software, so a region must end on its bins (raster_bins.hpp)
     Readback readback = Readback::Direct; // of Frame::read
-    bool deepPictures = false; // allows Bgr10A2 in Frame::format
-    std::string plant; // MURAL_PLANT: a planted fault, which tests must detect
+    bool deepPictures = false;            // allows Bgr10A2 in Frame::format
+    std::string plant;                    // MURAL_PLANT: a planted fault, which tests must detect
     ReplayLimits limits;
 };
 
@@ -64,16 +64,16 @@ struct ReplayOutputs {
     struct Frame {
         uint32_t client, window, frame;
         wire::WindowConfig config;
-        PixelViewport region; // this node's part of the picture
-        PictureFormat format; // of `pixels` and `read`
+        PixelViewport region;  // this node's part of the picture
+        PictureFormat format;  // of `pixels` and `read`
         PixelViewport picture; // the complete picture: the window's size, or every nth pixel of it
-        bool drawnWhole; // every node drew the whole window (Shared::allDrawn)
-        bool keepsPicture; // each frame builds on its predecessor, so one node draws all of them
-        bool valid; // does not depend on skipped draws (ReplayConfig::skips)
-        bool notSplit; // several ranges exist, but no draws were shared
-        uint32_t areas; // number of the Areas that divide the picture
-        uint32_t shares; // number of the Shares that divided the draws; 0: the initial ones, or no shared draws
-        bool keepsAreas; // newer areas have waited too long for a full clear
+        bool drawnWhole;       // every node drew the whole window (Shared::allDrawn)
+        bool keepsPicture;     // each frame builds on its predecessor, so one node draws all of them
+        bool valid;            // does not depend on skipped draws (ReplayConfig::skips)
+        bool notSplit;         // several ranges exist, but no draws were shared
+        uint32_t areas;        // number of the Areas that divide the picture
+        uint32_t shares;       // number of the Shares that divided the draws; 0: the initial ones, or no shared draws
+        bool keepsAreas;       // newer areas have waited too long for a full clear
         std::function<const std::byte*(const PixelViewport&)> pixels;
         // Reads `region` once, for another thread, which may have to wait for its drawing. Set where `pixels` is.
         // Returns null if no picture is available.

@@ -10,9 +10,9 @@ namespace mural::accumulation {
 
 // Pixels are four values: red, green, blue, alpha, in both directions.
 void load(int16_t* values, const uint8_t* rgba, size_t pixels, float by, bool add); // GL_LOAD, GL_ACCUM
-void multiply(int16_t* values, size_t pixels, float by); // GL_MULT
-void add(int16_t* values, size_t pixels, float what); // GL_ADD
-void clear(int16_t* values, size_t pixels, const float* colour); // glClear
+void multiply(int16_t* values, size_t pixels, float by);                            // GL_MULT
+void add(int16_t* values, size_t pixels, float what);                               // GL_ADD
+void clear(int16_t* values, size_t pixels, const float* colour);                    // glClear
 // GL_RETURN. channels: enabled by the colour mask.
 void giveBack(const int16_t* values, uint8_t* rgba, size_t pixels, float by, const bool* channels);
 

@@ -18,7 +18,8 @@ bool Replay::accumulatesHere() {
     if (!has || gl.glIsEnabled(GL_RASTERIZER_DISCARD)) return false;
     if (c_->draw->config.red == 8 && c_->draw->config.samples == 0) return true;
     if (!std::exchange(saidAccumulation_, true))
-        out_.log("accumulation buffers of windows that are multisampled or have other than 8 bits per colour are not drawn here; run with --gl glx");
+        out_.log("accumulation buffers of windows that are multisampled or have other than 8 bits per colour are not "
+                 "drawn here; run with --gl glx");
     return false;
 }
 
@@ -29,7 +30,8 @@ void Replay::forAccumulatedRows(const std::function<void(int16_t*, const PixelVi
     if (w.accumulated.size() != values) w.accumulated.assign(values, 0);
     const PixelViewport box = accumulatedBox();
     for (int32_t y = box.y; y < box.top(); ++y) {
-        const auto at = static_cast<size_t>(y - w.drawn.y) * static_cast<size_t>(w.drawn.w) + static_cast<size_t>(box.x - w.drawn.x);
+        const auto at = static_cast<size_t>(y - w.drawn.y) * static_cast<size_t>(w.drawn.w) +
+                        static_cast<size_t>(box.x - w.drawn.x);
         call(w.accumulated.data() + at * 4, {box.x, y, box.w, 1});
     }
 }
@@ -44,7 +46,9 @@ void Replay::glClear(GLbitfield mask) {
     if ((mask & GL_ACCUM_BUFFER_BIT) && !(mask & ~kBuffers) && accumulatesHere()) {
         GLfloat colour[4] = {};
         gl.glGetFloatv(GL_ACCUM_CLEAR_VALUE, colour);
-        forAccumulatedRows([&](int16_t* values, const PixelViewport& row) { accumulation::clear(values, static_cast<size_t>(row.w), colour); });
+        forAccumulatedRows([&](int16_t* values, const PixelViewport& row) {
+            accumulation::clear(values, static_cast<size_t>(row.w), colour);
+        });
         mask &= ~GLbitfield{GL_ACCUM_BUFFER_BIT};
     }
     withoutTile([&] { gl.glClear(mask); });
@@ -55,8 +59,12 @@ void Replay::glAccum(GLenum op, GLfloat value) {
     if (c_->readFramebuffer != 0 || c_->read != c_->draw) return; // an error in GL
     const auto count = [](const PixelViewport& row) { return static_cast<size_t>(row.w); };
     switch (op) {
-    case GL_MULT: return forAccumulatedRows([&](int16_t* values, const PixelViewport& row) { accumulation::multiply(values, count(row), value); });
-    case GL_ADD: return forAccumulatedRows([&](int16_t* values, const PixelViewport& row) { accumulation::add(values, count(row), value); });
+    case GL_MULT:
+        return forAccumulatedRows(
+            [&](int16_t* values, const PixelViewport& row) { accumulation::multiply(values, count(row), value); });
+    case GL_ADD:
+        return forAccumulatedRows(
+            [&](int16_t* values, const PixelViewport& row) { accumulation::add(values, count(row), value); });
     case GL_LOAD:
     case GL_ACCUM: return accumulateColours(value, op == GL_ACCUM);
     case GL_RETURN: return returnAccumulated(value);
@@ -68,7 +76,8 @@ void Replay::accumulateColours(GLfloat value, bool add) {
     const PixelViewport box = accumulatedBox();
     if (c_->readBuffer0 == GL_NONE || box.empty()) return;
     const std::byte* pixels = nullptr;
-    withPlainTransfer([&] { pixels = readRegion(box, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<size_t>(box.area()) * 4); });
+    withPlainTransfer(
+        [&] { pixels = readRegion(box, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<size_t>(box.area()) * 4); });
     const auto* colours = reinterpret_cast<const uint8_t*>(pixels);
     forAccumulatedRows([&](int16_t* values, const PixelViewport& row) {
         accumulation::load(values, colours, static_cast<size_t>(row.w), value, add);

@@ -9,7 +9,8 @@ namespace mural {
 // pending materials, which a later colour would otherwise still change.
 void Replay::onBitmaps(uint16_t opcode) {
     if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsHoldBitmaps = true;
-    const bool listed = (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsHoldBitmaps;
+    const bool listed =
+        (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsHoldBitmaps;
     if (opcode == op::glBitmap || listed) c_->gathersBitmaps = true;
 }
 
@@ -32,7 +33,8 @@ bool Replay::leavesBitmaps(uint16_t opcode) {
 
 // Draws the batch with the program's own state, as its next command would.
 void Replay::settleBitmaps() {
-    if (!bound_ || c_ != bound_ || !c_->gathersBitmaps || c_->compiling || !gl.glBegin || !gl.glEnd || !gl.glFlush) return;
+    if (!bound_ || c_ != bound_ || !c_->gathersBitmaps || c_->compiling || !gl.glBegin || !gl.glEnd || !gl.glFlush)
+        return;
     if (!gl.glGetString(GL_VENDOR)) return; // between glBegin and glEnd, where queries fail
     c_->gathersBitmaps = false;
     gl.glBegin(GL_POINTS); // makes Mesa validate programs and samplers; unvalidated ones cause a null pointer access

@@ -7,7 +7,9 @@ namespace {
 using MatrixRow = std::array<double, 4>; // coefficients of x, y, w and 1
 
 MatrixRow operator*(double by, const MatrixRow& a) { return {by * a[0], by * a[1], by * a[2], by * a[3]}; }
-MatrixRow operator+(const MatrixRow& a, const MatrixRow& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}; }
+MatrixRow operator+(const MatrixRow& a, const MatrixRow& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
+}
 
 } // namespace
 
@@ -20,7 +22,10 @@ ClipTransform eyeMove(const ProjectionDetector& seen, double offset, double focu
 
 ClipTransform screenMove(const ProjectionDetector& seen, const ScreenView& s) {
     // From clip coordinates back to the program's eye coordinates.
-    const MatrixRow own[4] = {{1 / seen.scaleX, 0, -seen.shearX / seen.scaleX, 0}, {0, 1 / seen.scaleY, -seen.shearY / seen.scaleY, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};
+    const MatrixRow own[4] = {{1 / seen.scaleX, 0, -seen.shearX / seen.scaleX, 0},
+                              {0, 1 / seen.scaleY, -seen.shearY / seen.scaleY, 0},
+                              {0, 0, -1, 0},
+                              {0, 0, 0, 1}};
     MatrixRow eye[3];
     for (size_t i = 0; i < 3; ++i) {
         const auto& m = s.fromProgram.m[i];
@@ -42,7 +47,9 @@ void ClipTransform::apply(double (&m)[16], double unit) const {
     for (size_t column = 0; column < 4; ++column) {
         double* at = m + 4 * column;
         const double one = column == 3 ? unit : 0;
-        const auto added = [&](const MatrixRow& by) { return by[0] * at[0] + by[1] * at[1] + by[2] * at[3] + by[3] * one; };
+        const auto added = [&](const MatrixRow& by) {
+            return by[0] * at[0] + by[1] * at[1] + by[2] * at[3] + by[3] * one;
+        };
         const double dx = added(x), dy = added(y), dw = added(w);
         at[0] += dx;
         at[1] += dy;

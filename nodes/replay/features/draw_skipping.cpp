@@ -49,7 +49,8 @@ bool Replay::mayWriteMemory(GLuint program) {
 }
 
 bool Replay::shouldSkipDraw(uint16_t opcode) {
-    if (!hasTrait(opcode, Trait::SkippableDraw) || !drawsWindow() || !c_->draw || c_->compiling || !c_->shared) return false;
+    if (!hasTrait(opcode, Trait::SkippableDraw) || !drawsWindow() || !c_->draw || c_->compiling || !c_->shared)
+        return false;
     const Window& w = *c_->draw;
     const bool drawsHere = isReplicatedDraw() || !w.drawn.empty() || w.whole.empty();
     return !drawsHere && c_->openQueries.empty() && !c_->feedsBack && !stipplesLines() && !mayWriteMemory(c_->program);
@@ -57,7 +58,10 @@ bool Replay::shouldSkipDraw(uint16_t opcode) {
 
 // Mesa carries the phase of a line stipple from draw to draw. A strip whose first segment is clipped away continues at
 // the end of the last stippled line. Every node therefore executes all stippled draws, whole and in order.
-bool Replay::stipplesLines() const { return c_->lineStippled && c_->api == wire::Api::Desktop && !c_->core && gl.glIsEnabled(GL_LINE_STIPPLE) != GL_FALSE; }
+bool Replay::stipplesLines() const {
+    return c_->lineStippled && c_->api == wire::Api::Desktop && !c_->core &&
+           gl.glIsEnabled(GL_LINE_STIPPLE) != GL_FALSE;
+}
 
 // Exchanges GL's draw functions with functions that have no effect. A second call restores them.
 void Replay::swapDrawEntryPoints() {

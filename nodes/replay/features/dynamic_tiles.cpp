@@ -23,7 +23,8 @@ namespace mural {
 namespace {
 
 bool isFrontBuffer(GLenum buffer) {
-    return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT || buffer == GL_RIGHT;
+    return buffer == GL_FRONT || buffer == GL_FRONT_LEFT || buffer == GL_FRONT_RIGHT || buffer == GL_FRONT_AND_BACK ||
+           buffer == GL_LEFT || buffer == GL_RIGHT;
 }
 
 // Returns whether the command is a valid clear that addresses only the first colour buffer.
@@ -38,7 +39,8 @@ bool clears(uint16_t opcode, GLuint first, GLuint second) {
 }
 
 GLbitfield buffersOf(const wire::WindowConfig& config) {
-    return GLbitfield{GL_COLOR_BUFFER_BIT} | (config.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0) | (config.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0);
+    return GLbitfield{GL_COLOR_BUFFER_BIT} | (config.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0) |
+           (config.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0);
 }
 
 } // namespace
@@ -46,9 +48,11 @@ GLbitfield buffersOf(const wire::WindowConfig& config) {
 PixelViewport Replay::partOf(const Window& w, const ViewportAssignment* areas) const {
     if (areas) {
         const auto node = static_cast<size_t>(config_.node);
-        return node < areas->ofNodes.size() ? intersect(apply(w.whole, areas->ofNodes[node]), w.whole) : PixelViewport{};
+        return node < areas->ofNodes.size() ? intersect(apply(w.whole, areas->ofNodes[node]), w.whole)
+                                            : PixelViewport{};
     }
-    return config_.area ? intersect(apply(w.whole, *config_.area), w.whole) : regionViewport(config_.grid, config_.region, w.whole.w, w.whole.h);
+    return config_.area ? intersect(apply(w.whole, *config_.area), w.whole)
+                        : regionViewport(config_.grid, config_.region, w.whole.w, w.whole.h);
 }
 
 void Replay::moveAreas(ViewportAssignment areas) {
@@ -106,8 +110,11 @@ GLbitfield Replay::drawnBy(uint16_t opcode) const {
     if (hasTrait(opcode, Trait::AllPlanes)) return kWindowBuffers;
     const Shared& shared = *c_->shared;
     const GLbitfield known = c_->draw->moving.drawn; // avoids queries to the driver
-    const auto tests = [&](GLbitfield buffer, bool ever, GLenum cap) { return !(known & buffer) && ever && gl.glIsEnabled(cap) ? buffer : 0; };
-    return GLbitfield{GL_COLOR_BUFFER_BIT} | tests(GL_DEPTH_BUFFER_BIT, shared.testsDepth, GL_DEPTH_TEST) | tests(GL_STENCIL_BUFFER_BIT, shared.testsStencil, GL_STENCIL_TEST);
+    const auto tests = [&](GLbitfield buffer, bool ever, GLenum cap) {
+        return !(known & buffer) && ever && gl.glIsEnabled(cap) ? buffer : 0;
+    };
+    return GLbitfield{GL_COLOR_BUFFER_BIT} | tests(GL_DEPTH_BUFFER_BIT, shared.testsDepth, GL_DEPTH_TEST) |
+           tests(GL_STENCIL_BUFFER_BIT, shared.testsStencil, GL_STENCIL_TEST);
 }
 
 // Called before any command that may change pixels of the window.
@@ -117,7 +124,8 @@ void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
     if ((use != WindowUse::Clears && use != WindowUse::Draws) || !c_->shared) return;
     if (c_->compiling) {
         // lists may change depth and stencil
-        if (use == WindowUse::Clears || hasTrait(opcode, Trait::AllPlanes)) c_->shared->testsDepth = c_->shared->testsStencil = true;
+        if (use == WindowUse::Clears || hasTrait(opcode, Trait::AllPlanes))
+            c_->shared->testsDepth = c_->shared->testsStencil = true;
         if (c_->compileMode == GL_COMPILE_AND_EXECUTE) onNativeList(); // the driver draws it during compilation
         return;
     }
@@ -126,7 +134,8 @@ void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
     Window& w = *c_->draw;
     MovingPart& m = w.moving;
     const GLbitfield cleared = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
-    const bool stays = opcode == op::glAccum || (cleared & GL_ACCUM_BUFFER_BIT) || (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0)) || w.config.stereo;
+    const bool stays = opcode == op::glAccum || (cleared & GL_ACCUM_BUFFER_BIT) ||
+                       (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0)) || w.config.stereo;
     if (stays && !m.fixed) {
         m.fixed = true;
         m.wanted = m.areas;
@@ -143,9 +152,11 @@ void Replay::onNativeList() {
     if (!drawsWindow() || !c_->draw || !c_->shared) return;
     Window& w = *c_->draw;
     if (w.moving.wanted != w.moving.areas && w.moving.drawn == 0 && !c_->compiling) takeAreas(w);
-    const GLbitfield tested = (c_->shared->testsDepth ? GL_DEPTH_BUFFER_BIT : 0) | (c_->shared->testsStencil ? GL_STENCIL_BUFFER_BIT : 0);
+    const GLbitfield tested =
+        (c_->shared->testsDepth ? GL_DEPTH_BUFFER_BIT : 0) | (c_->shared->testsStencil ? GL_STENCIL_BUFFER_BIT : 0);
     w.moving.drawn |= (GL_COLOR_BUFFER_BIT | tested) & buffersOf(w.config);
-    if (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0) && !std::exchange(w.moving.fixed, true)) w.moving.wanted = w.moving.areas;
+    if (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0) && !std::exchange(w.moving.fixed, true))
+        w.moving.wanted = w.moving.areas;
 }
 
 void Replay::onTests(GLenum cap) {
@@ -163,7 +174,8 @@ std::vector<std::byte> Replay::tellAreas() const {
         for (const auto& [id, w] : its.windows) {
             const MovingPart& m = w->moving;
             if (!m.areas) continue;
-            windows.push_back({client, id, m.areas->number, m.wanted->number, m.front->number, m.drawn, m.fixed ? 1U : 0U});
+            windows.push_back(
+                {client, id, m.areas->number, m.wanted->number, m.front->number, m.drawn, m.fixed ? 1U : 0U});
             for (const auto& areas : {m.areas, m.wanted, m.front})
                 if (std::ranges::find(named, areas) == named.end()) named.push_back(areas);
         }

@@ -14,7 +14,8 @@ namespace mural {
 // stream. No node depends on the range of a node in resync.
 bool Replay::maySkip() const {
     const RenderPass& p = config_.pass;
-    return config_.skips && !config_.lean && (takesRanges() || !alone()) && !takesTurns() && !drawsOtherPixels() && !movesView() && p.samples == 1;
+    return config_.skips && !config_.lean && (takesRanges() || !alone()) && !takesTurns() && !drawsOtherPixels() &&
+           !movesView() && p.samples == 1;
 }
 
 void Replay::drawAgain() { skips_ = false; }
@@ -22,7 +23,8 @@ void Replay::drawAgain() { skips_ = false; }
 // Called before any command that may change pixels of the window.
 void Replay::onSkipped(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
-    if (use == WindowUse::FeedbackBegins || use == WindowUse::FeedbackEnds) c_->feedsBack = use == WindowUse::FeedbackBegins;
+    if (use == WindowUse::FeedbackBegins || use == WindowUse::FeedbackEnds)
+        c_->feedsBack = use == WindowUse::FeedbackBegins;
     if ((use != WindowUse::Clears && use != WindowUse::Draws) || !drawsWindow() || !c_->draw || c_->compiling) return;
     Window& w = *c_->draw;
     if (!w.begun && w.skipped && !skips_) {
@@ -41,14 +43,19 @@ void Replay::onSkipped(uint16_t opcode, std::span<const std::byte> arguments) {
     const GLbitfield whole = clearedBy(opcode, arguments);
     w.stale &= ~whole;
     if (whole & GL_COLOR_BUFFER_BIT) w.invalid = false;
-    const GLbitfield needed = use == WindowUse::Clears ? clears & ~whole : opcode == op::glAccum ? GLbitfield{GL_ACCUM_BUFFER_BIT} : needsCleared();
+    const GLbitfield needed = use == WindowUse::Clears ? clears & ~whole
+                              : opcode == op::glAccum  ? GLbitfield{GL_ACCUM_BUFFER_BIT}
+                                                       : needsCleared();
     if (needed & w.stale) w.invalid = true;
 }
 
-bool Replay::isValid(const Window& w, bool front) const { return !w.skipped && !w.invalid && !(w.stale & GL_COLOR_BUFFER_BIT) && !(front && w.frontStaled); }
+bool Replay::isValid(const Window& w, bool front) const {
+    return !w.skipped && !w.invalid && !(w.stale & GL_COLOR_BUFFER_BIT) && !(front && w.frontStaled);
+}
 
 bool Replay::mayRead(const Window& w, bool deep) const {
-    const bool front = c_->readBuffer0 == GL_FRONT || c_->readBuffer0 == GL_FRONT_LEFT || c_->readBuffer0 == GL_FRONT_RIGHT;
+    const bool front =
+        c_->readBuffer0 == GL_FRONT || c_->readBuffer0 == GL_FRONT_LEFT || c_->readBuffer0 == GL_FRONT_RIGHT;
     const GLbitfield read = deep ? GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT : GL_COLOR_BUFFER_BIT;
     return !w.invalid && !(w.stale & read) && !(front && w.frontStaled);
 }

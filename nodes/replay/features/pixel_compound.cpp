@@ -19,13 +19,16 @@ bool Replay::movesByShaders() const { return c_->api != wire::Api::Desktop || !g
 // without a kernel. A draw that only shows an already sampled scene is not sampled again (replay_scenes.cpp).
 RenderPass Replay::passOfDraws() const {
     RenderPass p = config_.pass;
-    if (!drawsWindow() || !interleaves(c_->draw)) p.kernelX = p.kernelY = 0, p.kernelWidth = p.kernelHeight = 1, p.zoom = {};
+    if (!drawsWindow() || !interleaves(c_->draw))
+        p.kernelX = p.kernelY = 0, p.kernelWidth = p.kernelHeight = 1, p.zoom = {};
     if (!drawsScene()) p.sample = 0, p.samples = 1;
     return p;
 }
 
 // This node's part of the window in the drawn picture.
-PixelViewport Replay::partDrawn(const Window& w) const { return interleaves(&w) ? inPass(config_.pass, w.part) : w.part; }
+PixelViewport Replay::partDrawn(const Window& w) const {
+    return interleaves(&w) ? inPass(config_.pass, w.part) : w.part;
+}
 
 // The required size of the framebuffer: large enough for the drawn and the shown picture.
 PixelViewport Replay::surfaceOf(const Window& w, bool lean) const {
@@ -40,9 +43,13 @@ const std::byte* Replay::readScaled(Window& w, const PixelViewport& r, bool fron
     const PixelViewport all = inShown(p, w.part), area = w.plain ? inKernel(p, w.part) : w.region;
     const Zoom drawnBy = w.plain ? Zoom{} : p.zoom;
     std::vector<std::byte> drawn(static_cast<size_t>(area.area()) * 4);
-    if (!drawn.empty()) std::memcpy(drawn.data(), w.plain && hasKernel() ? readEveryNth(w, area, front) : readShown(w, area, front), drawn.size());
+    if (!drawn.empty())
+        std::memcpy(drawn.data(), w.plain && hasKernel() ? readEveryNth(w, area, front) : readShown(w, area, front),
+                    drawn.size());
     std::vector<std::byte> shown(static_cast<size_t>(r.area()) * 4);
-    if (!drawn.empty()) scalePicture({drawn.data(), area}, {drawnBy.x / p.shown.x, drawnBy.y / p.shown.y}, intersect(r, all), shown.data(), r);
+    if (!drawn.empty())
+        scalePicture({drawn.data(), area}, {drawnBy.x / p.shown.x, drawnBy.y / p.shown.y}, intersect(r, all),
+                     shown.data(), r);
     pixels_ = std::move(shown);
     return pixels_.data();
 }
@@ -56,12 +63,16 @@ const std::byte* Replay::readEveryNth(Window& w, const PixelViewport& r, bool fr
     for (int32_t y = 0; y < r.h; ++y)
         for (int32_t x = 0; x < r.w; ++x)
             std::memcpy(&picked[(static_cast<size_t>(y) * static_cast<size_t>(r.w) + static_cast<size_t>(x)) * 4],
-                        all + (static_cast<size_t>(y * p.kernelHeight) * static_cast<size_t>(from.w) + static_cast<size_t>(x * p.kernelWidth)) * 4, 4);
+                        all + (static_cast<size_t>(y * p.kernelHeight) * static_cast<size_t>(from.w) +
+                               static_cast<size_t>(x * p.kernelWidth)) *
+                                  4,
+                        4);
     pixels_ = std::move(picked);
     return pixels_.data();
 }
 
-// Returns pixels of a window with every nth pixel drawn, for a program's read. Each pixel is repeated for its neighbours.
+// Returns pixels of a window with every nth pixel drawn, for a program's read. Each pixel is repeated for its
+// neighbours.
 const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group) {
     const RenderPass& p = config_.pass;
     const PixelViewport picture = inPass(p, c_->read->whole);
@@ -73,8 +84,11 @@ const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, 
     for (int32_t y = 0; y < part.h; ++y)
         for (int32_t x = 0; x < part.w; ++x) {
             const PassPixel at = standingFor(p, part.x + x, part.y + y);
-            const auto fx = static_cast<size_t>(std::clamp(at.x - from.x, 0, from.w - 1)), fy = static_cast<size_t>(std::clamp(at.y - from.y, 0, from.h - 1));
-            std::memcpy(&pixels_[(static_cast<size_t>(y) * static_cast<size_t>(part.w) + static_cast<size_t>(x)) * group], &few[(fy * static_cast<size_t>(from.w) + fx) * group], group);
+            const auto fx = static_cast<size_t>(std::clamp(at.x - from.x, 0, from.w - 1)),
+                       fy = static_cast<size_t>(std::clamp(at.y - from.y, 0, from.h - 1));
+            std::memcpy(
+                &pixels_[(static_cast<size_t>(y) * static_cast<size_t>(part.w) + static_cast<size_t>(x)) * group],
+                &few[(fy * static_cast<size_t>(from.w) + fx) * group], group);
         }
     return pixels_.data();
 }
@@ -84,17 +98,23 @@ void Replay::applyMovedViewports() {
     for (GLuint i = 0; i < kViewports; ++i) {
         const auto& v = c_->viewports[i];
         const auto at = placeInPass(p, v[0], v[1]);
-        gl.glViewportIndexedf(i, static_cast<GLfloat>(at[0]), static_cast<GLfloat>(at[1]), v[2] * static_cast<GLfloat>(p.zoom.x / p.kernelWidth), v[3] * static_cast<GLfloat>(p.zoom.y / p.kernelHeight));
+        gl.glViewportIndexedf(i, static_cast<GLfloat>(at[0]), static_cast<GLfloat>(at[1]),
+                              v[2] * static_cast<GLfloat>(p.zoom.x / p.kernelWidth),
+                              v[3] * static_cast<GLfloat>(p.zoom.y / p.kernelHeight));
     }
 }
 
 // Values for shaders::kMoveUniform.
 std::array<GLfloat, 20> Replay::moveOf(GLuint program) const {
     std::array<GLfloat, 20> move{};
-    if (movesPicture() && movesByShaders()) std::ranges::copy(moveInViewport(passOfDraws(), c_->viewports[0]), move.begin());
+    if (movesPicture() && movesByShaders())
+        std::ranges::copy(moveInViewport(passOfDraws(), c_->viewports[0]), move.begin());
     if (!movesView()) return move;
     const ClipTransform view = viewMove(projectionOf(program));
-    const auto put = [&](size_t at, const std::array<double, 4>& row) { std::ranges::transform(row, move.begin() + static_cast<long>(at), [](double v) { return static_cast<GLfloat>(v); }); };
+    const auto put = [&](size_t at, const std::array<double, 4>& row) {
+        std::ranges::transform(row, move.begin() + static_cast<long>(at),
+                               [](double v) { return static_cast<GLfloat>(v); });
+    };
     put(4, view.x);
     put(8, view.y);
     put(12, view.w);

@@ -12,7 +12,9 @@ struct Row {
     Row(const double (&m)[16], size_t row) : x(m[row]), y(m[4 + row]), z(m[8 + row]) {}
 };
 double dot(const Row& a, const Row& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double determinant(const Row& a, const Row& b, const Row& c) { return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x); }
+double determinant(const Row& a, const Row& b, const Row& c) {
+    return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+}
 
 // The component of a row along the fourth row (shear), and the length of the remainder (scale).
 struct Axis {
@@ -43,7 +45,8 @@ bool looksLikeOne(const float (&m)[16]) {
 
 bool ProjectionDetector::near(const ProjectionDetector& o) const {
     const auto same = [](double a, double b) { return std::fabs(a - b) <= 1e-4 * std::fmax(1, std::fabs(a)); };
-    return same(scaleX, o.scaleX) && same(scaleY, o.scaleY) && same(shearX, o.shearX) && same(shearY, o.shearY) && same(depth, o.depth);
+    return same(scaleX, o.scaleX) && same(scaleY, o.scaleY) && same(shearX, o.shearX) && same(shearY, o.shearY) &&
+           same(depth, o.depth);
 }
 
 ProjectionDetector seenProjection(const double (&m)[16]) {

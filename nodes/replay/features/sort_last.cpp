@@ -45,10 +45,13 @@ Cuttable cuttable(uint16_t opcode) {
 
 uint32_t wordAt(std::span<const std::byte> bytes, int index) {
     uint32_t word = 0;
-    if (index >= 0 && bytes.size() >= 4 * (static_cast<size_t>(index) + 1)) std::memcpy(&word, bytes.data() + 4 * static_cast<size_t>(index), 4);
+    if (index >= 0 && bytes.size() >= 4 * (static_cast<size_t>(index) + 1))
+        std::memcpy(&word, bytes.data() + 4 * static_cast<size_t>(index), 4);
     return word;
 }
-void setWord(std::vector<std::byte>& bytes, int index, uint32_t word) { std::memcpy(bytes.data() + 4 * static_cast<size_t>(index), &word, 4); }
+void setWord(std::vector<std::byte>& bytes, int index, uint32_t word) {
+    std::memcpy(bytes.data() + 4 * static_cast<size_t>(index), &word, 4);
+}
 
 // Vertices of an independent primitive; 0: primitives share vertices.
 uint32_t verticesOf(uint32_t mode) {
@@ -74,7 +77,9 @@ bool Replay::mayShare() {
     c_->rangeKnown = true;
     c_->mayShare = false;
     const auto on = [&](GLenum cap) { return gl.glIsEnabled(cap) != GL_FALSE; };
-    if (c_->api != wire::Api::Desktop || !c_->draw || c_->read != c_->draw || c_->draw->config.samples > 0 || c_->draw->config.depth == 0) return false;
+    if (c_->api != wire::Api::Desktop || !c_->draw || c_->read != c_->draw || c_->draw->config.samples > 0 ||
+        c_->draw->config.depth == 0)
+        return false;
     if (c_->draw->wishedRed > 8) return false; // the exchange has 8 bits per channel
     if (!on(GL_DEPTH_TEST) || on(GL_BLEND) || on(GL_STENCIL_TEST) || on(GL_COLOR_LOGIC_OP)) return false;
     if (!c_->core && on(GL_INDEX_LOGIC_OP)) return false;
@@ -82,7 +87,8 @@ bool Replay::mayShare() {
     gl.glGetBooleanv(GL_DEPTH_WRITEMASK, &depthMask);
     GLint function = 0;
     gl.glGetIntegerv(GL_DEPTH_FUNC, &function);
-    if (!depthMask || (function != GL_LESS && function != GL_LEQUAL && function != GL_GREATER && function != GL_GEQUAL)) return false;
+    if (!depthMask || (function != GL_LESS && function != GL_LEQUAL && function != GL_GREATER && function != GL_GEQUAL))
+        return false;
     for (const auto& mask : c_->colorMasks.buffers)
         if (!mask[0] || !mask[1] || !mask[2] || !mask[3]) return false;
     if (c_->drawBuffer0 != GL_BACK && c_->drawBuffer0 != GL_BACK_LEFT) return false;
@@ -95,13 +101,17 @@ void Replay::onRangeState(uint16_t opcode, std::span<const std::byte> arguments)
     switch (rangeUseOf(opcode)) {
     case RangeUse::Memory: {
         const uint32_t target = wordAt(arguments, 0);
-        if (hasTrait(opcode, Trait::ImageBinding) || target == GL_SHADER_STORAGE_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER) c_->writesMemory = true;
+        if (hasTrait(opcode, Trait::ImageBinding) || target == GL_SHADER_STORAGE_BUFFER ||
+            target == GL_ATOMIC_COUNTER_BUFFER)
+            c_->writesMemory = true;
         break;
     }
     case RangeUse::Feedback:
         if (!hasTrait(opcode, Trait::FeedbackDraw)) c_->rangeFeedsBack = hasTrait(opcode, Trait::FeedbackBegin);
         break;
-    case RangeUse::Query: c_->activeQueries = std::max(0, c_->activeQueries + (hasTrait(opcode, Trait::QueryBegin) ? 1 : -1)); break;
+    case RangeUse::Query:
+        c_->activeQueries = std::max(0, c_->activeQueries + (hasTrait(opcode, Trait::QueryBegin) ? 1 : -1));
+        break;
     default: break;
     }
 }
@@ -127,7 +137,10 @@ void Replay::onCompiled(uint16_t opcode, std::span<const std::byte> arguments) {
     ListItem& item = c_->building.items.back();
     switch (rangeUseOf(opcode)) {
     case RangeUse::Vertex: ++item.vertices; break;
-    case RangeUse::Draw: item.vertices += std::max<uint32_t>(1, cuttable(opcode).count >= 0 ? wordAt(arguments, cuttable(opcode).count) : static_cast<uint32_t>(kUnknownCost)); break;
+    case RangeUse::Draw:
+        item.vertices += std::max<uint32_t>(1, cuttable(opcode).count >= 0 ? wordAt(arguments, cuttable(opcode).count)
+                                                                           : static_cast<uint32_t>(kUnknownCost));
+        break;
     case RangeUse::None:
     case RangeUse::Begin:
     case RangeUse::End: break;
@@ -167,8 +180,11 @@ void Replay::beginSplit(Window& w) {
 // Returns the depth bits of the bound window, possibly more than the program requested.
 int Replay::depthBitsOfWindow() {
     GLint bits = 0;
-    if (!c_->core) gl.glGetIntegerv(GL_DEPTH_BITS, &bits);
-    else gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &bits);
+    if (!c_->core)
+        gl.glGetIntegerv(GL_DEPTH_BITS, &bits);
+    else
+        gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE,
+                                                 &bits);
     return bits > 0 ? bits : 32;
 }
 
@@ -177,7 +193,8 @@ bool Replay::shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last) {
     RangeFrame& r = w.range;
     if (r.phase == RangeFrame::Phase::Whole) return false;
     constexpr GLbitfield kNeeded = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT;
-    const bool may = mayShare() && !allDrawn() && !c_->writesMemory && !c_->rangeFeedsBack && c_->activeQueries == 0 && (r.cleared & kNeeded) == kNeeded;
+    const bool may = mayShare() && !allDrawn() && !c_->writesMemory && !c_->rangeFeedsBack && c_->activeQueries == 0 &&
+                     (r.cleared & kNeeded) == kNeeded;
     GLint function = 0;
     if (may && r.phase == RangeFrame::Phase::Split) gl.glGetIntegerv(GL_DEPTH_FUNC, &function);
     if (!may || (function != 0 && static_cast<GLenum>(function) != r.function)) {
@@ -209,17 +226,26 @@ std::span<const std::byte> Replay::onRangeDraw(Window& w, uint16_t opcode, std::
     const Cuttable c = cuttable(opcode);
     const uint32_t count = wordAt(arguments, c.count), each = verticesOf(wordAt(arguments, 0));
     const uint64_t instances = c.instances >= 0 ? wordAt(arguments, c.instances) : 1;
-    const uint64_t cost = c.count >= 0 ? std::max<uint64_t>(1, std::min<uint64_t>(count, INT32_MAX) * std::min<uint64_t>(instances, 1u << 20)) : kUnknownCost;
+    const uint64_t cost =
+        c.count >= 0
+            ? std::max<uint64_t>(1, std::min<uint64_t>(count, INT32_MAX) * std::min<uint64_t>(instances, 1u << 20))
+            : kUnknownCost;
     uint64_t first = 0, last = 0;
     if (!shares(w, cost, first, last)) return arguments;
     const auto numbers = c_->shared->primitiveIds.find(name(Kind::Program, c_->program));
-    bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound && !stipplesLines() && (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
-    if (cuts && c.indices >= 0) cuts = wordAt(arguments, c.indices) == record::kTagOffset && !gl.glIsEnabled(GL_PRIMITIVE_RESTART) && (c_->version < 43 || !gl.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX));
+    bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound &&
+                !stipplesLines() &&
+                (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
+    if (cuts && c.indices >= 0)
+        cuts = wordAt(arguments, c.indices) == record::kTagOffset && !gl.glIsEnabled(GL_PRIMITIVE_RESTART) &&
+               (c_->version < 43 || !gl.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX));
     if (!cuts) { // the node whose range contains its first vertex draws it whole
         mute(w, first != 0 || last == 0);
         return arguments;
     }
-    const auto edge = [&](uint64_t at) { return static_cast<uint32_t>(at >= cost ? count : (at + each - 1) / each * each); };
+    const auto edge = [&](uint64_t at) {
+        return static_cast<uint32_t>(at >= cost ? count : (at + each - 1) / each * each);
+    };
     const uint32_t from = std::min(edge(first), count), to = std::min(edge(last), count);
     mute(w, false);
     if (from == 0 && to == count) return arguments;
@@ -251,8 +277,10 @@ std::span<const std::byte> Replay::onRange(uint16_t opcode, std::span<const std:
     switch (use) {
     case RangeUse::Clear: {
         const uint32_t mask = wordAt(arguments, 0);
-        if (w.range.phase == RangeFrame::Phase::Fresh) w.range.cleared |= clearsWhole(mask);
-        else drawRest(w);
+        if (w.range.phase == RangeFrame::Phase::Fresh)
+            w.range.cleared |= clearsWhole(mask);
+        else
+            drawRest(w);
         return arguments;
     }
     case RangeUse::Read:
@@ -298,7 +326,8 @@ void Replay::readPart(Window& w, const PixelViewport& box, PicturePart& part) {
     aside([&] {
         withPlainTransfer([&] {
             std::memcpy(part.colour.data(), readRegion(box, GL_RGBA, GL_UNSIGNED_BYTE, pixels * 4), pixels * 4);
-            std::memcpy(part.depth.data(), readRegion(box, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, pixels * 4), pixels * 4);
+            std::memcpy(part.depth.data(), readRegion(box, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, pixels * 4),
+                        pixels * 4);
         });
     });
     gl.glReadBuffer(windowBuffer(c_->readBuffer0, &w));

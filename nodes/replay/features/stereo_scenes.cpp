@@ -20,7 +20,9 @@ bool Replay::hasDepthAttached() {
     if (!c_->attachmentsKnown) {
         GLint type = GL_NONE;
         const GLenum target = c_->api == wire::Api::Desktop || c_->version >= 30 ? GL_DRAW_FRAMEBUFFER : GL_FRAMEBUFFER;
-        if (gl.glGetFramebufferAttachmentParameteriv) gl.glGetFramebufferAttachmentParameteriv(target, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &type);
+        if (gl.glGetFramebufferAttachmentParameteriv)
+            gl.glGetFramebufferAttachmentParameteriv(target, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
+                                                     &type);
         c_->depthAttached = type != GL_NONE;
         c_->attachmentsKnown = true;
     }
@@ -32,7 +34,8 @@ void Replay::onScene() {
     if (!c_->draw) return;
     const auto& v = c_->viewports[0];
     const PixelViewport& window = c_->draw->whole;
-    const bool sized = !drawsWindow() && v[2] == static_cast<GLfloat>(window.w) && v[3] == static_cast<GLfloat>(window.h) && hasDepthAttached();
+    const bool sized = !drawsWindow() && v[2] == static_cast<GLfloat>(window.w) &&
+                       v[3] == static_cast<GLfloat>(window.h) && hasDepthAttached();
     const bool tested = gl.glIsEnabled(GL_DEPTH_TEST) == GL_TRUE;
     if (sized && tested) c_->draw->sceneElsewhere = true;
     const bool wasSized = std::exchange(c_->sceneSized, sized), wasTested = std::exchange(c_->depthTested, tested);

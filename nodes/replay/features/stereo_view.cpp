@@ -27,7 +27,9 @@ class NoBlobs : public BlobQueue {
 
 } // namespace
 
-bool Replay::hasFixedMatrices() const { return c_->api != wire::Api::Es2 && !c_->core && gl.glLoadMatrixf && gl.glMatrixMode; }
+bool Replay::hasFixedMatrices() const {
+    return c_->api != wire::Api::Es2 && !c_->core && gl.glLoadMatrixf && gl.glMatrixMode;
+}
 bool Replay::drawsFixed() const { return c_->program == 0 && !c_->pipelineBound && hasFixedMatrices(); }
 
 // Returns the projection that a program's shaders use.
@@ -48,7 +50,8 @@ ClipTransform Replay::viewMove(const ProjectionDetector& seen) const {
     if (!config_.screen) return eyeMove(seen, eyeOffset(), config_.focusDistance);
     const auto& v = c_->viewports[0];
     const PixelViewport& whole = c_->draw->whole;
-    const bool all = v[0] == 0 && v[1] == 0 && v[2] == static_cast<GLfloat>(whole.w) && v[3] == static_cast<GLfloat>(whole.h);
+    const bool all =
+        v[0] == 0 && v[1] == 0 && v[2] == static_cast<GLfloat>(whole.w) && v[3] == static_cast<GLfloat>(whole.h);
     return all ? screenMove(seen, *config_.screen) : ClipTransform{};
 }
 

@@ -44,7 +44,9 @@ GLbitfield Replay::clearsOf(uint16_t opcode, std::span<const std::byte> argument
 
 bool Replay::learnsTurns(const Window& w) const { return takesTurns() && (w.frames < kLearnedFrames || !knowsTurns_); }
 
-bool Replay::hasTurn(int64_t turn) const { return !takesTurns() || (knowsTurns_ && turn % config_.pass.period == config_.pass.phase); }
+bool Replay::hasTurn(int64_t turn) const {
+    return !takesTurns() || (knowsTurns_ && turn % config_.pass.period == config_.pass.phase);
+}
 
 // Recomputes the window's regions. Called after a change of its size or turn.
 void Replay::placePart(Window& w) {
@@ -58,7 +60,8 @@ void Replay::placePart(Window& w) {
     if (w.range.muted) w.drawn = {};
     if (takesRanges() && !collects()) w.region = {}; // the collector has it
     if (!drawsWholeBins(w) || w.drawn.empty()) return;
-    w.drawn = intersect(widenToBins(w.drawn, surfaceOf(w, false)), interleaves(&w) ? inPass(config_.pass, w.whole) : w.whole);
+    w.drawn =
+        intersect(widenToBins(w.drawn, surfaceOf(w, false)), interleaves(&w) ? inPass(config_.pass, w.whole) : w.whole);
 }
 
 // Returns whether pixels of the window may depend on the position of scissor edges inside a bin of the driver.
@@ -73,9 +76,11 @@ GLbitfield Replay::clearsWhole(GLbitfield mask) const {
     if (c_->scissors[0].enabled || c_->conditional || discards) return 0;
     const wire::WindowConfig& w = c_->draw->config;
     const auto& colours = c_->colorMasks.buffers[0];
-    const bool front = w.doubleBuffer && (c_->drawBuffer0 == GL_FRONT || c_->drawBuffer0 == GL_FRONT_LEFT || c_->drawBuffer0 == GL_FRONT_RIGHT || c_->drawBuffer0 == GL_NONE);
+    const bool front = w.doubleBuffer && (c_->drawBuffer0 == GL_FRONT || c_->drawBuffer0 == GL_FRONT_LEFT ||
+                                          c_->drawBuffer0 == GL_FRONT_RIGHT || c_->drawBuffer0 == GL_NONE);
     GLbitfield cleared = 0;
-    if (colours[0] && colours[1] && colours[2] && (colours[3] || w.alpha == 0) && !front) cleared |= mask & GL_COLOR_BUFFER_BIT;
+    if (colours[0] && colours[1] && colours[2] && (colours[3] || w.alpha == 0) && !front)
+        cleared |= mask & GL_COLOR_BUFFER_BIT;
     GLboolean depth = GL_TRUE;
     GLint stencil = 255;
     if (mask & GL_DEPTH_BUFFER_BIT) gl.glGetBooleanv(GL_DEPTH_WRITEMASK, &depth);
@@ -97,7 +102,8 @@ GLbitfield Replay::needsCleared() const {
 // Called before any command that may change pixels of the window.
 void Replay::onTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
-    if (use == WindowUse::FeedbackBegins || use == WindowUse::FeedbackEnds) c_->feedsBack = use == WindowUse::FeedbackBegins;
+    if (use == WindowUse::FeedbackBegins || use == WindowUse::FeedbackEnds)
+        c_->feedsBack = use == WindowUse::FeedbackBegins;
     if ((use != WindowUse::Clears && use != WindowUse::Draws) || !drawsWindow() || !c_->draw || c_->compiling) return;
     Window& w = *c_->draw;
     if (w.turnOver) beginTurn(w);
@@ -119,7 +125,8 @@ void Replay::onTurnOfList() {
     Window& w = *c_->draw;
     if (w.turnOver) beginTurn(w);
     if (w.keepsPicture) return;
-    const GLbitfield needed = GLbitfield{GL_COLOR_BUFFER_BIT} | (w.config.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0) | (w.config.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0);
+    const GLbitfield needed = GLbitfield{GL_COLOR_BUFFER_BIT} | (w.config.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0) |
+                              (w.config.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0);
     const bool builds = (needed & ~w.cleared) != 0;
     if (w.undecided) return decideTurn(w, builds);
     if (builds && w.fresh) keepTurn(w);
@@ -182,7 +189,8 @@ std::vector<wire::WindowTurn> Replay::turns() const {
     std::vector<wire::WindowTurn> turns;
     for (const auto& [client, its] : clients_)
         for (const auto& [id, w] : its.windows) {
-            const uint32_t state = (w->turnOver ? wire::kTurnOver : 0) | (w->undecided ? wire::kTurnUndecided : 0) | (w->fresh ? wire::kTurnFresh : 0) | (w->keepsPicture ? wire::kTurnForGood : 0);
+            const uint32_t state = (w->turnOver ? wire::kTurnOver : 0) | (w->undecided ? wire::kTurnUndecided : 0) |
+                                   (w->fresh ? wire::kTurnFresh : 0) | (w->keepsPicture ? wire::kTurnForGood : 0);
             turns.push_back({client, id, w->frames, w->turn, w->kept, w->cleared, state});
         }
     return turns;

@@ -30,7 +30,8 @@ uint32_t secondOf(std::span<const std::byte> arguments) {
 // Returns whether the next draw looks up textures with several levels, and selects these by the pixels drawn here.
 bool Replay::choosesOwnLevels() const {
     const bool shaders = c_->program != 0 || c_->pipelineBound;
-    if (!hasKernel() || !c_->shared || !c_->shared->texturesHaveLevels || (shaders && c_->api == wire::Api::Desktop)) return false;
+    if (!hasKernel() || !c_->shared || !c_->shared->texturesHaveLevels || (shaders && c_->api == wire::Api::Desktop))
+        return false;
     if (shaders || !gl.glIsEnabledi || c_->api != wire::Api::Desktop) return true;
     if (c_->arbPositions || gl.glIsEnabled(GL_FRAGMENT_PROGRAM_ARB)) return true;
     for (GLuint unit = 0; unit < kFixedUnits; ++unit)
@@ -50,7 +51,9 @@ void Replay::onWholeWindow(uint16_t opcode, std::span<const std::byte> arguments
     }
     if (!c_->shared) return;
     const uint32_t second = secondOf(arguments);
-    const bool levels = use == WholeUse::AllLevels || (use == WholeUse::Level && second > 0) || (use == WholeUse::Levels && second > 1) || (use == WholeUse::Parameter && second == GL_GENERATE_MIPMAP);
+    const bool levels = use == WholeUse::AllLevels || (use == WholeUse::Level && second > 0) ||
+                        (use == WholeUse::Levels && second > 1) ||
+                        (use == WholeUse::Parameter && second == GL_GENERATE_MIPMAP);
     c_->shared->texturesHaveLevels = c_->shared->texturesHaveLevels || levels;
 }
 

@@ -28,7 +28,8 @@ void Replay::glTransformFeedbackVaryings(GLuint program, GLsizei count, const Da
     if (!texts.parse(varyings, count) || !gl.glTransformFeedbackVaryings) return;
     const GLuint ours = name(Kind::Program, program);
     gl.glTransformFeedbackVaryings(ours, count, texts.pointers(), bufferMode);
-    if (c_->shared) c_->shared->recipes.varyings(ours, bufferMode, {texts.pointers(), texts.pointers() + texts.count()});
+    if (c_->shared)
+        c_->shared->recipes.varyings(ours, bufferMode, {texts.pointers(), texts.pointers() + texts.count()});
 }
 void Replay::glDeleteShader(GLuint shader) {
     if (!gl.glDeleteShader) return;
@@ -57,7 +58,8 @@ void Replay::glDeleteObjectARB(GLuint obj) {
 bool Replay::onRequestProgram(Args& in) {
     const auto request = in.get<uint32_t>(), program = in.get<uint32_t>();
     if (!in.ok()) return false;
-    answerBytes(request, wire::ReplyKind::Bytes, c_->shared ? c_->shared->recipes.of(name(Kind::Program, program)) : std::vector<std::byte>{});
+    answerBytes(request, wire::ReplyKind::Bytes,
+                c_->shared ? c_->shared->recipes.of(name(Kind::Program, program)) : std::vector<std::byte>{});
     return true;
 }
 
@@ -69,7 +71,8 @@ bool Replay::onProgramRecipe(Args& in) {
     const GLuint ours = name(Kind::Program, program);
     if (auto recipe = ProgramSources::fromBytes(bytes.span())) linkFrom(ours, std::move(*recipe));
     // the program is no longer linked
-    else if (gl.glProgramBinary) gl.glProgramBinary(ours, GL_PROGRAM_BINARY_FORMAT_MESA, "", 0);
+    else if (gl.glProgramBinary)
+        gl.glProgramBinary(ours, GL_PROGRAM_BINARY_FORMAT_MESA, "", 0);
     onModules(ours);
     applyTileValues(); // it may be the current program
     return true;
@@ -92,10 +95,14 @@ void Replay::linkFrom(GLuint ours, ProgramSources recipe) {
     }
     std::vector<const GLchar*> varyings;
     for (const std::string& v : recipe.varyings) varyings.push_back(v.c_str());
-    if (gl.glTransformFeedbackVaryings && recipe.varyingMode) gl.glTransformFeedbackVaryings(ours, static_cast<GLsizei>(varyings.size()), varyings.data(), recipe.varyingMode);
+    if (gl.glTransformFeedbackVaryings && recipe.varyingMode)
+        gl.glTransformFeedbackVaryings(ours, static_cast<GLsizei>(varyings.size()), varyings.data(),
+                                       recipe.varyingMode);
     for (const auto& [text, output] : recipe.outputs) {
-        if (gl.glBindFragDataLocationIndexed) gl.glBindFragDataLocationIndexed(ours, output.color, output.index, text.c_str());
-        else if (gl.glBindFragDataLocation) gl.glBindFragDataLocation(ours, output.color, text.c_str());
+        if (gl.glBindFragDataLocationIndexed)
+            gl.glBindFragDataLocationIndexed(ours, output.color, output.index, text.c_str());
+        else if (gl.glBindFragDataLocation)
+            gl.glBindFragDataLocation(ours, output.color, text.c_str());
     }
     if (gl.glProgramParameteri) gl.glProgramParameteri(ours, GL_PROGRAM_SEPARABLE, recipe.separable);
     c_->shared->tiled.setSeparable(ours, recipe.separable);

@@ -28,7 +28,9 @@ void setSource(const GlFunctions& gl, GLuint shader, const std::string& text) {
     gl.glShaderSource(shader, 1, &pointer, &length);
 }
 
-shaders::FragmentReads fragmentReads(const ShaderRewrites& rewrites) { return {rewrites.windowCoordinates, rewrites.windowDerivatives, rewrites.windowGradients}; }
+shaders::FragmentReads fragmentReads(const ShaderRewrites& rewrites) {
+    return {rewrites.windowCoordinates, rewrites.windowDerivatives, rewrites.windowGradients};
+}
 
 bool linked(const GlFunctions& gl, GLuint program) {
     GLint status = 0;
@@ -63,27 +65,37 @@ bool ProgramRewriter::holds(const GlFunctions& gl, GLuint shader, const std::str
     return status != 0;
 }
 
-std::vector<ProgramRewriter::Part> ProgramRewriter::rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es) {
+std::vector<ProgramRewriter::Part> ProgramRewriter::rewritten(const GlFunctions& gl, GLuint program,
+                                                              const ShaderRewrites& rewrites, bool es) {
     std::vector<Part> parts;
     GLenum last = 0; // in pipeline order
-    const auto place = [](GLenum type) { return type == GL_GEOMETRY_SHADER ? 3 : type == GL_TESS_EVALUATION_SHADER ? 2 : type == GL_VERTEX_SHADER ? 1 : 0; };
+    const auto place = [](GLenum type) {
+        return type == GL_GEOMETRY_SHADER          ? 3
+               : type == GL_TESS_EVALUATION_SHADER ? 2
+               : type == GL_VERTEX_SHADER          ? 1
+                                                   : 0;
+    };
     for (const GLuint shader : attachedShaders(gl, program)) {
         const auto it = shaders_.find(shader);
         if (it == shaders_.end() || it->second.text.empty()) continue;
         parts.push_back({shader, {}, false});
         if (place(it->second.type) > place(last)) last = it->second.type;
-        if (it->second.type == GL_FRAGMENT_SHADER) parts.back().wanted = shaders::withWindowPlace(it->second.text, fragmentReads(rewrites), es).value_or("");
+        if (it->second.type == GL_FRAGMENT_SHADER)
+            parts.back().wanted = shaders::withWindowPlace(it->second.text, fragmentReads(rewrites), es).value_or("");
     }
     const auto separable = separable_.find(program);
     // The stage after a separable one may be in another program, which must declare the same block.
-    if (!(rewrites.cull || rewrites.moved) || !last || (separable != separable_.end() && separable->second)) return parts;
+    if (!(rewrites.cull || rewrites.moved) || !last || (separable != separable_.end() && separable->second))
+        return parts;
     std::vector<std::string> texts;
     for (const Part& p : parts) {
         if (shaders_[p.shader].type == last) texts.push_back(shaders_[p.shader].text);
     }
-    const auto stage = last == GL_VERTEX_SHADER ? shaders::LastStage::Vertex
-                       : last == GL_GEOMETRY_SHADER ? shaders::LastStage::Geometry : shaders::LastStage::TessEvaluation;
-    const auto patched = rewrites.moved ? shaders::withMovedPosition(texts, stage, es) : shaders::withCullDistances(texts, stage, es);
+    const auto stage = last == GL_VERTEX_SHADER     ? shaders::LastStage::Vertex
+                       : last == GL_GEOMETRY_SHADER ? shaders::LastStage::Geometry
+                                                    : shaders::LastStage::TessEvaluation;
+    const auto patched =
+        rewrites.moved ? shaders::withMovedPosition(texts, stage, es) : shaders::withCullDistances(texts, stage, es);
     size_t next = 0;
     for (Part& p : parts) {
         if (!patched || shaders_[p.shader].type != last) continue;
@@ -134,7 +146,8 @@ void ProgramRewriter::remember(const GlFunctions& gl, GLuint program, bool separ
     if (p.cull >= 0 || p.place >= 0 || p.move >= 0) programs_[program] = p;
 }
 
-GLuint ProgramRewriter::create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts, const ShaderRewrites& rewrites, bool es) {
+GLuint ProgramRewriter::create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts,
+                               const ShaderRewrites& rewrites, bool es) {
     if (rewrites.place() && type == GL_FRAGMENT_SHADER) {
         std::string all;
         for (GLsizei i = 0; i < count; ++i) all += texts[i];
@@ -159,7 +172,8 @@ void ProgramRewriter::apply(const GlFunctions& gl, GLuint program, const TileVal
     Program& p = it->second;
     if (p.cull >= 0 && p.sent.cull != values.cull) gl.glUniform4fv(p.cull, 2, values.cull.data());
     if (p.place >= 0 && p.sent.place != values.place) gl.glUniform4fv(p.place, 2, values.place.data());
-    if (p.move >= 0 && p.sent.move != values.move) gl.glUniform4fv(p.move, static_cast<GLsizei>(values.move.size() / 4), values.move.data());
+    if (p.move >= 0 && p.sent.move != values.move)
+        gl.glUniform4fv(p.move, static_cast<GLsizei>(values.move.size() / 4), values.move.data());
     p.sent = values;
 }
 
@@ -167,7 +181,8 @@ void ProgramRewriter::applySeparable(const GlFunctions& gl, const TileValues& va
     if (!gl.glProgramUniform4fv) return;
     for (auto& [program, p] : programs_) {
         if (!p.separable) continue;
-        if (p.place >= 0 && p.sent.place != values.place) gl.glProgramUniform4fv(program, p.place, 2, values.place.data());
+        if (p.place >= 0 && p.sent.place != values.place)
+            gl.glProgramUniform4fv(program, p.place, 2, values.place.data());
         p.sent.place = values.place;
     }
 }

@@ -20,7 +20,8 @@ public:
     // Replaces glLinkProgram. Links the original shaders if the rewritten ones do not compile or link.
     void link(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);
     // Replaces glCreateShaderProgramv.
-    GLuint create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts, const ShaderRewrites& rewrites, bool es);
+    GLuint create(const GlFunctions& gl, GLenum type, GLsizei count, const GLchar* const* texts,
+                  const ShaderRewrites& rewrites, bool es);
     // Sets the uniforms of `program`, which must be current.
     void apply(const GlFunctions& gl, GLuint program, const TileValues& values);
     // Sets the uniforms in all separable programs.
@@ -31,7 +32,7 @@ public:
 private:
     struct Shader {
         GLenum type = 0;
-        std::string text; // the program's source
+        std::string text;     // the program's source
         std::string compiled; // the compiled source; empty: not compiled yet
     };
     struct Program {
@@ -42,7 +43,7 @@ private:
     struct Part {
         GLuint shader;
         std::string wanted; // the rewritten text; empty: the original
-        bool lastStage; // rewritten as the last stage
+        bool lastStage;     // rewritten as the last stage
     };
 
     std::vector<Part> rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);

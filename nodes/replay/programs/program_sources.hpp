@@ -40,7 +40,9 @@ public:
     // Call when the shader receives a SPIR-V module. Programs with it have no recipe.
     void forget(GLuint shader) { shaders_.erase(shader); }
     void compiled(const GlFunctions& gl, GLuint shader, bool withIncludes);
-    void bindOutput(GLuint program, const char* name, const ProgramSources::Output& output) { programs_[program].next.outputs[name] = output; }
+    void bindOutput(GLuint program, const char* name, const ProgramSources::Output& output) {
+        programs_[program].next.outputs[name] = output;
+    }
     void varyings(GLuint program, GLenum mode, std::vector<std::string> names);
     void separable(GLuint program, bool separable) { programs_[program].next.separable = separable; }
     void linked(const GlFunctions& gl, GLuint program);
@@ -56,7 +58,7 @@ private:
         bool withIncludes = false; // named strings (ARB_shading_language_include): the text alone is incomplete
     };
     struct Program {
-        ProgramSources next; // state for the next link
+        ProgramSources next;                // state for the next link
         std::optional<ProgramSources> last; // of the last successful link
     };
     std::unordered_map<GLuint, Shader> shaders_;

@@ -15,7 +15,8 @@ namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
     const bool moved = movesView() || (movesPicture() && movesByShaders());
-    return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsOtherPixels(), drawsOtherPixels(), drawsOtherPixels(), moved};
+    return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsOtherPixels(), drawsOtherPixels(),
+            drawsOtherPixels(), moved};
 }
 
 void Replay::applyTileValues() {
@@ -33,8 +34,10 @@ void Replay::applyTileValues() {
         values = tileValues(place);
     }
     if (rewrites().moved && isSeen() && c_->draw) values.move = moveOf(c_->program);
-    if (c_->program) c_->shared->tiled.apply(gl, name(Kind::Program, c_->program), values);
-    else if (c_->pipelineBound) c_->shared->tiled.applySeparable(gl, values);
+    if (c_->program)
+        c_->shared->tiled.apply(gl, name(Kind::Program, c_->program), values);
+    else if (c_->pipelineBound)
+        c_->shared->tiled.applySeparable(gl, values);
     if (!c_->arbPositions) return;
     GLint count = 0;
     gl.glGetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, &count);
@@ -50,12 +53,16 @@ void Replay::glCompileShader(GLuint shader) {
     if (c_->shared) c_->shared->recipes.compiled(gl, ours, false);
 }
 void Replay::compileShader(GLuint ours) {
-    if (c_->shared && rewrites().any()) c_->shared->tiled.compile(gl, ours);
-    else gl.glCompileShader(ours);
+    if (c_->shared && rewrites().any())
+        c_->shared->tiled.compile(gl, ours);
+    else
+        gl.glCompileShader(ours);
 }
 // Modules are not rewritten. If they need window coordinates, the whole window is drawn.
 void Replay::glShaderBinary(GLsizei count, const Data& shaders, GLenum format, const Data& binary, GLsizei length) {
-    if (!gl.glShaderBinary || !c_->shared || count < 0 || length < 0 || shaders.size() < size_t{4} * static_cast<size_t>(count)) return;
+    if (!gl.glShaderBinary || !c_->shared || count < 0 || length < 0 ||
+        shaders.size() < size_t{4} * static_cast<size_t>(count))
+        return;
     std::vector<GLuint> ours(static_cast<size_t>(count));
     const bool placed = shaders::moduleReadsFragCoord(binary.span());
     for (size_t i = 0; i < ours.size(); ++i) {
@@ -68,9 +75,11 @@ void Replay::glShaderBinary(GLsizei count, const Data& shaders, GLenum format, c
     }
     gl.glShaderBinary(count, ours.data(), format, binary.pointer(), length);
 }
-void Replay::glSpecializeShader(GLuint shader, const Data& entryPoint, GLuint count, const Data& indices, const Data& values) {
+void Replay::glSpecializeShader(GLuint shader, const Data& entryPoint, GLuint count, const Data& indices,
+                                const Data& values) {
     if (!gl.glSpecializeShader || indices.size() < size_t{4} * count || values.size() < size_t{4} * count) return;
-    gl.glSpecializeShader(name(Kind::Program, shader), entryPoint.as<GLchar>(), count, indices.as<GLuint>(), values.as<GLuint>());
+    gl.glSpecializeShader(name(Kind::Program, shader), entryPoint.as<GLchar>(), count, indices.as<GLuint>(),
+                          values.as<GLuint>());
 }
 void Replay::onModules(GLuint ours) {
     if (!c_->shared || !rewrites().windowCoordinates || c_->shared->placedModules.empty()) return;
@@ -79,7 +88,8 @@ void Replay::onModules(GLuint ours) {
     gl.glGetAttachedShaders(ours, 16, &count, attached);
     for (GLsizei i = 0; i < count; ++i) {
         const auto found = c_->shared->placedModules.find(attached[i]);
-        if (found != c_->shared->placedModules.end() && found->second && !std::exchange(c_->shared->allDrawn, true)) restoreWindowState();
+        if (found != c_->shared->placedModules.end() && found->second && !std::exchange(c_->shared->allDrawn, true))
+            restoreWindowState();
     }
 }
 // A rewritten text would lose these paths, so such shaders are not rewritten.
@@ -110,13 +120,16 @@ void Replay::glLinkProgram(GLuint program) {
 }
 void Replay::linkProgram(GLuint ours) {
     if (c_->shared) c_->shared->memoryWriters.clear();
-    if (!c_->shared || !rewrites().any()) gl.glLinkProgram(ours);
-    else c_->shared->tiled.link(gl, ours, rewrites(), esContext());
+    if (!c_->shared || !rewrites().any())
+        gl.glLinkProgram(ours);
+    else
+        c_->shared->tiled.link(gl, ours, rewrites(), esContext());
 }
 void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& strings, GLuint result) {
     StringList texts;
     if (!gl.glCreateShaderProgramv || !c_->shared || !texts.parse(strings, count) || texts.count() == 0) return;
-    bindName(Kind::Program, result, c_->shared->tiled.create(gl, type, count, texts.pointers(), rewrites(), esContext()));
+    bindName(Kind::Program, result,
+             c_->shared->tiled.create(gl, type, count, texts.pointers(), rewrites(), esContext()));
     const GLuint ours = name(Kind::Program, result);
     ProgramSources recipe;
     recipe.separable = true;
@@ -150,7 +163,8 @@ void Replay::glProgramStringARB(GLenum target, GLenum format, GLsizei len, const
         gl.glGetIntegerv(GL_PROGRAM_ERROR_POSITION_ARB, &at);
         return at < 0;
     };
-    if (target == GL_FRAGMENT_PROGRAM_ARB && rewrites().windowCoordinates && gl.glGetProgramivARB && gl.glProgramEnvParameter4fvARB) {
+    if (target == GL_FRAGMENT_PROGRAM_ARB && rewrites().windowCoordinates && gl.glGetProgramivARB &&
+        gl.glProgramEnvParameter4fvARB) {
         GLint count = 0;
         gl.glGetProgramivARB(target, GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, &count);
         const auto text = shaders::withWindowPlaceArb({string.as<char>(), static_cast<size_t>(len)}, count - 1);

@@ -16,7 +16,9 @@ constexpr int64_t kSliceNs = kNsPerS; // longest single wait for a fence
 // One picture. bytes() and the destructor must run on the same thread.
 class PendingFrame final : public PictureRead {
 public:
-    PendingFrame(std::shared_ptr<AsyncReadback> of, AsyncReadback::Buffer buffer, GLsync drawn, bool redFirst, PictureFormat format) : of_(std::move(of)), buffer_(buffer), drawn_(drawn), redFirst_(redFirst), format_(format) {}
+    PendingFrame(std::shared_ptr<AsyncReadback> of, AsyncReadback::Buffer buffer, GLsync drawn, bool redFirst,
+                 PictureFormat format)
+        : of_(std::move(of)), buffer_(buffer), drawn_(drawn), redFirst_(redFirst), format_(format) {}
     PendingFrame(const PendingFrame&) = delete;
     PendingFrame& operator=(const PendingFrame&) = delete;
     ~PendingFrame() override {
@@ -35,10 +37,12 @@ public:
         GLenum state = GL_TIMEOUT_EXPIRED;
         do state = of_->gl_.clientWaitSync(drawn_, 0, static_cast<GLuint64>(deadline.leftNs(kSliceNs)));
         while (state == GL_TIMEOUT_EXPIRED && !deadline.passed());
-        if (state == GL_TIMEOUT_EXPIRED) return Error{"GL has not drawn it in time; the driver may hang: look at the system's log"};
+        if (state == GL_TIMEOUT_EXPIRED)
+            return Error{"GL has not drawn it in time; the driver may hang: look at the system's log"};
         if (state == GL_WAIT_FAILED) return Error{"GL can't tell when it is drawn; use --readback direct"};
         of_->gl_.bindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.name);
-        mapped_ = of_->gl_.mapBufferRange(GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(buffer_.bytes), GL_MAP_READ_BIT);
+        mapped_ =
+            of_->gl_.mapBufferRange(GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(buffer_.bytes), GL_MAP_READ_BIT);
         if (!mapped_) return Error{"GL does not show the buffer that it was read into; use --readback direct"};
         const auto* pixels = static_cast<const std::byte*>(mapped_);
         if (!redFirst_) return std::span(pixels, buffer_.bytes);
@@ -64,7 +68,9 @@ private:
 };
 
 AsyncReadback::AsyncReadback(std::unique_ptr<gl::SharedReader> reader, const GlFunctions& gl)
-    : reader_(std::move(reader)), gl_{gl.glGenBuffers, gl.glBindBuffer, gl.glBufferData, gl.glMapBufferRange, gl.glUnmapBuffer, gl.glFenceSync, gl.glClientWaitSync, gl.glDeleteSync, gl.glFlush} {}
+    : reader_(std::move(reader)), gl_{gl.glGenBuffers,     gl.glBindBuffer,  gl.glBufferData,
+                                      gl.glMapBufferRange, gl.glUnmapBuffer, gl.glFenceSync,
+                                      gl.glClientWaitSync, gl.glDeleteSync,  gl.glFlush} {}
 
 void AsyncReadback::bindBuffer(size_t bytes) {
     bound_ = {};
@@ -77,7 +83,8 @@ void AsyncReadback::bindBuffer(size_t bytes) {
     }
     if (bound_.name == 0) gl_.genBuffers(1, &bound_.name);
     gl_.bindBuffer(GL_PIXEL_PACK_BUFFER, bound_.name);
-    if (bound_.bytes != bytes) gl_.bufferData(GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STREAM_READ);
+    if (bound_.bytes != bytes)
+        gl_.bufferData(GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STREAM_READ);
     bound_.bytes = bytes;
 }
 

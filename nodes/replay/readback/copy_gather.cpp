@@ -39,16 +39,20 @@ void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void*
     const bool srgb = c_->read->config.srgb && c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     const auto srgbOrNot = static_cast<GLint>(srgb ? GL_SRGB8_ALPHA8 : words.storage);
     withPlainTransfer([&] {
-        if (plane == GL_COLOR_BUFFER_BIT) gl.glTexImage2D(GL_TEXTURE_2D, 0, separate ? srgbOrNot : GL_RGBA, r.w, r.h, 0, GL_RGBA, words.type, pixels);
-        else gatherDepthStencil(g, plane, pixels);
+        if (plane == GL_COLOR_BUFFER_BIT)
+            gl.glTexImage2D(GL_TEXTURE_2D, 0, separate ? srgbOrNot : GL_RGBA, r.w, r.h, 0, GL_RGBA, words.type, pixels);
+        else
+            gatherDepthStencil(g, plane, pixels);
     });
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
     gl.glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(before));
     gl.glBindFramebuffer(target, g.framebuffer);
     const GLenum place = plane == GL_COLOR_BUFFER_BIT ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_STENCIL_ATTACHMENT;
     gl.glFramebufferTexture2D(target, place, GL_TEXTURE_2D, texture, 0);
-    if (!g.color && c_->api == wire::Api::Desktop) gl.glReadBuffer(GL_NONE);
-    else if (c_->api == wire::Api::Desktop) gl.glReadBuffer(GL_COLOR_ATTACHMENT0);
+    if (!g.color && c_->api == wire::Api::Desktop)
+        gl.glReadBuffer(GL_NONE);
+    else if (c_->api == wire::Api::Desktop)
+        gl.glReadBuffer(GL_COLOR_ATTACHMENT0);
     gl.glBindFramebuffer(target, name(Kind::Framebuffer, separate ? c_->readFramebuffer : c_->drawFramebuffer));
 }
 
@@ -60,9 +64,11 @@ void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixel
         std::memcpy(g.depth.data(), pixels, count * 4);
         for (uint32_t& d : g.depth) d &= 0xffffff00;
     } else {
-        for (size_t i = 0; i < count; ++i) g.depth[i] = (g.depth[i] & 0xffffff00) | static_cast<const uint8_t*>(pixels)[i];
+        for (size_t i = 0; i < count; ++i)
+            g.depth[i] = (g.depth[i] & 0xffffff00) | static_cast<const uint8_t*>(pixels)[i];
     }
-    gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, g.box.w, g.box.h, 0, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, g.depth.data());
+    gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, g.box.w, g.box.h, 0, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+                    g.depth.data());
 }
 
 // Runs a copy that reads `source` of the read framebuffer. `call` receives the offset to add to its coordinates.
@@ -93,18 +99,22 @@ void Replay::copyLevel(GLint x, GLint y, GLsizei w, GLsizei h, const std::functi
 namespace {
 PixelViewport between(GLint x0, GLint y0, GLint x1, GLint y1) {
     const GLint x = std::min(x0, x1), y = std::min(y0, y1);
-    const auto size = [](GLint a, GLint b) { return static_cast<int32_t>(std::min<int64_t>(std::abs(int64_t{a} - b), INT32_MAX)); };
+    const auto size = [](GLint a, GLint b) {
+        return static_cast<int32_t>(std::min<int64_t>(std::abs(int64_t{a} - b), INT32_MAX));
+    };
     return {x, y, size(x0, x1), size(y0, y1)};
 }
 } // namespace
 
-void Replay::glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
+void Replay::glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0,
+                               GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
     if (!gl.glBlitFramebuffer) return;
     const PixelViewport o = origin();
     fromWindow(between(srcX0, srcY0, srcX1, srcY1), [&](GLint dx, GLint dy) {
         withoutTile([&] {
-            gl.glBlitFramebuffer(moved(srcX0, -dx), moved(srcY0, -dy), moved(srcX1, -dx), moved(srcY1, -dy), moved(dstX0, o.x), moved(dstY0, o.y), moved(dstX1, o.x),
-                                 moved(dstY1, o.y), mask, filter);
+            gl.glBlitFramebuffer(moved(srcX0, -dx), moved(srcY0, -dy), moved(srcX1, -dx), moved(srcY1, -dy),
+                                 moved(dstX0, o.x), moved(dstY0, o.y), moved(dstX1, o.x), moved(dstY1, o.y), mask,
+                                 filter);
         });
     });
     if ((mask & GL_COLOR_BUFFER_BIT) && hidesAlpha()) makeOpaque();
@@ -112,12 +122,16 @@ void Replay::glBlitFramebuffer(GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY
 
 // Equivalent to a blit with both framebuffers bound. Implemented that way in lean tiling, and after pixels were
 // gathered.
-void Replay::glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0, GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1, GLbitfield mask, GLenum filter) {
+void Replay::glBlitNamedFramebuffer(GLuint readFramebuffer, GLuint drawFramebuffer, GLint srcX0, GLint srcY0,
+                                    GLint srcX1, GLint srcY1, GLint dstX0, GLint dstY0, GLint dstX1, GLint dstY1,
+                                    GLbitfield mask, GLenum filter) {
     if (!gl.glBlitNamedFramebuffer) return;
     if (readFramebuffer == 0) depthForReading();
     if (!config_.lean && c_->gathered.box.empty()) {
         return withoutTile([&] {
-            gl.glBlitNamedFramebuffer(name(Kind::Framebuffer, readFramebuffer), name(Kind::Framebuffer, drawFramebuffer), srcX0, srcY0, srcX1, srcY1, dstX0, dstY0, dstX1, dstY1, mask, filter);
+            gl.glBlitNamedFramebuffer(name(Kind::Framebuffer, readFramebuffer),
+                                      name(Kind::Framebuffer, drawFramebuffer), srcX0, srcY0, srcX1, srcY1, dstX0,
+                                      dstY0, dstX1, dstY1, mask, filter);
         });
     }
     const GLuint readBefore = c_->readFramebuffer, drawBefore = c_->drawFramebuffer;

@@ -13,7 +13,8 @@
 namespace mural {
 
 bool Replay::hasFences(const ContextState& c) const {
-    return c.version >= (c.api == wire::Api::Desktop ? 32 : 30) && gl.glFenceSync && gl.glClientWaitSync && gl.glDeleteSync;
+    return c.version >= (c.api == wire::Api::Desktop ? 32 : 30) && gl.glFenceSync && gl.glClientWaitSync &&
+           gl.glDeleteSync;
 }
 
 // Creates the object for the first frame that wants it. A share group without support is not tried again.
@@ -21,8 +22,10 @@ std::shared_ptr<AsyncReadback> Replay::laterReads() {
     Shared& shared = *bound_->shared;
     if (!std::exchange(shared.laterAsked, true)) {
         auto reader = platform_->createReader(bound_->wish, *bound_->context);
-        if (reader) shared.later = std::make_shared<AsyncReadback>(std::move(*reader), gl);
-        else if (config_.readback == Readback::Buffer) out_.log("pictures are read at once: " + reader.error().message);
+        if (reader)
+            shared.later = std::make_shared<AsyncReadback>(std::move(*reader), gl);
+        else if (config_.readback == Readback::Buffer)
+            out_.log("pictures are read at once: " + reader.error().message);
     }
     return shared.later;
 }
@@ -32,7 +35,8 @@ bool Replay::readsLater(const Window& w, const PixelViewport& region) {
     if (config_.readback == Readback::Direct || skips_ || region.empty() || !bound_ || !bound_->shared) return false;
     if (config_.readback == Readback::Auto && !w.readback.later()) return false;
     if ((!config_.pass.zoom.none() && !w.plain) || (hasKernel() && w.plain)) return false;
-    const bool buffers = gl.glGenBuffers && gl.glBindBuffer && gl.glBufferData && gl.glMapBufferRange && gl.glUnmapBuffer && gl.glFlush;
+    const bool buffers =
+        gl.glGenBuffers && gl.glBindBuffer && gl.glBufferData && gl.glMapBufferRange && gl.glUnmapBuffer && gl.glFlush;
     return buffers && hasFences(*bound_) && isAnswering() && laterReads();
 }
 
@@ -41,8 +45,10 @@ std::unique_ptr<PictureRead> Replay::readAtOnce(const ReplayOutputs::Frame& f, c
     if (!pixels) return nullptr;
     const size_t bytes = static_cast<size_t>(r.area()) * 4;
     std::vector<std::byte> own;
-    if (pixels == pixels_.data()) own = std::exchange(pixels_, memory_->take());
-    else own.assign(pixels, pixels + bytes);
+    if (pixels == pixels_.data())
+        own = std::exchange(pixels_, memory_->take());
+    else
+        own.assign(pixels, pixels + bytes);
     own.resize(bytes);
     return std::make_unique<ReadPicture>(std::move(own), memory_);
 }

@@ -12,16 +12,20 @@ namespace mural {
 namespace {
 
 bool countsSamples(GLenum target) {
-    return target == GL_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE;
+    return target == GL_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED ||
+           target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE;
 }
 // Whether culling of primitives outside the tile would change the count.
-bool countsClipping(GLenum target) { return target == GL_CLIPPING_INPUT_PRIMITIVES || target == GL_CLIPPING_OUTPUT_PRIMITIVES; }
+bool countsClipping(GLenum target) {
+    return target == GL_CLIPPING_INPUT_PRIMITIVES || target == GL_CLIPPING_OUTPUT_PRIMITIVES;
+}
 
 } // namespace
 
 // Returns true if every node currently draws the same pixels, not only its own.
 bool Replay::isReplicatedDraw() const {
-    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || drawsOldFront() || (c_->draw && (learnsTurns(*c_->draw) || learnsAreas(*c_->draw)))));
+    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || drawsOldFront() ||
+                                               (c_->draw && (learnsTurns(*c_->draw) || learnsAreas(*c_->draw)))));
 }
 
 // Must be called after any change of isReplicatedDraw(), before the next draw.
@@ -66,7 +70,8 @@ void Replay::glBeginQuery(GLenum target, GLuint id) {
     query.skipped = c_->draw && c_->draw->skipped;
     // Regions of whole bins overlap, so overlapping fragments would count twice. Nodes with and without a GPU must
     // decide equally, so the window's buffers decide.
-    const bool overlap = countsSamples(target) && drawsWindow() && c_->draw && (c_->draw->config.samples > 0 || c_->draw->isFlat);
+    const bool overlap =
+        countsSamples(target) && drawsWindow() && c_->draw && (c_->draw->config.samples > 0 || c_->draw->isFlat);
     if (overlap || target == GL_FRAGMENT_SHADER_INVOCATIONS) {
         c_->countedWhole = true;
         applyScissors();
@@ -159,7 +164,8 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
     const auto info = bound_ ? c_->queries.find(query) : c_->queries.end();
     if (info != c_->queries.end()) {
         const std::vector<QueryPiece>& pieces = info->second.pieces;
-        added = countsSamples(info->second.target) && std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
+        added = countsSamples(info->second.target) &&
+                std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
         if (added && info->second.skipped) out_.invalid();
         for (const QueryPiece& piece : pieces) {
             if (!added || (piece.whole ? config_.node == 0 : config_.answers)) value += queryResult(piece.ours);
@@ -174,8 +180,8 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
 
 namespace {
 bool isInverted(GLenum mode) {
-    return mode == GL_QUERY_WAIT_INVERTED || mode == GL_QUERY_NO_WAIT_INVERTED || mode == GL_QUERY_BY_REGION_WAIT_INVERTED ||
-           mode == GL_QUERY_BY_REGION_NO_WAIT_INVERTED;
+    return mode == GL_QUERY_WAIT_INVERTED || mode == GL_QUERY_NO_WAIT_INVERTED ||
+           mode == GL_QUERY_BY_REGION_WAIT_INVERTED || mode == GL_QUERY_BY_REGION_NO_WAIT_INVERTED;
 }
 } // namespace
 
@@ -195,7 +201,8 @@ void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const std::vector<QueryPiece>& pieces = info->second.pieces;
     bool passed = info->second.passed;
     if (alone() || std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
-        passed = std::any_of(pieces.begin(), pieces.end(), [&](const QueryPiece& p) { return queryResult(p.ours) != 0; });
+        passed =
+            std::any_of(pieces.begin(), pieces.end(), [&](const QueryPiece& p) { return queryResult(p.ours) != 0; });
     beginConditional(passed != isInverted(mode));
 }
 

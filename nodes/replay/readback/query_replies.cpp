@@ -21,11 +21,15 @@ bool Replay::isAnswering() {
 // Reads `r` of the program's read framebuffer, without the program's pack state and pack buffer.
 const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenum type, size_t bytes, Beyond beyond) {
     const size_t room = into_ ? 1 : std::max<size_t>(bytes, 1);
-    if (beyond == Beyond::Black) pixels_.assign(room, std::byte{0});
-    else pixels_.resize(room);
+    if (beyond == Beyond::Black)
+        pixels_.assign(room, std::byte{0});
+    else
+        pixels_.resize(room);
     if (r.empty() || !gl.glReadPixels) return pixels_.data();
-    if (into_) into_->bindBuffer(bytes);
-    else if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    if (into_)
+        into_->bindBuffer(bytes);
+    else if (c_->packBuffer)
+        gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     packTightly(true);
     const bool window = readsLean() && c_->readFramebuffer == 0;
     const PixelViewport o = window ? c_->read->region : PixelViewport{};
@@ -47,8 +51,10 @@ void Replay::withPlainTransfer(const std::function<void()>& call) {
     const bool has = c_->api == wire::Api::Desktop && !c_->core && gl.glPixelTransferf && gl.glPushAttrib;
     if (!has) return call();
     gl.glPushAttrib(GL_PIXEL_MODE_BIT);
-    for (const GLenum scale : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE, GL_DEPTH_SCALE}) gl.glPixelTransferf(scale, 1);
-    for (const GLenum bias : {GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS, GL_DEPTH_BIAS, GL_INDEX_SHIFT, GL_INDEX_OFFSET, GL_MAP_COLOR, GL_MAP_STENCIL})
+    for (const GLenum scale : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE, GL_DEPTH_SCALE})
+        gl.glPixelTransferf(scale, 1);
+    for (const GLenum bias : {GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS, GL_DEPTH_BIAS, GL_INDEX_SHIFT,
+                              GL_INDEX_OFFSET, GL_MAP_COLOR, GL_MAP_STENCIL})
         gl.glPixelTransferf(bias, 0);
     call();
     gl.glPopAttrib();
@@ -70,7 +76,9 @@ bool Replay::onRequestPixels(Args& in) {
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
     const auto format = in.get<uint32_t>(), type = in.get<uint32_t>(), groupAndFlags = in.get<uint32_t>();
     const uint32_t group = groupAndFlags & ~(wire::kPlainTransfer | wire::kResolved);
-    if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 || uint64_t(w) * uint64_t(h) > config_.limits.answerBytes / group) return false;
+    if (!in.ok() || w < 0 || h < 0 || group == 0 || group > 64 ||
+        uint64_t(w) * uint64_t(h) > config_.limits.answerBytes / group)
+        return false;
     const ColourWords* const words = format == GL_RGBA ? colourWordsOf(type) : nullptr;
     if ((groupAndFlags & wire::kResolved) && !words) return false;
     const PixelViewport asked{x, y, w, h};
@@ -86,7 +94,10 @@ bool Replay::onRequestPixels(Args& in) {
     const bool deep = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
     if (deep) depthForReading();
     const bool repeats = c_->read && interleaves(c_->read) && !c_->read->region.empty();
-    const PixelViewport part = c_->read && config_.answers ? intersect(asked, repeats ? c_->read->part : regionOf(*c_->read, readsFront() && !deep)) : PixelViewport{};
+    const PixelViewport part =
+        c_->read && config_.answers
+            ? intersect(asked, repeats ? c_->read->part : regionOf(*c_->read, readsFront() && !deep))
+            : PixelViewport{};
     if (c_->read) c_->read->copied = true;
     if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.invalid();
     const size_t bytes = static_cast<size_t>(part.area()) * group;
@@ -94,11 +105,19 @@ bool Replay::onRequestPixels(Args& in) {
     // Erroneous copies request colours while no buffer is selected. In OpenGL ES, Mesa would read through a null
     // pointer.
     const bool nothing = !deep && c_->readBuffer0 == GL_NONE;
-    const auto read = [&] { pixels = repeats && !nothing && !part.empty() ? readRepeated(part, format, type, group) : readRegion(nothing ? PixelViewport{} : part, format, type, bytes); };
-    if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read)) aside([&] { pixels = readResolved(part, format, *words); });
-    else if ((groupAndFlags & wire::kPlainTransfer) && type == GL_FLOAT) withPlainTransfer([&] { withoutReadClamp(read); });
-    else if (groupAndFlags & wire::kPlainTransfer) withPlainTransfer(read);
-    else read();
+    const auto read = [&] {
+        pixels = repeats && !nothing && !part.empty()
+                     ? readRepeated(part, format, type, group)
+                     : readRegion(nothing ? PixelViewport{} : part, format, type, bytes);
+    };
+    if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read))
+        aside([&] { pixels = readResolved(part, format, *words); });
+    else if ((groupAndFlags & wire::kPlainTransfer) && type == GL_FLOAT)
+        withPlainTransfer([&] { withoutReadClamp(read); });
+    else if (groupAndFlags & wire::kPlainTransfer)
+        withPlainTransfer(read);
+    else
+        read();
     wire::ReplyPartHeader header{};
     header.client = wire::clientOf(stream_);
     header.requestId = request;
@@ -135,23 +154,30 @@ void Replay::answerBytes(uint32_t request, wire::ReplyKind kind, std::span<const
 // Reads into pixels_. glGetn… and glGetTextureImage stay within the given size, whatever size the level has.
 void Replay::readTexels(bool byName, GLuint which, GLint level, GLenum format, GLenum type) {
     const auto room = static_cast<GLsizei>(std::min<size_t>(pixels_.size(), INT32_MAX));
-    if (byName && gl.glGetTextureImage) gl.glGetTextureImage(which, level, format, type, room, pixels_.data());
-    else if (!byName && gl.glGetnTexImageARB) gl.glGetnTexImageARB(which, level, format, type, room, pixels_.data());
-    else if (!byName && gl.glGetnTexImage) gl.glGetnTexImage(which, level, format, type, room, pixels_.data());
+    if (byName && gl.glGetTextureImage)
+        gl.glGetTextureImage(which, level, format, type, room, pixels_.data());
+    else if (!byName && gl.glGetnTexImageARB)
+        gl.glGetnTexImageARB(which, level, format, type, room, pixels_.data());
+    else if (!byName && gl.glGetnTexImage)
+        gl.glGetnTexImage(which, level, format, type, room, pixels_.data());
 }
 
 // The same for a compressed image, without conversion. Mesa's glGetnCompressedTexImageARB ignores the given size.
 void Replay::readBlocks(bool byName, GLuint which, GLint level) {
     const auto room = static_cast<GLsizei>(std::min<size_t>(pixels_.size(), INT32_MAX));
-    constexpr GLenum kBlockNames[] = {GL_PACK_COMPRESSED_BLOCK_WIDTH, GL_PACK_COMPRESSED_BLOCK_HEIGHT, GL_PACK_COMPRESSED_BLOCK_DEPTH, GL_PACK_COMPRESSED_BLOCK_SIZE};
+    constexpr GLenum kBlockNames[] = {GL_PACK_COMPRESSED_BLOCK_WIDTH, GL_PACK_COMPRESSED_BLOCK_HEIGHT,
+                                      GL_PACK_COMPRESSED_BLOCK_DEPTH, GL_PACK_COMPRESSED_BLOCK_SIZE};
     GLint blocks[4] = {}, needed = 0;
     for (size_t i = 0; c_->packsBlocks && i < 4; ++i) {
         gl.glGetIntegerv(kBlockNames[i], &blocks[i]);
         gl.glPixelStorei(kBlockNames[i], 0);
     }
-    if (!byName && gl.glGetTexLevelParameteriv) gl.glGetTexLevelParameteriv(which, level, GL_TEXTURE_COMPRESSED_IMAGE_SIZE, &needed);
-    if (byName && gl.glGetCompressedTextureImage) gl.glGetCompressedTextureImage(which, level, room, pixels_.data());
-    else if (needed > 0 && needed <= room && gl.glGetCompressedTexImage) gl.glGetCompressedTexImage(which, level, pixels_.data());
+    if (!byName && gl.glGetTexLevelParameteriv)
+        gl.glGetTexLevelParameteriv(which, level, GL_TEXTURE_COMPRESSED_IMAGE_SIZE, &needed);
+    if (byName && gl.glGetCompressedTextureImage)
+        gl.glGetCompressedTextureImage(which, level, room, pixels_.data());
+    else if (needed > 0 && needed <= room && gl.glGetCompressedTexImage)
+        gl.glGetCompressedTexImage(which, level, pixels_.data());
     for (size_t i = 0; c_->packsBlocks && i < 4; ++i) gl.glPixelStorei(kBlockNames[i], blocks[i]);
 }
 
@@ -166,8 +192,10 @@ bool Replay::onRequestTexImage(Args& in) {
         if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
         packTightly(true);
         const GLuint image = byName ? name(Kind::Texture, which) : which;
-        if (format == 0) readBlocks(byName != 0, image, level);
-        else readTexels(byName != 0, image, level, format, type);
+        if (format == 0)
+            readBlocks(byName != 0, image, level);
+        else
+            readTexels(byName != 0, image, level, format, type);
         packTightly(false);
         if (c_->packBuffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, c_->packBuffer);
     }
@@ -241,8 +269,10 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const GLenum format = bgra ? GL_BGRA : GL_RGBA;
     const PictureFormat shownFormat = pictureFormatOf(*c_, w);
     const ColourWords& words = shownFormat == PictureFormat::Bgr10A2 ? kTenBitWords : kByteWords;
-    if (resolves(w) && !r.empty()) aside([&] { pixels = readResolved(r, format, words); });
-    else withPlainTransfer([&] { pixels = readRegion(r, format, words.type, bytes, Beyond::Nothing); });
+    if (resolves(w) && !r.empty())
+        aside([&] { pixels = readResolved(r, format, words); });
+    else
+        withPlainTransfer([&] { pixels = readRegion(r, format, words.type, bytes, Beyond::Nothing); });
     if (!bgra && !into_) swapRedAndBlue(shownFormat, pixels_.data(), pixels_.data(), bytes / 4);
     c_->read = read;
     c_->readFramebuffer = bound;
@@ -252,7 +282,9 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     return pixels;
 }
 
-bool Replay::resolves(const Window& w) const { return w.config.samples > 0 && c_->version >= 30 && gl.glBlitFramebuffer && gl.glRenderbufferStorage; }
+bool Replay::resolves(const Window& w) const {
+    return w.config.samples > 0 && c_->version >= 30 && gl.glBlitFramebuffer && gl.glRenderbufferStorage;
+}
 
 // A swap shows the resolved picture, but glReadPixels of a multisampled window returns one sample (Mesa). The window is
 // bound for reading before and after the call.
@@ -271,7 +303,8 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, con
     const bool srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
     const PixelViewport o = readsLean() ? c_->read->region : PixelViewport{};
-    gl.glBlitFramebuffer(r.x - o.x, r.y - o.y, r.right() - o.x, r.top() - o.y, 0, 0, r.w, r.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gl.glBlitFramebuffer(r.x - o.x, r.y - o.y, r.right() - o.x, r.top() - o.y, 0, 0, r.w, r.h, GL_COLOR_BUFFER_BIT,
+                         GL_NEAREST);
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     const std::byte* pixels = nullptr;
@@ -291,15 +324,21 @@ const std::byte* Replay::readResolved(const PixelViewport& r, GLenum format, con
 // Stores pixels of other tiles for a following copy. Uses a blit from a texture, which ignores all other state.
 bool Replay::onFillWindow(Args& in) {
     const auto x = in.get<int32_t>(), y = in.get<int32_t>(), w = in.get<int32_t>(), h = in.get<int32_t>();
-    const auto planeAndFlag = in.get<uint32_t>(), plane = planeAndFlag & ~(wire::kForCopy | wire::kTenBits | wire::kFloats);
-    const ColourWords& words = planeAndFlag & wire::kFloats ? kFloatWords : planeAndFlag & wire::kTenBits ? kTenBitWords : kByteWords;
+    const auto planeAndFlag = in.get<uint32_t>(),
+               plane = planeAndFlag & ~(wire::kForCopy | wire::kTenBits | wire::kFloats);
+    const ColourWords& words = planeAndFlag & wire::kFloats    ? kFloatWords
+                               : planeAndFlag & wire::kTenBits ? kTenBitWords
+                                                               : kByteWords;
     const Data data = in.data();
     const uint64_t bytesPer = plane == GL_STENCIL_BUFFER_BIT ? 1 : plane == GL_COLOR_BUFFER_BIT ? words.sizeBytes : 4;
-    if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() || data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h) return false;
+    if (!in.ok() || w <= 0 || h <= 0 || data.absent() || data.isOffset() ||
+        data.size() / bytesPer / uint64_t(w) < uint64_t(h) || x > INT32_MAX - w || y > INT32_MAX - h)
+        return false;
     if (plane == GL_COLOR_BUFFER_BIT && c_->readBuffer0 == GL_NONE) return true; // the copy is an error
     if (c_->read) c_->read->filled = true;
     // these pixels belong to another pass, and this node has all pixels of its own pass
-    if (bound_ && c_->read && !config_.answers && !readsLean() && (c_->read->region == c_->read->whole || c_->read->drawn == c_->read->whole)) {
+    if (bound_ && c_->read && !config_.answers && !readsLean() &&
+        (c_->read->region == c_->read->whole || c_->read->drawn == c_->read->whole)) {
         forgetGathered();
         return true;
     }
@@ -310,10 +349,12 @@ bool Replay::onFillWindow(Args& in) {
     if (!bound_ || !c_->read || !gl.glBlitFramebuffer) return true;
     c_->read->copied = true;
     if (interleaves(c_->read)) return true; // a window with a kernel has no room for them
-    forgetGathered(); // from another window
+    forgetGathered();                       // from another window
     aside([&] {
-        if (plane != GL_COLOR_BUFFER_BIT) fillByOtherContext({x, y, w, h}, plane, data.pointer());
-        else fillColor({x, y, w, h}, data.pointer(), words);
+        if (plane != GL_COLOR_BUFFER_BIT)
+            fillByOtherContext({x, y, w, h}, plane, data.pointer());
+        else
+            fillColor({x, y, w, h}, data.pointer(), words);
     });
     return true;
 }
@@ -322,9 +363,11 @@ namespace {
 // Returns the parts of `r` around the hole.
 std::array<PixelViewport, 4> around(const PixelViewport& r, const PixelViewport& hole) {
     if (hole.empty()) return {r};
-    const auto box = [&](int32_t x0, int32_t y0, int32_t x1, int32_t y1) { return intersect(r, {x0, y0, x1 - x0, y1 - y0}); };
-    return {box(r.x, r.y, hole.x, r.top()), box(hole.right(), r.y, r.right(), r.top()), box(hole.x, r.y, hole.right(), hole.y),
-            box(hole.x, hole.top(), hole.right(), r.top())};
+    const auto box = [&](int32_t x0, int32_t y0, int32_t x1, int32_t y1) {
+        return intersect(r, {x0, y0, x1 - x0, y1 - y0});
+    };
+    return {box(r.x, r.y, hole.x, r.top()), box(hole.right(), r.y, r.right(), r.top()),
+            box(hole.x, r.y, hole.right(), hole.y), box(hole.x, hole.top(), hole.right(), r.top())};
 }
 } // namespace
 
@@ -343,7 +386,9 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba, const ColourWor
     gl.glBindTexture(GL_TEXTURE_2D, texture);
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     setUnpack(true);
-    withPlainTransfer([&] { gl.glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(words.storage), r.w, r.h, 0, GL_RGBA, words.type, rgba); });
+    withPlainTransfer([&] {
+        gl.glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(words.storage), r.w, r.h, 0, GL_RGBA, words.type, rgba);
+    });
     if (c_->unpackBuffer) gl.glBindBuffer(GL_PIXEL_UNPACK_BUFFER, c_->unpackBuffer);
     gl.glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(texture2d));
     if (!c_->fillFramebuffer) gl.glGenFramebuffers(1, &c_->fillFramebuffer);
@@ -356,9 +401,14 @@ void Replay::fillColor(const PixelViewport& r, const void* rgba, const ColourWor
     const GLboolean srgb = c_->api == wire::Api::Desktop && gl.glIsEnabled(GL_FRAMEBUFFER_SRGB);
     if (srgb) gl.glDisable(GL_FRAMEBUFFER_SRGB);
     const PixelViewport o = readsLean() ? c_->read->region : PixelViewport{};
-    for (const PixelViewport& part : around(r, c_->read->config.samples > 0 ? intersect(r, moves() && readsFront() ? regionOf(*c_->read, true) : c_->read->drawn) : PixelViewport{})) {
+    for (const PixelViewport& part :
+         around(r, c_->read->config.samples > 0
+                       ? intersect(r, moves() && readsFront() ? regionOf(*c_->read, true) : c_->read->drawn)
+                       : PixelViewport{})) {
         const int32_t x = part.x - r.x, y = part.y - r.y, toX = part.x - o.x, toY = part.y - o.y;
-        if (!part.empty()) gl.glBlitFramebuffer(x, y, x + part.w, y + part.h, toX, toY, toX + part.w, toY + part.h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        if (!part.empty())
+            gl.glBlitFramebuffer(x, y, x + part.w, y + part.h, toX, toY, toX + part.w, toY + part.h,
+                                 GL_COLOR_BUFFER_BIT, GL_NEAREST);
     }
     if (srgb) gl.glEnable(GL_FRAMEBUFFER_SRGB);
     if (chooses) gl.glDrawBuffer(windowBuffer(c_->drawBuffer0, c_->read));

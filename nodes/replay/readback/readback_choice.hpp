@@ -16,7 +16,9 @@ namespace mural {
 // Software drivers have no choice: they draw and copy in the calling thread, so a second thread saves nothing. It is
 // also unsafe: llvmpipe up to at least Mesa 22 walks, when it maps a buffer, the drawing of all contexts without a
 // lock, and sometimes crashes.
-[[nodiscard]] inline Readback readbackBy(std::string_view renderer, Readback wished) { return wished == Readback::Auto && gl::drawsWithoutGpu(renderer) ? Readback::Direct : wished; }
+[[nodiscard]] inline Readback readbackBy(std::string_view renderer, Readback wished) {
+    return wished == Readback::Auto && gl::drawsWithoutGpu(renderer) ? Readback::Direct : wished;
+}
 
 class ReadbackChoice {
 public:
@@ -24,7 +26,8 @@ public:
     [[nodiscard]] bool later() const { return frames_ < kMeasured ? frames_ % 2 == 1 : later_; }
     // Reports how long the drawing thread was blocked after a frame's last command.
     void took(int64_t ns) {
-        if (frames_ >= kWarmUp && frames_ < kMeasured) (later() ? laterNs_ : atOnceNs_)[static_cast<size_t>(frames_ - kWarmUp) / 2] = ns;
+        if (frames_ >= kWarmUp && frames_ < kMeasured)
+            (later() ? laterNs_ : atOnceNs_)[static_cast<size_t>(frames_ - kWarmUp) / 2] = ns;
         // similar times favour the simpler way
         if (++frames_ == kMeasured) later_ = 4 * median(laterNs_) < 3 * median(atOnceNs_);
         if (frames_ == kMeasured + kKept) frames_ = kWarmUp;

@@ -28,7 +28,8 @@ gl::Context* Replay::fillerOf(Window& w) {
     wish.surface = surfaceConfig(w.config, 1, 1);
     auto made = platform_->createContext(wish, nullptr);
     if (!made) {
-        out_.log("depth of other tiles can't be put together here, copies of it across tiles are incomplete: " + made.error().message);
+        out_.log("depth of other tiles can't be put together here, copies of it across tiles are incomplete: " +
+                 made.error().message);
         return nullptr;
     }
     w.filler = std::move(*made);
@@ -47,9 +48,12 @@ void Replay::fillByOtherContext(const PixelViewport& r, GLbitfield plane, const 
         gl.glDepthFunc(GL_ALWAYS);
         gl.glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         gl.glWindowPos2i(r.x, r.y);
-        if (depth) gl.glDrawPixels(r.w, r.h, GL_DEPTH_COMPONENT, GL_FLOAT, depthAsFloats(w, r, pixels));
-        else if (colour) gl.glDrawPixels(r.w, r.h, GL_RGBA, colourType, pixels);
-        else gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
+        if (depth)
+            gl.glDrawPixels(r.w, r.h, GL_DEPTH_COMPONENT, GL_FLOAT, depthAsFloats(w, r, pixels));
+        else if (colour)
+            gl.glDrawPixels(r.w, r.h, GL_RGBA, colourType, pixels);
+        else
+            gl.glDrawPixels(r.w, r.h, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels);
         gl.glFlush();
     }
     (void)platform_->makeCurrent(c_->context.get(), drawSurface_, readSurface_);

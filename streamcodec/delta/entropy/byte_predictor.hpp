@@ -16,9 +16,12 @@ public:
         Expected& near = near_[((before_ & 0xffff) * 0x9e3779b1u & UINT32_MAX) >> (32 - kNearBits)];
         const uint32_t expected = far.byte, other = near.byte;
         const bool asked = far.trust != 0, askedOther = near.trust != 0 && !(asked && other == expected);
-        if (asked && coder.code(farHit_[far.trust], value == expected)) value = expected;
-        else if (askedOther && coder.code(nearHit_[asked][near.trust], value == other)) value = other;
-        else value = bytes_.code(coder, value);
+        if (asked && coder.code(farHit_[far.trust], value == expected))
+            value = expected;
+        else if (askedOther && coder.code(nearHit_[asked][near.trust], value == other))
+            value = other;
+        else
+            value = bytes_.code(coder, value);
         far.learn(value);
         near.learn(value);
         before_ = before_ << 8 | value;
@@ -32,13 +35,16 @@ private:
         uint8_t byte = 0;
         uint8_t trust = 0; // confidence; 0: no prediction
         void learn(uint32_t value) {
-            if (trust != 0 && byte == value) trust = trust < kMaxTrust ? static_cast<uint8_t>(trust + 1) : kMaxTrust;
-            else if (trust > 1) trust = static_cast<uint8_t>(trust / 4 + 1);
-            else byte = static_cast<uint8_t>(value), trust = 1;
+            if (trust != 0 && byte == value)
+                trust = trust < kMaxTrust ? static_cast<uint8_t>(trust + 1) : kMaxTrust;
+            else if (trust > 1)
+                trust = static_cast<uint8_t>(trust / 4 + 1);
+            else
+                byte = static_cast<uint8_t>(value), trust = 1;
         }
     };
 
-    std::array<Expected, 1u << kFarBits> far_{}; // by a context of eight bytes
+    std::array<Expected, 1u << kFarBits> far_{};   // by a context of eight bytes
     std::array<Expected, 1u << kNearBits> near_{}; // by a context of two bytes
     std::array<BitModel, kMaxTrust + 1> farHit_{};
     std::array<std::array<BitModel, kMaxTrust + 1>, 2> nearHit_{};

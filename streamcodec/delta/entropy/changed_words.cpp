@@ -14,7 +14,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 uint64_t changedWordsVectors(const uint8_t* old, const uint8_t* now) {
     const hn::CappedTag<uint32_t, 16> words;
-    const auto at = [&](const uint8_t* bytes, size_t word) { return hn::LoadU(words, reinterpret_cast<const uint32_t*>(bytes) + word); };
+    const auto at = [&](const uint8_t* bytes, size_t word) {
+        return hn::LoadU(words, reinterpret_cast<const uint32_t*>(bytes) + word);
+    };
     uint64_t bits = 0;
     for (size_t i = 0; i < kComparedWords; i += hn::Lanes(words)) {
         uint8_t differ[8] = {};
@@ -35,7 +37,8 @@ namespace mural::delta {
 HWY_EXPORT(changedWordsVectors);
 
 uint64_t changedWords(const std::byte* old, const std::byte* now) {
-    return HWY_DYNAMIC_DISPATCH(changedWordsVectors)(reinterpret_cast<const uint8_t*>(old), reinterpret_cast<const uint8_t*>(now));
+    return HWY_DYNAMIC_DISPATCH(changedWordsVectors)(reinterpret_cast<const uint8_t*>(old),
+                                                     reinterpret_cast<const uint8_t*>(now));
 }
 
 } // namespace mural::delta

@@ -18,10 +18,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR // no vector instructions
 
 void takeFours(const uint8_t* piece, uint8_t* apart) {
-    for (size_t i = 0; i < kPageBytes; ++i) apart[i] = static_cast<uint8_t>(piece[i] - (i % 2 == 0 ? piece[i / 4 * 4 + 1] : 0));
+    for (size_t i = 0; i < kPageBytes; ++i)
+        apart[i] = static_cast<uint8_t>(piece[i] - (i % 2 == 0 ? piece[i / 4 * 4 + 1] : 0));
 }
 void putFours(const uint8_t* apart, uint8_t* piece) {
-    for (size_t i = 0; i < kPageBytes; ++i) piece[i] = static_cast<uint8_t>(apart[i] + (i % 2 == 0 ? apart[i / 4 * 4 + 1] : 0));
+    for (size_t i = 0; i < kPageBytes; ++i)
+        piece[i] = static_cast<uint8_t>(apart[i] + (i % 2 == 0 ? apart[i / 4 * 4 + 1] : 0));
 }
 size_t takeVectors(const uint8_t*, size_t, uint8_t*) { return 0; }
 size_t putVectors(const uint8_t*, size_t, uint8_t*) { return 0; }
@@ -74,7 +76,8 @@ size_t putVectors(const uint8_t* apart, size_t count, uint8_t* pixels) {
     size_t i = 0;
     for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
         const auto green = hn::LoadU(d, apart + i);
-        hn::StoreInterleaved3(hn::Add(hn::LoadU(d, apart + count + i), green), green, hn::Add(hn::LoadU(d, apart + 2 * count + i), green), d, pixels + 3 * i);
+        hn::StoreInterleaved3(hn::Add(hn::LoadU(d, apart + count + i), green), green,
+                              hn::Add(hn::LoadU(d, apart + 2 * count + i), green), d, pixels + 3 * i);
     }
     return i;
 }
@@ -135,13 +138,17 @@ void putThrees(const std::byte* apart, const Threes& threes, std::byte* piece) {
 } // namespace
 
 void subtractGreen(const std::byte* piece, uint8_t way, std::byte* apart) {
-    if (way == kColoursOfFour) HWY_DYNAMIC_DISPATCH(takeFours)(bytesOf(piece), bytesOf(apart));
-    else takeThrees(piece, threesOf(way), apart);
+    if (way == kColoursOfFour)
+        HWY_DYNAMIC_DISPATCH(takeFours)(bytesOf(piece), bytesOf(apart));
+    else
+        takeThrees(piece, threesOf(way), apart);
 }
 
 void addGreen(const std::byte* apart, uint8_t way, std::byte* piece) {
-    if (way == kColoursOfFour) HWY_DYNAMIC_DISPATCH(putFours)(bytesOf(apart), bytesOf(piece));
-    else putThrees(apart, threesOf(way), piece);
+    if (way == kColoursOfFour)
+        HWY_DYNAMIC_DISPATCH(putFours)(bytesOf(apart), bytesOf(piece));
+    else
+        putThrees(apart, threesOf(way), piece);
 }
 
 } // namespace mural::delta

@@ -15,9 +15,9 @@ namespace {
 
 constexpr size_t kMinBytes = 4096;
 constexpr size_t kSampledOf = 16, kMinSampleBytes = 1024, kMaxSampleBytes = 4096; // size of each of two samples
-constexpr double kOfCounts = 1.4; // LZ4 exceeds the entropy of data with few repeats by this factor
+constexpr double kOfCounts = 1.4;  // LZ4 exceeds the entropy of data with few repeats by this factor
 constexpr double kMinLeft = 0.125; // a Huffman code has at least one bit
-constexpr int kFastest = -100; // a level that skips nearly all match searches
+constexpr int kFastest = -100;     // a level that skips nearly all match searches
 // ZSTD_c_literalCompressionMode by its stable number, set to "always". Negative levels otherwise leave literals
 // uncompressed.
 constexpr ZSTD_cParameter kLiterals = ZSTD_c_experimentalParam5;
@@ -46,7 +46,10 @@ struct HuffmanCompressor::State {
         if (std::exchange(asked, true)) return zstd.get();
         zstd.reset(ZSTD_createCCtx());
         if (!zstd) return nullptr;
-        for (const auto& [parameter, value] : {std::pair{ZSTD_c_compressionLevel, kFastest}, {kLiterals, kAlways}, {ZSTD_c_windowLog, kWindowLog}, {ZSTD_c_contentSizeFlag, 0}})
+        for (const auto& [parameter, value] : {std::pair{ZSTD_c_compressionLevel, kFastest},
+                                               {kLiterals, kAlways},
+                                               {ZSTD_c_windowLog, kWindowLog},
+                                               {ZSTD_c_contentSizeFlag, 0}})
             if (ZSTD_isError(ZSTD_CCtx_setParameter(zstd.get(), parameter, value))) {
                 zstd.reset();
                 break;
@@ -61,7 +64,8 @@ HuffmanCompressor::HuffmanCompressor(HuffmanCompressor&&) noexcept = default;
 
 bool HuffmanCompressor::suits(std::span<const std::byte> bytes) {
     if (bytes.size() < kMinBytes || state_->open() == nullptr) return false;
-    const size_t sizeBytes = std::clamp(bytes.size() / kSampledOf, kMinSampleBytes, kMaxSampleBytes), before = (bytes.size() - sizeBytes) / 3;
+    const size_t sizeBytes = std::clamp(bytes.size() / kSampledOf, kMinSampleBytes, kMaxSampleBytes),
+                 before = (bytes.size() - sizeBytes) / 3;
     Counts counts{};
     size_t byRepeats = 0;
     for (const size_t at : {before, 2 * before}) {
@@ -70,7 +74,8 @@ bool HuffmanCompressor::suits(std::span<const std::byte> bytes) {
         for (const std::byte byte : sample) ++counts[static_cast<size_t>(byte)];
     }
     const size_t sampled = 2 * sizeBytes;
-    return static_cast<double>(byRepeats) > kOfCounts * std::max(leftByCounts(counts, sampled), kMinLeft) * static_cast<double>(sampled);
+    return static_cast<double>(byRepeats) >
+           kOfCounts * std::max(leftByCounts(counts, sampled), kMinLeft) * static_cast<double>(sampled);
 }
 
 bool HuffmanCompressor::compress(std::span<const std::byte> bytes, std::vector<std::byte>& into) {
@@ -100,7 +105,8 @@ HuffmanDecompressor::HuffmanDecompressor(HuffmanDecompressor&&) noexcept = defau
 
 bool HuffmanDecompressor::decompress(std::span<const std::byte> bytes, std::span<std::byte> into) {
     if (!state_->zstd) state_->zstd.reset(ZSTD_createDCtx());
-    return state_->zstd && ZSTD_decompressDCtx(state_->zstd.get(), into.data(), into.size(), bytes.data(), bytes.size()) == into.size();
+    return state_->zstd &&
+           ZSTD_decompressDCtx(state_->zstd.get(), into.data(), into.size(), bytes.data(), bytes.size()) == into.size();
 }
 
 } // namespace mural::delta

@@ -42,9 +42,11 @@ bool PageDecompressor::decompressPixels(uint32_t pieces, std::span<const std::by
     const bool counted = (planesCoded & 1) != 0;
     planesCoded /= 2;
     if (pieces > into.size() / kPageBytes || uint64_t{frontCoded} + planesCoded > bytes.size()) return false;
-    const auto front = bytes.first(frontCoded), planes = bytes.subspan(frontCoded, planesCoded), rest = bytes.subspan(size_t{frontCoded} + planesCoded);
+    const auto front = bytes.first(frontCoded), planes = bytes.subspan(frontCoded, planesCoded),
+               rest = bytes.subspan(size_t{frontCoded} + planesCoded);
     frontBytes_.resize(frontBytes(into.size(), pieces));
-    if (!fronts_.decompress(Coding::Zstd, front, frontBytes_) || !joiner_.begin(frontBytes_, into.size(), pieces)) return false;
+    if (!fronts_.decompress(Coding::Zstd, front, frontBytes_) || !joiner_.begin(frontBytes_, into.size(), pieces))
+        return false;
     planeBytes_.resize(joiner_.planeBytes());
     if (!decompressPlanes(counted, planes)) return false;
     restBytes_.resize(joiner_.restBytes());

@@ -29,14 +29,19 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
     for (size_t k = 0; k < kPixelWays.size(); ++k) roughnesses[k] = 0;
     for (size_t s = 0; s < kSamples * kSampleBytes; ++s) {
         const size_t at = kSampleBytes + s / kSampleBytes * kSampleStep + s % kSampleBytes;
-        const auto behind = [piece](size_t byte, size_t pixelBytes) { return static_cast<uint8_t>(piece[byte] - piece[byte - pixelBytes]); };
-        for (size_t k = 0; k < kPlainWays; ++k) roughnesses[k] += roughnessOf(kPixelWays[k] == 0 ? piece[at] : behind(at, kPixelWays[k]));
-        const auto fours = static_cast<uint8_t>(at % 2 == 1 ? behind(at, 4) : behind(at, 4) - behind(at / 4 * 4 + 1, 4));
+        const auto behind = [piece](size_t byte, size_t pixelBytes) {
+            return static_cast<uint8_t>(piece[byte] - piece[byte - pixelBytes]);
+        };
+        for (size_t k = 0; k < kPlainWays; ++k)
+            roughnesses[k] += roughnessOf(kPixelWays[k] == 0 ? piece[at] : behind(at, kPixelWays[k]));
+        const auto fours =
+            static_cast<uint8_t>(at % 2 == 1 ? behind(at, 4) : behind(at, 4) - behind(at / 4 * 4 + 1, 4));
         roughnesses[kPlainWays] += roughnessOf(fours);
         const uint8_t now = behind(at, 3), beside = static_cast<uint8_t>(behind(at + 1, 3) - now);
         for (size_t before = 0; before < 3; ++before) {
             const size_t colour = (at + 3 - before) % 3; // red relative to green; green itself; blue relative to green
-            roughnesses[kPlainWays + 1 + before] += (colour == 1 ? roughnessOf(now) : 0) + (colour == 2 ? 0 : roughnessOf(beside));
+            roughnesses[kPlainWays + 1 + before] +=
+                (colour == 1 ? roughnessOf(now) : 0) + (colour == 2 ? 0 : roughnessOf(beside));
         }
     }
 }
@@ -46,7 +51,8 @@ size_t differencesVectors(const uint8_t* piece, size_t pixelBytes, uint32_t* wor
     size_t count = 0;
     for (size_t i = 0; i < kPieceWords; ++i) {
         uint8_t bytes[4];
-        for (size_t b = 0; b < 4; ++b) bytes[b] = static_cast<uint8_t>(piece[4 * i + b] - *(piece + 4 * i + b - pixelBytes));
+        for (size_t b = 0; b < 4; ++b)
+            bytes[b] = static_cast<uint8_t>(piece[4 * i + b] - *(piece + 4 * i + b - pixelBytes));
         std::memcpy(words + count, bytes, 4);
         const bool changed = words[count] != 0;
         count += changed;
@@ -76,15 +82,19 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
         const auto magnitude = hn::Min(hn::Min(difference, hn::Sub(none, difference)), most);
         return hn::Add(magnitude, hn::IfThenZeroElse(hn::Eq(difference, none), there));
     };
-    const auto behind = [&](const uint8_t* at, size_t pixelBytes) { return hn::Sub(hn::LoadU(d, at), hn::LoadU(d, at - pixelBytes)); };
+    const auto behind = [&](const uint8_t* at, size_t pixelBytes) {
+        return hn::Sub(hn::LoadU(d, at), hn::LoadU(d, at - pixelBytes));
+    };
     const auto forSamples = [&](size_t k, auto&& vectorOf) {
         auto sum = hn::Zero(sumOf);
         for (size_t s = 0; s < kSamples; ++s)
-            for (size_t i = 0; i < kSampleBytes; i += hn::Lanes(d)) sum = hn::Add(sum, vectorOf(kSampleBytes + s * kSampleStep + i));
+            for (size_t i = 0; i < kSampleBytes; i += hn::Lanes(d))
+                sum = hn::Add(sum, vectorOf(kSampleBytes + s * kSampleStep + i));
         roughnesses[k] = static_cast<uint32_t>(hn::GetLane(hn::SumOfLanes(sumOf, sum)));
     };
     forSamples(0, [&](size_t at) { return hn::SumsOf8(roughnessOf(hn::LoadU(d, piece + at))); });
-    for (size_t k = 1; k < kPlainWays; ++k) forSamples(k, [&](size_t at) { return hn::SumsOf8(roughnessOf(behind(piece + at, kPixelWays[k]))); });
+    for (size_t k = 1; k < kPlainWays; ++k)
+        forSamples(k, [&](size_t at) { return hn::SumsOf8(roughnessOf(behind(piece + at, kPixelWays[k]))); });
     forSamples(kPlainWays, [&](size_t at) {
         const auto changed = behind(piece + at, 4);
         const auto green = hn::ShiftRight<8>(hn::And(hn::BitCast(pixels, changed), hn::Set(pixels, 0xff00)));
@@ -94,8 +104,10 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
         // red relative to green; green itself; blue relative to green
         forSamples(kPlainWays + 1 + before, [&](size_t at) {
             const auto now = behind(piece + at, 3), beside = hn::Sub(behind(piece + at + 1, 3), now);
-            const auto greens = hn::LoadU(d, kThirds.data() + (at + 2 - before) % 3), blues = hn::LoadU(d, kThirds.data() + (at + 1 - before) % 3);
-            return hn::Add(hn::SumsOf8(hn::And(greens, roughnessOf(now))), hn::SumsOf8(hn::AndNot(blues, roughnessOf(beside))));
+            const auto greens = hn::LoadU(d, kThirds.data() + (at + 2 - before) % 3),
+                       blues = hn::LoadU(d, kThirds.data() + (at + 1 - before) % 3);
+            return hn::Add(hn::SumsOf8(hn::And(greens, roughnessOf(now))),
+                           hn::SumsOf8(hn::AndNot(blues, roughnessOf(beside))));
         });
     }
 }
@@ -115,8 +127,10 @@ size_t differencesVectors(const uint8_t* piece, size_t pixelBytes, uint32_t* wor
             count += hn::CountTrue(d, there);
             hn::StoreMaskBits(d, there, bits);
         }
-        if (lanes >= 8) std::memcpy(mask + i / 8, bits, lanes / 8);
-        else mask[i / 8] = static_cast<uint8_t>((i % 8 == 0 ? 0 : mask[i / 8]) | bits[0] << i % 8);
+        if (lanes >= 8)
+            std::memcpy(mask + i / 8, bits, lanes / 8);
+        else
+            mask[i / 8] = static_cast<uint8_t>((i % 8 == 0 ? 0 : mask[i / 8]) | bits[0] << i % 8);
     }
     return count;
 }
@@ -140,7 +154,8 @@ size_t fromPlanesVectors(const uint8_t* planes, size_t count, uint8_t* words) {
     size_t i = 0;
     const hn::ScalableTag<uint8_t> d;
     const auto plane = [&](size_t p) { return hn::LoadU(d, planes + p * count + i); };
-    for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) hn::StoreInterleaved4(plane(0), plane(1), plane(2), plane(3), d, words + 4 * i);
+    for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d))
+        hn::StoreInterleaved4(plane(0), plane(1), plane(2), plane(3), d, words + 4 * i);
     return i;
 }
 
@@ -222,11 +237,16 @@ size_t sumDifferences(const uint32_t* words, const std::byte* mask, size_t pixel
         }
     }
     const auto* const from = reinterpret_cast<const uint8_t*>(all);
-    if (pixelBytes == 1) sum<uint8_t>(from, bytesOf(piece));
-    else if (pixelBytes == 2) sum<uint16_t>(from, bytesOf(piece));
-    else if (pixelBytes == 3) sumTriples(from, bytesOf(piece));
-    else if (pixelBytes == 4) sum<uint32_t>(from, bytesOf(piece));
-    else sum<uint64_t>(from, bytesOf(piece));
+    if (pixelBytes == 1)
+        sum<uint8_t>(from, bytesOf(piece));
+    else if (pixelBytes == 2)
+        sum<uint16_t>(from, bytesOf(piece));
+    else if (pixelBytes == 3)
+        sumTriples(from, bytesOf(piece));
+    else if (pixelBytes == 4)
+        sum<uint32_t>(from, bytesOf(piece));
+    else
+        sum<uint64_t>(from, bytesOf(piece));
     return static_cast<size_t>(words - first);
 }
 

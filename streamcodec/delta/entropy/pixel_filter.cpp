@@ -94,7 +94,8 @@ void PixelFilterEncoder::takeApart(std::span<const std::byte> pages, std::span<c
     pixelPieces_ = pieces - static_cast<size_t>(std::ranges::count(ways, uint8_t{0}));
     rest_.clear();
     front_.resize(frontBytes(pages.size(), pixelPieces_));
-    if (words_.size() < pixelPieces_ * kPieceWords + kPieceWordRoom) words_.resize(pixelPieces_ * kPieceWords + kPieceWordRoom);
+    if (words_.size() < pixelPieces_ * kPieceWords + kPieceWordRoom)
+        words_.resize(pixelPieces_ * kPieceWords + kPieceWordRoom);
     std::byte* mask = front_.data() + pieces;
     size_t count = 0;
     for (size_t i = 0; i < pieces; ++i) {
@@ -107,7 +108,8 @@ void PixelFilterEncoder::takeApart(std::span<const std::byte> pages, std::span<c
         }
         std::byte apart[kPageBytes];
         if (takesColoursApart(way)) subtractGreen(piece.data(), way, apart);
-        count += differences(takesColoursApart(way) ? apart : piece.data(), pixelBytesOf(way), words_.data() + count, mask);
+        count +=
+            differences(takesColoursApart(way) ? apart : piece.data(), pixelBytesOf(way), words_.data() + count, mask);
         mask += kPieceMaskBytes;
     }
     const auto last = pages.subspan(pieces * kPageBytes);
@@ -117,7 +119,9 @@ void PixelFilterEncoder::takeApart(std::span<const std::byte> pages, std::span<c
     toPlanes(words_.data(), count, planes_.data());
 }
 
-size_t frontBytes(size_t pagesBytes, size_t pixelPieces) { return pagesBytes / kPageBytes + pixelPieces * kPieceMaskBytes; }
+size_t frontBytes(size_t pagesBytes, size_t pixelPieces) {
+    return pagesBytes / kPageBytes + pixelPieces * kPieceMaskBytes;
+}
 
 bool PixelFilterDecoder::begin(std::span<const std::byte> front, size_t pagesBytes, size_t pixelPieces) {
     const size_t pieces = pagesBytes / kPageBytes;
@@ -141,7 +145,8 @@ bool PixelFilterDecoder::begin(std::span<const std::byte> front, size_t pagesByt
     return true;
 }
 
-void PixelFilterDecoder::join(std::span<const std::byte> planes, std::span<const std::byte> rest, std::span<std::byte> pages) {
+void PixelFilterDecoder::join(std::span<const std::byte> planes, std::span<const std::byte> rest,
+                              std::span<std::byte> pages) {
     const size_t count = planeBytes_ / 4;
     if (words_.size() < count + 1) words_.resize(count + 1);
     fromPlanes(planes.data(), count, words_.data());
@@ -154,7 +159,8 @@ void PixelFilterDecoder::join(std::span<const std::byte> planes, std::span<const
             rest = rest.subspan(kPageBytes);
         } else {
             std::byte apart[kPageBytes];
-            words += sumDifferences(words, masks.data(), pixelBytesOf(way), takesColoursApart(way) ? apart : pages.data());
+            words +=
+                sumDifferences(words, masks.data(), pixelBytesOf(way), takesColoursApart(way) ? apart : pages.data());
             if (takesColoursApart(way)) addGreen(apart, way, pages.data());
             masks = masks.subspan(kPieceMaskBytes);
         }

@@ -18,9 +18,9 @@ enum class Prediction : uint8_t { Same, IntegerLine, FloatLine, FloatCurve, Cont
 constexpr size_t kGuesses = 5;
 
 struct WordState {
-    uint32_t before = 0, twoBefore = 0; // previous values; the last one is in the entry
+    uint32_t before = 0, twoBefore = 0;   // previous values; the last one is in the entry
     std::array<uint8_t, kGuesses> cost{}; // in quarters of a bit
-    uint8_t other = 0; // distance in changed words to the word this one is predicted from (Guess::Other); 0: none
+    uint8_t other = 0;    // distance in changed words to the word this one is predicted from (Guess::Other); 0: none
     bool negated = false; // predicted with the opposite sign, as a float
 };
 
@@ -29,17 +29,20 @@ struct EntryModel {
     uint64_t begin = 0; // index of its first word, counted from the start
     uint32_t words = 0; // 0: none
     uint32_t round = 0; // round of its last change
-    double speed = 1; // last time step relative to the one before
+    double speed = 1;   // last time step relative to the one before
 };
 
 class PredictorState {
 public:
-    explicit PredictorState(uint32_t words) : words_(words), items_(std::min<size_t>(words / kMinWords + 2, DictionaryEntry::kMaxModels)) {}
+    explicit PredictorState(uint32_t words)
+        : words_(words), items_(std::min<size_t>(words / kMinWords + 2, DictionaryEntry::kMaxModels)) {}
 
     // Returns the state of an entry, creating it if needed.
     EntryModel& open(DictionaryEntry& item, std::span<const std::byte> bytes) {
         const auto words = static_cast<uint32_t>(bytes.size() / 4);
-        if (EntryModel& known = items_[item.model < items_.size() ? item.model : 0]; known.words == words && end_ - known.begin <= words_.size()) return known;
+        if (EntryModel& known = items_[item.model < items_.size() ? item.model : 0];
+            known.words == words && end_ - known.begin <= words_.size())
+            return known;
         if (const uint64_t at = end_ % words_.size(); at + words > words_.size()) end_ += words_.size() - at;
         next_ = next_ + 1 < items_.size() ? next_ + 1 : 1;
         item.model = next_;
@@ -57,7 +60,7 @@ public:
 private:
     static constexpr uint32_t kMinWords = 8; // average words per state
 
-    std::vector<WordState> words_; // a ring
+    std::vector<WordState> words_;  // a ring
     std::vector<EntryModel> items_; // index 0 is unused
     uint64_t end_ = 0;
     uint32_t next_ = 0;

@@ -16,7 +16,8 @@ class BitModel {
 public:
     [[nodiscard]] uint32_t zero() const { return zero_; } // of 65536
     void learn(bool bit) {
-        static constexpr std::array<uint16_t, 16> kShares{26214, 18724, 14563, 11915, 10082, 8738, 7710, 6898, 5957, 5041, 4369, 3855, 3277, 2849, 2427, 2048};
+        static constexpr std::array<uint16_t, 16> kShares{26214, 18724, 14563, 11915, 10082, 8738, 7710, 6898,
+                                                          5957,  5041,  4369,  3855,  3277,  2849, 2427, 2048};
         const int32_t wrong = (bit ? kLeast : kMost) - zero_;
         zero_ = static_cast<uint16_t>(zero_ + wrong * kShares[seen_] / 65536);
         seen_ = static_cast<uint16_t>(seen_ + (seen_ + 1u < kShares.size()));
@@ -46,7 +47,8 @@ public:
         const int rate = kRates[seen_ >> 2];
         seen_ = static_cast<uint8_t>(seen_ + (seen_ + 1u < 4 * kRates.size()));
         const std::array<int16_t, kSymbols>& goals = kGoals[symbol];
-        for (uint32_t i = 0; i < kSymbols; ++i) from_[i] = static_cast<int16_t>(from_[i] + (static_cast<int16_t>(goals[i] - from_[i]) >> rate));
+        for (uint32_t i = 0; i < kSymbols; ++i)
+            from_[i] = static_cast<int16_t>(from_[i] + (static_cast<int16_t>(goals[i] - from_[i]) >> rate));
     }
 
 private:
@@ -56,11 +58,14 @@ private:
         std::array<std::array<int16_t, kSymbols>, kSymbols> goals{};
         for (uint32_t symbol = 0; symbol < kSymbols; ++symbol)
             for (uint32_t i = 0; i < kSymbols; ++i)
-                goals[symbol][i] = static_cast<int16_t>(static_cast<int>(i) * kLeast + (i <= symbol ? 0 : (1 << kBits) - kLeast * static_cast<int>(kSymbols)));
+                goals[symbol][i] =
+                    static_cast<int16_t>(static_cast<int>(i) * kLeast +
+                                         (i <= symbol ? 0 : (1 << kBits) - kLeast * static_cast<int>(kSymbols)));
         return goals;
     }();
     static constexpr std::array<uint8_t, 6> kRates{2, 3, 3, 4, 4, 5};
-    std::array<int16_t, kSymbols> from_{0, 1024, 2048, 3072, 4096, 5120, 6144, 7168, 8192, 9216, 10240, 11264, 12288, 13312, 14336, 15360};
+    std::array<int16_t, kSymbols> from_{0,    1024, 2048,  3072,  4096,  5120,  6144,  7168,
+                                        8192, 9216, 10240, 11264, 12288, 13312, 14336, 15360};
     uint8_t seen_ = 0;
 };
 

@@ -11,7 +11,7 @@ namespace mural::delta {
 
 namespace {
 
-constexpr int kZstdWindowLog = 20; // 1 MiB, per section and side
+constexpr int kZstdWindowLog = 20;                 // 1 MiB, per section and side
 constexpr size_t kMaxRoomBytes = size_t{32} << 10; // output growth step; new room is zero-filled first
 constexpr size_t kLz4Window = 65536;
 constexpr size_t kLz4PieceBytes = size_t{128} << 10; // of a section
@@ -22,10 +22,11 @@ class Lz4Window {
 public:
     static constexpr size_t kRoomBytes = kLz4Window + 2 * kLz4PieceBytes;
 
-    [[nodiscard]] std::span<const std::byte> last() const { return {room_.get() + end_ - std::min(end_, kLz4Window), std::min(end_, kLz4Window)}; }
+    [[nodiscard]] std::span<const std::byte> last() const {
+        return {room_.get() + end_ - std::min(end_, kLz4Window), std::min(end_, kLz4Window)};
+    }
     // Returns room for a piece after the existing bytes. move(to, last()) must copy those bytes, which may overlap.
-    template <typename Move>
-    std::span<std::byte> add(size_t sizeBytes, Move&& move) {
+    template <typename Move> std::span<std::byte> add(size_t sizeBytes, Move&& move) {
         if (!room_) room_ = std::make_unique_for_overwrite<std::byte[]>(kRoomBytes);
         if (sizeBytes > kRoomBytes - end_) {
             const auto kept = last();
@@ -100,9 +101,12 @@ struct SectionCompressor::State {
             const auto piece = bytes.first(std::min(bytes.size(), kLz4PieceBytes));
             bytes = bytes.subspan(piece.size());
             // LZ4 uses its whole window only for input that follows it in memory.
-            const auto copy = window.add(piece.size(), [&](std::byte* to, std::span<const std::byte> last) { LZ4_saveDict(lz4.get(), chars(to), static_cast<int>(last.size())); });
+            const auto copy = window.add(piece.size(), [&](std::byte* to, std::span<const std::byte> last) {
+                LZ4_saveDict(lz4.get(), chars(to), static_cast<int>(last.size()));
+            });
             copyBytes(piece, copy);
-            const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy.data()), chars(packed.get()), static_cast<int>(copy.size()), kRoom, 1);
+            const int size = LZ4_compress_fast_continue(lz4.get(), chars(copy.data()), chars(packed.get()),
+                                                        static_cast<int>(copy.size()), kRoom, 1);
             if (size <= 0) return false;
             putSize(into, static_cast<uint32_t>(size));
             into.insert(into.end(), packed.get(), packed.get() + size);
@@ -160,10 +164,13 @@ struct SectionDecompressor::State {
             const auto piece = into.first(std::min(into.size(), kLz4PieceBytes));
             if (size > bytes.size()) return false;
             const auto last = window.last();
-            const int got = LZ4_decompress_safe_usingDict(chars(bytes.data()), chars(piece.data()), static_cast<int>(size), static_cast<int>(piece.size()),
+            const int got = LZ4_decompress_safe_usingDict(chars(bytes.data()), chars(piece.data()),
+                                                          static_cast<int>(size), static_cast<int>(piece.size()),
                                                           chars(last.data()), static_cast<int>(last.size()));
             if (got < 0 || static_cast<size_t>(got) != piece.size()) return false;
-            copyBytes(piece, window.add(piece.size(), [](std::byte* to, std::span<const std::byte> kept) { std::memmove(to, kept.data(), kept.size()); }));
+            copyBytes(piece, window.add(piece.size(), [](std::byte* to, std::span<const std::byte> kept) {
+                std::memmove(to, kept.data(), kept.size());
+            }));
             bytes = bytes.subspan(size);
             into = into.subspan(piece.size());
         }

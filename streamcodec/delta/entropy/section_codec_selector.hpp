@@ -20,7 +20,9 @@ public:
     [[nodiscard]] Coding choose(size_t sizeBytes, double linkNsPerByte);
     // Returns the number of bytes of the last section on which to measure LZ4 in addition to the chosen coding; 0:
     // none. A trial on all of a long section, such as the first pictures of a program, would increase its cost by half.
-    [[nodiscard]] size_t sampleBytes(size_t sizeBytes) const { return sizeBytes >= kLongBytes && known(Coding::Zstd) && (!known(Coding::Lz4) || triesAgain()) ? kLongBytes : 0; }
+    [[nodiscard]] size_t sampleBytes(size_t sizeBytes) const {
+        return sizeBytes >= kLongBytes && known(Coding::Zstd) && (!known(Coding::Lz4) || triesAgain()) ? kLongBytes : 0;
+    }
     // Returns true if the last section should be timed. Reading a thread's CPU clock takes as long as compressing a
     // short section.
     [[nodiscard]] bool wantsTime(Coding coding, size_t sizeBytes) const;

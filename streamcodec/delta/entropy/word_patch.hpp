@@ -14,14 +14,14 @@
 namespace mural::delta {
 
 struct WordSpan {
-    uint32_t kept = 0; // unchanged words since the last span
+    uint32_t kept = 0;    // unchanged words since the last span
     uint32_t changed = 0; // changed words that follow
 };
 
 class WordPatch {
 public:
     std::vector<WordSpan> spans;
-    size_t costBytes = 0; // of spans and words
+    size_t costBytes = 0;    // of spans and words
     size_t changedBytes = 0; // of words
 
     // Compares two entries of equal size, a multiple of 4. Returns false as soon as the cost exceeds `mostBytes`.
@@ -32,7 +32,11 @@ public:
         size_t changed = 0; // in words
         uint32_t w = 0, from = 0, block = 0;
         uint64_t bits = 0; // remaining changed words of the block
-        const auto load = [&](uint32_t at) { bits = at + kBlock <= words ? changedWords(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4) : changedOf(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4, words - at); };
+        const auto load = [&](uint32_t at) {
+            bits = at + kBlock <= words
+                       ? changedWords(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4)
+                       : changedOf(old.data() + size_t{at} * 4, now.data() + size_t{at} * 4, words - at);
+        };
         for (; block < words; block += kBlock) {
             load(block);
             while (bits != 0) {
@@ -84,7 +88,8 @@ private:
     // Returns one bit per word.
     static uint64_t changedOf(const std::byte* old, const std::byte* now, uint32_t words) {
         uint64_t bits = 0;
-        for (uint32_t i = 0; i < words; ++i) bits |= uint64_t{std::memcmp(old + size_t{i} * 4, now + size_t{i} * 4, 4) != 0} << i;
+        for (uint32_t i = 0; i < words; ++i)
+            bits |= uint64_t{std::memcmp(old + size_t{i} * 4, now + size_t{i} * 4, 4) != 0} << i;
         return bits;
     }
 };

@@ -34,7 +34,22 @@ struct Widths {
     uint8_t least = 0;
     uint8_t bits = 0; // additional bits that select the width
 };
-constexpr std::array<Widths, SymbolModel::kSymbols> kWidths{{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}, {6, 0}, {7, 0}, {8, 0}, {9, 0}, {10, 0}, {11, 1}, {13, 2}, {17, 2}, {21, 2}, {25, 3}}};
+constexpr std::array<Widths, SymbolModel::kSymbols> kWidths{{{0, 0},
+                                                             {1, 0},
+                                                             {2, 0},
+                                                             {3, 0},
+                                                             {4, 0},
+                                                             {5, 0},
+                                                             {6, 0},
+                                                             {7, 0},
+                                                             {8, 0},
+                                                             {9, 0},
+                                                             {10, 0},
+                                                             {11, 1},
+                                                             {13, 2},
+                                                             {17, 2},
+                                                             {21, 2},
+                                                             {25, 3}}};
 constexpr auto kSymbolOfWidth = [] {
     std::array<uint8_t, 33> symbols{};
     for (uint8_t s = 0; s < kWidths.size(); ++s)
@@ -67,7 +82,8 @@ WordPredictor::Curve WordPredictor::guess(const WordState& word, uint32_t old, G
     uint32_t& bent = guesses[static_cast<size_t>(Prediction::FloatCurve)];
     line = bent = old;
     if (isPlain(old) && isPlain(word.before) && isPlain(word.twoBefore) && old != word.before) {
-        const double last = floatOf(old), step = last - floatOf(word.before), stepBefore = (floatOf(word.before) - floatOf(word.twoBefore)) * item_->speed;
+        const double last = floatOf(old), step = last - floatOf(word.before),
+                     stepBefore = (floatOf(word.before) - floatOf(word.twoBefore)) * item_->speed;
         const double bend = (step - stepBefore) * bendShare_;
         line = wordOf(last + step * speed_);
         curve.value = last + step * speed_ + bend * speed_ * (speed_ + 1);
@@ -88,7 +104,8 @@ template <class Coder> uint32_t WordPredictor::code(Coder& coder, uint32_t i, ui
     for (size_t g = 1; g < kGuesses; ++g)
         if (word.cost[g] < word.cost[best]) best = g;
     const uint32_t expected = ordered(guesses[best]);
-    const uint32_t distance = codeDistance(coder, std::min<uint32_t>(word.cost[best] / 7u, kContexts - 1), ordered(now) - expected);
+    const uint32_t distance =
+        codeDistance(coder, std::min<uint32_t>(word.cost[best] / 7u, kContexts - 1), ordered(now) - expected);
     const uint32_t value = wordOf(expected + distance);
     learn(word, value, guesses, curve);
     word.twoBefore = word.before;
@@ -101,8 +118,10 @@ template <class Coder> uint32_t WordPredictor::codeDistance(Coder& coder, uint32
     uint32_t number = folded(distance), width = widthOf(number);
     const uint32_t symbol = coder.code(widths_[context], uint32_t{kSymbolOfWidth[width]});
     const Widths widths = kWidths[symbol];
-    if (widths.bits > 0) width = widths.least + coder.code((width - widths.least) & 7, unsigned{widths.bits});
-    else width = widths.least;
+    if (widths.bits > 0)
+        width = widths.least + coder.code((width - widths.least) & 7, unsigned{widths.bits});
+    else
+        width = widths.least;
     if (width <= 1) return unfolded(width);
     uint32_t value = 1;
     for (unsigned bits = std::min(width, 32u) - 1; bits > 0;) {
@@ -123,7 +142,8 @@ void WordPredictor::learn(WordState& word, uint32_t value, const Guesses& guesse
     // A smoothly moving word reveals the time step; faster words are more precise.
     constexpr uint32_t kGain = 8;
     const uint32_t curved = word.cost[static_cast<size_t>(Prediction::FloatCurve)];
-    if (curve.known && curved + kGain <= word.cost[static_cast<size_t>(Prediction::Same)] && isPlain(value) && curve.slope != 0) {
+    if (curve.known && curved + kGain <= word.cost[static_cast<size_t>(Prediction::Same)] && isPlain(value) &&
+        curve.slope != 0) {
         const double share = curve.slope / stepAt(value), weight = share * share;
         const double speed = speed_ + (floatOf(value) - curve.value) / curve.slope * (weight / (weight_ + weight));
         if (speed > 0.05 && speed < 20) {

@@ -36,7 +36,7 @@ private:
     PredictorState models_;
     EntryModel* item_ = nullptr;
     WordState* word_ = nullptr; // state of the entry's first word
-    double bendShare_ = 0; // fraction of the change of steps per time step
+    double bendShare_ = 0;      // fraction of the change of steps per time step
 
     // A round: every changing entry changes once.
     uint32_t round_ = 1;

@@ -12,7 +12,9 @@
 namespace mural::trace {
 namespace {
 
-bool fitsPattern(const std::string& pattern, const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; }
+bool fitsPattern(const std::string& pattern, const std::string& name) {
+    return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+}
 
 struct Count {
     uint64_t calls = 0;
@@ -21,7 +23,8 @@ struct Count {
 
 class Dump {
 public:
-    Dump(const DumpOptions& options, const std::function<bool(const std::string&)>& line) : options_(options), line_(line), absent_(options.calls) {}
+    Dump(const DumpOptions& options, const std::function<bool(const std::string&)>& line)
+        : options_(options), line_(line), absent_(options.calls) {}
 
     // Returns false to stop.
     bool entry(const Entry& e) {
@@ -56,7 +59,8 @@ private:
         if (!parseEvent(e.payload, event)) return true;
         if (event.kind == Event::ClientGone) frames_.clientGone(event.client);
         if (!inRange() || options_.summary || !options_.calls.empty()) return true;
-        return line_(event.kind == Event::ClientCame ? fmt::format("{:6} {}    program came: {}, pid {}", frame_, event.client, event.name, event.pid)
+        return line_(event.kind == Event::ClientCame ? fmt::format("{:6} {}    program came: {}, pid {}", frame_,
+                                                                   event.client, event.name, event.pid)
                                                      : fmt::format("{:6} {}    program gone", frame_, event.client));
     }
 
@@ -70,7 +74,9 @@ private:
             const bool ended = frames_.record(e.stream, r) > 0;
             if (!go || (ended && shows && options_.summary && !endFrame())) return false;
         }
-        if (walk.malformed() && inRange() && !options_.summary) return line_(fmt::format("{:6} {}.{:<2} malformed record", frame_, wire::clientOf(e.stream), e.stream & 0xffff));
+        if (walk.malformed() && inRange() && !options_.summary)
+            return line_(
+                fmt::format("{:6} {}.{:<2} malformed record", frame_, wire::clientOf(e.stream), e.stream & 0xffff));
         return true;
     }
 
@@ -111,7 +117,9 @@ private:
     bool table(const std::map<std::string, Count>& counts) {
         std::vector<std::pair<std::string, Count>> rows(counts.begin(), counts.end());
         std::ranges::stable_sort(rows, [](const auto& a, const auto& b) { return a.second.bytes > b.second.bytes; });
-        return std::ranges::all_of(rows, [&](const auto& row) { return line_(fmt::format("  {:10} {:12} bytes  {}", row.second.calls, row.second.bytes, row.first)); });
+        return std::ranges::all_of(rows, [&](const auto& row) {
+            return line_(fmt::format("  {:10} {:12} bytes  {}", row.second.calls, row.second.bytes, row.first));
+        });
     }
 
     const DumpOptions& options_;
@@ -130,7 +138,8 @@ Result<bool> hasUnendedFrame(TraceReader& reader) {
     const auto read = forEachEntry(reader, [&](const Entry& e) {
         unended = true;
         ClientEvent event;
-        if (e.stream == 0 && parseEvent(e.payload, event) && event.kind == Event::ClientGone) frames.clientGone(event.client);
+        if (e.stream == 0 && parseEvent(e.payload, event) && event.kind == Event::ClientGone)
+            frames.clientGone(event.client);
         if (e.stream == 0) return true;
         RecordWalk walk(e.payload);
         RecordView r;
@@ -145,7 +154,8 @@ Result<bool> hasUnendedFrame(TraceReader& reader) {
 bool fitsSomeCall(const std::string& pattern) {
     for (uint16_t opcode = 1; opcode < wire::kFirstGlOpcode; ++opcode)
         if (fitsPattern(pattern, recordName(opcode))) return true;
-    return std::ranges::any_of(commandTable(), [&](const CommandInfo& command) { return fitsPattern(pattern, command.name); });
+    return std::ranges::any_of(commandTable(),
+                               [&](const CommandInfo& command) { return fitsPattern(pattern, command.name); });
 }
 
 Result<void> checkFrames(TraceReader& reader, int64_t lastFrame) {
@@ -156,7 +166,8 @@ Result<void> checkFrames(TraceReader& reader, int64_t lastFrame) {
     return unended.value() ? Result<void>() : reader.noSuchFrames(reader.frames());
 }
 
-Result<DumpReport> dump(TraceReader& reader, const DumpOptions& options, const std::function<bool(const std::string&)>& line) {
+Result<DumpReport> dump(TraceReader& reader, const DumpOptions& options,
+                        const std::function<bool(const std::string&)>& line) {
     Dump dump(options, line);
     if (auto read = forEachEntry(reader, [&](const Entry& e) { return dump.entry(e); }); !read) return read.error();
     dump.finish();

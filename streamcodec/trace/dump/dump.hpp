@@ -15,7 +15,7 @@ struct DumpOptions {
     int64_t firstFrame = 1; // of the wall
     int64_t lastFrame = INT64_MAX;
     std::vector<std::string> calls; // name patterns, with * for any characters; empty: all
-    bool summary = false; // counts and bytes instead of calls
+    bool summary = false;           // counts and bytes instead of calls
 };
 
 struct DumpReport {
@@ -30,6 +30,7 @@ bool fitsSomeCall(const std::string& pattern);
 Result<void> checkFrames(TraceReader& reader, int64_t lastFrame);
 
 // Passes each line to `line`, whose result false stops without an error.
-Result<DumpReport> dump(TraceReader& reader, const DumpOptions& options, const std::function<bool(const std::string&)>& line);
+Result<DumpReport> dump(TraceReader& reader, const DumpOptions& options,
+                        const std::function<bool(const std::string&)>& line);
 
 } // namespace mural::trace

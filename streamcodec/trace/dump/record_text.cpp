@@ -53,13 +53,16 @@ const OwnRecord* ownRecord(uint16_t opcode) {
     return nullptr;
 }
 
-template <class T> std::string loaded(Element element, T value) { return numberText(element, 0, reinterpret_cast<const std::byte*>(&value)); }
+template <class T> std::string loaded(Element element, T value) {
+    return numberText(element, 0, reinterpret_cast<const std::byte*>(&value));
+}
 
 std::string configText(Args& in) {
     wire::WindowConfig c{};
     if (const auto* p = in.fixed<wire::WindowConfig>(sizeof c)) std::memcpy(&c, p, sizeof c);
-    return fmt::format("{}x{} rgba {},{},{},{} depth {} stencil {} samples {}{}{}{}{}", c.width, c.height, c.red, c.green, c.blue, c.alpha, c.depth, c.stencil, c.samples,
-                       c.doubleBuffer ? " double" : " single", c.stereo ? " stereo" : "", c.srgb ? " srgb" : "", c.isPbuffer ? " pbuffer" : "");
+    return fmt::format("{}x{} rgba {},{},{},{} depth {} stencil {} samples {}{}{}{}{}", c.width, c.height, c.red,
+                       c.green, c.blue, c.alpha, c.depth, c.stencil, c.samples, c.doubleBuffer ? " double" : " single",
+                       c.stereo ? " stereo" : "", c.srgb ? " srgb" : "", c.isPbuffer ? " pbuffer" : "");
 }
 
 std::string dataText(const Data& d, Travel travel, Element element, uint16_t group) {
@@ -74,7 +77,8 @@ std::string textsText(const Data& d, int64_t count) {
     if (!texts.parse(d, count)) return "malformed";
     std::string text = "[";
     for (size_t i = 0; i < texts.count(); ++i)
-        text += (i > 0 ? ", " : "") + quoted(std::as_bytes(std::span(texts.pointers()[i], static_cast<size_t>(texts.lengths()[i]))));
+        text += (i > 0 ? ", " : "") +
+                quoted(std::as_bytes(std::span(texts.pointers()[i], static_cast<size_t>(texts.lengths()[i]))));
     return text + "]";
 }
 
@@ -97,7 +101,8 @@ std::string ownText(const OwnRecord& own, Args& in) {
         const std::string_view one = left.substr(0, left.find(' '));
         left.remove_prefix(std::min(left.size(), one.size() + 1));
         const size_t colon = one.find(':');
-        text += fmt::format("{}{}={}", text.empty() ? "" : ", ", one.substr(0, colon), ownArgument(in, colon == std::string_view::npos ? ' ' : one[colon + 1]));
+        text += fmt::format("{}{}={}", text.empty() ? "" : ", ", one.substr(0, colon),
+                            ownArgument(in, colon == std::string_view::npos ? ' ' : one[colon + 1]));
     }
     return text;
 }
@@ -111,9 +116,11 @@ std::string clientArraysText(Args& in) {
     for (uint32_t i = 0; records != nullptr && i < arrays; ++i) {
         client_arrays::ArrayRecord a{};
         std::memcpy(&a, records + i * sizeof a, sizeof a);
-        text += fmt::format("{}{{slot={}, size={}, type={}, stride={}, first={}, count={}}}", i > 0 ? ", " : "", a.slot, a.size, enumText(0, a.type), a.strideBytes, a.firstElement, a.elementCount);
+        text += fmt::format("{}{{slot={}, size={}, type={}, stride={}, first={}, count={}}}", i > 0 ? ", " : "", a.slot,
+                            a.size, enumText(0, a.type), a.strideBytes, a.firstElement, a.elementCount);
     }
-    for (uint32_t i = 0; i < spans && in.ok(); ++i) text += ", " + dataText(in.data(), Travel::Value, Element::Bytes, 0);
+    for (uint32_t i = 0; i < spans && in.ok(); ++i)
+        text += ", " + dataText(in.data(), Travel::Value, Element::Bytes, 0);
     return text;
 }
 
@@ -169,10 +176,14 @@ std::string recordText(const RecordView& record, StreamBlobs& blobs) {
     Args in(record.arguments, blobs);
     std::string text = recordName(record.opcode) + "(";
     const OwnRecord* own = ownRecord(record.opcode);
-    if (record.opcode == wire::kOpClientArrays) text += clientArraysText(in);
-    else if (own != nullptr) text += ownText(*own, in);
-    else if (record.opcode >= wire::kFirstGlOpcode && glOpcodeName(record.opcode) != nullptr) text += glText(record.opcode, in);
-    else return text + fmt::format("{} bytes), unknown", record.arguments.size());
+    if (record.opcode == wire::kOpClientArrays)
+        text += clientArraysText(in);
+    else if (own != nullptr)
+        text += ownText(*own, in);
+    else if (record.opcode >= wire::kFirstGlOpcode && glOpcodeName(record.opcode) != nullptr)
+        text += glText(record.opcode, in);
+    else
+        return text + fmt::format("{} bytes), unknown", record.arguments.size());
     const bool malformed = !in.ok() || (!blob && blobs.malformed());
     return text + (malformed ? "), malformed" : ")");
 }

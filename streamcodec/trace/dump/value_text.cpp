@@ -67,7 +67,8 @@ std::string arrayText(Element element, uint16_t group, std::span<const std::byte
     if (element == Element::Bytes) return fmt::format("<{} bytes>", bytes.size());
     const size_t each = bytesOf(element), count = bytes.size() / each;
     std::string text = "[";
-    for (size_t i = 0; i < std::min(count, kMaxElements); ++i) text += (i > 0 ? ", " : "") + numberText(element, group, bytes.data() + i * each);
+    for (size_t i = 0; i < std::min(count, kMaxElements); ++i)
+        text += (i > 0 ? ", " : "") + numberText(element, group, bytes.data() + i * each);
     return text + (count > kMaxElements ? fmt::format(", … {} in all]", count) : "]");
 }
 
@@ -75,10 +76,14 @@ std::string quoted(std::span<const std::byte> bytes) {
     std::string text = "\"";
     for (const std::byte byte : bytes.first(std::min(bytes.size(), kMaxText))) {
         const char c = static_cast<char>(byte);
-        if (c == '\n') text += "\\n";
-        else if (c == '"' || c == '\\') text += std::string("\\") + c;
-        else if (static_cast<unsigned char>(c) < 32 || c == 127) text += fmt::format("\\x{:02x}", static_cast<unsigned>(byte));
-        else text += c;
+        if (c == '\n')
+            text += "\\n";
+        else if (c == '"' || c == '\\')
+            text += std::string("\\") + c;
+        else if (static_cast<unsigned char>(c) < 32 || c == 127)
+            text += fmt::format("\\x{:02x}", static_cast<unsigned>(byte));
+        else
+            text += c;
     }
     return text + (bytes.size() > kMaxText ? fmt::format("…\" ({} bytes)", bytes.size()) : "\"");
 }

@@ -14,7 +14,8 @@ namespace {
 
 bool draws(uint16_t opcode) {
     const Family family = ruleOf(opcode).family;
-    return family == Family::Draw || family == Family::Begin || family == Family::CallList || family == Family::CallLists;
+    return family == Family::Draw || family == Family::Begin || family == Family::CallList ||
+           family == Family::CallLists;
 }
 
 // First pass: finds the needed part of earlier frames, and the requested frames. Records are numbered from 0 over the
@@ -28,7 +29,8 @@ public:
         if (e.stream != 0) return packet(e);
         ClientEvent event;
         if (!parseEvent(e.payload, event)) return true;
-        if (event.kind == Event::ClientCame && before) came.push_back({event.client, std::vector<std::byte>(e.payload.begin(), e.payload.end())});
+        if (event.kind == Event::ClientCame && before)
+            came.push_back({event.client, std::vector<std::byte>(e.payload.begin(), e.payload.end())});
         if (event.kind != Event::ClientGone) return true;
         frames_.clientGone(event.client);
         if (!before) return true;
@@ -41,10 +43,10 @@ public:
     LiveCommandLog log;
     // programs that existed at the start of the first frame
     std::vector<std::pair<uint32_t, std::vector<std::byte>>> came;
-    bool before = true; // before the first frame
+    bool before = true;       // before the first frame
     uint64_t beginRecord = 0; // first record of the first frame
-    uint64_t shownFrom = 0; // first visible swap
-    uint64_t endRecord = 0; // swap that ends the last frame
+    uint64_t shownFrom = 0;   // first visible swap
+    uint64_t endRecord = 0;   // swap that ends the last frame
     uint64_t beganNs = 0;
     uint64_t drawsBefore = 0;
 
@@ -84,7 +86,8 @@ private:
 
 class Copy {
 public:
-    Copy(const Survey& survey, TraceWriter& writer, TrimReport& report) : survey_(survey), writer_(writer), report_(report) {}
+    Copy(const Survey& survey, TraceWriter& writer, TrimReport& report)
+        : survey_(survey), writer_(writer), report_(report) {}
 
     // Writes the needed part of earlier frames.
     bool kept() {
@@ -106,7 +109,9 @@ public:
     [[nodiscard]] const Result<void>& failed() const { return failed_; }
 
 private:
-    [[nodiscard]] uint64_t timeOf(const Entry& e) const { return e.timeNs > survey_.beganNs ? e.timeNs - survey_.beganNs : 0; }
+    [[nodiscard]] uint64_t timeOf(const Entry& e) const {
+        return e.timeNs > survey_.beganNs ? e.timeNs - survey_.beganNs : 0;
+    }
 
     bool packet(const Entry& e) {
         kept_.clear();
@@ -117,8 +122,10 @@ private:
             more = number_ < survey_.endRecord;
             if (number_ < survey_.beginRecord) continue;
             const size_t at = kept_.size();
-            kept_.insert(kept_.end(), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset + r.sizeBytes));
-            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture) number(e.stream, r, at + r.sizeBytes - r.arguments.size(), number_ < survey_.shownFrom);
+            kept_.insert(kept_.end(), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset),
+                         e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset + r.sizeBytes));
+            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
+                number(e.stream, r, at + r.sizeBytes - r.arguments.size(), number_ < survey_.shownFrom);
         }
         return (kept_.empty() || put({e.stream, timeOf(e), kept_})) && more;
     }
@@ -167,7 +174,8 @@ Result<TrimReport> trim(TraceReader& reader, int64_t firstFrame, int64_t lastFra
     if (!writer) return writer.error();
     TraceWriter& out = **writer;
     About about = reader.about();
-    about.trimmed = "frames " + std::to_string(firstFrame) + " to " + std::to_string(lastFrame) + (about.trimmed.empty() ? "" : " of " + about.trimmed);
+    about.trimmed = "frames " + std::to_string(firstFrame) + " to " + std::to_string(lastFrame) +
+                    (about.trimmed.empty() ? "" : " of " + about.trimmed);
     if (auto r = out.begin(about, wire::kVersion, registryDigest()); !r) return r.error();
     TrimReport report;
     report.recordsBefore = survey.beginRecord;

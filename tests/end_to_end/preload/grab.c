@@ -235,11 +235,9 @@ static const struct Parameter packParameters[] = {
 };
 
 static const struct Parameter transferParameters[] = {
-    {0x0D10, 0}, /* map colour */
+    {0x0D10, 0},              /* map colour */
     {0x0D14, 1}, {0x0D15, 0}, /* red scale, bias, and so on */
-    {0x0D18, 1}, {0x0D19, 0},
-    {0x0D1A, 1}, {0x0D1B, 0},
-    {0x0D1C, 1}, {0x0D1D, 0},
+    {0x0D18, 1}, {0x0D19, 0}, {0x0D1A, 1}, {0x0D1B, 0}, {0x0D1C, 1}, {0x0D1D, 0},
 };
 
 enum { PACK_COUNT = 6, TRANSFER_COUNT = 9 };
@@ -251,19 +249,13 @@ struct Saved {
     int packCount, transferCount;
 };
 
-static int packParameterCount(const struct Abilities* can) {
-    return can->es && can->version < 30 ? 1 : PACK_COUNT;
-}
+static int packParameterCount(const struct Abilities* can) { return can->es && can->version < 30 ? 1 : PACK_COUNT; }
 
 /* ES has no byte swapping. */
-static int skipped(const struct Abilities* can, int index) {
-    return can->es && (index == 1 || index == 2);
-}
+static int skipped(const struct Abilities* can, int index) { return can->es && (index == 1 || index == 2); }
 
 static int hasReadFramebuffer(const struct Abilities* can) { return can->version >= 30; }
-static int hasPackBuffer(const struct Abilities* can) {
-    return can->es ? can->version >= 30 : can->version >= 21;
-}
+static int hasPackBuffer(const struct Abilities* can) { return can->es ? can->version >= 30 : can->version >= 21; }
 static int hasReadBuffer(const struct Abilities* can) { return !can->es || can->version >= 30; }
 static int hasFramebuffer(const struct Abilities* can) { return can->es ? can->version >= 20 : 0; }
 
@@ -293,8 +285,7 @@ static struct Saved saveState(const struct Gl* gl, const struct Abilities* can) 
         }
     }
     if (hasReadFramebuffer(can) || hasFramebuffer(can)) {
-        gl->getIntegerv(hasReadFramebuffer(can) ? GL_READ_FRAMEBUFFER_NAME : GL_FRAMEBUFFER_NAME,
-                        &saved.framebuffer);
+        gl->getIntegerv(hasReadFramebuffer(can) ? GL_READ_FRAMEBUFFER_NAME : GL_FRAMEBUFFER_NAME, &saved.framebuffer);
         bindRead(gl, can, 0);
     }
     if (hasPackBuffer(can)) {
@@ -307,8 +298,7 @@ static struct Saved saveState(const struct Gl* gl, const struct Abilities* can) 
     return saved;
 }
 
-static void
-restoreState(const struct Gl* gl, const struct Abilities* can, const struct Saved* saved) {
+static void restoreState(const struct Gl* gl, const struct Abilities* can, const struct Saved* saved) {
     if (hasReadBuffer(can)) {
         gl->readBuffer((unsigned)saved->readBuffer);
     }
@@ -526,14 +516,12 @@ EXPORT unsigned eglSwapBuffers(void* display, void* surface) {
 
 typedef unsigned (*SwapWithDamage)(void*, void*, const int*, int);
 
-EXPORT unsigned
-eglSwapBuffersWithDamageKHR(void* display, void* surface, const int* rectangles, int count) {
+EXPORT unsigned eglSwapBuffersWithDamageKHR(void* display, void* surface, const int* rectangles, int count) {
     grabEgl(display, surface);
     return ((SwapWithDamage)next(EGL_SWAP_DAMAGE_KHR))(display, surface, rectangles, count);
 }
 
-EXPORT unsigned
-eglSwapBuffersWithDamageEXT(void* display, void* surface, const int* rectangles, int count) {
+EXPORT unsigned eglSwapBuffersWithDamageEXT(void* display, void* surface, const int* rectangles, int count) {
     grabEgl(display, surface);
     return ((SwapWithDamage)next(EGL_SWAP_DAMAGE_EXT))(display, surface, rectangles, count);
 }

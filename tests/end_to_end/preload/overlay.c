@@ -23,7 +23,8 @@ static void* of_libc(const char* name) {
     return found;
 }
 
-/* Returns the next function of this name. The result is not cached, because its library may be unloaded and reloaded. */
+/* Returns the next function of this name. The result is not cached, because its library may be unloaded and reloaded.
+ */
 static void* next_of(const char* name) {
     const dlsym_function next = (dlsym_function)of_libc("dlsym");
     const dlopen_function open_next = (dlopen_function)of_libc("dlopen");
@@ -48,9 +49,11 @@ EXPORT unsigned eglSwapBuffers(void* display, void* surface) {
     return ((unsigned (*)(void*, void*))next_of("eglSwapBuffers"))(display, surface);
 }
 
-EXPORT void* XGetImage(void* display, unsigned long d, int x, int y, unsigned w, unsigned h, unsigned long planes, int format) {
+EXPORT void* XGetImage(void* display, unsigned long d, int x, int y, unsigned w, unsigned h, unsigned long planes,
+                       int format) {
     ++reads;
-    return ((void* (*)(void*, unsigned long, int, int, unsigned, unsigned, unsigned long, int))next_of("XGetImage"))(display, d, x, y, w, h, planes, format);
+    return ((void* (*)(void*, unsigned long, int, int, unsigned, unsigned, unsigned long, int))next_of("XGetImage"))(
+        display, d, x, y, w, h, planes, format);
 }
 
 static void* own(const char* name) {
@@ -62,14 +65,14 @@ static void* own(const char* name) {
 
 EXPORT gl_function glXGetProcAddressARB(const unsigned char* name) {
     void* found = own((const char*)name);
-    return found ? (gl_function)found : ((gl_function (*)(const unsigned char*))next_of("glXGetProcAddressARB"))(name);
+    return found ? (gl_function)found : ((gl_function(*)(const unsigned char*))next_of("glXGetProcAddressARB"))(name);
 }
 
 EXPORT gl_function glXGetProcAddress(const unsigned char* name) { return glXGetProcAddressARB(name); }
 
 EXPORT gl_function eglGetProcAddress(const char* name) {
     void* found = own(name);
-    return found ? (gl_function)found : ((gl_function (*)(const char*))next_of("eglGetProcAddress"))(name);
+    return found ? (gl_function)found : ((gl_function(*)(const char*))next_of("eglGetProcAddress"))(name);
 }
 
 /* RTLD_NEXT from the program is not handled: the lookup starts after this library. */
@@ -89,6 +92,7 @@ EXPORT int dlclose(void* handle) { return ((dlclose_function)of_libc("dlclose"))
 
 __attribute__((destructor)) static void tell(void) {
     char line[96];
-    const int length = snprintf(line, sizeof line, "the overlay saw %d swaps, %s\n", swaps, lookups ? "lookups" : "no lookups");
+    const int length =
+        snprintf(line, sizeof line, "the overlay saw %d swaps, %s\n", swaps, lookups ? "lookups" : "no lookups");
     if (swaps && write(STDOUT_FILENO, line, (size_t)length) < 0) _exit(3);
 }

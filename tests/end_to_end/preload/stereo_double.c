@@ -3,9 +3,9 @@
  *
  * Every framebuffer config reports stereo. GL_BACK_LEFT is the window's real back buffer. GL_BACK_RIGHT is a texture of
  * the window's size. A swap writes both to files (STEREO_OUT/w0/f0000.left.ppm, f0000.right.ppm, …; one folder per
- * drawable). It then fills both with magenta, so that pixels that the next frame does not draw are visible. GL_BACK would
- * denote both buffers. Drawing there ends the process, and so does any use of the right buffer that is not implemented.
- *   STEREO_OUT=folder   without it the library does nothing
+ * drawable). It then fills both with magenta, so that pixels that the next frame does not draw are visible. GL_BACK
+ * would denote both buffers. Drawing there ends the process, and so does any use of the right buffer that is not
+ * implemented. STEREO_OUT=folder   without it the library does nothing
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -122,10 +122,12 @@ static void loadGl(void) {
     real.readBuffer = (void (*)(unsigned))glFunction("glReadBuffer");
     real.bindFramebuffer = (void (*)(unsigned, unsigned))glFunction("glBindFramebuffer");
     real.genFramebuffers = (void (*)(int, unsigned*))glFunction("glGenFramebuffers");
-    real.framebufferTexture2D = (void (*)(unsigned, unsigned, unsigned, unsigned, int))glFunction("glFramebufferTexture2D");
+    real.framebufferTexture2D =
+        (void (*)(unsigned, unsigned, unsigned, unsigned, int))glFunction("glFramebufferTexture2D");
     real.genTextures = (void (*)(int, unsigned*))glFunction("glGenTextures");
     real.bindTexture = (void (*)(unsigned, unsigned))glFunction("glBindTexture");
-    real.texImage2D = (void (*)(unsigned, int, int, int, int, int, unsigned, unsigned, const void*))glFunction("glTexImage2D");
+    real.texImage2D =
+        (void (*)(unsigned, int, int, int, int, int, unsigned, unsigned, const void*))glFunction("glTexImage2D");
     real.getIntegerv = (void (*)(unsigned, int*))glFunction("glGetIntegerv");
     real.getBooleanv = (void (*)(unsigned, unsigned char*))glFunction("glGetBooleanv");
     real.getFloatv = (void (*)(unsigned, float*))glFunction("glGetFloatv");
@@ -328,7 +330,8 @@ EXPORT unsigned la_objopen(struct link_map* map, Lmid_t where, uintptr_t* cookie
     return strstr(map->l_name, "libGL") != NULL ? LA_FLG_BINDTO : 0;
 }
 
-EXPORT uintptr_t la_symbind64(Elf64_Sym* symbol, unsigned index, uintptr_t* from, uintptr_t* to, unsigned* flags, const char* name) {
+EXPORT uintptr_t la_symbind64(Elf64_Sym* symbol, unsigned index, uintptr_t* from, uintptr_t* to, unsigned* flags,
+                              const char* name) {
     (void)index;
     (void)from;
     (void)to;

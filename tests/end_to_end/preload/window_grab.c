@@ -152,8 +152,7 @@ EXPORT void* eglGetDisplay(Display* native) {
     return NEXT(eglGetDisplay)(native);
 }
 
-EXPORT void*
-eglCreateWindowSurface(void* display, void* config, Window window, const int32_t* attributes) {
+EXPORT void* eglCreateWindowSurface(void* display, void* config, Window window, const int32_t* attributes) {
     void* surface = NEXT(eglCreateWindowSurface)(display, config, window, attributes);
     if (surface != NULL && surfaceCount < MAX_WINDOWS) {
         surfaces[surfaceCount].surface = surface;

@@ -23,7 +23,8 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     Plane plane(shape.format, shape.width, shape.height);
     const auto decoded = codec->decode(bytes, plane.view());
     if (!decoded) {
-        must(!decoded.error().message.empty() && decoded.error().message.find('\n') == std::string::npos, "an error is one line");
+        must(!decoded.error().message.empty() && decoded.error().message.find('\n') == std::string::npos,
+             "an error is one line");
         return 0;
     }
     if (!registry.find(MURAL_FUZZ_CODEC).value().takes(shape.format)) {

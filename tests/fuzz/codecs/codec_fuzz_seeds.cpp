@@ -15,12 +15,14 @@ using namespace compositor::test;
 using Bytes = std::vector<std::byte>;
 
 Bytes headOf(const PlaneShape& s) {
-    return {static_cast<std::byte>(s.format), static_cast<std::byte>((s.width - 1) & 0xff), static_cast<std::byte>((s.width - 1) >> 8), static_cast<std::byte>(s.height - 1)};
+    return {static_cast<std::byte>(s.format), static_cast<std::byte>((s.width - 1) & 0xff),
+            static_cast<std::byte>((s.width - 1) >> 8), static_cast<std::byte>(s.height - 1)};
 }
 
 void save(const std::filesystem::path& folder, const std::string& name, const Bytes& bytes) {
     std::filesystem::create_directories(folder);
-    std::ofstream(folder / name, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(folder / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 const char* nameOf(Content c) {
@@ -34,10 +36,12 @@ void codec(const std::filesystem::path& folder, CodecRegistry& registry, const s
     std::mt19937 random(1);
     const bool ownFormats = name == "bitplane" || name == "slope"; // the others ignore the meaning of a word
     for (const PlaneFormat format : kEveryFormat) {
-        if (!info.takes(format) || (!ownFormats && format != PlaneFormat::Rgba8 && format != PlaneFormat::D24S8)) continue;
+        if (!info.takes(format) || (!ownFormats && format != PlaneFormat::Rgba8 && format != PlaneFormat::D24S8))
+            continue;
         for (const Content content : kEveryContent) {
             // Small planes of every kind. For RGBA8 and depth, also one with several tiles, where it stays small.
-            const bool large = content == Content::Uniform && (format == PlaneFormat::Rgba8 || format == PlaneFormat::D24S8);
+            const bool large =
+                content == Content::Uniform && (format == PlaneFormat::Rgba8 || format == PlaneFormat::D24S8);
             Plane plane = makePlane(random, format, content, large ? 300 : 21, large ? 70 : 6);
             if (large) plane.view().row(40)[4 * 270] ^= std::byte{7};
             Bytes bytes((*made)->boundBytes(shapeOf(plane.view())));
@@ -76,6 +80,8 @@ int main(int argc, char** argv) {
         return 1;
     }
     mural::compositor::CodecRegistry registry;
-    for (const char* name : {"rle64", "rle-components", "rle-swizzled", "bitplane", "slope", "bitplane-zstd", "slope-zstd", "lz4", "zstd", "yuv420", "jpeg-90"}) mural::fuzz::codec(argv[1], registry, name);
+    for (const char* name : {"rle64", "rle-components", "rle-swizzled", "bitplane", "slope", "bitplane-zstd",
+                             "slope-zstd", "lz4", "zstd", "yuv420", "jpeg-90"})
+        mural::fuzz::codec(argv[1], registry, name);
     mural::fuzz::unchangedTiles(argv[1]);
 }

@@ -42,7 +42,8 @@ uint64_t joinPieces(std::span<const std::byte> input) {
     const auto front = takeSized(input);
     delta::PixelFilterDecoder joiner;
     if (!joiner.begin(front, pagesBytes, pieces)) return 0;
-    must(joiner.planeBytes() <= pieces * delta::kPageBytes && joiner.restBytes() <= pagesBytes, "parts are no larger than the pages");
+    must(joiner.planeBytes() <= pieces * delta::kPageBytes && joiner.restBytes() <= pagesBytes,
+         "parts are no larger than the pages");
     // Missing bytes are read as 0.
     std::vector<std::byte> planes(joiner.planeBytes()), rest(joiner.restBytes()), pages(pagesBytes);
     std::ranges::copy(take(input, planes.size()), planes.begin());

@@ -37,7 +37,8 @@ Bytes frame(uint32_t seed, uint32_t number, bool pages) {
         uint32_t words = 1 + static_cast<uint32_t>(random() % 6);
         if (pages && random() % 5 == 0) words = 200 + static_cast<uint32_t>(random() % 1500);
         addWord(bytes, 64 + static_cast<uint32_t>(random() % 5) + (words << 16));
-        for (uint32_t w = 1; w < words; ++w) addWord(bytes, static_cast<uint32_t>(random() % 3) + (w == words / 2 && i % 4 == 0 ? number : 0));
+        for (uint32_t w = 1; w < words; ++w)
+            addWord(bytes, static_cast<uint32_t>(random() % 3) + (w == words / 2 && i % 4 == 0 ? number : 0));
         if (number % 3 == 2 && i == 10) i += 3; // some records are missing
     }
     if (number == 4) bytes.resize(bytes.size() - 2);
@@ -50,7 +51,8 @@ Bytes plainFrame(uint32_t seed, uint32_t number) {
     Bytes bytes;
     for (uint32_t i = 0; i < 100; ++i) {
         addWord(bytes, 64 | 4 << 16);
-        for (uint32_t w = 1; w < 4; ++w) addWord(bytes, static_cast<uint32_t>(random() % 5) + (i == 10 * number ? number : 0));
+        for (uint32_t w = 1; w < 4; ++w)
+            addWord(bytes, static_cast<uint32_t>(random() % 5) + (i == 10 * number ? number : 0));
     }
     return bytes;
 }
@@ -79,7 +81,8 @@ Bytes seedOf(uint32_t seed, bool coded, bool pages, bool plain = false) {
 Bytes splitSeed(uint32_t seed) {
     std::mt19937 random(seed);
     Bytes pages;
-    for (size_t i = 0; i < 2 * delta::kPageBytes; ++i) pages.push_back(static_cast<std::byte>(i / 16 % 3 == 0 ? 90 + i % 4 + random() % 3 : 60));
+    for (size_t i = 0; i < 2 * delta::kPageBytes; ++i)
+        pages.push_back(static_cast<std::byte>(i / 16 % 3 == 0 ? 90 + i % 4 + random() % 3 : 60));
     for (size_t i = 0; i < delta::kPageBytes + 40; ++i) pages.push_back(static_cast<std::byte>(random()));
     delta::PixelFilterEncoder splitter;
     if (!splitter.split(pages)) std::exit(1);
@@ -99,7 +102,9 @@ Bytes photographSeed(uint32_t seed) {
     // length in words: header, one more, and four pages
     addWord(record, 64 + static_cast<uint32_t>((2 + delta::kPageBytes) << 16));
     addWord(record, seed);
-    for (size_t i = 0; i < 4 * delta::kPageBytes; ++i) record.push_back(static_cast<std::byte>(i < 4 ? 128 : static_cast<uint32_t>(record[record.size() - 4]) + random() % 7 - 3));
+    for (size_t i = 0; i < 4 * delta::kPageBytes; ++i)
+        record.push_back(
+            static_cast<std::byte>(i < 4 ? 128 : static_cast<uint32_t>(record[record.size() - 4]) + random() % 7 - 3));
     delta::DeltaEncoder packer(fuzz::fuzzLimits());
     delta::BatchEncoder encoder([](size_t) { return int64_t{0}; });
     packer.beginFrame(false);
@@ -112,7 +117,8 @@ Bytes photographSeed(uint32_t seed) {
 }
 
 void write(const std::filesystem::path& path, const Bytes& input) {
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
 }
 
 } // namespace
@@ -126,11 +132,15 @@ int main(int argc, char** argv) {
     for (uint32_t seed = 1; seed <= 4; ++seed) {
         for (const bool coded : {false, true}) {
             const Bytes input = seedOf(seed, coded, seed > 2);
-            const std::string name = std::string(coded ? "coded_" : "sections_") + (seed > 2 ? "pages_" : "records_") + std::to_string(seed);
+            const std::string name =
+                std::string(coded ? "coded_" : "sections_") + (seed > 2 ? "pages_" : "records_") + std::to_string(seed);
             write(std::filesystem::path(argv[1]) / name, input);
         }
     }
-    for (const bool coded : {false, true}) write(std::filesystem::path(argv[1]) / (coded ? "coded_plain" : "sections_plain"), seedOf(1, coded, false, true));
-    for (uint32_t seed = 1; seed <= 2; ++seed) write(std::filesystem::path(argv[1]) / ("split_" + std::to_string(seed)), splitSeed(seed));
+    for (const bool coded : {false, true})
+        write(std::filesystem::path(argv[1]) / (coded ? "coded_plain" : "sections_plain"),
+              seedOf(1, coded, false, true));
+    for (uint32_t seed = 1; seed <= 2; ++seed)
+        write(std::filesystem::path(argv[1]) / ("split_" + std::to_string(seed)), splitSeed(seed));
     write(std::filesystem::path(argv[1]) / "coded_photograph", photographSeed(1));
 }

@@ -6,6 +6,8 @@
 
 namespace mural::fuzz {
 
-inline delta::Limits fuzzLimits() { return {.storeBytes = 4 * delta::kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024}; }
+inline delta::Limits fuzzLimits() {
+    return {.storeBytes = 4 * delta::kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024};
+}
 
 } // namespace mural::fuzz

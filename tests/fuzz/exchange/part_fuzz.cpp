@@ -15,8 +15,15 @@ constexpr size_t kNameBytes = 36; // client, serial, box, rows
 
 void giveName(std::vector<std::byte>& message, const ExpectedPart& e) {
     if (message.size() < kNameBytes) return;
-    const uint32_t words[] = {e.id.client, static_cast<uint32_t>(e.id.serial), static_cast<uint32_t>(e.id.serial >> 32), static_cast<uint32_t>(e.id.box.x), static_cast<uint32_t>(e.id.box.y),
-                              static_cast<uint32_t>(e.id.box.w), static_cast<uint32_t>(e.id.box.h), static_cast<uint32_t>(e.rows.first), static_cast<uint32_t>(e.rows.end)};
+    const uint32_t words[] = {e.id.client,
+                              static_cast<uint32_t>(e.id.serial),
+                              static_cast<uint32_t>(e.id.serial >> 32),
+                              static_cast<uint32_t>(e.id.box.x),
+                              static_cast<uint32_t>(e.id.box.y),
+                              static_cast<uint32_t>(e.id.box.w),
+                              static_cast<uint32_t>(e.id.box.h),
+                              static_cast<uint32_t>(e.rows.first),
+                              static_cast<uint32_t>(e.rows.end)};
     for (size_t i = 0; i < std::size(words); ++i) storeLittle(message.data() + 4 * i, words[i]);
 }
 
@@ -37,13 +44,17 @@ std::optional<PartState> unpackInto(PicturePart& part, const std::vector<std::by
         must(!piece.area.empty() && band.contains(piece.area), "a piece lies in the rows that were waited for");
         told += piece.area.area();
         for (int32_t y = 0; y < piece.area.h; ++y) {
-            const size_t from = static_cast<size_t>(y) * static_cast<size_t>(piece.area.w), at = part.at(piece.area.x, piece.area.y + y);
-            compositeRow({part.colour.data() + at, part.depth.data() + at, piece.colour + from, piece.depth + from, static_cast<size_t>(piece.area.w)}, LayerOrder::Later, e.rule);
+            const size_t from = static_cast<size_t>(y) * static_cast<size_t>(piece.area.w),
+                         at = part.at(piece.area.x, piece.area.y + y);
+            compositeRow({part.colour.data() + at, part.depth.data() + at, piece.colour + from, piece.depth + from,
+                          static_cast<size_t>(piece.area.w)},
+                         LayerOrder::Later, e.rule);
         }
     });
     must(told <= band.area(), "pieces are no more than the rows hold");
     if (state) return *state;
-    must(!state.error().message.empty() && state.error().message.find('\n') == std::string::npos, "an error is one line");
+    must(!state.error().message.empty() && state.error().message.find('\n') == std::string::npos,
+         "an error is one line");
     return std::nullopt;
 }
 

@@ -18,16 +18,27 @@ constexpr size_t kPartHead = 44; // bytes of a message before its pieces
 
 // Returns the header for readExpectedPart: rows 3 to 69 of a picture of 150 x 70.
 std::vector<std::byte> headOf(unsigned how, int32_t width, int32_t height) {
-    return {static_cast<std::byte>(how), static_cast<std::byte>((width - 1) & 0xff), static_cast<std::byte>((width - 1) >> 8), static_cast<std::byte>(height - 1), std::byte{3}, static_cast<std::byte>(height - 4)};
+    return {static_cast<std::byte>(how),
+            static_cast<std::byte>((width - 1) & 0xff),
+            static_cast<std::byte>((width - 1) >> 8),
+            static_cast<std::byte>(height - 1),
+            std::byte{3},
+            static_cast<std::byte>(height - 4)};
 }
 
 void draw(PicturePart& part, Content content, bool less, std::mt19937& random) {
     for (int32_t y = 0; y < part.id.box.h; ++y)
         for (int32_t x = 0; x < part.id.box.w; ++x) {
-            const bool inside = content == Content::Noise ? x < 20 && y < 20 : content == Content::Slope ? x > 40 : content == Content::Sparse ? x % 97 == 5 && y % 31 == 7 : false;
+            const bool inside = content == Content::Noise    ? x < 20 && y < 20
+                                : content == Content::Slope  ? x > 40
+                                : content == Content::Sparse ? x % 97 == 5 && y % 31 == 7
+                                                             : false;
             if (!inside) continue;
-            const uint32_t depth = content == Content::Noise ? static_cast<uint32_t>(random()) : 0x40000000U + static_cast<uint32_t>(x * 3 + y) * 0x1000U;
-            part.colour[part.at(x, y)] = content == Content::Noise ? static_cast<uint32_t>(random()) : 0xff000000U + static_cast<uint32_t>(x / 9 * 65536 + y);
+            const uint32_t depth = content == Content::Noise ? static_cast<uint32_t>(random())
+                                                             : 0x40000000U + static_cast<uint32_t>(x * 3 + y) * 0x1000U;
+            part.colour[part.at(x, y)] = content == Content::Noise
+                                             ? static_cast<uint32_t>(random())
+                                             : 0xff000000U + static_cast<uint32_t>(x / 9 * 65536 + y);
             part.depth[part.at(x, y)] = less ? depth & 0xffffff00U : depth | 0x100U;
         }
 }
@@ -45,15 +56,20 @@ void saveOf(const std::filesystem::path& folder, unsigned how, Content content) 
         part.colour.assign(static_cast<size_t>(e.id.box.area()), e.rule.clearedColour);
         part.depth.assign(part.colour.size(), e.rule.clearedDepth);
         draw(part, content, how % 4 < 2, random);
-        const auto message = packPart(part, e.rows, e.rule, i % 7 ? PartState::Complete : PartState::Incomplete, encoder);
+        const auto message =
+            packPart(part, e.rows, e.rule, i % 7 ? PartState::Complete : PartState::Incomplete, encoder);
         encoder.transferred(message.size(), static_cast<int64_t>(message.size()) * (i < 200 ? 1 : 1000));
         const size_t kindAt = kPartHead + 16;
-        const auto codecs = message.size() > kindAt + 1 ? std::pair(std::to_integer<int>(message[kindAt]), std::to_integer<int>(message[kindAt + 1])) : std::pair(-1, -1);
+        const auto codecs = message.size() > kindAt + 1 ? std::pair(std::to_integer<int>(message[kindAt]),
+                                                                    std::to_integer<int>(message[kindAt + 1]))
+                                                        : std::pair(-1, -1);
         if (message.size() > 8192 || !seen.insert(codecs).second) continue;
         std::vector<std::byte> input = head;
         input.insert(input.end(), message.begin(), message.end());
-        const std::string name = std::string(kNames[static_cast<size_t>(content)]) + "_" + std::to_string(how) + "_" + std::to_string(codecs.first) + "_" + std::to_string(codecs.second);
-        std::ofstream(folder / name, std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+        const std::string name = std::string(kNames[static_cast<size_t>(content)]) + "_" + std::to_string(how) + "_" +
+                                 std::to_string(codecs.first) + "_" + std::to_string(codecs.second);
+        std::ofstream(folder / name, std::ios::binary)
+            .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
     }
 }
 
@@ -73,7 +89,8 @@ void saveRepeated(const std::filesystem::path& folder) {
     input.insert(input.end(), message.begin(), message.begin() + kPartHead);
     input[head.size() + 40] = std::byte{100};
     for (int i = 0; i < 100; ++i) input.insert(input.end(), message.begin() + kPartHead, message.end());
-    std::ofstream(folder / "repeated", std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+    std::ofstream(folder / "repeated", std::ios::binary)
+        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
 }
 
 } // namespace
@@ -84,7 +101,8 @@ int main(int argc, char** argv) {
     if (argc != 2) return std::fputs("part_fuzz_seeds FOLDER\n", stderr), 2;
     std::filesystem::create_directories(argv[1]);
     for (const unsigned how : {0U, 3U, 13U, 14U})
-        for (const Content content : {Content::Empty, Content::Sparse, Content::Slope, Content::Noise}) mural::fuzz::saveOf(argv[1], how, content);
+        for (const Content content : {Content::Empty, Content::Sparse, Content::Slope, Content::Noise})
+            mural::fuzz::saveOf(argv[1], how, content);
     mural::fuzz::saveRepeated(argv[1]);
     return 0;
 }

@@ -19,7 +19,9 @@ struct ExpectedPart {
 };
 
 inline ExpectedPart readExpectedPart(InputReader& in) {
-    constexpr compositor::DepthFunction kOrders[] = {compositor::DepthFunction::Less, compositor::DepthFunction::LessOrEqual, compositor::DepthFunction::Greater, compositor::DepthFunction::GreaterOrEqual};
+    constexpr compositor::DepthFunction kOrders[] = {
+        compositor::DepthFunction::Less, compositor::DepthFunction::LessOrEqual, compositor::DepthFunction::Greater,
+        compositor::DepthFunction::GreaterOrEqual};
     const unsigned how = in.byte();
     const bool less = how % 4 < 2;
     ExpectedPart e;

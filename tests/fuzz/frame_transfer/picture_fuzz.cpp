@@ -23,7 +23,8 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
         std::vector<std::byte> rows(static_cast<size_t>(width) * static_cast<size_t>(height) * 4);
         auto done = unpacker.unpack(1, window, width, height, message, rows);
         if (!done) {
-            must(!done.error().message.empty() && done.error().message.find('\n') == std::string::npos, "an error is one line");
+            must(!done.error().message.empty() && done.error().message.find('\n') == std::string::npos,
+                 "an error is one line");
             continue;
         }
         ++taken;

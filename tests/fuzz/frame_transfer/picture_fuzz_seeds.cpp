@@ -12,7 +12,8 @@ namespace {
 
 std::vector<std::byte> slope(int32_t width, int32_t height, unsigned seed) {
     std::vector<std::byte> pixels(static_cast<size_t>(width) * static_cast<size_t>(height) * 4);
-    for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::byte>(i % 4 == 3 ? 255 : i / 4 % static_cast<size_t>(width) / 9 + i / 900 + seed);
+    for (size_t i = 0; i < pixels.size(); ++i)
+        pixels[i] = static_cast<std::byte>(i % 4 == 3 ? 255 : i / 4 % static_cast<size_t>(width) / 9 + i / 900 + seed);
     return pixels;
 }
 
@@ -39,7 +40,8 @@ void save(const std::filesystem::path& folder, size_t wanted) {
     add(0, 300, 70, pixels);
     add(1, 9, 5, slope(9, 5, 3));
     add(0, 40, 20, slope(40, 20, 2));
-    std::ofstream(folder / kWanted[wanted], std::ios::binary).write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+    std::ofstream(folder / kWanted[wanted], std::ios::binary)
+        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
 }
 
 } // namespace

@@ -16,7 +16,12 @@ using namespace rsp;
 constexpr MemberId kWriter = 3;
 
 struct Ends {
-    explicit Ends(Seal seal) : keys(makeSessionKeys(seal)), others(makeSessionKeys(seal)), sealer(keys, kWriter), right(keys), wrong((others.session = keys.session, others)) {
+    explicit Ends(Seal seal)
+        : keys(makeSessionKeys(seal)),
+          others(makeSessionKeys(seal)),
+          sealer(keys, kWriter),
+          right(keys),
+          wrong((others.session = keys.session, others)) {
         right.addMember(kWriter);
         wrong.addMember(kWriter);
     }
@@ -26,9 +31,12 @@ struct Ends {
 };
 
 bool same(const Feedback& a, const Feedback& b) {
-    const auto sameEntry = [](const Missing& x, const Missing& y) { return x.base == y.base && x.missing == y.missing && x.rows == y.rows && x.span == y.span; };
-    return a.from == b.from && a.to == b.to && a.flags == b.flags && a.cumulative == b.cumulative && a.edge == b.edge && a.highest == b.highest &&
-           a.echoUs == b.echoUs && a.heldUs == b.heldUs && a.lost == b.lost && a.dropped == b.dropped && a.entryCount == b.entryCount &&
+    const auto sameEntry = [](const Missing& x, const Missing& y) {
+        return x.base == y.base && x.missing == y.missing && x.rows == y.rows && x.span == y.span;
+    };
+    return a.from == b.from && a.to == b.to && a.flags == b.flags && a.cumulative == b.cumulative && a.edge == b.edge &&
+           a.highest == b.highest && a.echoUs == b.echoUs && a.heldUs == b.heldUs && a.lost == b.lost &&
+           a.dropped == b.dropped && a.entryCount == b.entryCount &&
            std::equal(a.entries.begin(), a.entries.begin() + a.entryCount, b.entries.begin(), sameEntry);
 }
 
@@ -39,7 +47,9 @@ uint64_t parse(std::span<const std::byte> datagram) {
         std::vector<std::byte> again(datagram.begin(), datagram.end());
         writeStreamHead(*d, again);
         const auto twice = readStream(again);
-        must(twice && twice->sequence == d->sequence && twice->next == d->next && twice->payload.size() == d->payload.size(), "a stream's datagram is read as it was written");
+        must(twice && twice->sequence == d->sequence && twice->next == d->next &&
+                 twice->payload.size() == d->payload.size(),
+             "a stream's datagram is read as it was written");
         must(kStreamHeadBytes + d->payload.size() == datagram.size(), "a payload lies within its datagram");
         ++meant;
     }
@@ -70,7 +80,8 @@ void sealAndOpen(Ends& e, Seal seal, const std::vector<std::byte>& payload, uint
     must(taken == !changed, "what is genuine is taken, and nothing else");
     must(e.wrong.open(strange).empty(), "nothing is taken with another key");
     if (!changed) {
-        must(taken && std::ranges::equal(opened.subspan(kStreamHeadBytes), payload), "what is taken is what was sealed");
+        must(taken && std::ranges::equal(opened.subspan(kStreamHeadBytes), payload),
+             "what is taken is what was sealed");
         must(e.right.open(second).empty(), "nothing is taken twice");
     }
 }
@@ -89,9 +100,12 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
         const uint16_t at = what % 3 == 2 ? in.half() : uint16_t{0};
         const uint8_t bits = what % 3 == 2 ? in.byte() : uint8_t{0};
         auto bytes = in.piece();
-        if (what % 3 == 0) meant += parse(bytes);
-        else if (what % 3 == 2) sealAndOpen(ends, seal, bytes, at, bits), ++meant;
-        else if (const auto opened = ends.right.open(bytes); !opened.empty()) meant += parse(opened), must(seal == Seal::None, "nothing is taken without a key");
+        if (what % 3 == 0)
+            meant += parse(bytes);
+        else if (what % 3 == 2)
+            sealAndOpen(ends, seal, bytes, at, bits), ++meant;
+        else if (const auto opened = ends.right.open(bytes); !opened.empty())
+            meant += parse(opened), must(seal == Seal::None, "nothing is taken without a key");
     }
     return meant;
 }

@@ -19,7 +19,8 @@ inline void fixRandom() {
         r.implementation_name = [] { return "fixed"; };
         r.random = [] { return static_cast<uint32_t>(fixedRandomState()()); };
         r.buf = [](void* into, size_t bytes) {
-            for (size_t i = 0; i < bytes; ++i) static_cast<unsigned char*>(into)[i] = static_cast<unsigned char>(fixedRandomState()());
+            for (size_t i = 0; i < bytes; ++i)
+                static_cast<unsigned char*>(into)[i] = static_cast<unsigned char>(fixedRandomState()());
         };
         return r;
     }();

@@ -95,7 +95,11 @@ private:
         }
         case GroupStep::ControlToMember: toMember(in.piece()); break;
         case GroupStep::PassToHost: pass(in, member_, [this](const Message& m) { toHost(kMember, m.bytes); }); break;
-        case GroupStep::PassToMember: pass(in, host_, [this](const Message& m) { if (m.to == kMember) toMember(m.bytes); }); break;
+        case GroupStep::PassToMember:
+            pass(in, host_, [this](const Message& m) {
+                if (m.to == kMember) toMember(m.bytes);
+            });
+            break;
         case GroupStep::DatagramToHost: host_.core.inputDatagram(in.piece(), nowNs_); break;
         case GroupStep::DatagramToMember: member_.core.inputDatagram(in.piece(), nowNs_); break;
         case GroupStep::PassDatagramToHost: passDatagram(in, member_, host_); break;

@@ -36,7 +36,8 @@ public:
     Seed& unchanged() { return half(0).byte(0); }
     void save(const std::filesystem::path& folder, const std::string& target, const std::string& name) const {
         std::filesystem::create_directories(folder / target);
-        std::ofstream(folder / target / name, std::ios::binary).write(reinterpret_cast<const char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));
+        std::ofstream(folder / target / name, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));
     }
 
 private:
@@ -83,16 +84,24 @@ std::vector<std::pair<std::string, ControlMessage>> messages() {
     welcome.datagramBytes = 512;
     welcome.windowDatagrams = 64;
     welcome.probeNonce = 2;
-    return {{"join", join}, {"welcome", welcome}, {"probed", Probed{2}}, {"member_came", MemberCame{2, {}, "192.0.2.2", 4711, true}},
-        {"stream_start", StreamStart{0, 1, Sequence(9)}}, {"member_gone", MemberGone{2, GoneReason::Silent}},
-        {"tunnel", Tunnel{0, streamBytes(Type::Data, 9, 0, 1, 20)}}, {"refused", Refused{"full"}}, {"leave", Leave{}}, {"ping", Ping{7, false}}};
+    return {{"join", join},
+            {"welcome", welcome},
+            {"probed", Probed{2}},
+            {"member_came", MemberCame{2, {}, "192.0.2.2", 4711, true}},
+            {"stream_start", StreamStart{0, 1, Sequence(9)}},
+            {"member_gone", MemberGone{2, GoneReason::Silent}},
+            {"tunnel", Tunnel{0, streamBytes(Type::Data, 9, 0, 1, 20)}},
+            {"refused", Refused{"full"}},
+            {"leave", Leave{}},
+            {"ping", Ping{7, false}}};
 }
 
 void datagrams(const std::filesystem::path& folder) {
     for (unsigned seal = 0; seal < 4; ++seal) {
         Seed s;
         s.byte(seal);
-        for (const Type type : {Type::Data, Type::Parity, Type::Poll}) s.byte(0).piece(streamBytes(type, 7, 0, 4, type == Type::Poll ? 0 : 40));
+        for (const Type type : {Type::Data, Type::Parity, Type::Poll})
+            s.byte(0).piece(streamBytes(type, 7, 0, 4, type == Type::Poll ? 0 : 40));
         s.byte(0).piece(feedbackOf(7, 20, 3));
         s.byte(1).piece(streamBytes(Type::Data, 7, 1, 4, 60));
         s.byte(2).unchanged().piece(Bytes(50, std::byte{9}));
@@ -109,7 +118,9 @@ void streams(const std::filesystem::path& folder) {
     for (const uint32_t first : {7u, 0xfffffff0u}) {
         Seed s;
         s.word(first);
-        const auto pass = [&](int count) { for (int i = 0; i < count; ++i) s.step(StreamStep::PassOn).unchanged(); };
+        const auto pass = [&](int count) {
+            for (int i = 0; i < count; ++i) s.step(StreamStep::PassOn).unchanged();
+        };
         s.step(StreamStep::Write).half(5000).step(StreamStep::Flush);
         pass(8);
         s.step(StreamStep::Lose).step(StreamStep::Lose);
@@ -117,9 +128,20 @@ void streams(const std::filesystem::path& folder) {
         s.step(StreamStep::Wait).word(20'000);
         for (int i = 0; i < 6; ++i) s.step(StreamStep::Answer).unchanged();
         pass(8);
-        s.step(StreamStep::Read).half(3000).step(StreamStep::AddMember).byte(2).step(StreamStep::Write).half(20'000).step(StreamStep::Flush);
+        s.step(StreamStep::Read)
+            .half(3000)
+            .step(StreamStep::AddMember)
+            .byte(2)
+            .step(StreamStep::Write)
+            .half(20'000)
+            .step(StreamStep::Flush);
         pass(64);
-        s.step(StreamStep::Wait).word(200'000).step(StreamStep::Answer).unchanged().step(StreamStep::RemoveMember).byte(2);
+        s.step(StreamStep::Wait)
+            .word(200'000)
+            .step(StreamStep::Answer)
+            .unchanged()
+            .step(StreamStep::RemoveMember)
+            .byte(2);
         s.step(StreamStep::ToReader).piece(streamBytes(Type::Data, first + 40, 3, 8, 40, flag::kPoll));
         s.step(StreamStep::ToReader).piece(streamBytes(Type::Parity, first + 32, 0, 8, 42));
         s.step(StreamStep::ToReader).piece(streamBytes(Type::Poll, first + 32, 0, 8, 0, flag::kPoll));
@@ -132,8 +154,10 @@ void streams(const std::filesystem::path& folder) {
 void groups(const std::filesystem::path& folder) {
     const auto join = [](Seed& s, bool probed) {
         s.step(GroupStep::PassToHost).unchanged().step(GroupStep::PassToMember).unchanged(); // join, welcome
-        if (probed) s.step(GroupStep::PassDatagramToMember).unchanged().step(GroupStep::PassToHost).unchanged();
-        else s.step(GroupStep::Wait).word(400'000);
+        if (probed)
+            s.step(GroupStep::PassDatagramToMember).unchanged().step(GroupStep::PassToHost).unchanged();
+        else
+            s.step(GroupStep::Wait).word(400'000);
         for (int i = 0; i < 4; ++i) s.step(GroupStep::PassToMember).unchanged().step(GroupStep::PassToHost).unchanged();
     };
     for (const bool probed : {true, false}) {
@@ -147,7 +171,10 @@ void groups(const std::filesystem::path& folder) {
         s.step(GroupStep::ReadAll).step(GroupStep::Connect);
         for (const auto& [name, message] : messages()) s.step(GroupStep::ControlToHost).byte(2).piece(encode(message));
         for (const auto& [name, message] : messages()) s.step(GroupStep::ControlToMember).piece(encode(message));
-        s.step(GroupStep::DatagramToHost).piece(streamBytes(Type::Data, 0, 0, 4, 60)).step(GroupStep::DatagramToMember).piece(feedbackOf(0, 4, 2));
+        s.step(GroupStep::DatagramToHost)
+            .piece(streamBytes(Type::Data, 0, 0, 4, 60))
+            .step(GroupStep::DatagramToMember)
+            .piece(feedbackOf(0, 4, 2));
         s.step(GroupStep::Disconnect).byte(2).step(GroupStep::Wait).word(3'000'000);
         s.save(folder, "group", probed ? "multicast" : "tunnel");
     }
@@ -174,7 +201,9 @@ void channels(const std::filesystem::path& folder) {
     for (const bool same : {true, false}) {
         Seed s;
         s.byte(same ? 0 : 1);
-        const auto pass = [&](unsigned whose) { s.byte(whose | static_cast<unsigned>(ChannelStep::Pass)).half(0xffff).half(0xffff).byte(0); };
+        const auto pass = [&](unsigned whose) {
+            s.byte(whose | static_cast<unsigned>(ChannelStep::Pass)).half(0xffff).half(0xffff).byte(0);
+        };
         pass(0);
         pass(kHostsStep);
         pass(0);

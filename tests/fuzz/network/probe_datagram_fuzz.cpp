@@ -14,7 +14,8 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     must(probe->sizeBytes == exact.size(), "a probe has come whole");
     std::vector<std::byte> again(exact.size());
     cli::writeProbe(*probe, again);
-    must(std::ranges::equal(std::span(again).first(20), std::span(exact).first(20)), "a probe's head is written in one way");
+    must(std::ranges::equal(std::span(again).first(20), std::span(exact).first(20)),
+         "a probe's head is written in one way");
     return 1;
 }
 

@@ -23,7 +23,8 @@ uint64_t give(End& to, const End& from, std::span<const std::byte> bytes) {
     const size_t before = to.taken.size();
     (void)to.channel.input(bytes, to.taken);
     must(to.taken.size() <= from.sent.size(), "nothing is taken that was not sent");
-    for (size_t i = before; i < to.taken.size(); ++i) must(to.taken[i] == from.sent[i], "what is taken is what was sent");
+    for (size_t i = before; i < to.taken.size(); ++i)
+        must(to.taken[i] == from.sent[i], "what is taken is what was sent");
     return to.taken.size() - before;
 }
 
@@ -34,7 +35,8 @@ uint64_t step(InputReader& in, End& from, End& to, ChannelStep what) {
         const uint8_t bits = in.byte();
         const auto made = from.channel.takeOutput();
         from.onTheWay.insert(from.onTheWay.end(), made.begin(), made.end());
-        Bytes bytes(from.onTheWay.begin(), from.onTheWay.begin() + static_cast<std::ptrdiff_t>(std::min<size_t>(count, from.onTheWay.size())));
+        Bytes bytes(from.onTheWay.begin(),
+                    from.onTheWay.begin() + static_cast<std::ptrdiff_t>(std::min<size_t>(count, from.onTheWay.size())));
         from.onTheWay.erase(from.onTheWay.begin(), from.onTheWay.begin() + static_cast<std::ptrdiff_t>(bytes.size()));
         change(bytes, at, bits);
         return give(to, from, bytes);
@@ -60,14 +62,16 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     ChannelSecret secret{}, other{};
     if (!same) other[0] = std::byte{1};
     End member{SecureChannel::connecting("wall0", secret)};
-    End host{SecureChannel::accepting([other](const std::string& name) { return name.size() < 40 ? std::optional(other) : std::nullopt; })};
+    End host{SecureChannel::accepting(
+        [other](const std::string& name) { return name.size() < 40 ? std::optional(other) : std::nullopt; })};
     uint64_t meant = 0;
     while (!in.empty()) {
         const uint8_t what = in.byte();
         const auto kind = static_cast<ChannelStep>((what & 0x7f) % static_cast<int>(ChannelStep::Count));
         meant += (what & 0x80) ? step(in, host, member, kind) : step(in, member, host, kind);
     }
-    must(same || (host.taken.empty() && member.taken.empty() && !host.channel.open() && !member.channel.open()), "who does not know the secret gets nowhere");
+    must(same || (host.taken.empty() && member.taken.empty() && !host.channel.open() && !member.channel.open()),
+         "who does not know the secret gets nowhere");
     return meant;
 }
 

@@ -8,7 +8,7 @@ namespace mural::fuzz {
 
 enum class ChannelStep : uint8_t {
     Pass, // u16 count, u16 position, u8 bits: `count` bytes that it sent arrive, changed at the position
-    Add, // piece: arrives in the name of this end
+    Add,  // piece: arrives in the name of this end
     Send, // piece: a message
     Finish,
     Count

@@ -21,7 +21,8 @@ constexpr size_t kMaxSteps = 2000;
 
 class Stream {
 public:
-    explicit Stream(Sequence first) : sender_(senderSettings(), first), receiver_(receiverSettings(), sender_.addMember(kReader, nowNs_)) {}
+    explicit Stream(Sequence first)
+        : sender_(senderSettings(), first), receiver_(receiverSettings(), sender_.addMember(kReader, nowNs_)) {}
 
     uint64_t step(InputReader& in) {
         switch (static_cast<StreamStep>(in.byte() % static_cast<int>(StreamStep::Count))) {
@@ -47,7 +48,8 @@ public:
         (void)receiver_.tick(nowNs_, told_);
         must(receiver_.lost() - lostBefore <= kShape.windowDatagrams, "no more is lost than a window");
         must(receiver_.cumulative() == before, "telling moves nothing");
-        must(sender_.roomBytes() <= kShape.payloadBytes * kShape.windowDatagrams, "there is no more room than the window");
+        must(sender_.roomBytes() <= kShape.payloadBytes * kShape.windowDatagrams,
+             "there is no more room than the window");
         for (const std::byte b : receiver_.readable()) sum_ = static_cast<uint8_t>(sum_ + std::to_integer<uint8_t>(b));
         return std::exchange(meant_, 0);
     }

@@ -53,29 +53,36 @@ public:
     // (docs/measurements/exactness.md).
     bool isDefined() {
         const std::string_view name = command_.name;
-        const bool vertex = name.starts_with("glVertex2") || name.starts_with("glVertex3") || name.starts_with("glVertex4") ||
-                            name.starts_with("glEvalCoord") || name.starts_with("glEvalPoint");
+        const bool vertex = name.starts_with("glVertex2") || name.starts_with("glVertex3") ||
+                            name.starts_with("glVertex4") || name.starts_with("glEvalCoord") ||
+                            name.starts_with("glEvalPoint");
         if (vertex && !w_.insideBegin) {
             return false;
         }
-        constexpr std::string_view others[] = {"glNormal3", "glFogCoord", "glSecondaryColor3", "glIndex", "glEdgeFlag", "glMaterial"};
+        constexpr std::string_view others[] = {"glNormal3", "glFogCoord", "glSecondaryColor3",
+                                               "glIndex",   "glEdgeFlag", "glMaterial"};
         const int size = w_.profile == Profile::Es1 ? 0 : attributeSize(name);
-        const bool other = std::any_of(std::begin(others), std::end(others), [&](std::string_view start) { return name.starts_with(start); });
-        if (w_.compilesList && ((w_.behindVertex && (size != 0 || other)) || (w_.insideBegin && name.starts_with("glEval")))) {
+        const bool other = std::any_of(std::begin(others), std::end(others),
+                                       [&](std::string_view start) { return name.starts_with(start); });
+        if (w_.compilesList &&
+            ((w_.behindVertex && (size != 0 || other)) || (w_.insideBegin && name.starts_with("glEval")))) {
             return false;
         }
-        const bool attribute0 = name.starts_with("glVertexAttrib") && find("index") != nullptr && find("index")->whole == 0;
+        const bool attribute0 =
+            name.starts_with("glVertexAttrib") && find("index") != nullptr && find("index")->whole == 0;
         if (w_.insideBegin && attribute0 && name.starts_with("glVertexAttribI")) {
             return false; // an integer position
         }
         w_.behindVertex = w_.behindVertex || (w_.insideBegin && (attribute0 || vertex || name.starts_with("glEval")));
         // These attributes of NV_vertex_program also set colours and texture coordinates.
         const bool aliases = name.starts_with("glVertexAttrib") && name.ends_with("NV");
-        return size == 0 || (name.starts_with("glColor") ? (size == 4) == (w_.attributeSize == 4) : size == w_.attributeSize && (!aliases || size == 4));
+        return size == 0 || (name.starts_with("glColor") ? (size == 4) == (w_.attributeSize == 4)
+                                                         : size == w_.attributeSize && (!aliases || size == 4));
     }
 
     void make() {
-        void* const function = reinterpret_cast<void*>(glXGetProcAddress(reinterpret_cast<const GLubyte*>(command_.name)));
+        void* const function =
+            reinterpret_cast<void*>(glXGetProcAddress(reinterpret_cast<const GLubyte*>(command_.name)));
         if (w_.trace) {
             show();
         }
@@ -170,9 +177,11 @@ private:
                 set(internal, image.internal);
             }
         }
-        limit({"count", "drawcount", "instancecount", "primcount", "samples", "range", "n", "bufSize", "size", "length", "maxCount",
-               "propCount", "mapsize", "uorder", "vorder", "order", "ustride", "vstride", "stride", "imageSize", "basevertex",
-               "baseinstance", "first", "start", "un", "vn", "i", "numAttachments"}, 1000);
+        limit({"count",        "drawcount", "instancecount", "primcount", "samples",   "range",     "n",
+               "bufSize",      "size",      "length",        "maxCount",  "propCount", "mapsize",   "uorder",
+               "vorder",       "order",     "ustride",       "vstride",   "stride",    "imageSize", "basevertex",
+               "baseinstance", "first",     "start",         "un",        "vn",        "i",         "numAttachments"},
+              1000);
         limit({"width", "height", "depth", "levels", "num_groups_x", "num_groups_y", "num_groups_z"}, 40);
         // Mesa also writes pixels to buffers in OpenGL ES 1, which has no query for the binding.
         if (w_.profile == Profile::Es1 && std::strcmp(command_.name, "glBindBuffer") == 0) {
@@ -182,7 +191,8 @@ private:
             limit({"param"}, 48);
         }
         // Mesa 22.3.6 adds the count to -1, accepts the result and accesses memory before the first element.
-        const bool overflows = std::strstr(command_.name, "ProgramLocalParameter") != nullptr || std::strcmp(command_.name, "glScissorArrayv") == 0;
+        const bool overflows = std::strstr(command_.name, "ProgramLocalParameter") != nullptr ||
+                               std::strcmp(command_.name, "glScissorArrayv") == 0;
         for (Value* const value : {find("index"), find("first")}) {
             if (overflows && value != nullptr && value->whole == ~0U) {
                 value->whole = 1000;
@@ -229,7 +239,9 @@ private:
             break;
         case Draw::Made: value.pointer = made_; break;
         case Draw::Unpack: value.pointer = unpacked(p); break;
-        case Draw::Pack: value.pointer = bound(w_, GL_PIXEL_PACK_BUFFER_BINDING) ? offset(w_, 4) : output(kOutputBytes / 2); break;
+        case Draw::Pack:
+            value.pointer = bound(w_, GL_PIXEL_PACK_BUFFER_BINDING) ? offset(w_, 4) : output(kOutputBytes / 2);
+            break;
         case Draw::Array: value.pointer = vertices(); break;
         case Draw::Indices: value.pointer = indices(); break;
         case Draw::Output: value.pointer = output(kOutputStep); break;
@@ -243,7 +255,10 @@ private:
         }
         const Value* const type = find("type");
         const bool floats = p.type == Type::Float || (type != nullptr && type->whole == GL_FLOAT);
-        return const_cast<void*>(inputOf(floats ? Type::Float : p.type == Type::Int ? Type::Int : Type::Byte, w_.random));
+        return const_cast<void*>(inputOf(floats                ? Type::Float
+                                         : p.type == Type::Int ? Type::Int
+                                                               : Type::Byte,
+                                         w_.random));
     }
 
     void* vertices() {
@@ -260,8 +275,7 @@ private:
         GLint buffer = 0;
         glGetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &buffer);
         if (buffer != 0 && w_.clientArrays()) {
-            while (glGetError() != GL_NO_ERROR) {
-            }
+            while (glGetError() != GL_NO_ERROR) {}
             glBufferData(GL_ELEMENT_ARRAY_BUFFER, 512, indexMemory(w_.random, typeEnum), GL_STATIC_DRAW);
             if (glGetError() != GL_NO_ERROR) {
                 glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer = 0);
@@ -307,12 +321,14 @@ private:
             const Type type = param(i).type;
             shownArguments += std::string(param(i).name) + "=";
             if (param(i).draw == Draw::Real) {
-                shownArguments += shown(type == Type::Single ? static_cast<double>(values_[i].single) : values_[i].real);
+                shownArguments +=
+                    shown(type == Type::Single ? static_cast<double>(values_[i].single) : values_[i].real);
             } else if (param(i).draw == Draw::Text) {
                 shownArguments += static_cast<const char*>(values_[i].pointer);
             } else {
-                shownArguments += param(i).type == Type::Pointer || param(i).draw >= Draw::Input ? shown(values_[i].pointer)
-                                                                                                     : shown(static_cast<std::int64_t>(values_[i].whole));
+                shownArguments += param(i).type == Type::Pointer || param(i).draw >= Draw::Input
+                                      ? shown(values_[i].pointer)
+                                      : shown(static_cast<std::int64_t>(values_[i].whole));
             }
             if (param(i).draw == Draw::Names || param(i).draw == Draw::Enums) {
                 shownArguments += ":" + shown(array_[0]) + "," + shown(array_[1]);
@@ -351,7 +367,8 @@ void callAny(World& w) {
             continue;
         }
         const std::string_view name = command.name;
-        const bool draws = name.starts_with("glDrawArrays") || name.starts_with("glDrawElements") || name.starts_with("glDrawRange") || name.starts_with("glMultiDraw");
+        const bool draws = name.starts_with("glDrawArrays") || name.starts_with("glDrawElements") ||
+                           name.starts_with("glDrawRange") || name.starts_with("glMultiDraw");
         if (draws && !drawsAnything(w)) {
             continue;
         }

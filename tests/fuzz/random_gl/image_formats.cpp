@@ -58,7 +58,8 @@ constexpr CompressedFormat kCompressed[] = {
 };
 
 bool fits(const World& w, const ImageFormat& format) {
-    const bool legacy = format.internal == GL_ALPHA || (format.internal >= GL_LUMINANCE && format.internal <= GL_LUMINANCE_ALPHA) ||
+    const bool legacy = format.internal == GL_ALPHA ||
+                        (format.internal >= GL_LUMINANCE && format.internal <= GL_LUMINANCE_ALPHA) ||
                         format.internal == GL_INTENSITY || format.internal == GL_LUMINANCE16;
     switch (w.profile) {
     case Profile::Compat: return true;

@@ -13,7 +13,7 @@ struct ImageFormat {
     bool color;   // a framebuffer object may draw into it
 };
 
-const ImageFormat& anyFormat(World& w); // valid for glTexImage* in this context
+const ImageFormat& anyFormat(World& w);      // valid for glTexImage* in this context
 const ImageFormat& drawableFormat(World& w); // and as a render target
 
 struct CompressedFormat {

@@ -14,8 +14,7 @@ constexpr std::uintptr_t kInput = 0x510000000000;
 constexpr std::uintptr_t kOutput = 0x520000000000;
 constexpr std::uintptr_t kLate = 0x530000000000;
 
-template <class T, class Make>
-void fill(std::byte* section, Make make) {
+template <class T, class Make> void fill(std::byte* section, Make make) {
     for (std::size_t i = 0; i < kSectionBytes / sizeof(T); ++i) {
         const T value = make();
         std::memcpy(section + i * sizeof(T), &value, sizeof(T));
@@ -37,7 +36,8 @@ std::byte* input(std::size_t section) {
     static std::byte* const memory = [] {
         std::byte* const all = mapAt(kInput, 9 * kSectionBytes);
         Random random(1, 1);
-        fill<float>(all, [&] { return random.chance(8) ? static_cast<float>(random.between(-3, 40)) : random.around(); });
+        fill<float>(all,
+                    [&] { return random.chance(8) ? static_cast<float>(random.between(-3, 40)) : random.around(); });
         fill<double>(all + kSectionBytes, [&] { return static_cast<double>(random.around()); });
         fill<std::int32_t>(all + 2 * kSectionBytes, [&] { return random.between(-2, 40); });
         fill<std::int16_t>(all + 3 * kSectionBytes, [&] { return static_cast<std::int16_t>(random.between(-3, 40)); });
@@ -66,9 +66,7 @@ std::size_t section(Type type) {
 
 } // namespace
 
-const void* inputOf(Type type, Random& random) {
-    return input(section(type)) + std::size_t{random.below(2000)} * 8;
-}
+const void* inputOf(Type type, Random& random) { return input(section(type)) + std::size_t{random.below(2000)} * 8; }
 
 const void* indexMemory(Random& random, std::uint32_t typeEnum) {
     const std::size_t which = typeEnum == GL_UNSIGNED_INT ? 8 : typeEnum == GL_UNSIGNED_SHORT ? 7 : 6;
@@ -80,8 +78,9 @@ const void* vertexMemory(Random& random) {
 }
 
 const char* text(Random& random) {
-    static const char* const words[] = {"position", "color",  "texCoord", "tint",   "offset", "image", "scale",    "mode",
-                                        "matrix",   "result", "Block",    "Values", "varied", "scale[1]", "nothing", "gl_Position"};
+    static const char* const words[] = {"position", "color",    "texCoord", "tint",       "offset", "image",
+                                        "scale",    "mode",     "matrix",   "result",     "Block",  "Values",
+                                        "varied",   "scale[1]", "nothing",  "gl_Position"};
     return random.of(words);
 }
 

@@ -183,7 +183,9 @@ const std::vector<PoolProgram>& programPool() {
         {"ck", {{GL_VERTEX_SHADER, kCoreVertex}, {GL_FRAGMENT_SHADER, kCoreFragment}}, "coord"},
         {"ck", {{GL_VERTEX_SHADER, kCoreVertex}, {GL_FRAGMENT_SHADER, kTwoOutputs}}},
         {"ck", {{GL_VERTEX_SHADER, kCoreVertex}, {GL_FRAGMENT_SHADER, kCube}}},
-        {"ck", {{GL_VERTEX_SHADER, kCoreVertex}, {GL_GEOMETRY_SHADER, kGeometry}, {GL_FRAGMENT_SHADER, kGeometryFragment}}, "gvaried"},
+        {"ck",
+         {{GL_VERTEX_SHADER, kCoreVertex}, {GL_GEOMETRY_SHADER, kGeometry}, {GL_FRAGMENT_SHADER, kGeometryFragment}},
+         "gvaried"},
         {"ck", {{GL_VERTEX_SHADER, kBlockVertex}, {GL_FRAGMENT_SHADER, kBlockFragment}}, "captured"},
         {"ck", {{GL_VERTEX_SHADER, kStorageVertex}, {GL_FRAGMENT_SHADER, kStorageFragment}}},
         {"ck", {{GL_VERTEX_SHADER, kStorageVertex}, {GL_FRAGMENT_SHADER, kCountingFragment}}, nullptr, false, true},
@@ -207,8 +209,10 @@ const std::vector<PoolProgram>& programPool() {
 
 const char* const* arbPrograms() {
     static const char* const programs[] = {
-        "!!ARBvp1.0\nPARAM e = program.env[1];\nPARAM l = program.local[2];\nTEMP p;\nMUL p, vertex.position, {0.8, 0.8, 1, 1};\n"
-        "MAD result.position, e, {0.1, 0.1, 0, 0}, p;\nADD result.color, vertex.color, l;\nMOV result.texcoord[0], vertex.position;\nEND\n",
+        "!!ARBvp1.0\nPARAM e = program.env[1];\nPARAM l = program.local[2];\nTEMP p;\nMUL p, vertex.position, {0.8, "
+        "0.8, 1, 1};\n"
+        "MAD result.position, e, {0.1, 0.1, 0, 0}, p;\nADD result.color, vertex.color, l;\nMOV result.texcoord[0], "
+        "vertex.position;\nEND\n",
         "!!ARBvp1.0\nOPTION ARB_position_invariant;\nMOV result.color, vertex.normal;\nEND\n",
         "!!ARBfp1.0\nPARAM l = program.local[1];\nTEMP t;\nTEX t, fragment.texcoord[0], texture[0], 2D;\n"
         "MAD result.color, t, {0.5, 0.5, 0.5, 0.5}, l;\nEND\n",

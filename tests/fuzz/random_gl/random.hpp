@@ -25,10 +25,7 @@ public:
     float unit() { return static_cast<float>(below(1025)) / 1024.0F; } // 0 to 1
     float around() { return unit() * 2.4F - 1.2F; }
 
-    template <class T, std::size_t N>
-    const T& of(const T (&values)[N]) {
-        return values[below(N)];
-    }
+    template <class T, std::size_t N> const T& of(const T (&values)[N]) { return values[below(N)]; }
 
 private:
     std::uint64_t state_;

@@ -32,7 +32,10 @@ struct Settings {
 };
 
 Profile profileOf(const std::string& name) {
-    for (const auto& [word, profile] : {std::pair{"compat", Profile::Compat}, {"core", Profile::Core}, {"es1", Profile::Es1}, {"es3", Profile::Es3}}) {
+    for (const auto& [word, profile] : {std::pair{"compat", Profile::Compat},
+                                        {"core", Profile::Core},
+                                        {"es1", Profile::Es1},
+                                        {"es3", Profile::Es3}}) {
         if (name == word) {
             return profile;
         }
@@ -134,7 +137,8 @@ std::vector<Case> casesOf(const Settings& s) {
     }
     const std::size_t colon = s.seeds.find(':');
     const std::uint64_t first = std::strtoull(s.seeds.c_str(), nullptr, 10);
-    const std::uint64_t last = colon == std::string::npos ? first : std::strtoull(s.seeds.c_str() + colon + 1, nullptr, 10);
+    const std::uint64_t last =
+        colon == std::string::npos ? first : std::strtoull(s.seeds.c_str() + colon + 1, nullptr, 10);
     std::vector<std::uint64_t> steps(s.steps);
     std::iota(steps.begin(), steps.end(), 0);
     for (std::uint64_t seed = first; seed <= last; ++seed) {
@@ -146,7 +150,10 @@ std::vector<Case> casesOf(const Settings& s) {
 class Kitchen { // all recipes of a profile, and single calls
 public:
     explicit Kitchen(Profile profile) {
-        const char letter = profile == Profile::Compat ? 'c' : profile == Profile::Core ? 'k' : profile == Profile::Es1 ? '1' : '3';
+        const char letter = profile == Profile::Compat ? 'c'
+                            : profile == Profile::Core ? 'k'
+                            : profile == Profile::Es1  ? '1'
+                                                       : '3';
         for (const auto& recipes : {drawRecipes(), fixedRecipes(), imageRecipes(), objectRecipes(), programRecipes()}) {
             for (const Recipe& recipe : recipes) {
                 if (std::strchr(recipe.profiles, letter) != nullptr) {
@@ -194,7 +201,8 @@ public:
         w.errors.clear();
         char digestText[20];
         std::snprintf(digestText, sizeof digestText, "%016llx", static_cast<unsigned long long>(w.takeSeen()));
-        std::fprintf(file_, "%llu %s %s%s; %s\n", static_cast<unsigned long long>(id), step, digestText, errors.c_str(), what);
+        std::fprintf(file_, "%llu %s %s%s; %s\n", static_cast<unsigned long long>(id), step, digestText, errors.c_str(),
+                     what);
         std::fflush(file_);
         if (w.trace) {
             std::fprintf(stderr, "%s %s: %s%s\n", step, what, digestText, errors.c_str());
@@ -205,7 +213,8 @@ private:
     std::FILE* file_;
 };
 
-void runCase(const Case& one, const Settings& s, Kitchen& kitchen, Transcript& transcript, const std::string& extensions) {
+void runCase(const Case& one, const Settings& s, Kitchen& kitchen, Transcript& transcript,
+             const std::string& extensions) {
     const auto window = programs::openGlxWindow(windowOf(s.profile), kWidth, kHeight);
     window->makeCurrent();
     World w(s.profile, extensions.empty() ? contextExtensions(s.profile) : extensions, s.trace);

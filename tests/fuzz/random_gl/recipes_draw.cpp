@@ -6,7 +6,8 @@
 namespace fuzz {
 namespace {
 
-constexpr GLenum kPrimitives[] = {GL_POINTS, GL_LINES, GL_LINE_LOOP, GL_LINE_STRIP, GL_TRIANGLES, GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN};
+constexpr GLenum kPrimitives[] = {GL_POINTS,    GL_LINES,          GL_LINE_LOOP,   GL_LINE_STRIP,
+                                  GL_TRIANGLES, GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN};
 constexpr GLenum kOldPrimitives[] = {GL_QUADS, GL_QUAD_STRIP, GL_POLYGON};
 constexpr GLenum kIndexTypes[] = {GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_UNSIGNED_INT};
 
@@ -50,16 +51,18 @@ void genericArrays(World& w) {
         GL(glBindVertexArray, 0);
         GL(glBindBuffer, GL_ARRAY_BUFFER, 0);
     }
-    constexpr GLenum types[] = {GL_FLOAT, GL_FLOAT, GL_FLOAT, GL_FLOAT, GL_BYTE, GL_UNSIGNED_BYTE, GL_SHORT, GL_UNSIGNED_SHORT};
+    constexpr GLenum types[] = {GL_FLOAT, GL_FLOAT,         GL_FLOAT, GL_FLOAT,
+                                GL_BYTE,  GL_UNSIGNED_BYTE, GL_SHORT, GL_UNSIGNED_SHORT};
     for (GLuint i = 0; i < 3; ++i) {
         const int size = w.random.between(2, 4);
         // A float input that reads integers is undefined: equal everywhere as a colour, nearly 0 divided by nearly 0 as
         // a position.
         if (w.random.chance(6) && i != 0) {
-            GL(glVertexAttribIPointer, i, size, w.random.chance(50) ? GL_INT : GL_UNSIGNED_BYTE, 16, vertexPlace(w, buffered));
+            GL(glVertexAttribIPointer, i, size, w.random.chance(50) ? GL_INT : GL_UNSIGNED_BYTE, 16,
+               vertexPlace(w, buffered));
         } else {
-            GL(glVertexAttribPointer, i, size, i == 0 ? GL_FLOAT : w.random.of(types), w.random.chance(40) ? GL_TRUE : GL_FALSE,
-               w.random.between(0, 5) * 4, vertexPlace(w, buffered));
+            GL(glVertexAttribPointer, i, size, i == 0 ? GL_FLOAT : w.random.of(types),
+               w.random.chance(40) ? GL_TRUE : GL_FALSE, w.random.between(0, 5) * 4, vertexPlace(w, buffered));
         }
         if (w.random.chance(i == 0 ? 95 : 75)) {
             GL(glEnableVertexAttribArray, i);
@@ -81,7 +84,8 @@ void classicArrays(World& w) {
     GL(glVertexPointer, w.random.between(2, 4), GL_FLOAT, w.random.between(0, 5) * 4, vertexPlace(w, buffered));
     GL(glEnableClientState, GL_VERTEX_ARRAY);
     if (w.random.chance(60)) {
-        GL(glColorPointer, 4, w.random.chance(50) ? GL_FLOAT : GL_UNSIGNED_BYTE, w.random.between(0, 5) * 4, vertexPlace(w, buffered));
+        GL(glColorPointer, 4, w.random.chance(50) ? GL_FLOAT : GL_UNSIGNED_BYTE, w.random.between(0, 5) * 4,
+           vertexPlace(w, buffered));
         GL(glEnableClientState, GL_COLOR_ARRAY);
     }
     if (w.random.chance(50)) {
@@ -121,7 +125,9 @@ void drawElements(World& w, GLenum mode, int count) {
     case 1: GL(glDrawRangeElements, mode, 0U, 60U, count, type, indices); break;
     case 2: GL(glDrawElementsBaseVertex, mode, count, type, indices, w.random.between(0, 9)); break;
     case 3: GL(glDrawElementsInstancedBaseVertex, mode, count, type, indices, 2, 3); break;
-    case 4: GL(glDrawElementsInstancedBaseVertexBaseInstance, mode, count, type, indices, 2, 1, w.random.below(3)); break;
+    case 4:
+        GL(glDrawElementsInstancedBaseVertexBaseInstance, mode, count, type, indices, 2, 1, w.random.below(3));
+        break;
     default: {
         const GLsizei counts[] = {count, 3, 4};
         const void* const places[] = {indices, indices, indices};
@@ -273,10 +279,12 @@ void clears(World& w) {
 
 void boxes(World& w) {
     if (w.random.chance(60)) {
-        GL(glViewport, w.random.between(-9, 20), w.random.between(-9, 20), w.random.between(20, 90), w.random.between(20, 70));
+        GL(glViewport, w.random.between(-9, 20), w.random.between(-9, 20), w.random.between(20, 90),
+           w.random.between(20, 70));
     }
     if (w.random.chance(60)) {
-        GL(glScissor, w.random.between(-5, 30), w.random.between(-5, 25), w.random.between(0, 60), w.random.between(0, 50));
+        GL(glScissor, w.random.between(-5, 30), w.random.between(-5, 25), w.random.between(0, 60),
+           w.random.between(0, 50));
         w.random.chance(60) ? GL(glEnable, GL_SCISSOR_TEST) : GL(glDisable, GL_SCISSOR_TEST);
     }
 }
@@ -285,7 +293,8 @@ void tests(World& w) {
     constexpr GLenum functions[] = {GL_LESS, GL_LEQUAL, GL_ALWAYS, GL_GREATER, GL_NOTEQUAL, GL_EQUAL};
     constexpr GLenum operations[] = {GL_KEEP, GL_INCR, GL_DECR, GL_REPLACE, GL_INVERT, GL_ZERO};
     constexpr GLenum factors[] = {GL_ONE, GL_ZERO, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA_SATURATE, GL_ONE};
-    constexpr GLenum switches[] = {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_BLEND, GL_DITHER, GL_CULL_FACE, GL_POLYGON_OFFSET_FILL};
+    constexpr GLenum switches[] = {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_BLEND,
+                                   GL_DITHER,     GL_CULL_FACE,    GL_POLYGON_OFFSET_FILL};
     w.random.chance(50) ? GL(glEnable, w.random.of(switches)) : GL(glDisable, w.random.of(switches));
     GL(glDepthFunc, w.random.of(functions));
     GL(glStencilFunc, w.random.of(functions), w.random.between(0, 4), w.random.below(256));
@@ -294,8 +303,14 @@ void tests(World& w) {
 }
 
 constexpr Recipe kRecipes[] = {
-    {"calm", calm, "ck13", 5},    {"draw", draw, "ck13", 22},   {"draw again", drawAgain, "ck13", 6}, {"draw indirect", drawIndirect, "ck3", 3},
-    {"frame", frame, "ck13", 1},  {"clear", clears, "ck13", 4}, {"boxes", boxes, "ck13", 4},          {"tests", tests, "ck13", 5},
+    {"calm", calm, "ck13", 5},
+    {"draw", draw, "ck13", 22},
+    {"draw again", drawAgain, "ck13", 6},
+    {"draw indirect", drawIndirect, "ck3", 3},
+    {"frame", frame, "ck13", 1},
+    {"clear", clears, "ck13", 4},
+    {"boxes", boxes, "ck13", 4},
+    {"tests", tests, "ck13", 5},
 };
 
 } // namespace

@@ -15,19 +15,22 @@ constexpr GLenum kModes[] = {GL_POINTS,         GL_LINES,        GL_LINE_LOOP, G
 const std::vector<const Command*>& vertexCommands(const World& w) {
     static std::vector<const Command*> found; // only one profile has them
     if (found.empty()) {
-        constexpr std::string_view starts[] = {"glVertex2", "glVertex3", "glVertex4",  "glColor3",  "glColor4",         "glNormal3", "glTexCoord",
-                                               "glMaterial", "glEdgeFlag", "glFogCoord", "glIndex", "glSecondaryColor", "glMultiTexCoord",
-                                               "glVertexAttrib", "glEvalCoord", "glEvalPoint", "glArrayElement"};
+        constexpr std::string_view starts[] = {
+            "glVertex2",       "glVertex3",      "glVertex4",   "glColor3",    "glColor4",      "glNormal3",
+            "glTexCoord",      "glMaterial",     "glEdgeFlag",  "glFogCoord",  "glIndex",       "glSecondaryColor",
+            "glMultiTexCoord", "glVertexAttrib", "glEvalCoord", "glEvalPoint", "glArrayElement"};
         for (const auto& family : w.families()) {
             for (const Command* const command : family) {
                 const std::string_view name = command->name;
-                const bool pointer = name.find("Pointer") != std::string_view::npos || name.find("Format") != std::string_view::npos ||
-                                     name.find("Binding") != std::string_view::npos || name.find("Divisor") != std::string_view::npos ||
-                                     name.find("Array") < name.size() - 12 || name == "glIndexMask";
+                const bool pointer =
+                    name.find("Pointer") != std::string_view::npos || name.find("Format") != std::string_view::npos ||
+                    name.find("Binding") != std::string_view::npos || name.find("Divisor") != std::string_view::npos ||
+                    name.find("Array") < name.size() - 12 || name == "glIndexMask";
                 for (const std::string_view start : starts) {
                     // Integer vertices are far outside: Mesa's software driver draws other parts of such polygons with
                     // a scissor than without.
-                    const bool far = name.starts_with("glVertex") && !name.starts_with("glVertexAttrib") && name.find_first_of("is", 8) != std::string_view::npos;
+                    const bool far = name.starts_with("glVertex") && !name.starts_with("glVertexAttrib") &&
+                                     name.find_first_of("is", 8) != std::string_view::npos;
                     if (name.starts_with(start) && !far && (!pointer || name.starts_with("glArrayElement"))) {
                         found.push_back(command);
                     }
@@ -192,8 +195,8 @@ void rasterPixels(World& w) {
 
 void evaluator(World& w) {
     const auto* const points = static_cast<const float*>(inputOf(Type::Float, w.random));
-    GL(glMap2f, w.random.chance(50) ? GL_MAP2_VERTEX_3 : GL_MAP2_COLOR_4, 0.0F, 1.0F, 4, w.random.between(1, 3), 0.0F, 1.0F, 16,
-       w.random.between(1, 3), points);
+    GL(glMap2f, w.random.chance(50) ? GL_MAP2_VERTEX_3 : GL_MAP2_COLOR_4, 0.0F, 1.0F, 4, w.random.between(1, 3), 0.0F,
+       1.0F, 16, w.random.between(1, 3), points);
     GL(glMap1f, GL_MAP1_VERTEX_3, 0.0F, 1.0F, 3, w.random.between(2, 4), points);
     GL(glEnable, w.random.chance(50) ? GL_MAP2_VERTEX_3 : GL_MAP1_VERTEX_3);
     GL(glMapGrid2f, 4, 0.0F, 1.0F, 3, 0.0F, 1.0F);
@@ -225,9 +228,9 @@ void stacks(World& w) {
 }
 
 constexpr Recipe kRecipes[] = {
-    {"begin and end", immediate, "c", 12}, {"list", compileList, "c", 6}, {"call lists", runLists, "c", 6}, {"feedback", feedback, "c", 3},
-    {"matrices", matrices, "c1", 8},       {"pixels", rasterPixels, "c", 8}, {"evaluator", evaluator, "c", 3}, {"lights", lights, "c1", 4},
-    {"stacks", stacks, "c", 6},
+    {"begin and end", immediate, "c", 12}, {"list", compileList, "c", 6},   {"call lists", runLists, "c", 6},
+    {"feedback", feedback, "c", 3},        {"matrices", matrices, "c1", 8}, {"pixels", rasterPixels, "c", 8},
+    {"evaluator", evaluator, "c", 3},      {"lights", lights, "c1", 4},     {"stacks", stacks, "c", 6},
 };
 
 } // namespace

@@ -42,9 +42,15 @@ void image(World& w, GLenum target, int level, int size, const ImageFormat& f) {
     const void* const data = pixels(w, f.type);
     switch (target) {
     case GL_TEXTURE_1D: GL(glTexImage1D, target, level, internal, side, 0, f.format, f.type, data); break;
-    case GL_TEXTURE_3D: GL(glTexImage3D, target, level, internal, side, side, std::max(1, 4 >> level), 0, f.format, f.type, data); break;
-    case GL_TEXTURE_2D_ARRAY: GL(glTexImage3D, target, level, internal, side, side, 3, 0, f.format, f.type, data); break;
-    case GL_TEXTURE_CUBE_MAP_ARRAY: GL(glTexImage3D, target, level, internal, side, side, 6, 0, f.format, f.type, data); break;
+    case GL_TEXTURE_3D:
+        GL(glTexImage3D, target, level, internal, side, side, std::max(1, 4 >> level), 0, f.format, f.type, data);
+        break;
+    case GL_TEXTURE_2D_ARRAY:
+        GL(glTexImage3D, target, level, internal, side, side, 3, 0, f.format, f.type, data);
+        break;
+    case GL_TEXTURE_CUBE_MAP_ARRAY:
+        GL(glTexImage3D, target, level, internal, side, side, 6, 0, f.format, f.type, data);
+        break;
     case GL_TEXTURE_1D_ARRAY: GL(glTexImage2D, target, level, internal, side, 3, 0, f.format, f.type, data); break;
     case GL_TEXTURE_CUBE_MAP:
         for (GLenum face = GL_TEXTURE_CUBE_MAP_POSITIVE_X; face <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z; ++face) {
@@ -70,9 +76,12 @@ void compressed(World& w) {
     GL(glPixelStorei, GL_UNPACK_SKIP_PIXELS, 0);
     const int width = w.random.between(1, 20);
     const int height = w.random.between(1, 20);
-    const int bytes = (width + format->width - 1) / format->width * ((height + format->height - 1) / format->height) * format->bytes;
-    GL(glCompressedTexImage2D, GL_TEXTURE_2D, 0, format->format, width, height, 0, bytes, inputOf(Type::Byte, w.random));
-    GL(glCompressedTexSubImage2D, GL_TEXTURE_2D, 0, 0, 0, 4, 4, format->format, format->bytes, inputOf(Type::Byte, w.random));
+    const int bytes =
+        (width + format->width - 1) / format->width * ((height + format->height - 1) / format->height) * format->bytes;
+    GL(glCompressedTexImage2D, GL_TEXTURE_2D, 0, format->format, width, height, 0, bytes,
+       inputOf(Type::Byte, w.random));
+    GL(glCompressedTexSubImage2D, GL_TEXTURE_2D, 0, 0, 0, 4, 4, format->format, format->bytes,
+       inputOf(Type::Byte, w.random));
 }
 
 void texture(World& w) { makeTexture(w, anyTarget(w)); }
@@ -199,10 +208,11 @@ void blit(World& w) {
         return;
     }
     const bool overlaps = from == to;
-    const GLbitfield mask = w.random.chance(70) ? GL_COLOR_BUFFER_BIT : w.random.below(2) * GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
-    GL(glBlitFramebuffer, overlaps ? 0 : x, overlaps ? 0 : y, overlaps ? 30 : x + width, overlaps ? 20 : y + height, overlaps ? 32 : 3,
-       overlaps ? 22 : 4, w.random.chance(70) ? (overlaps ? 62 : 3 + width) : 66, overlaps ? 42 : 4 + height, mask,
-       mask == GL_COLOR_BUFFER_BIT && w.random.chance(40) ? GL_LINEAR : GL_NEAREST);
+    const GLbitfield mask =
+        w.random.chance(70) ? GL_COLOR_BUFFER_BIT : w.random.below(2) * GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    GL(glBlitFramebuffer, overlaps ? 0 : x, overlaps ? 0 : y, overlaps ? 30 : x + width, overlaps ? 20 : y + height,
+       overlaps ? 32 : 3, overlaps ? 22 : 4, w.random.chance(70) ? (overlaps ? 62 : 3 + width) : 66,
+       overlaps ? 42 : 4 + height, mask, mask == GL_COLOR_BUFFER_BIT && w.random.chance(40) ? GL_LINEAR : GL_NEAREST);
 }
 
 // Disables pixel transfer. With scaling or mapping, Mesa 22.3.6 copies all rows but the first from before its memory
@@ -231,10 +241,11 @@ void copyTexture(World& w) {
         GL(glBindTexture, GL_TEXTURE_2D, name);
         GL(glTexParameteri, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
         constexpr GLenum formats[] = {GL_RGBA, GL_RGB, GL_LUMINANCE, GL_ALPHA, GL_DEPTH_COMPONENT};
-        GL(glCopyTexImage2D, GL_TEXTURE_2D, 0, w.random.of(formats), w.random.between(0, 20), w.random.between(0, 10), 32, 32, 0);
+        GL(glCopyTexImage2D, GL_TEXTURE_2D, 0, w.random.of(formats), w.random.between(0, 20), w.random.between(0, 10),
+           32, 32, 0);
     } else {
-        GL(glCopyTexSubImage2D, GL_TEXTURE_2D, 0, w.random.between(0, 5), w.random.between(0, 5), w.random.between(-3, 40),
-           w.random.between(-3, 30), w.random.between(0, 11), w.random.between(0, 11));
+        GL(glCopyTexSubImage2D, GL_TEXTURE_2D, 0, w.random.between(0, 5), w.random.between(0, 5),
+           w.random.between(-3, 40), w.random.between(-3, 30), w.random.between(0, 11), w.random.between(0, 11));
     }
 }
 
@@ -261,7 +272,8 @@ void readToBuffer(World& w) {
     GL(glBufferData, GL_PIXEL_PACK_BUFFER, 40 * 30 * 4 + 64, inputOf(Type::Byte, w.random), GL_STREAM_READ);
     GL(glReadPixels, w.random.between(-4, 30), w.random.between(-4, 30), 30, 20, GL_RGBA, GL_UNSIGNED_BYTE,
        reinterpret_cast<void*>(std::uintptr_t{w.random.below(16)} * 4)); // NOLINT: an offset
-    const void* const mapped = GL(glMapBufferRange, GL_PIXEL_PACK_BUFFER, 0, 2400, static_cast<GLbitfield>(GL_MAP_READ_BIT));
+    const void* const mapped =
+        GL(glMapBufferRange, GL_PIXEL_PACK_BUFFER, 0, 2400, static_cast<GLbitfield>(GL_MAP_READ_BIT));
     if (mapped != nullptr) {
         w.observe(mapped, 2400);
     }
@@ -270,17 +282,32 @@ void readToBuffer(World& w) {
 }
 
 constexpr Recipe kRecipes[] = {
-    {"texture", texture, "ck13", 9},       {"compressed texture", compressed, "ck13", 2}, {"texture storage", storage, "ck3", 3},
-    {"show texture", showTexture, "c1", 7}, {"bind textures", bindTextures, "ck13", 5},    {"framebuffer", framebuffer, "ck3", 5},
-    {"window", window, "ck3", 7},          {"blit", blit, "ck3", 4},                      {"copy texture", copyTexture, "ck13", 4},
-    {"read", read, "ck13", 4},             {"read to buffer", readToBuffer, "ck3", 2},
+    {"texture", texture, "ck13", 9},
+    {"compressed texture", compressed, "ck13", 2},
+    {"texture storage", storage, "ck3", 3},
+    {"show texture", showTexture, "c1", 7},
+    {"bind textures", bindTextures, "ck13", 5},
+    {"framebuffer", framebuffer, "ck3", 5},
+    {"window", window, "ck3", 7},
+    {"blit", blit, "ck3", 4},
+    {"copy texture", copyTexture, "ck13", 4},
+    {"read", read, "ck13", 4},
+    {"read to buffer", readToBuffer, "ck3", 2},
 };
 
 } // namespace
 
 GLenum anyTarget(World& w) {
-    constexpr GLenum targets[] = {GL_TEXTURE_2D, GL_TEXTURE_2D, GL_TEXTURE_2D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_3D, GL_TEXTURE_2D_ARRAY,
-                                  GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_1D, GL_TEXTURE_RECTANGLE, GL_TEXTURE_1D_ARRAY};
+    constexpr GLenum targets[] = {GL_TEXTURE_2D,
+                                  GL_TEXTURE_2D,
+                                  GL_TEXTURE_2D,
+                                  GL_TEXTURE_CUBE_MAP,
+                                  GL_TEXTURE_3D,
+                                  GL_TEXTURE_2D_ARRAY,
+                                  GL_TEXTURE_CUBE_MAP_ARRAY,
+                                  GL_TEXTURE_1D,
+                                  GL_TEXTURE_RECTANGLE,
+                                  GL_TEXTURE_1D_ARRAY};
     return targets[w.random.below(w.profile == Profile::Es1 ? 3 : w.es() ? 7 : 10)];
 }
 

@@ -6,8 +6,9 @@
 namespace fuzz {
 namespace {
 
-constexpr GLenum kBufferTargets[] = {GL_ARRAY_BUFFER,      GL_ARRAY_BUFFER,        GL_UNIFORM_BUFFER,   GL_COPY_READ_BUFFER,
-                                     GL_COPY_WRITE_BUFFER, GL_PIXEL_UNPACK_BUFFER, GL_TEXTURE_BUFFER, GL_SHADER_STORAGE_BUFFER};
+constexpr GLenum kBufferTargets[] = {GL_ARRAY_BUFFER,     GL_ARRAY_BUFFER,         GL_UNIFORM_BUFFER,
+                                     GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,    GL_PIXEL_UNPACK_BUFFER,
+                                     GL_TEXTURE_BUFFER,   GL_SHADER_STORAGE_BUFFER};
 
 void drawSomething(World& w) {
     const auto recipes = drawRecipes();
@@ -29,7 +30,8 @@ void fillBuffer(World& w) {
     }
     constexpr Type types[] = {Type::Float, Type::Float, Type::Int, Type::Byte};
     GL(glBufferData, target, w.random.between(0, 2000), inputOf(w.random.of(types), w.random), GL_DYNAMIC_DRAW);
-    GL(glBufferSubData, target, w.random.between(0, 40) * 4, w.random.between(0, 100), inputOf(w.random.of(types), w.random));
+    GL(glBufferSubData, target, w.random.between(0, 40) * 4, w.random.between(0, 100),
+       inputOf(w.random.of(types), w.random));
     if (target == GL_PIXEL_UNPACK_BUFFER && w.random.chance(50)) {
         GL(glBindBuffer, target, 0);
     }
@@ -50,9 +52,12 @@ void mapping(World& w) {
     GL(glBindBuffer, target, w.living(Kind::Buffer));
     const GLintptr offset = w.random.between(0, 10) * 4;
     const GLsizeiptr length = w.random.between(1, 60) * 4;
-    const GLbitfield access = w.random.chance(50) ? GL_MAP_WRITE_BIT | GL_MAP_READ_BIT : w.random.chance(50) ? GL_MAP_WRITE_BIT : GL_MAP_READ_BIT;
+    const GLbitfield access = w.random.chance(50)   ? GL_MAP_WRITE_BIT | GL_MAP_READ_BIT
+                              : w.random.chance(50) ? GL_MAP_WRITE_BIT
+                                                    : GL_MAP_READ_BIT;
     const bool flushes = (access & GL_MAP_READ_BIT) == 0 && w.random.chance(30);
-    void* const mapped = GL(glMapBufferRange, target, offset, length, flushes ? access | GL_MAP_FLUSH_EXPLICIT_BIT : access);
+    void* const mapped =
+        GL(glMapBufferRange, target, offset, length, flushes ? access | GL_MAP_FLUSH_EXPLICIT_BIT : access);
     w.observe(static_cast<std::uint64_t>(mapped != nullptr));
     if (mapped != nullptr) {
         if ((access & GL_MAP_READ_BIT) != 0) {
@@ -69,8 +74,12 @@ void mapping(World& w) {
 }
 
 void query(World& w) {
-    constexpr GLenum targets[] = {GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN,
-                                  GL_SAMPLES_PASSED, GL_SAMPLES_PASSED, GL_PRIMITIVES_GENERATED};
+    constexpr GLenum targets[] = {GL_ANY_SAMPLES_PASSED,
+                                  GL_ANY_SAMPLES_PASSED_CONSERVATIVE,
+                                  GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN,
+                                  GL_SAMPLES_PASSED,
+                                  GL_SAMPLES_PASSED,
+                                  GL_PRIMITIVES_GENERATED};
     const GLenum target = targets[w.random.below(w.es() ? 3 : 6)];
     GLuint name = 0;
     GL(glGenQueries, 1, &name);
@@ -128,7 +137,8 @@ void capture(World& w) {
         GL(glResumeTransformFeedback);
     }
     GL(glEndTransformFeedback);
-    const void* const mapped = GL(glMapBufferRange, GL_TRANSFORM_FEEDBACK_BUFFER, 0, 1024, static_cast<GLbitfield>(GL_MAP_READ_BIT));
+    const void* const mapped =
+        GL(glMapBufferRange, GL_TRANSFORM_FEEDBACK_BUFFER, 0, 1024, static_cast<GLbitfield>(GL_MAP_READ_BIT));
     if (mapped != nullptr) {
         w.observe(mapped, 1024);
     }
@@ -140,7 +150,8 @@ void sync(World& w) {
         GLsync const old = w.syncs.back();
         w.syncs.pop_back();
         GL(glWaitSync, old, 0U, GL_TIMEOUT_IGNORED);
-        const GLenum state = GL(glClientWaitSync, old, static_cast<GLbitfield>(GL_SYNC_FLUSH_COMMANDS_BIT), GLuint64{10000000000});
+        const GLenum state =
+            GL(glClientWaitSync, old, static_cast<GLbitfield>(GL_SYNC_FLUSH_COMMANDS_BIT), GLuint64{10000000000});
         w.observe(static_cast<std::uint64_t>(state == GL_ALREADY_SIGNALED ? GL_CONDITION_SATISFIED : state));
         GL(glDeleteSync, old);
     } else {
@@ -149,8 +160,12 @@ void sync(World& w) {
 }
 
 constexpr Recipe kRecipes[] = {
-    {"fill buffer", fillBuffer, "ck13", 6}, {"immutable buffer", immutableBuffer, "ck", 2}, {"mapping", mapping, "ck3", 4},
-    {"query", query, "ck3", 3},             {"condition", condition, "ck", 1},              {"transform feedback", capture, "ck3", 3},
+    {"fill buffer", fillBuffer, "ck13", 6},
+    {"immutable buffer", immutableBuffer, "ck", 2},
+    {"mapping", mapping, "ck3", 4},
+    {"query", query, "ck3", 3},
+    {"condition", condition, "ck", 1},
+    {"transform feedback", capture, "ck3", 3},
     {"sync", sync, "ck3", 2},
 };
 

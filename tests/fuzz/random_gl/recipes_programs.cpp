@@ -8,7 +8,10 @@ namespace fuzz {
 namespace {
 
 char letter(const World& w) {
-    return w.profile == Profile::Compat ? 'c' : w.profile == Profile::Core ? 'k' : w.profile == Profile::Es1 ? '1' : '3';
+    return w.profile == Profile::Compat ? 'c'
+           : w.profile == Profile::Core ? 'k'
+           : w.profile == Profile::Es1  ? '1'
+                                        : '3';
 }
 
 const PoolProgram& anyProgram(World& w) {
@@ -146,7 +149,8 @@ void count(World& w) {
         w.observe(out, sizeof zeros);
         if (w.trace) {
             const auto* const counts = static_cast<const GLuint*>(out);
-            traceText("counted", shown(counts[0]) + " " + shown(counts[1]) + " " + shown(counts[2]) + " " + shown(counts[3]));
+            traceText("counted",
+                      shown(counts[0]) + " " + shown(counts[1]) + " " + shown(counts[2]) + " " + shown(counts[3]));
         }
     }
 }

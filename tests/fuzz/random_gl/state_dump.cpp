@@ -13,7 +13,8 @@ void dumpQueries(World& w) {
         w.observe(std::uint64_t{glGetError()});
         if (w.trace) {
             const float* const values = static_cast<float*>(out);
-            traceText("state", shown(query) + ": " + shown(values[0]) + " " + shown(values[1]) + " " + shown(digest(out, bytes)));
+            traceText("state", shown(query) + ": " + shown(values[0]) + " " + shown(values[1]) + " " +
+                                   shown(digest(out, bytes)));
         }
     }
 }
@@ -31,20 +32,21 @@ void dumpBuffers(World& w) {
         glGetBufferSubData(GL_COPY_READ_BUFFER, 0, bytes < 4096 ? bytes : 4096, out);
         w.observe(out, 4096);
         if (w.trace) {
-            traceText("buffer", shown(buffer) + " " + shown(bytes) + " bytes: " + shown(digest(out, 4096)) + " from " + shown(static_cast<GLuint*>(out)[0]) + " " +
-                                    shown(static_cast<GLuint*>(out)[1]) + " " + shown(static_cast<GLuint*>(out)[2]));
+            traceText("buffer", shown(buffer) + " " + shown(bytes) + " bytes: " + shown(digest(out, 4096)) + " from " +
+                                    shown(static_cast<GLuint*>(out)[0]) + " " + shown(static_cast<GLuint*>(out)[1]) +
+                                    " " + shown(static_cast<GLuint*>(out)[2]));
         }
     }
 }
 
 void dumpTextures(World& w) {
-    constexpr GLenum targets[] = {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_RECTANGLE};
+    constexpr GLenum targets[] = {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_2D_ARRAY,
+                                  GL_TEXTURE_RECTANGLE};
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     for (std::size_t i = 0; i < kSlots; ++i) {
         const GLuint texture = w.slot(Kind::Texture, i);
         for (const GLenum target : targets) {
-            while (glGetError() != GL_NO_ERROR) {
-            }
+            while (glGetError() != GL_NO_ERROR) {}
             if (texture == 0 || glIsTexture(texture) == GL_FALSE) {
                 break;
             }
@@ -59,7 +61,11 @@ void dumpTextures(World& w) {
             const bool whole = integer == GL_INT || integer == GL_UNSIGNED_INT;
             constexpr std::size_t bytes = 1 << 17;
             void* const out = outputMemory(bytes);
-            glGetTexImage(target, 0, depth > 0 ? GL_DEPTH_COMPONENT : whole ? GL_RGBA_INTEGER : GL_RGBA, whole ? GL_INT : GL_UNSIGNED_BYTE, out);
+            glGetTexImage(target, 0,
+                          depth > 0 ? GL_DEPTH_COMPONENT
+                          : whole   ? GL_RGBA_INTEGER
+                                    : GL_RGBA,
+                          whole ? GL_INT : GL_UNSIGNED_BYTE, out);
             w.observe(out, bytes);
             if (w.trace) {
                 traceText("texture", shown(texture) + " target " + shown(target) + ": " + shown(digest(out, bytes)));

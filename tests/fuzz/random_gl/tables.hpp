@@ -73,9 +73,9 @@ struct Command {
     std::uint8_t gl, es1, es2; // first version, times 10; 0: none
     bool removed;              // removed from the core profile
     bool returns;
-    Kind made; // kind of the returned name
+    Kind made;              // kind of the returned name
     const char* extensions; // separated by blanks, for example " GL_EXT_a GL_EXT_b "
-    std::uint16_t family; // common to commands that differ only in types
+    std::uint16_t family;   // common to commands that differ only in types
 };
 
 extern const std::span<const Command> kCommands;

@@ -17,7 +17,9 @@ bool World::has(std::string_view extension) const {
 }
 
 bool World::offers(const Command& command) const {
-    if (profile == Profile::Es1 ? command.es1 != 0 : es() ? command.es2 != 0 && command.es2 <= 32 : command.gl != 0 && command.gl <= 45) {
+    if (profile == Profile::Es1 ? command.es1 != 0
+        : es()                  ? command.es2 != 0 && command.es2 <= 32
+                                : command.gl != 0 && command.gl <= 45) {
         return true;
     }
     for (std::string_view rest = command.extensions; !rest.empty();) {

@@ -57,7 +57,7 @@ public:
     bool insideBegin = false;
     bool behindVertex = false; // after the first vertex of a primitive
     bool compilesList = false;
-    int attributeSize = 4; // components of vertex attributes
+    int attributeSize = 4;      // components of vertex attributes
     bool countsSamples = false; // whether a query counts samples
     std::vector<GLenum> errors;
 
@@ -72,8 +72,7 @@ private:
 
 void traceText(const char* name, const std::string& arguments);
 
-template <class T>
-std::string shown(T value) {
+template <class T> std::string shown(T value) {
     if constexpr (std::is_pointer_v<T>) {
         // Addresses of the program's own memory differ between runs.
         const auto address = reinterpret_cast<std::uintptr_t>(value);

@@ -21,7 +21,8 @@ public:
     [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(fd_.get()); }
     void append(std::span<const std::byte> bytes) {
         lseek(fd_.get(), 0, SEEK_END);
-        must(write(fd_.get(), bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()), "there is memory for the file");
+        must(write(fd_.get(), bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
+             "there is memory for the file");
     }
 
 private:

@@ -11,7 +11,8 @@ namespace {
 constexpr size_t kMaxBytes = 32768;
 
 void save(const std::string& path, std::span<const std::byte> bytes) {
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 } // namespace
@@ -26,7 +27,8 @@ int main(int argc, char** argv) {
     size_t bytes = 0;
     mural::trace::EntryWalk walk(block.value());
     mural::trace::Entry entry;
-    while (walk.next(entry) && bytes + mural::trace::entryBytes(entry.payload.size()) <= kMaxBytes) bytes += mural::trace::entryBytes(entry.payload.size());
+    while (walk.next(entry) && bytes + mural::trace::entryBytes(entry.payload.size()) <= kMaxBytes)
+        bytes += mural::trace::entryBytes(entry.payload.size());
     save(name + "_entries", block.value().first(bytes));
     std::ifstream file(argv[1], std::ios::binary);
     std::string whole((std::istreambuf_iterator<char>(file)), {});

@@ -23,18 +23,18 @@ namespace mural {
 
 struct FakeNodeBehaviour {
     bool pictures = false;
-    bool silentStart = false; // never ready
-    bool refuses = false; // reports this reason instead of being ready, and ends
-    bool drawsWhole = false; // reported with every frame
-    bool keepsAreas = false; // reported with every frame
-    uint64_t busyNs = 0; // reported with every frame
-    std::string news; // a driver event with every frame
-    uint32_t dieAtFrame = 0; // closes its connection instead of finishing this frame
-    uint32_t dieAtRequest = 0; // instead of answering
-    uint32_t garbageAtFrame = 0; // sends a malformed message
-    bool halfAnswer = false; // sends the first part of an answer, then dies
-    bool noBye = false; // hangs at the end
-    bool alive = false; // sends heartbeats
+    bool silentStart = false;          // never ready
+    bool refuses = false;              // reports this reason instead of being ready, and ends
+    bool drawsWhole = false;           // reported with every frame
+    bool keepsAreas = false;           // reported with every frame
+    uint64_t busyNs = 0;               // reported with every frame
+    std::string news;                  // a driver event with every frame
+    uint32_t dieAtFrame = 0;           // closes its connection instead of finishing this frame
+    uint32_t dieAtRequest = 0;         // instead of answering
+    uint32_t garbageAtFrame = 0;       // sends a malformed message
+    bool halfAnswer = false;           // sends the first part of an answer, then dies
+    bool noBye = false;                // hangs at the end
+    bool alive = false;                // sends heartbeats
     std::atomic<bool>* hold = nullptr; // reads nothing while true
 };
 
@@ -46,9 +46,7 @@ public:
     };
 
     FakeNode(std::unique_ptr<Connection> connection, FakeNodeBehaviour behaviour)
-        : connection_(std::move(connection))
-        , behaviour_(behaviour)
-        , thread_([this] { work(); }) {}
+        : connection_(std::move(connection)), behaviour_(behaviour), thread_([this] { work(); }) {}
     ~FakeNode() {
         stop_ = true;
         waitEnd();
@@ -107,11 +105,12 @@ private:
             setup_ = *setup;
             const std::string common = "GL_COMMON GL_ONLY_" + std::to_string(setup_.node);
             const std::string ready = R"({"host":"h","pid":)" + std::to_string(getpid()) +
-                                      R"(,"renderer":"fake","glVersion":"4.)" +
-                                      std::to_string(setup_.node) + R"( fake","extensions":")" + common + "\"}";
+                                      R"(,"renderer":"fake","glVersion":"4.)" + std::to_string(setup_.node) +
+                                      R"( fake","extensions":")" + common + "\"}";
             if (!behaviour_.silentStart) sendText(wire::NodeMessage::Ready, ready);
         }
-        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ViewportAssignment)) areas_ = words.at(1); // applied at once
+        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ViewportAssignment))
+            areas_ = words.at(1); // applied at once
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
             sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{words.at(1), wire::kAllWindows}, {});
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {
@@ -156,8 +155,14 @@ private:
             sendStruct(wire::NodeMessage::Picture, header, std::as_bytes(std::span(rows)));
         }
         if (!behaviour_.news.empty()) {
-            const wire::DriverEvent news{client, 7, static_cast<uint32_t>(wire::DriverEventKind::DebugMessage), 1, 2, static_cast<uint32_t>(setup_.node), 4,
-                                  static_cast<uint32_t>(behaviour_.news.size())};
+            const wire::DriverEvent news{client,
+                                         7,
+                                         static_cast<uint32_t>(wire::DriverEventKind::DebugMessage),
+                                         1,
+                                         2,
+                                         static_cast<uint32_t>(setup_.node),
+                                         4,
+                                         static_cast<uint32_t>(behaviour_.news.size())};
             sendStruct(wire::NodeMessage::DriverEvent, news, std::as_bytes(std::span(behaviour_.news)));
         }
         wire::FrameDoneMessage done{};

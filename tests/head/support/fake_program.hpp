@@ -89,9 +89,8 @@ public:
     }
     bool publishRaw(const capture::Publication& publication) {
         const uint32_t tail = header_->publishedTail.load();
-        const bool room = waitUntil(header_->publishedHead, [&](uint32_t head) {
-            return tail - head < header_->chunkCount;
-        });
+        const bool room =
+            waitUntil(header_->publishedHead, [&](uint32_t head) { return tail - head < header_->chunkCount; });
         if (!room) return false;
         capture::publications(header_)[tail % header_->chunkCount] = publication;
         header_->publishedTail.store(tail + 1);
@@ -157,8 +156,8 @@ private:
             const uint32_t head = header_->replyHead.load();
             if (!waitUntil(header_->replyTail, [&](uint32_t tail) { return tail != head; })) return false;
             const uint32_t slot = head % header_->replyCapacity;
-            const size_t count = std::min<size_t>({bytes, header_->replyTail.load() - head,
-                                                   header_->replyCapacity - slot});
+            const size_t count =
+                std::min<size_t>({bytes, header_->replyTail.load() - head, header_->replyCapacity - slot});
             std::memcpy(p, capture::replies(header_) + slot, count);
             p += count;
             bytes -= count;

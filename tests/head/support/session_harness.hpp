@@ -61,8 +61,8 @@ public:
         const SessionPlan plan = planSession(config, "here");
         // The session's own thread launches the nodes, which live as long as that thread.
         thread_ = std::thread([this, plan, executable] {
-            auto nodes = launchNodes(plan, {executable, executable, ""}, Deadline::inMs(kTestPatienceMs),
-                                     [] { return false; });
+            auto nodes =
+                launchNodes(plan, {executable, executable, ""}, Deadline::inMs(kTestPatienceMs), [] { return false; });
             if (!nodes) {
                 control_->error(nodes.error().message);
                 status_ = 1;

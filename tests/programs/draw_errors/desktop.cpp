@@ -63,7 +63,8 @@ Calls elementDraws() {
                 calls.push_back([=] { glDrawElementsBaseVertex(mode, count, type, nullptr, 1); });
                 calls.push_back([=] { glDrawElementsInstanced(mode, count, type, nullptr, 2); });
                 calls.push_back([=] { glDrawElementsInstanced(mode, 3, type, nullptr, count); });
-                calls.push_back([=] { glDrawElementsInstancedBaseVertexBaseInstance(mode, count, type, nullptr, 1, 1, 1); });
+                calls.push_back(
+                    [=] { glDrawElementsInstancedBaseVertexBaseInstance(mode, count, type, nullptr, 1, 1, 1); });
                 calls.push_back([=] { glDrawRangeElements(mode, 0, 3, count, type, nullptr); });
                 calls.push_back([=] { glDrawRangeElements(mode, 3, 0, count, type, nullptr); });
                 calls.push_back([=] {
@@ -100,7 +101,8 @@ Calls indirectDraws() {
 
 Calls clears() {
     Calls calls;
-    for (const GLbitfield mask : {GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_STENCIL_BUFFER_BIT, GL_ACCUM_BUFFER_BIT, 0x80, 0}) {
+    for (const GLbitfield mask :
+         {GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_STENCIL_BUFFER_BIT, GL_ACCUM_BUFFER_BIT, 0x80, 0}) {
         calls.push_back([=] { glClear(mask); });
     }
     for (const GLint drawBuffer : {0, 1, 7, 8, 99, -1}) {
@@ -225,15 +227,24 @@ void makePrograms() {
     const Stage vertex = {GL_VERTEX_SHADER, "#version 150\nin vec4 p; void main() { gl_Position = p * 0.1; }"};
     const Stage fragment = {GL_FRAGMENT_SHADER, "#version 150\nout vec4 o; void main() { o = vec4(0.5); }"};
     plainProgram = buildProgram({vertex, fragment});
-    conflictProgram = buildProgram({vertex, {GL_FRAGMENT_SHADER, "#version 150\nuniform sampler2D a; uniform sampler3D b; out vec4 o;"
-                                                                 "void main() { o = texture(a, vec2(0)) + texture(b, vec3(0)); }"}});
+    conflictProgram =
+        buildProgram({vertex,
+                      {GL_FRAGMENT_SHADER, "#version 150\nuniform sampler2D a; uniform sampler3D b; out vec4 o;"
+                                           "void main() { o = texture(a, vec2(0)) + texture(b, vec3(0)); }"}});
     feedbackProgram = buildProgram({vertex, fragment}, [](unsigned program) {
         const char* varying = "gl_Position";
         glTransformFeedbackVaryings(program, 1, &varying, GL_INTERLEAVED_ATTRIBS);
     });
-    geometryProgram = buildProgram({vertex, fragment, {GL_GEOMETRY_SHADER, "#version 150\nlayout(lines) in; layout(points, max_vertices = 1) out;"
-                                                                           "void main() { gl_Position = gl_in[0].gl_Position; EmitVertex(); }"}});
-    tessellationProgram = buildProgram({vertex, fragment, {GL_TESS_EVALUATION_SHADER, "#version 400\nlayout(triangles) in; void main() { gl_Position = gl_in[0].gl_Position; }"}});
+    geometryProgram =
+        buildProgram({vertex,
+                      fragment,
+                      {GL_GEOMETRY_SHADER, "#version 150\nlayout(lines) in; layout(points, max_vertices = 1) out;"
+                                           "void main() { gl_Position = gl_in[0].gl_Position; EmitVertex(); }"}});
+    tessellationProgram =
+        buildProgram({vertex,
+                      fragment,
+                      {GL_TESS_EVALUATION_SHADER,
+                       "#version 400\nlayout(triangles) in; void main() { gl_Position = gl_in[0].gl_Position; }"}});
     computeProgram = buildProgram({{GL_COMPUTE_SHADER, "#version 430\nlayout(local_size_x = 1) in; void main() {}"}});
 }
 
@@ -280,7 +291,8 @@ std::vector<Situation> situations() {
         all.push_back({[] { glEnable(GL_VERTEX_PROGRAM_ARB); }, [] { glDisable(GL_VERTEX_PROGRAM_ARB); }});
         all.push_back({[] { glRasterPos2f(9, 9); }, [] {}});
     } else {
-        all.push_back({[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); }, [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers.indirect); }});
+        all.push_back({[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); },
+                       [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers.indirect); }});
     }
     return all;
 }
@@ -332,9 +344,7 @@ int main(int argc, char** argv) {
         spec.minor = 5;
     }
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             makeBuffers();
             makeFramebuffers();

@@ -66,8 +66,10 @@ std::vector<Situation> situations() {
         {[] { glBindFramebuffer(GL_FRAMEBUFFER, emptyFramebuffer); }, [] { glBindFramebuffer(GL_FRAMEBUFFER, 0); }},
         {[] { glUseProgram(computeProgram); }, [] { glUseProgram(plainProgram); }},
         {[] { glUseProgram(0); }, [] { glUseProgram(plainProgram); }},
-        {[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); }, [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers.indirect); }},
-        {[] { glMapBufferRange(GL_DRAW_INDIRECT_BUFFER, 0, 4, GL_MAP_WRITE_BIT); }, [] { glUnmapBuffer(GL_DRAW_INDIRECT_BUFFER); }},
+        {[] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0); },
+         [] { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers.indirect); }},
+        {[] { glMapBufferRange(GL_DRAW_INDIRECT_BUFFER, 0, 4, GL_MAP_WRITE_BIT); },
+         [] { glUnmapBuffer(GL_DRAW_INDIRECT_BUFFER); }},
         {[] { glMapBufferRange(GL_ARRAY_BUFFER, 0, 4, GL_MAP_WRITE_BIT); }, [] { glUnmapBuffer(GL_ARRAY_BUFFER); }},
     };
 }
@@ -75,9 +77,11 @@ std::vector<Situation> situations() {
 void makeObjects() {
     buffers = makeDrawBuffers();
     glGenFramebuffers(1, &emptyFramebuffer);
-    plainProgram = buildProgram({{GL_VERTEX_SHADER, "#version 310 es\nin vec4 p; void main() { gl_Position = p * 0.1; }"},
-                                 {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; out vec4 o; void main() { o = vec4(0.5); }"}});
-    computeProgram = buildProgram({{GL_COMPUTE_SHADER, "#version 310 es\nlayout(local_size_x = 1) in; void main() {}"}});
+    plainProgram = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 310 es\nin vec4 p; void main() { gl_Position = p * 0.1; }"},
+         {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; out vec4 o; void main() { o = vec4(0.5); }"}});
+    computeProgram =
+        buildProgram({{GL_COMPUTE_SHADER, "#version 310 es\nlayout(local_size_x = 1) in; void main() {}"}});
     glUseProgram(plainProgram);
 }
 
@@ -107,5 +111,6 @@ int main(int argc, char** argv) {
     spec.profile = Profile::Es;
     spec.major = 3;
     spec.minor = 1;
-    return runInEglWindow(argc, argv, spec, [](Window&) { makeObjects(); }, [](Window&, int) { drawFrame(); });
+    return runInEglWindow(
+        argc, argv, spec, [](Window&) { makeObjects(); }, [](Window&, int) { drawFrame(); });
 }

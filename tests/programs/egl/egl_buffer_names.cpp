@@ -21,7 +21,8 @@ struct Surface {
 };
 
 EGLConfig choose(EGLDisplay display, EGLint surfaces, EGLint api) {
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, surfaces, EGL_RENDERABLE_TYPE, api, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8, EGL_DEPTH_SIZE, 24, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE, surfaces, EGL_RENDERABLE_TYPE, api, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8,
+                             EGL_BLUE_SIZE,    8,        EGL_DEPTH_SIZE,      24,  EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (eglChooseConfig(display, wanted, &config, 1, &count) != EGL_TRUE || count == 0) fail("no EGL configuration");
@@ -31,7 +32,8 @@ EGLConfig choose(EGLDisplay display, EGLint surfaces, EGLint api) {
 EGLSurface makeSurface(EGLDisplay display, EGLConfig config, Kind kind, int width, int height) {
     Display* x = openDisplayOnce();
     const ::Window root = DefaultRootWindow(x);
-    const EGLint single[] = {EGL_RENDER_BUFFER, EGL_SINGLE_BUFFER, EGL_NONE}, size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
+    const EGLint single[] = {EGL_RENDER_BUFFER, EGL_SINGLE_BUFFER, EGL_NONE},
+                 size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
     const auto w = static_cast<unsigned>(width), h = static_cast<unsigned>(height);
     if (kind == Kind::Pbuffer) return eglCreatePbufferSurface(display, config, size);
     if (kind == Kind::Pixmap) {
@@ -46,7 +48,9 @@ EGLSurface makeSurface(EGLDisplay display, EGLConfig config, Kind kind, int widt
 }
 
 Surface make(EGLDisplay display, Kind kind, bool desktop, const Options& options) {
-    const EGLint surfaces = kind == Kind::Pbuffer ? EGL_PBUFFER_BIT : kind == Kind::Pixmap ? EGL_PIXMAP_BIT : EGL_WINDOW_BIT;
+    const EGLint surfaces = kind == Kind::Pbuffer  ? EGL_PBUFFER_BIT
+                            : kind == Kind::Pixmap ? EGL_PIXMAP_BIT
+                                                   : EGL_WINDOW_BIT;
     EGLConfig config = choose(display, surfaces, desktop ? EGL_OPENGL_BIT : EGL_OPENGL_ES3_BIT);
     eglBindAPI(desktop ? EGL_OPENGL_API : EGL_OPENGL_ES_API);
     const EGLint version[] = {EGL_CONTEXT_CLIENT_VERSION, 3, EGL_NONE};
@@ -94,7 +98,8 @@ void drawFrame(const Surface& d, bool one, int frame) {
 
 void showAll(EGLDisplay display, const Surface& d, bool one, int frames) {
     eglBindAPI(d.desktop ? EGL_OPENGL_API : EGL_OPENGL_ES_API);
-    if (eglMakeCurrent(display, d.surface, d.surface, d.context) != EGL_TRUE) fail("eglMakeCurrent failed (EGL error 0x%04x)", eglGetError());
+    if (eglMakeCurrent(display, d.surface, d.surface, d.context) != EGL_TRUE)
+        fail("eglMakeCurrent failed (EGL error 0x%04x)", eglGetError());
     for (int frame = 0; frame < frames; ++frame) {
         drawFrame(d, one, frame);
         glFlush(); // has no visible effect
@@ -111,7 +116,8 @@ int main(int argc, char** argv) {
     if (!display || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) fail("no EGL display");
     for (const bool desktop : {true, false})
         for (const Kind kind : {Kind::Window, Kind::SingleWindow, Kind::Pbuffer, Kind::Pixmap})
-            showAll(display, make(display, kind, desktop, options), kind == Kind::Pbuffer || kind == Kind::Pixmap, options.frames);
+            showAll(display, make(display, kind, desktop, options), kind == Kind::Pbuffer || kind == Kind::Pixmap,
+                    options.frames);
     // Ends surfaces while they are current, together with their display. Later surfaces are new ones.
     eglTerminate(display);
     eglReleaseThread();

@@ -16,7 +16,8 @@ void setUpCore() {
     program = buildProgram(
         {{GL_VERTEX_SHADER, "#version 330\nlayout(location=0) in vec3 place; uniform mat4 matrix; out vec3 tint;\n"
                             "void main() { tint = place + 0.5; gl_Position = matrix * vec4(place, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 330\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}});
+         {GL_FRAGMENT_SHADER,
+          "#version 330\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}});
     GLfloat places[36 * 3];
     int count = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -48,7 +49,8 @@ void drawCore(int frame) {
     glEnable(GL_DEPTH_TEST);
     glUseProgram(program);
     for (int i = 0; i < 4; ++i) {
-        const Matrix view = multiply(translation(float(i) * 1.4F - 2.1F, 0, -5), rotationY(0.5F + 0.2F * float(frame + i)));
+        const Matrix view =
+            multiply(translation(float(i) * 1.4F - 2.1F, 0, -5), rotationY(0.5F + 0.2F * float(frame + i)));
         const Matrix matrix = multiply(perspective(0.6F, 0.45F, 1, 20), view);
         glUniformMatrix4fv(glGetUniformLocation(program, "matrix"), 1, GL_FALSE, matrix.data());
         glDrawArrays(GL_TRIANGLES, 0, 36);

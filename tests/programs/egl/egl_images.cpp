@@ -37,8 +37,13 @@ TextureTarget intoTexture, intoRenderbuffer;
 
 EGLContext makeContext(EGLenum api, EGLint major, EGLint minor) {
     eglBindAPI(api);
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, api == EGL_OPENGL_API ? EGL_OPENGL_BIT : EGL_OPENGL_ES2_BIT,
-                             EGL_RED_SIZE, 8, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                             EGL_PBUFFER_BIT,
+                             EGL_RENDERABLE_TYPE,
+                             api == EGL_OPENGL_API ? EGL_OPENGL_BIT : EGL_OPENGL_ES2_BIT,
+                             EGL_RED_SIZE,
+                             8,
+                             EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     eglChooseConfig(display, wanted, &config, 1, &count);
@@ -64,7 +69,8 @@ EGLImage makeImage(EGLenum target, GLuint name, EGLAttrib mipLevel, EGLAttrib sl
     if (target != EGL_GL_TEXTURE_3D && target != EGL_GL_RENDERBUFFER) {
         list = withoutSlice;
     }
-    const EGLImage image = eglCreateImage(display, maker, target, reinterpret_cast<EGLClientBuffer>(std::uintptr_t{name}), list);
+    const EGLImage image =
+        eglCreateImage(display, maker, target, reinterpret_cast<EGLClientBuffer>(std::uintptr_t{name}), list);
     if (image == EGL_NO_IMAGE) {
         fail("no image of 0x%04x (EGL error 0x%04x)", target, eglGetError());
     }
@@ -85,7 +91,8 @@ void makeSources() {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 5);
     glBindTexture(GL_TEXTURE_CUBE_MAP, cube);
     for (unsigned face = 0; face < 6; ++face) {
-        glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGBA8, kSize, kSize, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGBA8, kSize, kSize, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                     nullptr);
     }
     glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAX_LEVEL, 0);
@@ -107,13 +114,16 @@ void drawSource(int which, int frame) {
     use(EGL_OPENGL_API, maker);
     switch (which) {
     case 0: glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, level, 1); break;
-    case 1: glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, cube, 0); break;
+    case 1:
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, cube, 0);
+        break;
     case 2: glFramebufferTexture3D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_3D, volume, 0, 2); break;
     default: glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer); break;
     }
     glViewport(0, 0, kSize, kSize);
     for (int i = 0; i < 8; ++i) {
-        fillRectangle(i * 4, (i * 5 + frame * 3 + which * 7) % kSize, 6, 9, {0.12F * float(i), 0.2F * float(which), 1.0F - 0.1F * float(i)});
+        fillRectangle(i * 4, (i * 5 + frame * 3 + which * 7) % kSize, 6, 9,
+                      {0.12F * float(i), 0.2F * float(which), 1.0F - 0.1F * float(i)});
     }
     glFinish();
     checkNoError("drawing a source");
@@ -145,11 +155,13 @@ private:
 // Draws through an external texture, in ES: from the texture's level into the cube's face.
 void drawEmbedded(EGLImage from, EGLImage to, int frame) {
     use(EGL_OPENGL_ES_API, embedded);
-    static const GLuint program = buildProgram(
-        {{GL_VERTEX_SHADER, "attribute vec2 place; varying vec2 at; void main() { at = place * 0.5 + 0.5; gl_Position = vec4(place, 0.0, 1.0); }\n"},
-         {GL_FRAGMENT_SHADER, "#extension GL_OES_EGL_image_external : require\nprecision mediump float; uniform samplerExternalOES image; varying vec2 at;\n"
-                              "void main() { gl_FragColor = vec4(texture2D(image, at).bgr, 1.0); }\n"}},
-        [](unsigned linking) { glBindAttribLocation(linking, 0, "place"); });
+    static const GLuint program =
+        buildProgram({{GL_VERTEX_SHADER, "attribute vec2 place; varying vec2 at; void main() { at = place * 0.5 + 0.5; "
+                                         "gl_Position = vec4(place, 0.0, 1.0); }\n"},
+                      {GL_FRAGMENT_SHADER, "#extension GL_OES_EGL_image_external : require\nprecision mediump float; "
+                                           "uniform samplerExternalOES image; varying vec2 at;\n"
+                                           "void main() { gl_FragColor = vec4(texture2D(image, at).bgr, 1.0); }\n"}},
+                     [](unsigned linking) { glBindAttribLocation(linking, 0, "place"); });
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glBindTexture(kExternal, texture);
@@ -203,7 +215,8 @@ int main(int argc, char** argv) {
         for (int which = 0; which < 4; ++which) {
             drawSource(which, frame);
         }
-        const EGLImage images[] = {first, makeImage(EGL_GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, cube, 0, 0), makeImage(EGL_GL_TEXTURE_3D, volume, 0, 2),
+        const EGLImage images[] = {first, makeImage(EGL_GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, cube, 0, 0),
+                                   makeImage(EGL_GL_TEXTURE_3D, volume, 0, 2),
                                    makeImage(EGL_GL_RENDERBUFFER, renderbuffer, 0, 0)};
         drawEmbedded(images[0], images[1], frame);
         eglBindAPI(EGL_OPENGL_API);

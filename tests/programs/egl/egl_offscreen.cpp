@@ -33,8 +33,19 @@ struct Offscreen {
 };
 
 EGLConfig chooseConfig(EGLDisplay display) {
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8,
-                             EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8, EGL_DEPTH_SIZE, 24, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                             EGL_PBUFFER_BIT,
+                             EGL_RENDERABLE_TYPE,
+                             EGL_OPENGL_BIT,
+                             EGL_RED_SIZE,
+                             8,
+                             EGL_GREEN_SIZE,
+                             8,
+                             EGL_BLUE_SIZE,
+                             8,
+                             EGL_DEPTH_SIZE,
+                             24,
+                             EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (eglChooseConfig(display, wanted, &config, 1, &count) != EGL_TRUE || count == 0) {
@@ -46,9 +57,12 @@ EGLConfig chooseConfig(EGLDisplay display) {
 void buildShapes(Offscreen& target) {
     target.makeCurrent();
     target.program = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 330\nuniform float turn; out vec3 tint; void main() { float a = float(gl_VertexID) * 2.3 + turn;\n"
-                            "tint = vec3(fract(a), fract(a * 0.7), 0.6); gl_Position = vec4(sin(a) * 0.9, cos(a * 1.2) * 0.9, fract(a) - 0.5, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 330\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}});
+        {{GL_VERTEX_SHADER,
+          "#version 330\nuniform float turn; out vec3 tint; void main() { float a = float(gl_VertexID) * 2.3 + turn;\n"
+          "tint = vec3(fract(a), fract(a * 0.7), 0.6); gl_Position = vec4(sin(a) * 0.9, cos(a * 1.2) * 0.9, fract(a) - "
+          "0.5, 1); }\n"},
+         {GL_FRAGMENT_SHADER,
+          "#version 330\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}});
     GLuint vertexArray = 0;
     glGenVertexArrays(1, &vertexArray);
     glBindVertexArray(vertexArray);
@@ -68,7 +82,8 @@ Offscreen openPbuffer() {
 }
 
 Offscreen openSurfaceless() {
-    Offscreen target = {eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), EGL_NO_SURFACE, EGL_NO_CONTEXT, 0};
+    Offscreen target = {eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
+                        EGL_NO_SURFACE, EGL_NO_CONTEXT, 0};
     if (eglInitialize(target.display, nullptr, nullptr) != EGL_TRUE) {
         fail("no surfaceless EGL");
     }
@@ -92,7 +107,8 @@ std::vector<GLubyte> render(const Offscreen& target, int frame) {
     glClearColor(0.1F * float(frame), 0.3F, 0.2F, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glUseProgram(target.program);
-    glUniform1f(glGetUniformLocation(target.program, "turn"), float(frame) * 0.5F + (target.surface == EGL_NO_SURFACE ? 1.0F : 0.0F));
+    glUniform1f(glGetUniformLocation(target.program, "turn"),
+                float(frame) * 0.5F + (target.surface == EGL_NO_SURFACE ? 1.0F : 0.0F));
     glDrawArrays(GL_TRIANGLES, 0, 12);
     std::vector<GLubyte> pixels(kSize * kSize * 4);
     glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());

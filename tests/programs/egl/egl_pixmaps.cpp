@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
     const auto window = openEglWindow({.profile = Profile::Compatibility}, options.width, options.height);
     Display* x = openDisplayOnce();
     const EGLDisplay egl = eglGetDisplay(reinterpret_cast<EGLNativeDisplayType>(x));
-    const EGLint wishes[] = {EGL_SURFACE_TYPE, EGL_PIXMAP_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
+    const EGLint wishes[] = {EGL_SURFACE_TYPE,    EGL_PIXMAP_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
                              EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;

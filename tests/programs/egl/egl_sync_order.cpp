@@ -44,7 +44,8 @@ EGLSyncKHR taken = EGL_NO_SYNC_KHR; // signalled when the picture has been used
 void paint(unsigned round) {
     Sequence numbers(round);
     for (int i = 0; i < 6; ++i) {
-        fillRectangle(int(numbers.next() % 24), int(numbers.next() % 24), 9, 7, {float(numbers.byte()) / 255, float(numbers.byte()) / 255, 0.6F});
+        fillRectangle(int(numbers.next() % 24), int(numbers.next() % 24), 9, 7,
+                      {float(numbers.byte()) / 255, float(numbers.byte()) / 255, 0.6F});
     }
 }
 
@@ -78,7 +79,8 @@ EGLSync takePainted() {
 
 // Creates the painter's context, a texture to paint into, and an image of the texture.
 void makePainter() {
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8,
+                             EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     eglBindAPI(EGL_OPENGL_API);
@@ -97,7 +99,8 @@ void makePainter() {
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
     glClear(GL_COLOR_BUFFER_BIT);
     glFinish();
-    image = eglCreateImage(display, painter, EGL_GL_TEXTURE_2D, reinterpret_cast<EGLClientBuffer>(std::uintptr_t{texture}), nullptr);
+    image = eglCreateImage(display, painter, EGL_GL_TEXTURE_2D,
+                           reinterpret_cast<EGLClientBuffer>(std::uintptr_t{texture}), nullptr);
     if (image == EGL_NO_IMAGE) {
         fail("no image (EGL error 0x%04x)", eglGetError());
     }

@@ -42,7 +42,9 @@ GLuint textures[3], framebuffers[2], target;
 
 constexpr GLfixed fixed(float value) { return static_cast<GLfixed>(value * 65536.0F); }
 
-void crop(std::array<GLint, 4> rectangle) { glTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_CROP_RECT_OES, rectangle.data()); }
+void crop(std::array<GLint, 4> rectangle) {
+    glTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_CROP_RECT_OES, rectangle.data());
+}
 
 void makeTexture(GLuint texture, GLenum format, int channels, int seed, GLint filter) {
     std::vector<GLubyte> texels(std::size_t(kSide) * kSide * std::size_t(channels));
@@ -70,7 +72,9 @@ void setUp() {
     crop({0, 0, 32, 32});
 }
 
-void bindFramebuffer(GLuint framebuffer) { find<PFNGLBINDFRAMEBUFFEROESPROC>("glBindFramebufferOES")(GL_FRAMEBUFFER_OES, framebuffer); }
+void bindFramebuffer(GLuint framebuffer) {
+    find<PFNGLBINDFRAMEBUFFEROESPROC>("glBindFramebufferOES")(GL_FRAMEBUFFER_OES, framebuffer);
+}
 
 // Draws one rectangle with each of the eight commands, in a row.
 void drawVariants(int frame) {
@@ -94,7 +98,8 @@ void drawVariants(int frame) {
 // Draws parts of a texture, mirrored with negative sizes, one of them larger than the texture.
 void drawCrops(int frame) {
     glBindTexture(GL_TEXTURE_2D, textures[1]);
-    const std::array<GLint, 4> crops[] = {{2, 3, 9, 7}, {kSide, 0, -kSide, kSide}, {0, kSide, kSide, -kSide}, {-4, -4, 24, 24}, {frame, frame, 4, 4}};
+    const std::array<GLint, 4> crops[] = {
+        {2, 3, 9, 7}, {kSide, 0, -kSide, kSide}, {0, kSide, kSide, -kSide}, {-4, -4, 24, 24}, {frame, frame, 4, 4}};
     int x = 10;
     for (const auto& rectangle : crops) {
         crop(rectangle);
@@ -158,7 +163,8 @@ void drawCut(int width, int height) {
 
 void drawToFramebuffer(int width, int height) {
     bindFramebuffer(framebuffers[0]);
-    find<PFNGLFRAMEBUFFERTEXTURE2DOESPROC>("glFramebufferTexture2DOES")(GL_FRAMEBUFFER_OES, GL_COLOR_ATTACHMENT0_OES, GL_TEXTURE_2D, target, 0);
+    find<PFNGLFRAMEBUFFERTEXTURE2DOESPROC>("glFramebufferTexture2DOES")(GL_FRAMEBUFFER_OES, GL_COLOR_ATTACHMENT0_OES,
+                                                                        GL_TEXTURE_2D, target, 0);
     glViewport(0, 0, 32, 32);
     glClearColorx(fixed(0.6F), 0, fixed(0.3F), fixed(1));
     glClear(GL_COLOR_BUFFER_BIT);
@@ -185,7 +191,8 @@ void showErrors() {
     const GLenum none = glGetError();
     glEnable(GL_SCISSOR_TEST);
     glScissor(230, 170, 15, 15);
-    glClearColor(GLfloat(empty & 15U) / 16, GLfloat(below & 15U) / 16, GLfloat((incomplete & 15U) + 4 * (none & 3U)) / 32, 1);
+    glClearColor(GLfloat(empty & 15U) / 16, GLfloat(below & 15U) / 16,
+                 GLfloat((incomplete & 15U) + 4 * (none & 3U)) / 32, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     glDisable(GL_SCISSOR_TEST);
 }
@@ -213,5 +220,6 @@ int main(int argc, char** argv) {
     spec.profile = Profile::Es;
     spec.major = 1;
     spec.minor = 1;
-    return runInEglWindow(argc, argv, spec, [](Window&) { setUp(); }, draw);
+    return runInEglWindow(
+        argc, argv, spec, [](Window&) { setUp(); }, draw);
 }

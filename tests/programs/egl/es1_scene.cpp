@@ -166,10 +166,7 @@ int main(int argc, char** argv) {
     spec.major = 1;
     spec.minor = 1;
     return runInEglWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColorx(fixed(0.1F), fixed(0.2F), fixed(0.1F), fixed(1));
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

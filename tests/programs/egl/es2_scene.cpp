@@ -48,33 +48,39 @@ void makePrograms() {
     colored = buildProgram(
         {{GL_VERTEX_SHADER, "attribute vec4 place; attribute vec4 extra; uniform mat4 matrix; varying vec4 tint;\n"
                             "void main() { tint = extra; gl_PointSize = 5.0; gl_Position = matrix * place; }\n"},
-         {GL_FRAGMENT_SHADER, "precision highp float; varying vec4 tint;\n"
-                              "void main() { gl_FragColor = tint * vec4(fract(gl_FragCoord.xy / 16.0) * 0.3 + 0.7, 1.0, 1.0); }\n"}},
+         {GL_FRAGMENT_SHADER,
+          "precision highp float; varying vec4 tint;\n"
+          "void main() { gl_FragColor = tint * vec4(fract(gl_FragCoord.xy / 16.0) * 0.3 + 0.7, 1.0, 1.0); }\n"}},
         bind);
-    cube = buildProgram(
-        {{GL_VERTEX_SHADER, "attribute vec2 place; attribute vec2 extra; uniform vec2 offset; varying vec3 at;\n"
-                            "void main() { at = vec3(extra - 0.5, 0.4); gl_Position = vec4(place + offset, 0.0, 1.0); }\n"},
-         {GL_FRAGMENT_SHADER, "precision mediump float; varying vec3 at; uniform samplerCube image;\n"
-                              "void main() { gl_FragColor = textureCube(image, at); }\n"}},
-        bind);
+    cube =
+        buildProgram({{GL_VERTEX_SHADER,
+                       "attribute vec2 place; attribute vec2 extra; uniform vec2 offset; varying vec3 at;\n"
+                       "void main() { at = vec3(extra - 0.5, 0.4); gl_Position = vec4(place + offset, 0.0, 1.0); }\n"},
+                      {GL_FRAGMENT_SHADER, "precision mediump float; varying vec3 at; uniform samplerCube image;\n"
+                                           "void main() { gl_FragColor = textureCube(image, at); }\n"}},
+                     bind);
 }
 
 void makeTextures() {
-    const GLenum formats[5][2] = {{GL_RGBA, GL_UNSIGNED_BYTE}, {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
-                                  {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4}, {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE},
+    const GLenum formats[5][2] = {{GL_RGBA, GL_UNSIGNED_BYTE},
+                                  {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
+                                  {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4},
+                                  {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE},
                                   {GL_RGB, GL_UNSIGNED_BYTE}};
     glGenTextures(5, textures);
     for (unsigned i = 0; i < 5; ++i) {
         glBindTexture(GL_TEXTURE_2D, textures[i]);
         clampToEdge(GL_TEXTURE_2D);
         glPixelStorei(GL_UNPACK_ALIGNMENT, i == 4 ? 1 : 4);
-        glTexImage2D(GL_TEXTURE_2D, 0, GLint(formats[i][0]), 16, 16, 0, formats[i][0], formats[i][1], noise(1024, i).data());
+        glTexImage2D(GL_TEXTURE_2D, 0, GLint(formats[i][0]), 16, 16, 0, formats[i][0], formats[i][1],
+                     noise(1024, i).data());
     }
     glGenTextures(1, &cubeTexture);
     glBindTexture(GL_TEXTURE_CUBE_MAP, cubeTexture);
     clampToEdge(GL_TEXTURE_CUBE_MAP);
     for (unsigned face = 0; face < 6; ++face) {
-        glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGB, 4, 4, 0, GL_RGB, GL_UNSIGNED_BYTE, noise(48, face + 9).data());
+        glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGB, 4, 4, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                     noise(48, face + 9).data());
     }
     glGenFramebuffers(1, &framebuffer);
     glGenRenderbuffers(1, &renderbuffer);
@@ -187,9 +193,7 @@ int main(int argc, char** argv) {
     spec.profile = Profile::Es;
     spec.major = 2;
     return runInEglWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             makePrograms();
             makeTextures();

@@ -16,37 +16,51 @@ namespace {
 GLuint vertexArray, blocks, targetsProgram, show, showVolume, feedbackProgram, compute;
 GLuint uniformBuffer, instanceBuffer, feedbackBuffer, feedback, targets[2], framebuffer, volume, image, queryName;
 
-const char* const kQuad = "#version 310 es\nuniform vec4 box; out vec2 corner; void main() {\n"
-                          "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
+const char* const kQuad =
+    "#version 310 es\nuniform vec4 box; out vec2 corner; void main() {\n"
+    "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
 
 void makePrograms() {
     blocks = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 310 es\nlayout(location=0) in vec4 instance; layout(std140, binding=2) uniform Block { vec4 tint; vec2 scale; };\n"
-                            "flat out vec4 color; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
-                            "color = tint * vec4(instance.zw, 0.5, 1); gl_Position = vec4(instance.xy + c * scale, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; flat in vec4 color; out vec4 result; void main() { result = color; }\n"}});
+        {{GL_VERTEX_SHADER,
+          "#version 310 es\nlayout(location=0) in vec4 instance; layout(std140, binding=2) uniform Block { vec4 tint; "
+          "vec2 scale; };\n"
+          "flat out vec4 color; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+          "color = tint * vec4(instance.zw, 0.5, 1); gl_Position = vec4(instance.xy + c * scale, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; flat in vec4 color; out vec4 result; void "
+                              "main() { result = color; }\n"}});
     targetsProgram = buildProgram(
         {{GL_VERTEX_SHADER, kQuad},
-         {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; in vec2 corner; layout(location=0) out vec4 a; layout(location=1) out vec4 b;\n"
-                              "void main() { a = vec4(corner, 0.2, 1); b = vec4(0.9, fract(corner.x * 4.0), corner.y, 1); }\n"}});
-    show = buildProgram({{GL_VERTEX_SHADER, kQuad},
-                         {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; in vec2 corner; uniform sampler2D image; out vec4 result;\n"
-                                              "void main() { result = vec4(texture(image, corner).rgb, 1); }\n"}});
-    showVolume = buildProgram({{GL_VERTEX_SHADER, kQuad},
-                               {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; precision highp usampler3D; in vec2 corner;\n"
-                                                    "uniform usampler3D image; uniform float layer; out vec4 result;\n"
-                                                    "void main() { result = vec4(vec3(texture(image, vec3(corner, layer)).rgb) / 255.0, 1); }\n"}});
+         {GL_FRAGMENT_SHADER,
+          "#version 310 es\nprecision highp float; in vec2 corner; layout(location=0) out vec4 a; layout(location=1) "
+          "out vec4 b;\n"
+          "void main() { a = vec4(corner, 0.2, 1); b = vec4(0.9, fract(corner.x * 4.0), corner.y, 1); }\n"}});
+    show = buildProgram(
+        {{GL_VERTEX_SHADER, kQuad},
+         {GL_FRAGMENT_SHADER,
+          "#version 310 es\nprecision highp float; in vec2 corner; uniform sampler2D image; out vec4 result;\n"
+          "void main() { result = vec4(texture(image, corner).rgb, 1); }\n"}});
+    showVolume =
+        buildProgram({{GL_VERTEX_SHADER, kQuad},
+                      {GL_FRAGMENT_SHADER,
+                       "#version 310 es\nprecision highp float; precision highp usampler3D; in vec2 corner;\n"
+                       "uniform usampler3D image; uniform float layer; out vec4 result;\n"
+                       "void main() { result = vec4(vec3(texture(image, vec3(corner, layer)).rgb) / 255.0, 1); }\n"}});
     feedbackProgram = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 310 es\nlayout(location=0) in vec4 instance; uniform float turn; out vec4 moved; void main() {\n"
-                            "moved = instance + vec4(sin(turn + instance.y) * 0.1, 0.05, 0.1, -0.1); gl_Position = moved; gl_PointSize = 1.0; }\n"},
+        {{GL_VERTEX_SHADER,
+          "#version 310 es\nlayout(location=0) in vec4 instance; uniform float turn; out vec4 moved; void main() {\n"
+          "moved = instance + vec4(sin(turn + instance.y) * 0.1, 0.05, 0.1, -0.1); gl_Position = moved; gl_PointSize = "
+          "1.0; }\n"},
          {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; out vec4 r; void main() { r = vec4(1); }\n"}},
         [](unsigned program) {
             const char* const name = "moved";
             glTransformFeedbackVaryings(program, 1, &name, GL_INTERLEAVED_ATTRIBS);
         });
-    compute = buildProgram({{GL_COMPUTE_SHADER, "#version 310 es\nlayout(local_size_x=8, local_size_y=8) in; uniform int frame;\n"
-                                                "layout(rgba8, binding=0) writeonly uniform highp image2D target; void main() {\n"
-                                                "ivec2 p = ivec2(gl_GlobalInvocationID.xy); imageStore(target, p, vec4(float((p.x * (p.y + frame)) & 31) / 31.0, 0.5, 0.2, 1)); }\n"}});
+    compute = buildProgram(
+        {{GL_COMPUTE_SHADER, "#version 310 es\nlayout(local_size_x=8, local_size_y=8) in; uniform int frame;\n"
+                             "layout(rgba8, binding=0) writeonly uniform highp image2D target; void main() {\n"
+                             "ivec2 p = ivec2(gl_GlobalInvocationID.xy); imageStore(target, p, vec4(float((p.x * (p.y "
+                             "+ frame)) & 31) / 31.0, 0.5, 0.2, 1)); }\n"}});
 }
 
 void makeObjects() {
@@ -91,7 +105,8 @@ void makeObjects() {
 
 void drawBlocks(int frame) {
     glBindBuffer(GL_UNIFORM_BUFFER, uniformBuffer);
-    auto* mapped = static_cast<GLfloat*>(glMapBufferRange(GL_UNIFORM_BUFFER, 0, 32, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT));
+    auto* mapped = static_cast<GLfloat*>(
+        glMapBufferRange(GL_UNIFORM_BUFFER, 0, 32, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT));
     const GLfloat values[8] = {1, 0.4F, 0.2F * float(frame), 1, 0.12F, 0.15F, 0, 0};
     std::memcpy(mapped, values, sizeof values);
     glUnmapBuffer(GL_UNIFORM_BUFFER);
@@ -224,7 +239,8 @@ void resolveElsewhere() {
 
 // Sets a divisor for a binding of array 0, which is rejected. The array keeps one value for each vertex.
 void drawFromMemory() {
-    static const GLfloat corners[4][4] = {{0.5F, 0.5F, 0.9F, 0.3F}, {0.6F, 0.45F, 0.2F, 0.8F}, {0.55F, 0.7F, 0.4F, 0.6F}, {0.8F, 0.75F, 0.7F, 0.9F}};
+    static const GLfloat corners[4][4] = {
+        {0.5F, 0.5F, 0.9F, 0.3F}, {0.6F, 0.45F, 0.2F, 0.8F}, {0.55F, 0.7F, 0.4F, 0.6F}, {0.8F, 0.75F, 0.7F, 0.9F}};
     glBindBuffer(GL_ARRAY_BUFFER, 0);
     glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, corners);
     glEnableVertexAttribArray(0);
@@ -243,9 +259,7 @@ int main(int argc, char** argv) {
     spec.major = 3;
     spec.minor = 1;
     return runInEglWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             makePrograms();
             makeObjects();

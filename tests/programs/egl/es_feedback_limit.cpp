@@ -16,14 +16,15 @@ GLuint program, buffer, vertexArray;
 GLint fromUniform;
 
 void setUp() {
-    program = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 310 es\nuniform vec2 from; out vec4 kept; void main() {\n"
-                            "vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1); kept = vec4(from + c * 0.25, 0.0, 1.0); gl_Position = kept; }\n"},
-         {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; in vec4 kept; out vec4 o; void main() { o = vec4(abs(kept.xy), 0.4, 1.0); }\n"}},
-        [](unsigned linking) {
-            const char* const name = "kept";
-            glTransformFeedbackVaryings(linking, 1, &name, GL_INTERLEAVED_ATTRIBS);
-        });
+    program = buildProgram({{GL_VERTEX_SHADER, "#version 310 es\nuniform vec2 from; out vec4 kept; void main() {\n"
+                                               "vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1); kept = vec4(from + c "
+                                               "* 0.25, 0.0, 1.0); gl_Position = kept; }\n"},
+                            {GL_FRAGMENT_SHADER, "#version 310 es\nprecision highp float; in vec4 kept; out vec4 o; "
+                                                 "void main() { o = vec4(abs(kept.xy), 0.4, 1.0); }\n"}},
+                           [](unsigned linking) {
+                               const char* const name = "kept";
+                               glTransformFeedbackVaryings(linking, 1, &name, GL_INTERLEAVED_ATTRIBS);
+                           });
     fromUniform = glGetUniformLocation(program, "from");
     glGenVertexArrays(1, &vertexArray);
     glBindVertexArray(vertexArray);
@@ -41,7 +42,8 @@ void draw(int frame) {
     const auto next = [&] {
         errors = errors << 1U | (glGetError() == GL_INVALID_OPERATION ? 1U : 0U);
         ++drawn;
-        glUniform2f(fromUniform, -0.9F + 0.28F * float(drawn % 6), -0.8F + 0.05F * float(frame) + 0.3F * float(drawn / 6));
+        glUniform2f(fromUniform, -0.9F + 0.28F * float(drawn % 6),
+                    -0.8F + 0.05F * float(frame) + 0.3F * float(drawn / 6));
     };
     next();
     for (int i = 0; i < 4; ++i) {
@@ -65,14 +67,18 @@ void draw(int frame) {
 } // namespace
 
 int main(int argc, char** argv) {
-    setenv("MESA_EXTENSION_OVERRIDE", "-GL_OES_geometry_shader -GL_EXT_geometry_shader -GL_OES_tessellation_shader -GL_EXT_tessellation_shader", 1);
+    setenv("MESA_EXTENSION_OVERRIDE",
+           "-GL_OES_geometry_shader -GL_EXT_geometry_shader -GL_OES_tessellation_shader -GL_EXT_tessellation_shader",
+           1);
     WindowSpec spec;
     spec.profile = Profile::Es;
     spec.major = 3;
     spec.minor = 1;
-    return runInEglWindow(argc, argv, spec, [](Window&) { setUp(); }, [](Window&, int frame) {
-        glClearColor(0.1F, 0.2F, 0.1F, 1);
-        glClear(GL_COLOR_BUFFER_BIT);
-        draw(frame);
-    });
+    return runInEglWindow(
+        argc, argv, spec, [](Window&) { setUp(); },
+        [](Window&, int frame) {
+            glClearColor(0.1F, 0.2F, 0.1F, 1);
+            glClear(GL_COLOR_BUFFER_BIT);
+            draw(frame);
+        });
 }

@@ -21,9 +21,12 @@ GLuint programs[2], pipelines[2], buffer;
 
 void setUp() {
     const auto* extensions = reinterpret_cast<const char*>(glGetString(GL_EXTENSIONS));
-    if (!extensions || !std::strstr(extensions, "GL_EXT_separate_shader_objects")) fail("GL_EXT_separate_shader_objects is not there");
-    const char* vertex[] = {"attribute vec2 place;\n", "uniform vec2 from; varying vec2 at;\nvoid main() { at = place; gl_Position = vec4(from + place, 0.0, 1.0); }\n"};
-    const char* fragment[] = {"precision highp float; uniform vec3 base; varying vec2 at;\nvoid main() { gl_FragColor = vec4(base + vec3(at, 0.2), 1.0); }\n"};
+    if (!extensions || !std::strstr(extensions, "GL_EXT_separate_shader_objects"))
+        fail("GL_EXT_separate_shader_objects is not there");
+    const char* vertex[] = {"attribute vec2 place;\n", "uniform vec2 from; varying vec2 at;\nvoid main() { at = place; "
+                                                       "gl_Position = vec4(from + place, 0.0, 1.0); }\n"};
+    const char* fragment[] = {"precision highp float; uniform vec3 base; varying vec2 at;\nvoid main() { gl_FragColor "
+                              "= vec4(base + vec3(at, 0.2), 1.0); }\n"};
     const auto create = find<PFNGLCREATESHADERPROGRAMVEXTPROC>("glCreateShaderProgramvEXT");
     programs[0] = create(GL_VERTEX_SHADER, 2, vertex);
     programs[1] = create(GL_FRAGMENT_SHADER, 1, fragment);
@@ -64,9 +67,11 @@ int main(int argc, char** argv) {
     WindowSpec spec;
     spec.profile = Profile::Es;
     spec.major = 2;
-    return runInEglWindow(argc, argv, spec, [](Window&) { setUp(); }, [](Window&, int frame) {
-        glClearColor(0.1F, 0.1F, 0.2F, 1);
-        glClear(GL_COLOR_BUFFER_BIT);
-        draw(frame);
-    });
+    return runInEglWindow(
+        argc, argv, spec, [](Window&) { setUp(); },
+        [](Window&, int frame) {
+            glClearColor(0.1F, 0.1F, 0.2F, 1);
+            glClear(GL_COLOR_BUFFER_BIT);
+            draw(frame);
+        });
 }

@@ -2,7 +2,8 @@
 // program, so it must not change. Prints checksums of both windows.
 //
 //   other_display glx|both|egl|xcb|default
-//   both: also in a window of DISPLAY; xcb: EGL has a connection of its own; default: EGL_DEFAULT_DISPLAY, DISPLAY changed
+//   both: also in a window of DISPLAY; xcb: EGL has a connection of its own; default: EGL_DEFAULT_DISPLAY, DISPLAY
+//   changed
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/glx.h>
@@ -42,8 +43,8 @@ XVisualInfo* visualOf(Display* display) {
     XSetWindowAttributes attributes = {};
     attributes.background_pixel = background;
     attributes.colormap = XCreateColormap(display, root, visual.visual, AllocNone);
-    const ::Window window = XCreateWindow(display, root, 0, 0, kWidth, kHeight, 0, visual.depth, InputOutput, visual.visual,
-                                          CWBackPixel | CWColormap | CWBorderPixel, &attributes);
+    const ::Window window = XCreateWindow(display, root, 0, 0, kWidth, kHeight, 0, visual.depth, InputOutput,
+                                          visual.visual, CWBackPixel | CWColormap | CWBorderPixel, &attributes);
     XMapWindow(display, window);
     XSync(display, False);
     return window;
@@ -83,7 +84,8 @@ struct Shown {
 };
 
 Shown openGlx(Display* display, ::Window window, XVisualInfo* visual) {
-    if (!glXMakeCurrent(display, window, glXCreateContext(display, visual, nullptr, True))) fail("glXMakeCurrent failed");
+    if (!glXMakeCurrent(display, window, glXCreateContext(display, visual, nullptr, True)))
+        fail("glXMakeCurrent failed");
     return {nullptr, nullptr, display, window};
 }
 
@@ -100,13 +102,17 @@ Shown openEgl(Display* display, ::Window window, const char* way) {
     EGLDisplay egl = eglDisplayOf(display, way);
     if (!egl || eglInitialize(egl, nullptr, nullptr) != EGL_TRUE) fail("no EGL display");
     eglBindAPI(EGL_OPENGL_API);
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_ALPHA_SIZE, 0, EGL_NONE};
+    const EGLint wanted[] = {
+        EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_ALPHA_SIZE, 0,
+        EGL_NONE};
     EGLConfig configs[64];
     EGLint count = 0;
     eglChooseConfig(egl, wanted, configs, 64, &count);
     for (int i = 0; i < count; ++i) {
         EGLSurface surface = eglCreateWindowSurface(egl, configs[i], window, nullptr);
-        if (surface && eglMakeCurrent(egl, surface, surface, eglCreateContext(egl, configs[i], nullptr, nullptr)) == EGL_TRUE) return {egl, surface, display, window};
+        if (surface &&
+            eglMakeCurrent(egl, surface, surface, eglCreateContext(egl, configs[i], nullptr, nullptr)) == EGL_TRUE)
+            return {egl, surface, display, window};
     }
     fail("no surface for the window");
 }
@@ -126,8 +132,10 @@ void showOnBoth(const Shown& shown, Display* display) {
 }
 
 void swap(const Shown& shown) {
-    if (shown.display) eglSwapBuffers(shown.display, shown.surface);
-    else glXSwapBuffers(shown.x, shown.window);
+    if (shown.display)
+        eglSwapBuffers(shown.display, shown.surface);
+    else
+        glXSwapBuffers(shown.x, shown.window);
 }
 
 void showFrames(const Shown& shown, float red) {

@@ -46,8 +46,12 @@ struct Painter {
     decltype(&::glReadPixels) readPixels;
 
     explicit Painter(const Library& gl)
-        : clearColor(FUNCTION(gl, glClearColor)), clear(FUNCTION(gl, glClear)), scissor(FUNCTION(gl, glScissor)), enable(FUNCTION(gl, glEnable)),
-          disable(FUNCTION(gl, glDisable)), readPixels(FUNCTION(gl, glReadPixels)) {}
+        : clearColor(FUNCTION(gl, glClearColor)),
+          clear(FUNCTION(gl, glClear)),
+          scissor(FUNCTION(gl, glScissor)),
+          enable(FUNCTION(gl, glEnable)),
+          disable(FUNCTION(gl, glDisable)),
+          readPixels(FUNCTION(gl, glReadPixels)) {}
 
     void draw(int round, int frame, int width, int height) const {
         clearColor(0.2F * float(round % 5), 0.3F * float(frame % 3), 1, 1);
@@ -69,12 +73,14 @@ uint64_t sumOf(const void* bytes, size_t count) {
 // A window on a connection of its own, closed at the end.
 class OwnWindow {
 public:
-    OwnWindow(Display* display, const XVisualInfo& visual, int width, int height) : display_(display), width_(width), height_(height) {
+    OwnWindow(Display* display, const XVisualInfo& visual, int width, int height)
+        : display_(display), width_(width), height_(height) {
         XSetWindowAttributes attributes{};
         attributes.colormap = XCreateColormap(display, DefaultRootWindow(display), visual.visual, AllocNone);
         attributes.override_redirect = True;
-        id_ = XCreateWindow(display, DefaultRootWindow(display), 0, 0, unsigned(width), unsigned(height), 0, visual.depth, InputOutput, visual.visual,
-                            CWBorderPixel | CWColormap | CWOverrideRedirect, &attributes);
+        id_ =
+            XCreateWindow(display, DefaultRootWindow(display), 0, 0, unsigned(width), unsigned(height), 0, visual.depth,
+                          InputOutput, visual.visual, CWBorderPixel | CWColormap | CWOverrideRedirect, &attributes);
         XMapWindow(display, id_);
         XSync(display, False);
     }
@@ -86,7 +92,8 @@ public:
     void sayPixels(const char* where, int round, int frame, const Painter& gl) const {
         std::vector<uint8_t> pixels(size_t(width_) * size_t(height_) * 4);
         gl.readPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-        std::printf("%s round %d frame %d: %016llx\n", where, round, frame, static_cast<unsigned long long>(sumOf(pixels.data(), pixels.size())));
+        std::printf("%s round %d frame %d: %016llx\n", where, round, frame,
+                    static_cast<unsigned long long>(sumOf(pixels.data(), pixels.size())));
     }
     void sayWindow(int round) const {
         XImage* image = XGetImage(display_, id_, 0, 0, unsigned(width_), unsigned(height_), AllPlanes, ZPixmap);
@@ -150,17 +157,20 @@ void drawByEgl(const Round& round, Display* display, int width, int height) {
     const auto swapBuffers = FUNCTION(egl, eglSwapBuffers);
     const EGLDisplay connection = FUNCTION(egl, eglGetDisplay)(reinterpret_cast<EGLNativeDisplayType>(display));
     if (FUNCTION(egl, eglInitialize)(connection, nullptr, nullptr) != EGL_TRUE) fail("round %d: no EGL", round.number);
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_ES2_BIT, EGL_RED_SIZE, 8, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_ES2_BIT, EGL_RED_SIZE, 8,
+                             EGL_NONE};
     const EGLint version[] = {EGL_CONTEXT_CLIENT_VERSION, 2, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0, visual = 0;
-    if (FUNCTION(egl, eglChooseConfig)(connection, wanted, &config, 1, &count) != EGL_TRUE || count == 0) fail("round %d: no configuration", round.number);
+    if (FUNCTION(egl, eglChooseConfig)(connection, wanted, &config, 1, &count) != EGL_TRUE || count == 0)
+        fail("round %d: no configuration", round.number);
     FUNCTION(egl, eglGetConfigAttrib)(connection, config, EGL_NATIVE_VISUAL_ID, &visual);
     {
         const OwnWindow window(display, visualOf(display, VisualID(visual)), width, height);
         const EGLSurface surface = FUNCTION(egl, eglCreateWindowSurface)(connection, config, window.id(), nullptr);
         const EGLContext context = FUNCTION(egl, eglCreateContext)(connection, config, EGL_NO_CONTEXT, version);
-        if (makeCurrent(connection, surface, surface, context) != EGL_TRUE) fail("round %d: eglMakeCurrent", round.number);
+        if (makeCurrent(connection, surface, surface, context) != EGL_TRUE)
+            fail("round %d: eglMakeCurrent", round.number);
         const Painter gl(gles);
         for (int frame = 0; frame < round.frames; ++frame) {
             gl.draw(round.number, frame, width, height);
@@ -182,8 +192,10 @@ void drawRound(const Round& round) {
     Display* display = XOpenDisplay(round.display.c_str());
     if (display == nullptr) fail("no display %s", round.display.c_str());
     const int width = 140 + 30 * (round.number % 4), height = 100;
-    if (round.system == WindowSystem::Glx) drawByGlx(round, display, width, height);
-    else drawByEgl(round, display, width, height);
+    if (round.system == WindowSystem::Glx)
+        drawByGlx(round, display, width, height);
+    else
+        drawByEgl(round, display, width, height);
     std::fflush(stdout);
 }
 

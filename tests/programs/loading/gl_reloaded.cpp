@@ -11,7 +11,8 @@
 
 namespace {
 
-constexpr const char* kNames[] = {"LD_PRELOAD", "LD_LIBRARY_PATH", "__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"};
+constexpr const char* kNames[] = {"LD_PRELOAD", "LD_LIBRARY_PATH", "__GLX_VENDOR_LIBRARY_NAME",
+                                  "__EGL_VENDOR_LIBRARY_FILENAMES"};
 
 void changeEnvironment(const std::string& how, int round) {
     static char put[] = "__GLX_VENDOR_LIBRARY_NAME=mesa";
@@ -32,11 +33,13 @@ void changeEnvironment(const std::string& how, int round) {
 
 int main(int argc, char** argv) {
     if (argc != 3) programs::fail("two arguments are needed");
-    const std::string systems = argv[1], how = argv[2], display = std::getenv("DISPLAY") != nullptr ? std::getenv("DISPLAY") : "";
+    const std::string systems = argv[1], how = argv[2],
+                      display = std::getenv("DISPLAY") != nullptr ? std::getenv("DISPLAY") : "";
     for (int round = 0; round < 3; ++round) {
         changeEnvironment(how, round);
         const char* vendor = std::getenv("__GLX_VENDOR_LIBRARY_NAME");
-        if (how != "untouched" && (how != "unset" || round > 0)) std::printf("the program sees vendor %s\n", vendor != nullptr ? vendor : "none");
+        if (how != "untouched" && (how != "unset" || round > 0))
+            std::printf("the program sees vendor %s\n", vendor != nullptr ? vendor : "none");
         if (systems != "egl") programs::drawRound({programs::WindowSystem::Glx, round, 3, display});
         if (systems != "glx") programs::drawRound({programs::WindowSystem::Egl, round, 3, display});
     }

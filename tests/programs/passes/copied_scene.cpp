@@ -59,10 +59,7 @@ void scene(int frame) {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window& window) { setUp(window); },
+        argc, argv, {}, [](Window& window) { setUp(window); },
         [](Window& window, int frame) {
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
             lastPicture();

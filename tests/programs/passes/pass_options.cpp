@@ -16,19 +16,27 @@ PassOptions takePassOptions(int& argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
         const char* value = i + 1 < argc ? argv[i + 1] : "";
         const auto pair = [&](float& first, float& second) {
-            if (std::sscanf(value, "%f,%f", &first, &second) != 2) fail("%s wants two numbers, not \"%s\"", argv[i], value);
+            if (std::sscanf(value, "%f,%f", &first, &second) != 2)
+                fail("%s wants two numbers, not \"%s\"", argv[i], value);
             ++i;
         };
-        if (std::strcmp(argv[i], "--draw") == 0) options.draw = value, ++i;
-        else if (std::strcmp(argv[i], "--move") == 0) pair(options.moveX, options.moveY);
-        else if (std::strcmp(argv[i], "--eye") == 0) pair(options.eye, options.focus);
-        else if (std::strcmp(argv[i], "--around") == 0) options.around = true;
+        if (std::strcmp(argv[i], "--draw") == 0)
+            options.draw = value, ++i;
+        else if (std::strcmp(argv[i], "--move") == 0)
+            pair(options.moveX, options.moveY);
+        else if (std::strcmp(argv[i], "--eye") == 0)
+            pair(options.eye, options.focus);
+        else if (std::strcmp(argv[i], "--around") == 0)
+            options.around = true;
         else if (std::strcmp(argv[i], "--screen") == 0) {
             PassOptions::Screen s{};
-            if (std::sscanf(value, "%f,%f,%f,%f,%f,%f,%f,%f", &s.left, &s.right, &s.bottom, &s.top, &s.degrees, &s.x, &s.y, &s.z) != 8) fail("--screen wants eight numbers, not \"%s\"", value);
+            if (std::sscanf(value, "%f,%f,%f,%f,%f,%f,%f,%f", &s.left, &s.right, &s.bottom, &s.top, &s.degrees, &s.x,
+                            &s.y, &s.z) != 8)
+                fail("--screen wants eight numbers, not \"%s\"", value);
             options.screen = s;
             ++i;
-        } else argv[kept++] = argv[i];
+        } else
+            argv[kept++] = argv[i];
     }
     argc = kept;
     return options;
@@ -52,8 +60,11 @@ Matrix projectionOf(const PassOptions& options, int width, int height) {
 }
 
 Matrix modelViewOf(const PassOptions& options, int frame) {
-    if (options.around) return multiply(scaling(3, 3, 3), multiply(rotationY(0.3F * float(frame) + 0.2F), rotationZ(0.1F * float(frame))));
-    return multiply(translation(0.2F, -0.1F, -7), multiply(rotationY(0.3F * float(frame) + 0.2F), rotationZ(0.1F * float(frame))));
+    if (options.around)
+        return multiply(scaling(3, 3, 3),
+                        multiply(rotationY(0.3F * float(frame) + 0.2F), rotationZ(0.1F * float(frame))));
+    return multiply(translation(0.2F, -0.1F, -7),
+                    multiply(rotationY(0.3F * float(frame) + 0.2F), rotationZ(0.1F * float(frame))));
 }
 
 const float* sceneVertices() {

@@ -19,7 +19,8 @@ GLuint framebuffer = 0, picture = 0, shadowFramebuffer = 0, shadow = 0, block = 
 constexpr int kShadowSize = 64;
 
 const char* const kFragment = "#version 330\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n";
-const char* const kHead = "#version 400\nlayout(location = 0) in vec3 place; layout(location = 1) in vec3 tone; out vec3 tint;\n";
+const char* const kHead =
+    "#version 400\nlayout(location = 0) in vec3 place; layout(location = 1) in vec3 tone; out vec3 tint;\n";
 
 struct Way {
     std::string vertex;
@@ -29,16 +30,30 @@ struct Way {
 
 const std::map<std::string, Way>& ways() {
     static const std::string head = kHead;
-    static const std::string byMatrix = head + "uniform mat4 whole; void main() { tint = tone; gl_Position = whole * vec4(place, 1); }\n";
+    static const std::string byMatrix =
+        head + "uniform mat4 whole; void main() { tint = tone; gl_Position = whole * vec4(place, 1); }\n";
     static const std::map<std::string, Way> all = {
-        {"legacy", {"#version 110\nattribute vec3 place; attribute vec3 tone; varying vec3 tint; void main() { tint = tone; gl_Position = gl_ModelViewProjectionMatrix * vec4(place, 1.0); }\n"}},
-        {"matrices", {head + "uniform mat4 projection, modelView; void main() { tint = tone; gl_Position = projection * (modelView * vec4(place, 1)); }\n"}},
+        {"legacy",
+         {"#version 110\nattribute vec3 place; attribute vec3 tone; varying vec3 tint; void main() { tint = tone; "
+          "gl_Position = gl_ModelViewProjectionMatrix * vec4(place, 1.0); }\n"}},
+        {"matrices",
+         {head + "uniform mat4 projection, modelView; void main() { tint = tone; gl_Position = projection * (modelView "
+                 "* vec4(place, 1)); }\n"}},
         {"mvp", {byMatrix}},
-        {"block", {head + "layout(std140) uniform Views { mat4 projection; mat4 modelView; }; void main() { tint = tone; gl_Position = projection * (modelView * vec4(place, 1)); }\n"}},
-        {"geometry", {"#version 330\nlayout(location = 0) in vec3 place; layout(location = 1) in vec3 tone; out vec3 color; uniform mat4 whole; void main() { color = tone; gl_Position = whole * vec4(place, 1); }\n",
-                      "#version 330\nlayout(triangles) in; layout(triangle_strip, max_vertices = 3) out; in vec3 color[]; out vec3 tint;\n"
-                      "void main() { for (int i = 0; i < 3; ++i) { gl_Position = gl_in[i].gl_Position; tint = color[2 - i]; EmitVertex(); } EndPrimitive(); }\n"}},
-        {"tessellation", {"#version 400\nlayout(location = 0) in vec3 place; layout(location = 1) in vec3 tone; out vec3 color; uniform mat4 whole; void main() { color = tone; gl_Position = whole * vec4(place, 1); }\n", nullptr, true}},
+        {"block",
+         {head + "layout(std140) uniform Views { mat4 projection; mat4 modelView; }; void main() { tint = tone; "
+                 "gl_Position = projection * (modelView * vec4(place, 1)); }\n"}},
+        {"geometry",
+         {"#version 330\nlayout(location = 0) in vec3 place; layout(location = 1) in vec3 tone; out vec3 color; "
+          "uniform mat4 whole; void main() { color = tone; gl_Position = whole * vec4(place, 1); }\n",
+          "#version 330\nlayout(triangles) in; layout(triangle_strip, max_vertices = 3) out; in vec3 color[]; out vec3 "
+          "tint;\n"
+          "void main() { for (int i = 0; i < 3; ++i) { gl_Position = gl_in[i].gl_Position; tint = color[2 - i]; "
+          "EmitVertex(); } EndPrimitive(); }\n"}},
+        {"tessellation",
+         {"#version 400\nlayout(location = 0) in vec3 place; layout(location = 1) in vec3 tone; out vec3 color; "
+          "uniform mat4 whole; void main() { color = tone; gl_Position = whole * vec4(place, 1); }\n",
+          nullptr, true}},
         {"framebuffer", {byMatrix}},
         {"blit", {byMatrix}},
     };
@@ -47,11 +62,13 @@ const std::map<std::string, Way>& ways() {
 
 const char* const kControl =
     "#version 400\nlayout(vertices = 3) out; in vec3 color[]; out vec3 shade[];\n"
-    "void main() { gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position; shade[gl_InvocationID] = color[gl_InvocationID];\n"
+    "void main() { gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position; shade[gl_InvocationID] = "
+    "color[gl_InvocationID];\n"
     "gl_TessLevelOuter[0] = gl_TessLevelOuter[1] = gl_TessLevelOuter[2] = 2.0; gl_TessLevelInner[0] = 2.0; }\n";
-const char* const kEvaluation =
-    "#version 400\nlayout(triangles, equal_spacing, ccw) in; in vec3 shade[]; out vec3 tint; void main() { vec3 t = gl_TessCoord;\n"
-    "gl_Position = t.x * gl_in[0].gl_Position + t.y * gl_in[1].gl_Position + t.z * gl_in[2].gl_Position; tint = t.x * shade[0] + t.y * shade[1] + t.z * shade[2]; }\n";
+const char* const kEvaluation = "#version 400\nlayout(triangles, equal_spacing, ccw) in; in vec3 shade[]; out vec3 "
+                                "tint; void main() { vec3 t = gl_TessCoord;\n"
+                                "gl_Position = t.x * gl_in[0].gl_Position + t.y * gl_in[1].gl_Position + t.z * "
+                                "gl_in[2].gl_Position; tint = t.x * shade[0] + t.y * shade[1] + t.z * shade[2]; }\n";
 
 bool intoFramebuffer() { return options.draw == "framebuffer" || options.draw == "blit"; }
 
@@ -85,7 +102,9 @@ void makeLevels() {
     for (int level = 0; level < kLevels; ++level) {
         const int size = 1 << (kLevels - 1 - level);
         std::vector<unsigned char> texels(static_cast<size_t>(size) * static_cast<size_t>(size) * 4, 255);
-        for (size_t i = 0; i < texels.size(); i += 4) texels[i] = static_cast<unsigned char>(level * 36), texels[i + 1] = static_cast<unsigned char>(255 - level * 20);
+        for (size_t i = 0; i < texels.size(); i += 4)
+            texels[i] = static_cast<unsigned char>(level * 36),
+            texels[i + 1] = static_cast<unsigned char>(255 - level * 20);
         glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA8, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     }
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
@@ -113,15 +132,25 @@ void setUp(const Window& window) {
     const char* vertex = way->second.vertex.c_str();
     const auto bind = [](unsigned p) { glBindAttribLocation(p, 0, "place"), glBindAttribLocation(p, 1, "tone"); };
     if (options.draw == "legacy")
-        program = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "#version 110\nvarying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n"}}, bind);
+        program = buildProgram({{GL_VERTEX_SHADER, vertex},
+                                {GL_FRAGMENT_SHADER,
+                                 "#version 110\nvarying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n"}},
+                               bind);
     else if (way->second.geometry)
-        program = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_GEOMETRY_SHADER, way->second.geometry}, {GL_FRAGMENT_SHADER, kFragment}});
+        program = buildProgram(
+            {{GL_VERTEX_SHADER, vertex}, {GL_GEOMETRY_SHADER, way->second.geometry}, {GL_FRAGMENT_SHADER, kFragment}});
     else if (way->second.tessellated)
-        program = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_TESS_CONTROL_SHADER, kControl}, {GL_TESS_EVALUATION_SHADER, kEvaluation}, {GL_FRAGMENT_SHADER, kFragment}});
-    else program = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, kFragment}});
-    quads = buildProgram({{GL_VERTEX_SHADER, "#version 330\nuniform vec4 box; out vec2 at; void main() { at = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = vec4(mix(box.xy, box.zw, at), 0, 1); }\n"},
-                          {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; uniform int plain; out vec4 result;\n"
-                                               "void main() { result = plain != 0 ? vec4(at, 0.5, 1) : texture(image, at); }\n"}});
+        program = buildProgram({{GL_VERTEX_SHADER, vertex},
+                                {GL_TESS_CONTROL_SHADER, kControl},
+                                {GL_TESS_EVALUATION_SHADER, kEvaluation},
+                                {GL_FRAGMENT_SHADER, kFragment}});
+    else
+        program = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, kFragment}});
+    quads = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 330\nuniform vec4 box; out vec2 at; void main() { at = vec2(gl_VertexID & 1, "
+                            "gl_VertexID >> 1); gl_Position = vec4(mix(box.xy, box.zw, at), 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; uniform int plain; out vec4 result;\n"
+                              "void main() { result = plain != 0 ? vec4(at, 0.5, 1) : texture(image, at); }\n"}});
     glGenBuffers(1, &block);
     if (!intoFramebuffer()) return;
     framebuffer = makeFramebuffer(window.width(), window.height(), picture);
@@ -129,11 +158,13 @@ void setUp(const Window& window) {
 }
 
 void moveViewport(const Window& window, bool moved) {
-    glViewportIndexedf(0, moved ? options.moveX : 0, moved ? options.moveY : 0, float(window.width()), float(window.height()));
+    glViewportIndexedf(0, moved ? options.moveX : 0, moved ? options.moveY : 0, float(window.width()),
+                       float(window.height()));
 }
 
 void drawScene(const Window& window, int frame) {
-    const Matrix projection = projectionOf(options, window.width(), window.height()), modelView = modelViewOf(options, frame);
+    const Matrix projection = projectionOf(options, window.width(), window.height()),
+                 modelView = modelViewOf(options, frame);
     const Matrix whole = multiply(projection, modelView);
     glEnable(GL_DEPTH_TEST);
     if (byFixedFunction() || options.draw == "legacy") {
@@ -154,8 +185,11 @@ void drawScene(const Window& window, int frame) {
         return;
     }
     glUseProgram(program);
-    const auto set = [](const char* name, const Matrix& m) { glUniformMatrix4fv(glGetUniformLocation(program, name), 1, GL_FALSE, m.data()); };
-    if (options.draw == "matrices") set("projection", projection), set("modelView", modelView);
+    const auto set = [](const char* name, const Matrix& m) {
+        glUniformMatrix4fv(glGetUniformLocation(program, name), 1, GL_FALSE, m.data());
+    };
+    if (options.draw == "matrices")
+        set("projection", projection), set("modelView", modelView);
     else if (options.draw == "block") {
         float values[32];
         std::copy(projection.begin(), projection.end(), values);
@@ -163,7 +197,8 @@ void drawScene(const Window& window, int frame) {
         glBindBuffer(GL_UNIFORM_BUFFER, block);
         glBufferData(GL_UNIFORM_BUFFER, sizeof values, values, GL_DYNAMIC_DRAW);
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, block);
-    } else if (options.draw != "legacy") set("whole", whole);
+    } else if (options.draw != "legacy")
+        set("whole", whole);
     glEnableVertexAttribArray(0);
     glEnableVertexAttribArray(1);
     if (options.draw == "tessellation") glPatchParameteri(GL_PATCH_VERTICES, 3);
@@ -231,7 +266,9 @@ void draw(const Window& window, int frame) {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     moveViewport(window, false);
     clearAll();
-    if (options.draw == "blit") glBlitFramebuffer(0, 0, window.width(), window.height(), 0, 0, window.width(), window.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    if (options.draw == "blit")
+        glBlitFramebuffer(0, 0, window.width(), window.height(), 0, 0, window.width(), window.height(),
+                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     if (options.draw == "framebuffer") drawQuad(-1, -1, 1, 1, picture);
     drawQuad(0.5F, 0.5F, 1, 1, shadow);

@@ -24,7 +24,8 @@ void makeLevels() {
     glBindTexture(GL_TEXTURE_2D, texture);
     for (int level = 0; level < kLevels; ++level) {
         const int size = 1 << (kLevels - 1 - level);
-        std::vector<unsigned char> texels(static_cast<size_t>(size) * static_cast<size_t>(size) * 4, static_cast<unsigned char>(255 - level * 30));
+        std::vector<unsigned char> texels(static_cast<size_t>(size) * static_cast<size_t>(size) * 4,
+                                          static_cast<unsigned char>(255 - level * 30));
         glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     }
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
@@ -32,22 +33,30 @@ void makeLevels() {
 
 void setUp() {
     if (textured()) makeLevels();
-    const char* const fragment = textured() ? "precision mediump float; varying vec3 tint; uniform sampler2D s; void main() { gl_FragColor = texture2D(s, tint.xy * 4.0) * vec4(tint, 1.0); }\n"
-                                            : "precision mediump float; varying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n";
+    const char* const fragment =
+        textured() ? "precision mediump float; varying vec3 tint; uniform sampler2D s; void main() { gl_FragColor = "
+                     "texture2D(s, tint.xy * 4.0) * vec4(tint, 1.0); }\n"
+                   : "precision mediump float; varying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n";
     const auto bind = [](unsigned p) { glBindAttribLocation(p, 0, "place"), glBindAttribLocation(p, 1, "tone"); };
-    scene = buildProgram({{GL_VERTEX_SHADER, "attribute vec3 place; attribute vec3 tone; uniform mat4 whole; uniform vec4 by; varying vec3 tint;\n"
-                                             "void main() { tint = tone; gl_Position = whole * vec4(place, 1.0); gl_Position.xy += gl_Position.xy * by.xy + by.zw * gl_Position.w; }\n"},
-                          {GL_FRAGMENT_SHADER, fragment}},
-                         bind);
-    overlay = buildProgram({{GL_VERTEX_SHADER, "attribute vec3 place; uniform vec4 by; varying vec3 tint;\n"
-                                               "void main() { tint = vec3(place.xy + 1.0, 0.5); gl_Position = vec4(place, 1.0); gl_Position.xy += gl_Position.xy * by.xy + by.zw * gl_Position.w; }\n"},
-                            {GL_FRAGMENT_SHADER, fragment}},
-                           bind);
+    scene = buildProgram(
+        {{GL_VERTEX_SHADER,
+          "attribute vec3 place; attribute vec3 tone; uniform mat4 whole; uniform vec4 by; varying vec3 tint;\n"
+          "void main() { tint = tone; gl_Position = whole * vec4(place, 1.0); gl_Position.xy += gl_Position.xy * by.xy "
+          "+ by.zw * gl_Position.w; }\n"},
+         {GL_FRAGMENT_SHADER, fragment}},
+        bind);
+    overlay =
+        buildProgram({{GL_VERTEX_SHADER, "attribute vec3 place; uniform vec4 by; varying vec3 tint;\n"
+                                         "void main() { tint = vec3(place.xy + 1.0, 0.5); gl_Position = vec4(place, "
+                                         "1.0); gl_Position.xy += gl_Position.xy * by.xy + by.zw * gl_Position.w; }\n"},
+                      {GL_FRAGMENT_SHADER, fragment}},
+                     bind);
 }
 
 void use(GLuint program, const Window& window) {
     glUseProgram(program);
-    glUniform4f(glGetUniformLocation(program, "by"), 0, 0, 2 * options.moveX / float(window.width()), 2 * options.moveY / float(window.height()));
+    glUniform4f(glGetUniformLocation(program, "by"), 0, 0, 2 * options.moveX / float(window.width()),
+                2 * options.moveY / float(window.height()));
 }
 
 void draw(const Window& window, int frame) {

@@ -53,9 +53,7 @@ int main(int argc, char** argv) {
     spec.accum = 16;
     spec.alpha = 8;
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             glClearColor(0.1F, 0.1F, 0.3F, 1);
             GLint bits = 0;

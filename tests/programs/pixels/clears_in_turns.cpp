@@ -113,8 +113,10 @@ void pushed(int) {
     glClear(kAll);
 }
 using Begin = void (*)(int frame);
-constexpr Begin kBegins[] = {whole,  one,   withDrawsBetween, whole,  withoutStencil, twice,  nothing, whole,     masked,         whole,    within,
-                             refused, inList, byBuffers,        nothing, byOtherBuffers, whole, coloursOnly, compiled, pushed,    withoutStencil, byBuffers, coloursOnly};
+constexpr Begin kBegins[] = {whole,    one,       withDrawsBetween, whole,          withoutStencil, twice,
+                             nothing,  whole,     masked,           whole,          within,         refused,
+                             inList,   byBuffers, nothing,          byOtherBuffers, whole,          coloursOnly,
+                             compiled, pushed,    withoutStencil,   byBuffers,      coloursOnly};
 
 void scene(int frame) {
     glEnable(GL_DEPTH_TEST);
@@ -193,7 +195,8 @@ void draw(Window& window, int frame) {
     kBegins[static_cast<size_t>(frame) % std::size(kBegins)](frame);
     scene(frame);
     if (counts) glEndQuery(GL_SAMPLES_PASSED);
-    if (frame % 4 == 1) showPixels(10, 10, pixelsOf(shown, y % (window.width() - kCopied), x % (window.height() - kCopied)));
+    if (frame % 4 == 1)
+        showPixels(10, 10, pixelsOf(shown, y % (window.width() - kCopied), x % (window.height() - kCopied)));
     if (frame % 6 == 3) {
         glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, x, y, kCopied, kCopied, 0);
         showTexture(-0.9F, 0.2F);

@@ -30,7 +30,8 @@ void setUp(Window&) {
     glTexStorage2D(GL_TEXTURE_2D, 1, GL_COMPRESSED_RED_RGTC1, kSize, kSize);
     glTextureStorage2DEXT(wide, GL_TEXTURE_2D, 1, GL_RG32UI, kBlocks, kBlocks);
     for (GLenum face = 0; face < 6; ++face)
-        glTextureImage2DEXT(cube, GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_COMPRESSED_RED_RGTC1, kSize, kSize, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+        glTextureImage2DEXT(cube, GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_COMPRESSED_RED_RGTC1, kSize, kSize, 0,
+                            GL_RED, GL_UNSIGNED_BYTE, nullptr);
     glBindTexture(GL_TEXTURE_2D, flat);
 }
 
@@ -49,14 +50,17 @@ void draw(int frame) {
 void makeImages(const Window& window) {
     const int x = (window.width() - kSize) / 2, y = (window.height() - kSize) / 2;
     glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_COMPRESSED_RED_RGTC1, x, y, kSize, kSize, 0);
-    glCopyTextureImage2DEXT(cube, GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, 0, GL_COMPRESSED_RED_RGTC1, x + 3, y + 2, kSize, kSize, 0);
+    glCopyTextureImage2DEXT(cube, GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, 0, GL_COMPRESSED_RED_RGTC1, x + 3, y + 2, kSize,
+                            kSize, 0);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, source);
     glReadPixels(x, y, kSize, kSize, GL_RED, GL_UNSIGNED_BYTE, nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, source);
-    glTextureImage2DEXT(filled, GL_TEXTURE_2D, 0, GL_COMPRESSED_RED_RGTC1, kSize, kSize, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    glTextureImage2DEXT(filled, GL_TEXTURE_2D, 0, GL_COMPRESSED_RED_RGTC1, kSize, kSize, 0, GL_RED, GL_UNSIGNED_BYTE,
+                        nullptr);
     // Uses the bytes of a read as blocks; any bytes are valid.
-    glCompressedTextureSubImage2DEXT(cube, GL_TEXTURE_CUBE_MAP_POSITIVE_X, 0, 0, 0, kSize, kSize, GL_COMPRESSED_RED_RGTC1, kBytes, nullptr);
+    glCompressedTextureSubImage2DEXT(cube, GL_TEXTURE_CUBE_MAP_POSITIVE_X, 0, 0, 0, kSize, kSize,
+                                     GL_COMPRESSED_RED_RGTC1, kBytes, nullptr);
     glTextureSubImage2DEXT(wide, GL_TEXTURE_2D, 0, 0, 0, kBlocks, kBlocks, GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glCopyImageSubData(wide, GL_TEXTURE_2D, 0, 0, 0, 0, copied, GL_TEXTURE_2D, 0, 0, 0, 0, kBlocks, kBlocks, 1);
@@ -85,7 +89,8 @@ void readWhole() {
 
 void readParts() {
     show("part", [](void* to) { glGetCompressedTextureSubImage(flat, 0, 8, 4, 0, 12, 20, 1, 3 * 5 * 8, to); });
-    show("part of faces", [](void* to) { glGetCompressedTextureSubImage(cube, 0, 4, 12, 1, 28, 16, 3, 7 * 4 * 3 * 8, to); });
+    show("part of faces",
+         [](void* to) { glGetCompressedTextureSubImage(cube, 0, 4, 12, 1, 28, 16, 3, 7 * 4 * 3 * 8, to); });
     glPixelStorei(GL_PACK_COMPRESSED_BLOCK_WIDTH, 4);
     glPixelStorei(GL_PACK_COMPRESSED_BLOCK_HEIGHT, 4);
     glPixelStorei(GL_PACK_COMPRESSED_BLOCK_DEPTH, 1);
@@ -94,13 +99,17 @@ void readParts() {
     glPixelStorei(GL_PACK_SKIP_PIXELS, 8);
     glPixelStorei(GL_PACK_SKIP_ROWS, 4);
     show("apart", [](void* to) { glGetCompressedTexImage(GL_TEXTURE_2D, 0, to); });
-    for (const GLenum name : {GL_PACK_COMPRESSED_BLOCK_WIDTH, GL_PACK_COMPRESSED_BLOCK_HEIGHT, GL_PACK_COMPRESSED_BLOCK_DEPTH, GL_PACK_COMPRESSED_BLOCK_SIZE,
-                              GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS}) glPixelStorei(name, 0);
+    for (const GLenum name :
+         {GL_PACK_COMPRESSED_BLOCK_WIDTH, GL_PACK_COMPRESSED_BLOCK_HEIGHT, GL_PACK_COMPRESSED_BLOCK_DEPTH,
+          GL_PACK_COMPRESSED_BLOCK_SIZE, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS})
+        glPixelStorei(name, 0);
 }
 
 // Reads parts into a buffer, which is mapped after all reads. One part has separated blocks.
 void readPartsIntoBuffer() {
-    const auto at = [](std::uintptr_t offset) { return reinterpret_cast<void*>(offset); }; // NOLINT(performance-no-int-to-ptr): an offset
+    const auto at = [](std::uintptr_t offset) {
+        return reinterpret_cast<void*>(offset);
+    }; // NOLINT(performance-no-int-to-ptr): an offset
     GLuint parts = 0;
     glGenBuffers(1, &parts);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, parts);
@@ -121,17 +130,20 @@ void readPartsIntoBuffer() {
 
 void readIntoBuffer() {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, packed);
-    glGetCompressedTexImage(GL_TEXTURE_2D, 0, reinterpret_cast<void*>(std::uintptr_t(16))); // NOLINT(performance-no-int-to-ptr): an offset
+    glGetCompressedTexImage(
+        GL_TEXTURE_2D, 0, reinterpret_cast<void*>(std::uintptr_t(16))); // NOLINT(performance-no-int-to-ptr): an offset
     show("buffer", [](void* to) { glGetBufferSubData(GL_PIXEL_PACK_BUFFER, 16, kBytes, to); });
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     // The nodes have these bytes, too, because they draw from them.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, packed);
     glWindowPos2i(150, 20);
-    glDrawPixels(16, kBytes / 64, GL_RGBA, GL_UNSIGNED_BYTE, reinterpret_cast<const void*>(std::uintptr_t(16))); // NOLINT(performance-no-int-to-ptr)
+    glDrawPixels(16, kBytes / 64, GL_RGBA, GL_UNSIGNED_BYTE,
+                 reinterpret_cast<const void*>(std::uintptr_t(16))); // NOLINT(performance-no-int-to-ptr)
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     std::vector<GLubyte> memory(kBytes, 0x5a);
     glGetCompressedTextureImage(flat, 0, kBytes - 1, memory.data());
-    if (glGetError() != GL_INVALID_OPERATION || memory != std::vector<GLubyte>(kBytes, 0x5a)) fail("too little room was enough");
+    if (glGetError() != GL_INVALID_OPERATION || memory != std::vector<GLubyte>(kBytes, 0x5a))
+        fail("too little room was enough");
 }
 
 } // namespace

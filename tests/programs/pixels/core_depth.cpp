@@ -62,7 +62,8 @@ GLuint makeTexture(GLint width, GLint height) {
     GLuint name = 0;
     glGenTextures(1, &name);
     glBindTexture(GL_TEXTURE_2D, name);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, width, height, 0, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, nullptr);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, width, height, 0, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+                 nullptr);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     return name;
 }
@@ -75,7 +76,8 @@ void setUp(Window& window) {
           "#version 430\nlayout(location=0) uniform vec4 box; layout(location=1) uniform float depth; out vec3 tint;\n"
           "void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1); tint = vec3(c, depth);\n"
           "gl_Position = vec4(box.xy + c * box.zw, depth + 0.3 * c.x * c.y, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 430\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}});
+         {GL_FRAGMENT_SHADER,
+          "#version 430\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}});
     copied = makeTexture(window.width(), window.height());
     target = makeTexture(window.width(), window.height());
     glGenFramebuffers(1, &framebuffer);
@@ -94,10 +96,7 @@ void readBack(GLuint texture, int row, const Window& window) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window& window) { setUp(window); },
+        argc, argv, spec, [](Window& window) { setUp(window); },
         [](Window& window, int frame) {
             glClearColor(0.1F, 0.12F, 0.1F, 1);
             glClearDepth(0.9);

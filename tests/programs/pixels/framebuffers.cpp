@@ -61,8 +61,8 @@ void makeFramebuffers() {
     for (int i = 1; i < 3; ++i) {
         glBindRenderbuffer(GL_RENDERBUFFER, renderbuffers[i]);
         glRenderbufferStorageMultisample(GL_RENDERBUFFER, 4, i == 1 ? GL_RGBA8 : GL_DEPTH_COMPONENT24, kSize, kSize);
-        glFramebufferRenderbuffer(GL_FRAMEBUFFER, i == 1 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
-                                  GL_RENDERBUFFER, renderbuffers[i]);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, i == 1 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                  renderbuffers[i]);
     }
     requireComplete("multisampled");
     attachTexture(depthOnly, GL_DEPTH_ATTACHMENT, depthTexture);
@@ -79,23 +79,20 @@ void makePrograms() {
         "color = vec3(fract(a), fract(float(i) * 0.37), float(i % 2));\n"
         "gl_Position = vec4(sin(a) * 0.9, cos(a * 1.3) * 0.9, fract(a * 2.1) * 1.8 - 0.9, 1); }\n";
     shapes = buildProgram({{GL_VERTEX_SHADER, vertex},
-                           {GL_FRAGMENT_SHADER,
-                            "#version 400\nin vec3 color; out vec4 result;\n"
-                            "void main() { result = vec4(color, 1); }\n"}});
+                           {GL_FRAGMENT_SHADER, "#version 400\nin vec3 color; out vec4 result;\n"
+                                                "void main() { result = vec4(color, 1); }\n"}});
     targetsProgram = buildProgram(
         {{GL_VERTEX_SHADER, vertex},
          {GL_FRAGMENT_SHADER,
           "#version 400\nin vec3 color; layout(location=0) out vec4 a; layout(location=1) out vec4 b;\n"
           "layout(location=2) out vec4 c; void main() { a = vec4(color, 1); b = vec4(color.bgr * 1.5, 1);\n"
           "c = vec4(gl_FragCoord.xy / 64.0, 0, 1); }\n"}});
-    picture = buildProgram(
-        {{GL_VERTEX_SHADER,
-          "#version 400\nuniform vec4 box; out vec2 corner; void main() {\n"
-          "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
-          "gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER,
-          "#version 400\nin vec2 corner; uniform sampler2D image; out vec4 result;\n"
-          "void main() { result = vec4(texture(image, corner).rgb, 1); }\n"}});
+    picture =
+        buildProgram({{GL_VERTEX_SHADER, "#version 400\nuniform vec4 box; out vec2 corner; void main() {\n"
+                                         "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+                                         "gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n"},
+                      {GL_FRAGMENT_SHADER, "#version 400\nin vec2 corner; uniform sampler2D image; out vec4 result;\n"
+                                           "void main() { result = vec4(texture(image, corner).rgb, 1); }\n"}});
 }
 
 void drawShapes(GLuint program, int frame, GLsizei count) {
@@ -109,8 +106,8 @@ void drawShapes(GLuint program, int frame, GLsizei count) {
 void drawPicture(GLuint texture, int cell) {
     glUseProgram(picture);
     glBindTexture(GL_TEXTURE_2D, texture);
-    glUniform4f(glGetUniformLocation(picture, "box"), -0.97F + 0.33F * float(cell % 6),
-                -0.97F + 0.5F * float(cell / 6), 0.3F, 0.46F);
+    glUniform4f(glGetUniformLocation(picture, "box"), -0.97F + 0.33F * float(cell % 6), -0.97F + 0.5F * float(cell / 6),
+                0.3F, 0.46F);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
@@ -141,8 +138,8 @@ void renderOffscreen(int frame) {
 void blit(GLuint from, GLuint to, const int (&source)[4], const int (&target)[4], GLenum filter) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
-    glBlitFramebuffer(source[0], source[1], source[2], source[3], target[0], target[1], target[2],
-                      target[3], GL_COLOR_BUFFER_BIT, filter);
+    glBlitFramebuffer(source[0], source[1], source[2], source[3], target[0], target[1], target[2], target[3],
+                      GL_COLOR_BUFFER_BIT, filter);
 }
 
 void drawWindow(Window& window, int frame) {
@@ -185,9 +182,7 @@ void drawWindow(Window& window, int frame) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Compatibility, 4, 0};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             glGenVertexArrays(1, &vertexArray);
             glBindVertexArray(vertexArray);

@@ -15,22 +15,21 @@ namespace {
 
 constexpr int kSize = 32;
 GLuint layered, flat, perSample, vertexArray;
-GLuint arrayTexture, cubeTexture, volumeTexture, copied, arrayFramebuffer, faceFramebuffer, stencilFramebuffer, emptyFramebuffer;
+GLuint arrayTexture, cubeTexture, volumeTexture, copied, arrayFramebuffer, faceFramebuffer, stencilFramebuffer,
+    emptyFramebuffer;
 GLuint showLayer, showCube, showVolume;
 
-const char* const kQuadVertex =
-    "#version 400\nuniform vec4 box; out vec2 corner; void main() {\n"
-    "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
-    "gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
+const char* const kQuadVertex = "#version 400\nuniform vec4 box; out vec2 corner; void main() {\n"
+                                "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+                                "gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
 const char* const kFanVertex =
     "#version 400\nuniform float turn; uniform vec4 box; out vec3 color; void main() {\n"
     "float a = float(gl_VertexID) * 2.1 + turn; color = vec3(fract(a), fract(a * 1.7), 0.5);\n"
     "gl_Position = vec4(box.xy + vec2(cos(a), sin(a * 1.1)) * box.zw, 0, 1); }\n";
 
 GLuint makeShow(const char* sampler, const char* lookUp) {
-    const std::string source = std::string("#version 400\nin vec2 corner; uniform float layer; uniform ") +
-                               sampler + " image; out vec4 result;\nvoid main() { result = vec4(" +
-                               lookUp + ".rgb, 1); }\n";
+    const std::string source = std::string("#version 400\nin vec2 corner; uniform float layer; uniform ") + sampler +
+                               " image; out vec4 result;\nvoid main() { result = vec4(" + lookUp + ".rgb, 1); }\n";
     return buildProgram({{GL_VERTEX_SHADER, kQuadVertex}, {GL_FRAGMENT_SHADER, source.c_str()}});
 }
 
@@ -38,15 +37,14 @@ void makePrograms() {
     const char* const fragment = "#version 400\nin vec3 color; out vec4 result;\n"
                                  "void main() { result = vec4(color, color.r); }\n";
     flat = buildProgram({{GL_VERTEX_SHADER, kFanVertex}, {GL_FRAGMENT_SHADER, fragment}});
-    perSample = buildProgram({{GL_VERTEX_SHADER, kFanVertex},
-                              {GL_FRAGMENT_SHADER,
-                               "#version 400\nin vec3 color; out vec4 result; void main() {\n"
-                               "result = vec4(color * (0.4 + 0.15 * float(gl_SampleID)), 1); }\n"}});
+    perSample =
+        buildProgram({{GL_VERTEX_SHADER, kFanVertex},
+                      {GL_FRAGMENT_SHADER, "#version 400\nin vec3 color; out vec4 result; void main() {\n"
+                                           "result = vec4(color * (0.4 + 0.15 * float(gl_SampleID)), 1); }\n"}});
     layered = buildProgram(
-        {{GL_VERTEX_SHADER,
-          "#version 400\nuniform float turn; uniform vec4 box; out vec3 tint; void main() {\n"
-          "float a = float(gl_VertexID) * 2.1 + turn; tint = vec3(fract(a), fract(a * 1.7), 0.5);\n"
-          "gl_Position = vec4(box.xy + vec2(cos(a), sin(a * 1.1)) * box.zw, 0, 1); }\n"},
+        {{GL_VERTEX_SHADER, "#version 400\nuniform float turn; uniform vec4 box; out vec3 tint; void main() {\n"
+                            "float a = float(gl_VertexID) * 2.1 + turn; tint = vec3(fract(a), fract(a * 1.7), 0.5);\n"
+                            "gl_Position = vec4(box.xy + vec2(cos(a), sin(a * 1.1)) * box.zw, 0, 1); }\n"},
          {GL_GEOMETRY_SHADER,
           "#version 400\nlayout(triangles) in; layout(triangle_strip, max_vertices=12) out;\n"
           "in vec3 tint[]; out vec3 color; void main() { for (int layer = 0; layer < 4; ++layer) {\n"
@@ -65,8 +63,8 @@ void makeTarget(GLuint name, GLenum target) {
     glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     if (target == GL_TEXTURE_CUBE_MAP) {
         for (GLenum face = 0; face < 6; ++face) {
-            glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGBA8, kSize, kSize, 0, GL_RGBA,
-                         GL_UNSIGNED_BYTE, nullptr);
+            glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGBA8, kSize, kSize, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                         nullptr);
         }
     } else {
         glTexImage3D(target, 0, GL_RGBA8, kSize, kSize, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -113,8 +111,8 @@ void renderLayers(int frame) {
     glBindFramebuffer(GL_FRAMEBUFFER, faceFramebuffer);
     for (int i = 0; i < 10; ++i) {
         if (i < 6) {
-            glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
-                                   GL_TEXTURE_CUBE_MAP_POSITIVE_X + GLenum(i), cubeTexture, 0);
+            glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_CUBE_MAP_POSITIVE_X + GLenum(i),
+                                   cubeTexture, 0);
         } else {
             glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, volumeTexture, 0, i - 6);
         }
@@ -182,8 +180,8 @@ void blitWindow(Window& window) {
     const int h = window.height();
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, stencilFramebuffer);
-    glBlitFramebuffer(w / 8, h * 5 / 8, w / 8 + kSize, h * 5 / 8 + kSize, 0, 0, kSize, kSize,
-                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitFramebuffer(w / 8, h * 5 / 8, w / 8 + kSize, h * 5 / 8 + kSize, 0, 0, kSize, kSize, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
     glBindFramebuffer(GL_FRAMEBUFFER, stencilFramebuffer);
     GLubyte pixel[4] = {};
     glReadPixels(kSize / 2, kSize / 2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
@@ -214,10 +212,7 @@ int main(int argc, char** argv) {
     WindowSpec spec = {Profile::Core, 4, 0};
     spec.samples = 4;
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window& window, int frame) {
             renderLayers(frame);
             const std::uint32_t samples = drawWithoutAttachments(frame);

@@ -91,7 +91,8 @@ void copies(const Place& p) {
         glEnd();
         glDisable(GL_TEXTURE_2D);
     }
-    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, p.window.width() / 2 - kCopied, p.window.height() / 2 - kCopied, 2 * kCopied, 2 * kCopied, 0);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, p.window.width() / 2 - kCopied, p.window.height() / 2 - kCopied,
+                     2 * kCopied, 2 * kCopied, 0);
 }
 
 // Draws under the condition that the previous frame drew something within its scissor box.
@@ -111,7 +112,9 @@ void conditional(const Place& p) {
 // Makes the contents before this frame's drawing part of the frame.
 void readsAhead(const Place& p) {
     std::vector<GLubyte> pixels(kCopied * kCopied * 4);
-    if (p.frame > 0) glReadPixels(p.window.width() / 3, p.window.height() / 3, kCopied, kCopied, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    if (p.frame > 0)
+        glReadPixels(p.window.width() / 3, p.window.height() / 3, kCopied, kCopied, GL_RGBA, GL_UNSIGNED_BYTE,
+                     pixels.data());
     clearAll(p.frame);
     addTriangle(p.frame);
     glWindowPos2i(4, 4);
@@ -139,7 +142,8 @@ void clearsBuffers(const Place& p) {
 }
 
 using Way = void (*)(const Place&);
-constexpr Way kWays[] = {overIt, overItLater, byTurns, depthStays, clearsParts, copies, conditional, readsAhead, rests, clearsEverything, clearsBuffers};
+constexpr Way kWays[] = {overIt,      overItLater, byTurns, depthStays,       clearsParts,  copies,
+                         conditional, readsAhead,  rests,   clearsEverything, clearsBuffers};
 
 } // namespace
 

@@ -31,7 +31,8 @@ void clearColour(float red, float green, float blue) {
 Pixels readFrom(GLenum buffer, int x, int y, GLenum format = GL_RGBA) {
     Pixels pixels(kWidth * kHeight * 4);
     format == GL_RGBA ? glReadBuffer(buffer) : glFramebufferReadBufferEXT(0, buffer);
-    glReadPixels(x, y, kWidth, kHeight, format, format == GL_DEPTH_COMPONENT ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE, pixels.data());
+    glReadPixels(x, y, kWidth, kHeight, format, format == GL_DEPTH_COMPONENT ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE,
+                 pixels.data());
     return pixels;
 }
 
@@ -60,11 +61,13 @@ std::vector<Pixels> useBoth(const Window& window, int frame) {
     drawTriangles(unsigned(frame) + 40);
     glDrawBuffer(GL_BACK);
     drawTriangles(unsigned(frame) + 70);
-    std::vector<Pixels> read{readFrom(GL_FRONT, x, y), readFrom(GL_BACK, x, y), readFrom(GL_FRONT, x, y, GL_RGB), copied(GL_FRONT, x, y), readFrom(GL_FRONT, x, y, GL_DEPTH_COMPONENT)};
+    std::vector<Pixels> read{readFrom(GL_FRONT, x, y), readFrom(GL_BACK, x, y), readFrom(GL_FRONT, x, y, GL_RGB),
+                             copied(GL_FRONT, x, y), readFrom(GL_FRONT, x, y, GL_DEPTH_COMPONENT)};
     glDisable(GL_DEPTH_TEST);
     glDrawBuffer(GL_FRONT);
     glReadBuffer(GL_BACK);
-    glBlitFramebuffer(x, y, x + kWidth / 2, y + kHeight, x, y, x + kWidth / 2, y + kHeight, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitFramebuffer(x, y, x + kWidth / 2, y + kHeight, x, y, x + kWidth / 2, y + kHeight, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
     glReadBuffer(GL_FRONT);
     glDrawBuffer(GL_BACK);
     glWindowPos2i(x + kWidth / 3, y);
@@ -85,7 +88,7 @@ std::vector<Pixels> useBoth(const Window& window, int frame) {
     drawTriangles(unsigned(frame) + 15);
     glPopAttrib();
     read.push_back(readFrom(GL_FRONT, x, y)); // drawn again since both were drawn
-    read.push_back(readFrom(GL_LEFT, x, y)); // of several buffers, reads use the front
+    read.push_back(readFrom(GL_LEFT, x, y));  // of several buffers, reads use the front
     return read;
 }
 

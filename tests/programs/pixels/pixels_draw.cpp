@@ -21,12 +21,19 @@ std::vector<GLubyte> noise(std::size_t count, unsigned seed) {
 }
 
 void drawFormats(unsigned frame) {
-    const GLenum kinds[][2] = {
-        {GL_RGB, GL_UNSIGNED_BYTE}, {GL_RGBA, GL_UNSIGNED_BYTE}, {GL_BGRA, GL_UNSIGNED_BYTE},
-        {GL_LUMINANCE, GL_UNSIGNED_BYTE}, {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE}, {GL_RED, GL_BYTE},
-        {GL_GREEN, GL_UNSIGNED_SHORT}, {GL_RGB, GL_SHORT}, {GL_RGBA, GL_UNSIGNED_INT},
-        {GL_RGB, GL_UNSIGNED_SHORT_5_6_5}, {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8},
-        {GL_BGRA, GL_UNSIGNED_SHORT_4_4_4_4_REV}, {GL_BGR, GL_INT}};
+    const GLenum kinds[][2] = {{GL_RGB, GL_UNSIGNED_BYTE},
+                               {GL_RGBA, GL_UNSIGNED_BYTE},
+                               {GL_BGRA, GL_UNSIGNED_BYTE},
+                               {GL_LUMINANCE, GL_UNSIGNED_BYTE},
+                               {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE},
+                               {GL_RED, GL_BYTE},
+                               {GL_GREEN, GL_UNSIGNED_SHORT},
+                               {GL_RGB, GL_SHORT},
+                               {GL_RGBA, GL_UNSIGNED_INT},
+                               {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
+                               {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8},
+                               {GL_BGRA, GL_UNSIGNED_SHORT_4_4_4_4_REV},
+                               {GL_BGR, GL_INT}};
     int index = 0;
     for (const auto& kind : kinds) {
         glWindowPos2i(3 + (index % 7) * 20, 3 + (index / 7) * 14);
@@ -295,16 +302,15 @@ void askBehindBitmaps(GLuint tinting, GLuint writing, GLuint buffer) {
 int main(int argc, char** argv) {
     static GLuint sampling, tinting, writing, written;
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
+        argc, argv, {},
         [](Window&) {
             const char* const fragment = R"(#version 130
                 uniform usampler2D image;
                 void main() { gl_FragColor = vec4(texelFetch(image, ivec2(0), 0) + 1u) * 0.5; })";
             const char* const vertex = "void main() { gl_Position = gl_Vertex; }";
             sampling = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
-            tinting = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}});
+            tinting = buildProgram({{GL_VERTEX_SHADER, vertex},
+                                    {GL_FRAGMENT_SHADER, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}});
             writing = buildProgram({{GL_COMPUTE_SHADER, R"(#version 430
                 layout(local_size_x = 4) in;
                 layout(std430) buffer Values { float values[]; };

@@ -40,13 +40,23 @@ void enterCell(Window& window) {
 constexpr int kWidth = 27, kHeight = 13;
 
 void readFormats(Window& window, unsigned frame) {
-    const GLenum kinds[][2] = {
-        {GL_RGB, GL_UNSIGNED_BYTE}, {GL_RGBA, GL_UNSIGNED_BYTE}, {GL_BGRA, GL_UNSIGNED_BYTE},
-        {GL_BGR, GL_UNSIGNED_BYTE}, {GL_RED, GL_UNSIGNED_BYTE}, {GL_GREEN, GL_UNSIGNED_SHORT},
-        {GL_LUMINANCE, GL_UNSIGNED_BYTE}, {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE}, {GL_RGB, GL_FLOAT},
-        {GL_RGBA, GL_UNSIGNED_SHORT}, {GL_RGB, GL_SHORT}, {GL_RGBA, GL_INT}, {GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV},
-        {GL_RGB, GL_UNSIGNED_SHORT_5_6_5}, {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4}, {GL_RGB, GL_HALF_FLOAT},
-        {GL_ALPHA, GL_UNSIGNED_BYTE}};
+    const GLenum kinds[][2] = {{GL_RGB, GL_UNSIGNED_BYTE},
+                               {GL_RGBA, GL_UNSIGNED_BYTE},
+                               {GL_BGRA, GL_UNSIGNED_BYTE},
+                               {GL_BGR, GL_UNSIGNED_BYTE},
+                               {GL_RED, GL_UNSIGNED_BYTE},
+                               {GL_GREEN, GL_UNSIGNED_SHORT},
+                               {GL_LUMINANCE, GL_UNSIGNED_BYTE},
+                               {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE},
+                               {GL_RGB, GL_FLOAT},
+                               {GL_RGBA, GL_UNSIGNED_SHORT},
+                               {GL_RGB, GL_SHORT},
+                               {GL_RGBA, GL_INT},
+                               {GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV},
+                               {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
+                               {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4},
+                               {GL_RGB, GL_HALF_FLOAT},
+                               {GL_ALPHA, GL_UNSIGNED_BYTE}};
     const int x = 5 + int(frame) * 2;
     int y = 1;
     for (const auto& kind : kinds) {
@@ -192,10 +202,7 @@ int main(int argc, char** argv) {
     WindowSpec spec;
     spec.alpha = 8;
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) {},
+        argc, argv, spec, [](Window&) {},
         [](Window& window, int frame) {
             glClearColor(0.2F, 0.3F, 0.1F, 0.5F);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kMost = 3, kTurn = 40; // frames with three buffers, then the same number with two
 constexpr int kSize = 32, kBlocks = kSize / 4, kBlockBytes = 8;
-constexpr GLsizei kImageBytes = 20 * 12 * 4, kPartBytes = 5 * 4 * kBlockBytes, kAllBytes = kBlocks * kBlocks * kBlockBytes;
+constexpr GLsizei kImageBytes = 20 * 12 * 4, kPartBytes = 5 * 4 * kBlockBytes,
+                  kAllBytes = kBlocks * kBlocks * kBlockBytes;
 GLuint buffers[kMost], images[kMost], blocks[kMost], allBlocks[kMost];
 GLuint drawn, compressed, framebuffer;
 
@@ -64,7 +65,9 @@ void drawTextures(int frame) {
 void readTextures(int turn) {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, images[turn]);
     glGetTextureSubImage(drawn, 0, 5, 9, 0, 20, 12, 1, GL_RGBA, GL_UNSIGNED_BYTE, kImageBytes, nullptr);
-    glGetTextureSubImage(drawn, 0, 9, 2, 0, 20, 12, 1, GL_BGRA, GL_UNSIGNED_BYTE, kImageBytes, reinterpret_cast<void*>(intptr_t{kImageBytes})); // NOLINT(performance-no-int-to-ptr): an offset
+    glGetTextureSubImage(
+        drawn, 0, 9, 2, 0, 20, 12, 1, GL_BGRA, GL_UNSIGNED_BYTE, kImageBytes,
+        reinterpret_cast<void*>(intptr_t{kImageBytes})); // NOLINT(performance-no-int-to-ptr): an offset
     glBindBuffer(GL_PIXEL_PACK_BUFFER, blocks[turn]);
     glGetCompressedTextureSubImage(compressed, 0, 8, 4, 0, 20, 16, 1, kPartBytes, nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, allBlocks[turn]);
@@ -98,7 +101,8 @@ void showTextures(int turn) {
     int row = 2;
     for (const auto& read : reads) {
         glBindBuffer(GL_PIXEL_PACK_BUFFER, read.buffer);
-        const auto* const mapped = static_cast<const GLubyte*>(glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, read.sizeBytes, GL_MAP_READ_BIT));
+        const auto* const mapped =
+            static_cast<const GLubyte*>(glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, read.sizeBytes, GL_MAP_READ_BIT));
         if (!mapped) fail("a buffer that a texture was read into can't be mapped");
         const std::uint32_t told = sum(mapped, std::size_t(read.sizeBytes));
         glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
@@ -109,7 +113,8 @@ void showTextures(int turn) {
 void showRead(const Window& window, GLuint buffer) {
     const auto bytes = std::size_t(window.width()) * std::size_t(window.height()) * 4;
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
-    const auto* const mapped = static_cast<const GLubyte*>(glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, GLsizeiptr(bytes), GL_MAP_READ_BIT));
+    const auto* const mapped =
+        static_cast<const GLubyte*>(glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, GLsizeiptr(bytes), GL_MAP_READ_BIT));
     if (!mapped) fail("a buffer that was read into can't be mapped");
     const std::uint32_t told = sum(mapped, bytes);
     glPixelZoom(0.4F, 0.4F);
@@ -124,9 +129,7 @@ void showRead(const Window& window, GLuint buffer) {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
+        argc, argv, {},
         [](Window& window) {
             for (int i = 0; i < kMost; ++i) {
                 buffers[i] = roomFor(window.width() * window.height() * 4);

@@ -192,7 +192,8 @@ void writeOver() {
     drawUploaded(buffer, 0);
     done(buffer);
     buffer = readAt(0, 13);
-    if (void* const mapped = glMapBufferRange(GL_PIXEL_PACK_BUFFER, 400, 100, GL_MAP_WRITE_BIT)) std::memset(mapped, 0x19, 50);
+    if (void* const mapped = glMapBufferRange(GL_PIXEL_PACK_BUFFER, 400, 100, GL_MAP_WRITE_BIT))
+        std::memset(mapped, 0x19, 50);
     glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
     drawUploaded(buffer, 0);
     done(buffer);
@@ -256,7 +257,7 @@ void readOthers() {
     glRectf(-0.5F, -0.3F, 0.2F, 0.6F);
     buffer = readAt(0, -kX - 10);
     glReadPixels(4, 4, 150, 12, GL_RGBA, GL_UNSIGNED_BYTE, at(16)); // wider than the object
-    glClear(GL_COLOR_BUFFER_BIT); // after the read
+    glClear(GL_COLOR_BUFFER_BIT);                                   // after the read
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     done(buffer);
     buffer = readAt(0, 22);
@@ -276,7 +277,8 @@ void readOverOthers() {
     glGetnTexImageARB(GL_TEXTURE_2D, 0, GL_RGB, GL_UNSIGNED_BYTE, 32 * 16 * 3, at(300));
     glPixelStorei(GL_PACK_ROW_LENGTH, 70);
     glReadnPixelsARB(kX, kY, 30, 5, GL_RGBA, GL_UNSIGNED_BYTE, kRoom, at(1000));
-    glGetTextureSubImage(image, 0, 0, 0, 0, 20, 9, 1, GL_BGRA, GL_UNSIGNED_BYTE, kRoom, at(1100)); // between those rows, too
+    glGetTextureSubImage(image, 0, 0, 0, 0, 20, 9, 1, GL_BGRA, GL_UNSIGNED_BYTE, kRoom,
+                         at(1100)); // between those rows, too
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);
     glBindTexture(GL_TEXTURE_2D, 0);
     done(buffer);
@@ -285,7 +287,8 @@ void readOverOthers() {
 void mistakes() {
     const GLuint buffer = readAt(0, 23);
     const auto expect = [](GLenum wanted, const char* what) {
-        if (const GLenum error = glGetError(); error != wanted) fail("%s: error %#x instead of %#x", what, error, wanted);
+        if (const GLenum error = glGetError(); error != wanted)
+            fail("%s: error %#x instead of %#x", what, error, wanted);
     };
     glReadPixels(0, 0, kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, at(kBytes + 4));
     expect(GL_INVALID_OPERATION, "behind the buffer");
@@ -389,8 +392,9 @@ int main(int argc, char** argv) {
     window = openGlxWindow({}, options.width, options.height);
     window->makeCurrent();
     setUp();
-    constexpr void (*kParts[])() = {severalReads, lookByName, copyOut, upload, drawFrom, writeOver, deleteEarly,
-                                    askBetween, readOthers, readOverOthers, mistakes, mapForGood, many, share};
+    constexpr void (*kParts[])() = {severalReads, lookByName,  copyOut,    upload,     drawFrom,
+                                    writeOver,    deleteEarly, askBetween, readOthers, readOverOthers,
+                                    mistakes,     mapForGood,  many,       share};
     for (int frame = 0; frame < options.frames; ++frame) {
         scene(frame);
         row = column = 0;

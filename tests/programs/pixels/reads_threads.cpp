@@ -31,7 +31,8 @@ std::uint32_t sum(const GLubyte* bytes, std::size_t count) {
 }
 
 std::uint32_t recordOne(GLuint buffer, GLsync fence, std::size_t bytes) {
-    if (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 60000000000) == GL_TIMEOUT_EXPIRED) fail("a fence is never reached");
+    if (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 60000000000) == GL_TIMEOUT_EXPIRED)
+        fail("a fence is never reached");
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
     const auto* const mapped = static_cast<const GLubyte*>(glMapBuffer(GL_PIXEL_PACK_BUFFER, GL_READ_ONLY));
     if (!mapped) fail("the recorder can't map a buffer");

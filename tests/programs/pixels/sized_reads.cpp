@@ -43,7 +43,8 @@ void drawAndCopy(const Window& window, int frame) {
         glVertex2f(2 * numbers.unit() - 1, 2 * numbers.unit() - 1);
     }
     glEnd();
-    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (window.width() - kSize) / 2, (window.height() - kSize) / 2, kSize, kSize);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (window.width() - kSize) / 2, (window.height() - kSize) / 2, kSize,
+                        kSize);
 }
 
 void expect(GLenum wanted, const char* what) {
@@ -75,7 +76,8 @@ void intoBuffer(const char* what, GLsizei bytes, const Read& read) {
     std::vector<GLubyte> memory(kBuffer, 0x33);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, packed);
     glBufferSubData(GL_PIXEL_PACK_BUFFER, 0, kBuffer, memory.data());
-    read(kBuffer, reinterpret_cast<void*>(std::uintptr_t(kBuffer - bytes + 4))); // NOLINT(performance-no-int-to-ptr): an offset
+    read(kBuffer,
+         reinterpret_cast<void*>(std::uintptr_t(kBuffer - bytes + 4))); // NOLINT(performance-no-int-to-ptr): an offset
     expect(GL_INVALID_OPERATION, what);
     read(kBuffer, reinterpret_cast<void*>(std::uintptr_t(64))); // NOLINT(performance-no-int-to-ptr)
     expect(GL_NO_ERROR, what);
@@ -85,7 +87,8 @@ void intoBuffer(const char* what, GLsizei bytes, const Read& read) {
     // The nodes have these bytes, too, because they draw from them.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, packed);
     glWindowPos2i(2 + row * 16, 150);
-    glDrawPixels(14, 20, GL_RGBA, GL_UNSIGNED_BYTE, reinterpret_cast<const void*>(std::uintptr_t(64))); // NOLINT(performance-no-int-to-ptr)
+    glDrawPixels(14, 20, GL_RGBA, GL_UNSIGNED_BYTE,
+                 reinterpret_cast<const void*>(std::uintptr_t(64))); // NOLINT(performance-no-int-to-ptr)
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
@@ -98,16 +101,23 @@ void showReads() {
     row = 0;
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     const GLsizei window = (kWidth * 3 + 3) / 4 * 4 * (kHeight - 1) + kWidth * 3, image = kSize * kSize * 4;
-    inAllWays("glReadnPixels", window, [](GLsizei room, void* to) { glReadnPixels(kX, kY, kWidth, kHeight, GL_RGB, GL_UNSIGNED_BYTE, room, to); });
-    inAllWays("glReadnPixelsARB", window, [](GLsizei room, void* to) { glReadnPixelsARB(kX, kY, kWidth, kHeight, GL_BGR, GL_UNSIGNED_BYTE, room, to); });
-    inAllWays("glGetnTexImageARB", image, [](GLsizei room, void* to) { glGetnTexImageARB(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, room, to); });
-    inAllWays("glGetTextureImage", image, [](GLsizei room, void* to) { glGetTextureImage(texture, 0, GL_BGRA, GL_UNSIGNED_BYTE, room, to); });
+    inAllWays("glReadnPixels", window, [](GLsizei room, void* to) {
+        glReadnPixels(kX, kY, kWidth, kHeight, GL_RGB, GL_UNSIGNED_BYTE, room, to);
+    });
+    inAllWays("glReadnPixelsARB", window, [](GLsizei room, void* to) {
+        glReadnPixelsARB(kX, kY, kWidth, kHeight, GL_BGR, GL_UNSIGNED_BYTE, room, to);
+    });
+    inAllWays("glGetnTexImageARB", image,
+              [](GLsizei room, void* to) { glGetnTexImageARB(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, room, to); });
+    inAllWays("glGetTextureImage", image,
+              [](GLsizei room, void* to) { glGetTextureImage(texture, 0, GL_BGRA, GL_UNSIGNED_BYTE, room, to); });
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_PACK_ROW_LENGTH, kSize + 3);
     glPixelStorei(GL_PACK_SKIP_PIXELS, 2);
     glPixelStorei(GL_PACK_SKIP_ROWS, 1);
     const GLsizei apart = ((kSize + 3) * kSize + 2 + kSize) * 2;
-    inAllWays("glGetnTexImageARB, apart", apart, [](GLsizei room, void* to) { glGetnTexImageARB(GL_TEXTURE_2D, 0, GL_RG, GL_UNSIGNED_BYTE, room, to); });
+    inAllWays("glGetnTexImageARB, apart", apart,
+              [](GLsizei room, void* to) { glGetnTexImageARB(GL_TEXTURE_2D, 0, GL_RG, GL_UNSIGNED_BYTE, room, to); });
     for (const GLenum name : {GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS}) glPixelStorei(name, 0);
 }
 

@@ -24,7 +24,8 @@ void allocate(GLenum target, GLuint& texture, int width, int height, int images)
     glBindTexture(target, texture);
     if (target == GL_TEXTURE_CUBE_MAP) {
         for (GLenum face = 0; face < 6; ++face)
-            glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+            glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGBA8, width, height, 0, GL_RGBA,
+                         GL_UNSIGNED_BYTE, nullptr);
     } else if (images > 0) {
         glTexImage3D(target, 0, GL_RGBA8, width, height, images, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     } else if (height == 1) {

@@ -54,7 +54,8 @@ void drawOneAndTwoDimensions(unsigned frame) {
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 13);
     glPixelStorei(GL_UNPACK_SKIP_PIXELS, 2);
     glPixelStorei(GL_UNPACK_SKIP_ROWS, 3);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, 8, 8, 0, GL_RGB, GL_UNSIGNED_BYTE, noise(13 * 3 * 12 + 40, 3 + frame).data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, 8, 8, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                 noise(13 * 3 * 12 + 40, 3 + frame).data());
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     glPixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
     glPixelStorei(GL_UNPACK_SKIP_ROWS, 0);
@@ -68,13 +69,22 @@ void drawOneAndTwoDimensions(unsigned frame) {
 
 // Uploads one small sub-image in each client format and type, one after the other in a row of texels.
 void drawFormats(unsigned frame) {
-    const GLenum kinds[][2] = {
-        {GL_RGBA, GL_UNSIGNED_BYTE}, {GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV}, {GL_BGR, GL_UNSIGNED_BYTE},
-        {GL_RGB, GL_UNSIGNED_SHORT_5_6_5}, {GL_RGB, GL_UNSIGNED_BYTE_3_3_2}, {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1},
-        {GL_BGRA, GL_UNSIGNED_SHORT_1_5_5_5_REV}, {GL_RGBA, GL_UNSIGNED_INT_10_10_10_2},
-        {GL_LUMINANCE, GL_UNSIGNED_BYTE}, {GL_LUMINANCE_ALPHA, GL_SHORT}, {GL_RED, GL_UNSIGNED_INT},
-        {GL_GREEN, GL_BYTE}, {GL_BLUE, GL_UNSIGNED_SHORT}, {GL_RGB, GL_INT}, {GL_ALPHA, GL_UNSIGNED_BYTE},
-        {GL_RG, GL_UNSIGNED_BYTE}};
+    const GLenum kinds[][2] = {{GL_RGBA, GL_UNSIGNED_BYTE},
+                               {GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV},
+                               {GL_BGR, GL_UNSIGNED_BYTE},
+                               {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
+                               {GL_RGB, GL_UNSIGNED_BYTE_3_3_2},
+                               {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1},
+                               {GL_BGRA, GL_UNSIGNED_SHORT_1_5_5_5_REV},
+                               {GL_RGBA, GL_UNSIGNED_INT_10_10_10_2},
+                               {GL_LUMINANCE, GL_UNSIGNED_BYTE},
+                               {GL_LUMINANCE_ALPHA, GL_SHORT},
+                               {GL_RED, GL_UNSIGNED_INT},
+                               {GL_GREEN, GL_BYTE},
+                               {GL_BLUE, GL_UNSIGNED_SHORT},
+                               {GL_RGB, GL_INT},
+                               {GL_ALPHA, GL_UNSIGNED_BYTE},
+                               {GL_RG, GL_UNSIGNED_BYTE}};
     use(GL_TEXTURE_2D, 2, GL_NEAREST);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, noise(1024, 5).data());
     int index = 0;
@@ -95,7 +105,8 @@ void drawVolumeCubeAndRectangle(unsigned frame) {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 5);
     glPixelStorei(GL_UNPACK_SKIP_IMAGES, 1);
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGB8, 4, 4, 4, 0, GL_RGB, GL_UNSIGNED_BYTE, noise(4 * 5 * 6 * 3, 6 + frame).data());
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGB8, 4, 4, 4, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                 noise(4 * 5 * 6 * 3, 6 + frame).data());
     glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
     glPixelStorei(GL_UNPACK_SKIP_IMAGES, 0);
     glTexSubImage3D(GL_TEXTURE_3D, 0, 1, 1, 1, 2, 2, 2, GL_RGB, GL_UNSIGNED_BYTE, noise(24, 7).data());
@@ -116,7 +127,8 @@ void drawVolumeCubeAndRectangle(unsigned frame) {
 
 void drawMipmaps(unsigned frame) {
     use(GL_TEXTURE_2D, 6, GL_LINEAR_MIPMAP_LINEAR);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, noise(64 * 64 * 4, 30 + frame).data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 noise(64 * 64 * 4, 30 + frame).data());
     glGenerateMipmap(GL_TEXTURE_2D);
     drawQuad(GL_TEXTURE_2D, 2);
     use(GL_TEXTURE_2D, 7, GL_NEAREST_MIPMAP_NEAREST);
@@ -206,10 +218,7 @@ void drawReadBack() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) { glGenTextures(16, names); },
+        argc, argv, {}, [](Window&) { glGenTextures(16, names); },
         [](Window& window, int frame) {
             glClearColor(0.2F, 0.1F, 0.1F, 1);
             glClearDepth(0.6);

@@ -51,16 +51,14 @@ std::vector<GLubyte> noise(std::size_t count, unsigned seed) {
 void makePrograms() {
     for (SamplerProgram& entry : samplers) {
         const std::string fragment =
-            std::string("#version 430\nin vec2 corner; layout(location=1) uniform float layer;\n") +
-            "uniform " + entry.sampler + " image; out vec4 result;\n" +
-            "void main() { vec3 at = vec3(corner, layer); result = vec4((" + entry.expression +
-            ").rgb, 1); }\n";
-        entry.program = buildProgram(
-            {{GL_VERTEX_SHADER,
-              "#version 430\nlayout(location=0) uniform vec2 offset; out vec2 corner;\n"
-              "void main() { corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
-              "gl_Position = vec4(offset + corner * vec2(0.28, 0.3), 0, 1); }\n"},
-             {GL_FRAGMENT_SHADER, fragment.c_str()}});
+            std::string("#version 430\nin vec2 corner; layout(location=1) uniform float layer;\n") + "uniform " +
+            entry.sampler + " image; out vec4 result;\n" +
+            "void main() { vec3 at = vec3(corner, layer); result = vec4((" + entry.expression + ").rgb, 1); }\n";
+        entry.program =
+            buildProgram({{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform vec2 offset; out vec2 corner;\n"
+                                             "void main() { corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+                                             "gl_Position = vec4(offset + corner * vec2(0.28, 0.3), 0, 1); }\n"},
+                          {GL_FRAGMENT_SHADER, fragment.c_str()}});
     }
 }
 
@@ -80,7 +78,8 @@ void nearest(GLenum target) {
 void drawArrays(unsigned frame) {
     glBindTexture(GL_TEXTURE_2D_ARRAY, names[0]);
     nearest(GL_TEXTURE_2D_ARRAY);
-    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA8, 8, 8, 5, 0, GL_RGBA, GL_UNSIGNED_BYTE, noise(1280, 1 + frame).data());
+    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA8, 8, 8, 5, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 noise(1280, 1 + frame).data());
     glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 2, 2, 3, 4, 4, 1, GL_RGBA, GL_UNSIGNED_BYTE, noise(64, 2).data());
     drawCell(Array, float(frame % 5));
     drawCell(Array, 3);
@@ -90,7 +89,8 @@ void drawArrays(unsigned frame) {
     drawCell(Array1D, 2);
     glBindTexture(GL_TEXTURE_CUBE_MAP_ARRAY, names[2]);
     nearest(GL_TEXTURE_CUBE_MAP_ARRAY);
-    glTexImage3D(GL_TEXTURE_CUBE_MAP_ARRAY, 0, GL_RGBA8, 4, 4, 12, 0, GL_RGBA, GL_UNSIGNED_BYTE, noise(768, 4 + frame).data());
+    glTexImage3D(GL_TEXTURE_CUBE_MAP_ARRAY, 0, GL_RGBA8, 4, 4, 12, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 noise(768, 4 + frame).data());
     drawCell(CubeArray, float(frame % 2));
     glBindTexture(GL_TEXTURE_3D, names[3]);
     glTexStorage3D(GL_TEXTURE_3D, 1, GL_RGBA8, 4, 4, 4);
@@ -195,8 +195,8 @@ void drawFormats(unsigned frame) {
 }
 
 void drawCompressed(unsigned frame) {
-    const GLenum formats[] = {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT,
-                              GL_COMPRESSED_RG_RGTC2, GL_COMPRESSED_RGBA_BPTC_UNORM};
+    const GLenum formats[] = {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, GL_COMPRESSED_RG_RGTC2,
+                              GL_COMPRESSED_RGBA_BPTC_UNORM};
     const GLsizei blockBytes[] = {8, 16, 16, 16};
     for (int i = 0; i < 4; ++i) {
         const auto data = noise(std::size_t(blockBytes[i]) * 4, 60 + unsigned(i) + frame);
@@ -210,7 +210,8 @@ void drawCompressed(unsigned frame) {
     GLubyte blocks[128];
     glBindTexture(GL_TEXTURE_2D, names[22]);
     nearest(GL_TEXTURE_2D);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_COMPRESSED_RG_RGTC2, 8, 8, 0, GL_RGBA, GL_UNSIGNED_BYTE, noise(256, 70 + frame).data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_COMPRESSED_RG_RGTC2, 8, 8, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 noise(256, 70 + frame).data());
     glGetCompressedTexImage(GL_TEXTURE_2D, 0, blocks);
     glCompressedTexImage2D(GL_TEXTURE_2D, 0, GL_COMPRESSED_RG_RGTC2, 8, 8, 0, 64, blocks);
     drawCell(Plain);
@@ -247,9 +248,7 @@ void drawMultisample(unsigned frame) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 5};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             makePrograms();
             glGenVertexArrays(1, &vertexArray);

@@ -19,7 +19,8 @@ namespace {
 GLXContext makeRobustContext(Display* display, GLXFBConfig config, bool asks) {
     const auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(
         glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
-    const int attributes[] = {GLX_CONTEXT_FLAGS_ARB, GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB, GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB,
+    const int attributes[] = {GLX_CONTEXT_FLAGS_ARB, GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB,
+                              GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB,
                               asks ? GLX_LOSE_CONTEXT_ON_RESET_ARB : GLX_NO_RESET_NOTIFICATION_ARB, None};
     const GLXContext made = create(display, config, nullptr, True, attributes);
     if (made == nullptr) {

@@ -25,10 +25,7 @@ pid_t startChild(int kind) {
 
 int main(int argc, char** argv) {
     return programs::runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](programs::Window&) {},
+        argc, argv, {}, [](programs::Window&) {},
         [](programs::Window& window, int frame) {
             const pid_t child = startChild(frame % 3);
             programs::drawSimple(window, frame);

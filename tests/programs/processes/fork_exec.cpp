@@ -10,7 +10,8 @@
 namespace {
 
 int drawFrames(int argc, char** argv) {
-    return programs::runInGlxWindow(argc, argv, {}, [](programs::Window&) {}, programs::drawSimple);
+    return programs::runInGlxWindow(
+        argc, argv, {}, [](programs::Window&) {}, programs::drawSimple);
 }
 
 } // namespace

@@ -34,7 +34,8 @@ pid_t startChild(const std::function<void()>& run, bool raw = false) {
 void awaitChild(pid_t pid) {
     int status = 0;
     waitpid(pid, &status, 0);
-    std::printf("child: %s %d\n", WIFEXITED(status) ? "status" : "signal", WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status));
+    std::printf("child: %s %d\n", WIFEXITED(status) ? "status" : "signal",
+                WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status));
     std::fflush(stdout);
 }
 
@@ -79,16 +80,20 @@ void calls(bool raw) {
 void together(bool raw, const std::function<Plain()>& open) {
     const Plain own = open();
     drawFrames(own, 0, 3);
-    const pid_t child = startChild([&] {
-        const Plain childs = open();
-        drawFrames(childs, 10, 5);
-        tellFrame("child", childs, 20);
-        awaitChild(startChild([&] {
-            const Plain grandchilds = open();
-            tellFrame("grandchild", grandchilds, 30);
-        }, raw));
-        tellFrame("child", childs, 21);
-    }, raw);
+    const pid_t child = startChild(
+        [&] {
+            const Plain childs = open();
+            drawFrames(childs, 10, 5);
+            tellFrame("child", childs, 20);
+            awaitChild(startChild(
+                [&] {
+                    const Plain grandchilds = open();
+                    tellFrame("grandchild", grandchilds, 30);
+                },
+                raw));
+            tellFrame("child", childs, 21);
+        },
+        raw);
     drawFrames(own, 3, 8);
     awaitChild(child);
     tellFrame("parent", own, 11);
@@ -158,7 +163,8 @@ void threads() {
     pthread_create(&thread, nullptr, drawAside, &aside);
     for (int i = 0; i < 12; ++i) {
         drawFrames(own, i, 1);
-        awaitChild(startChild([] { std::printf("error %x, current %d\n", glGetError(), glXGetCurrentContext() != nullptr); }));
+        awaitChild(
+            startChild([] { std::printf("error %x, current %d\n", glGetError(), glXGetCurrentContext() != nullptr); }));
     }
     __atomic_store_n(&drawsOn, false, __ATOMIC_RELAXED);
     pthread_join(thread, nullptr);
@@ -203,17 +209,29 @@ void daemonised() {
 int main(int, char** argv) {
     const char* way = argv[1] != nullptr ? argv[1] : "";
     const auto is = [&](const char* name) { return std::strcmp(way, name) == 0; };
-    if (is("calls")) calls(false);
-    else if (is("raw_calls")) calls(true);
-    else if (is("together")) together(false, openGlx);
-    else if (is("raw_together")) together(true, openGlx);
-    else if (is("egl_together")) together(false, openEgl);
-    else if (is("before")) before();
-    else if (is("after")) after();
-    else if (is("executed")) executed();
-    else if (is("threads")) threads();
-    else if (is("inherited")) inherited();
-    else if (is("daemonised")) daemonised();
-    else fail("no way of this name: %s", way);
+    if (is("calls"))
+        calls(false);
+    else if (is("raw_calls"))
+        calls(true);
+    else if (is("together"))
+        together(false, openGlx);
+    else if (is("raw_together"))
+        together(true, openGlx);
+    else if (is("egl_together"))
+        together(false, openEgl);
+    else if (is("before"))
+        before();
+    else if (is("after"))
+        after();
+    else if (is("executed"))
+        executed();
+    else if (is("threads"))
+        threads();
+    else if (is("inherited"))
+        inherited();
+    else if (is("daemonised"))
+        daemonised();
+    else
+        fail("no way of this name: %s", way);
     return 0;
 }

@@ -57,13 +57,16 @@ void scene(int frame) {
 // GLX or EGL, one context for all windows.
 class Gl {
 public:
-    Gl(Display* display, bool byEgl, bool doubleBuffered) : display_(display), doubleBuffered_(doubleBuffered) { byEgl ? openEgl() : openGlx(); }
+    Gl(Display* display, bool byEgl, bool doubleBuffered) : display_(display), doubleBuffered_(doubleBuffered) {
+        byEgl ? openEgl() : openGlx();
+    }
 
     ::Window window(int x) {
         XSetWindowAttributes attributes{};
         attributes.colormap = XCreateColormap(display_, DefaultRootWindow(display_), visual_->visual, AllocNone);
         attributes.override_redirect = True;
-        const ::Window made = XCreateWindow(display_, DefaultRootWindow(display_), x, 0, unsigned(width), unsigned(height), 0, visual_->depth, InputOutput, visual_->visual,
+        const ::Window made = XCreateWindow(display_, DefaultRootWindow(display_), x, 0, unsigned(width),
+                                            unsigned(height), 0, visual_->depth, InputOutput, visual_->visual,
                                             CWColormap | CWBorderPixel | CWOverrideRedirect, &attributes);
         XMapWindow(display_, made);
         XSync(display_, False);
@@ -78,15 +81,20 @@ public:
         if (eglMakeCurrent(egl_, surface_, surface_, eglContext_) == EGL_FALSE) fail("eglMakeCurrent");
     }
     void swap(::Window window) {
-        if (!doubleBuffered_) glFlush();
-        else if (egl_ == nullptr) glXSwapBuffers(display_, window);
-        else eglSwapBuffers(egl_, surface_);
+        if (!doubleBuffered_)
+            glFlush();
+        else if (egl_ == nullptr)
+            glXSwapBuffers(display_, window);
+        else
+            eglSwapBuffers(egl_, surface_);
     }
     void release() { glXMakeCurrent(display_, None, nullptr); }
 
 private:
     void openGlx() {
-        int attributes[] = {GLX_RGBA, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, doubleBuffered_ ? int(GLX_DOUBLEBUFFER) : int(None), None};
+        int attributes[] = {GLX_RGBA, GLX_RED_SIZE,  8, GLX_GREEN_SIZE,
+                            8,        GLX_BLUE_SIZE, 8, doubleBuffered_ ? int(GLX_DOUBLEBUFFER) : int(None),
+                            None};
         visual_ = glXChooseVisual(display_, DefaultScreen(display_), attributes);
         if (visual_ == nullptr) fail("no visual");
         glx_ = glXCreateContext(display_, visual_, nullptr, True);
@@ -95,7 +103,8 @@ private:
         egl_ = eglGetDisplay(display_);
         eglInitialize(egl_, nullptr, nullptr);
         eglBindAPI(EGL_OPENGL_API);
-        const EGLint wanted[] = {EGL_RED_SIZE, 8, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_NONE};
+        const EGLint wanted[] = {EGL_RED_SIZE,   8,       EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE,
+                                 EGL_WINDOW_BIT, EGL_NONE};
         EGLint count = 0, id = 0;
         if (eglChooseConfig(egl_, wanted, &config_, 1, &count) == EGL_FALSE || count == 0) fail("no configuration");
         eglGetConfigAttrib(egl_, config_, EGL_NATIVE_VISUAL_ID, &id);
@@ -121,29 +130,37 @@ void printSum(const char* where, Display* display, Drawable drawable) {
     if (image == nullptr) fail("XGetImage");
     std::uint32_t hash = 2166136261U;
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) hash = (hash ^ static_cast<std::uint32_t>(XGetPixel(image, x, y) & 0xffffff)) * 16777619U;
+        for (int x = 0; x < width; ++x)
+            hash = (hash ^ static_cast<std::uint32_t>(XGetPixel(image, x, y) & 0xffffff)) * 16777619U;
     XDestroyImage(image);
     std::printf("%s %08x\n", where, hash);
 }
 
 // As in X11/Xlib-xcb.h, whose package is not needed for this one declaration.
 xcb_connection_t* xcbOf(Display* display) {
-    static auto* const get = reinterpret_cast<xcb_connection_t* (*)(Display*)>(dlsym(dlopen("libX11-xcb.so.1", RTLD_NOW), "XGetXCBConnection"));
+    static auto* const get = reinterpret_cast<xcb_connection_t* (*)(Display*)>(
+        dlsym(dlopen("libX11-xcb.so.1", RTLD_NOW), "XGetXCBConnection"));
     return get(display);
 }
 
 void grab(Display* display, const std::string& way) {
-    if (way == "xcb" || way == "egl") xcb_grab_server(xcbOf(display));
-    else if (way == "checked") std::free(xcb_request_check(xcbOf(display), xcb_grab_server_checked(xcbOf(display))));
-    else XGrabServer(display);
+    if (way == "xcb" || way == "egl")
+        xcb_grab_server(xcbOf(display));
+    else if (way == "checked")
+        std::free(xcb_request_check(xcbOf(display), xcb_grab_server_checked(xcbOf(display))));
+    else
+        XGrabServer(display);
     if (way == "nested") XGrabServer(display);
     XSync(display, False);
 }
 
 void ungrab(Display* display, const std::string& way) {
-    if (way == "xcb" || way == "egl") xcb_ungrab_server(xcbOf(display));
-    else if (way == "checked") std::free(xcb_request_check(xcbOf(display), xcb_ungrab_server_checked(xcbOf(display))));
-    else XUngrabServer(display);
+    if (way == "xcb" || way == "egl")
+        xcb_ungrab_server(xcbOf(display));
+    else if (way == "checked")
+        std::free(xcb_request_check(xcbOf(display), xcb_ungrab_server_checked(xcbOf(display))));
+    else
+        XUngrabServer(display);
     // Not flushed: the next swap does not wait for a release that the server has not seen.
 }
 
@@ -175,7 +192,8 @@ void drawDuringGrab(Gl& gl, const std::string& way, ::Window first, ::Window oth
         printSum("during, by a thread", eyes, first);
     }
     if (way == "copy") {
-        const Pixmap pixmap = XCreatePixmap(eyes, first, unsigned(width), unsigned(height), unsigned(DefaultDepth(eyes, DefaultScreen(eyes))));
+        const Pixmap pixmap = XCreatePixmap(eyes, first, unsigned(width), unsigned(height),
+                                            unsigned(DefaultDepth(eyes, DefaultScreen(eyes))));
         const GC gc = XCreateGC(eyes, pixmap, 0, nullptr);
         scene(8);
         gl.swap(first);
@@ -233,8 +251,10 @@ int main(int argc, char** argv) {
     if (way == "opened") first = gl.window(width);
     drawDuringGrab(gl, way, first, other, holder);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    if (way == "closed") XCloseDisplay(holder);
-    else ungrab(holder, way);
+    if (way == "closed")
+        XCloseDisplay(holder);
+    else
+        ungrab(holder, way);
     gl.bind(first);
     scene(20);
     gl.swap(first);

@@ -125,14 +125,26 @@ void limitedLater() {
 void sandbox(unsigned action) {
 #define MURAL_REFUSE(number) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), BPF_STMT(BPF_RET | BPF_K, action)
     sock_filter filter[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
-                            MURAL_REFUSE(SYS_membarrier), MURAL_REFUSE(SYS_process_vm_readv), MURAL_REFUSE(SYS_userfaultfd), MURAL_REFUSE(SYS_memfd_create),
-                            MURAL_REFUSE(SYS_socket), MURAL_REFUSE(SYS_connect), MURAL_REFUSE(SYS_ptrace), MURAL_REFUSE(SYS_execve), MURAL_REFUSE(SYS_kcmp),
-                            MURAL_REFUSE(SYS_pidfd_open), MURAL_REFUSE(SYS_kill), MURAL_REFUSE(SYS_flock), MURAL_REFUSE(SYS_pipe2), MURAL_REFUSE(SYS_mincore),
+                            MURAL_REFUSE(SYS_membarrier),
+                            MURAL_REFUSE(SYS_process_vm_readv),
+                            MURAL_REFUSE(SYS_userfaultfd),
+                            MURAL_REFUSE(SYS_memfd_create),
+                            MURAL_REFUSE(SYS_socket),
+                            MURAL_REFUSE(SYS_connect),
+                            MURAL_REFUSE(SYS_ptrace),
+                            MURAL_REFUSE(SYS_execve),
+                            MURAL_REFUSE(SYS_kcmp),
+                            MURAL_REFUSE(SYS_pidfd_open),
+                            MURAL_REFUSE(SYS_kill),
+                            MURAL_REFUSE(SYS_flock),
+                            MURAL_REFUSE(SYS_pipe2),
+                            MURAL_REFUSE(SYS_mincore),
                             BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
 #undef MURAL_REFUSE
     const sock_fprog program{sizeof filter / sizeof *filter, filter};
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) fail("this kernel has no seccomp: %s", strerror(errno));
+    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0)
+        fail("this kernel has no seccomp: %s", strerror(errno));
 }
 
 void* drawShared(void* plain) {
@@ -187,7 +199,8 @@ void sandboxed(unsigned action) {
     longUniforms();
     drawPlain(16);
     lastingMapping();
-    std::printf("uniforms and a mapping: %016llx error %x\n", static_cast<unsigned long long>(readPlain()), glGetError());
+    std::printf("uniforms and a mapping: %016llx error %x\n", static_cast<unsigned long long>(readPlain()),
+                glGetError());
     own.show();
     glUseProgram(0);
     tellFrame("frame", own, 17);
@@ -198,15 +211,25 @@ void sandboxed(unsigned action) {
 int main(int, char** argv) {
     const char* way = argv[1] != nullptr ? argv[1] : "";
     const auto is = [&](const char* name) { return std::strcmp(way, name) == 0; };
-    if (is("interrupted")) interrupted(false);
-    else if (is("interrupted_restart")) interrupted(true);
-    else if (is("closed")) closed(false);
-    else if (is("replaced")) closed(true);
-    else if (is("daemon_files")) daemonFiles();
-    else if (is("limited_first")) limitedFirst();
-    else if (is("limited_later")) limitedLater();
-    else if (is("sandbox_refuses")) sandboxed(SECCOMP_RET_ERRNO | EPERM);
-    else if (is("sandbox_kills")) sandboxed(SECCOMP_RET_KILL_PROCESS);
-    else fail("no way of this name: %s", way);
+    if (is("interrupted"))
+        interrupted(false);
+    else if (is("interrupted_restart"))
+        interrupted(true);
+    else if (is("closed"))
+        closed(false);
+    else if (is("replaced"))
+        closed(true);
+    else if (is("daemon_files"))
+        daemonFiles();
+    else if (is("limited_first"))
+        limitedFirst();
+    else if (is("limited_later"))
+        limitedLater();
+    else if (is("sandbox_refuses"))
+        sandboxed(SECCOMP_RET_ERRNO | EPERM);
+    else if (is("sandbox_kills"))
+        sandboxed(SECCOMP_RET_KILL_PROCESS);
+    else
+        fail("no way of this name: %s", way);
     return 0;
 }

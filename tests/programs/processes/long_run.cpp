@@ -7,10 +7,7 @@
 
 int main(int argc, char** argv) {
     return programs::runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](programs::Window&) {},
+        argc, argv, {}, [](programs::Window&) {},
         [](programs::Window& window, int frame) {
             programs::drawSimple(window, frame);
             std::printf("frame %d\n", frame);

@@ -25,7 +25,7 @@ using namespace programs;
 
 namespace {
 
-constexpr int kSide = 1024; // side of a texture, 4 MiB
+constexpr int kSide = 1024;  // side of a texture, 4 MiB
 constexpr int kChanged = 16; // texels that a frame changes, in each direction
 constexpr int kPoints = 4096;
 constexpr int kSceneSide = 128;
@@ -54,9 +54,11 @@ void makeChips() {
     Sequence numbers(77);
     std::vector<Corner> corners;
     for (int i = 0; i < kChips; ++i) {
-        const GLfloat x = 2 * numbers.unit() - 1, y = 2 * numbers.unit() - 1, z = 0.3F * GLfloat(int(numbers.next() % 5) - 2);
+        const GLfloat x = 2 * numbers.unit() - 1, y = 2 * numbers.unit() - 1,
+                      z = 0.3F * GLfloat(int(numbers.next() % 5) - 2);
         const GLubyte red = numbers.byte(), green = numbers.byte(), blue = numbers.byte();
-        for (const auto& [dx, dy] : {std::pair(0.0F, 0.0F), std::pair(0.12F, 0.02F), std::pair(0.03F, 0.14F)}) corners.push_back({x + dx, y + dy, z, {red, green, blue, 255}});
+        for (const auto& [dx, dy] : {std::pair(0.0F, 0.0F), std::pair(0.12F, 0.02F), std::pair(0.03F, 0.14F)})
+            corners.push_back({x + dx, y + dy, z, {red, green, blue, 255}});
     }
     glGenBuffers(1, &chips);
     glBindBuffer(GL_ARRAY_BUFFER, chips);
@@ -135,7 +137,9 @@ void grow(int frame) {
     std::vector<GLubyte> texels(size_t{kChanged} * kChanged * 4);
     for (GLubyte& value : texels) value = numbers.byte();
     glBindTexture(GL_TEXTURE_2D, textures[size_t(frame) % textures.size()]);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, GLint(numbers.next() % (kSide - kChanged)), GLint(numbers.next() % (kSide - kChanged)), kChanged, kChanged, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, GLint(numbers.next() % (kSide - kChanged)),
+                    GLint(numbers.next() % (kSide - kChanged)), kChanged, kChanged, GL_RGBA, GL_UNSIGNED_BYTE,
+                    texels.data());
     const GLfloat point[] = {2 * numbers.unit() - 1, 2 * numbers.unit() - 1};
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
     glBufferSubData(GL_ARRAY_BUFFER, GLintptr(size_t(frame % kPoints) * sizeof point), sizeof point, point);
@@ -206,6 +210,4 @@ void draw(Window& window, int frame) {
 
 } // namespace
 
-int main(int argc, char** argv) {
-    return runInGlxWindow(argc, argv, {}, setUp, draw);
-}
+int main(int argc, char** argv) { return runInGlxWindow(argc, argv, {}, setUp, draw); }

@@ -26,13 +26,16 @@ struct Plain {
     EGLSurface surface = nullptr;
 
     void show() const {
-        if (window != 0) glXSwapBuffers(display, window);
-        else glFlush(); // pbuffers show nothing
+        if (window != 0)
+            glXSwapBuffers(display, window);
+        else
+            glFlush(); // pbuffers show nothing
     }
 };
 
 inline XVisualInfo* plainVisual(Display* display) {
-    int attributes[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_DEPTH_SIZE, 24, None};
+    int attributes[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_RED_SIZE, 8,   GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE,
+                        8,        GLX_DEPTH_SIZE,   24,           None};
     XVisualInfo* visual = glXChooseVisual(display, DefaultScreen(display), attributes);
     if (visual == nullptr) fail("no visual fits");
     return visual;
@@ -41,8 +44,9 @@ inline XVisualInfo* plainVisual(Display* display) {
 inline ::Window plainWindow(Display* display, const XVisualInfo& visual) {
     XSetWindowAttributes attributes{};
     attributes.colormap = XCreateColormap(display, RootWindow(display, visual.screen), visual.visual, AllocNone);
-    const ::Window window = XCreateWindow(display, RootWindow(display, visual.screen), 0, 0, kPlainSide, kPlainSide, 0, visual.depth, InputOutput,
-                                          visual.visual, CWColormap | CWBorderPixel, &attributes);
+    const ::Window window =
+        XCreateWindow(display, RootWindow(display, visual.screen), 0, 0, kPlainSide, kPlainSide, 0, visual.depth,
+                      InputOutput, visual.visual, CWColormap | CWBorderPixel, &attributes);
     XMapWindow(display, window);
     XSync(display, False);
     return window;
@@ -73,10 +77,13 @@ inline Plain openEgl() {
     made.display = XOpenDisplay(nullptr);
     made.eglDisplay = eglGetDisplay(made.display);
     if (eglInitialize(made.eglDisplay, nullptr, nullptr) != EGL_TRUE) fail("no EGL");
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_DEPTH_SIZE, 24, EGL_NONE};
+    const EGLint wanted[] = {
+        EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_DEPTH_SIZE, 24,
+        EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    if (eglChooseConfig(made.eglDisplay, wanted, &config, 1, &count) != EGL_TRUE || count == 0) fail("no EGL configuration fits");
+    if (eglChooseConfig(made.eglDisplay, wanted, &config, 1, &count) != EGL_TRUE || count == 0)
+        fail("no EGL configuration fits");
     eglBindAPI(EGL_OPENGL_API);
     const EGLint size[] = {EGL_WIDTH, kPlainSide, EGL_HEIGHT, kPlainSide, EGL_NONE};
     made.surface = eglCreatePbufferSurface(made.eglDisplay, config, size);

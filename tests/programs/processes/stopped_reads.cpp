@@ -1,5 +1,5 @@
-// Draws and reads back repeatedly, while a script stops the processes of the session. Each reply is larger than any buffer
-// on its path, so most stops interrupt a reply.
+// Draws and reads back repeatedly, while a script stops the processes of the session. Each reply is larger than any
+// buffer on its path, so most stops interrupt a reply.
 //
 //   stopped_reads KIND SECONDS    KIND: pixels, buffer, texture, query, swaps
 //

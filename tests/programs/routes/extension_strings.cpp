@@ -26,7 +26,8 @@ int main() {
         }
         ++lists;
         bool named = false;
-        for (const char* name : {"EGL_KHR_image_pixmap", "EGL_MESA_drm_image", "_copy_sub_buffer", "_post_sub_buffer", "_swap_event", "OML_sync_control"}) {
+        for (const char* name : {"EGL_KHR_image_pixmap", "EGL_MESA_drm_image", "_copy_sub_buffer", "_post_sub_buffer",
+                                 "_swap_event", "OML_sync_control"}) {
             named = named || std::strstr(list, name) != nullptr;
         }
         local += named ? 1 : 0;

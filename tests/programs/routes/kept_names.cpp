@@ -16,7 +16,8 @@ namespace {
 
 bool mapped(const char* address) {
     const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-    return msync(reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(address) / page * page), 1, MS_ASYNC) == 0 || errno != ENOMEM;
+    return msync(reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(address) / page * page), 1, MS_ASYNC) == 0 ||
+           errno != ENOMEM;
 }
 
 } // namespace
@@ -27,7 +28,8 @@ int main() {
     const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint configs = 0;
-    if (!eglInitialize(display, nullptr, nullptr) || !eglChooseConfig(display, wanted, &config, 1, &configs) || configs < 1) {
+    if (!eglInitialize(display, nullptr, nullptr) || !eglChooseConfig(display, wanted, &config, 1, &configs) ||
+        configs < 1) {
         std::fprintf(stderr, "kept_names: EGL has no configuration for OpenGL ES 3\n");
         return 1;
     }

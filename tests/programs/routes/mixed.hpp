@@ -14,7 +14,8 @@
 namespace programs {
 
 inline bool isImmediate(const char* name) {
-    for (const char* other : {"glBegin", "glEnd", "glVertex2f", "glColor3f", "glTexCoord2f", "glLoadIdentity", "glRotatef"}) {
+    for (const char* other :
+         {"glBegin", "glEnd", "glVertex2f", "glColor3f", "glTexCoord2f", "glLoadIdentity", "glRotatef"}) {
         if (std::strcmp(name, other) == 0) {
             return true;
         }
@@ -38,8 +39,12 @@ inline GlFunction findElsewhere(const char* name) {
 // shaders below.
 inline void sayWhetherWhole(Display* display, ::Window window, int width) {
     XSync(display, False);
-    const bool above = changesInRow(display, window, 60, width) > 5, below = changesInRow(display, window, 140, width) > 5;
-    std::printf("the window shows %s\n", above && below ? "the whole picture" : above ? "the upper half" : below ? "the lower half" : "nothing");
+    const bool above = changesInRow(display, window, 60, width) > 5,
+               below = changesInRow(display, window, 140, width) > 5;
+    std::printf("the window shows %s\n", above && below ? "the whole picture"
+                                         : above        ? "the upper half"
+                                         : below        ? "the lower half"
+                                                        : "nothing");
 }
 
 } // namespace programs

@@ -6,9 +6,7 @@ extern "C" programs::GlFunction glXGetProcAddressARB(const GLubyte* name);
 
 namespace {
 
-programs::GlFunction findGlx(const char* name) {
-    return glXGetProcAddressARB(reinterpret_cast<const GLubyte*>(name));
-}
+programs::GlFunction findGlx(const char* name) { return glXGetProcAddressARB(reinterpret_cast<const GLubyte*>(name)); }
 
 programs::GlFunction findGl(const char* name) {
     return programs::isImmediate(name) ? programs::findElsewhere(name) : findGlx(name);

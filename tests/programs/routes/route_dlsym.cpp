@@ -8,9 +8,7 @@ namespace {
 
 void* library;
 
-programs::GlFunction find(const char* name) {
-    return reinterpret_cast<programs::GlFunction>(dlsym(library, name));
-}
+programs::GlFunction find(const char* name) { return reinterpret_cast<programs::GlFunction>(dlsym(library, name)); }
 
 } // namespace
 

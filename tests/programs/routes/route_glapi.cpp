@@ -15,13 +15,15 @@ programs::GlFunction findGlx(const char* name) {
 
 programs::GlFunction findGl(const char* name) {
     static void* dispatch = dlopen("libglapi.so.0", RTLD_NOW);
-    static auto* lookUp = reinterpret_cast<programs::GlFunction (*)(const char*)>(dlsym(dispatch, "_glapi_get_proc_address"));
+    static auto* lookUp =
+        reinterpret_cast<programs::GlFunction (*)(const char*)>(dlsym(dispatch, "_glapi_get_proc_address"));
     return lookUp(name);
 }
 
 void sayWhatIsSeen(Display* display, ::Window window, int width) {
     XSync(display, False);
-    std::printf("the window shows %s\n", programs::changesInRow(display, window, 60, width) > 5 ? "the picture" : "nothing");
+    std::printf("the window shows %s\n",
+                programs::changesInRow(display, window, 60, width) > 5 ? "the picture" : "nothing");
 }
 
 } // namespace

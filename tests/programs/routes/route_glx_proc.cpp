@@ -5,12 +5,8 @@ extern "C" programs::GlFunction glXGetProcAddressARB(const GLubyte* name);
 
 namespace {
 
-programs::GlFunction find(const char* name) {
-    return glXGetProcAddressARB(reinterpret_cast<const GLubyte*>(name));
-}
+programs::GlFunction find(const char* name) { return glXGetProcAddressARB(reinterpret_cast<const GLubyte*>(name)); }
 
 } // namespace
 
-int main(int argc, char** argv) {
-    return programs::runSceneByGlx(programs::parseOptions(argc, argv), find, find);
-}
+int main(int argc, char** argv) { return programs::runSceneByGlx(programs::parseOptions(argc, argv), find, find); }

@@ -1,5 +1,6 @@
 // Bindless images: stores from fragment shaders whose result other pixels read, atomics, a level, a layer, and a
-// buffer. The handles come from uniforms and from memory. There are no compute shaders (docs/measurements/exactness.md).
+// buffer. The handles come from uniforms and from memory. There are no compute shaders
+// (docs/measurements/exactness.md).
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/needs.hpp"
 #include "tests/programs/support/program.hpp"
@@ -15,8 +16,9 @@ GLuint canvas, layers, counts, cells, cellBuffer, handleBuffer, vertexArray;
 GLuint64 canvasImage, layerImage, countImage, cellImage, canvasTexture, layerTexture, countTexture, cellTexture;
 GLuint scatter, tally, fill, show, showCounts;
 
-const char* const kVertex = "#version 430\nuniform vec4 box; out vec2 corner; void main() {\n"
-                            "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1); gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
+const char* const kVertex =
+    "#version 430\nuniform vec4 box; out vec2 corner; void main() {\n"
+    "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1); gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
 
 void makeTally() {
     tally = buildProgram({{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, R"(#version 430

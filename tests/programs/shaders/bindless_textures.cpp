@@ -25,11 +25,15 @@ GLuint byUniform, byArray, byBlock, byStorage, byAttribute, byPairs, byNumbers;
 
 const char* const kHead = "#version 430\n#extension GL_ARB_bindless_texture : require\n";
 
-GLuint program(const char* declarations, const char* handle, const char* vertexInput = "", const char* varying = "", const char* assign = "") {
-    const std::string vertex = std::string(kHead) + "uniform vec4 box; out vec2 corner;\n" + vertexInput + (*varying ? std::string("flat out ") + varying : "") +
-                               "void main() { corner = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1); " + assign + " gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
-    const std::string fragment = std::string(kHead) + declarations + (*varying ? std::string("flat in ") + varying : "") +
-                                 "in vec2 corner; out vec4 result; void main() { result = vec4(texture(" + handle + ", corner).rgb, 1); }\n";
+GLuint program(const char* declarations, const char* handle, const char* vertexInput = "", const char* varying = "",
+               const char* assign = "") {
+    const std::string vertex = std::string(kHead) + "uniform vec4 box; out vec2 corner;\n" + vertexInput +
+                               (*varying ? std::string("flat out ") + varying : "") +
+                               "void main() { corner = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1); " + assign +
+                               " gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
+    const std::string fragment =
+        std::string(kHead) + declarations + (*varying ? std::string("flat in ") + varying : "") +
+        "in vec2 corner; out vec4 result; void main() { result = vec4(texture(" + handle + ", corner).rgb, 1); }\n";
     return buildProgram({{GL_VERTEX_SHADER, vertex.c_str()}, {GL_FRAGMENT_SHADER, fragment.c_str()}});
 }
 
@@ -73,10 +77,14 @@ void setUp(Window&) {
     needExtension("GL_ARB_bindless_texture");
     byUniform = program("uniform sampler2D image;\n", "image");
     byArray = program("uniform sampler2D images[3]; uniform int which;\n", "images[which]");
-    byBlock = program("layout(std140, binding=0) uniform Images { sampler2D images[6]; }; uniform int which;\n", "images[which]");
-    byStorage = program("layout(std430, binding=1) readonly buffer Images { uvec2 images[]; }; uniform int which;\n", "sampler2D(images[which])");
-    byAttribute = program("", "image", "layout(location=3) in sampler2D given;\n", "sampler2D image;\n", "image = given;");
-    byPairs = program("", "sampler2D(image)", "layout(location=4) in uvec2 given;\n", "uvec2 image;\n", "image = given;");
+    byBlock = program("layout(std140, binding=0) uniform Images { sampler2D images[6]; }; uniform int which;\n",
+                      "images[which]");
+    byStorage = program("layout(std430, binding=1) readonly buffer Images { uvec2 images[]; }; uniform int which;\n",
+                        "sampler2D(images[which])");
+    byAttribute =
+        program("", "image", "layout(location=3) in sampler2D given;\n", "sampler2D image;\n", "image = given;");
+    byPairs =
+        program("", "sampler2D(image)", "layout(location=4) in uvec2 given;\n", "uvec2 image;\n", "image = given;");
     byNumbers = program("uniform uvec2 image;\n", "sampler2D(image)");
     glGenVertexArrays(1, &vertexArray);
     glBindVertexArray(vertexArray);
@@ -103,7 +111,8 @@ void setUp(Window&) {
 
 void drawBox(GLuint used, int column, int line) {
     glUseProgram(used);
-    glUniform4f(glGetUniformLocation(used, "box"), -0.98F + float(column) * 0.33F, -0.55F + float(line) * 0.38F, 0.31F, 0.36F);
+    glUniform4f(glGetUniformLocation(used, "box"), -0.98F + float(column) * 0.33F, -0.55F + float(line) * 0.38F, 0.31F,
+                0.36F);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 void choose(GLuint used, int which) {
@@ -153,7 +162,8 @@ void drawAll(int frame) {
 
 void showAnswers() {
     for (int i = 0; i < kTextures; ++i) {
-        showBits(i, GLuint(glIsTextureHandleResidentARB(handles[i])) << 8U | GLuint(glGetTextureHandleARB(textures[i]) == handles[i]));
+        showBits(i, GLuint(glIsTextureHandleResidentARB(handles[i])) << 8U |
+                        GLuint(glGetTextureHandleARB(textures[i]) == handles[i]));
     }
     GLuint64EXT current = 0;
     glGetVertexAttribLui64vARB(3, GL_CURRENT_VERTEX_ATTRIB, &current);
@@ -170,7 +180,7 @@ int main(int argc, char** argv) {
     return runInGlxWindow(argc, argv, {Profile::Core, 4, 5}, setUp, [](Window&, int frame) {
         glClearColor(0.1F, 0.12F, 0.1F, 1);
         glClear(GL_COLOR_BUFFER_BIT);
-        paint(1, frame); // resident, but no draw has it bound
+        paint(1, frame);  // resident, but no draw has it bound
         if (frame == 1) { // non-resident, and resident again
             glMakeTextureHandleNonResidentARB(handles[2]);
             glMakeTextureHandleNonResidentARB(handles[3]);

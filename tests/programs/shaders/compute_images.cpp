@@ -35,15 +35,19 @@ if (abs(p.place.y) > 0.4) p.speed.y = -p.speed.y; all[i] = p; })"}});
     commandsProgram = buildProgram({{GL_COMPUTE_SHADER, R"(#version 430
 layout(local_size_x=1) in; layout(std430, binding=1) buffer Commands { uint command[4]; }; uniform uint wanted;
 void main() { command[0] = wanted; command[1] = 1u; command[2] = 2u; command[3] = 0u; })"}});
-    const char* const vertex = "#version 430\nuniform vec4 box; out vec2 corner; void main() {\n"
-                               "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
-    show = buildProgram({{GL_VERTEX_SHADER, vertex},
-                         {GL_FRAGMENT_SHADER, "#version 430\nin vec2 corner; uniform sampler2D image; out vec4 result;\n"
-                                              "void main() { result = vec4(texture(image, corner).rgb, 1); }\n"}});
-    draw = buildProgram({{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) in vec4 particle; uniform vec2 offset; out vec2 speed;\n"
-                                            "void main() { speed = particle.zw * 40.0; gl_PointSize = 5.0;\n"
-                                            "gl_Position = vec4(particle.xy + offset, 0, 1); }\n"},
-                         {GL_FRAGMENT_SHADER, "#version 430\nin vec2 speed; out vec4 result; void main() { result = vec4(abs(speed), 0.8, 1); }\n"}});
+    const char* const vertex =
+        "#version 430\nuniform vec4 box; out vec2 corner; void main() {\n"
+        "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
+    show =
+        buildProgram({{GL_VERTEX_SHADER, vertex},
+                      {GL_FRAGMENT_SHADER, "#version 430\nin vec2 corner; uniform sampler2D image; out vec4 result;\n"
+                                           "void main() { result = vec4(texture(image, corner).rgb, 1); }\n"}});
+    draw = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) in vec4 particle; uniform vec2 offset; out vec2 speed;\n"
+                            "void main() { speed = particle.zw * 40.0; gl_PointSize = 5.0;\n"
+                            "gl_Position = vec4(particle.xy + offset, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER,
+          "#version 430\nin vec2 speed; out vec4 result; void main() { result = vec4(abs(speed), 0.8, 1); }\n"}});
     fragmentImages = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, R"(#version 430
 in vec2 corner; layout(rgba8, binding=3) uniform image2D canvas; out vec4 result;
 void main() { ivec2 p = ivec2(corner * 64.0); vec4 old = imageLoad(canvas, p); result = vec4(old.gbr, 1); })"}});
@@ -153,9 +157,7 @@ void drawResults() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 4};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             makePrograms();
             makeObjects();

@@ -69,7 +69,8 @@ void update(int frame) {
     glTextureSubImage2D(textures[0], 0, 0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, texels);
     glGenerateTextureMipmap(textures[0]);
     glTextureSubImage3D(textures[3], 0, 0, 0, 1, 8, 8, 2, GL_RGBA, GL_UNSIGNED_BYTE, texels);
-    auto* colors = static_cast<GLubyte*>(glMapNamedBufferRange(buffers[2], 0, 256, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
+    auto* colors = static_cast<GLubyte*>(
+        glMapNamedBufferRange(buffers[2], 0, 256, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
     std::memcpy(colors, texels + 64, 256);
     glUnmapNamedBuffer(buffers[2]);
     const GLuint white = 0xffffffffU;
@@ -86,7 +87,8 @@ void render(int frame) {
     glUniform4f(0, -0.8F, -0.8F, 1.2F, 1.2F);
     glUniform1i(1, 0);
     glDrawElementsInstanced(GL_TRIANGLES, 6, GL_UNSIGNED_SHORT, nullptr, 2);
-    glBlitNamedFramebuffer(framebuffers[0], framebuffers[1], 0, 0, kSize, kSize, kSize, 0, 0, kSize, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(framebuffers[0], framebuffers[1], 0, 0, kSize, kSize, kSize, 0, 0, kSize,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glNamedFramebufferReadBuffer(framebuffers[1], GL_COLOR_ATTACHMENT0);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[1]);
     glCopyTextureSubImage2D(textures[2], 0, 4, 4, 8, 8, 24, 24);
@@ -107,10 +109,12 @@ void drawWindow(Window& window, int frame) {
         glDrawElementsInstanced(GL_TRIANGLES, 6, GL_UNSIGNED_SHORT, nullptr, 4 + frame);
     }
     glEndQuery(GL_SAMPLES_PASSED);
-    glBlitNamedFramebuffer(framebuffers[1], 0, 0, 0, kSize, kSize, 10, window.height() - 60, 90, window.height() - 10, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(framebuffers[1], 0, 0, 0, kSize, kSize, 10, window.height() - 60, 90, window.height() - 10,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     // Copies from the window by its name, while an object is bound for reading.
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[0]);
-    glBlitNamedFramebuffer(0, framebuffers[1], 0, 0, window.width(), window.height(), 0, 0, kSize, kSize, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(0, framebuffers[1], 0, 0, window.width(), window.height(), 0, 0, kSize, kSize,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[1]);
     std::vector<GLubyte> small(std::size_t(kSize) * kSize * 4);
     glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, small.data());
@@ -138,19 +142,20 @@ void drawWindow(Window& window, int frame) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 5};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             program = buildProgram(
                 {{GL_VERTEX_SHADER,
                   "#version 450\nlayout(location=0) in vec2 corner; layout(location=1) in vec4 color;\n"
-                  "layout(location=0) uniform vec4 box; out vec2 at; flat out vec4 tint; void main() { at = corner; tint = color;\n"
+                  "layout(location=0) uniform vec4 box; out vec2 at; flat out vec4 tint; void main() { at = corner; "
+                  "tint = color;\n"
                   "gl_Position = vec4(box.xy + corner * box.zw * (1.0 - 0.2 * float(gl_InstanceID)), 0, 1); }\n"},
-                 {GL_FRAGMENT_SHADER,
-                  "#version 450\nin vec2 at; flat in vec4 tint; layout(location=1) uniform int which; out vec4 result;\n"
-                  "layout(binding=0) uniform sampler2D images[3]; void main() { vec4 t = which == 0 ? texture(images[0], at)\n"
-                  ": which == 1 ? texture(images[1], at * 1.5) : texture(images[2], at); result = vec4(t.rgb * 0.7 + tint.rgb * 0.3, 1); }\n"}});
+                 {GL_FRAGMENT_SHADER, "#version 450\nin vec2 at; flat in vec4 tint; layout(location=1) uniform int "
+                                      "which; out vec4 result;\n"
+                                      "layout(binding=0) uniform sampler2D images[3]; void main() { vec4 t = which == "
+                                      "0 ? texture(images[0], at)\n"
+                                      ": which == 1 ? texture(images[1], at * 1.5) : texture(images[2], at); result = "
+                                      "vec4(t.rgb * 0.7 + tint.rgb * 0.3, 1); }\n"}});
             makeBuffers();
             makeTextures();
             glCreateQueries(GL_SAMPLES_PASSED, 1, &query);

@@ -17,18 +17,24 @@ GLuint programs_[8];
 
 const char* const kBodies[8] = {
     "vec4 paint() { return vec4(fract(gl_FragCoord.xy / 32.0), fract(gl_FragCoord.z * 8.0), 1); }",
-    "layout(origin_upper_left) in vec4 gl_FragCoord; vec4 paint() { return vec4(fract(gl_FragCoord.xy / 24.0), 0.3, 1); }",
+    "layout(origin_upper_left) in vec4 gl_FragCoord; vec4 paint() { return vec4(fract(gl_FragCoord.xy / 24.0), 0.3, "
+    "1); }",
     "layout(origin_upper_left, pixel_center_integer) in vec4 gl_FragCoord;\n"
-    "vec4 paint() { if (mod(gl_FragCoord.x + gl_FragCoord.y * 2.0, 5.0) < 1.0) discard; return vec4(0.8, 0.7, 0.1, 1); }",
+    "vec4 paint() { if (mod(gl_FragCoord.x + gl_FragCoord.y * 2.0, 5.0) < 1.0) discard; return vec4(0.8, 0.7, 0.1, 1); "
+    "}",
     "layout(pixel_center_integer) in vec4 gl_FragCoord;\n"
     "vec4 paint() { ivec2 p = ivec2(gl_FragCoord.xy); return vec4(float((p.x ^ p.y) & 15) / 15.0, 0.2, 0.6, 1); }",
     "vec4 paint() { vec2 d = vec2(length(dFdx(corner)), length(dFdy(corner))) * 20.0;\n"
     "return vec4(fract(d * 3.0), fwidth(corner.x * corner.y) * 30.0, 1); }",
-    "vec4 paint() { vec2 p = (gl_FragCoord.xy - size * 0.5) / size.y; float d = 1.0; vec3 o = vec3(0, 0, -2), r = normalize(vec3(p, 1.2));\n"
-    "float t = 0.0; for (int i = 0; i < 24; ++i) { vec3 q = o + r * t; d = length(q - vec3(sin(frame), 0, 0)) - 0.7; t += d; }\n"
+    "vec4 paint() { vec2 p = (gl_FragCoord.xy - size * 0.5) / size.y; float d = 1.0; vec3 o = vec3(0, 0, -2), r = "
+    "normalize(vec3(p, 1.2));\n"
+    "float t = 0.0; for (int i = 0; i < 24; ++i) { vec3 q = o + r * t; d = length(q - vec3(sin(frame), 0, 0)) - 0.7; t "
+    "+= d; }\n"
     "return d < 0.01 ? vec4(normalize(o + r * t) * 0.5 + 0.5, 1) : vec4(p, 0.2, 1); }",
-    "vec4 paint() { return gl_FrontFacing ? vec4(0.2, 0.9, float(gl_PrimitiveID & 3) / 3.0, 1) : vec4(0.9, 0.2, 0.2, 1); }",
-    "layout(early_fragment_tests) in; vec4 paint() { return vec4(interpolateAtCentroid(corner), interpolateAtOffset(corner, vec2(0.3)).x, 1); }",
+    "vec4 paint() { return gl_FrontFacing ? vec4(0.2, 0.9, float(gl_PrimitiveID & 3) / 3.0, 1) : vec4(0.9, 0.2, 0.2, "
+    "1); }",
+    "layout(early_fragment_tests) in; vec4 paint() { return vec4(interpolateAtCentroid(corner), "
+    "interpolateAtOffset(corner, vec2(0.3)).x, 1); }",
 };
 
 void setUp() {
@@ -40,11 +46,10 @@ void setUp() {
             kBodies[i] + "\nvoid main() { result = paint();" +
             (i == 4 ? " gl_FragDepth = fract(corner.x * 3.0);" : "") + " }\n";
         programs_[i] = buildProgram(
-            {{GL_VERTEX_SHADER,
-              "#version 430\nuniform vec4 box; uniform float turn; out vec2 corner; void main() {\n"
-              "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); vec2 p = corner * box.zw;\n"
-              "if (turn != 0.0 && gl_VertexID == 3) p -= vec2(turn);\n"
-              "gl_Position = vec4(box.xy + p, corner.x * 0.6 - 0.3, 1); }\n"},
+            {{GL_VERTEX_SHADER, "#version 430\nuniform vec4 box; uniform float turn; out vec2 corner; void main() {\n"
+                                "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); vec2 p = corner * box.zw;\n"
+                                "if (turn != 0.0 && gl_VertexID == 3) p -= vec2(turn);\n"
+                                "gl_Position = vec4(box.xy + p, corner.x * 0.6 - 0.3, 1); }\n"},
              {GL_FRAGMENT_SHADER, fragment.c_str()}});
     }
 }
@@ -64,10 +69,7 @@ void draw(int which, Window& window, int frame, float x, float y, float w, float
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window& window, int frame) {
             glClearColor(0.1F, 0.1F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

@@ -44,16 +44,17 @@ void drawCounted(int frame) {
 
 void makePlain() {
     plain = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+        {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { vec2 c = "
+                            "vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
                             "gl_Position = vec4(c * 0.9 - 0.9 + shift, -0.5, 1); }\n"},
          {GL_FRAGMENT_SHADER, "#version 430\nout vec4 result; void main() { result = vec4(0.2, 0.8, 0.3, 1); }\n"}});
 }
 
 void makeCounting() {
-    counting = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
-                            "gl_Position = vec4(c * 1.4 - 0.9 + shift, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER, R"(#version 430
+    counting = buildProgram({{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) uniform float shift; void main() { "
+                                                "vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+                                                "gl_Position = vec4(c * 1.4 - 0.9 + shift, 0, 1); }\n"},
+                             {GL_FRAGMENT_SHADER, R"(#version 430
         layout(early_fragment_tests) in; layout(binding=0, offset=0) uniform atomic_uint drawn; layout(binding=0, offset=4) uniform atomic_uint bright;
         layout(std430, binding=3) buffer Sums { uint sum; uint columns[64]; };
         out vec4 result; void main() { atomicCounterIncrement(drawn); uint x = uint(gl_FragCoord.x);
@@ -66,9 +67,7 @@ void makeCounting() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             glGenVertexArrays(1, &vertexArray);
             glBindVertexArray(vertexArray);

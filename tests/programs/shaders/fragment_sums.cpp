@@ -72,9 +72,7 @@ void drawCounted() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             GLuint vertexArray = 0;
             glGenVertexArrays(1, &vertexArray);

@@ -17,9 +17,10 @@ GLuint lit, vertexOnly, fragmentOnly, sprites, twoSided, linked, varied;
 GLuint texture;
 
 GLhandleARB buildArbProgram() {
-    const char* sources[2] = {"uniform float shift; varying vec3 tint;\n",
-                              "void main() { tint = gl_Color.rgb;\n"
-                              "gl_Position = gl_ModelViewProjectionMatrix * (gl_Vertex + vec4(shift, 0.0, 0.0, 0.0)); }\n"};
+    const char* sources[2] = {
+        "uniform float shift; varying vec3 tint;\n",
+        "void main() { tint = gl_Color.rgb;\n"
+        "gl_Position = gl_ModelViewProjectionMatrix * (gl_Vertex + vec4(shift, 0.0, 0.0, 0.0)); }\n"};
     const GLint lengths[2] = {-1, -1};
     const char* fragment = "varying vec3 tint; uniform vec4 factor;\n"
                            "void main() { gl_FragColor = vec4(tint, 1.0) * factor; }\n";
@@ -53,48 +54,44 @@ void makePrograms() {
           "tint = gl_FrontMaterial.diffuse * max(dot(n, l), 0.0) + gl_LightModel.ambient;\n"
           "gl_TexCoord[0] = gl_TextureMatrix[0] * gl_MultiTexCoord0; gl_FogFragCoord = gl_Vertex.x;\n"
           "gl_Position = ftransform(); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 110\nuniform sampler2D image; varying vec4 tint; void main() {\n"
+                              "float f = clamp((gl_Fog.end - gl_FogFragCoord) * gl_Fog.scale, 0.0, 1.0);\n"
+                              "gl_FragColor = mix(gl_Fog.color, tint * texture2D(image, gl_TexCoord[0].st), f); }\n"}});
+    vertexOnly = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 120\nattribute float bend; void main() { vec4 p = gl_Vertex;\n"
+                            "p.y += bend * sin(p.x * 0.2); gl_FrontColor = gl_Color.gbra;\n"
+                            "gl_TexCoord[0] = gl_MultiTexCoord0; gl_Position = gl_ModelViewProjectionMatrix * p; }\n"}},
+        [](unsigned program) { glBindAttribLocation(program, 6, "bend"); });
+    fragmentOnly =
+        buildProgram({{GL_FRAGMENT_SHADER, "#version 120\nuniform mat2x3 weights; void main() {\n"
+                                           "gl_FragColor = vec4(weights * gl_TexCoord[0].st, 1.0) * gl_Color;\n"
+                                           "if (mod(gl_FragCoord.x + gl_FragCoord.y, 4.0) < 1.0) discard; }\n"}});
+    sprites =
+        buildProgram({{GL_VERTEX_SHADER, "#version 120\nvoid main() { gl_FrontColor = gl_Color;\n"
+                                         "gl_PointSize = 6.0 + gl_Vertex.z * 20.0; gl_Position = ftransform(); }\n"},
+                      {GL_FRAGMENT_SHADER,
+                       "#version 120\nvoid main() { vec2 c = gl_PointCoord - vec2(0.5);\n"
+                       "if (dot(c, c) > 0.25) discard; gl_FragColor = vec4(gl_PointCoord, 0, 1) * gl_Color; }\n"}});
+    twoSided = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 120\nvoid main() { gl_FrontColor = gl_Color; gl_BackColor = gl_Color.brga;\n"
+                            "gl_Position = ftransform(); }\n"},
          {GL_FRAGMENT_SHADER,
-          "#version 110\nuniform sampler2D image; varying vec4 tint; void main() {\n"
-          "float f = clamp((gl_Fog.end - gl_FogFragCoord) * gl_Fog.scale, 0.0, 1.0);\n"
-          "gl_FragColor = mix(gl_Fog.color, tint * texture2D(image, gl_TexCoord[0].st), f); }\n"}});
-    vertexOnly = buildProgram({{GL_VERTEX_SHADER,
-                                "#version 120\nattribute float bend; void main() { vec4 p = gl_Vertex;\n"
-                                "p.y += bend * sin(p.x * 0.2); gl_FrontColor = gl_Color.gbra;\n"
-                                "gl_TexCoord[0] = gl_MultiTexCoord0; gl_Position = gl_ModelViewProjectionMatrix * p; }\n"}},
-                              [](unsigned program) { glBindAttribLocation(program, 6, "bend"); });
-    fragmentOnly = buildProgram({{GL_FRAGMENT_SHADER,
-                                  "#version 120\nuniform mat2x3 weights; void main() {\n"
-                                  "gl_FragColor = vec4(weights * gl_TexCoord[0].st, 1.0) * gl_Color;\n"
-                                  "if (mod(gl_FragCoord.x + gl_FragCoord.y, 4.0) < 1.0) discard; }\n"}});
-    sprites = buildProgram({{GL_VERTEX_SHADER,
-                             "#version 120\nvoid main() { gl_FrontColor = gl_Color;\n"
-                             "gl_PointSize = 6.0 + gl_Vertex.z * 20.0; gl_Position = ftransform(); }\n"},
-                            {GL_FRAGMENT_SHADER,
-                             "#version 120\nvoid main() { vec2 c = gl_PointCoord - vec2(0.5);\n"
-                             "if (dot(c, c) > 0.25) discard; gl_FragColor = vec4(gl_PointCoord, 0, 1) * gl_Color; }\n"}});
-    twoSided = buildProgram({{GL_VERTEX_SHADER,
-                              "#version 120\nvoid main() { gl_FrontColor = gl_Color; gl_BackColor = gl_Color.brga;\n"
-                              "gl_Position = ftransform(); }\n"},
-                             {GL_FRAGMENT_SHADER,
-                              "#version 120\nvoid main() { gl_FragColor = gl_FrontFacing ? gl_Color : gl_Color * 0.6; }\n"}});
+          "#version 120\nvoid main() { gl_FragColor = gl_FrontFacing ? gl_Color : gl_Color * 0.6; }\n"}});
     // A function in a second shader of the same stage.
-    linked = buildProgram({{GL_VERTEX_SHADER,
-                            "#version 130\nvec4 place(vec4 v); out vec3 tint; void main() { tint = gl_Color.rgb;\n"
+    linked = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 130\nvec4 place(vec4 v); out vec3 tint; void main() { tint = gl_Color.rgb;\n"
                             "gl_Position = gl_ModelViewProjectionMatrix * place(gl_Vertex); }\n"},
-                           {GL_VERTEX_SHADER,
-                            "#version 130\nuniform float angle; vec4 place(vec4 v) {\n"
+         {GL_VERTEX_SHADER, "#version 130\nuniform float angle; vec4 place(vec4 v) {\n"
                             "return v + vec4(sin(angle + v.y * 0.1) * 6.0, 0, 0, 0); }\n"},
-                           {GL_FRAGMENT_SHADER,
-                            "#version 130\nin vec3 tint; out vec4 first; void main() { first = vec4(tint, 1); }\n"}},
-                          [](unsigned program) { glBindFragDataLocation(program, 0, "first"); });
-    varied = buildProgram({{GL_VERTEX_SHADER,
-                            "#version 150 compatibility\nflat out vec3 flatTint; noperspective out vec3 linear;\n"
+         {GL_FRAGMENT_SHADER, "#version 130\nin vec3 tint; out vec4 first; void main() { first = vec4(tint, 1); }\n"}},
+        [](unsigned program) { glBindFragDataLocation(program, 0, "first"); });
+    varied = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 150 compatibility\nflat out vec3 flatTint; noperspective out vec3 linear;\n"
                             "smooth out vec3 curved; void main() { flatTint = linear = curved = gl_Color.rgb;\n"
                             "gl_Position = ftransform(); gl_Position *= 1.0 + gl_Color.r; }\n"},
-                           {GL_FRAGMENT_SHADER,
-                            "#version 150 compatibility\nflat in vec3 flatTint; noperspective in vec3 linear;\n"
-                            "smooth in vec3 curved; out vec4 result; void main() {\n"
-                            "result = vec4(flatTint.r, linear.g, curved.b, 1) + vec4(fwidth(curved), 0); }\n"}});
+         {GL_FRAGMENT_SHADER, "#version 150 compatibility\nflat in vec3 flatTint; noperspective in vec3 linear;\n"
+                              "smooth in vec3 curved; out vec4 result; void main() {\n"
+                              "result = vec4(flatTint.r, linear.g, curved.b, 1) + vec4(fwidth(curved), 0); }\n"}});
 }
 
 void strip(float x, float y, GLint bend = -1) {
@@ -205,9 +202,7 @@ void makeTexture() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
+        argc, argv, {},
         [](Window&) {
             makePrograms();
             makeTexture();

@@ -14,14 +14,16 @@ namespace {
 GLuint vertexArray, tessellated, isolines, defaultLevels, grass, adjacency, capturing, drawing;
 GLuint feedback, feedbackBuffer, secondFeedback, secondBuffer, controlPoints;
 
-const char* const kPass = "#version 400\nlayout(location=0) in vec2 place; void main() { gl_Position = vec4(place, 0, 1); }\n";
+const char* const kPass =
+    "#version 400\nlayout(location=0) in vec2 place; void main() { gl_Position = vec4(place, 0, 1); }\n";
 const char* const kPaint = "#version 400\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n";
 
 void makeTessellation() {
-    const char* const control = "#version 400\nlayout(vertices=4) out; uniform float level; void main() {\n"
-                                "gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;\n"
-                                "gl_TessLevelOuter[0] = level; gl_TessLevelOuter[1] = level + 1.0; gl_TessLevelOuter[2] = 3.0;\n"
-                                "gl_TessLevelOuter[3] = 5.0; gl_TessLevelInner[0] = level; gl_TessLevelInner[1] = 4.0; }\n";
+    const char* const control =
+        "#version 400\nlayout(vertices=4) out; uniform float level; void main() {\n"
+        "gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;\n"
+        "gl_TessLevelOuter[0] = level; gl_TessLevelOuter[1] = level + 1.0; gl_TessLevelOuter[2] = 3.0;\n"
+        "gl_TessLevelOuter[3] = 5.0; gl_TessLevelInner[0] = level; gl_TessLevelInner[1] = 4.0; }\n";
     const char* const bilinear = " in; out vec3 tint; void main() {\n"
                                  "vec4 a = mix(gl_in[0].gl_Position, gl_in[1].gl_Position, gl_TessCoord.x);\n"
                                  "vec4 b = mix(gl_in[3].gl_Position, gl_in[2].gl_Position, gl_TessCoord.x);\n"
@@ -29,15 +31,20 @@ void makeTessellation() {
                                  "gl_Position.y += sin(gl_TessCoord.x * 6.0) * 0.05; }\n";
     const std::string quads = std::string("#version 400\nlayout(quads, fractional_odd_spacing, ccw)") + bilinear;
     const std::string lines = std::string("#version 400\nlayout(isolines, equal_spacing)") + bilinear;
-    tessellated = buildProgram({{GL_VERTEX_SHADER, kPass}, {GL_TESS_CONTROL_SHADER, control},
-                                {GL_TESS_EVALUATION_SHADER, quads.c_str()}, {GL_FRAGMENT_SHADER, kPaint}});
-    isolines = buildProgram({{GL_VERTEX_SHADER, kPass}, {GL_TESS_CONTROL_SHADER, control},
-                             {GL_TESS_EVALUATION_SHADER, lines.c_str()}, {GL_FRAGMENT_SHADER, kPaint}});
+    tessellated = buildProgram({{GL_VERTEX_SHADER, kPass},
+                                {GL_TESS_CONTROL_SHADER, control},
+                                {GL_TESS_EVALUATION_SHADER, quads.c_str()},
+                                {GL_FRAGMENT_SHADER, kPaint}});
+    isolines = buildProgram({{GL_VERTEX_SHADER, kPass},
+                             {GL_TESS_CONTROL_SHADER, control},
+                             {GL_TESS_EVALUATION_SHADER, lines.c_str()},
+                             {GL_FRAGMENT_SHADER, kPaint}});
     defaultLevels = buildProgram(
         {{GL_VERTEX_SHADER, kPass},
          {GL_TESS_EVALUATION_SHADER,
           "#version 400\nlayout(triangles, fractional_even_spacing, point_mode) in; out vec3 tint; void main() {\n"
-          "tint = gl_TessCoord; gl_Position = gl_TessCoord.x * gl_in[0].gl_Position + gl_TessCoord.y * gl_in[1].gl_Position\n"
+          "tint = gl_TessCoord; gl_Position = gl_TessCoord.x * gl_in[0].gl_Position + gl_TessCoord.y * "
+          "gl_in[1].gl_Position\n"
           "+ gl_TessCoord.z * gl_in[2].gl_Position; gl_PointSize = 3.0; }\n"},
          {GL_FRAGMENT_SHADER, kPaint}});
 }
@@ -63,19 +70,21 @@ void makeGeometry() {
 }
 
 void makeFeedback() {
-    capturing = buildProgram({{GL_VERTEX_SHADER,
-                               "#version 400\nuniform float turn; out vec2 moved; out vec3 hue; void main() {\n"
-                               "float a = float(gl_VertexID) * 1.9 + turn; moved = vec2(cos(a), sin(a)) * (0.1 + 0.01 * float(gl_VertexID));\n"
-                               "hue = vec3(fract(a), 0.7, fract(a * 0.3)); gl_Position = vec4(moved, 0, 1); }\n"},
-                              {GL_FRAGMENT_SHADER, "#version 400\nout vec4 r; void main() { r = vec4(1); }\n"}},
-                             [](unsigned program) {
-                                 const char* const varyings[] = {"moved", "gl_SkipComponents1", "hue"};
-                                 glTransformFeedbackVaryings(program, 3, varyings, GL_INTERLEAVED_ATTRIBS);
-                             });
-    drawing = buildProgram({{GL_VERTEX_SHADER,
-                             "#version 400\nlayout(location=0) in vec2 place; layout(location=1) in vec3 hue; out vec3 tint;\n"
-                             "uniform vec2 offset; void main() { tint = hue; gl_Position = vec4(place + offset, 0, 1); }\n"},
-                            {GL_FRAGMENT_SHADER, kPaint}});
+    capturing = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 400\nuniform float turn; out vec2 moved; out vec3 hue; void main() {\n"
+                            "float a = float(gl_VertexID) * 1.9 + turn; moved = vec2(cos(a), sin(a)) * (0.1 + 0.01 * "
+                            "float(gl_VertexID));\n"
+                            "hue = vec3(fract(a), 0.7, fract(a * 0.3)); gl_Position = vec4(moved, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 400\nout vec4 r; void main() { r = vec4(1); }\n"}},
+        [](unsigned program) {
+            const char* const varyings[] = {"moved", "gl_SkipComponents1", "hue"};
+            glTransformFeedbackVaryings(program, 3, varyings, GL_INTERLEAVED_ATTRIBS);
+        });
+    drawing = buildProgram(
+        {{GL_VERTEX_SHADER,
+          "#version 400\nlayout(location=0) in vec2 place; layout(location=1) in vec3 hue; out vec3 tint;\n"
+          "uniform vec2 offset; void main() { tint = hue; gl_Position = vec4(place + offset, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, kPaint}});
     const GLfloat zeros[24 * 6 * 2] = {};
     GLuint names[2];
     glGenTransformFeedbacks(2, names);
@@ -99,8 +108,8 @@ void setPlaces(const GLfloat* places, GLsizeiptr count) {
 }
 
 void drawTessellation(int frame) {
-    const GLfloat patches[] = {-0.95F, 0.1F, -0.4F, 0.15F, -0.45F, 0.8F, -0.9F, 0.9F,
-                               -0.3F, 0.1F, 0.25F, 0.15F, 0.3F, 0.85F, -0.25F, 0.8F};
+    const GLfloat patches[] = {-0.95F, 0.1F, -0.4F, 0.15F, -0.45F, 0.8F,  -0.9F,  0.9F,
+                               -0.3F,  0.1F, 0.25F, 0.15F, 0.3F,   0.85F, -0.25F, 0.8F};
     setPlaces(patches, 8);
     glPatchParameteri(GL_PATCH_VERTICES, 4);
     glUseProgram(tessellated);
@@ -192,9 +201,7 @@ void drawCaptured() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             glGenVertexArrays(1, &vertexArray);
             glBindVertexArray(vertexArray);

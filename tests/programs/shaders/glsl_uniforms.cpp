@@ -188,10 +188,7 @@ void drawWith(GLuint which, float x) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.1F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

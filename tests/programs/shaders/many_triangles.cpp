@@ -27,11 +27,18 @@ void makeSoup() {
     std::vector<float> vertices;
     vertices.reserve(kTriangles * 3 * 8);
     for (int i = 0; i < kTriangles; ++i) {
-        const float x = numbers.unit() * 2.4F - 1.2F, y = numbers.unit() * 2.4F - 1.2F, z = numbers.unit() * 2.2F - 1.1F;
+        const float x = numbers.unit() * 2.4F - 1.2F, y = numbers.unit() * 2.4F - 1.2F,
+                    z = numbers.unit() * 2.2F - 1.1F;
         const float size = i % 50 == 0 ? 0.2F : 0.02F;
         for (int corner = 0; corner < 3; ++corner) {
-            const float at[8] = {x + size * (numbers.unit() - 0.5F), y + size * (numbers.unit() - 0.5F), z, 1,
-                                 numbers.unit(), numbers.unit(), numbers.unit(), 1};
+            const float at[8] = {x + size * (numbers.unit() - 0.5F),
+                                 y + size * (numbers.unit() - 0.5F),
+                                 z,
+                                 1,
+                                 numbers.unit(),
+                                 numbers.unit(),
+                                 numbers.unit(),
+                                 1};
             vertices.insert(vertices.end(), at, at + 8);
         }
     }
@@ -49,22 +56,25 @@ void makeSoup() {
 void setUp() {
     makeSoup();
     plain = buildProgram({{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, kFragment}});
-    points = buildProgram({{GL_VERTEX_SHADER,
-                            "#version 330\nlayout(location = 0) in vec4 place; layout(location = 1) in vec4 tone; out vec4 tint;\n"
-                            "uniform mat4 turn; void main() { tint = tone; gl_Position = turn * place; gl_PointSize = 2.0 + 60.0 * tone.x * tone.x; }\n"},
-                           {GL_FRAGMENT_SHADER, kFragment}});
+    points = buildProgram(
+        {{GL_VERTEX_SHADER,
+          "#version 330\nlayout(location = 0) in vec4 place; layout(location = 1) in vec4 tone; out vec4 tint;\n"
+          "uniform mat4 turn; void main() { tint = tone; gl_Position = turn * place; gl_PointSize = 2.0 + 60.0 * "
+          "tone.x * tone.x; }\n"},
+         {GL_FRAGMENT_SHADER, kFragment}});
     flatPrimitives = buildProgram(
         {{GL_VERTEX_SHADER,
           "#version 330\nlayout(location = 0) in vec4 place; layout(location = 1) in vec4 tone; flat out vec4 tint;\n"
           "uniform mat4 turn; void main() { tint = tone; gl_Position = turn * place; }\n"},
-         {GL_FRAGMENT_SHADER,
-          "#version 330\nflat in vec4 tint; out vec4 result; void main() { result = vec4(tint.rg, float(gl_PrimitiveID & 7) / 7.0, 1); }\n"}});
+         {GL_FRAGMENT_SHADER, "#version 330\nflat in vec4 tint; out vec4 result; void main() { result = vec4(tint.rg, "
+                              "float(gl_PrimitiveID & 7) / 7.0, 1); }\n"}});
     geometry = buildProgram(
         {{GL_VERTEX_SHADER,
           "#version 330\nlayout(location = 0) in vec4 place; layout(location = 1) in vec4 tone; out vec4 color;\n"
           "uniform mat4 turn; void main() { color = tone; gl_Position = turn * place; }\n"},
          {GL_GEOMETRY_SHADER,
-          "#version 330\nlayout(triangles) in; layout(triangle_strip, max_vertices = 8) out; in vec4 color[]; out vec4 tint;\n"
+          "#version 330\nlayout(triangles) in; layout(triangle_strip, max_vertices = 8) out; in vec4 color[]; out vec4 "
+          "tint;\n"
           "void emit(vec4 p, vec4 c) { gl_Position = p; tint = c; EmitVertex(); }\n"
           "void main() { for (int k = 0; k < 2; ++k) { vec4 by = vec4(0.05, -0.03, 0, 0) * float(k);\n"
           "for (int i = 0; i < 3; ++i) emit(gl_in[i].gl_Position + by, color[i]);\n"
@@ -76,10 +86,12 @@ void setUp() {
           "uniform mat4 turn; void main() { color = tone; gl_Position = turn * place; }\n"},
          {GL_TESS_CONTROL_SHADER,
           "#version 400\nlayout(vertices = 3) out; in vec4 color[]; out vec4 shade[];\n"
-          "void main() { gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position; shade[gl_InvocationID] = color[gl_InvocationID];\n"
+          "void main() { gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position; "
+          "shade[gl_InvocationID] = color[gl_InvocationID];\n"
           "gl_TessLevelOuter[0] = gl_TessLevelOuter[1] = gl_TessLevelOuter[2] = 3.0; gl_TessLevelInner[0] = 2.0; }\n"},
          {GL_TESS_EVALUATION_SHADER,
-          "#version 400\nlayout(triangles, equal_spacing, ccw) in; in vec4 shade[]; out vec4 tint; void main() { vec3 t = gl_TessCoord;\n"
+          "#version 400\nlayout(triangles, equal_spacing, ccw) in; in vec4 shade[]; out vec4 tint; void main() { vec3 "
+          "t = gl_TessCoord;\n"
           "gl_Position = t.x * gl_in[0].gl_Position + t.y * gl_in[1].gl_Position + t.z * gl_in[2].gl_Position;\n"
           "tint = vec4(t.zyx * 0.5, 0) + 0.5 * shade[1]; }\n"},
          {GL_FRAGMENT_SHADER, kFragment}});

@@ -21,9 +21,10 @@ void setUp() {
     plain = buildProgram({{GL_VERTEX_SHADER, kVertex},
                           {GL_FRAGMENT_SHADER, "#version 130\nuniform vec3 color; out vec4 result;\n"
                                                "void main() { result = vec4(color, 1); }\n"}});
-    textured = buildProgram({{GL_VERTEX_SHADER, kVertex},
-                             {GL_FRAGMENT_SHADER, "#version 130\nuniform sampler2D image; in vec2 corner; out vec4 result;\n"
-                                                  "void main() { result = texture(image, corner); }\n"}});
+    textured =
+        buildProgram({{GL_VERTEX_SHADER, kVertex},
+                      {GL_FRAGMENT_SHADER, "#version 130\nuniform sampler2D image; in vec2 corner; out vec4 result;\n"
+                                           "void main() { result = texture(image, corner); }\n"}});
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 61, 45, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -34,7 +35,9 @@ void setUp() {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-void box(GLuint program, float x, float y, float w, float h) { glUniform4f(glGetUniformLocation(program, "box"), x, y, w, h); }
+void box(GLuint program, float x, float y, float w, float h) {
+    glUniform4f(glGetUniformLocation(program, "box"), x, y, w, h);
+}
 
 // Sends the drawing so far to the rasteriser, so that later drawing is another scene.
 void endScene() {
@@ -47,7 +50,8 @@ void drawPlain(int frame) {
     glUseProgram(plain);
     for (int i = 0; i < 24; ++i) {
         glUniform3f(glGetUniformLocation(plain, "color"), numbers.unit(), i % 2 == 0 ? 1.0F : 0.0F, numbers.unit());
-        box(plain, numbers.unit() * 1.6F - 0.9F, numbers.unit() * 1.6F - 0.9F, 0.05F + 0.3F * numbers.unit(), 0.05F + 0.3F * numbers.unit());
+        box(plain, numbers.unit() * 1.6F - 0.9F, numbers.unit() * 1.6F - 0.9F, 0.05F + 0.3F * numbers.unit(),
+            0.05F + 0.3F * numbers.unit());
         glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
         if (i % 3 == 0) {
             endScene();
@@ -86,5 +90,6 @@ int main(int argc, char** argv) {
     WindowSpec spec;
     spec.depth = 0;
     spec.stencil = 0;
-    return runInGlxWindow(argc, argv, spec, [](Window&) { setUp(); }, draw);
+    return runInGlxWindow(
+        argc, argv, spec, [](Window&) { setUp(); }, draw);
 }

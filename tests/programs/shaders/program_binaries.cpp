@@ -52,11 +52,13 @@ GLuint loaded(const Binary& binary) {
 void savePainted() {
     const GLuint program = buildProgram(
         {{GL_VERTEX_SHADER,
-          "#version 330\nin vec2 corner; in vec3 tint; uniform vec4 box = vec4(-0.9, -0.9, 0.5, 0.5); out vec3 color; out vec2 kept;\n"
+          "#version 330\nin vec2 corner; in vec3 tint; uniform vec4 box = vec4(-0.9, -0.9, 0.5, 0.5); out vec3 color; "
+          "out vec2 kept;\n"
           "void main() { color = tint; kept = corner * 3.0; gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n"},
          {GL_FRAGMENT_SHADER,
           "#version 330\nin vec3 color; uniform float shade[2]; layout(std140) uniform Block { vec4 more; };\n"
-          "out vec4 first; out vec4 second; void main() { first = vec4(color + shade[1], 1); second = vec4(more.rgb, 1); }\n"}},
+          "out vec4 first; out vec4 second; void main() { first = vec4(color + shade[1], 1); second = vec4(more.rgb, "
+          "1); }\n"}},
         [](unsigned linking) {
             const char* const varyings[] = {"kept", "color"};
             glTransformFeedbackVaryings(linking, 2, varyings, GL_INTERLEAVED_ATTRIBS);
@@ -73,11 +75,14 @@ void savePainted() {
 }
 
 void saveSeparable() {
-    const char* const vertex = "#version 430\nlayout(location=3) in vec2 corner; out gl_PerVertex { vec4 gl_Position; };\n"
-                               "layout(location=0) out vec2 at; uniform vec2 from; void main() { at = corner; gl_Position = vec4(from + corner * 0.5, 0, 1); }\n";
+    const char* const vertex =
+        "#version 430\nlayout(location=3) in vec2 corner; out gl_PerVertex { vec4 gl_Position; };\n"
+        "layout(location=0) out vec2 at; uniform vec2 from; void main() { at = corner; gl_Position = vec4(from + "
+        "corner * 0.5, 0, 1); }\n";
     const char* const fragment = "#version 430\nlayout(location=0) in vec2 at; out vec4 color; uniform vec3 base;\n"
                                  "void main() { color = vec4(base + vec3(at, 0) * 0.3, 1); }\n";
-    const GLuint programs[] = {glCreateShaderProgramv(GL_VERTEX_SHADER, 1, &vertex), glCreateShaderProgramv(GL_FRAGMENT_SHADER, 1, &fragment)};
+    const GLuint programs[] = {glCreateShaderProgramv(GL_VERTEX_SHADER, 1, &vertex),
+                               glCreateShaderProgramv(GL_FRAGMENT_SHADER, 1, &fragment)};
     for (int i = 0; i < 2; ++i) {
         separable[i] = save(programs[i]);
         glDeleteProgram(programs[i]);

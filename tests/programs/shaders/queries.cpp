@@ -66,7 +66,8 @@ void countStreams(int frame) {
         glEndQueryIndexed(GL_PRIMITIVES_GENERATED, stream);
         told[stream] = waitFor(names[13]);
     }
-    for (GLuint stream = 0; stream < 2; ++stream) glBeginQueryIndexed(GL_PRIMITIVES_GENERATED, stream, names[13 + stream]);
+    for (GLuint stream = 0; stream < 2; ++stream)
+        glBeginQueryIndexed(GL_PRIMITIVES_GENERATED, stream, names[13 + stream]);
     glDrawArrays(GL_POINTS, 0, 1);
     for (GLuint stream = 0; stream < 2; ++stream) glEndQueryIndexed(GL_PRIMITIVES_GENERATED, stream);
     for (GLuint stream = 0; stream < 2; ++stream) told[2 + stream] = waitFor(names[13 + stream]);
@@ -196,18 +197,19 @@ void setUp() {
           "#version 430\nlayout(location=0) uniform vec4 box; layout(location=1) uniform float depth; out vec3 tint;\n"
           "void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1); tint = vec3(c, depth);\n"
           "gl_Position = vec4(box.xy + c * box.zw + vec2(0.02) * float(gl_InstanceID), depth, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 430\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}},
+         {GL_FRAGMENT_SHADER,
+          "#version 430\nin vec3 tint; out vec4 result; void main() { result = vec4(tint, 1); }\n"}},
         [](unsigned linking) {
             const char* const varying = "tint";
             glTransformFeedbackVaryings(linking, 1, &varying, GL_INTERLEAVED_ATTRIBS);
         });
     streamsProgram = buildProgram(
         {{GL_VERTEX_SHADER, "#version 430\nvoid main() { gl_Position = vec4(0); }\n"},
-         {GL_GEOMETRY_SHADER,
-          "#version 430\nlayout(points) in; layout(points, max_vertices=40) out; layout(location=0) uniform int emitted;\n"
-          "layout(stream=0) out vec4 first; layout(stream=1) out vec4 second;\n"
-          "void main() { first = vec4(0); EmitStreamVertex(0);\n"
-          "for (int i = 0; i < emitted; ++i) { second = vec4(i); EmitStreamVertex(1); } }\n"},
+         {GL_GEOMETRY_SHADER, "#version 430\nlayout(points) in; layout(points, max_vertices=40) out; "
+                              "layout(location=0) uniform int emitted;\n"
+                              "layout(stream=0) out vec4 first; layout(stream=1) out vec4 second;\n"
+                              "void main() { first = vec4(0); EmitStreamVertex(0);\n"
+                              "for (int i = 0; i < emitted; ++i) { second = vec4(i); EmitStreamVertex(1); } }\n"},
          {GL_FRAGMENT_SHADER, "#version 430\nvoid main() {}\n"}},
         [](unsigned linking) {
             const char* const varyings[] = {"first", "gl_NextBuffer", "second"};
@@ -229,10 +231,7 @@ void setUp() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 5};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.05F, 0.1F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

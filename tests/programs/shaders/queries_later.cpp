@@ -9,7 +9,12 @@ using namespace programs;
 namespace {
 
 constexpr int kBoxes = 6, kSets = 3;
-constexpr GLenum kTargets[kBoxes] = {GL_SAMPLES_PASSED, GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_PRIMITIVES_GENERATED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, GL_SAMPLES_PASSED};
+constexpr GLenum kTargets[kBoxes] = {GL_SAMPLES_PASSED,
+                                     GL_SAMPLES_PASSED,
+                                     GL_ANY_SAMPLES_PASSED,
+                                     GL_PRIMITIVES_GENERATED,
+                                     GL_ANY_SAMPLES_PASSED_CONSERVATIVE,
+                                     GL_SAMPLES_PASSED};
 
 GLuint names[kSets][kBoxes];
 
@@ -43,9 +48,11 @@ void showResults(int frame, int ago) {
     for (int i = 0; i < kBoxes; ++i) {
         const GLuint query = names[(frame - ago) % kSets][i];
         GLuint available = 0, result = 0;
-        for (int tries = 0; i % 2 == 0 && !available && tries < 1000000; ++tries) glGetQueryObjectuiv(query, GL_QUERY_RESULT_AVAILABLE, &available);
+        for (int tries = 0; i % 2 == 0 && !available && tries < 1000000; ++tries)
+            glGetQueryObjectuiv(query, GL_QUERY_RESULT_AVAILABLE, &available);
         glGetQueryObjectuiv(query, GL_QUERY_RESULT, &result);
-        showBits(10 + i + (ago - 1) * kBoxes, kTargets[i] == GL_ANY_SAMPLES_PASSED_CONSERVATIVE ? GLuint{result != 0} : result);
+        showBits(10 + i + (ago - 1) * kBoxes,
+                 kTargets[i] == GL_ANY_SAMPLES_PASSED_CONSERVATIVE ? GLuint{result != 0} : result);
     }
 }
 

@@ -16,8 +16,11 @@ namespace {
 const char* const kVertex = "#version 120\nvoid main() { gl_Position = gl_Vertex; }\n";
 
 void name(const std::string& path, const std::string& text, bool terminated) {
-    if (terminated) glNamedStringARB(GL_SHADER_INCLUDE_ARB, -1, path.c_str(), -1, text.c_str());
-    else glNamedStringARB(GL_SHADER_INCLUDE_ARB, GLint(path.size()), (path + "x").c_str(), GLint(text.size()), (text + "?").c_str());
+    if (terminated)
+        glNamedStringARB(GL_SHADER_INCLUDE_ARB, -1, path.c_str(), -1, text.c_str());
+    else
+        glNamedStringARB(GL_SHADER_INCLUDE_ARB, GLint(path.size()), (path + "x").c_str(), GLint(text.size()),
+                         (text + "?").c_str());
 }
 
 GLuint compiledWith(const char* fragment, const char* searched) {
@@ -49,22 +52,23 @@ void drawWith(const char* fragment, const char* searched, float x) {
     glDeleteProgram(program);
 }
 
-const char* const kByPath = "#version 120\n#extension GL_ARB_shading_language_include : require\n#include \"/colours/mixed.glsl\"\n"
-                            "void main() { gl_FragColor = mixed(); }\n";
-const char* const kBySearch = "#version 120\n#extension GL_ARB_shading_language_include : require\n#include <tone.glsl>\n"
-                              "void main() { gl_FragColor = vec4(tone(), 0.3, 0.2, 1); }\n";
+const char* const kByPath =
+    "#version 120\n#extension GL_ARB_shading_language_include : require\n#include \"/colours/mixed.glsl\"\n"
+    "void main() { gl_FragColor = mixed(); }\n";
+const char* const kBySearch =
+    "#version 120\n#extension GL_ARB_shading_language_include : require\n#include <tone.glsl>\n"
+    "void main() { gl_FragColor = vec4(tone(), 0.3, 0.2, 1); }\n";
 
 } // namespace
 
 int main(int argc, char** argv) {
     std::unique_ptr<Window> other;
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
+        argc, argv, {},
         [&](Window& window) {
             name("/colours/tone.glsl", "float tone() { return 0.75; }\n", true);
-            name("/colours/mixed.glsl", "#include \"/colours/tone.glsl\"\nvec4 mixed() { return vec4(0.1, tone(), 0.5, 1.0); }\n", false);
+            name("/colours/mixed.glsl",
+                 "#include \"/colours/tone.glsl\"\nvec4 mixed() { return vec4(0.1, tone(), 0.5, 1.0); }\n", false);
             other = openGlxWindow({}, 16, 16, &window);
             window.makeCurrent();
         },
@@ -72,7 +76,8 @@ int main(int argc, char** argv) {
             glClearColor(0.2F, 0.2F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT);
             other->makeCurrent();
-            name("/colours/tone.glsl", "float tone() { return " + std::to_string(0.2 * frame) + "; }\n", frame % 2 == 0);
+            name("/colours/tone.glsl", "float tone() { return " + std::to_string(0.2 * frame) + "; }\n",
+                 frame % 2 == 0);
             name("/once", "float once;", false);
             window.makeCurrent();
             drawWith(kByPath, nullptr, -0.9F);

@@ -19,9 +19,13 @@ GLuint buffer, source, program, write, vertexArray;
 
 void setUp(Window&) {
     needExtension("GL_ARB_sparse_buffer");
-    program = buildProgram({{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) in vec4 point; layout(std140, binding=0) uniform Move { vec4 offset; };\n"
-                                               "out vec3 shade; void main() { shade = vec3(point.zw, 0.7); gl_PointSize = 7.0; gl_Position = vec4(point.xy + offset.xy, 0, 1); }\n"},
-                            {GL_FRAGMENT_SHADER, "#version 430\nin vec3 shade; out vec4 result; void main() { result = vec4(shade, 1); }\n"}});
+    program = buildProgram(
+        {{GL_VERTEX_SHADER,
+          "#version 430\nlayout(location=0) in vec4 point; layout(std140, binding=0) uniform Move { vec4 offset; };\n"
+          "out vec3 shade; void main() { shade = vec3(point.zw, 0.7); gl_PointSize = 7.0; gl_Position = vec4(point.xy "
+          "+ offset.xy, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER,
+          "#version 430\nin vec3 shade; out vec4 result; void main() { result = vec4(shade, 1); }\n"}});
     write = buildProgram({{GL_COMPUTE_SHADER, R"(#version 430
 layout(local_size_x=64) in; layout(std430, binding=1) buffer Points { vec4 points[]; }; uniform int frame;
 void main() { uint i = gl_GlobalInvocationID.x; points[i] = vec4(float(i % 8u) * 0.05, float(i / 8u) * 0.05, float(i) / 64.0, float(frame) * 0.25); })"}});
@@ -32,7 +36,8 @@ void main() { uint i = gl_GlobalInvocationID.x; points[i] = vec4(float(i % 8u) *
     glGenBuffers(2, buffers);
     buffer = buffers[0], source = buffers[1];
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    glBufferStorage(GL_ARRAY_BUFFER, GLsizeiptr(kPages) * pageBytes, nullptr, GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
+    glBufferStorage(GL_ARRAY_BUFFER, GLsizeiptr(kPages) * pageBytes, nullptr,
+                    GL_SPARSE_STORAGE_BIT_ARB | GL_DYNAMIC_STORAGE_BIT);
     glEnableVertexAttribArray(0);
     glEnable(GL_PROGRAM_POINT_SIZE);
     GLfloat points[kPoints * 4];
@@ -45,7 +50,8 @@ void main() { uint i = gl_GlobalInvocationID.x; points[i] = vec4(float(i % 8u) *
 }
 
 void commit(int page, int count, bool committed) {
-    glBufferPageCommitmentARB(GL_ARRAY_BUFFER, GLintptr(page) * pageBytes, GLsizeiptr(count) * pageBytes, committed ? GL_TRUE : GL_FALSE);
+    glBufferPageCommitmentARB(GL_ARRAY_BUFFER, GLintptr(page) * pageBytes, GLsizeiptr(count) * pageBytes,
+                              committed ? GL_TRUE : GL_FALSE);
 }
 
 void draw(int page, float x, float y) {

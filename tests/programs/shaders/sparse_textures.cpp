@@ -32,10 +32,14 @@ void fill(GLenum target, int x, int y, int layer, int width, int height, unsigne
 
 void setUp(Window&) {
     needExtension("GL_ARB_sparse_texture");
-    program = buildProgram({{GL_VERTEX_SHADER, "#version 430\nuniform vec4 box, part; out vec2 at; void main() { vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1);\n"
-                                               "at = part.xy + corner * part.zw; gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n"},
-                            {GL_FRAGMENT_SHADER, "#version 430\nin vec2 at; uniform sampler2D image; uniform sampler2DArray images; uniform int layer; out vec4 result;\n"
-                                                 "void main() { result = vec4(layer < 0 ? texelFetch(image, ivec2(at), 0).rgb : texelFetch(images, ivec3(at, layer), 0).rgb, 1); }\n"}});
+    program = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 430\nuniform vec4 box, part; out vec2 at; void main() { vec2 corner = "
+                            "vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1);\n"
+                            "at = part.xy + corner * part.zw; gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 430\nin vec2 at; uniform sampler2D image; uniform sampler2DArray images; "
+                              "uniform int layer; out vec4 result;\n"
+                              "void main() { result = vec4(layer < 0 ? texelFetch(image, ivec2(at), 0).rgb : "
+                              "texelFetch(images, ivec3(at, layer), 0).rgb, 1); }\n"}});
     glUseProgram(program);
     glUniform1i(glGetUniformLocation(program, "images"), 1);
     glGenVertexArrays(1, &vertexArray);
@@ -73,13 +77,15 @@ void setUp(Window&) {
 }
 
 void commit(int column, int row, bool committed) {
-    glTexPageCommitmentARB(GL_TEXTURE_2D, 0, column * pageWidth, row * pageHeight, 0, pageWidth, pageHeight, 1, committed ? GL_TRUE : GL_FALSE);
+    glTexPageCommitmentARB(GL_TEXTURE_2D, 0, column * pageWidth, row * pageHeight, 0, pageWidth, pageHeight, 1,
+                           committed ? GL_TRUE : GL_FALSE);
 }
 
 void showPart(int cell, int layer, int x, int y, int width, int height) {
     glUniform1i(glGetUniformLocation(program, "layer"), layer);
     glUniform4f(glGetUniformLocation(program, "part"), float(x), float(y), float(width), float(height));
-    glUniform4f(glGetUniformLocation(program, "box"), -0.97F + 0.33F * float(cell % 6), -0.55F + 0.5F * float(cell / 6), 0.31F, 0.46F);
+    glUniform4f(glGetUniformLocation(program, "box"), -0.97F + 0.33F * float(cell % 6), -0.55F + 0.5F * float(cell / 6),
+                0.31F, 0.46F);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
@@ -94,7 +100,8 @@ void drawFrame(Window& window, int frame) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer); // and one written by drawing
     glEnable(GL_SCISSOR_TEST);
     for (int i = 0; i < 8; ++i) {
-        glScissor(kept * pageWidth + i * pageWidth / 8, 2 * pageHeight, pageWidth / 8, pageHeight - i * pageHeight / 16);
+        glScissor(kept * pageWidth + i * pageWidth / 8, 2 * pageHeight, pageWidth / 8,
+                  pageHeight - i * pageHeight / 16);
         glClearColor(0.125F * float(i), 0.2F, 0.25F * float(frame), 1);
         glClear(GL_COLOR_BUFFER_BIT);
     }

@@ -126,10 +126,7 @@ void drawCounted() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 5};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.12F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

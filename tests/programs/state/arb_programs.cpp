@@ -45,8 +45,7 @@ void give(GLenum target, GLuint name, const char* text) {
     GLint place = 0;
     glGetIntegerv(GL_PROGRAM_ERROR_POSITION_ARB, &place);
     if (place != -1) {
-        fail("program wrong at %d: %s", place,
-             reinterpret_cast<const char*>(glGetString(GL_PROGRAM_ERROR_STRING_ARB)));
+        fail("program wrong at %d: %s", place, reinterpret_cast<const char*>(glGetString(GL_PROGRAM_ERROR_STRING_ARB)));
     }
 }
 
@@ -138,10 +137,7 @@ void giveWrong() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) { setUp(); },
+        argc, argv, {}, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.1F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

@@ -66,11 +66,11 @@ void change(GLbitfield group, Window& window, int frame) {
 }
 
 void pushEach(Window& window, int frame) {
-    const GLbitfield groups[] = {GL_CURRENT_BIT, GL_POINT_BIT, GL_LINE_BIT, GL_POLYGON_BIT,
-                                 GL_POLYGON_STIPPLE_BIT, GL_LIGHTING_BIT, GL_FOG_BIT, GL_DEPTH_BUFFER_BIT,
-                                 GL_STENCIL_BUFFER_BIT, GL_VIEWPORT_BIT, GL_TRANSFORM_BIT, GL_ENABLE_BIT,
-                                 GL_COLOR_BUFFER_BIT, GL_TEXTURE_BIT, GL_SCISSOR_BIT, GL_PIXEL_MODE_BIT,
-                                 GL_HINT_BIT, GL_LIST_BIT, GL_MULTISAMPLE_BIT};
+    const GLbitfield groups[] = {
+        GL_CURRENT_BIT,    GL_POINT_BIT,  GL_LINE_BIT,         GL_POLYGON_BIT,        GL_POLYGON_STIPPLE_BIT,
+        GL_LIGHTING_BIT,   GL_FOG_BIT,    GL_DEPTH_BUFFER_BIT, GL_STENCIL_BUFFER_BIT, GL_VIEWPORT_BIT,
+        GL_TRANSFORM_BIT,  GL_ENABLE_BIT, GL_COLOR_BUFFER_BIT, GL_TEXTURE_BIT,        GL_SCISSOR_BIT,
+        GL_PIXEL_MODE_BIT, GL_HINT_BIT,   GL_LIST_BIT,         GL_MULTISAMPLE_BIT};
     int cell = 0;
     for (const GLbitfield group : groups) {
         glColor3f(0.3F, 0.3F + 0.03F * float(cell), 0.8F);
@@ -180,10 +180,7 @@ void setUp() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) { setUp(); },
+        argc, argv, {}, [](Window&) { setUp(); },
         [](Window& window, int frame) {
             glViewport(0, 0, window.width(), window.height());
             glClearColor(0.1F, 0.1F, 0.1F, 1);

@@ -13,18 +13,17 @@ GLuint vertexArray, plain, dual, several, show;
 GLuint targets[2], framebuffer;
 int cellIndex;
 
-const char* const kVertex =
-    "#version 400\nuniform vec4 box; out vec2 corner; void main() {\n"
-    "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
-    "gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
+const char* const kVertex = "#version 400\nuniform vec4 box; out vec2 corner; void main() {\n"
+                            "corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+                            "gl_Position = vec4(box.xy + corner * box.zw, 0, 1); }\n";
 
 void setUp() {
     glGenVertexArrays(1, &vertexArray);
     glBindVertexArray(vertexArray);
-    plain = buildProgram({{GL_VERTEX_SHADER, kVertex},
-                          {GL_FRAGMENT_SHADER,
-                           "#version 400\nin vec2 corner; uniform vec4 tint; out vec4 result;\n"
-                           "void main() { result = vec4(corner, 1.0 - corner.x, corner.y) * tint; }\n"}});
+    plain = buildProgram(
+        {{GL_VERTEX_SHADER, kVertex},
+         {GL_FRAGMENT_SHADER, "#version 400\nin vec2 corner; uniform vec4 tint; out vec4 result;\n"
+                              "void main() { result = vec4(corner, 1.0 - corner.x, corner.y) * tint; }\n"}});
     dual = buildProgram(
         {{GL_VERTEX_SHADER, kVertex},
          {GL_FRAGMENT_SHADER,
@@ -33,14 +32,13 @@ void setUp() {
           "second = vec4(1.0 - corner.y, corner.x, 0.3, corner.x); }\n"}});
     several = buildProgram(
         {{GL_VERTEX_SHADER, kVertex},
-         {GL_FRAGMENT_SHADER,
-          "#version 400\nin vec2 corner; uniform vec4 tint; layout(location=0) out vec4 a;\n"
-          "layout(location=1) out vec4 b; void main() { a = vec4(corner, 0, 0.5) * tint;\n"
-          "b = vec4(0.5, corner.yx, 0.5); }\n"}});
-    show = buildProgram({{GL_VERTEX_SHADER, kVertex},
-                         {GL_FRAGMENT_SHADER,
-                          "#version 400\nin vec2 corner; uniform sampler2D image; out vec4 result;\n"
-                          "void main() { result = texture(image, corner); }\n"}});
+         {GL_FRAGMENT_SHADER, "#version 400\nin vec2 corner; uniform vec4 tint; layout(location=0) out vec4 a;\n"
+                              "layout(location=1) out vec4 b; void main() { a = vec4(corner, 0, 0.5) * tint;\n"
+                              "b = vec4(0.5, corner.yx, 0.5); }\n"}});
+    show =
+        buildProgram({{GL_VERTEX_SHADER, kVertex},
+                      {GL_FRAGMENT_SHADER, "#version 400\nin vec2 corner; uniform sampler2D image; out vec4 result;\n"
+                                           "void main() { result = texture(image, corner); }\n"}});
     glGenTextures(2, targets);
     glGenFramebuffers(1, &framebuffer);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
@@ -74,10 +72,21 @@ void cell(GLuint program, int frame) {
 }
 
 void drawFactors(int frame) {
-    const GLenum factors[] = {GL_ZERO, GL_ONE, GL_SRC_COLOR, GL_ONE_MINUS_SRC_COLOR, GL_DST_COLOR,
-                              GL_ONE_MINUS_DST_COLOR, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_DST_ALPHA,
-                              GL_ONE_MINUS_DST_ALPHA, GL_CONSTANT_COLOR, GL_ONE_MINUS_CONSTANT_COLOR,
-                              GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA, GL_SRC_ALPHA_SATURATE};
+    const GLenum factors[] = {GL_ZERO,
+                              GL_ONE,
+                              GL_SRC_COLOR,
+                              GL_ONE_MINUS_SRC_COLOR,
+                              GL_DST_COLOR,
+                              GL_ONE_MINUS_DST_COLOR,
+                              GL_SRC_ALPHA,
+                              GL_ONE_MINUS_SRC_ALPHA,
+                              GL_DST_ALPHA,
+                              GL_ONE_MINUS_DST_ALPHA,
+                              GL_CONSTANT_COLOR,
+                              GL_ONE_MINUS_CONSTANT_COLOR,
+                              GL_CONSTANT_ALPHA,
+                              GL_ONE_MINUS_CONSTANT_ALPHA,
+                              GL_SRC_ALPHA_SATURATE};
     glBlendColor(0.3F, 0.6F, 0.1F * float(frame), 0.4F);
     for (int i = 0; i < 15; ++i) {
         glBlendFunc(factors[i], GL_ONE_MINUS_SRC_ALPHA);
@@ -148,10 +157,7 @@ int main(int argc, char** argv) {
     WindowSpec spec = {Profile::Compatibility, 4, 3};
     spec.alpha = 8;
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window& window, int frame) {
             glClearColor(0.2F, 0.2F, 0.2F, 0.6F);
             glClear(GL_COLOR_BUFFER_BIT);

@@ -24,7 +24,8 @@ struct Vertices {
 };
 
 void addRectangle(Vertices& v, Sequence& s) {
-    const float x = 2.2F * s.unit() - 1.2F, y = 2.2F * s.unit() - 1.2F, right = x + 0.1F + 0.6F * s.unit(), top = y + 0.1F + 0.6F * s.unit();
+    const float x = 2.2F * s.unit() - 1.2F, y = 2.2F * s.unit() - 1.2F, right = x + 0.1F + 0.6F * s.unit(),
+                top = y + 0.1F + 0.6F * s.unit();
     const std::array<float, 4> colour{s.unit(), s.unit(), s.unit(), 0.2F + 0.6F * s.unit()};
     v.add(x, y, colour);
     v.add(right, y, colour);
@@ -84,7 +85,8 @@ void drawAndCount(int frame) {
 // Ends a scene of the driver in the middle of a frame: a copy, a read, and clears and draws inside a scissor box.
 void drawBetweenScenes(const Window& window, int frame) {
     glBindTexture(GL_TEXTURE_2D, texture);
-    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, window.width() / 2 - kCopied / 2, window.height() / 2 - kCopied / 2, kCopied, kCopied);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, window.width() / 2 - kCopied / 2, window.height() / 2 - kCopied / 2,
+                        kCopied, kCopied);
     drawLists(frame + 10);
     GLubyte pixel[4];
     glReadPixels(5, 5, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);

@@ -15,14 +15,15 @@ void setUp() {
     const char* const oldFragment = "#version 120\nvarying vec4 tint; void main() { gl_FragColor = tint; }\n";
     const char* const newFragment =
         "#version 450 compatibility\nin vec4 tint; out vec4 result; void main() { result = tint; }\n";
-    clipVertex = buildProgram({{GL_VERTEX_SHADER,
-                                "#version 120\nvarying vec4 tint; void main() { tint = gl_Color;\n"
-                                "gl_ClipVertex = gl_ModelViewMatrix * gl_Vertex; gl_Position = ftransform(); }\n"},
-                               {GL_FRAGMENT_SHADER, oldFragment}});
+    clipVertex = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 120\nvarying vec4 tint; void main() { tint = gl_Color;\n"
+                            "gl_ClipVertex = gl_ModelViewMatrix * gl_Vertex; gl_Position = ftransform(); }\n"},
+         {GL_FRAGMENT_SHADER, oldFragment}});
     clipDistance = buildProgram(
         {{GL_VERTEX_SHADER,
           "#version 450 compatibility\nout vec4 tint; uniform float shift; void main() { tint = gl_Color;\n"
-          "gl_ClipDistance[0] = gl_Vertex.x - 20.0 - shift; gl_ClipDistance[1] = 48.0 - gl_Vertex.x - gl_Vertex.y * 0.3;\n"
+          "gl_ClipDistance[0] = gl_Vertex.x - 20.0 - shift; gl_ClipDistance[1] = 48.0 - gl_Vertex.x - gl_Vertex.y * "
+          "0.3;\n"
           "gl_Position = ftransform(); }\n"},
          {GL_FRAGMENT_SHADER, newFragment}});
     cullDistance = buildProgram(
@@ -31,14 +32,13 @@ void setUp() {
           "gl_CullDistance[0] = gl_Vertex.x - 25.0 - shift; gl_Position = ftransform(); }\n"},
          {GL_FRAGMENT_SHADER, newFragment}});
     severalViewports = buildProgram(
-        {{GL_VERTEX_SHADER,
-          "#version 450 compatibility\nout vec4 color; void main() { color = gl_Color; gl_Position = ftransform(); }\n"},
-         {GL_GEOMETRY_SHADER,
-          "#version 450 compatibility\nlayout(triangles, invocations=4) in;\n"
-          "layout(triangle_strip, max_vertices=3) out; in vec4 color[]; out vec4 tint;\n"
-          "void main() { for (int i = 0; i < 3; ++i) { gl_ViewportIndex = gl_InvocationID;\n"
-          "tint = color[i] * vec4(1, 0.4 + 0.2 * float(gl_InvocationID), 1, 1);\n"
-          "gl_Position = gl_in[i].gl_Position; EmitVertex(); } EndPrimitive(); }\n"},
+        {{GL_VERTEX_SHADER, "#version 450 compatibility\nout vec4 color; void main() { color = gl_Color; gl_Position = "
+                            "ftransform(); }\n"},
+         {GL_GEOMETRY_SHADER, "#version 450 compatibility\nlayout(triangles, invocations=4) in;\n"
+                              "layout(triangle_strip, max_vertices=3) out; in vec4 color[]; out vec4 tint;\n"
+                              "void main() { for (int i = 0; i < 3; ++i) { gl_ViewportIndex = gl_InvocationID;\n"
+                              "tint = color[i] * vec4(1, 0.4 + 0.2 * float(gl_InvocationID), 1, 1);\n"
+                              "gl_Position = gl_in[i].gl_Position; EmitVertex(); } EndPrimitive(); }\n"},
          {GL_FRAGMENT_SHADER, newFragment}});
 }
 
@@ -166,10 +166,7 @@ void drawUpsideDown(int frame) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Compatibility, 4, 5};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window& window, int frame) {
             glViewport(0, 0, window.width(), window.height());
             glClearColor(0.1F, 0.1F, 0.16F, 1);

@@ -104,10 +104,7 @@ void overflow(int frame) {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) {},
+        argc, argv, {}, [](Window&) {},
         [](Window&, int frame) {
             glClearColor(0.1F, 0.05F, 0.05F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

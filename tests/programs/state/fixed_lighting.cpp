@@ -14,7 +14,9 @@ GLuint textures[3];
 
 // Draws a bumpy patch of 8×8 quads around the origin.
 void patch(int frame, bool colored = false) {
-    const auto height = [&](int x, int y) { return std::sin(float(x) * 0.9F + float(frame)) * std::cos(float(y) * 0.7F) * 0.3F; };
+    const auto height = [&](int x, int y) {
+        return std::sin(float(x) * 0.9F + float(frame)) * std::cos(float(y) * 0.7F) * 0.3F;
+    };
     for (int y = -4; y < 4; ++y) {
         glBegin(GL_QUAD_STRIP);
         for (int x = -4; x <= 4; ++x) {
@@ -244,10 +246,7 @@ void setUp() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) { setUp(); },
+        argc, argv, {}, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.1F, 0.12F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

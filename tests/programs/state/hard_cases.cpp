@@ -80,7 +80,9 @@ void farWorld() {
     loadProjection(1, 100);
     std::array<float, 16> p{};
     glGetFloatv(GL_PROJECTION_MATRIX, p.data());
-    for (int row = 0; row < 4; ++row) p[static_cast<size_t>(12 + row)] += static_cast<float>(-kFar) * (p[static_cast<size_t>(row)] + p[static_cast<size_t>(8 + row)]);
+    for (int row = 0; row < 4; ++row)
+        p[static_cast<size_t>(12 + row)] +=
+            static_cast<float>(-kFar) * (p[static_cast<size_t>(row)] + p[static_cast<size_t>(8 + row)]);
     glMatrixMode(GL_PROJECTION);
     glLoadMatrixf(p.data());
     glMatrixMode(GL_MODELVIEW);
@@ -205,7 +207,8 @@ void derivatives(Window& window) {
 void places(Window& window) {
     glDisable(GL_DEPTH_TEST);
     glUseProgram(screenDoor);
-    glUniform2f(glGetUniformLocation(screenDoor, "size"), static_cast<float>(window.width()), static_cast<float>(window.height()));
+    glUniform2f(glGetUniformLocation(screenDoor, "size"), static_cast<float>(window.width()),
+                static_cast<float>(window.height()));
     quad();
     glUseProgram(0);
     std::array<GLubyte, 128> pattern{};
@@ -222,15 +225,18 @@ void places(Window& window) {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (int i = 0; i < 24; ++i) {
         glRasterPos2f(1.1F * wide(s), 1.1F * wide(s));
-        if (i % 2 == 0) glDrawPixels(24, 24, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-        else glBitmap(8, 8, 3.5F, -2.25F, 1, 1, bits.data());
+        if (i % 2 == 0)
+            glDrawPixels(24, 24, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        else
+            glBitmap(8, 8, 3.5F, -2.25F, 1, 1, bits.data());
     }
 }
 
 void raysAndSprites(Window& window) {
     for (const GLuint program : {rays, sprites}) {
         glUseProgram(program);
-        glUniform2f(glGetUniformLocation(program, "size"), static_cast<float>(window.width()), static_cast<float>(window.height()));
+        glUniform2f(glGetUniformLocation(program, "size"), static_cast<float>(window.width()),
+                    static_cast<float>(window.height()));
         if (program == rays) {
             quad();
             continue;
@@ -275,7 +281,8 @@ void throughATexture(Window& window) {
         glBindTexture(GL_TEXTURE_2D, names[i]);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(formats[i]), window.width(), window.height(), 0, kinds[i], GL_FLOAT, nullptr);
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(formats[i]), window.width(), window.height(), 0, kinds[i],
+                     GL_FLOAT, nullptr);
     }
     glGenFramebuffers(1, &frame);
     glBindFramebuffer(GL_FRAMEBUFFER, frame);
@@ -331,16 +338,28 @@ void layers(GLenum source, GLenum destination, float alpha) {
 }
 
 void setUp() {
-    const char* const vertex = "#version 120\nvarying vec2 place; void main() { place = gl_Vertex.xy; gl_Position = gl_Vertex; }";
-    screenDoor = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "#version 120\nuniform vec2 size; void main() { if (mod(gl_FragCoord.x + 2.0 * gl_FragCoord.y, 5.0) < 1.0) discard;\n"
-        "gl_FragColor = vec4(fract(gl_FragCoord.xy / 32.0), gl_FragCoord.x / size.x, 1); }"}});
-    steps = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "#version 120\nvarying vec2 place; void main() { vec2 p = fract(place * place.yx * 30.0);\n"
-        "gl_FragColor = vec4(fwidth(p) * 4.0, smoothstep(0.0, fwidth(place.x) * 3.0, abs(p.x - 0.5)), 1); }"}});
-    rays = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "#version 120\nuniform vec2 size; void main() {\n"
-        "vec3 ray = normalize(vec3(gl_FragCoord.xy / size * 2.0 - 1.0, -1.3)); float t = 1.0 / max(0.001, -ray.y);\n"
-        "gl_FragColor = ray.y < 0.0 ? vec4(fract(ray.xz * t), 0.3, 1) : vec4(ray * 0.5 + 0.5, 1); }"}});
-    sprites = buildProgram({{GL_VERTEX_SHADER, "#version 120\nuniform vec2 size; void main() { gl_Position = gl_Vertex + vec4(gl_MultiTexCoord0.xy * 2.0 / size, 0, 0); gl_FrontColor = gl_Color; }"},
-                            {GL_FRAGMENT_SHADER, "#version 120\nvoid main() { gl_FragColor = gl_Color; }"}});
+    const char* const vertex =
+        "#version 120\nvarying vec2 place; void main() { place = gl_Vertex.xy; gl_Position = gl_Vertex; }";
+    screenDoor = buildProgram(
+        {{GL_VERTEX_SHADER, vertex},
+         {GL_FRAGMENT_SHADER, "#version 120\nuniform vec2 size; void main() { if (mod(gl_FragCoord.x + 2.0 * "
+                              "gl_FragCoord.y, 5.0) < 1.0) discard;\n"
+                              "gl_FragColor = vec4(fract(gl_FragCoord.xy / 32.0), gl_FragCoord.x / size.x, 1); }"}});
+    steps = buildProgram(
+        {{GL_VERTEX_SHADER, vertex},
+         {GL_FRAGMENT_SHADER,
+          "#version 120\nvarying vec2 place; void main() { vec2 p = fract(place * place.yx * 30.0);\n"
+          "gl_FragColor = vec4(fwidth(p) * 4.0, smoothstep(0.0, fwidth(place.x) * 3.0, abs(p.x - 0.5)), 1); }"}});
+    rays = buildProgram(
+        {{GL_VERTEX_SHADER, vertex},
+         {GL_FRAGMENT_SHADER,
+          "#version 120\nuniform vec2 size; void main() {\n"
+          "vec3 ray = normalize(vec3(gl_FragCoord.xy / size * 2.0 - 1.0, -1.3)); float t = 1.0 / max(0.001, -ray.y);\n"
+          "gl_FragColor = ray.y < 0.0 ? vec4(fract(ray.xz * t), 0.3, 1) : vec4(ray * 0.5 + 0.5, 1); }"}});
+    sprites =
+        buildProgram({{GL_VERTEX_SHADER, "#version 120\nuniform vec2 size; void main() { gl_Position = gl_Vertex + "
+                                         "vec4(gl_MultiTexCoord0.xy * 2.0 / size, 0, 0); gl_FrontColor = gl_Color; }"},
+                      {GL_FRAGMENT_SHADER, "#version 120\nvoid main() { gl_FragColor = gl_Color; }"}});
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
     glTexParameteri(GL_TEXTURE_2D, GL_GENERATE_MIPMAP, GL_TRUE);
@@ -349,7 +368,8 @@ void setUp() {
     std::vector<GLubyte> pixels;
     for (int i = 0; i < 64 * 64; ++i) {
         const bool light = (i / 8 + i / 512) % 2 != 0;
-        pixels.insert(pixels.end(), {static_cast<GLubyte>(light ? 255 : i % 251), static_cast<GLubyte>(light ? 200 : 30), static_cast<GLubyte>(i / 16), 255});
+        pixels.insert(pixels.end(), {static_cast<GLubyte>(light ? 255 : i % 251),
+                                     static_cast<GLubyte>(light ? 200 : 30), static_cast<GLubyte>(i / 16), 255});
     }
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
 }
@@ -396,5 +416,7 @@ void frame(Window& window, int number) {
 } // namespace
 
 int main(int argc, char** argv) {
-    return runInGlxWindow(argc, argv, {.samples = MURAL_SAMPLES}, [](Window&) { setUp(); }, [](Window& window, int number) { frame(window, number); });
+    return runInGlxWindow(
+        argc, argv, {.samples = MURAL_SAMPLES}, [](Window&) { setUp(); },
+        [](Window& window, int number) { frame(window, number); });
 }

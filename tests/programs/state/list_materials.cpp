@@ -21,7 +21,8 @@ void ambientOfAll(float grey) {
 }
 
 void setUp() {
-    static const GLfloat corners[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+    static const GLfloat corners[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0},
+                         normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
     static const GLushort indices[] = {0, 1, 2, 0, 2, 3};
     list = glGenLists(1);
     glNewList(list, GL_COMPILE);
@@ -65,5 +66,6 @@ void draw(int frame) {
 } // namespace
 
 int main(int argc, char** argv) {
-    return runInGlxWindow(argc, argv, {}, [](Window&) { setUp(); }, [](Window&, int frame) { draw(frame); });
+    return runInGlxWindow(
+        argc, argv, {}, [](Window&) { setUp(); }, [](Window&, int frame) { draw(frame); });
 }

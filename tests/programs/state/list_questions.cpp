@@ -171,11 +171,13 @@ void readInPrimitive(GLenum mode, GLenum listMode, int row) {
 void setUp(Window&) {
     glGenQueries(3, queries);
     glGenBuffers(1, &feedbackBuffer);
-    feedbackProgram = buildProgram({{GL_VERTEX_SHADER, "#version 130\nout vec2 place;\nvoid main() { place = gl_Vertex.xy; gl_Position = gl_Vertex; }\n"}},
-                                   [](unsigned linking) {
-                                       const char* const varying = "place";
-                                       glTransformFeedbackVaryings(linking, 1, &varying, GL_INTERLEAVED_ATTRIBS);
-                                   });
+    feedbackProgram = buildProgram(
+        {{GL_VERTEX_SHADER,
+          "#version 130\nout vec2 place;\nvoid main() { place = gl_Vertex.xy; gl_Position = gl_Vertex; }\n"}},
+        [](unsigned linking) {
+            const char* const varying = "place";
+            glTransformFeedbackVaryings(linking, 1, &varying, GL_INTERLEAVED_ATTRIBS);
+        });
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

@@ -111,7 +111,8 @@ const GLfloat* lastPage() {
     static GLfloat* page = nullptr;
     constexpr size_t kBytes = 4096;
     if (!page) {
-        auto* both = static_cast<char*>(mmap(nullptr, 2 * kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+        auto* both =
+            static_cast<char*>(mmap(nullptr, 2 * kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
         munmap(both + kBytes, kBytes);
         page = reinterpret_cast<GLfloat*>(both);
         for (size_t i = 0; i < kBytes / sizeof(GLfloat); ++i) page[i] = float(i % 7) / 7;
@@ -158,7 +159,8 @@ std::uint32_t pixelByPixel(const Window& window) {
     for (int step = 0; step < 3; ++step) {
         for (int i = 0; i < 60; ++i) {
             GLubyte pixel[4] = {};
-            glReadPixels(i * (window.width() - 1) / 59, (i * 7 % 60) * (window.height() - 1) / 59, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
+            glReadPixels(i * (window.width() - 1) / 59, (i * 7 % 60) * (window.height() - 1) / 59, 1, 1, GL_RGBA,
+                         GL_UNSIGNED_BYTE, pixel);
             for (const GLubyte value : pixel) sum = sum * 31 + value;
         }
         GLfloat depths[4] = {};
@@ -176,9 +178,10 @@ int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     const auto window = openGlxWindow({}, options.width, options.height);
     window->makeCurrent();
-    const GLuint program = buildProgram({{GL_VERTEX_SHADER, "#version 120\nvoid main() { gl_Position = gl_Vertex; }\n"},
-                                         {GL_FRAGMENT_SHADER, "#version 120\nuniform vec4 one; uniform vec4 many[20];\n"
-                                                              "void main() { gl_FragColor = many[3] * 0.5 + many[17] * 0.5 + one; }\n"}});
+    const GLuint program =
+        buildProgram({{GL_VERTEX_SHADER, "#version 120\nvoid main() { gl_Position = gl_Vertex; }\n"},
+                      {GL_FRAGMENT_SHADER, "#version 120\nuniform vec4 one; uniform vec4 many[20];\n"
+                                           "void main() { gl_FragColor = many[3] * 0.5 + many[17] * 0.5 + one; }\n"}});
     for (int frame = 0; frame < options.frames; ++frame) {
         glClearColor(0.1F, 0.1F, 0.1F * float(frame % 4), 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

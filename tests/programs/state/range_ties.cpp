@@ -42,7 +42,8 @@ void draw(const std::vector<Vertex>& v, bool elements) {
 
 void sky(float depth) {
     glBegin(GL_QUADS);
-    for (const auto& [x, y] : {std::pair(-1.0F, -1.0F), std::pair(1.0F, -1.0F), std::pair(1.0F, 1.0F), std::pair(-1.0F, 1.0F)}) {
+    for (const auto& [x, y] :
+         {std::pair(-1.0F, -1.0F), std::pair(1.0F, -1.0F), std::pair(1.0F, 1.0F), std::pair(-1.0F, 1.0F)}) {
         glColor3f(0.2F, 0.4F + 0.2F * y, 0.7F + 0.2F * x);
         glVertex3f(x, y, depth);
     }
@@ -87,5 +88,6 @@ void frame(int number) {
 } // namespace
 
 int main(int argc, char** argv) {
-    return runInGlxWindow(argc, argv, {}, [](Window&) {}, [](Window&, int number) { frame(number); });
+    return runInGlxWindow(
+        argc, argv, {}, [](Window&) {}, [](Window&, int number) { frame(number); });
 }

@@ -153,9 +153,9 @@ void drawScissored(Window& window, int frame) {
 }
 
 void drawLogicAndMasks(int frame) {
-    const GLenum operations[] = {GL_CLEAR, GL_AND, GL_AND_REVERSE, GL_COPY, GL_AND_INVERTED, GL_NOOP,
-                                 GL_XOR, GL_OR, GL_NOR, GL_EQUIV, GL_INVERT, GL_OR_REVERSE,
-                                 GL_COPY_INVERTED, GL_OR_INVERTED, GL_NAND, GL_SET};
+    const GLenum operations[] = {
+        GL_CLEAR, GL_AND,   GL_AND_REVERSE, GL_COPY,       GL_AND_INVERTED,  GL_NOOP,        GL_XOR,  GL_OR,
+        GL_NOR,   GL_EQUIV, GL_INVERT,      GL_OR_REVERSE, GL_COPY_INVERTED, GL_OR_INVERTED, GL_NAND, GL_SET};
     glColor3f(0.1F, 0.5F, 0.9F);
     glRectf(5, 130, 165, 136);
     glEnable(GL_COLOR_LOGIC_OP);
@@ -221,10 +221,7 @@ void drawStencilAndDepth(int frame) {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) {},
+        argc, argv, {}, [](Window&) {},
         [](Window& window, int frame) {
             glViewport(0, 0, window.width(), window.height());
             glClearColor(0.1F, 0.12F, 0.14F, 1);

@@ -93,7 +93,8 @@ void answerIntoBuffer() {
 
 // Draws packed vertices of an invalid type among the others.
 void packed() {
-    const GLenum types[] = {GL_INT_2_10_10_10_REV, GL_FLOAT, GL_UNSIGNED_INT_2_10_10_10_REV, GL_UNSIGNED_INT_10F_11F_11F_REV, 7};
+    const GLenum types[] = {GL_INT_2_10_10_10_REV, GL_FLOAT, GL_UNSIGNED_INT_2_10_10_10_REV,
+                            GL_UNSIGNED_INT_10F_11F_11F_REV, 7};
     unsigned failed[5] = {};
     for (int i = 0; i < 5; ++i) {
         glBegin(GL_TRIANGLES);
@@ -200,7 +201,8 @@ void mesh(GLuint triangles) {
 // Checks that only vertices are accepted between glBegin and glEnd: neither the state nor memory changes. A rejected
 // glBegin begins nothing.
 void inPrimitive() {
-    const GLubyte rows[3][8] = {{90, 200, 40, 9, 9, 9, 9, 9}, {10, 250, 120, 9, 9, 9, 9, 9}, {255, 30, 180, 9, 9, 9, 9, 9}};
+    const GLubyte rows[3][8] = {
+        {90, 200, 40, 9, 9, 9, 9, 9}, {10, 250, 120, 9, 9, 9, 9, 9}, {255, 30, 180, 9, 9, 9, 9, 9}};
     std::vector<GLubyte> pixels(64, 0x37);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
     glColor3f(0.3F, 0.7F, 0.9F);
@@ -298,18 +300,21 @@ void useNoProgram(GLuint shifted) {
 }
 
 GLuint shiftedProgram() {
-    return buildProgram({{GL_VERTEX_SHADER, R"(#version 410 compatibility
+    return buildProgram(
+        {{GL_VERTEX_SHADER, R"(#version 410 compatibility
                              uniform dvec2 offset; uniform mat2x3 unused;
                              void main() { gl_Position = gl_Vertex + vec4(vec2(offset) + (unused * vec2(0.1)).xy, 0, 0); })"},
-                         {GL_FRAGMENT_SHADER, "#version 410 compatibility\nuniform float red; void main() { gl_FragColor = vec4(red, 0.6, 0.5, 1); }"}});
+         {GL_FRAGMENT_SHADER,
+          "#version 410 compatibility\nuniform float red; void main() { gl_FragColor = vec4(red, 0.6, 0.5, 1); }"}});
 }
 
 GLuint triangleProgram() {
-    return buildProgram({{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }"},
-                         {GL_GEOMETRY_SHADER, R"(#version 150 compatibility
+    return buildProgram(
+        {{GL_VERTEX_SHADER, "#version 150 compatibility\nvoid main() { gl_Position = gl_Vertex; }"},
+         {GL_GEOMETRY_SHADER, R"(#version 150 compatibility
                              layout(triangles) in; layout(triangle_strip, max_vertices = 3) out;
                              void main() { for (int i = 0; i < 3; ++i) { gl_Position = gl_in[i].gl_Position; EmitVertex(); } })"},
-                         {GL_FRAGMENT_SHADER, "#version 150 compatibility\nvoid main() { gl_FragColor = vec4(0.9, 0.6, 0.1, 1); }"}});
+         {GL_FRAGMENT_SHADER, "#version 150 compatibility\nvoid main() { gl_FragColor = vec4(0.9, 0.6, 0.1, 1); }"}});
 }
 
 // Sets several viewports or boxes at once, one of them invalid: none changes.

@@ -14,8 +14,7 @@ GLuint writing;
 
 unsigned error() {
     const GLenum first = glGetError();
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    while (glGetError() != GL_NO_ERROR) {}
     return first;
 }
 
@@ -85,7 +84,8 @@ void writeWords(GLbitfield flags, int row) {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     GLubyte bytes[22] = {}; // from any offset to any offset
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 5, sizeof bytes, bytes);
-    showBits(row + 2, std::uint32_t{bytes[3]} << 24U | std::uint32_t{bytes[7]} << 16U | std::uint32_t{bytes[19]} << 8U | bytes[21]);
+    showBits(row + 2, std::uint32_t{bytes[3]} << 24U | std::uint32_t{bytes[7]} << 16U | std::uint32_t{bytes[19]} << 8U |
+                          bytes[21]);
     GLuint told[8] = {};
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
     showBits(row + 2, told[7]);
@@ -142,9 +142,7 @@ void makeMipmapBehindAnError() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 5};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             GLuint vertexArray = 0;
             glGenVertexArrays(1, &vertexArray);

@@ -14,8 +14,10 @@ GLuint program;
 constexpr int kTriangles = 400;
 
 void setUp() {
-    program = buildProgram({{GL_VERTEX_SHADER, "#version 120\nuniform float turn; varying vec4 paint; void main() { paint = fract(gl_Vertex * 3.7 + turn); gl_Position = gl_Vertex; }"},
-                            {GL_FRAGMENT_SHADER, "#version 120\nvarying vec4 paint; void main() { gl_FragColor = vec4(paint.xyz, 1); }"}});
+    program = buildProgram(
+        {{GL_VERTEX_SHADER, "#version 120\nuniform float turn; varying vec4 paint; void main() { paint = "
+                            "fract(gl_Vertex * 3.7 + turn); gl_Position = gl_Vertex; }"},
+         {GL_FRAGMENT_SHADER, "#version 120\nvarying vec4 paint; void main() { gl_FragColor = vec4(paint.xyz, 1); }"}});
     std::vector<float> places{-1, -1, 0.9F, 1, -1, 0.9F, -1, 1, 0.9F, 1, 1, 0.9F}; // the strip, farthest away
     Sequence s(3);
     for (int i = 0; i < kTriangles; ++i) {
@@ -25,7 +27,8 @@ void setUp() {
     GLuint buffer;
     glGenBuffers(1, &buffer);
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(places.size() * sizeof(float)), places.data(), GL_STATIC_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(places.size() * sizeof(float)), places.data(),
+                 GL_STATIC_DRAW);
     glVertexPointer(3, GL_FLOAT, 0, nullptr);
     glEnableClientState(GL_VERTEX_ARRAY);
     glUseProgram(program);
@@ -43,5 +46,6 @@ void frame(int number) {
 } // namespace
 
 int main(int argc, char** argv) {
-    return runInGlxWindow(argc, argv, {}, [](Window&) { setUp(); }, [](Window&, int number) { frame(number); });
+    return runInGlxWindow(
+        argc, argv, {}, [](Window&) { setUp(); }, [](Window&, int number) { frame(number); });
 }

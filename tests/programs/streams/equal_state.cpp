@@ -24,16 +24,18 @@ struct Uniforms {
 Uniforms ofOften, ofSeldom;
 
 Uniforms uniformsOf(GLuint program) {
-    return {glGetUniformLocation(program, "offset"), glGetUniformLocation(program, "color"), glGetUniformLocation(program, "gain"), glGetUniformLocation(program, "strip")};
+    return {glGetUniformLocation(program, "offset"), glGetUniformLocation(program, "color"),
+            glGetUniformLocation(program, "gain"), glGetUniformLocation(program, "strip")};
 }
 
 void setUp(Window&) {
     const char* const vertex = "#version 120\n"
                                "uniform vec2 offset;\n"
                                "void main() { gl_Position = vec4(gl_Vertex.xy * 0.15 + offset, gl_Vertex.z, 1.0); }\n";
-    const char* const fragment = "#version 120\n"
-                                 "uniform vec4 color; uniform float gain; uniform int strip;\n"
-                                 "void main() { gl_FragColor = color * gain + vec4(float(strip) * 0.1, 0.0, 0.0, 0.0); }\n";
+    const char* const fragment =
+        "#version 120\n"
+        "uniform vec4 color; uniform float gain; uniform int strip;\n"
+        "void main() { gl_FragColor = color * gain + vec4(float(strip) * 0.1, 0.0, 0.0, 0.0); }\n";
     often = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
     seldom = buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}});
     ofOften = uniformsOf(often);
@@ -87,7 +89,8 @@ void draw(Window& window, int frame) {
             glUniform1f(u.gain, kind == 3 ? 0.5F : 1.0F);
             glUniform1i(u.strip, int(kind));
             glUniform4f(u.color, 0.2F, float(kind) / 6, isOften ? 0.9F : 0.1F, 0.6F);
-            glUniform2f(u.offset, float(i % kColumns) * 0.24F - 0.85F, float(i / kColumns) * 0.3F - 0.8F); // NOLINT(bugprone-integer-division)
+            glUniform2f(u.offset, float(i % kColumns) * 0.24F - 0.85F,
+                        float(i / kColumns) * 0.3F - 0.8F); // NOLINT(bugprone-integer-division)
         }
         if (frame % kSeldom == kSeldom - 1 && i % 7 == 0) glUseProgram(seldom);
         const GLfloat z = float(kind) * 0.1F;

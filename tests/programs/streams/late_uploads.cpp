@@ -85,7 +85,8 @@ void draw(Window&, int frame) {
     for (unsigned i = 0; i < 3; ++i) giveTexture(kReplaced, seed + i), giveBuffer(kReplacedBuffer, seed + i);
     glBindTexture(GL_TEXTURE_2D, textures[kParts]);
     for (unsigned i = 0; i < 4; ++i)
-        glTexSubImage2D(GL_TEXTURE_2D, 0, i < 3 ? 0 : 16, 8, 32, 32, GL_RGBA, GL_UNSIGNED_BYTE, texels(seed + 5 + i, 32).data());
+        glTexSubImage2D(GL_TEXTURE_2D, 0, i < 3 ? 0 : 16, 8, 32, 32, GL_RGBA, GL_UNSIGNED_BYTE,
+                        texels(seed + 5 + i, 32).data());
     giveTexture(kUnused, seed + 9);
     giveTexture(kKept, kKept + 1); // with unchanged contents
     drawTextured(kKept, -1, -1, 0.5F);

@@ -24,7 +24,8 @@ void setUp(Window&) {
         glColor3f(numbers.unit(), numbers.unit(), numbers.unit());
         if (i % 3 == 0)
             for (float& value : corner) value = 2 * numbers.unit() - 1;
-        glVertex3f(corner[0] + kTriangle * numbers.unit(), corner[1] + kTriangle * numbers.unit(), corner[2] + kTriangle * numbers.unit());
+        glVertex3f(corner[0] + kTriangle * numbers.unit(), corner[1] + kTriangle * numbers.unit(),
+                   corner[2] + kTriangle * numbers.unit());
     }
     glEnd();
     glEndList();

@@ -29,7 +29,8 @@ void changePatch(int frame) {
     Sequence numbers(1000U + std::uint32_t(frame));
     const int x = 173 * frame % (kSide - MURAL_PATCH), y = 311 * frame % (kSide - MURAL_PATCH);
     for (int row = 0; row < MURAL_PATCH; ++row)
-        for (int column = 0; column < MURAL_PATCH; ++column) pixels[size_t(y + row) * kSide + size_t(x + column)] = numbers.next() * 257U;
+        for (int column = 0; column < MURAL_PATCH; ++column)
+            pixels[size_t(y + row) * kSide + size_t(x + column)] = numbers.next() * 257U;
 }
 
 void draw(Window&, int frame) {

@@ -27,7 +27,9 @@ void setUp(Window&) {
     Sequence numbers(5);
     for (size_t i = 0; i < kValues; ++i) {
         sources[i] = "void main() { vec4 c = vec4(0.5);\n";
-        while (sources[i].size() < 16000) sources[i] += "c = c * 0.75 + vec4(" + std::to_string(numbers.unit()) + ", " + std::to_string(numbers.unit()) + ", 0.25, 0.5);\n";
+        while (sources[i].size() < 16000)
+            sources[i] += "c = c * 0.75 + vec4(" + std::to_string(numbers.unit()) + ", " +
+                          std::to_string(numbers.unit()) + ", 0.25, 0.5);\n";
         sources[i] += "gl_FragColor = c; }\n";
         for (int n = 0; n < kTriangles * 6; ++n) vertices[i].push_back(numbers.unit() * 2 - 1);
         for (int n = 0; n < kSide * kSide; ++n) images[i].push_back(numbers.next() * 257U);
@@ -39,7 +41,8 @@ void draw(Window&, int frame) {
     glClear(GL_COLOR_BUFFER_BIT);
     switch (MURAL_VALUE) {
     case 0: {
-        const GLuint program = buildProgram({{GL_VERTEX_SHADER, "void main() { gl_Position = gl_Vertex; }"}, {GL_FRAGMENT_SHADER, sources[which].c_str()}});
+        const GLuint program = buildProgram({{GL_VERTEX_SHADER, "void main() { gl_Position = gl_Vertex; }"},
+                                             {GL_FRAGMENT_SHADER, sources[which].c_str()}});
         glUseProgram(program);
         glRectf(-0.8F, -0.8F, 0.8F, 0.8F);
         glUseProgram(0);
@@ -51,9 +54,7 @@ void draw(Window&, int frame) {
         glVertexPointer(2, GL_FLOAT, 0, vertices[which].data());
         glDrawArrays(GL_TRIANGLES, 0, kTriangles * 3);
         break;
-    default:
-        glRasterPos2f(-0.9F, -0.9F);
-        glDrawPixels(kSide, kSide, GL_RGBA, GL_UNSIGNED_BYTE, images[which].data());
+    default: glRasterPos2f(-0.9F, -0.9F); glDrawPixels(kSide, kSide, GL_RGBA, GL_UNSIGNED_BYTE, images[which].data());
     }
 }
 

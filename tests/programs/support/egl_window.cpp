@@ -30,15 +30,24 @@ int renderableBit(const WindowSpec& spec) {
 }
 
 EGLConfig chooseConfig(EGLDisplay display, const WindowSpec& spec) {
-    const EGLint attributes[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT,
-                                 EGL_RENDERABLE_TYPE, renderableBit(spec),
-                                 EGL_RED_SIZE, 8,
-                                 EGL_GREEN_SIZE, 8,
-                                 EGL_BLUE_SIZE, 8,
-                                 EGL_ALPHA_SIZE, spec.alpha,
-                                 EGL_DEPTH_SIZE, spec.depth,
-                                 EGL_STENCIL_SIZE, spec.stencil,
-                                 EGL_SAMPLES, spec.samples,
+    const EGLint attributes[] = {EGL_SURFACE_TYPE,
+                                 EGL_WINDOW_BIT,
+                                 EGL_RENDERABLE_TYPE,
+                                 renderableBit(spec),
+                                 EGL_RED_SIZE,
+                                 8,
+                                 EGL_GREEN_SIZE,
+                                 8,
+                                 EGL_BLUE_SIZE,
+                                 8,
+                                 EGL_ALPHA_SIZE,
+                                 spec.alpha,
+                                 EGL_DEPTH_SIZE,
+                                 spec.depth,
+                                 EGL_STENCIL_SIZE,
+                                 spec.stencil,
+                                 EGL_SAMPLES,
+                                 spec.samples,
                                  EGL_NONE};
     EGLConfig configs[128];
     EGLint count = 0;
@@ -84,10 +93,7 @@ public:
         }
         context_ = createContext(config, spec, share != nullptr ? share->context_ : EGL_NO_CONTEXT);
         if (context_ == EGL_NO_CONTEXT) {
-            fail("no EGL context of version %d.%d (EGL error 0x%04x)",
-                 spec.major,
-                 spec.minor,
-                 eglGetError());
+            fail("no EGL context of version %d.%d (EGL error 0x%04x)", spec.major, spec.minor, eglGetError());
         }
     }
 
@@ -139,13 +145,8 @@ private:
             const EGLint none = EGL_NONE;
             return eglCreateContext(display_, config, share, &none);
         }
-        EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                               spec.major,
-                               EGL_CONTEXT_MINOR_VERSION,
-                               spec.minor,
-                               EGL_NONE,
-                               0,
-                               EGL_NONE};
+        EGLint attributes[] = {
+            EGL_CONTEXT_MAJOR_VERSION, spec.major, EGL_CONTEXT_MINOR_VERSION, spec.minor, EGL_NONE, 0, EGL_NONE};
         if (spec.profile == Profile::Core) {
             attributes[4] = EGL_CONTEXT_OPENGL_PROFILE_MASK;
             attributes[5] = EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;

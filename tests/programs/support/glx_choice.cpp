@@ -7,8 +7,19 @@
 namespace programs {
 
 GLXFBConfig chooseGlxConfig(Display* display, int drawableBits, int depthBits) {
-    const int attributes[] = {GLX_DRAWABLE_TYPE, drawableBits, GLX_DOUBLEBUFFER, True, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8,
-                              GLX_DEPTH_SIZE, depthBits, None};
+    const int attributes[] = {GLX_DRAWABLE_TYPE,
+                              drawableBits,
+                              GLX_DOUBLEBUFFER,
+                              True,
+                              GLX_RED_SIZE,
+                              8,
+                              GLX_GREEN_SIZE,
+                              8,
+                              GLX_BLUE_SIZE,
+                              8,
+                              GLX_DEPTH_SIZE,
+                              depthBits,
+                              None};
     int count = 0;
     GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
     if (found == nullptr || count == 0) {
@@ -29,8 +40,9 @@ GLXFBConfig chooseGlxConfig(Display* display, int drawableBits, int depthBits) {
 GLXContext makeCoreGlxContext(Display* display, GLXFBConfig config, GLXContext share) {
     static const auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(
         glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
-    const int attributes[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 3,
-                              GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_CORE_PROFILE_BIT_ARB, None};
+    const int attributes[] = {
+        GLX_CONTEXT_MAJOR_VERSION_ARB,    3,   GLX_CONTEXT_MINOR_VERSION_ARB, 3, GLX_CONTEXT_PROFILE_MASK_ARB,
+        GLX_CONTEXT_CORE_PROFILE_BIT_ARB, None};
     const GLXContext made = create(display, config, share, True, attributes);
     if (made == nullptr) {
         fail("no core context");

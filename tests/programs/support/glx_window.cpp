@@ -9,23 +9,40 @@ namespace programs {
 namespace {
 
 GLXFBConfig chooseConfig(Display* display, const WindowSpec& spec) {
-    const int attributes[] = {GLX_RENDER_TYPE,   GLX_RGBA_BIT,
-                              GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT,
-                              GLX_X_RENDERABLE,  True,
-                              GLX_X_VISUAL_TYPE, GLX_TRUE_COLOR,
-                              GLX_RED_SIZE,      8,
-                              GLX_GREEN_SIZE,    8,
-                              GLX_BLUE_SIZE,     8,
-                              GLX_ALPHA_SIZE,    spec.alpha,
-                              GLX_DEPTH_SIZE,    spec.depth,
-                              GLX_STENCIL_SIZE,  spec.stencil,
-                              GLX_DOUBLEBUFFER,  spec.doubleBuffered ? True : False,
-                              GLX_SAMPLE_BUFFERS, spec.samples > 0 ? 1 : 0,
-                              GLX_SAMPLES,       spec.samples,
-                              GLX_ACCUM_RED_SIZE, spec.accum,
-                              GLX_ACCUM_GREEN_SIZE, spec.accum,
-                              GLX_ACCUM_BLUE_SIZE, spec.accum,
-                              GLX_ACCUM_ALPHA_SIZE, spec.alpha > 0 ? spec.accum : 0,
+    const int attributes[] = {GLX_RENDER_TYPE,
+                              GLX_RGBA_BIT,
+                              GLX_DRAWABLE_TYPE,
+                              GLX_WINDOW_BIT,
+                              GLX_X_RENDERABLE,
+                              True,
+                              GLX_X_VISUAL_TYPE,
+                              GLX_TRUE_COLOR,
+                              GLX_RED_SIZE,
+                              8,
+                              GLX_GREEN_SIZE,
+                              8,
+                              GLX_BLUE_SIZE,
+                              8,
+                              GLX_ALPHA_SIZE,
+                              spec.alpha,
+                              GLX_DEPTH_SIZE,
+                              spec.depth,
+                              GLX_STENCIL_SIZE,
+                              spec.stencil,
+                              GLX_DOUBLEBUFFER,
+                              spec.doubleBuffered ? True : False,
+                              GLX_SAMPLE_BUFFERS,
+                              spec.samples > 0 ? 1 : 0,
+                              GLX_SAMPLES,
+                              spec.samples,
+                              GLX_ACCUM_RED_SIZE,
+                              spec.accum,
+                              GLX_ACCUM_GREEN_SIZE,
+                              spec.accum,
+                              GLX_ACCUM_BLUE_SIZE,
+                              spec.accum,
+                              GLX_ACCUM_ALPHA_SIZE,
+                              spec.alpha > 0 ? spec.accum : 0,
                               None};
     int count = 0;
     GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
@@ -37,8 +54,7 @@ GLXFBConfig chooseConfig(Display* display, const WindowSpec& spec) {
     return config;
 }
 
-GLXContext
-createContext(Display* display, GLXFBConfig config, const WindowSpec& spec, GLXContext share) {
+GLXContext createContext(Display* display, GLXFBConfig config, const WindowSpec& spec, GLXContext share) {
     if (spec.major == 0) {
         return glXCreateNewContext(display, config, GLX_RGBA_TYPE, share, True);
     }
@@ -66,8 +82,7 @@ createContext(Display* display, GLXFBConfig config, const WindowSpec& spec, GLXC
 class GlxWindow : public Window {
 public:
     GlxWindow(const WindowSpec& spec, int width, int height, const GlxWindow* share)
-        : Window(width, height), display_(openDisplayOnce()),
-          config_(chooseConfig(display_, spec)) {
+        : Window(width, height), display_(openDisplayOnce()), config_(chooseConfig(display_, spec)) {
         XVisualInfo* visual = glXGetVisualFromFBConfig(display_, config_);
         if (visual == nullptr) {
             fail("the GLX configuration has no visual");

@@ -22,13 +22,9 @@ inline Matrix multiply(const Matrix& a, const Matrix& b) {
     return product;
 }
 
-inline Matrix translation(float x, float y, float z) {
-    return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};
-}
+inline Matrix translation(float x, float y, float z) { return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1}; }
 
-inline Matrix scaling(float x, float y, float z) {
-    return {x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1};
-}
+inline Matrix scaling(float x, float y, float z) { return {x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1}; }
 
 inline Matrix rotationZ(float radians) {
     const float c = std::cos(radians);

@@ -11,16 +11,37 @@ constexpr int kSize = 64;
 } // namespace
 
 PbufferSource makePbufferSource(EGLDisplay display, bool alpha) {
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
-                             EGL_ALPHA_SIZE, alpha ? 8 : 0, alpha ? EGL_BIND_TO_TEXTURE_RGBA : EGL_BIND_TO_TEXTURE_RGB, EGL_TRUE, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                             EGL_PBUFFER_BIT,
+                             EGL_RENDERABLE_TYPE,
+                             EGL_OPENGL_BIT,
+                             EGL_RED_SIZE,
+                             8,
+                             EGL_GREEN_SIZE,
+                             8,
+                             EGL_BLUE_SIZE,
+                             8,
+                             EGL_ALPHA_SIZE,
+                             alpha ? 8 : 0,
+                             alpha ? EGL_BIND_TO_TEXTURE_RGBA : EGL_BIND_TO_TEXTURE_RGB,
+                             EGL_TRUE,
+                             EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (eglChooseConfig(display, wanted, &config, 1, &count) != EGL_TRUE || count == 0) {
         fail("no EGL configuration for pbuffers as textures");
     }
-    const EGLint size[] = {EGL_WIDTH, kSize, EGL_HEIGHT, kSize, EGL_TEXTURE_TARGET, EGL_TEXTURE_2D,
-                           EGL_TEXTURE_FORMAT, alpha ? EGL_TEXTURE_RGBA : EGL_TEXTURE_RGB, EGL_NONE};
-    const PbufferSource made = {display, eglCreatePbufferSurface(display, config, size), eglCreateContext(display, config, EGL_NO_CONTEXT, nullptr)};
+    const EGLint size[] = {EGL_WIDTH,
+                           kSize,
+                           EGL_HEIGHT,
+                           kSize,
+                           EGL_TEXTURE_TARGET,
+                           EGL_TEXTURE_2D,
+                           EGL_TEXTURE_FORMAT,
+                           alpha ? EGL_TEXTURE_RGBA : EGL_TEXTURE_RGB,
+                           EGL_NONE};
+    const PbufferSource made = {display, eglCreatePbufferSurface(display, config, size),
+                                eglCreateContext(display, config, EGL_NO_CONTEXT, nullptr)};
     if (made.surface == EGL_NO_SURFACE || made.context == EGL_NO_CONTEXT) {
         fail("no pbuffer for a texture (EGL error 0x%04x)", eglGetError());
     }

@@ -3,8 +3,7 @@
 
 namespace programs {
 
-int runInGlxWindow(
-    int argc, char** argv, const WindowSpec& spec, const Setup& setup, const Draw& draw) {
+int runInGlxWindow(int argc, char** argv, const WindowSpec& spec, const Setup& setup, const Draw& draw) {
     const Options options = parseOptions(argc, argv);
     const auto window = openGlxWindow(spec, options.width, options.height);
     window->makeCurrent();

@@ -22,8 +22,7 @@ unsigned compileShader(unsigned type, const char* source) {
     return shader;
 }
 
-unsigned buildProgram(std::initializer_list<Stage> stages,
-                      const std::function<void(unsigned)>& beforeLink) {
+unsigned buildProgram(std::initializer_list<Stage> stages, const std::function<void(unsigned)>& beforeLink) {
     const GLuint program = glCreateProgram();
     for (const Stage& stage : stages) {
         const GLuint shader = compileShader(stage.type, stage.source);

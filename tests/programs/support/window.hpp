@@ -37,9 +37,7 @@ protected:
 };
 
 // Opens a window. If given, `share`'s context shares objects with it. Ends the program on failure, never returns null.
-std::unique_ptr<Window>
-openGlxWindow(const WindowSpec& spec, int width, int height, Window* share = nullptr);
-std::unique_ptr<Window>
-openEglWindow(const WindowSpec& spec, int width, int height, Window* share = nullptr);
+std::unique_ptr<Window> openGlxWindow(const WindowSpec& spec, int width, int height, Window* share = nullptr);
+std::unique_ptr<Window> openEglWindow(const WindowSpec& spec, int width, int height, Window* share = nullptr);
 
 } // namespace programs

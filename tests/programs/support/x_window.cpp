@@ -19,8 +19,7 @@ Bool isWanted(Display*, XEvent* event, XPointer argument) {
         return False;
     }
     if (wanted->type == ConfigureNotify) {
-        const bool same =
-            event->xconfigure.width == wanted->width && event->xconfigure.height == wanted->height;
+        const bool same = event->xconfigure.width == wanted->width && event->xconfigure.height == wanted->height;
         return same ? True : False;
     }
     return True;
@@ -45,25 +44,15 @@ Display* openDisplayOnce() {
     return display;
 }
 
-XWindow::XWindow(const XVisualInfo& visual, int x, int y, int width, int height)
-    : display_(openDisplayOnce()) {
+XWindow::XWindow(const XVisualInfo& visual, int x, int y, int width, int height) : display_(openDisplayOnce()) {
     const ::Window root = RootWindow(display_, visual.screen);
     colormap_ = XCreateColormap(display_, root, visual.visual, AllocNone);
     XSetWindowAttributes attributes = {};
     attributes.colormap = colormap_;
     attributes.event_mask = StructureNotifyMask;
-    id_ = XCreateWindow(display_,
-                        root,
-                        x,
-                        y,
-                        static_cast<unsigned>(width),
-                        static_cast<unsigned>(height),
-                        0,
-                        visual.depth,
-                        InputOutput,
-                        visual.visual,
-                        CWColormap | CWEventMask | CWBorderPixel,
-                        &attributes);
+    id_ =
+        XCreateWindow(display_, root, x, y, static_cast<unsigned>(width), static_cast<unsigned>(height), 0,
+                      visual.depth, InputOutput, visual.visual, CWColormap | CWEventMask | CWBorderPixel, &attributes);
     XStoreName(display_, id_, program_invocation_short_name);
     XMapWindow(display_, id_);
     waitFor(display_, {id_, MapNotify, 0, 0});

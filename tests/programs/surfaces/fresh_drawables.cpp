@@ -35,8 +35,9 @@ void printBuffers(const char* what, GLenum buffer, int width, int height) {
     glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
     glReadPixels(0, 0, width, height, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, stencils.data());
     checkNoError(what);
-    std::printf("%s %s %dx%d: colour %d alpha %d depth %d stencil %d\n", what, buffer == GL_BACK ? "back" : "front", width, height, notZero(colours, 0, 4, 3),
-                notZero(colours, 3, 4, 1), notZero(depths, 0, 4, 4), notZero(stencils, 0, 1, 1));
+    std::printf("%s %s %dx%d: colour %d alpha %d depth %d stencil %d\n", what, buffer == GL_BACK ? "back" : "front",
+                width, height, notZero(colours, 0, 4, 3), notZero(colours, 3, 4, 1), notZero(depths, 0, 4, 4),
+                notZero(stencils, 0, 1, 1));
 }
 
 // Fills memory of the drawing process with a pattern, and frees it.
@@ -70,8 +71,25 @@ struct Kind {
 };
 
 GLXFBConfig choose(const Kind& kind) {
-    const int attributes[] = {GLX_X_RENDERABLE, True, GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT | GLX_PBUFFER_BIT, GLX_RENDER_TYPE, GLX_RGBA_BIT, GLX_RED_SIZE, 8,
-                              GLX_ALPHA_SIZE, kind.alpha, GLX_DEPTH_SIZE, 24, GLX_STENCIL_SIZE, 8, GLX_DOUBLEBUFFER, kind.doubled, GLX_SAMPLES, kind.samples, None};
+    const int attributes[] = {GLX_X_RENDERABLE,
+                              True,
+                              GLX_DRAWABLE_TYPE,
+                              GLX_WINDOW_BIT | GLX_PBUFFER_BIT,
+                              GLX_RENDER_TYPE,
+                              GLX_RGBA_BIT,
+                              GLX_RED_SIZE,
+                              8,
+                              GLX_ALPHA_SIZE,
+                              kind.alpha,
+                              GLX_DEPTH_SIZE,
+                              24,
+                              GLX_STENCIL_SIZE,
+                              8,
+                              GLX_DOUBLEBUFFER,
+                              kind.doubled,
+                              GLX_SAMPLES,
+                              kind.samples,
+                              None};
     int count = 0;
     GLXFBConfig* const found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
     for (int i = 0; i < count; ++i) {
@@ -133,7 +151,8 @@ void testPbuffer(const Kind& kind, GLXFBConfig config, GLXContext context, int w
 int main(int argc, char** argv) {
     (void)parseOptions(argc, argv);
     display = openDisplayOnce();
-    for (const Kind& kind : {Kind{"window", 0, True, 0}, Kind{"window with alpha", 8, True, 0}, Kind{"window with one buffer", 0, False, 0}, Kind{"window with samples", 0, True, 4}}) {
+    for (const Kind& kind : {Kind{"window", 0, True, 0}, Kind{"window with alpha", 8, True, 0},
+                             Kind{"window with one buffer", 0, False, 0}, Kind{"window with samples", 0, True, 4}}) {
         const GLXFBConfig config = choose(kind);
         const GLXContext context = glXCreateNewContext(display, config, GLX_RGBA_TYPE, nullptr, True);
         for (const auto& [width, height] : {std::pair{16, 16}, {160, 96}}) {

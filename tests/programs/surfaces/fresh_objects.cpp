@@ -30,7 +30,8 @@ void fillAndFree() {
     glGenBuffers(6, buffers);
     for (int i = 0; i < 6; ++i) {
         glBindTexture(GL_TEXTURE_2D, textures[i]);
-        glTexImage2D(GL_TEXTURE_2D, 0, i % 2 != 0 ? GL_RGBA32F : GL_RGBA8, kWidth, kHeight, 0, GL_RGBA, i % 2 != 0 ? GL_FLOAT : GL_UNSIGNED_BYTE, pattern.data());
+        glTexImage2D(GL_TEXTURE_2D, 0, i % 2 != 0 ? GL_RGBA32F : GL_RGBA8, kWidth, kHeight, 0, GL_RGBA,
+                     i % 2 != 0 ? GL_FLOAT : GL_UNSIGNED_BYTE, pattern.data());
         glBindBuffer(GL_ARRAY_BUFFER, buffers[i]);
         glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(kBytes), pattern.data(), GL_STATIC_DRAW);
     }
@@ -42,7 +43,8 @@ void fillAndFree() {
     glFinish();
 }
 
-void printTexture(const char* what, GLenum target, GLint level, std::size_t bytes, GLenum format = GL_RGBA, GLenum type = GL_UNSIGNED_BYTE) {
+void printTexture(const char* what, GLenum target, GLint level, std::size_t bytes, GLenum format = GL_RGBA,
+                  GLenum type = GL_UNSIGNED_BYTE) {
     std::vector<GLubyte> texels(bytes, 9);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTexImage(target, level, format, type, texels.data());
@@ -65,7 +67,8 @@ void testTextures() {
     glBindTexture(GL_TEXTURE_2D, textures[2]);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kWidth, kHeight, 0, GL_RGBA, GL_FLOAT, nullptr);
     printTexture("texture of floats", GL_TEXTURE_2D, 0, kBytes * 4, GL_RGBA, GL_FLOAT);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 8, 8, 8, 8, GL_RGBA, GL_UNSIGNED_BYTE, std::vector<GLubyte>(8 * 8 * 4, 255).data());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 8, 8, 8, 8, GL_RGBA, GL_UNSIGNED_BYTE,
+                    std::vector<GLubyte>(8 * 8 * 4, 255).data());
     printTexture("written in part", GL_TEXTURE_2D, 0, kBytes);
     fillAndFree();
     glBindTexture(GL_TEXTURE_3D, textures[3]);

@@ -16,7 +16,8 @@ struct Shown {
 
 inline Shown shownBy(Drawable drawable, int width, int height) {
     Shown shown;
-    XImage* const image = XGetImage(openDisplayOnce(), drawable, 0, 0, unsigned(width), unsigned(height), AllPlanes, ZPixmap);
+    XImage* const image =
+        XGetImage(openDisplayOnce(), drawable, 0, 0, unsigned(width), unsigned(height), AllPlanes, ZPixmap);
     if (image == nullptr) {
         return shown;
     }

@@ -16,7 +16,9 @@ namespace {
 Display* display;
 
 GLXFBConfig choose(int doubled) {
-    const int attributes[] = {GLX_X_RENDERABLE, True, GLX_RED_SIZE, 8, GLX_DEPTH_SIZE, 24, GLX_STENCIL_SIZE, 8, GLX_DOUBLEBUFFER, doubled, GLX_SAMPLES, 0, None};
+    const int attributes[] = {
+        GLX_X_RENDERABLE, True, GLX_RED_SIZE, 8, GLX_DEPTH_SIZE, 24, GLX_STENCIL_SIZE, 8, GLX_DOUBLEBUFFER, doubled,
+        GLX_SAMPLES,      0,    None};
     int count = 0;
     GLXFBConfig* const found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
     if (count == 0) {
@@ -28,8 +30,12 @@ GLXFBConfig choose(int doubled) {
 // A window with a GLX window, whose buffers remain while no context is bound to it.
 struct Drawn {
     Drawn(GLXFBConfig config, int x, int w, int h)
-        : visual(glXGetVisualFromFBConfig(display, config)), window(*visual, x, 0, w, h), id(glXCreateWindow(display, config, window.id(), nullptr)),
-          context(glXCreateNewContext(display, config, GLX_RGBA_TYPE, nullptr, True)), width(w), height(h) {}
+        : visual(glXGetVisualFromFBConfig(display, config)),
+          window(*visual, x, 0, w, h),
+          id(glXCreateWindow(display, config, window.id(), nullptr)),
+          context(glXCreateNewContext(display, config, GLX_RGBA_TYPE, nullptr, True)),
+          width(w),
+          height(h) {}
     Drawn(const Drawn&) = delete;
     Drawn& operator=(const Drawn&) = delete;
     ~Drawn() {
@@ -153,11 +159,13 @@ void frontOf(const Drawn& a) {
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     display = openDisplayOnce();
-    const Drawn a(choose(True), 0, options.width, options.height), b(choose(True), options.width + 20, options.width / 2 + 3, options.height / 2 + 5);
+    const Drawn a(choose(True), 0, options.width, options.height),
+        b(choose(True), options.width + 20, options.width / 2 + 3, options.height / 2 + 5);
     withOneContext(a, b);
     withTwoContexts(a, b);
     frontOf(a);
-    const Drawn c(choose(False), 0, options.width, options.height), d(choose(False), options.width + 20, options.width / 2 + 3, options.height / 2 + 5);
+    const Drawn c(choose(False), 0, options.width, options.height),
+        d(choose(False), options.width + 20, options.width / 2 + 3, options.height / 2 + 5);
     withOneBuffer(c, d);
     return 0;
 }

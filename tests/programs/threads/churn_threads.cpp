@@ -39,7 +39,8 @@ void open(const Options& options, unsigned seed) {
     const Place* share = seed % 3 == 0 || places.empty() ? nullptr : &places[seed % places.size()];
     WindowSpec spec;
     spec.x = int(places.size()) * 30;
-    made.window = openGlxWindow(spec, options.width - int(seed % 50), options.height - int(seed % 30), share == nullptr ? nullptr : share->window.get());
+    made.window = openGlxWindow(spec, options.width - int(seed % 50), options.height - int(seed % 30),
+                                share == nullptr ? nullptr : share->window.get());
     made.window->makeCurrent();
     if (share != nullptr) {
         made.group = share->group;

@@ -76,7 +76,8 @@ int main(int argc, char** argv) {
     const XWindow first(*visual, 0, 0, options.width, options.height);
     const XWindow second(*visual, options.width, 0, options.width / 2, options.height / 2);
     const int size[] = {GLX_PBUFFER_WIDTH, kSize, GLX_PBUFFER_HEIGHT, kSize, GLX_PRESERVED_CONTENTS, True, None};
-    const GLXWindow windows[] = {glXCreateWindow(display, config, first.id(), nullptr), glXCreateWindow(display, config, second.id(), nullptr)};
+    const GLXWindow windows[] = {glXCreateWindow(display, config, first.id(), nullptr),
+                                 glXCreateWindow(display, config, second.id(), nullptr)};
     const GLXPbuffer pbuffers[] = {glXCreatePbuffer(display, config, size), glXCreatePbuffer(display, config, size)};
     const Pixmap pixmap = XCreatePixmap(display, first.id(), kSize, kSize, unsigned(visual->depth));
     const GLXPixmap glxPixmap = glXCreatePixmap(display, config, pixmap, nullptr);

@@ -77,7 +77,8 @@ void load(unsigned cell) {
     if (cell % 2 == 0) {
         glBufferSubData(GL_ARRAY_BUFFER, 0, sizeof places, places);
     } else {
-        auto* mapped = static_cast<float*>(glMapBufferRange(GL_ARRAY_BUFFER, 0, sizeof places, GL_MAP_WRITE_BIT | GL_MAP_UNSYNCHRONIZED_BIT));
+        auto* mapped = static_cast<float*>(
+            glMapBufferRange(GL_ARRAY_BUFFER, 0, sizeof places, GL_MAP_WRITE_BIT | GL_MAP_UNSYNCHRONIZED_BIT));
         for (int i = 0; i < 8; ++i) {
             mapped[i] = places[i];
         }
@@ -122,9 +123,11 @@ void makeShared() {
     glBindVertexArray(vertexArray);
     glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
     glEnableVertexAttribArray(0);
-    glUseProgram(buildProgram(
-        {{GL_VERTEX_SHADER, "#version 330\nlayout(location=0) in vec2 place; out vec2 at; void main() { at = place * 0.5 + 0.5; gl_Position = vec4(place, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; out vec4 result; void main() { result = vec4(texture(image, at).rgb, 1); }\n"}}));
+    glUseProgram(
+        buildProgram({{GL_VERTEX_SHADER, "#version 330\nlayout(location=0) in vec2 place; out vec2 at; void main() { "
+                                         "at = place * 0.5 + 0.5; gl_Position = vec4(place, 0, 1); }\n"},
+                      {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; out vec4 result; void "
+                                           "main() { result = vec4(texture(image, at).rgb, 1); }\n"}}));
     glFinish();
 }
 
@@ -145,7 +148,8 @@ int main(int argc, char** argv) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         for (int cell = 0; cell < kCells; ++cell) {
             waitFor(loaded.take(), cell % 5 == 0);
-            glViewport(cell % 10 * options.width / 10, cell / 10 * options.height / 6, options.width / 10, options.height / 6);
+            glViewport(cell % 10 * options.width / 10, cell / 10 * options.height / 6, options.width / 10,
+                       options.height / 6);
             glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
             drawn.put(fence());
         }

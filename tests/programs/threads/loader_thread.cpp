@@ -50,10 +50,11 @@ Loaded load(unsigned number) {
     }
     glUnmapBuffer(GL_ARRAY_BUFFER);
     const std::string fragment = "#version 330\nin vec2 at; uniform sampler2D image; out vec4 result; void main() {\n"
-                                 "result = vec4(texture(image, at).rgb, 1) * " + std::to_string(0.5 + 0.1 * (number % 5)) + "; }\n";
-    item.program = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 330\nlayout(location=0) in vec2 place; out vec2 at; void main() { at = place; gl_Position = vec4(place, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER, fragment.c_str()}});
+                                 "result = vec4(texture(image, at).rgb, 1) * " +
+                                 std::to_string(0.5 + 0.1 * (number % 5)) + "; }\n";
+    item.program = buildProgram({{GL_VERTEX_SHADER, "#version 330\nlayout(location=0) in vec2 place; out vec2 at; void "
+                                                    "main() { at = place; gl_Position = vec4(place, 0, 1); }\n"},
+                                 {GL_FRAGMENT_SHADER, fragment.c_str()}});
     item.ready = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     glFlush();
     return item;

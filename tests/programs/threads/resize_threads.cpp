@@ -69,7 +69,8 @@ int main(int argc, char** argv) {
     for (int frame = 0; frame < options.frames; ++frame) {
         turns.await(frame * 2 + 1);
         if (frame % 4 == 1) {
-            window->resize(DisplayWidth(display, DefaultScreen(display)), DisplayHeight(display, DefaultScreen(display)));
+            window->resize(DisplayWidth(display, DefaultScreen(display)),
+                           DisplayHeight(display, DefaultScreen(display)));
         } else {
             window->resize(options.width + 3 + frame * 7 % 40, options.height - frame * 5 % 30);
         }

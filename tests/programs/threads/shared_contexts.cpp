@@ -57,7 +57,8 @@ void useContext(const XWindow& window, int index) {
 
 // Lets the first context write the shared objects.
 GLsync update(int frame) {
-    const GLfloat places[] = {0, 0, 0.5F, 0.05F * float(frame), 0.1F, 0.6F, 0.6F, 0.5F, -0.3F, 0.3F, 0.2F, -0.3F, 0, 0, 0.1F, 0.1F};
+    const GLfloat places[] = {0, 0,    0.5F, 0.05F * float(frame), 0.1F, 0.6F, 0.6F, 0.5F, -0.3F, 0.3F, 0.2F, -0.3F, 0,
+                              0, 0.1F, 0.1F};
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
     glBufferSubData(GL_ARRAY_BUFFER, 0, sizeof places, places);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[0]);

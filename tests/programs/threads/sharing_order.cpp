@@ -25,11 +25,11 @@ void use(const XWindow& window, GLXContext context) {
 }
 
 void makeShared() {
-    program = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 330\nuniform vec2 offset; out vec2 at;\n"
-                            "void main() { at = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = vec4(at * 0.6 + offset, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; out vec4 result;\n"
-                              "void main() { result = vec4(texture(image, at).rgb, 1); }\n"}});
+    program = buildProgram({{GL_VERTEX_SHADER, "#version 330\nuniform vec2 offset; out vec2 at;\n"
+                                               "void main() { at = vec2(gl_VertexID & 1, gl_VertexID >> 1); "
+                                               "gl_Position = vec4(at * 0.6 + offset, 0, 1); }\n"},
+                            {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; out vec4 result;\n"
+                                                 "void main() { result = vec4(texture(image, at).rgb, 1); }\n"}});
     unsigned char texels[8 * 8 * 4];
     for (int i = 0; i < 8 * 8 * 4; ++i) {
         texels[i] = static_cast<unsigned char>(i * 37);

@@ -79,20 +79,25 @@ int main(int argc, char** argv) {
     const XWindow window(*visual, 0, 0, options.width, options.height);
     const int size[] = {GLX_PBUFFER_WIDTH, kSize, GLX_PBUFFER_HEIGHT, kSize, GLX_PRESERVED_CONTENTS, True, None};
     const GLXPbuffer pbuffer = glXCreatePbuffer(display, config, size);
-    const GLXContext shown = makeCoreGlxContext(display, config, nullptr), bare = makeCoreGlxContext(display, config, shown), aside = makeCoreGlxContext(display, config, bare);
+    const GLXContext shown = makeCoreGlxContext(display, config, nullptr),
+                     bare = makeCoreGlxContext(display, config, shown),
+                     aside = makeCoreGlxContext(display, config, bare);
     use(window.id(), shown);
     const GLuint textures[] = {makeTexture(), makeTexture()};
-    const GLuint program = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 330\nuniform float left; out vec2 at;\n"
-                            "void main() { at = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = vec4(left + at.x * 0.8, at.y * 1.3 - 0.7, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; out vec4 result; void main() { result = vec4(texture(image, at).rgb, 1); }\n"}});
+    const GLuint program =
+        buildProgram({{GL_VERTEX_SHADER, "#version 330\nuniform float left; out vec2 at;\n"
+                                         "void main() { at = vec2(gl_VertexID & 1, gl_VertexID >> 1); gl_Position = "
+                                         "vec4(left + at.x * 0.8, at.y * 1.3 - 0.7, 0, 1); }\n"},
+                      {GL_FRAGMENT_SHADER, "#version 330\nin vec2 at; uniform sampler2D image; out vec4 result; void "
+                                           "main() { result = vec4(texture(image, at).rgb, 1); }\n"}});
     GLuint vertexArray = 0;
     glGenVertexArrays(1, &vertexArray);
     glFinish();
     for (int frame = 0; frame < options.frames; ++frame) {
         glXMakeContextCurrent(display, None, None, nullptr);
         const auto seed = unsigned(frame) * 2;
-        std::thread first(paint, None, bare, textures[0], seed, true), second(paint, pbuffer, aside, textures[1], seed + 1, frame % 2 == 0);
+        std::thread first(paint, None, bare, textures[0], seed, true),
+            second(paint, pbuffer, aside, textures[1], seed + 1, frame % 2 == 0);
         first.join();
         second.join();
         use(window.id(), shown);

@@ -64,10 +64,12 @@ void drawBuffered(int thread, int frame, GLuint program, GLuint buffer) {
 
 void runThread(int thread, Window& window, int frames) {
     window.makeCurrent();
-    const GLuint program = buildProgram(
-        {{GL_VERTEX_SHADER, "#version 120\nattribute vec2 place; void main() { gl_Position = vec4(place, 0.0, 1.0); }\n"},
-         {GL_FRAGMENT_SHADER, "#version 120\nuniform float thread; void main() { gl_FragColor = vec4(thread, fract(gl_FragCoord.x / 9.0), 0.5, 1.0); }\n"}},
-        [](unsigned linking) { glBindAttribLocation(linking, 0, "place"); });
+    const GLuint program =
+        buildProgram({{GL_VERTEX_SHADER,
+                       "#version 120\nattribute vec2 place; void main() { gl_Position = vec4(place, 0.0, 1.0); }\n"},
+                      {GL_FRAGMENT_SHADER, "#version 120\nuniform float thread; void main() { gl_FragColor = "
+                                           "vec4(thread, fract(gl_FragCoord.x / 9.0), 0.5, 1.0); }\n"}},
+                     [](unsigned linking) { glBindAttribLocation(linking, 0, "place"); });
     GLuint buffer = 0;
     glGenBuffers(1, &buffer);
     for (int frame = 0; frame < frames; ++frame) {

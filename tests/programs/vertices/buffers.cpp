@@ -69,18 +69,18 @@ void drawMappedRanges(unsigned seed) {
     bind(3);
     const GLbitfield write = GL_MAP_WRITE_BIT;
     const GLsizeiptr quarter = kSize / 4;
-    auto* range = static_cast<GLfloat*>(glMapBufferRange(
-        GL_ARRAY_BUFFER, 0, kSize, write | GL_MAP_INVALIDATE_BUFFER_BIT));
+    auto* range =
+        static_cast<GLfloat*>(glMapBufferRange(GL_ARRAY_BUFFER, 0, kSize, write | GL_MAP_INVALIDATE_BUFFER_BIT));
     fillBars(range, seed + 2);
     glUnmapBuffer(GL_ARRAY_BUFFER);
-    range = static_cast<GLfloat*>(glMapBufferRange(
-        GL_ARRAY_BUFFER, quarter, quarter, write | GL_MAP_INVALIDATE_RANGE_BIT));
+    range =
+        static_cast<GLfloat*>(glMapBufferRange(GL_ARRAY_BUFFER, quarter, quarter, write | GL_MAP_INVALIDATE_RANGE_BIT));
     fillBars(range, seed + 3, kBars / 4, kBars / 4);
     glUnmapBuffer(GL_ARRAY_BUFFER);
     draw(4);
     glFinish(); // nothing reads the buffer while it is written unsynchronized
-    range = static_cast<GLfloat*>(glMapBufferRange(
-        GL_ARRAY_BUFFER, 2 * quarter, quarter, write | GL_MAP_UNSYNCHRONIZED_BIT));
+    range = static_cast<GLfloat*>(
+        glMapBufferRange(GL_ARRAY_BUFFER, 2 * quarter, quarter, write | GL_MAP_UNSYNCHRONIZED_BIT));
     fillBars(range, seed + 4, kBars / 2, kBars / 4);
     glUnmapBuffer(GL_ARRAY_BUFFER);
     draw(5);
@@ -88,8 +88,8 @@ void drawMappedRanges(unsigned seed) {
 
 void drawFlushedRanges(unsigned seed) {
     bind(4);
-    auto* range = static_cast<GLfloat*>(glMapBufferRange(
-        GL_ARRAY_BUFFER, 96, kSize - 96, GL_MAP_WRITE_BIT | GL_MAP_FLUSH_EXPLICIT_BIT));
+    auto* range = static_cast<GLfloat*>(
+        glMapBufferRange(GL_ARRAY_BUFFER, 96, kSize - 96, GL_MAP_WRITE_BIT | GL_MAP_FLUSH_EXPLICIT_BIT));
     fillBars(range, seed + 5, 2, 4);
     glFlushMappedBufferRange(GL_ARRAY_BUFFER, 0, 48 * 4);
     fillBars(range + 12 * 8, seed + 6, 10, 2);
@@ -130,12 +130,10 @@ void showReadBack() {
 
 void setUp() {
     program = buildProgram(
-        {{GL_VERTEX_SHADER,
-          "#version 430\nlayout(location=0) in vec2 place; layout(location=0) uniform vec2 offset;\n"
-          "void main() { gl_Position = vec4(place + offset, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER,
-          "#version 430\nlayout(location=1) uniform float tint; out vec4 result;\n"
-          "void main() { result = vec4(1.0 - tint, 0.4 + tint * 0.5, tint, 1); }\n"}});
+        {{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) in vec2 place; layout(location=0) uniform vec2 offset;\n"
+                            "void main() { gl_Position = vec4(place + offset, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 430\nlayout(location=1) uniform float tint; out vec4 result;\n"
+                              "void main() { result = vec4(1.0 - tint, 0.4 + tint * 0.5, tint, 1); }\n"}});
     glGenVertexArrays(1, &vertexArray);
     glBindVertexArray(vertexArray);
     glEnableVertexAttribArray(0);
@@ -168,10 +166,7 @@ void churn(unsigned seed) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 4};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.1F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

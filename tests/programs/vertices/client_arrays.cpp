@@ -208,11 +208,23 @@ void drawInterleaved(int frame) {
     GLfloat wide[6 * 15];
     Sequence numbers(unsigned(frame) + 77);
     for (int i = 0; i < 6; ++i) {
-        vertices[i] = {{numbers.byte(), numbers.byte(), numbers.byte(), 255},
-                       {float(i * 4), float(i % 2 * 13), 0}};
+        vertices[i] = {{numbers.byte(), numbers.byte(), numbers.byte(), 255}, {float(i * 4), float(i % 2 * 13), 0}};
         // GL_T4F_C4F_N3F_V4F
-        const GLfloat one[15] = {float(i), 0.3F, 0, 1, numbers.unit(), numbers.unit(), 0.5F, 1,
-                                 0, 0, 1, float(i * 4), float(i % 2 * 10 + frame), 0, 1};
+        const GLfloat one[15] = {float(i),
+                                 0.3F,
+                                 0,
+                                 1,
+                                 numbers.unit(),
+                                 numbers.unit(),
+                                 0.5F,
+                                 1,
+                                 0,
+                                 0,
+                                 1,
+                                 float(i * 4),
+                                 float(i % 2 * 10 + frame),
+                                 0,
+                                 1};
         std::memcpy(wide + i * 15, one, sizeof one);
     }
     enterCell();
@@ -434,14 +446,18 @@ void drawMovedByName(int frame) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
     const GLintptr offset = 0;
     const GLsizei stride = 2 * sizeof(GLfloat);
-    if (frame % 2 == 0) glVertexArrayVertexBuffer(0, 0, buffer, offset, stride);
-    else glVertexArrayVertexBuffers(0, 0, 1, &buffer, &offset, &stride);
+    if (frame % 2 == 0)
+        glVertexArrayVertexBuffer(0, 0, buffer, offset, stride);
+    else
+        glVertexArrayVertexBuffers(0, 0, 1, &buffer, &offset, &stride);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDeleteBuffers(1, &buffer);
     enterCell();
     glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, after);
-    if (frame % 2 == 0) glVertexArrayBindingDivisor(0, 0, 1);
-    else glVertexBindingDivisor(0, 1);
+    if (frame % 2 == 0)
+        glVertexArrayBindingDivisor(0, 0, 1);
+    else
+        glVertexBindingDivisor(0, 1);
     glPointSize(4);
     glDrawArraysInstanced(GL_POINTS, 0, 1, 3);
     glPointSize(1);
@@ -452,7 +468,8 @@ void drawMovedByName(int frame) {
 // Uses attribute 0 as the vertex, then not: a shader computes the raster position after the draws. While Mesa has seen
 // few changes of arrays, empty draws bring it into a state in which this never ends.
 void setRasterPosition() {
-    const GLuint program = buildProgram({{GL_VERTEX_SHADER, "#version 110\nattribute vec4 place, second, third;\nvoid main() { gl_Position = place + second + third; }\n"}},
+    const GLuint program = buildProgram({{GL_VERTEX_SHADER, "#version 110\nattribute vec4 place, second, third;\nvoid "
+                                                            "main() { gl_Position = place + second + third; }\n"}},
                                         [](unsigned its) {
                                             glBindAttribLocation(its, 0, "place");
                                             glBindAttribLocation(its, 1, "second");
@@ -479,9 +496,7 @@ void setRasterPosition() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
+        argc, argv, {},
         [](Window&) {
             setRasterPosition();
             makeTextures();

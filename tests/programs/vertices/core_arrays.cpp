@@ -50,7 +50,8 @@ GLuint vertexArray, buffers[3];
 int cellIndex;
 
 std::string vertexSource(const char* type, const char* tint) {
-    return std::string("#version 430\n#extension GL_ARB_shader_draw_parameters : require\nlayout(location=0) in vec2 place;\n") +
+    return std::string("#version 430\n#extension GL_ARB_shader_draw_parameters : require\nlayout(location=0) in vec2 "
+                       "place;\n") +
            "layout(location=4) in " + type + " value;\nlayout(location=7) in vec2 shift;\n" +
            "layout(location=0) uniform vec2 offset; layout(location=1) uniform float scale;\n" +
            "out vec4 color;\nvoid main() { color = " + tint + " * scale;\n" +
@@ -59,16 +60,13 @@ std::string vertexSource(const char* type, const char* tint) {
 
 GLuint makeProgram(const char* type, const char* tint = "vec4(abs(value))") {
     return buildProgram({{GL_VERTEX_SHADER, vertexSource(type, tint).c_str()},
-                         {GL_FRAGMENT_SHADER,
-                          "#version 430\nin vec4 color; out vec4 result;\n"
-                          "void main() { result = vec4(color.rgb, 1); }\n"}});
+                         {GL_FRAGMENT_SHADER, "#version 430\nin vec4 color; out vec4 result;\n"
+                                              "void main() { result = vec4(color.rgb, 1); }\n"}});
 }
 
 void useCell(GLuint program, float scale) {
     glUseProgram(program);
-    glUniform2f(0,
-                -0.95F + 0.32F * float(cellIndex % 6),
-                -0.95F + 0.38F * float(cellIndex / 6));
+    glUniform2f(0, -0.95F + 0.32F * float(cellIndex % 6), -0.95F + 0.38F * float(cellIndex / 6));
     glUniform1f(1, scale);
     ++cellIndex;
 }
@@ -201,10 +199,7 @@ void setUp() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 5};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.05F, 0.05F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

@@ -345,9 +345,7 @@ void compileErrors(int frame, GLenum mode) {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
+        argc, argv, {},
         [](Window&) {
             makeGlyphs();
             makeArrayList();

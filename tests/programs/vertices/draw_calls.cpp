@@ -37,9 +37,7 @@ std::vector<GLubyte> makeColors(int frame) {
 }
 
 void enterCell() {
-    glUniform2f(offsetUniform,
-                -0.97F + 0.24F * float(cellIndex % 8),
-                -0.97F + 0.22F * float(cellIndex / 8));
+    glUniform2f(offsetUniform, -0.97F + 0.24F * float(cellIndex % 8), -0.97F + 0.22F * float(cellIndex / 8));
     ++cellIndex;
 }
 
@@ -76,8 +74,7 @@ void drawIndexed(bool fromBuffer) {
     enterCell();
     glDrawElementsInstancedBaseInstance(GL_TRIANGLE_STRIP, 7, GL_UNSIGNED_BYTE, bytes, 2, 3);
     enterCell();
-    glDrawElementsInstancedBaseVertexBaseInstance(
-        GL_TRIANGLE_STRIP, 7, GL_UNSIGNED_BYTE, bytes, 3, 10, 1);
+    glDrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLE_STRIP, 7, GL_UNSIGNED_BYTE, bytes, 3, 10, 1);
 }
 
 void drawMultiple(bool fromBuffer) {
@@ -178,11 +175,11 @@ void makeBuffers() {
     glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
     glBufferData(GL_ARRAY_BUFFER, kVertices * 12, nullptr, GL_DYNAMIC_DRAW);
     const GLuint commands[] = {
-        9, 3, 2, 0, 0, 0, 0, 0,  // arrays: count, instances, first, base instance
-        7, 2, 64, 5, 1, 0, 0, 0, // elements as bytes: count, instances, first index, base vertex
-        6, 1, 0, 0, 6, 2, 10, 1, // two array commands
-        3, 1, 0, 0, 0, 0, 0, 0,  // two element commands, 32 bytes apart
-        6, 2, 6, 3, 0, 0, 0, 0};
+        9, 3, 2,  0, 0, 0, 0,  0, // arrays: count, instances, first, base instance
+        7, 2, 64, 5, 1, 0, 0,  0, // elements as bytes: count, instances, first index, base vertex
+        6, 1, 0,  0, 6, 2, 10, 1, // two array commands
+        3, 1, 0,  0, 0, 0, 0,  0, // two element commands, 32 bytes apart
+        6, 2, 6,  3, 0, 0, 0,  0};
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers[2]);
     glBufferData(GL_DRAW_INDIRECT_BUFFER, sizeof commands, commands, GL_STATIC_DRAW);
     GLfloat shifts[16];
@@ -223,19 +220,15 @@ void makeVertexArrays() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Compatibility, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
+        argc, argv, spec,
         [](Window&) {
             program = buildProgram(
-                {{GL_VERTEX_SHADER,
-                  "#version 330\nlayout(location=0) in vec2 place; layout(location=1) in vec4 tint;\n"
-                  "layout(location=2) in vec2 shift; uniform vec2 offset; flat out vec4 color;\n"
-                  "void main() { color = tint * (1.0 - 0.2 * float(gl_InstanceID));\n"
-                  "gl_Position = vec4(place + offset + shift, 0, 1); }\n"},
-                 {GL_FRAGMENT_SHADER,
-                  "#version 330\nflat in vec4 color; out vec4 result;\n"
-                  "void main() { result = vec4(color.rgb, 1); }\n"}});
+                {{GL_VERTEX_SHADER, "#version 330\nlayout(location=0) in vec2 place; layout(location=1) in vec4 tint;\n"
+                                    "layout(location=2) in vec2 shift; uniform vec2 offset; flat out vec4 color;\n"
+                                    "void main() { color = tint * (1.0 - 0.2 * float(gl_InstanceID));\n"
+                                    "gl_Position = vec4(place + offset + shift, 0, 1); }\n"},
+                 {GL_FRAGMENT_SHADER, "#version 330\nflat in vec4 color; out vec4 result;\n"
+                                      "void main() { result = vec4(color.rgb, 1); }\n"}});
             offsetUniform = glGetUniformLocation(program, "offset");
             makeBuffers();
             makeVertexArrays();

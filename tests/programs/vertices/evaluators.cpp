@@ -105,7 +105,8 @@ void drawSurfaces(int frame) {
     glEvalPoint2(1, 5);
     glEnd();
     glPopMatrix();
-    for (const GLenum name : {GL_TEXTURE_2D, GL_MAP2_TEXTURE_COORD_2, GL_MAP2_VERTEX_3, GL_AUTO_NORMAL, GL_DEPTH_TEST}) {
+    for (const GLenum name :
+         {GL_TEXTURE_2D, GL_MAP2_TEXTURE_COORD_2, GL_MAP2_VERTEX_3, GL_AUTO_NORMAL, GL_DEPTH_TEST}) {
         glDisable(name);
     }
     GLfloat told[48] = {};
@@ -131,10 +132,7 @@ void setUp() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) { setUp(); },
+        argc, argv, {}, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.08F, 0.1F, 0.1F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

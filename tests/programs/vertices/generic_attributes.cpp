@@ -15,25 +15,21 @@ const char* const kFragment = "#version 410\nin vec4 color; out vec4 result;\n"
                               "void main() { result = color; }\n";
 
 GLuint makeProgram(const char* vertex) {
-    return buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, kFragment}},
-                        [](unsigned program) {
-                            glBindAttribLocation(program, 0, "place");
-                            glBindAttribLocation(program, kAttribute, "value");
-                        });
+    return buildProgram({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, kFragment}}, [](unsigned program) {
+        glBindAttribLocation(program, 0, "place");
+        glBindAttribLocation(program, kAttribute, "value");
+    });
 }
 
 void setUp() {
     floats = makeProgram("#version 410\nin vec2 place; in vec4 value; out vec4 color;\n"
                          "void main() { gl_Position = vec4(place, 0, 1); color = abs(value); }\n");
-    integers = makeProgram(
-        "#version 410\nin vec2 place; in ivec4 value; out vec4 color;\n"
-        "void main() { gl_Position = vec4(place, 0, 1); color = vec4(abs(value)) / 100.0; }\n");
-    unsignedIntegers = makeProgram(
-        "#version 410\nin vec2 place; in uvec4 value; out vec4 color;\n"
-        "void main() { gl_Position = vec4(place, 0, 1); color = vec4(value) / 100.0; }\n");
-    doubles = makeProgram(
-        "#version 410\nin vec2 place; in dvec4 value; out vec4 color;\n"
-        "void main() { gl_Position = vec4(place, 0, 1); color = vec4(abs(value)); }\n");
+    integers = makeProgram("#version 410\nin vec2 place; in ivec4 value; out vec4 color;\n"
+                           "void main() { gl_Position = vec4(place, 0, 1); color = vec4(abs(value)) / 100.0; }\n");
+    unsignedIntegers = makeProgram("#version 410\nin vec2 place; in uvec4 value; out vec4 color;\n"
+                                   "void main() { gl_Position = vec4(place, 0, 1); color = vec4(value) / 100.0; }\n");
+    doubles = makeProgram("#version 410\nin vec2 place; in dvec4 value; out vec4 color;\n"
+                          "void main() { gl_Position = vec4(place, 0, 1); color = vec4(abs(value)); }\n");
 }
 
 int cellIndex;
@@ -55,25 +51,42 @@ template <class Attribute> void quad(const Attribute& attribute) {
     glEnd();
 }
 
-template <class T> T level(int i, int k, double full) {
-    return static_cast<T>(full * ((i * 3 + k) % 5) / 5.0);
-}
+template <class T> T level(int i, int k, double full) { return static_cast<T>(full * ((i * 3 + k) % 5) / 5.0); }
 
-#define FLOAT_FORMS(type, letter, full)                                                            \
-    quad([&](int i) { glVertexAttrib1##letter(kAttribute, level<type>(i, frame, full)); });        \
-    quad([&](int i) { const type v[] = {level<type>(i, 1, full)}; glVertexAttrib1##letter##v(kAttribute, v); }); \
-    quad([&](int i) { glVertexAttrib2##letter(kAttribute, level<type>(i, 2, full), level<type>(i, frame, full)); }); \
-    quad([&](int i) { const type v[] = {level<type>(i, frame, full), level<type>(i, 3, full)}; glVertexAttrib2##letter##v(kAttribute, v); }); \
-    quad([&](int i) { glVertexAttrib3##letter(kAttribute, level<type>(i, 4, full), level<type>(i, frame, full), level<type>(i, 1, full)); }); \
-    quad([&](int i) { const type v[] = {level<type>(i, 1, full), level<type>(i, 3, full), level<type>(i, frame, full)}; glVertexAttrib3##letter##v(kAttribute, v); }); \
-    quad([&](int i) { glVertexAttrib4##letter(kAttribute, level<type>(i, frame, full), level<type>(i, 2, full), level<type>(i, 3, full), level<type>(i, 1, full)); }); \
-    quad([&](int i) { const type v[] = {level<type>(i, 2, full), level<type>(i, frame, full), level<type>(i, 0, full), level<type>(i, 1, full)}; glVertexAttrib4##letter##v(kAttribute, v); })
+#define FLOAT_FORMS(type, letter, full)                                                                                \
+    quad([&](int i) { glVertexAttrib1##letter(kAttribute, level<type>(i, frame, full)); });                            \
+    quad([&](int i) {                                                                                                  \
+        const type v[] = {level<type>(i, 1, full)};                                                                    \
+        glVertexAttrib1##letter##v(kAttribute, v);                                                                     \
+    });                                                                                                                \
+    quad([&](int i) { glVertexAttrib2##letter(kAttribute, level<type>(i, 2, full), level<type>(i, frame, full)); });   \
+    quad([&](int i) {                                                                                                  \
+        const type v[] = {level<type>(i, frame, full), level<type>(i, 3, full)};                                       \
+        glVertexAttrib2##letter##v(kAttribute, v);                                                                     \
+    });                                                                                                                \
+    quad([&](int i) {                                                                                                  \
+        glVertexAttrib3##letter(kAttribute, level<type>(i, 4, full), level<type>(i, frame, full),                      \
+                                level<type>(i, 1, full));                                                              \
+    });                                                                                                                \
+    quad([&](int i) {                                                                                                  \
+        const type v[] = {level<type>(i, 1, full), level<type>(i, 3, full), level<type>(i, frame, full)};              \
+        glVertexAttrib3##letter##v(kAttribute, v);                                                                     \
+    });                                                                                                                \
+    quad([&](int i) {                                                                                                  \
+        glVertexAttrib4##letter(kAttribute, level<type>(i, frame, full), level<type>(i, 2, full),                      \
+                                level<type>(i, 3, full), level<type>(i, 1, full));                                     \
+    });                                                                                                                \
+    quad([&](int i) {                                                                                                  \
+        const type v[] = {level<type>(i, 2, full), level<type>(i, frame, full), level<type>(i, 0, full),               \
+                          level<type>(i, 1, full)};                                                                    \
+        glVertexAttrib4##letter##v(kAttribute, v);                                                                     \
+    })
 
-#define VECTOR_FORM(type, name, full)                                                              \
-    quad([&](int i) {                                                                              \
-        const type v[] = {level<type>(i, frame, full), level<type>(i, 2, full),                    \
-                          level<type>(i, 1, full), level<type>(i, 3, full)};                       \
-        name(kAttribute, v);                                                                       \
+#define VECTOR_FORM(type, name, full)                                                                                  \
+    quad([&](int i) {                                                                                                  \
+        const type v[] = {level<type>(i, frame, full), level<type>(i, 2, full), level<type>(i, 1, full),               \
+                          level<type>(i, 3, full)};                                                                    \
+        name(kAttribute, v);                                                                                           \
     })
 
 void drawFloats(int frame) {
@@ -149,10 +162,7 @@ void showCurrentValue() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Compatibility, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.2F, 0.2F, 0.25F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

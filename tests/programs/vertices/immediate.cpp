@@ -46,51 +46,85 @@ void drawVertices(int frame) {
     using D = GLdouble;
     glColor3f(0.3F, 0.8F, 0.9F);
     triangle(0, [](int x, int y) { glVertex2d(x + 0.25, y); });
-    triangle(1, [](int x, int y) { const D v[] = {x + 0.5, D(y)}; glVertex2dv(v); });
+    triangle(1, [](int x, int y) {
+        const D v[] = {x + 0.5, D(y)};
+        glVertex2dv(v);
+    });
     triangle(2, [](int x, int y) { glVertex2f(F(x), F(y) + 0.5F); });
-    triangle(3, [](int x, int y) { const F v[] = {F(x), F(y)}; glVertex2fv(v); });
+    triangle(3, [](int x, int y) {
+        const F v[] = {F(x), F(y)};
+        glVertex2fv(v);
+    });
     triangle(4, [](int x, int y) { glVertex2i(x, y); });
-    triangle(5, [](int x, int y) { const GLint v[] = {x, y}; glVertex2iv(v); });
+    triangle(5, [](int x, int y) {
+        const GLint v[] = {x, y};
+        glVertex2iv(v);
+    });
     triangle(6, [](int x, int y) { glVertex2s(S(x), S(y)); });
-    triangle(7, [](int x, int y) { const S v[] = {S(x), S(y)}; glVertex2sv(v); });
+    triangle(7, [](int x, int y) {
+        const S v[] = {S(x), S(y)};
+        glVertex2sv(v);
+    });
     triangle(8, [](int x, int y) { glVertex3d(x, y, 0.5); });
-    triangle(9, [](int x, int y) { const D v[] = {D(x), D(y), 0.5}; glVertex3dv(v); });
+    triangle(9, [](int x, int y) {
+        const D v[] = {D(x), D(y), 0.5};
+        glVertex3dv(v);
+    });
     triangle(10, [](int x, int y) { glVertex3f(F(x), F(y), 0.1F); });
-    triangle(11, [](int x, int y) { const F v[] = {F(x), F(y), 0.2F}; glVertex3fv(v); });
+    triangle(11, [](int x, int y) {
+        const F v[] = {F(x), F(y), 0.2F};
+        glVertex3fv(v);
+    });
     triangle(12, [](int x, int y) { glVertex3i(x, y, 0); });
-    triangle(13, [](int x, int y) { const GLint v[] = {x, y, 0}; glVertex3iv(v); });
+    triangle(13, [](int x, int y) {
+        const GLint v[] = {x, y, 0};
+        glVertex3iv(v);
+    });
     triangle(14, [](int x, int y) { glVertex3s(S(x), S(y), 0); });
-    triangle(15, [](int x, int y) { const S v[] = {S(x), S(y), 0}; glVertex3sv(v); });
+    triangle(15, [](int x, int y) {
+        const S v[] = {S(x), S(y), 0};
+        glVertex3sv(v);
+    });
     triangle(16, [](int x, int y) { glVertex4d(2.0 * x, 2.0 * y, 0, 2); });
-    triangle(17, [](int x, int y) { const D v[] = {3.0 * x, 3.0 * y, 0, 3}; glVertex4dv(v); });
+    triangle(17, [](int x, int y) {
+        const D v[] = {3.0 * x, 3.0 * y, 0, 3};
+        glVertex4dv(v);
+    });
     triangle(18, [](int x, int y) { glVertex4f(F(x) / 2, F(y) / 2, 0, 0.5F); });
-    triangle(19, [](int x, int y) { const F v[] = {F(x), F(y), 0, 1}; glVertex4fv(v); });
+    triangle(19, [](int x, int y) {
+        const F v[] = {F(x), F(y), 0, 1};
+        glVertex4fv(v);
+    });
     triangle(20, [](int x, int y) { glVertex4i(2 * x, 2 * y, 0, 2); });
-    triangle(21, [](int x, int y) { const GLint v[] = {x, y, 0, 1}; glVertex4iv(v); });
+    triangle(21, [](int x, int y) {
+        const GLint v[] = {x, y, 0, 1};
+        glVertex4iv(v);
+    });
     triangle(22, [](int x, int y) { glVertex4s(S(x), S(y), 0, 1); });
-    triangle(23, [](int x, int y) { const S v[] = {S(x), S(y), 0, 1}; glVertex4sv(v); });
+    triangle(23, [](int x, int y) {
+        const S v[] = {S(x), S(y), 0, 1};
+        glVertex4sv(v);
+    });
 }
 
-template <class T> T part(int i, int k, double full) {
-    return static_cast<T>(full * ((i * 3 + k * 5) % 8) / 8.0);
-}
+template <class T> T part(int i, int k, double full) { return static_cast<T>(full * ((i * 3 + k * 5) % 8) / 8.0); }
 
-#define COLOR_FORMS(first, type, letter, full)                                                     \
-    quad(first, [&](int i) {                                                                       \
-        glColor3##letter(part<type>(i, frame, full), part<type>(i, 1, full), part<type>(i, 2, full)); \
-    });                                                                                            \
-    quad(first + 1, [&](int i) {                                                                   \
-        const type v[] = {part<type>(i, 3, full), part<type>(i, frame, full), part<type>(i, 4, full)}; \
-        glColor3##letter##v(v);                                                                    \
-    });                                                                                            \
-    quad(first + 2, [&](int i) {                                                                   \
-        glColor4##letter(part<type>(i, 5, full), part<type>(i, 6, full), part<type>(i, frame, full), \
-                         part<type>(i, 7, full));                                                  \
-    });                                                                                            \
-    quad(first + 3, [&](int i) {                                                                   \
-        const type v[] = {part<type>(i, frame, full), part<type>(i, 2, full), part<type>(i, 6, full), \
-                          part<type>(i, 4, full)};                                                 \
-        glColor4##letter##v(v);                                                                    \
+#define COLOR_FORMS(first, type, letter, full)                                                                         \
+    quad(first, [&](int i) {                                                                                           \
+        glColor3##letter(part<type>(i, frame, full), part<type>(i, 1, full), part<type>(i, 2, full));                  \
+    });                                                                                                                \
+    quad(first + 1, [&](int i) {                                                                                       \
+        const type v[] = {part<type>(i, 3, full), part<type>(i, frame, full), part<type>(i, 4, full)};                 \
+        glColor3##letter##v(v);                                                                                        \
+    });                                                                                                                \
+    quad(first + 2, [&](int i) {                                                                                       \
+        glColor4##letter(part<type>(i, 5, full), part<type>(i, 6, full), part<type>(i, frame, full),                   \
+                         part<type>(i, 7, full));                                                                      \
+    });                                                                                                                \
+    quad(first + 3, [&](int i) {                                                                                       \
+        const type v[] = {part<type>(i, frame, full), part<type>(i, 2, full), part<type>(i, 6, full),                  \
+                          part<type>(i, 4, full)};                                                                     \
+        glColor4##letter##v(v);                                                                                        \
     })
 
 void drawColors(int frame) {
@@ -104,14 +138,13 @@ void drawColors(int frame) {
     COLOR_FORMS(52, GLushort, us, 65535.0);
 }
 
-#define SECONDARY_FORMS(first, type, letter, full)                                                 \
-    quad(first, [&](int i) {                                                                       \
-        glSecondaryColor3##letter(                                                                 \
-            part<type>(i, frame, full), part<type>(i, 1, full), part<type>(i, 2, full));           \
-    });                                                                                            \
-    quad(first + 1, [&](int i) {                                                                   \
-        const type v[] = {part<type>(i, 3, full), part<type>(i, frame, full), part<type>(i, 4, full)}; \
-        glSecondaryColor3##letter##v(v);                                                           \
+#define SECONDARY_FORMS(first, type, letter, full)                                                                     \
+    quad(first, [&](int i) {                                                                                           \
+        glSecondaryColor3##letter(part<type>(i, frame, full), part<type>(i, 1, full), part<type>(i, 2, full));         \
+    });                                                                                                                \
+    quad(first + 1, [&](int i) {                                                                                       \
+        const type v[] = {part<type>(i, 3, full), part<type>(i, frame, full), part<type>(i, 4, full)};                 \
+        glSecondaryColor3##letter##v(v);                                                                               \
     })
 
 void drawSecondaryColors(int frame) {
@@ -136,15 +169,30 @@ void drawNormals(int frame) {
     glEnable(GL_LIGHT0);
     glEnable(GL_NORMALIZE);
     quad(72, [&](int i) { glNormal3b(GLbyte(i * 20), GLbyte(frame * 10), 60); });
-    quad(73, [&](int i) { const GLbyte v[] = {GLbyte(frame * 9), GLbyte(i * 12), 50}; glNormal3bv(v); });
+    quad(73, [&](int i) {
+        const GLbyte v[] = {GLbyte(frame * 9), GLbyte(i * 12), 50};
+        glNormal3bv(v);
+    });
     quad(74, [&](int i) { glNormal3d(i * 0.2, frame * 0.1, 1); });
-    quad(75, [&](int i) { const GLdouble v[] = {frame * 0.2, i * 0.1, 1}; glNormal3dv(v); });
+    quad(75, [&](int i) {
+        const GLdouble v[] = {frame * 0.2, i * 0.1, 1};
+        glNormal3dv(v);
+    });
     quad(76, [&](int i) { glNormal3f(float(i) * 0.1F, 0.5F, 1); });
-    quad(77, [&](int i) { const GLfloat v[] = {float(i) * -0.1F, float(frame) * 0.3F, 1}; glNormal3fv(v); });
+    quad(77, [&](int i) {
+        const GLfloat v[] = {float(i) * -0.1F, float(frame) * 0.3F, 1};
+        glNormal3fv(v);
+    });
     quad(78, [&](int i) { glNormal3i(i << 28, frame << 26, 1 << 29); });
-    quad(79, [&](int i) { const GLint v[] = {frame << 27, i << 28, 1 << 29}; glNormal3iv(v); });
+    quad(79, [&](int i) {
+        const GLint v[] = {frame << 27, i << 28, 1 << 29};
+        glNormal3iv(v);
+    });
     quad(80, [&](int i) { glNormal3s(GLshort(i * 5000), GLshort(frame * 900), 12000); });
-    quad(81, [&](int i) { const GLshort v[] = {GLshort(frame * 3000), GLshort(i * 5000), 12000}; glNormal3sv(v); });
+    quad(81, [&](int i) {
+        const GLshort v[] = {GLshort(frame * 3000), GLshort(i * 5000), 12000};
+        glNormal3sv(v);
+    });
     // Materials between glBegin and glEnd.
     quad(82, [&](int i) {
         const GLfloat diffuse[] = {float(i) * 0.25F, 0.8F, float(frame) * 0.1F, 1};
@@ -164,25 +212,49 @@ void drawNormals(int frame) {
     glDisable(GL_LIGHTING);
 }
 
-#define TEXCOORD_FORMS(type, letter)                                                               \
-    quad(cell++, [&](int i) { glTexCoord1##letter(type(s(i))); });                                 \
-    quad(cell++, [&](int i) { const type v[] = {type(s(i))}; glTexCoord1##letter##v(v); });        \
-    quad(cell++, [&](int i) { glTexCoord2##letter(type(s(i)), type(t(i))); });                     \
-    quad(cell++, [&](int i) { const type v[] = {type(s(i)), type(t(i))}; glTexCoord2##letter##v(v); }); \
-    quad(cell++, [&](int i) { glTexCoord3##letter(type(s(i)), type(t(i)), 0); });                  \
-    quad(cell++, [&](int i) { const type v[] = {type(t(i)), type(s(i)), 0}; glTexCoord3##letter##v(v); }); \
-    quad(cell++, [&](int i) { glTexCoord4##letter(type(s(i)), type(t(i)), 0, 2); });               \
-    quad(cell++, [&](int i) { const type v[] = {type(s(i)), type(t(i)), 0, 1}; glTexCoord4##letter##v(v); })
+#define TEXCOORD_FORMS(type, letter)                                                                                   \
+    quad(cell++, [&](int i) { glTexCoord1##letter(type(s(i))); });                                                     \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(s(i))};                                                                                 \
+        glTexCoord1##letter##v(v);                                                                                     \
+    });                                                                                                                \
+    quad(cell++, [&](int i) { glTexCoord2##letter(type(s(i)), type(t(i))); });                                         \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(s(i)), type(t(i))};                                                                     \
+        glTexCoord2##letter##v(v);                                                                                     \
+    });                                                                                                                \
+    quad(cell++, [&](int i) { glTexCoord3##letter(type(s(i)), type(t(i)), 0); });                                      \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(t(i)), type(s(i)), 0};                                                                  \
+        glTexCoord3##letter##v(v);                                                                                     \
+    });                                                                                                                \
+    quad(cell++, [&](int i) { glTexCoord4##letter(type(s(i)), type(t(i)), 0, 2); });                                   \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(s(i)), type(t(i)), 0, 1};                                                               \
+        glTexCoord4##letter##v(v);                                                                                     \
+    })
 
-#define MULTITEX_FORMS(type, letter)                                                               \
-    quad(cell++, [&](int i) { glMultiTexCoord1##letter(GL_TEXTURE1, type(s(i))); });               \
-    quad(cell++, [&](int i) { const type v[] = {type(t(i))}; glMultiTexCoord1##letter##v(GL_TEXTURE1, v); }); \
-    quad(cell++, [&](int i) { glMultiTexCoord2##letter(GL_TEXTURE1, type(s(i)), type(t(i))); });   \
-    quad(cell++, [&](int i) { const type v[] = {type(s(i)), type(t(i))}; glMultiTexCoord2##letter##v(GL_TEXTURE1, v); }); \
-    quad(cell++, [&](int i) { glMultiTexCoord3##letter(GL_TEXTURE1, type(s(i)), type(t(i)), 0); }); \
-    quad(cell++, [&](int i) { const type v[] = {type(t(i)), type(s(i)), 0}; glMultiTexCoord3##letter##v(GL_TEXTURE1, v); }); \
-    quad(cell++, [&](int i) { glMultiTexCoord4##letter(GL_TEXTURE1, type(s(i)), type(t(i)), 0, 1); }); \
-    quad(cell++, [&](int i) { const type v[] = {type(s(i)), type(t(i)), 0, 2}; glMultiTexCoord4##letter##v(GL_TEXTURE1, v); })
+#define MULTITEX_FORMS(type, letter)                                                                                   \
+    quad(cell++, [&](int i) { glMultiTexCoord1##letter(GL_TEXTURE1, type(s(i))); });                                   \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(t(i))};                                                                                 \
+        glMultiTexCoord1##letter##v(GL_TEXTURE1, v);                                                                   \
+    });                                                                                                                \
+    quad(cell++, [&](int i) { glMultiTexCoord2##letter(GL_TEXTURE1, type(s(i)), type(t(i))); });                       \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(s(i)), type(t(i))};                                                                     \
+        glMultiTexCoord2##letter##v(GL_TEXTURE1, v);                                                                   \
+    });                                                                                                                \
+    quad(cell++, [&](int i) { glMultiTexCoord3##letter(GL_TEXTURE1, type(s(i)), type(t(i)), 0); });                    \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(t(i)), type(s(i)), 0};                                                                  \
+        glMultiTexCoord3##letter##v(GL_TEXTURE1, v);                                                                   \
+    });                                                                                                                \
+    quad(cell++, [&](int i) { glMultiTexCoord4##letter(GL_TEXTURE1, type(s(i)), type(t(i)), 0, 1); });                 \
+    quad(cell++, [&](int i) {                                                                                          \
+        const type v[] = {type(s(i)), type(t(i)), 0, 2};                                                               \
+        glMultiTexCoord4##letter##v(GL_TEXTURE1, v);                                                                   \
+    })
 
 void drawTextureCoordinates(int frame) {
     const auto s = [&](int i) { return (i == 1 || i == 2) ? 2 + frame : 0; };
@@ -215,9 +287,15 @@ void drawFogCoordinates(int frame) {
     glEnable(GL_FOG);
     glColor3f(0, 0.2F, 0.5F);
     quad(64, [&](int i) { glFogCoordf(float(i * 2 + frame)); });
-    quad(65, [&](int i) { const GLfloat v = float(8 - i * 2); glFogCoordfv(&v); });
+    quad(65, [&](int i) {
+        const GLfloat v = float(8 - i * 2);
+        glFogCoordfv(&v);
+    });
     quad(66, [&](int i) { glFogCoordd(i + frame * 0.5); });
-    quad(67, [&](int i) { const GLdouble v = i * 1.5; glFogCoorddv(&v); });
+    quad(67, [&](int i) {
+        const GLdouble v = i * 1.5;
+        glFogCoorddv(&v);
+    });
     glDisable(GL_FOG);
 }
 
@@ -265,8 +343,8 @@ void drawOthers(int frame) {
 
 // Draws all primitive types with more than the smallest number of vertices.
 void drawPrimitives(int frame) {
-    const GLenum kinds[] = {GL_POINTS, GL_LINES, GL_LINE_LOOP, GL_LINE_STRIP, GL_TRIANGLES,
-                            GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_QUADS, GL_QUAD_STRIP, GL_POLYGON};
+    const GLenum kinds[] = {GL_POINTS,         GL_LINES,        GL_LINE_LOOP, GL_LINE_STRIP, GL_TRIANGLES,
+                            GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_QUADS,     GL_QUAD_STRIP, GL_POLYGON};
     Sequence numbers(unsigned(frame) + 7);
     for (int k = 0; k < 10; ++k) {
         const Cell cell = cellOf(80 + k);
@@ -302,10 +380,7 @@ void makeTexture() {
 
 int main(int argc, char** argv) {
     return runInGlxWindow(
-        argc,
-        argv,
-        {},
-        [](Window&) { makeTexture(); },
+        argc, argv, {}, [](Window&) { makeTexture(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.1F, 0.15F, 1);
             glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

@@ -178,7 +178,8 @@ void otherWriters(const Cell& cell, OtherThread& other, bool byThread) {
     const GLsizeiptr at = stream.take(sizeof cell);
     if (byThread) {
         other.write(stream.memory + at, &cell, sizeof cell);
-    } else if (::write(pipeEnds[1], &cell, sizeof cell) != sizeof cell || ::read(pipeEnds[0], stream.memory + at, sizeof cell) != sizeof cell) {
+    } else if (::write(pipeEnds[1], &cell, sizeof cell) != sizeof cell ||
+               ::read(pipeEnds[0], stream.memory + at, sizeof cell) != sizeof cell) {
         fail("a system call can't write into the mapping");
     }
     bind(stream, Colors);
@@ -239,13 +240,15 @@ void counterFromZero(const Cell& cell, int round) {
 }
 
 void makeProgramsAndState() {
-    program = buildProgram({{GL_VERTEX_SHADER, R"(#version 450
+    program = buildProgram(
+        {{GL_VERTEX_SHADER, R"(#version 450
 layout(location=0) in vec2 place; layout(location=1) in vec3 color; layout(location=0) uniform int source;
 layout(std140, binding=0) uniform Block { vec4 tint; }; layout(std430, binding=1) buffer Count { uint count; };
 layout(binding=0) uniform sampler2D texel; flat out vec3 shade;
 void main() { gl_Position = vec4(place, 0, 1); shade = color; if (source == 1) shade = tint.rgb;
 if (source == 2) shade = texelFetch(texel, ivec2(0), 0).rgb; if (source == 3) shade = vec3(float(count & 63u) / 63.0, color.gb); })"},
-                            {GL_FRAGMENT_SHADER, "#version 450\nflat in vec3 shade; out vec4 result; void main() { result = vec4(shade, 1); }\n"}});
+         {GL_FRAGMENT_SHADER,
+          "#version 450\nflat in vec3 shade; out vec4 result; void main() { result = vec4(shade, 1); }\n"}});
     compute = buildProgram({{GL_COMPUTE_SHADER, R"(#version 450
 layout(local_size_x=8) in; layout(location=0) uniform uint round; layout(std430, binding=1) buffer Count { uint count; };
 layout(std430, binding=2) buffer Results { uint values[]; };
@@ -304,10 +307,7 @@ int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 5};
     OtherThread other;
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [&other](Window&, int frame) {
             glClearColor(0.1F, 0.12F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

@@ -24,8 +24,7 @@ GLfloat* mapPersistently(GLuint buffer, GLsizeiptr size, GLbitfield extra) {
     const GLbitfield access = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT;
     glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
     glBufferStorage(GL_COPY_WRITE_BUFFER, size, nullptr, access | coherency);
-    auto* memory = static_cast<GLfloat*>(
-        glMapBufferRange(GL_COPY_WRITE_BUFFER, 0, size, access | extra));
+    auto* memory = static_cast<GLfloat*>(glMapBufferRange(GL_COPY_WRITE_BUFFER, 0, size, access | extra));
     if (memory == nullptr) {
         fail("no persistent mapping");
     }
@@ -108,17 +107,15 @@ void drawTexelQuad() {
 }
 
 void setUp() {
-    program = buildProgram(
-        {{GL_VERTEX_SHADER,
-          "#version 430\nlayout(location=0) in vec2 place; out vec2 where;\n"
-          "void main() { where = place; gl_Position = vec4(place, 0, 1); }\n"},
-         {GL_FRAGMENT_SHADER,
-          "#version 430\nin vec2 where; layout(location=1) uniform int fromTexels;\n"
-          "layout(binding=2) uniform samplerBuffer texels; out vec4 result;\n"
-          "layout(std140, binding=1) uniform Block { vec4 tint; };\n"
-          "void main() { result = tint * (0.6 + 0.4 * where.x);\n"
-          "if (fromTexels != 0) { ivec2 cell = ivec2((where + vec2(0.9)) * 8.0);\n"
-          "result = texelFetch(texels, (cell.y * 4 + cell.x) % 16); } }\n"}});
+    program =
+        buildProgram({{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) in vec2 place; out vec2 where;\n"
+                                         "void main() { where = place; gl_Position = vec4(place, 0, 1); }\n"},
+                      {GL_FRAGMENT_SHADER, "#version 430\nin vec2 where; layout(location=1) uniform int fromTexels;\n"
+                                           "layout(binding=2) uniform samplerBuffer texels; out vec4 result;\n"
+                                           "layout(std140, binding=1) uniform Block { vec4 tint; };\n"
+                                           "void main() { result = tint * (0.6 + 0.4 * where.x);\n"
+                                           "if (fromTexels != 0) { ivec2 cell = ivec2((where + vec2(0.9)) * 8.0);\n"
+                                           "result = texelFetch(texels, (cell.y * 4 + cell.x) % 16); } }\n"}});
     glGenVertexArrays(1, &vertexArray);
     glBindVertexArray(vertexArray);
     glEnableVertexAttribArray(0);
@@ -143,10 +140,7 @@ void setUp() {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 4};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.12F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

@@ -21,7 +21,8 @@ bool hasExtension() {
     GLint count = 0;
     glGetIntegerv(GL_NUM_EXTENSIONS, &count);
     for (GLint i = 0; i < count; ++i) {
-        if (std::strcmp(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, GLuint(i))), "GL_AMD_pinned_memory") == 0) {
+        if (std::strcmp(reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, GLuint(i))),
+                        "GL_AMD_pinned_memory") == 0) {
             return true;
         }
     }
@@ -34,9 +35,11 @@ void setUp() {
     }
     memory = static_cast<GLubyte*>(std::aligned_alloc(4096, kBytes));
     std::memset(memory, 0, kBytes);
-    program = buildProgram({{GL_VERTEX_SHADER, "#version 430\nlayout(location=0) in vec2 place; layout(location=0) uniform vec4 tint; out vec4 shade;\n"
-                                               "void main() { shade = tint; gl_Position = vec4(place, 0, 1); }\n"},
-                            {GL_FRAGMENT_SHADER, "#version 430\nin vec4 shade; out vec4 result; void main() { result = shade; }\n"}});
+    program = buildProgram(
+        {{GL_VERTEX_SHADER,
+          "#version 430\nlayout(location=0) in vec2 place; layout(location=0) uniform vec4 tint; out vec4 shade;\n"
+          "void main() { shade = tint; gl_Position = vec4(place, 0, 1); }\n"},
+         {GL_FRAGMENT_SHADER, "#version 430\nin vec4 shade; out vec4 result; void main() { result = shade; }\n"}});
     compute = buildProgram({{GL_COMPUTE_SHADER, R"(#version 430
 layout(local_size_x=8) in; layout(std430, binding=0) buffer All { uint values[]; }; layout(location=0) uniform uint frame;
 void main() { uint i = gl_LocalInvocationIndex; values[i] = values[i] * 3u + i * 1001u + frame; })"}});
@@ -97,10 +100,7 @@ void drawFrame(int frame) {
 int main(int argc, char** argv) {
     const WindowSpec spec = {Profile::Core, 4, 3};
     return runInGlxWindow(
-        argc,
-        argv,
-        spec,
-        [](Window&) { setUp(); },
+        argc, argv, spec, [](Window&) { setUp(); },
         [](Window&, int frame) {
             glClearColor(0.1F, 0.12F, 0.2F, 1);
             glClear(GL_COLOR_BUFFER_BIT);

@@ -29,7 +29,9 @@ Choice choose(Display* display, bool depth, VisualID wanted = 0) {
     GLXFBConfig* all = glXGetFBConfigs(display, DefaultScreen(display), &count);
     for (int i = 0; i < count; ++i) {
         const auto has = [&](int name) { return attribute(display, all[i], name); };
-        if (!(has(GLX_DRAWABLE_TYPE) & GLX_WINDOW_BIT) || !has(GLX_DOUBLEBUFFER) || has(GLX_RED_SIZE) != 8 || has(GLX_SAMPLES) || has(GLX_ACCUM_RED_SIZE)) continue;
+        if (!(has(GLX_DRAWABLE_TYPE) & GLX_WINDOW_BIT) || !has(GLX_DOUBLEBUFFER) || has(GLX_RED_SIZE) != 8 ||
+            has(GLX_SAMPLES) || has(GLX_ACCUM_RED_SIZE))
+            continue;
         if ((has(GLX_DEPTH_SIZE) > 0) != depth) continue;
         XVisualInfo* visual = glXGetVisualFromFBConfig(display, all[i]);
         if (visual && visual->depth == 24 && (wanted == 0 || visual->visualid == wanted)) return {all[i], visual};
@@ -51,8 +53,9 @@ struct Connection {
         const ::Window root = DefaultRootWindow(display);
         XSetWindowAttributes attributes = {};
         attributes.colormap = XCreateColormap(display, root, deep.visual->visual, AllocNone);
-        const ::Window made = XCreateWindow(display, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0, deep.visual->depth,
-                                            InputOutput, deep.visual->visual, CWColormap | CWBorderPixel, &attributes);
+        const ::Window made = XCreateWindow(display, root, 0, 0, static_cast<unsigned>(width),
+                                            static_cast<unsigned>(height), 0, deep.visual->depth, InputOutput,
+                                            deep.visual->visual, CWColormap | CWBorderPixel, &attributes);
         XMapWindow(display, made);
         XSync(display, False);
         return made;
@@ -117,7 +120,7 @@ int main(int argc, char** argv) {
         showFrames(on, window, real, frames, 5); // it was released: with depth from now on
         const GLXContext late = on.context(on.flat);
         showFrames(on, window, late, 1, 6); // kept bound with depth
-        XCloseDisplay(on.display); // with all its objects
+        XCloseDisplay(on.display);          // with all its objects
         if (glXGetCurrentContext()) fail("a context of a closed display is current");
     }
     const Connection again;

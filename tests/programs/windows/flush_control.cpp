@@ -31,10 +31,16 @@ enum Release { Unsaid, Flush, Keep };
 GLXContext makeContext(GLXContext share, Release release) {
     static const auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(
         glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
-    const int attributes[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 3,
-                              GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_CORE_PROFILE_BIT_ARB,
+    const int attributes[] = {GLX_CONTEXT_MAJOR_VERSION_ARB,
+                              3,
+                              GLX_CONTEXT_MINOR_VERSION_ARB,
+                              3,
+                              GLX_CONTEXT_PROFILE_MASK_ARB,
+                              GLX_CONTEXT_CORE_PROFILE_BIT_ARB,
                               release == Unsaid ? 0 : GLX_CONTEXT_RELEASE_BEHAVIOR_ARB,
-                              release == Keep ? GLX_CONTEXT_RELEASE_BEHAVIOR_NONE_ARB : GLX_CONTEXT_RELEASE_BEHAVIOR_FLUSH_ARB, None};
+                              release == Keep ? GLX_CONTEXT_RELEASE_BEHAVIOR_NONE_ARB
+                                              : GLX_CONTEXT_RELEASE_BEHAVIOR_FLUSH_ARB,
+                              None};
     const GLXContext made = create(display, config, share, True, attributes);
     if (made == nullptr) {
         fail("no core context whose release behaviour can be chosen");
@@ -113,7 +119,8 @@ struct Looks {
     GLint behavior = 0;
 };
 
-Looks look(GLXDrawable window, GLXContext drawer, GLXContext other, GLXDrawable aside, GLXContext watcher, bool toNone) {
+Looks look(GLXDrawable window, GLXContext drawer, GLXContext other, GLXDrawable aside, GLXContext watcher,
+           bool toNone) {
     Looks looks;
     use(window, drawer);
     glGetIntegerv(GL_CONTEXT_RELEASE_BEHAVIOR, &looks.behavior);
@@ -163,10 +170,12 @@ int main(int argc, char** argv) {
         int row = 0;
         for (const Release release : {Keep, Flush, Unsaid}) {
             for (const bool toNone : {false, true}) {
-                const GLXContext drawer = makeContext(shown, release), other = makeContext(shown, Flush), watcher = makeContext(shown, Unsaid);
+                const GLXContext drawer = makeContext(shown, release), other = makeContext(shown, Flush),
+                                 watcher = makeContext(shown, Unsaid);
                 const Looks looks = look(window.id(), drawer, other, aside.id(), watcher, toNone);
                 use(window.id(), shown);
-                for (const std::uint32_t value : {looks.held, looks.givenUp, looks.taken, looks.flushed, std::uint32_t(looks.behavior)}) {
+                for (const std::uint32_t value :
+                     {looks.held, looks.givenUp, looks.taken, looks.flushed, std::uint32_t(looks.behavior)}) {
                     showBits(row++, value);
                 }
                 for (const GLXContext context : {drawer, other, watcher}) {

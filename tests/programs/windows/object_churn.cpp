@@ -67,7 +67,8 @@ void shadedTriangle(int frame) {
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
     glBufferData(GL_ARRAY_BUFFER, 65536, nullptr, GL_STREAM_DRAW);
     glBufferSubData(GL_ARRAY_BUFFER, 0, sizeof corners, corners);
-    if (void* mapped = glMapBufferRange(GL_ARRAY_BUFFER, 1024, 256, GL_MAP_WRITE_BIT)) static_cast<GLfloat*>(mapped)[0] = 1;
+    if (void* mapped = glMapBufferRange(GL_ARRAY_BUFFER, 1024, 256, GL_MAP_WRITE_BIT))
+        static_cast<GLfloat*>(mapped)[0] = 1;
     glUnmapBuffer(GL_ARRAY_BUFFER);
     glEnableVertexAttribArray(0);
     glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
@@ -101,7 +102,8 @@ void framebufferBlit(int frame, int width, int height) {
     glClearColor(0.1F * float(frame % 10), 0.4F, 0.8F, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glBlitFramebuffer(0, 0, 32, 32, width * 3 / 4, height * 3 / 4, width * 3 / 4 + 32, height * 3 / 4 + 32, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitFramebuffer(0, 0, 32, 32, width * 3 / 4, height * 3 / 4, width * 3 / 4 + 32, height * 3 / 4 + 32,
+                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glDeleteRenderbuffers(2, renderbuffers);
     glDeleteFramebuffers(1, &framebuffer);

@@ -24,7 +24,17 @@ struct Config {
 
 // Chooses pixmaps with the depth that the picture needs: 32 bits with alpha.
 Config chooseConfig(int attribute, int depth) {
-    const int attributes[] = {GLX_DRAWABLE_TYPE, GLX_PIXMAP_BIT | GLX_WINDOW_BIT, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, attribute, True, None};
+    const int attributes[] = {GLX_DRAWABLE_TYPE,
+                              GLX_PIXMAP_BIT | GLX_WINDOW_BIT,
+                              GLX_RED_SIZE,
+                              8,
+                              GLX_GREEN_SIZE,
+                              8,
+                              GLX_BLUE_SIZE,
+                              8,
+                              attribute,
+                              True,
+                              None};
     int count = 0;
     GLXFBConfig* found = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
     for (int i = 0; i < count; ++i) {
@@ -50,10 +60,12 @@ struct Source {
 
 Source makeSource(GLenum target, bool alpha) {
     Source s = {};
-    const Config config = chooseConfig(alpha ? GLX_BIND_TO_TEXTURE_RGBA_EXT : GLX_BIND_TO_TEXTURE_RGB_EXT, alpha ? 32 : 24);
+    const Config config =
+        chooseConfig(alpha ? GLX_BIND_TO_TEXTURE_RGBA_EXT : GLX_BIND_TO_TEXTURE_RGB_EXT, alpha ? 32 : 24);
     s.pixmap = XCreatePixmap(display, DefaultRootWindow(display), kWidth, kHeight, unsigned(config.depth));
-    const int attributes[] = {GLX_TEXTURE_TARGET_EXT, target == GL_TEXTURE_2D ? GLX_TEXTURE_2D_EXT : GLX_TEXTURE_RECTANGLE_EXT,
-                              GLX_TEXTURE_FORMAT_EXT, alpha ? GLX_TEXTURE_FORMAT_RGBA_EXT : GLX_TEXTURE_FORMAT_RGB_EXT, None};
+    const int attributes[] = {
+        GLX_TEXTURE_TARGET_EXT, target == GL_TEXTURE_2D ? GLX_TEXTURE_2D_EXT : GLX_TEXTURE_RECTANGLE_EXT,
+        GLX_TEXTURE_FORMAT_EXT, alpha ? GLX_TEXTURE_FORMAT_RGBA_EXT : GLX_TEXTURE_FORMAT_RGB_EXT, None};
     s.drawable = glXCreatePixmap(display, config.handle, s.pixmap, attributes);
     s.target = target;
     int inverted = 0;
@@ -69,7 +81,9 @@ Source makeSource(GLenum target, bool alpha) {
 void drawByX(const Source& s, int frame) {
     const GC gc = XCreateGC(display, s.pixmap, 0, nullptr);
     for (int i = 0; i < 9; ++i) {
-        XSetForeground(display, gc, 0xff000000U | unsigned(i * 0x1b2d3f + frame * 0x102030 + (s.target == GL_TEXTURE_2D ? 0 : 0x55)));
+        XSetForeground(display, gc,
+                       0xff000000U |
+                           unsigned(i * 0x1b2d3f + frame * 0x102030 + (s.target == GL_TEXTURE_2D ? 0 : 0x55)));
         if (i == 0) {
             XFillRectangle(display, s.pixmap, gc, 0, 0, kWidth, kHeight);
         } else {
@@ -100,12 +114,15 @@ int main(int argc, char** argv) {
     display = openDisplayOnce();
     const auto window = openGlxWindow({}, options.width, options.height);
     window->makeCurrent();
-    bindTexImage = reinterpret_cast<PFNGLXBINDTEXIMAGEEXTPROC>(glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXBindTexImageEXT")));
-    releaseTexImage = reinterpret_cast<PFNGLXRELEASETEXIMAGEEXTPROC>(glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXReleaseTexImageEXT")));
+    bindTexImage = reinterpret_cast<PFNGLXBINDTEXIMAGEEXTPROC>(
+        glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXBindTexImageEXT")));
+    releaseTexImage = reinterpret_cast<PFNGLXRELEASETEXIMAGEEXTPROC>(
+        glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXReleaseTexImageEXT")));
     if (bindTexImage == nullptr || releaseTexImage == nullptr) {
         fail("no GLX_EXT_texture_from_pixmap");
     }
-    const Source sources[] = {makeSource(GL_TEXTURE_2D, false), makeSource(GL_TEXTURE_RECTANGLE, false), makeSource(GL_TEXTURE_2D, true)};
+    const Source sources[] = {makeSource(GL_TEXTURE_2D, false), makeSource(GL_TEXTURE_RECTANGLE, false),
+                              makeSource(GL_TEXTURE_2D, true)};
     for (int frame = 0; frame < options.frames; ++frame) {
         glClearColor(0.1F, 0.2F, 0.1F * float(frame % 8), 1);
         glClear(GL_COLOR_BUFFER_BIT);

@@ -174,7 +174,8 @@ void tryKind(const Kind& kind) {
 
 std::string nameOf(const char* system, int red, int alpha, int samples, int depth) {
     char name[100];
-    std::snprintf(name, sizeof name, "%s: %d bits per channel, %d of alpha, %d samples, depth %d", system, red, alpha, samples, depth);
+    std::snprintf(name, sizeof name, "%s: %d bits per channel, %d of alpha, %d samples, depth %d", system, red, alpha,
+                  samples, depth);
     return name;
 }
 
@@ -192,13 +193,23 @@ void tryGlx() {
         };
         const int samples = ask(GLX_SAMPLES);
         XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
-        if (visual == nullptr || !ask(GLX_DOUBLEBUFFER) || ask(GLX_DEPTH_SIZE) != 24 || ask(GLX_STENCIL_SIZE) != 8 || ask(GLX_ACCUM_RED_SIZE) != 0) {
+        if (visual == nullptr || !ask(GLX_DOUBLEBUFFER) || ask(GLX_DEPTH_SIZE) != 24 || ask(GLX_STENCIL_SIZE) != 8 ||
+            ask(GLX_ACCUM_RED_SIZE) != 0) {
             continue;
         }
         if (samples != 0 && (samples != 4 || ask(GLX_ALPHA_SIZE) == 0)) {
             continue;
         }
-        Kind kind{nameOf("GLX", ask(GLX_RED_SIZE), ask(GLX_ALPHA_SIZE), samples, visual->depth), *visual, ask(GLX_ALPHA_SIZE), samples, true, false, true, {}, {}, {}};
+        Kind kind{nameOf("GLX", ask(GLX_RED_SIZE), ask(GLX_ALPHA_SIZE), samples, visual->depth),
+                  *visual,
+                  ask(GLX_ALPHA_SIZE),
+                  samples,
+                  true,
+                  false,
+                  true,
+                  {},
+                  {},
+                  {}};
         if (!tried.insert(kind.name).second) {
             continue;
         }
@@ -232,7 +243,8 @@ void tryEgl(const EglApi& api) {
     if (!eglInitialize(egl, nullptr, nullptr) || !eglBindAPI(api.api)) {
         fail("no EGL");
     }
-    const EGLint wishes[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, api.renderable, EGL_DEPTH_SIZE, 24, EGL_NONE};
+    const EGLint wishes[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, api.renderable, EGL_DEPTH_SIZE, 24,
+                             EGL_NONE};
     EGLConfig configs[200];
     EGLint count = 0;
     eglChooseConfig(egl, wishes, configs, 200, &count);
@@ -250,7 +262,16 @@ void tryEgl(const EglApi& api) {
         if (visual == nullptr || ask(EGL_SAMPLES) != 0) {
             continue;
         }
-        Kind kind{nameOf(api.name, ask(EGL_RED_SIZE), ask(EGL_ALPHA_SIZE), 0, visual->depth), *visual, ask(EGL_ALPHA_SIZE), 0, api.api == EGL_OPENGL_API, api.major == 3, false, {}, {}, {}};
+        Kind kind{nameOf(api.name, ask(EGL_RED_SIZE), ask(EGL_ALPHA_SIZE), 0, visual->depth),
+                  *visual,
+                  ask(EGL_ALPHA_SIZE),
+                  0,
+                  api.api == EGL_OPENGL_API,
+                  api.major == 3,
+                  false,
+                  {},
+                  {},
+                  {}};
         kind.visual.bits_per_rgb = ask(EGL_RED_SIZE);
         if (!tried.insert(kind.name).second) {
             continue;

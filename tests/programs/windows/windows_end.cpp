@@ -35,8 +35,9 @@ XVisualInfo* visualOf(Display* display) {
     const XVisualInfo* visual = visualOf(display);
     XSetWindowAttributes attributes = {};
     attributes.colormap = XCreateColormap(display, DefaultRootWindow(display), visual->visual, AllocNone);
-    const ::Window made = XCreateWindow(display, parent, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0, visual->depth, InputOutput,
-                                        visual->visual, CWColormap | CWBorderPixel, &attributes);
+    const ::Window made =
+        XCreateWindow(display, parent, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0,
+                      visual->depth, InputOutput, visual->visual, CWColormap | CWBorderPixel, &attributes);
     XMapWindow(display, made);
     XSync(display, False);
     return made;
@@ -69,10 +70,14 @@ int main(int argc, char** argv) {
         showFrames(maker, large, glXCreateContext(maker, visualOf(maker), nullptr, True), options.frames, 3);
         return 0;
     }
-    if (way == "parent") XDestroyWindow(display, parent);
-    else if (way == "subwindows") XDestroySubwindows(display, parent);
-    else if (way == "kill") XKillClient(display, large);
-    else XCloseDisplay(maker);
+    if (way == "parent")
+        XDestroyWindow(display, parent);
+    else if (way == "subwindows")
+        XDestroySubwindows(display, parent);
+    else if (way == "kill")
+        XKillClient(display, large);
+    else
+        XCloseDisplay(maker);
     XSync(display, False);
     showFrames(display, small, context, options.frames, 2);
     return 0;

@@ -83,7 +83,8 @@ void show(const Drawn& drawn, int x) {
 int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     display = openDisplayOnce();
-    int attributes[] = {GLX_RGBA, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_DEPTH_SIZE, 16, GLX_DOUBLEBUFFER, None};
+    int attributes[] = {GLX_RGBA, GLX_RED_SIZE,   8,  GLX_GREEN_SIZE,   8,   GLX_BLUE_SIZE,
+                        8,        GLX_DEPTH_SIZE, 16, GLX_DOUBLEBUFFER, None};
     visual = glXChooseVisual(display, DefaultScreen(display), attributes);
     require(visual, "a visual with two buffers");
     const XWindow window(*visual, 0, 0, options.width, options.height);
@@ -94,7 +95,8 @@ int main(int argc, char** argv) {
     for (int frame = 0; frame < options.frames; ++frame) {
         const Pixmap second = XCreatePixmap(display, window.id(), kSize, kSize, unsigned(visual->depth));
         const GLXPixmap fresh = glXCreateGLXPixmap(display, visual, second);
-        const Drawn drawn[] = {drawInto(pixmap, kept, unsigned(frame) + 3), drawInto(second, fresh, unsigned(frame) + 70)};
+        const Drawn drawn[] = {drawInto(pixmap, kept, unsigned(frame) + 3),
+                               drawInto(second, fresh, unsigned(frame) + 70)};
         require(glXMakeCurrent(display, window.id(), context), "the window");
         glViewport(0, 0, options.width, options.height);
         glClearColor(0.1F, 0.2F, 0.1F * float(frame % 4), 1);

@@ -30,7 +30,8 @@ TEST(Announcement, truncatesLongTexts) {
 
 TEST(Announcement, rejectsTruncatedAndLongerDatagrams) {
     auto bytes = encode(example());
-    for (size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(decodeAnnouncement(std::span(bytes).first(size))) << size;
+    for (size_t size = 0; size < bytes.size(); ++size)
+        EXPECT_FALSE(decodeAnnouncement(std::span(bytes).first(size))) << size;
     bytes.push_back(std::byte{0});
     EXPECT_FALSE(decodeAnnouncement(bytes));
 }

@@ -54,7 +54,8 @@ TEST(Announcer, limitsItsRateUnderManyQueries) {
     told.run(10'000 * kMs, kMs);
     EXPECT_LE(told.saidNs.size(), 51u);
     EXPECT_GE(told.saidNs.size(), 35u);
-    for (size_t i = 1; i < told.saidNs.size(); ++i) EXPECT_GE(told.saidNs[i] - told.saidNs[i - 1], Announcer::kMinBetweenNs);
+    for (size_t i = 1; i < told.saidNs.size(); ++i)
+        EXPECT_GE(told.saidNs[i] - told.saidNs[i - 1], Announcer::kMinBetweenNs);
 }
 
 TEST(Announcer, ignoresAnnouncementsOfOthers) {

@@ -20,7 +20,8 @@ Announcement self(const std::string& name) {
 }
 
 bool has(const std::vector<FoundNode>& nodes, const Announcement& a) {
-    return std::ranges::any_of(nodes, [&](const FoundNode& n) { return n.uuid == a.uuid && n.name == a.name && n.port == a.port; });
+    return std::ranges::any_of(
+        nodes, [&](const FoundNode& n) { return n.uuid == a.uuid && n.name == a.name && n.port == a.port; });
 }
 
 TEST(Discovery, findsANodeAtOnceAndDropsItAtOnce) {

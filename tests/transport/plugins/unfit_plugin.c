@@ -14,6 +14,7 @@
 const struct mural_transport_plugin* UNFIT_ENTRY(void);
 
 const struct mural_transport_plugin* UNFIT_ENTRY(void) {
-    static const struct mural_transport_plugin table = {.version = UNFIT_VERSION, .size_bytes = UNFIT_SIZE_BYTES, .scheme = UNFIT_SCHEME};
+    static const struct mural_transport_plugin table = {
+        .version = UNFIT_VERSION, .size_bytes = UNFIT_SIZE_BYTES, .scheme = UNFIT_SCHEME};
     return &table;
 }

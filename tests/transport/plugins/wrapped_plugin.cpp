@@ -15,7 +15,9 @@ private:
     std::unique_ptr<Listener> inner_;
 };
 
-Result<std::unique_ptr<Connection>> connectWrapped(const ConnectionDescription& to, Deadline deadline) { return connectTcp(to.host, to.port, deadline); }
+Result<std::unique_ptr<Connection>> connectWrapped(const ConnectionDescription& to, Deadline deadline) {
+    return connectTcp(to.host, to.port, deadline);
+}
 
 Result<std::unique_ptr<Listener>> listenWrapped(const ConnectionDescription& at) {
     auto inner = listenTcp(at.host, at.port);
@@ -28,6 +30,7 @@ Result<std::unique_ptr<Listener>> listenWrapped(const ConnectionDescription& at)
 } // namespace mural::test
 
 extern "C" const mural_transport_plugin* mural_get_transport_plugin() {
-    static const auto table = mural::exportedTransport<mural::test::connectWrapped, mural::test::listenWrapped>("wrapped");
+    static const auto table =
+        mural::exportedTransport<mural::test::connectWrapped, mural::test::listenWrapped>("wrapped");
     return &table;
 }

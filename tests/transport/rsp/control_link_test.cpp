@@ -21,7 +21,8 @@ protected:
         peer_.connect(acceptor.local_endpoint());
         Tcp::socket socket(context_);
         acceptor.accept(socket);
-        link_ = std::make_shared<ControlLink>(std::move(socket), SecureChannel::accepting([](const std::string&) { return ChannelSecret{}; }));
+        link_ = std::make_shared<ControlLink>(
+            std::move(socket), SecureChannel::accepting([](const std::string&) { return ChannelSecret{}; }));
         bool open = false;
         link_->start({[&] { open = true; }, [](const ControlMessage&) {}, [](const std::string&) {}});
         while (!open) {

@@ -50,9 +50,12 @@ TEST_P(DatagramSeal, hidesThePayload) {
     DatagramSealer sealer(keys_, 3);
     Bytes sealed = datagram(0x5a);
     sealer.seal(sealed);
-    const auto same = std::count(sealed.begin() + kStreamHeadBytes, sealed.begin() + kStreamHeadBytes + 100, std::byte{0x5a});
-    if (keys_.seal == Seal::None || keys_.seal == Seal::Tag) EXPECT_EQ(same, 100);
-    else EXPECT_LT(same, 20);
+    const auto same =
+        std::count(sealed.begin() + kStreamHeadBytes, sealed.begin() + kStreamHeadBytes + 100, std::byte{0x5a});
+    if (keys_.seal == Seal::None || keys_.seal == Seal::Tag)
+        EXPECT_EQ(same, 100);
+    else
+        EXPECT_LT(same, 20);
 }
 
 TEST_P(DatagramSeal, rejectsOtherSessionsMembersAndKeys) {
@@ -111,7 +114,8 @@ TEST_P(DatagramForgery, isRejectedEachTime) {
         if (random() % 16 == 0) d.resize(random() % d.size());
         if (random() % 4 == 0)
             for (auto& b : d) b = static_cast<std::byte>(random());
-        else if (!d.empty()) d[random() % d.size()] ^= static_cast<std::byte>(1 + random() % 255);
+        else if (!d.empty())
+            d[random() % d.size()] ^= static_cast<std::byte>(1 + random() % 255);
         accepted += !opener.open(d).empty();
     }
     EXPECT_EQ(accepted, 0u);
@@ -123,8 +127,8 @@ std::string testName(const testing::TestParamInfo<Seal>& info) {
     constexpr std::array names{"None", "Tag", "AesGcm", "ChaCha"};
     return names[static_cast<size_t>(info.param)];
 }
-INSTANTIATE_TEST_SUITE_P(
-    Seals, DatagramSeal, testing::Values(Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha), testName);
+INSTANTIATE_TEST_SUITE_P(Seals, DatagramSeal, testing::Values(Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha),
+                         testName);
 INSTANTIATE_TEST_SUITE_P(Seals, DatagramForgery, testing::Values(Seal::Tag, Seal::AesGcm, Seal::ChaCha), testName);
 
 TEST(SessionKeys, differBetweenMembers) {
@@ -154,7 +158,8 @@ TEST(ReplayWindow, acceptsEachCounterOnce) {
     for (uint64_t i = 1; i <= 50'000; ++i) counters.push_back(i);
     // Reordered within the window.
     for (size_t i = 0; i + 4000 < counters.size(); i += 4000)
-        std::shuffle(counters.begin() + static_cast<std::ptrdiff_t>(i), counters.begin() + static_cast<std::ptrdiff_t>(i + 4000), random);
+        std::shuffle(counters.begin() + static_cast<std::ptrdiff_t>(i),
+                     counters.begin() + static_cast<std::ptrdiff_t>(i + 4000), random);
     for (const uint64_t c : counters) {
         ASSERT_TRUE(w.fresh(c)) << c;
         w.came(c);

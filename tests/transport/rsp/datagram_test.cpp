@@ -147,8 +147,12 @@ TEST(Datagram, survivesArbitraryBytes) {
         const auto s = readStream(bytes);
         const auto b = readFeedback(bytes);
         accepted += s.has_value() + b.has_value();
-        if (s) { EXPECT_LE(s->payload.size(), bytes.size()); }
-        if (b) { EXPECT_LE(b->entryCount, kMaxEntries); }
+        if (s) {
+            EXPECT_LE(s->payload.size(), bytes.size());
+        }
+        if (b) {
+            EXPECT_LE(b->entryCount, kMaxEntries);
+        }
     }
     EXPECT_GT(accepted, 1000u);
 }

@@ -30,7 +30,7 @@ TEST(Gf256, invertsEachElement) {
 TEST(Gf256, givesEqualResultsForVectorsAndBytes) {
     std::mt19937 random(1);
     for (size_t count : {0, 1, 2, 15, 16, 17, 31, 33, 64, 100, 1430, 8940}) {
-        for (unsigned factor = 0; factor < 256; factor += count > 100 ? 17 : 1) {
+        for (unsigned factor = 0; factor<256; factor += count> 100 ? 17 : 1) {
             const Bytes from = randomBytes(random, count);
             Bytes into = randomBytes(random, count);
             Bytes expected = into;
@@ -75,8 +75,8 @@ void loseAndSolve(std::mt19937& random, int k, int lost) {
         const Bytes& expected = symbols[static_cast<size_t>(missing[i])];
         ASSERT_EQ(loadLittle<uint16_t>(held[i].data()), expected.size());
         ASSERT_TRUE(std::equal(expected.begin(), expected.end(), held[i].begin() + kLengthBytes));
-        ASSERT_TRUE(std::all_of(held[i].begin() + static_cast<std::ptrdiff_t>(kLengthBytes + expected.size()), held[i].end(),
-            [](std::byte b) { return b == std::byte{0}; }));
+        ASSERT_TRUE(std::all_of(held[i].begin() + static_cast<std::ptrdiff_t>(kLengthBytes + expected.size()),
+                                held[i].end(), [](std::byte b) { return b == std::byte{0}; }));
     }
 }
 

@@ -61,7 +61,8 @@ private:
             if (thawNs_.contains(place)) return;
             group_.network.freeze(place);
             // Three seconds exceed the limit of a group that evicts; 0.3 s do not.
-            thawNs_[place] = group_.network.nowNs() + static_cast<int64_t>(random_() % (random_() % 3 == 0 ? 3000 : 300)) * kNsPerMs;
+            thawNs_[place] =
+                group_.network.nowNs() + static_cast<int64_t>(random_() % (random_() % 3 == 0 ? 3000 : 300)) * kNsPerMs;
             return;
         case 3:
             if (group_.processes.size() < 12) join();

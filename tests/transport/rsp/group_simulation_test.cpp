@@ -196,7 +196,8 @@ TEST(GroupSimulation, ignoresRepliesToEarlierProbes) {
     group.deaf = {2};
     ASSERT_TRUE(group.run(2 * kNsPerS, [&] { return group.processes[0].rerouted.contains(deaf); }));
     GroupCore& host = group.processes[0].core;
-    for (uint32_t nonce = 0; nonce <= GroupSettings{}.probeSeed + 3; ++nonce) host.inputControl(deaf, Probed{nonce}, group.network.nowNs());
+    for (uint32_t nonce = 0; nonce <= GroupSettings{}.probeSeed + 3; ++nonce)
+        host.inputControl(deaf, Probed{nonce}, group.network.nowNs());
     EXPECT_FALSE(host.members().at(deaf).multicast);
 }
 
@@ -224,7 +225,8 @@ TEST(GroupSimulation, waitsForOrEjectsAMemberThatDoesNotReadAsConfigured) {
         EXPECT_EQ(done, policy == StallPolicy::Eject);
         EXPECT_EQ(group.processes[2].core.over(), policy == StallPolicy::Eject);
         const auto gone = group.processes[1].gone.find(*group.idOf(2));
-        EXPECT_EQ(gone != group.processes[1].gone.end() && gone->second == GoneReason::Stalled, policy == StallPolicy::Eject);
+        EXPECT_EQ(gone != group.processes[1].gone.end() && gone->second == GoneReason::Stalled,
+                  policy == StallPolicy::Eject);
     }
 }
 
@@ -248,8 +250,9 @@ TEST(GroupSimulation, refusesAMemberWithoutEncryption) {
 
 TEST(ControlMessage, survivesArbitraryBytes) {
     std::mt19937 random(9);
-    const std::vector<ControlMessage> messages{Join{}, Welcome{}, Probed{}, MemberCame{}, StreamStart{}, MemberGone{}, Tunnel{1, {std::byte{1}}},
-        Refused{"no"}, Leave{}, Ping{}};
+    const std::vector<ControlMessage> messages{
+        Join{},        Welcome{}, Probed{}, MemberCame{}, StreamStart{}, MemberGone{}, Tunnel{1, {std::byte{1}}},
+        Refused{"no"}, Leave{},   Ping{}};
     size_t accepted = 0;
     for (int i = 0; i < 100'000; ++i) {
         auto bytes = encode(messages[random() % messages.size()]);

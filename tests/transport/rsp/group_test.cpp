@@ -37,8 +37,8 @@ void startHost(Hosted& h, Seal seal) {
     h.join = options(seal);
     h.join.control = h.host->controlAddress();
 }
-#define HOSTED(name, seal) \
-    Hosted name; \
+#define HOSTED(name, seal)                                                                                             \
+    Hosted name;                                                                                                       \
     ASSERT_NO_FATAL_FAILURE(startHost(name, seal))
 
 class GroupTest : public ::testing::TestWithParam<Seal> {};

@@ -13,7 +13,9 @@ namespace {
 constexpr char kSecret[] = "sixteen bytes, or a few more";
 
 TEST(GroupText, parsesRatesInBitsBytesOrWithoutUnit) {
-    const std::pair<const char*, double> all[] = {{"200mbit", 25e6}, {"1gbit", 125e6}, {"1.5Gbit", 187.5e6}, {"950kbit", 118'750}, {"25MB", 25e6}, {"3kb", 3000}, {"2GB", 2e9}, {"0", 0}};
+    const std::pair<const char*, double> all[] = {{"200mbit", 25e6},    {"1gbit", 125e6}, {"1.5Gbit", 187.5e6},
+                                                  {"950kbit", 118'750}, {"25MB", 25e6},   {"3kb", 3000},
+                                                  {"2GB", 2e9},         {"0", 0}};
     for (const auto& [text, bytesPerSecond] : all) {
         auto rate = parseRate(text);
         ASSERT_TRUE(rate) << text << ": " << rate.error().message;
@@ -28,7 +30,8 @@ TEST(GroupText, parsesRatesInBitsBytesOrWithoutUnit) {
 }
 
 TEST(GroupText, parsesSizesInUnitsOf1024) {
-    const std::pair<const char*, uint64_t> all[] = {{"1000000", 1'000'000}, {"64k", 65'536}, {"1.5K", 1536}, {"256M", 256u << 20}, {"2g", uint64_t{2} << 30}};
+    const std::pair<const char*, uint64_t> all[] = {
+        {"1000000", 1'000'000}, {"64k", 65'536}, {"1.5K", 1536}, {"256M", 256u << 20}, {"2g", uint64_t{2} << 30}};
     for (const auto& [text, sizeBytes] : all) {
         auto size = parseSize(text);
         ASSERT_TRUE(size) << text << ": " << size.error().message;
@@ -53,8 +56,9 @@ TEST(GroupText, parsesSealNames) {
 TEST(GroupText, usesAllBytesOfASecretExceptATrailingNewline) {
     const mural::test::TemporaryFolder folder;
     const std::string text = kSecret;
-    auto bare = readSecret(folder.file("bare", text, 0600)), line = readSecret(folder.file("line", text + "\n", 0600)), dos = readSecret(folder.file("dos", text + "\r\n", 0600)),
-               other = readSecret(folder.file("other", " " + text, 0600));
+    auto bare = readSecret(folder.file("bare", text, 0600)), line = readSecret(folder.file("line", text + "\n", 0600)),
+         dos = readSecret(folder.file("dos", text + "\r\n", 0600)),
+         other = readSecret(folder.file("other", " " + text, 0600));
     ASSERT_TRUE(bare && line && dos && other);
     EXPECT_EQ(*bare, *line);
     EXPECT_EQ(*bare, *dos);

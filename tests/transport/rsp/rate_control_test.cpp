@@ -64,7 +64,8 @@ TEST(RateControl, increasesTheRateAgain) {
     rounds.run(rate, 100, 4, [](double bytesPerS) { return std::clamp(1 - 0.1 * kMost / bytesPerS, 0.0, 1.0); });
     ASSERT_LT(rate.bytesPerS(), 0.5 * kMost);
     const int64_t beganNs = rounds.nowNs;
-    while (rate.bytesPerS() < 0.99 * kMost && rounds.nowNs - beganNs < 20'000'000'000) rounds.run(rate, 1, 4, [](double) { return 0.0; });
+    while (rate.bytesPerS() < 0.99 * kMost && rounds.nowNs - beganNs < 20'000'000'000)
+        rounds.run(rate, 1, 4, [](double) { return 0.0; });
     EXPECT_GT(rate.bytesPerS(), 0.98 * kMost) << "within 20 s";
 }
 

@@ -118,7 +118,8 @@ TEST(Receiver, usesPayloadsInPlace) {
     const ReceiveBuffers next = receiver.landing();
     for (std::byte* const place : next.places)
         for (const auto& piece : std::span(pieces).first(2)) EXPECT_NE(place + kStreamHeadBytes, piece.data());
-    for (const size_t again : {1, 3}) EXPECT_NE(std::ranges::find(next.places, landing.places[again]), next.places.end()) << again;
+    for (const size_t again : {1, 3})
+        EXPECT_NE(std::ranges::find(next.places, landing.places[again]), next.places.end()) << again;
     receiver.consume(40);
     ASSERT_EQ(receiver.readable(pieces), 3u);
     EXPECT_EQ(pieces[0].size(), 60u) << "what is left of it";
@@ -131,7 +132,8 @@ TEST(Receiver, usesPayloadsInPlace) {
     // A whole unread window still leaves the usual number of slots.
     for (int i = 3; i < 3 + 64; ++i) {
         landing = receiver.landing();
-        come(i, i % 3 == 0 ? std::span<const std::byte>(elsewhere) : landed(static_cast<size_t>(i) % landing.places.size(), i));
+        come(i, i % 3 == 0 ? std::span<const std::byte>(elsewhere)
+                           : landed(static_cast<size_t>(i) % landing.places.size(), i));
     }
     EXPECT_EQ(receiver.landing().places.size(), next.places.size());
     for (int i = 3; i < 3 + 64; ++i) {

@@ -14,7 +14,9 @@ SendWindow::Group groupAt(RetransmitPlanner& plan, int number) {
     return group;
 }
 
-std::optional<RetransmitPlanner::Repair> take(RetransmitPlanner& plan, uint32_t sentUs) { return plan.take(kFirst, {}, false, sentUs); }
+std::optional<RetransmitPlanner::Repair> take(RetransmitPlanner& plan, uint32_t sentUs) {
+    return plan.take(kFirst, {}, false, sentUs);
+}
 
 TEST(RetransmitPlanner, doesNotResendRowsInFlight) {
     RetransmitPlanner plan(1024);

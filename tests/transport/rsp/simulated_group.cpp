@@ -60,7 +60,8 @@ void Process::flushDatagram() {
     sealer_->seal(datagram_);
     if (to_ == kEverybody) {
         for (size_t i = 0; i < group_.processes.size(); ++i)
-            if (i != place_ && !group_.deaf.contains(i) && !group_.deaf.contains(place_)) group_.network.send(i, datagram_);
+            if (i != place_ && !group_.deaf.contains(i) && !group_.deaf.contains(place_))
+                group_.network.send(i, datagram_);
     } else if (const auto place = group_.placeOf(to_)) {
         group_.network.send(*place, datagram_);
     }

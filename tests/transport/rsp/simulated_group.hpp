@@ -31,7 +31,9 @@ public:
     void welcomed(const Welcome& w) override { useKeys(w.keys, w.self); }
     void memberCame(MemberId id, const MemberInfo&) override;
     void memberGone(MemberId id, GoneReason reason) override { gone[id] = reason; }
-    void memberRerouted(MemberId id, bool multicast) override { multicast ? rerouted.erase(id) : static_cast<size_t>(rerouted.insert(id).second); }
+    void memberRerouted(MemberId id, bool multicast) override {
+        multicast ? rerouted.erase(id) : static_cast<size_t>(rerouted.insert(id).second);
+    }
     void hangUp(MemberId id, const std::string& why) override;
 
     void run();
@@ -69,7 +71,8 @@ class SimulatedGroup {
 public:
     static constexpr size_t kMaxHosts = 128;
 
-    explicit SimulatedGroup(uint64_t seed, const std::function<void(GroupSettings&)>& change = {}) : network(seed, kMaxHosts) {
+    explicit SimulatedGroup(uint64_t seed, const std::function<void(GroupSettings&)>& change = {})
+        : network(seed, kMaxHosts) {
         settings_.host = true;
         settings_.keys = makeSessionKeys(Seal::Tag);
         settings_.windowDatagrams = 512;
@@ -138,8 +141,8 @@ public:
 
     SimulatedNetwork network;
     std::deque<Process> processes;
-    std::set<size_t> deaf; // processes without multicast
-    std::map<size_t, int64_t> lateControlNs; // additional latency of control messages, by receiver
+    std::set<size_t> deaf;                     // processes without multicast
+    std::map<size_t, int64_t> lateControlNs;   // additional latency of control messages, by receiver
     std::map<size_t, uint64_t> tunnelledBytes; // by receiver
 
 private:

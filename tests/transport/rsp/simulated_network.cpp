@@ -57,9 +57,12 @@ void SimulatedNetwork::deliver(Event& e) {
     Host& h = hosts_[e.host];
     if (h.frozen) {
         if (e.timer) return;
-        if (e.what) h.waiting.push_back(std::move(e.what));
-        else if (h.socket.size() < h.socketDatagrams) h.socket.push_back(std::move(e.datagram));
-        else ++h.overflowed;
+        if (e.what)
+            h.waiting.push_back(std::move(e.what));
+        else if (h.socket.size() < h.socketDatagrams)
+            h.socket.push_back(std::move(e.datagram));
+        else
+            ++h.overflowed;
         return;
     }
     if (e.timer) {

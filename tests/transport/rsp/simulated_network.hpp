@@ -16,10 +16,10 @@ namespace mural::rsp::test {
 struct LinkFaults {
     double loss = 0;
     double burstBegins = 0; // probability per datagram that a loss burst starts (Gilbert and Elliott)
-    double burstEnds = 1; // probability per datagram that it ends
+    double burstEnds = 1;   // probability per datagram that it ends
     double twice = 0;
     double flipped = 0; // probability of a flipped bit
-    double late = 0; // share of datagrams delayed by lateNs
+    double late = 0;    // share of datagrams delayed by lateNs
     int64_t lateNs = 0;
     int64_t delayNs = 50'000;
     int64_t jitterNs = 0;

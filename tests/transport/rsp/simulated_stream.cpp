@@ -46,7 +46,12 @@ private:
 };
 
 SimulatedStream::SimulatedStream(const StreamPlan& plan)
-    : plan_(plan), network_(plan.seed, kMaxHosts), keys_(makeSessionKeys(plan.seal)), sealer_(keys_, 0), opener_(keys_), sender_(senderSettings(plan), Sequence(plan.first)) {
+    : plan_(plan),
+      network_(plan.seed, kMaxHosts),
+      keys_(makeSessionKeys(plan.seal)),
+      sealer_(keys_, 0),
+      opener_(keys_),
+      sender_(senderSettings(plan), Sequence(plan.first)) {
     network_.faults(0) = plan.toWriter;
     network_.onDatagram(0, [this](std::span<std::byte> d) {
         if (const auto f = readFeedback(opener_.open(d))) sender_.input(*f, network_.nowNs());
@@ -95,7 +100,8 @@ std::optional<StreamDatagram> SimulatedStream::landed(std::span<const std::byte>
 void SimulatedStream::write() {
     std::array<std::byte, 8192> piece;
     while (written_ < plan_.bytes) {
-        if (flushAt_ == 0 && plan_.flushEveryBytes != 0) flushAt_ = written_ + 1 + network_.random() % (2 * plan_.flushEveryBytes);
+        if (flushAt_ == 0 && plan_.flushEveryBytes != 0)
+            flushAt_ = written_ + 1 + network_.random() % (2 * plan_.flushEveryBytes);
         const uint64_t until = flushAt_ != 0 ? std::min(flushAt_, plan_.bytes) : plan_.bytes;
         const size_t want = std::min<uint64_t>(piece.size(), until - written_);
         for (size_t i = 0; i < want; ++i) piece[i] = byteAt(written_ + i);

@@ -14,9 +14,9 @@ namespace mural::rsp::test {
 struct StreamPlan {
     uint64_t seed = 1;
     size_t members = 1;
-    uint64_t bytes = 1 << 20; // to write
+    uint64_t bytes = 1 << 20;   // to write
     size_t flushEveryBytes = 0; // 0: only at the end; otherwise the mean of random intervals
-    uint32_t first = 7; // first sequence number
+    uint32_t first = 7;         // first sequence number
     StreamShape shape{1430, 1024};
     RateSettings rate{};
     uint32_t socketDatagrams = 512;

@@ -20,7 +20,8 @@ double expectAllArrives(const StreamPlan& plan, int64_t forS = 120) {
     const int64_t began = stream.network().nowNs();
     EXPECT_TRUE(stream.run(forS * kNsPerS));
     EXPECT_EQ(stream.wrongBytes(), 0u);
-    for (size_t i = 0; i < stream.memberCount(); ++i) EXPECT_EQ(stream.member(i).readBytes, plan.bytes) << "member " << i;
+    for (size_t i = 0; i < stream.memberCount(); ++i)
+        EXPECT_EQ(stream.member(i).readBytes, plan.bytes) << "member " << i;
     EXPECT_EQ(stream.sender().counters().refused, 0u);
     return static_cast<double>(stream.network().nowNs() - began) * 1e-9;
 }
@@ -30,7 +31,8 @@ TEST(StreamSimulation, deliversWithoutFaults) {
 }
 
 TEST(StreamSimulation, deliversEmptyAndSmallStreams) {
-    for (const uint64_t bytes : {1, 2, 1429, 1430, 1431, 32 * 1430, 32 * 1430 + 1}) expectAllArrives({.members = 3, .bytes = bytes});
+    for (const uint64_t bytes : {1, 2, 1429, 1430, 1431, 32 * 1430, 32 * 1430 + 1})
+        expectAllArrives({.members = 3, .bytes = bytes});
 }
 
 TEST(StreamSimulation, deliversWithAnyLossRate) {
@@ -122,7 +124,12 @@ TEST(StreamSimulation, losesLittleMoreRateThanItsRepairs) {
 }
 
 TEST(StreamSimulation, findsTheRateOfACongestedLink) {
-    StreamPlan plan{.seed = 71, .members = 4, .bytes = 64 << 20, .shape = {1430, 4096}, .rate = {1000 * kMbit}, .socketDatagrams = 4096};
+    StreamPlan plan{.seed = 71,
+                    .members = 4,
+                    .bytes = 64 << 20,
+                    .shape = {1430, 4096},
+                    .rate = {1000 * kMbit},
+                    .socketDatagrams = 4096};
     plan.toMembers.bytesPerS = 200 * kMbit;
     const double seconds = expectAllArrives(plan);
     EXPECT_GE(plan.bytes / seconds, 0.85 * 200 * kMbit * 1430 / (1430 + 100));
@@ -176,9 +183,11 @@ TEST(StreamSimulation, losesNothingWhenACutLinkHeals) {
     StreamPlan plan{.seed = 111, .members = 3, .bytes = 16 << 20, .flushEveryBytes = 100'000, .rate = {185 * kMbit}};
     SimulatedStream stream(plan);
     stream.run(100 * kNsPerMs, [] { return false; });
-    stream.network().faults(SimulatedStream::host(0)).cut = stream.network().faults(SimulatedStream::host(1)).cut = true;
+    stream.network().faults(SimulatedStream::host(0)).cut = stream.network().faults(SimulatedStream::host(1)).cut =
+        true;
     stream.run(3 * kNsPerS, [] { return false; });
-    stream.network().faults(SimulatedStream::host(0)).cut = stream.network().faults(SimulatedStream::host(1)).cut = false;
+    stream.network().faults(SimulatedStream::host(0)).cut = stream.network().faults(SimulatedStream::host(1)).cut =
+        false;
     EXPECT_TRUE(stream.run(60 * kNsPerS));
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
@@ -186,9 +195,16 @@ TEST(StreamSimulation, losesNothingWhenACutLinkHeals) {
 // Nothing arrives for 200 ms at varying members. A member blocked by its losses for 2 s would be evicted, and must stay
 // far below that.
 TEST(StreamSimulation, repairsBurstsQuickly) {
-    StreamPlan plan{.seed = 115, .members = 3, .bytes = 16 << 20, .shape = {1430, 4096}, .rate = {80 * kMbit}, .socketDatagrams = 4096};
+    StreamPlan plan{.seed = 115,
+                    .members = 3,
+                    .bytes = 16 << 20,
+                    .shape = {1430, 4096},
+                    .rate = {80 * kMbit},
+                    .socketDatagrams = 4096};
     SimulatedStream stream(plan);
-    const auto setCut = [&](size_t member, bool cut) { stream.network().faults(SimulatedStream::host(member)).cut = cut; };
+    const auto setCut = [&](size_t member, bool cut) {
+        stream.network().faults(SimulatedStream::host(member)).cut = cut;
+    };
     stream.run(100 * kNsPerMs, [] { return false; });
     for (int i = 0; i < 8; ++i) {
         setCut(i % 2 * 2, true);
@@ -222,7 +238,8 @@ TEST(StreamSimulation, evictsNoMemberAfterAClockJump) {
     stream.run(100 * kNsPerMs, [] { return false; });
     stream.network().jumpClock(30 * kNsPerS);
     stream.run(20 * kNsPerMs, [] { return false; });
-    for (const auto& [id, m] : stream.sender().members()) EXPECT_LT(stream.network().nowNs() - m.heardNs, kNsPerS) << id;
+    for (const auto& [id, m] : stream.sender().members())
+        EXPECT_LT(stream.network().nowNs() - m.heardNs, kNsPerS) << id;
     EXPECT_TRUE(stream.run(60 * kNsPerS));
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
@@ -241,10 +258,15 @@ TEST(StreamSimulation, survivesRandomSchedules) {
     for (uint64_t seed = first; seed < first + count; ++seed) {
         std::mt19937_64 random(seed);
         const auto up = [&](double most) { return most * static_cast<double>(random() % 1000) / 1000; };
-        StreamPlan plan{.seed = seed, .members = 1 + random() % 6, .bytes = 1 + random() % 1'000'000, .flushEveryBytes = random() % 30'000,
+        StreamPlan plan{
+            .seed = seed,
+            .members = 1 + random() % 6,
+            .bytes = 1 + random() % 1'000'000,
+            .flushEveryBytes = random() % 30'000,
             .first = static_cast<uint32_t>(random() % 3 == 0 ? 0u - random() % 500 : random()),
             .shape = {static_cast<size_t>(random() % 2 ? 1430 : 8 + random() % 200), random() % 2 ? 1024u : 64u},
-            .rate = {random() % 2 ? 100 * kMbit : 0}, .socketDatagrams = static_cast<uint32_t>(32 + random() % 500),
+            .rate = {random() % 2 ? 100 * kMbit : 0},
+            .socketDatagrams = static_cast<uint32_t>(32 + random() % 500),
             .parity = random() % 4 != 0};
         for (LinkFaults* f : {&plan.toMembers, &plan.toWriter}) {
             if (random() % 2) f->loss = up(0.3);

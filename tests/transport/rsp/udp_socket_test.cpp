@@ -78,7 +78,8 @@ void showThatNoneAreJoined(Ends& ends, const ReceiveBuffers& landing) {
         for (size_t i = 0; i < kAtOnce; ++i) ends.send(numbered(kPlace, round + i), kPlace);
         const Came came(ends.to, landing, kAtOnce);
         ASSERT_EQ(came.datagrams.size(), kAtOnce);
-        for (size_t i = 0; i < kAtOnce; ++i) ASSERT_EQ(came.datagrams[i], numbered(kPlace, round + i)) << round << ", " << i;
+        for (size_t i = 0; i < kAtOnce; ++i)
+            ASSERT_EQ(came.datagrams[i], numbered(kPlace, round + i)) << round << ", " << i;
         ASSERT_EQ(came.landed, 0u) << "they might have come joined";
     }
 }
@@ -101,14 +102,16 @@ TEST(UdpSocket, usesSeparateSlotsPerCall) {
     Ends ends;
     ends.to.leaveOutSenders();
     const Places few(4);
-    const std::array<Places, 4> looks{Places(kMaxAtOnce), Places(kMaxAtOnce), Places(kMaxAtOnce, 2 * kPlace), Places(kMaxAtOnce)};
+    const std::array<Places, 4> looks{Places(kMaxAtOnce), Places(kMaxAtOnce), Places(kMaxAtOnce, 2 * kPlace),
+                                      Places(kMaxAtOnce)};
     showThatNoneAreJoined(ends, few.landing());
     for (size_t look = 0; look < looks.size(); ++look) {
         const size_t size = looks[look].placeBytes;
         for (size_t i = 0; i < kMaxAtOnce; ++i) ends.send(numbered(size, look + i), size);
         const Came came(ends.to, looks[look].landing(), kMaxAtOnce);
         ASSERT_EQ(came.datagrams.size(), kMaxAtOnce) << look;
-        for (size_t i = 0; i < kMaxAtOnce; ++i) EXPECT_EQ(came.datagrams[i], numbered(size, look + i)) << look << ", " << i;
+        for (size_t i = 0; i < kMaxAtOnce; ++i)
+            EXPECT_EQ(came.datagrams[i], numbered(size, look + i)) << look << ", " << i;
         EXPECT_EQ(came.landed, kMaxAtOnce) << look;
     }
     // The same with fewer slots and with none.
@@ -165,7 +168,9 @@ TEST(UdpSocket, countsDroppedDatagrams) {
     const size_t room = ends.to.capacity(1000);
     for (size_t i = 0; i < 2 * room; ++i) ends.send(numbered(1000, i), 1000);
     size_t got = 0;
-    do { got += ends.to.fetch().size(); } while (ends.to.mayBeMore());
+    do {
+        got += ends.to.fetch().size();
+    } while (ends.to.mayBeMore());
     EXPECT_GT(got, 0u);
     EXPECT_EQ(ends.to.dropped(), 2 * room - got);
 }
@@ -182,7 +187,9 @@ protected:
         const Came came(ends.to, {}, 10);
         ASSERT_EQ(came.datagrams.size(), 10u);
         for (size_t i = 0; i < 10; ++i)
-            EXPECT_TRUE(std::ranges::equal(came.datagrams[i], std::span(all).subspan(i * kSegment, i == 9 ? lastBytes : kSegment))) << i;
+            EXPECT_TRUE(std::ranges::equal(came.datagrams[i],
+                                           std::span(all).subspan(i * kSegment, i == 9 ? lastBytes : kSegment)))
+                << i;
     }
     void joinedOnesAreRefused() { // the kernel rejects segmentation without a checksum
         const int on = 1;

@@ -10,7 +10,7 @@ namespace mural::bench {
 
 struct BenchOptions {
     bool quick = false;
-    int turns = 9; // repetitions per measurement
+    int turns = 9;           // repetitions per measurement
     std::string icetLibrary; // icet_kernels.c built against IceT; empty: omitted
 };
 

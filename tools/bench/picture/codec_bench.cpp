@@ -12,14 +12,16 @@ using namespace compositor;
 
 namespace {
 
-constexpr const char* kColourCodecs[] = {"raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "bitplane-zstd", "lz4", "zstd", "yuv420", "jpeg-95"};
-constexpr const char* kDepthCodecs[] = {"raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "slope", "slope-zstd", "lz4", "zstd"};
+constexpr const char* kColourCodecs[] = {"raw",           "rle64", "rle-components", "rle-swizzled", "bitplane",
+                                         "bitplane-zstd", "lz4",   "zstd",           "yuv420",       "jpeg-95"};
+constexpr const char* kDepthCodecs[] = {
+    "raw", "rle64", "rle-components", "rle-swizzled", "bitplane", "slope", "slope-zstd", "lz4", "zstd"};
 // Goal for compression ratios: bit planes relative to swizzled run lengths.
 constexpr double kRatioGoal = 1.5;
 
 struct Measured {
     double ratio, encode, decode; // the last two relative to memcpy
-    double worst; // lossy codecs: largest difference of a component
+    double worst;                 // lossy codecs: largest difference of a component
 };
 
 Result<Measured> measure(Codec& codec, const Plane& plane, const BenchOptions& options, bool slow) {
@@ -35,13 +37,16 @@ Result<Measured> measure(Codec& codec, const Plane& plane, const BenchOptions& o
         Plane& source = sources[turn % buffers];
         Plane& target = targets[turn % buffers];
         Plane& other = targets[(turn + buffers / 2) % buffers];
-        const double copied = cpuNsOf([&] { std::memcpy(other.bytes().data(), sources[(turn + buffers / 2) % buffers].bytes().data(), sizeBytes); });
+        const double copied = cpuNsOf([&] {
+            std::memcpy(other.bytes().data(), sources[(turn + buffers / 2) % buffers].bytes().data(), sizeBytes);
+        });
         Result<size_t> written = size_t{0};
         const double encode = cpuNsOf([&] { written = codec.encode(source.view(), encoded.at(turn)); });
         if (!written) return written.error();
         size = *written;
         Result<void> read;
-        const double decode = cpuNsOf([&] { read = codec.decode(std::span(encoded.at(turn)).first(size), target.view()); });
+        const double decode =
+            cpuNsOf([&] { read = codec.decode(std::span(encoded.at(turn)).first(size), target.view()); });
         if (!read) return read.error();
         if (turn == 0) continue;
         encodes.push_back(copied / encode);
@@ -49,8 +54,10 @@ Result<Measured> measure(Codec& codec, const Plane& plane, const BenchOptions& o
     }
     double worst = 0;
     for (size_t i = 0; i < sizeBytes; ++i)
-        worst = std::max(worst, std::abs(1.0 * std::to_integer<int>(targets[turns % buffers].bytes()[i]) - std::to_integer<int>(plane.bytes()[i])));
-    return Measured{static_cast<double>(sizeBytes) / static_cast<double>(size), medianOf(encodes), medianOf(decodes), worst};
+        worst = std::max(worst, std::abs(1.0 * std::to_integer<int>(targets[turns % buffers].bytes()[i]) -
+                                         std::to_integer<int>(plane.bytes()[i])));
+    return Measured{static_cast<double>(sizeBytes) / static_cast<double>(size), medianOf(encodes), medianOf(decodes),
+                    worst};
 }
 
 struct Sum {
@@ -70,7 +77,9 @@ Faults benchCodecs(const std::vector<NamedPlane>& planes, const BenchOptions& op
     Faults faults;
     CodecRegistry registry;
     for (const PlaneFormat format : {PlaneFormat::Rgba8, PlaneFormat::D24S8, PlaneFormat::D32F}) {
-        const std::vector<std::string> names = isDepth(format) ? std::vector<std::string>(std::begin(kDepthCodecs), std::end(kDepthCodecs)) : std::vector<std::string>(std::begin(kColourCodecs), std::end(kColourCodecs));
+        const std::vector<std::string> names =
+            isDepth(format) ? std::vector<std::string>(std::begin(kDepthCodecs), std::end(kDepthCodecs))
+                            : std::vector<std::string>(std::begin(kColourCodecs), std::end(kColourCodecs));
         std::map<std::string, Sum> sums;
         std::string rows;
         for (const NamedPlane& p : planes) {
@@ -79,12 +88,15 @@ Faults benchCodecs(const std::vector<NamedPlane>& planes, const BenchOptions& op
             for (const std::string& name : names) {
                 auto codec = registry.make(name);
                 const bool lossless = registry.find(name).value().lossless;
-                auto m = codec ? measure(**codec, p.plane, options, name.starts_with("rle-") || !lossless) : Result<Measured>(codec.error());
+                auto m = codec ? measure(**codec, p.plane, options, name.starts_with("rle-") || !lossless)
+                               : Result<Measured>(codec.error());
                 if (!m) {
                     faults.push_back(p.name + ": " + m.error().message);
                     continue;
                 }
-                if (lossless && m->worst != 0) faults.push_back(fmt::format("{}: codec {} does not give back the picture: it differs by up to {}", p.name, name, m->worst));
+                if (lossless && m->worst != 0)
+                    faults.push_back(fmt::format("{}: codec {} does not give back the picture: it differs by up to {}",
+                                                 p.name, name, m->worst));
                 Sum& sum = sums[name];
                 sum.logRatio += std::log(m->ratio);
                 sum.encodes.push_back(m->encode);
@@ -94,14 +106,20 @@ Faults benchCodecs(const std::vector<NamedPlane>& planes, const BenchOptions& op
             rows += row + "\n";
         }
         if (sums.empty()) continue;
-        fmt::print("\n{}: ratio, encoding and decoding as multiples of memcpy's speed, one thread\n{:<22}", nameOf(format), "");
+        fmt::print("\n{}: ratio, encoding and decoding as multiples of memcpy's speed, one thread\n{:<22}",
+                   nameOf(format), "");
         for (const std::string& name : names) fmt::print(" {:>20}", name);
-        fmt::print("\n{}\n{}, all together: geometric mean of the ratio, median of the speeds [least to most]\n", rows, nameOf(format));
-        for (const std::string& name : names) fmt::print("{:<16} {:>8.2f}   {:<24} {}\n", name, sums[name].ratio(), spread(sums[name].encodes), spread(sums[name].decodes));
+        fmt::print("\n{}\n{}, all together: geometric mean of the ratio, median of the speeds [least to most]\n", rows,
+                   nameOf(format));
+        for (const std::string& name : names)
+            fmt::print("{:<16} {:>8.2f}   {:<24} {}\n", name, sums[name].ratio(), spread(sums[name].encodes),
+                       spread(sums[name].decodes));
         const char* ours = isDepth(format) ? "slope" : "bitplane";
         const double better = sums[ours].ratio() / sums["rle-swizzled"].ratio();
         fmt::print("{} has {:.2f} times the ratio of rle-swizzled\n", ours, better);
-        if (!options.quick && better < kRatioGoal) faults.push_back(fmt::format("{}: the ratio of {} is only {:.2f} times that of rle-swizzled, and not {}", nameOf(format), ours, better, kRatioGoal));
+        if (!options.quick && better < kRatioGoal)
+            faults.push_back(fmt::format("{}: the ratio of {} is only {:.2f} times that of rle-swizzled, and not {}",
+                                         nameOf(format), ours, better, kRatioGoal));
     }
     return faults;
 }

@@ -13,7 +13,9 @@ namespace mural::bench {
 
 constexpr size_t kRotatedBytes = size_t{256} << 20; // per set of buffers; exceeds the caches
 
-[[nodiscard]] inline size_t buffersFor(size_t sizeBytes, bool quick) { return quick ? 2 : std::max<size_t>(3, kRotatedBytes / std::max<size_t>(sizeBytes, 1)); }
+[[nodiscard]] inline size_t buffersFor(size_t sizeBytes, bool quick) {
+    return quick ? 2 : std::max<size_t>(3, kRotatedBytes / std::max<size_t>(sizeBytes, 1));
+}
 
 // Buffers are written once, because zero pages are not committed.
 class RotatedBuffers {

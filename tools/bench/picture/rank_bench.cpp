@@ -33,7 +33,11 @@ struct Way {
     Strategy strategy;
     int icet; // -1: no equivalent
 };
-constexpr Way kWays[] = {{"serial", Strategy::Serial, ICET_WAY_SERIAL}, {"direct send", Strategy::DirectSend, ICET_WAY_DIRECT_SEND}, {"binary swap", Strategy::BinarySwap, ICET_WAY_SWAP}, {"radix-k", Strategy::RadixK, ICET_WAY_RADIX_K}, {"streaming", Strategy::Streaming, -1}};
+constexpr Way kWays[] = {{"serial", Strategy::Serial, ICET_WAY_SERIAL},
+                         {"direct send", Strategy::DirectSend, ICET_WAY_DIRECT_SEND},
+                         {"binary swap", Strategy::BinarySwap, ICET_WAY_SWAP},
+                         {"radix-k", Strategy::RadixK, ICET_WAY_RADIX_K},
+                         {"streaming", Strategy::Streaming, -1}};
 
 // Final report of a rank.
 struct Told {
@@ -47,9 +51,15 @@ std::vector<Drawn> drawnOf(const std::vector<NamedPlane>& planes) {
     for (const NamedPlane& colour : planes) {
         if (colour.plane.format() != PlaneFormat::Rgba8) continue;
         const std::string stem = colour.name.substr(0, colour.name.find('.'));
-        const auto depth = std::ranges::find_if(planes, [&](const NamedPlane& p) { return p.plane.format() == PlaneFormat::D24S8 && p.name.substr(0, p.name.find('.')) == stem; });
-        if (depth == planes.end() || depth->plane.width() != colour.plane.width() || depth->plane.height() != colour.plane.height()) continue;
-        if (!all.empty() && (all[0].part.id.box.w != colour.plane.width() || all[0].part.id.box.h != colour.plane.height())) continue;
+        const auto depth = std::ranges::find_if(planes, [&](const NamedPlane& p) {
+            return p.plane.format() == PlaneFormat::D24S8 && p.name.substr(0, p.name.find('.')) == stem;
+        });
+        if (depth == planes.end() || depth->plane.width() != colour.plane.width() ||
+            depth->plane.height() != colour.plane.height())
+            continue;
+        if (!all.empty() &&
+            (all[0].part.id.box.w != colour.plane.width() || all[0].part.id.box.h != colour.plane.height()))
+            continue;
         Drawn d;
         d.part.id = {0, 1, {0, 0, colour.plane.width(), colour.plane.height()}};
         const auto pixels = static_cast<size_t>(d.part.id.box.area());
@@ -75,7 +85,9 @@ std::vector<Drawn> drawnOf(const std::vector<NamedPlane>& planes) {
         Drawn turned = all[s];
         const auto turn = [&](auto& values) {
             const auto width = static_cast<ptrdiff_t>(turned.part.id.box.w);
-            for (ptrdiff_t y = 0; y < turned.part.id.box.h / 2; ++y) std::swap_ranges(values.begin() + y * width, values.begin() + (y + 1) * width, values.end() - (y + 1) * width);
+            for (ptrdiff_t y = 0; y < turned.part.id.box.h / 2; ++y)
+                std::swap_ranges(values.begin() + y * width, values.begin() + (y + 1) * width,
+                                 values.end() - (y + 1) * width);
         };
         turn(turned.part.colour);
         turn(turned.part.depth);
@@ -148,7 +160,8 @@ int64_t wrongPixels(const std::vector<Drawn>& drawn, int ranks, const uint32_t* 
 }
 
 // Runs one rank: composites frames between barriers by `compose`, which returns the picture at the first rank.
-template <class Compose> Told measure(RankLinks& links, const std::vector<Drawn>& drawn, int frames, bool tiesCount, Compose&& compose) {
+template <class Compose>
+Told measure(RankLinks& links, const std::vector<Drawn>& drawn, int frames, bool tiesCount, Compose&& compose) {
     Told told;
     const uint32_t* picture = nullptr;
     uint64_t before = 0;
@@ -166,7 +179,8 @@ template <class Compose> Told measure(RankLinks& links, const std::vector<Drawn>
 
 Told ours(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int frames) {
     LinkRoutes routes(links);
-    PictureComposer composer({way.strategy, links.own(), links.ranks(), 60'000, 60'000, 5'000, ""}, routes, [](const std::string& line) { fmt::print(stderr, "compositing_bench: {}\n", line); });
+    PictureComposer composer({way.strategy, links.own(), links.ranks(), 60'000, 60'000, 5'000, ""}, routes,
+                             [](const std::string& line) { fmt::print(stderr, "compositing_bench: {}\n", line); });
     PicturePart part;
     return measure(links, drawn, frames, true, [&](const uint32_t*& picture) {
         const uint64_t serial = part.id.serial;
@@ -185,16 +199,26 @@ RankLinks& linksOf(void* self) { return *static_cast<RankLinks*>(self); }
 Told icet(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int frames, const std::string& path) {
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     const auto open = library ? reinterpret_cast<icet_ranks_open_function>(dlsym(library, "icet_ranks_open")) : nullptr;
-    const auto composed = library ? reinterpret_cast<icet_ranks_compose_function>(dlsym(library, "icet_ranks_compose")) : nullptr;
-    const icet_links given{&links, links.own(), links.ranks(),
-                           [](void* self, int to, uint64_t tag, const void* from, size_t bytes) { return linksOf(self).post(to, tag, {static_cast<const std::byte*>(from), bytes}); },
+    const auto composed =
+        library ? reinterpret_cast<icet_ranks_compose_function>(dlsym(library, "icet_ranks_compose")) : nullptr;
+    const icet_links given{&links,
+                           links.own(),
+                           links.ranks(),
+                           [](void* self, int to, uint64_t tag, const void* from, size_t bytes) {
+                               return linksOf(self).post(to, tag, {static_cast<const std::byte*>(from), bytes});
+                           },
                            [](void* self, int to, uint64_t number) { linksOf(self).waitSent(to, number); },
-                           [](void* self, int from, uint64_t tag, void* into, size_t bytes) { return linksOf(self).takeInto(from, tag, {static_cast<std::byte*>(into), bytes}); },
+                           [](void* self, int from, uint64_t tag, void* into, size_t bytes) {
+                               return linksOf(self).takeInto(from, tag, {static_cast<std::byte*>(into), bytes});
+                           },
                            [](void* self, int from, uint64_t tag) { return linksOf(self).waiting(from, tag) ? 1 : 0; },
-                           [](void* self, const int* from, int count) { linksOf(self).waitForAny({from, from + count}); }};
+                           [](void* self, const int* from, int count) {
+                               linksOf(self).waitForAny({from, from + count});
+                           }};
     const PixelViewport& box = drawn[0].part.id.box;
     if (!open || !composed || !open(&given, box.w, box.h, static_cast<icet_way>(way.icet))) {
-        fmt::print(stderr, "compositing_bench: IceT: {} can't be used; let tools/bench/compositing --icet build it\n", path);
+        fmt::print(stderr, "compositing_bench: IceT: {} can't be used; let tools/bench/compositing --icet build it\n",
+                   path);
         std::_Exit(1);
     }
     const Drawn& own = drawn[static_cast<size_t>(links.own())];
@@ -232,8 +256,10 @@ template <class Rank> Sum perform(int ranks, Rank&& rank) {
             }
             std::_Exit(write(results[1], &told, sizeof told) == static_cast<ssize_t>(sizeof told) ? 0 : 1);
         }
-        if (child > 0) children.push_back(child);
-        else sum.fault = "no more processes could be started";
+        if (child > 0)
+            children.push_back(child);
+        else
+            sum.fault = "no more processes could be started";
     }
     sockets->closeAll();
     close(results[1]);
@@ -253,16 +279,24 @@ template <class Rank> Sum perform(int ranks, Rank&& rank) {
     return sum;
 }
 
-std::string cell(const Sum& s) { return s.fault.empty() ? fmt::format("{:.2f} / {:.2f} / {:.2f}", static_cast<double>(s.meanCpuNs) / 1e6, static_cast<double>(s.mostCpuNs) / 1e6, static_cast<double>(s.bytes) / 1e6) : "failed"; }
+std::string cell(const Sum& s) {
+    return s.fault.empty() ? fmt::format("{:.2f} / {:.2f} / {:.2f}", static_cast<double>(s.meanCpuNs) / 1e6,
+                                         static_cast<double>(s.mostCpuNs) / 1e6, static_cast<double>(s.bytes) / 1e6)
+                           : "failed";
+}
 
 } // namespace
 
 Faults benchRanks(const std::vector<NamedPlane>& planes, const BenchOptions& options) {
     Faults faults;
     const std::vector<Drawn> drawn = drawnOf(planes);
-    if (drawn.size() < 2) return {"there are not two scenes with colour and D24S8 depth of one size to put together; capture more"};
-    fmt::print("\n{} x {} pixels by depth, each rank another scene, processes joined by sockets: CPU ms of a rank in the mean / of the busiest / MB that all send, a frame\n", drawn[0].part.id.box.w, drawn[0].part.id.box.h);
-    fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", "", "ranks", "ours", "IceT", "IceT's CPU over ours", "bytes");
+    if (drawn.size() < 2)
+        return {"there are not two scenes with colour and D24S8 depth of one size to put together; capture more"};
+    fmt::print("\n{} x {} pixels by depth, each rank another scene, processes joined by sockets: CPU ms of a rank in "
+               "the mean / of the busiest / MB that all send, a frame\n",
+               drawn[0].part.id.box.w, drawn[0].part.id.box.h);
+    fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", "", "ranks", "ours", "IceT", "IceT's CPU over ours",
+               "bytes");
     for (const Way& way : kWays)
         for (const int ranks : {2, 3, 4, 8, static_cast<int>(kMaxRanks)}) {
             if (static_cast<size_t>(ranks) > drawn.size() || (options.quick && ranks > 3)) continue;
@@ -271,13 +305,24 @@ Faults benchRanks(const std::vector<NamedPlane>& planes, const BenchOptions& opt
             for (int turn = 0; turn < turns; ++turn)
                 for (const bool theirs : {false, true}) {
                     if (theirs && (options.icetLibrary.empty() || way.icet < 0)) continue;
-                    const Sum sum = perform(ranks, [&](RankLinks& links) { return theirs ? icet(links, drawn, way, frames, options.icetLibrary) : ours(links, drawn, way, frames); });
-                    if (!sum.fault.empty()) faults.push_back(fmt::format("{} by {} ranks, {}: {}", way.name, ranks, theirs ? "IceT" : "ours", sum.fault));
+                    const Sum sum = perform(ranks, [&](RankLinks& links) {
+                        return theirs ? icet(links, drawn, way, frames, options.icetLibrary)
+                                      : ours(links, drawn, way, frames);
+                    });
+                    if (!sum.fault.empty())
+                        faults.push_back(fmt::format("{} by {} ranks, {}: {}", way.name, ranks,
+                                                     theirs ? "IceT" : "ours", sum.fault));
                     if (turn == 0 || sum.meanCpuNs < best[theirs].meanCpuNs || !sum.fault.empty()) best[theirs] = sum;
                 }
             const bool both = best[1].meanCpuNs > 0 && best[0].meanCpuNs > 0;
-            fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", way.name, ranks, cell(best[0]), best[1].meanCpuNs > 0 ? cell(best[1]) : "",
-                       both ? fmt::format("{:.2f}", static_cast<double>(best[1].meanCpuNs) / static_cast<double>(best[0].meanCpuNs)) : "", both && best[0].bytes > 0 ? fmt::format("{:.2f}", static_cast<double>(best[1].bytes) / static_cast<double>(best[0].bytes)) : "");
+            fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", way.name, ranks, cell(best[0]),
+                       best[1].meanCpuNs > 0 ? cell(best[1]) : "",
+                       both ? fmt::format("{:.2f}", static_cast<double>(best[1].meanCpuNs) /
+                                                        static_cast<double>(best[0].meanCpuNs))
+                            : "",
+                       both && best[0].bytes > 0 ? fmt::format("{:.2f}", static_cast<double>(best[1].bytes) /
+                                                                             static_cast<double>(best[0].bytes))
+                                                 : "");
             std::fflush(stdout);
         }
     return faults;

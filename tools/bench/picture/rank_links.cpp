@@ -47,7 +47,8 @@ Result<RankSockets> RankSockets::make(int ranks) {
         for (int b = a + 1; b < ranks; ++b) {
             std::array<int, 2> pair{};
             if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair.data()) != 0) {
-                const Error error{std::string("no sockets between ranks: ") + std::strerror(errno) + "; raise ulimit -n"};
+                const Error error{std::string("no sockets between ranks: ") + std::strerror(errno) +
+                                  "; raise ulimit -n"};
                 all.closeAll();
                 return error;
             }
@@ -95,7 +96,8 @@ void RankLinks::send(Peer& peer) {
         const Posted next = peer.outgoing.front();
         lock.unlock();
         Head head{next.tag, next.bytes.size()};
-        std::array<iovec, 2> parts{{{&head, sizeof head}, {const_cast<std::byte*>(next.bytes.data()), next.bytes.size()}}};
+        std::array<iovec, 2> parts{
+            {{&head, sizeof head}, {const_cast<std::byte*>(next.bytes.data()), next.bytes.size()}}};
         const int64_t beganNs = monotonicNowNs();
         while (parts[0].iov_len + parts[1].iov_len > 0) {
             msghdr message{};
@@ -124,12 +126,15 @@ void RankLinks::send(Peer& peer) {
 void RankLinks::readAll(Peer& peer, std::span<std::byte> into) {
     while (!into.empty()) {
         const ssize_t got = recv(peer.socket, into.data(), into.size(), MSG_DONTWAIT);
-        if (got > 0) into = into.subspan(static_cast<size_t>(got));
+        if (got > 0)
+            into = into.subspan(static_cast<size_t>(got));
         else if (got == 0) {
             errno = ECONNRESET;
             fail("read from another");
-        } else if (errno == EAGAIN) waitReadable(peer.socket);
-        else if (errno != EINTR) fail("read from another");
+        } else if (errno == EAGAIN)
+            waitReadable(peer.socket);
+        else if (errno != EINTR)
+            fail("read from another");
     }
 }
 

@@ -21,7 +21,9 @@ class RankSockets {
 public:
     static Result<RankSockets> make(int ranks);
     [[nodiscard]] int ranks() const { return static_cast<int>(ends_.size()); }
-    [[nodiscard]] int end(int own, int other) const { return ends_[static_cast<size_t>(own)][static_cast<size_t>(other)]; }
+    [[nodiscard]] int end(int own, int other) const {
+        return ends_[static_cast<size_t>(own)][static_cast<size_t>(other)];
+    }
     void closeAll();
     // Closes the sockets of other processes.
     void closeOthers(int own);

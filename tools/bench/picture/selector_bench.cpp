@@ -40,7 +40,8 @@ Result<Scene> measureScene(const Plane& plane, std::vector<std::unique_ptr<Codec
     std::vector<std::byte> bytes;
     for (int32_t y = 0; y < plane.height(); y += kPieceRows)
         for (int32_t x = 0; x < plane.width(); x += kPieceColumns) {
-            const PlaneView part = plane.view().part({x, y, std::min(kPieceColumns, plane.width() - x), std::min(kPieceRows, plane.height() - y)});
+            const PlaneView part = plane.view().part(
+                {x, y, std::min(kPieceColumns, plane.width() - x), std::min(kPieceRows, plane.height() - y)});
             Piece piece{classify(part), part.sizeBytes(), {}};
             Plane target(part.format, part.width, part.height);
             for (auto& codec : codecs) {
@@ -51,7 +52,8 @@ Result<Scene> measureScene(const Plane& plane, std::vector<std::unique_ptr<Codec
                     const double encode = cpuNsOf([&] { size = codec->encode(part, bytes); });
                     if (!size) return size.error();
                     Result<void> decoded;
-                    const double decode = cpuNsOf([&] { decoded = codec->decode(std::span(bytes).first(*size), target.view()); });
+                    const double decode =
+                        cpuNsOf([&] { decoded = codec->decode(std::span(bytes).first(*size), target.view()); });
                     if (!decoded) return decoded.error();
                     o.bytes = static_cast<double>(*size);
                     if (sample < 0) continue;
@@ -67,14 +69,15 @@ Result<Scene> measureScene(const Plane& plane, std::vector<std::unique_ptr<Codec
 
 double timeNs(const Outcome& o, int sample, double bytesPerSec, Overlap overlap) {
     const double transfer = o.bytes * 1e9 / bytesPerSec;
-    return overlap == Overlap::Serial ? o.encodeNs[sample] + o.decodeNs[sample] + transfer : std::max({o.encodeNs[sample], o.decodeNs[sample], transfer});
+    return overlap == Overlap::Serial ? o.encodeNs[sample] + o.decodeNs[sample] + transfer
+                                      : std::max({o.encodeNs[sample], o.decodeNs[sample], transfer});
 }
 
 struct Race {
-    double selected = 0; // total time
+    double selected = 0;                                             // total time
     std::vector<double> each = std::vector<double>(kChoices.size()); // of each codec alone
-    double perScene = 0; // of the best codec per scene
-    double perPiece = 0; // of the best codec per piece, an oracle
+    double perScene = 0;                                             // of the best codec per scene
+    double perPiece = 0;                                             // of the best codec per piece, an oracle
 };
 
 // Sends all scenes over one link: the selector against each codec alone.
@@ -91,14 +94,18 @@ Race run(const std::vector<Scene>& scenes, double bytesPerSec, Overlap overlap) 
                 const size_t c = choice.codec;
                 const Outcome& o = piece.outcomes[c];
                 race.selected += timeNs(o, sample, bytesPerSec, overlap);
-                selector.encoded(piece.tile, c, piece.rawBytes, static_cast<uint64_t>(o.bytes), static_cast<int64_t>(o.encodeNs[sample]));
+                selector.encoded(piece.tile, c, piece.rawBytes, static_cast<uint64_t>(o.bytes),
+                                 static_cast<int64_t>(o.encodeNs[sample]));
                 if (choice.measure) { // not hidden by other work
                     const Outcome& other = piece.outcomes[*choice.measure];
                     race.selected += other.encodeNs[sample] + other.decodeNs[sample];
-                    selector.measured(piece.tile, *choice.measure, piece.rawBytes, static_cast<uint64_t>(other.bytes), static_cast<int64_t>(other.encodeNs[sample]), static_cast<int64_t>(other.decodeNs[sample]));
+                    selector.measured(piece.tile, *choice.measure, piece.rawBytes, static_cast<uint64_t>(other.bytes),
+                                      static_cast<int64_t>(other.encodeNs[sample]),
+                                      static_cast<int64_t>(other.decodeNs[sample]));
                 }
                 selector.decoded(piece.tile, c, piece.rawBytes, static_cast<int64_t>(o.decodeNs[sample]));
-                selector.transferred(static_cast<uint64_t>(o.bytes), std::max<int64_t>(1, static_cast<int64_t>(o.bytes * 1e9 / bytesPerSec)));
+                selector.transferred(static_cast<uint64_t>(o.bytes),
+                                     std::max<int64_t>(1, static_cast<int64_t>(o.bytes * 1e9 / bytesPerSec)));
                 double best = std::numeric_limits<double>::max();
                 for (size_t i = 0; i < kChoices.size(); ++i) {
                     const double t = timeNs(piece.outcomes[i], sample, bytesPerSec, overlap);
@@ -142,18 +149,26 @@ Faults benchSelector(const std::vector<NamedPlane>& planes, const BenchOptions&)
             scenes.push_back(std::move(*scene));
         }
         if (scenes.empty()) continue;
-        fmt::print("\nselector, {}: {} scenes of {} frames one after the other, in pieces of {}x{}; codecs are measured, the link is reckoned\n", nameOf(format), scenes.size(), kFramesOfScene, kPieceColumns, kPieceRows);
-        fmt::print("{:<22} {:<28} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "best alone", "all", "worst", "scene", "piece", "raw");
+        fmt::print("\nselector, {}: {} scenes of {} frames one after the other, in pieces of {}x{}; codecs are "
+                   "measured, the link is reckoned\n",
+                   nameOf(format), scenes.size(), kFramesOfScene, kPieceColumns, kPieceRows);
+        fmt::print("{:<22} {:<28} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "best alone", "all", "worst", "scene",
+                   "piece", "raw");
         for (const Overlap overlap : {Overlap::Serial, Overlap::Pipelined})
             for (const double gbit : kGbitPerSec) {
                 const Race r = run(scenes, gbit * 1e9 / 8, overlap);
                 const auto best = std::ranges::min_element(r.each);
                 const double worst = worstOfOrders(scenes, gbit * 1e9 / 8, overlap);
                 const std::string& name = kChoices[static_cast<size_t>(best - r.each.begin())];
-                fmt::print("{:<22} {:<28} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.2f}\n", fmt::format("{:>5} Gbit/s, {}", gbit, overlap == Overlap::Serial ? "serial" : "pipelined"), name, r.selected / *best, worst, r.selected / r.perScene,
-                           r.selected / r.perPiece, r.selected / r.each[2]);
+                fmt::print("{:<22} {:<28} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.2f}\n",
+                           fmt::format("{:>5} Gbit/s, {}", gbit, overlap == Overlap::Serial ? "serial" : "pipelined"),
+                           name, r.selected / *best, worst, r.selected / r.perScene, r.selected / r.perPiece,
+                           r.selected / r.each[2]);
             }
-        fmt::print("time of the selector's choices over that of the codec that is the best one alone, known afterwards: for all scenes, the\nworst of {} orders of them, for each scene, for each piece; and over that of raw pieces\n", kOrders);
+        fmt::print("time of the selector's choices over that of the codec that is the best one alone, known "
+                   "afterwards: for all scenes, the\nworst of {} orders of them, for each scene, for each piece; and "
+                   "over that of raw pieces\n",
+                   kOrders);
     }
     return {};
 }

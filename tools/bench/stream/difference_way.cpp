@@ -16,11 +16,15 @@ struct Command {
 struct Frame {
     std::vector<std::byte> bytes;
     std::vector<Command> commands;
-    [[nodiscard]] std::span<const std::byte> of(const Command& c) const { return std::span(bytes).subspan(c.at, c.sizeBytes); }
+    [[nodiscard]] std::span<const std::byte> of(const Command& c) const {
+        return std::span(bytes).subspan(c.at, c.sizeBytes);
+    }
 };
 
 // memcmp instead of std::ranges::equal, which compares byte by byte: competitors are measured at their best.
-bool isSame(std::span<const std::byte> a, std::span<const std::byte> b) { return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0; }
+bool isSame(std::span<const std::byte> a, std::span<const std::byte> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
+}
 
 class DifferenceWay final : public Way {
 public:
@@ -57,7 +61,9 @@ public:
         number(same);
         if (left_.size() > LZ4_MAX_INPUT_SIZE) return Error{"a frame is too large for LZ4"};
         out_.resize(static_cast<size_t>(LZ4_compressBound(static_cast<int>(left_.size()))));
-        const int bytes = LZ4_compress_default(reinterpret_cast<const char*>(left_.data()), reinterpret_cast<char*>(out_.data()), static_cast<int>(left_.size()), static_cast<int>(out_.size()));
+        const int bytes =
+            LZ4_compress_default(reinterpret_cast<const char*>(left_.data()), reinterpret_cast<char*>(out_.data()),
+                                 static_cast<int>(left_.size()), static_cast<int>(out_.size()));
         cpuNs_ += threadCpuNowNs() - beganNs;
         std::swap(before_, now_);
         now_.bytes.clear();

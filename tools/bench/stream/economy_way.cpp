@@ -13,7 +13,8 @@ namespace {
 
 class EconomyWay final : public Way {
 public:
-    EconomyWay(std::unique_ptr<DeltaStream> economy, const delta::Limits& limits, bool holds) : economy_(std::move(economy)), unpacker_(limits), holds_(holds) {
+    EconomyWay(std::unique_ptr<DeltaStream> economy, const delta::Limits& limits, bool holds)
+        : economy_(std::move(economy)), unpacker_(limits), holds_(holds) {
         economy_->sendBy([this] { take(); });
         if (!holds) economy_->holdNothing(); // decoded packets are compared with the originals
     }
@@ -48,7 +49,8 @@ public:
             if (batches_.empty()) return Error{"packets are missing when they have been unpacked"};
             if (auto begun = unpack(); !begun) return begun;
         }
-        if (stream != p.stream || payload.size() != p.payload.size() || std::memcmp(payload.data(), p.payload.data(), payload.size()) != 0)
+        if (stream != p.stream || payload.size() != p.payload.size() ||
+            std::memcmp(payload.data(), p.payload.data(), payload.size()) != 0)
             return Error{"a packet is another one when it has been unpacked"};
         return {};
     }
@@ -85,10 +87,10 @@ private:
     std::unique_ptr<DeltaStream> economy_;
     delta::BatchDecoder decoder_;
     delta::DeltaDecoder unpacker_;
-    std::vector<Sent> sent_; // of the frame
+    std::vector<Sent> sent_;                     // of the frame
     std::deque<std::vector<std::byte>> batches_; // not decoded yet
-    std::vector<std::byte> batch_; // being decoded
-    const bool holds_; // with the filter, output differs from input and is not compared
+    std::vector<std::byte> batch_;               // being decoded
+    const bool holds_;                           // with the filter, output differs from input and is not compared
     bool unpacking_ = false;
     int64_t cpuNs_ = 0;
     std::string wrong_;

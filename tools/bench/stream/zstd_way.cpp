@@ -28,7 +28,8 @@ public:
             std::memcpy(frame_.data() + at, packet.data(), packet.size());
             at += packet.size();
         }
-        const size_t bytes = ZSTD_compressCCtx(compressor_.get(), out_.data(), out_.size(), frame_.data(), frame_.size(), level_);
+        const size_t bytes =
+            ZSTD_compressCCtx(compressor_.get(), out_.data(), out_.size(), frame_.data(), frame_.size(), level_);
         cpuNs_ += threadCpuNowNs() - beganNs;
         packets_.clear();
         frameBytes_ = 0;

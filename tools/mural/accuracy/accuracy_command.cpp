@@ -36,11 +36,14 @@ int complain(const Error& error) {
 
 // Reports errors common to all runs once, before the first run.
 Result<void> checkSubject(const BenchArguments& a) {
-    if (!a.program.empty() && !a.recordings.empty()) return Error{"--recording is measured beside Mural's own scenes, not beside a program; leave out one of the two"};
+    if (!a.program.empty() && !a.recordings.empty())
+        return Error{
+            "--recording is measured beside Mural's own scenes, not beside a program; leave out one of the two"};
     for (const std::string& recording : a.recordings)
         if (auto r = checkRecording(recording, say); !r) return r;
     if (a.program.empty()) return {};
-    const launch::ProgramCheck program = launch::checkProgram(a.program.front(), launch::Environment::current().get("PATH").value_or("/usr/bin:/bin"));
+    const launch::ProgramCheck program =
+        launch::checkProgram(a.program.front(), launch::Environment::current().get("PATH").value_or("/usr/bin:/bin"));
     if (!program.ok()) return Error{program.message};
     return {};
 }
@@ -95,8 +98,14 @@ void describeBench(CLI::App& command, BenchArguments& a) {
     command.add_option("--json", a.json, "write what was measured into this file, too")->type_name("FILE");
     command.add_option("--svg", a.svg, "draw what was measured into this file")->type_name("FILE");
     command.add_flag("--quick", a.quick, "small pictures, and one decomposition of each kind");
-    command.add_option("--recording", a.recordings, "measure on this recording of a program, too (mural run --record); may be given again")->type_name("FILE");
-    command.add_option("--frames", a.frames, "of a program after --: at least so many frames are compared")->type_name("N")->check(CLI::Range(int64_t{1}, int64_t{1'000'000}))->capture_default_str();
+    command
+        .add_option("--recording", a.recordings,
+                    "measure on this recording of a program, too (mural run --record); may be given again")
+        ->type_name("FILE");
+    command.add_option("--frames", a.frames, "of a program after --: at least so many frames are compared")
+        ->type_name("N")
+        ->check(CLI::Range(int64_t{1}, int64_t{1'000'000}))
+        ->capture_default_str();
 }
 
 int benchCommand(const BenchArguments& a) {

@@ -14,7 +14,7 @@ struct BenchArguments {
     bool quick = false;
     int64_t frames = 30;
     std::vector<std::string> recordings; // traces of `mural run --record`
-    std::vector<std::string> program; // empty: Mural's own scenes
+    std::vector<std::string> program;    // empty: Mural's own scenes
 };
 
 void describeBench(CLI::App& command, BenchArguments& arguments);

@@ -24,9 +24,12 @@ constexpr double kWidth = 1080, kLabels = 330, kNone = 60, kPlot = 440; // colum
 constexpr double kLeft = kLabels + kNone, kRight = kLeft + kPlot;
 constexpr double kTop = 118, kRow = 17, kHeading = 26;
 constexpr double kLeast = 1e-3, kMost = 255;
-const char *const kGood = "#1f6f8b", *const kBad = "#c0392b", *const kFaint = "#d5dce3", *const kText = "#1f2933", *const kSoft = "#66727f";
+const char *const kGood = "#1f6f8b", *const kBad = "#c0392b", *const kFaint = "#d5dce3", *const kText = "#1f2933",
+                  *const kSoft = "#66727f";
 
-double placeOf(double value) { return kLeft + kPlot * std::log(std::clamp(value, kLeast, kMost) / kLeast) / std::log(kMost / kLeast); }
+double placeOf(double value) {
+    return kLeft + kPlot * std::log(std::clamp(value, kLeast, kMost) / kLeast) / std::log(kMost / kLeast);
+}
 
 Style filled(const char* colour, double rounding) {
     Style style;
@@ -50,13 +53,18 @@ Style ringed(const char* colour) {
 
 Box around(Point at, double radius) { return {at.x - radius, at.y - radius, 2 * radius, 2 * radius}; }
 
-void drawPromise(Svg& svg, double x, double y, bool ofRing) { svg.line({x, y - 6}, {x, y + 6}, stroked(kBad, 2, ofRing ? "2 2" : "")); }
-void drawDot(Svg& svg, Point at, const char* colour, const std::string& tip) { svg.rect(around(at, 4.5), filled(colour, 4.5), tip); }
+void drawPromise(Svg& svg, double x, double y, bool ofRing) {
+    svg.line({x, y - 6}, {x, y + 6}, stroked(kBad, 2, ofRing ? "2 2" : ""));
+}
+void drawDot(Svg& svg, Point at, const char* colour, const std::string& tip) {
+    svg.rect(around(at, 4.5), filled(colour, 4.5), tip);
+}
 void drawRing(Svg& svg, Point at, const char* colour) { svg.rect(around(at, 4), ringed(colour)); }
 
 void drawHead(Svg& svg, const AccuracyReport& report, double bottom) {
     svg.text({16, 28}, "How far Mural's pictures are from the reference", {.size = 18, .color = kText, .bold = true});
-    svg.text({16, 47}, report.subject + (report.gl.empty() ? "" : "; " + report.gl), {.size = 11, .color = kSoft}, kWidth - 32);
+    svg.text({16, 47}, report.subject + (report.gl.empty() ? "" : "; " + report.gl), {.size = 11, .color = kSoft},
+             kWidth - 32);
     drawDot(svg, {22, 66}, kGood, "");
     svg.text({32, 70}, "largest error of any colour value", {.size = 11, .color = kText});
     drawRing(svg, {240, 66}, kGood);
@@ -65,7 +73,8 @@ void drawHead(Svg& svg, const AccuracyReport& report, double bottom) {
     svg.text({412, 70}, "promised for the largest", {.size = 11, .color = kText});
     drawPromise(svg, 578, 66, true);
     svg.text({586, 70}, "promised for the root mean square (as PSNR)", {.size = 11, .color = kText});
-    svg.text({(kLeft + kRight) / 2, 92}, "error, in steps of 1/255 of full brightness (logarithmic)", {.size = 11, .color = kSoft, .align = Align::Middle});
+    svg.text({(kLeft + kRight) / 2, 92}, "error, in steps of 1/255 of full brightness (logarithmic)",
+             {.size = 11, .color = kSoft, .align = Align::Middle});
     svg.rect({kLabels, 98, kNone, bottom - 98}, filled("#eef6ee", 0));
     svg.text({kLabels + kNone / 2, 110}, "equal", {.size = 10, .color = kText, .align = Align::Middle});
     for (const double tick : {0.001, 0.01, 0.1, 1.0, 10.0, 100.0, 255.0}) {
@@ -83,10 +92,12 @@ std::string shareText(const MeasuredError& e) {
 void drawRow(Svg& svg, const AccuracyRow& row, double y) {
     const char* colour = row.holds() ? kGood : kBad;
     svg.text({28, y + 4}, row.what, {.size = 11, .color = row.holds() ? kText : kBad}, kLabels - 34);
-    if (!row.failure.empty()) return svg.text({kLeft, y + 4}, "failed: " + row.failure, {.size = 11, .color = kBad}, kWidth - kLeft - 10);
+    if (!row.failure.empty())
+        return svg.text({kLeft, y + 4}, "failed: " + row.failure, {.size = 11, .color = kBad}, kWidth - kLeft - 10);
     const auto at = [&](double value) { return Point{value > 0 ? placeOf(value) : kLabels + kNone / 2, y}; };
     const double usual = row.error.rootMeanSquare();
-    const std::string tip = fmt::format("{}, against {}: largest {:.3g}, root mean square {:.3g}; promised: {}", row.what, row.reference, row.error.largest, usual, row.bound.text());
+    const std::string tip = fmt::format("{}, against {}: largest {:.3g}, root mean square {:.3g}; promised: {}",
+                                        row.what, row.reference, row.error.largest, usual, row.bound.text());
     if (row.bound.largest) drawPromise(svg, placeOf(*row.bound.largest), y, false);
     if (row.bound.psnr) drawPromise(svg, placeOf(255 / std::pow(10, *row.bound.psnr / 20)), y, true);
     if (usual > 0) {
@@ -102,7 +113,8 @@ void drawRow(Svg& svg, const AccuracyRow& row, double y) {
 std::string plotOf(const AccuracyReport& report) {
     double height = kTop;
     std::string group;
-    for (const AccuracyRow& row : report.rows) height += kRow + (std::exchange(group, row.group) != row.group ? kHeading : 0);
+    for (const AccuracyRow& row : report.rows)
+        height += kRow + (std::exchange(group, row.group) != row.group ? kHeading : 0);
     Svg svg;
     drawHead(svg, report, height + 4);
     double y = kTop;

@@ -17,12 +17,12 @@ struct Cost {
 };
 
 struct AccuracyRow {
-    std::string group; // heading
-    std::string what; // measured method
+    std::string group;     // heading
+    std::string what;      // measured method
     std::string reference; // reference
     MeasuredError error;
     Bound bound;
-    std::string failure; // reason of a failed measurement; empty: none
+    std::string failure;           // reason of a failed measurement; empty: none
     std::optional<Cost> cost = {}; // if measured
 
     [[nodiscard]] bool holds() const { return failure.empty() && bound.holds(error); }
@@ -37,7 +37,7 @@ struct AccuracyCounts {
 // Results of one run.
 struct AccuracyReport {
     std::string subject; // drawn contents and size
-    std::string gl; // renderer and version; empty: unknown
+    std::string gl;      // renderer and version; empty: unknown
     std::vector<AccuracyRow> rows;
 
     [[nodiscard]] bool holds() const;

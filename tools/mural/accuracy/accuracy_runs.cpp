@@ -78,9 +78,11 @@ Result<OwnedPicture> readPpm(const std::string& path) {
     OwnedPicture picture(width, height);
     std::vector<char> row(static_cast<size_t>(width) * 3);
     for (int y = height; y-- > 0;) { // files begin with the top row
-        if (!file.read(row.data(), static_cast<std::streamsize>(row.size()))) return Error{path + " ends too early; was the disk full?"};
+        if (!file.read(row.data(), static_cast<std::streamsize>(row.size())))
+            return Error{path + " ends too early; was the disk full?"};
         for (size_t x = 0; x < static_cast<size_t>(width); ++x)
-            for (size_t c = 0; c < 4; ++c) picture.row(y)[4 * x + c] = c < 3 ? static_cast<std::byte>(row[3 * x + 2 - c]) : std::byte{255};
+            for (size_t c = 0; c < 4; ++c)
+                picture.row(y)[4 * x + c] = c < 3 ? static_cast<std::byte>(row[3 * x + 2 - c]) : std::byte{255};
     }
     return picture;
 }
@@ -91,7 +93,9 @@ Result<ScratchFolder> ScratchFolder::make() {
     std::error_code error;
     const std::filesystem::path all = std::filesystem::temp_directory_path(error);
     std::string path = (error ? std::filesystem::path("/tmp") : all) / "mural-accuracy.XXXXXX";
-    if (mkdtemp(path.data()) == nullptr) return Error{"no folder for pictures: " + path + ": " + std::strerror(errno) + "; set TMPDIR to one that can be written"};
+    if (mkdtemp(path.data()) == nullptr)
+        return Error{"no folder for pictures: " + path + ": " + std::strerror(errno) +
+                     "; set TMPDIR to one that can be written"};
     return ScratchFolder(path);
 }
 
@@ -109,7 +113,9 @@ Result<AccuracyRuns> AccuracyRuns::open() {
     return AccuracyRuns(std::move(*display), std::move(*scratch));
 }
 
-Result<std::string> AccuracyRuns::native(const Words& program) const { return perform(program, program.front(), kRunMs); }
+Result<std::string> AccuracyRuns::native(const Words& program) const {
+    return perform(program, program.front(), kRunMs);
+}
 
 Result<std::string> AccuracyRuns::mural(const Words& options, const Words& program, int64_t frames) const {
     Words command{launch::ownBinary(), "run", "--quiet", "--display", "none"};
@@ -143,7 +149,10 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
     request.outputFd = ::open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     request.errorFd = ::open(complained.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     request.signalWhenWeDie = SIGTERM;
-    auto child = request.outputFd >= 0 && request.errorFd >= 0 ? launch::ChildProcess::start(request) : Result<launch::ChildProcess>(Error{scratch_.path() + " can't be written: " + std::strerror(errno)});
+    auto child =
+        request.outputFd >= 0 && request.errorFd >= 0
+            ? launch::ChildProcess::start(request)
+            : Result<launch::ChildProcess>(Error{scratch_.path() + " can't be written: " + std::strerror(errno)});
     if (request.outputFd >= 0) close(request.outputFd);
     if (request.errorFd >= 0) close(request.errorFd);
     if (!child) return child.error();

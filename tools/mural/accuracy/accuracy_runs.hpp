@@ -43,7 +43,8 @@ public:
     [[nodiscard]] static Result<std::string> scenesProgram();
 
 private:
-    AccuracyRuns(std::unique_ptr<launch::PrivateDisplay> display, ScratchFolder scratch) : display_(std::move(display)), scratch_(std::move(scratch)) {}
+    AccuracyRuns(std::unique_ptr<launch::PrivateDisplay> display, ScratchFolder scratch)
+        : display_(std::move(display)), scratch_(std::move(scratch)) {}
     [[nodiscard]] Result<std::string> perform(const Words& command, const std::string& name, int64_t limitMs) const;
 
     std::unique_ptr<launch::PrivateDisplay> display_;

@@ -12,7 +12,8 @@ namespace {
 
 // Counts characters, not bytes.
 size_t lengthOf(const std::string& text) {
-    return static_cast<size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+    return static_cast<size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
 std::string padded(const std::string& text, size_t width, bool right) {
@@ -22,9 +23,16 @@ std::string padded(const std::string& text, size_t width, bool right) {
 
 std::vector<std::string> cellsOf(const AccuracyRow& row) {
     const auto psnr = row.error.psnr();
-    return {"  " + row.what, row.reference, spaced(row.error.pixels), spaced(row.error.differing), fmt::format("{:.3g}", row.error.largest),
-            psnr ? fmt::format("{:.1f}", *psnr) : "∞", row.cost ? fmt::format("{:.3g}", row.cost->cpuNs) : "", row.cost ? fmt::format("{:.3g}", row.cost->bytes) : "",
-            row.bound.text(), row.holds() ? "ok" : "BROKEN"};
+    return {"  " + row.what,
+            row.reference,
+            spaced(row.error.pixels),
+            spaced(row.error.differing),
+            fmt::format("{:.3g}", row.error.largest),
+            psnr ? fmt::format("{:.1f}", *psnr) : "∞",
+            row.cost ? fmt::format("{:.3g}", row.cost->cpuNs) : "",
+            row.cost ? fmt::format("{:.3g}", row.cost->bytes) : "",
+            row.bound.text(),
+            row.holds() ? "ok" : "BROKEN"};
 }
 
 } // namespace
@@ -54,7 +62,8 @@ std::string spaced(int64_t number) {
 }
 
 std::string tableOf(const AccuracyReport& report) {
-    std::vector<std::vector<std::string>> lines{{"  what", "against", "pixels", "differ", "largest of 255", "PSNR dB", "ns/pixel", "bytes/pixel", "bound", ""}};
+    std::vector<std::vector<std::string>> lines{
+        {"  what", "against", "pixels", "differ", "largest of 255", "PSNR dB", "ns/pixel", "bytes/pixel", "bound", ""}};
     for (const AccuracyRow& row : report.rows)
         if (row.failure.empty()) lines.push_back(cellsOf(row));
     std::vector<size_t> widths(lines[0].size(), 0);
@@ -62,7 +71,8 @@ std::string tableOf(const AccuracyReport& report) {
         for (size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], lengthOf(line[c]));
     const auto print = [&](const std::vector<std::string>& line) {
         std::string text;
-        for (size_t c = 0; c < line.size(); ++c) text += padded(line[c], widths[c], c >= 2 && c <= 7) + (c + 1 < line.size() ? "  " : "\n");
+        for (size_t c = 0; c < line.size(); ++c)
+            text += padded(line[c], widths[c], c >= 2 && c <= 7) + (c + 1 < line.size() ? "  " : "\n");
         text.erase(text.find_last_not_of(" \n") + 1);
         return text + "\n";
     };
@@ -78,10 +88,18 @@ std::string tableOf(const AccuracyReport& report) {
 }
 
 std::string jsonOf(const AccuracyReport& report) {
-    nlohmann::ordered_json all{{"subject", report.subject}, {"gl", report.gl}, {"holds", report.holds()}, {"rows", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json all{{"subject", report.subject},
+                               {"gl", report.gl},
+                               {"holds", report.holds()},
+                               {"rows", nlohmann::ordered_json::array()}};
     for (const AccuracyRow& row : report.rows) {
-        nlohmann::ordered_json j{{"group", row.group}, {"what", row.what}, {"reference", row.reference}, {"pixels", row.error.pixels}, {"differingPixels", row.error.differing},
-                                 {"largest", row.error.largest}, {"rootMeanSquare", row.error.rootMeanSquare()}};
+        nlohmann::ordered_json j{{"group", row.group},
+                                 {"what", row.what},
+                                 {"reference", row.reference},
+                                 {"pixels", row.error.pixels},
+                                 {"differingPixels", row.error.differing},
+                                 {"largest", row.error.largest},
+                                 {"rootMeanSquare", row.error.rootMeanSquare()}};
         j["psnr"] = row.error.psnr() ? nlohmann::ordered_json(*row.error.psnr()) : nlohmann::ordered_json();
         nlohmann::ordered_json bound = nlohmann::ordered_json::object();
         if (row.bound.differingShare) bound["differingShare"] = *row.bound.differingShare;

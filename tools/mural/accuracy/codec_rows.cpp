@@ -35,7 +35,8 @@ MeasuredError errorOfPlanes(const Plane& wanted, const Plane& got) {
     return error;
 }
 
-AccuracyRow codecRow(CodecRegistry& registry, const std::string& group, const std::string& name, const Bound& bound, const std::vector<Plane>& planes) {
+AccuracyRow codecRow(CodecRegistry& registry, const std::string& group, const std::string& name, const Bound& bound,
+                     const std::vector<Plane>& planes) {
     AccuracyRow row{group, name, "the picture", {}, bound, {}};
     size_t before = 0, packed = 0;
     int64_t tookNs = 0;
@@ -61,22 +62,27 @@ AccuracyRow codecRow(CodecRegistry& registry, const std::string& group, const st
     }
     const double pixels = static_cast<double>(std::max<size_t>(before, 4)) / 4;
     row.cost = Cost{static_cast<double>(tookNs) / pixels, static_cast<double>(packed) / pixels};
-    row.what = fmt::format("{}, {:.3g} times smaller", name, static_cast<double>(before) / static_cast<double>(std::max<size_t>(packed, 1)));
+    row.what = fmt::format("{}, {:.3g} times smaller", name,
+                           static_cast<double>(before) / static_cast<double>(std::max<size_t>(packed, 1)));
     return row;
 }
 
 } // namespace
 
-void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string& group, bool quick, std::vector<AccuracyRow>& rows) {
+void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string& group, bool quick,
+                   std::vector<AccuracyRow>& rows) {
     if (pictures.empty()) return;
     std::vector<Plane> planes;
     for (const OwnedPicture& p : pictures) planes.push_back(planeOf(p.view()));
     CodecRegistry registry;
     for (const CodecInfo& codec : registry.losslessFor(PlaneFormat::Rgba8))
-        if (!quick || codec.name == "bitplane" || codec.name == "zstd") rows.push_back(codecRow(registry, group, codec.name, Bound::exact(), planes));
+        if (!quick || codec.name == "bitplane" || codec.name == "zstd")
+            rows.push_back(codecRow(registry, group, codec.name, Bound::exact(), planes));
     // Lossy codecs are selected by name only. Their bounds are their own losses; a fault would lose more.
-    for (const auto& [name, psnr] : {std::pair("yuv420", 28.0), std::pair("jpeg-100", 30.0), std::pair("jpeg-95", 28.0), std::pair("jpeg-80", 25.0), std::pair("jpeg-50", 22.0)})
-        if (!quick || std::string(name) == "yuv420" || std::string(name) == "jpeg-95") rows.push_back(codecRow(registry, group, name, {{}, {}, psnr}, planes));
+    for (const auto& [name, psnr] : {std::pair("yuv420", 28.0), std::pair("jpeg-100", 30.0), std::pair("jpeg-95", 28.0),
+                                     std::pair("jpeg-80", 25.0), std::pair("jpeg-50", 22.0)})
+        if (!quick || std::string(name) == "yuv420" || std::string(name) == "jpeg-95")
+            rows.push_back(codecRow(registry, group, name, {{}, {}, psnr}, planes));
 }
 
 } // namespace mural::cli

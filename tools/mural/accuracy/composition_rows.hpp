@@ -9,6 +9,7 @@ namespace mural::cli {
 void measureComposition(std::vector<AccuracyRow>& rows);
 
 // Measures codecs on pictures of the scenes; without pictures, nothing.
-void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string& group, bool quick, std::vector<AccuracyRow>& rows);
+void measureCodecs(const std::vector<OwnedPicture>& pictures, const std::string& group, bool quick,
+                   std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

@@ -18,7 +18,8 @@ using drawing::Svg;
 
 // relative to 255; column of exact results; room for numbers
 constexpr double kMinError = 1e-3, kMaxError = 100, kExact = 60, kAxis = 40;
-constexpr std::array<const char*, 8> kColours{"#1f6f8b", "#c46a1b", "#5b8c2a", "#8e3b8a", "#b8312f", "#2f4b8f", "#8a7a1d", "#3f3f46"};
+constexpr std::array<const char*, 8> kColours{"#1f6f8b", "#c46a1b", "#5b8c2a", "#8e3b8a",
+                                              "#b8312f", "#2f4b8f", "#8a7a1d", "#3f3f46"};
 const char *const kText = "#1f2933", *const kSoft = "#66727f", *const kFaint = "#d5dce3";
 
 struct Plot {
@@ -28,9 +29,12 @@ struct Plot {
     [[nodiscard]] double x(double error) const {
         if (error <= 0) return area.x + kAxis + kExact / 2;
         const double left = area.x + kAxis + kExact;
-        return left + (area.x + area.w - left) * std::log(std::clamp(error, kMinError, kMaxError) / kMinError) / std::log(kMaxError / kMinError);
+        return left + (area.x + area.w - left) * std::log(std::clamp(error, kMinError, kMaxError) / kMinError) /
+                          std::log(kMaxError / kMinError);
     }
-    [[nodiscard]] double y(double value) const { return area.y + area.h - area.h * std::log(std::clamp(value, least, most) / least) / std::log(most / least); }
+    [[nodiscard]] double y(double value) const {
+        return area.y + area.h - area.h * std::log(std::clamp(value, least, most) / least) / std::log(most / least);
+    }
 };
 
 void drawFrame(Svg& svg, const Plot& p, const std::string& title) {
@@ -40,16 +44,20 @@ void drawFrame(Svg& svg, const Plot& p, const std::string& title) {
     column.fill = "#eef6ee";
     svg.text({p.area.x, p.area.y - 24}, title, {.size = 12, .color = kText, .bold = true});
     svg.rect({p.area.x + kAxis, p.area.y, kExact, p.area.h}, column);
-    svg.text({p.area.x + kAxis + kExact / 2, p.area.y + p.area.h + 14}, "equal", {.size = 10, .color = kText, .align = Align::Middle});
+    svg.text({p.area.x + kAxis + kExact / 2, p.area.y + p.area.h + 14}, "equal",
+             {.size = 10, .color = kText, .align = Align::Middle});
     for (double v = p.least; v <= p.most * 1.01; v *= 10) {
         svg.line({p.area.x + kAxis, p.y(v)}, {p.area.x + p.area.w, p.y(v)}, faint);
-        svg.text({p.area.x + kAxis - 5, p.y(v) + 3}, fmt::format("{:g}", v), {.size = 10, .color = kText, .align = Align::Right});
+        svg.text({p.area.x + kAxis - 5, p.y(v) + 3}, fmt::format("{:g}", v),
+                 {.size = 10, .color = kText, .align = Align::Right});
     }
     for (double v = kMinError; v <= kMaxError * 1.01; v *= 10) {
         svg.line({p.x(v), p.area.y}, {p.x(v), p.area.y + p.area.h}, faint);
-        svg.text({p.x(v), p.area.y + p.area.h + 14}, fmt::format("{:g}", v), {.size = 10, .color = kText, .align = Align::Middle});
+        svg.text({p.x(v), p.area.y + p.area.h + 14}, fmt::format("{:g}", v),
+                 {.size = 10, .color = kText, .align = Align::Middle});
     }
-    svg.text({p.area.x + (p.area.w + kAxis) / 2, p.area.y + p.area.h + 30}, "root mean square error, of 255", {.size = 11, .color = kSoft, .align = Align::Middle});
+    svg.text({p.area.x + (p.area.w + kAxis) / 2, p.area.y + p.area.h + 30}, "root mean square error, of 255",
+             {.size = 11, .color = kSoft, .align = Align::Middle});
 }
 
 // Short label: the text after a colon, up to the first comma.
@@ -59,7 +67,8 @@ std::string labelOf(const std::string& what) {
     return own.substr(0, own.find(','));
 }
 
-void drawDots(Svg& svg, const Plot& p, const AccuracyReport& report, double Cost::*value, const std::map<std::string, size_t>& groups) {
+void drawDots(Svg& svg, const Plot& p, const AccuracyReport& report, double Cost::*value,
+              const std::map<std::string, size_t>& groups) {
     std::vector<Box> taken; // areas of labels
     for (const AccuracyRow& row : report.rows) {
         if (!row.cost || !row.failure.empty() || (*row.cost).*value <= 0) continue;
@@ -69,12 +78,17 @@ void drawDots(Svg& svg, const Plot& p, const AccuracyReport& report, double Cost
         Style dot;
         dot.fill = colour;
         dot.rounding = 4;
-        svg.rect({at.x - 4, at.y - 4, 8, 8}, dot, fmt::format("{}: {}; error {:.3g}, {:.3g} ns and {:.3g} bytes per pixel", row.group, row.what, error, row.cost->cpuNs, row.cost->bytes));
+        svg.rect({at.x - 4, at.y - 4, 8, 8}, dot,
+                 fmt::format("{}: {}; error {:.3g}, {:.3g} ns and {:.3g} bytes per pixel", row.group, row.what, error,
+                             row.cost->cpuNs, row.cost->bytes));
         if (error <= 0) continue; // too dense for labels; tooltips identify them
         const std::string label = labelOf(row.what);
         Box box{at.x + 6, at.y - 5, Svg::widthOf(label, 9), 10};
         if (box.x + box.w > p.area.x + p.area.w) box.x = at.x - 6 - box.w;
-        const auto meets = [&](const Box& other) { return box.x < other.x + other.w && other.x < box.x + box.w && box.y < other.y + other.h && other.y < box.y + box.h; };
+        const auto meets = [&](const Box& other) {
+            return box.x < other.x + other.w && other.x < box.x + box.w && box.y < other.y + other.h &&
+                   other.y < box.y + box.h;
+        };
         if (std::ranges::any_of(taken, meets)) continue;
         taken.push_back(box);
         svg.text({box.x, box.y + 8}, label, {.size = 9, .color = colour});
@@ -102,7 +116,8 @@ double drawCosts(Svg& svg, const AccuracyReport& report, const Box& area) {
     }
     y += static_cast<double>((inOrder.size() + 2) / 3) * 16 + 36;
     const double width = (area.w - 30) / 2;
-    const std::pair<const char*, double Cost::*> plots[] = {{"CPU time against error, ns per pixel", &Cost::cpuNs}, {"bytes against error, per pixel", &Cost::bytes}};
+    const std::pair<const char*, double Cost::*> plots[] = {{"CPU time against error, ns per pixel", &Cost::cpuNs},
+                                                            {"bytes against error, per pixel", &Cost::bytes}};
     for (size_t i = 0; i < 2; ++i) {
         double least = 1e9, most = 1e-9;
         for (const AccuracyRow& row : report.rows)
@@ -110,7 +125,9 @@ double drawCosts(Svg& svg, const AccuracyReport& report, const Box& area) {
                 least = std::min(least, (*row.cost).*plots[i].second);
                 most = std::max(most, (*row.cost).*plots[i].second);
             }
-        const Plot p{{area.x + static_cast<double>(i) * (width + 30), y, width, area.h}, std::pow(10, std::floor(std::log10(least))), std::pow(10, std::ceil(std::log10(most * 1.001)))};
+        const Plot p{{area.x + static_cast<double>(i) * (width + 30), y, width, area.h},
+                     std::pow(10, std::floor(std::log10(least))),
+                     std::pow(10, std::ceil(std::log10(most * 1.001)))};
         drawFrame(svg, p, plots[i].first);
         drawDots(svg, p, report, plots[i].second, groups);
     }

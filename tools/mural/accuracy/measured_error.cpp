@@ -20,7 +20,9 @@ void MeasuredError::addValue(double difference) {
     ++components;
 }
 
-double MeasuredError::rootMeanSquare() const { return components > 0 ? std::sqrt(squares / static_cast<double>(components)) : 0; }
+double MeasuredError::rootMeanSquare() const {
+    return components > 0 ? std::sqrt(squares / static_cast<double>(components)) : 0;
+}
 
 std::optional<double> MeasuredError::psnr() const {
     if (squares <= 0) return {};
@@ -35,7 +37,8 @@ MeasuredError errorOf(const Picture& expected, const Picture& actual) {
             bool differs = false;
             for (int c = 0; c < 3; ++c) {
                 const int at = 4 * x + c;
-                const int d = same ? std::to_integer<int>(expected.row(y)[at]) - std::to_integer<int>(actual.row(y)[at]) : 255;
+                const int d =
+                    same ? std::to_integer<int>(expected.row(y)[at]) - std::to_integer<int>(actual.row(y)[at]) : 255;
                 error.addValue(d);
                 differs = differs || d != 0;
             }
@@ -56,7 +59,8 @@ bool Bound::holds(const MeasuredError& e) const {
 std::string Bound::text() const {
     std::string text;
     const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
-    if (differingShare) add(*differingShare > 0 ? fmt::format("≤ {:g} % differ", 100 * *differingShare) : std::string("equal"));
+    if (differingShare)
+        add(*differingShare > 0 ? fmt::format("≤ {:g} % differ", 100 * *differingShare) : std::string("equal"));
     if (largest) add(fmt::format("≤ {:g} of 255", *largest));
     if (psnr) add(fmt::format("≥ {:g} dB", *psnr));
     return text.empty() ? "none" : text;

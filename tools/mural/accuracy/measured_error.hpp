@@ -13,8 +13,8 @@ namespace mural::cli {
 struct MeasuredError {
     int64_t pixels = 0;
     int64_t differing = 0; // pixels with any difference
-    double largest = 0; // of one colour component
-    double squares = 0; // sum over all components
+    double largest = 0;    // of one colour component
+    double squares = 0;    // sum over all components
     int64_t components = 0;
 
     void add(const MeasuredError& other);
@@ -22,7 +22,9 @@ struct MeasuredError {
     [[nodiscard]] double rootMeanSquare() const;
     // In decibels; empty without differences.
     [[nodiscard]] std::optional<double> psnr() const;
-    [[nodiscard]] double differingShare() const { return pixels > 0 ? static_cast<double>(differing) / static_cast<double>(pixels) : 0; }
+    [[nodiscard]] double differingShare() const {
+        return pixels > 0 ? static_cast<double>(differing) / static_cast<double>(pixels) : 0;
+    }
 };
 
 // Compares 8-bit colours. For different sizes every pixel of `expected` counts as wrong.

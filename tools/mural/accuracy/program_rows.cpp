@@ -32,7 +32,10 @@ std::vector<Way> ways() {
 Result<MeasuredError> errorOfReport(const std::string& path) {
     std::ifstream file(path);
     const auto report = nlohmann::json::parse(file, nullptr, false);
-    const auto number = [&](const char* name) { return report.is_object() && report.contains(name) && report[name].is_number() ? report[name].get<int64_t>() : 0; };
+    const auto number = [&](const char* name) {
+        return report.is_object() && report.contains(name) && report[name].is_number() ? report[name].get<int64_t>()
+                                                                                       : 0;
+    };
     MeasuredError e;
     e.pixels = number("verifiedPixels");
     e.differing = number("differingPixels");
@@ -45,7 +48,8 @@ Result<MeasuredError> errorOfReport(const std::string& path) {
 
 } // namespace
 
-void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows) {
+void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick, const SayProgress& say,
+                    std::vector<AccuracyRow>& rows) {
     for (const Way& way : ways()) {
         if (quick && !way.quick) continue;
         say(way.name);
@@ -56,8 +60,10 @@ void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t fram
         options.insert(options.end(), {"--verify", "--frames", std::to_string(frames), "--report", report});
         const auto done = folder ? runs.mural(options, program, frames) : Result<std::string>(folder.error());
         const auto error = done ? errorOfReport(report) : Result<MeasuredError>(done.error());
-        if (error) row.error = error.value();
-        else row.failure = error.error().message;
+        if (error)
+            row.error = error.value();
+        else
+            row.failure = error.error().message;
         rows.push_back(row);
     }
 }

@@ -14,14 +14,14 @@ namespace mural::cli {
 namespace {
 
 constexpr size_t kWholeFrames = 2; // per window; afterwards the reads of the program are determined
-constexpr int kMaxSamples = 16; // reference for antialiasing
+constexpr int kMaxSamples = 16;    // reference for antialiasing
 
 struct Way {
     std::string name;
     Words options;
     Bound bound;
     bool manySamples = false; // compared with the mean of kMaxSamples, not with one node's picture
-    double pictures = 1; // transferred for assembly
+    double pictures = 1;      // transferred for assembly
     bool quick = false;
     bool otherPixels = false; // nodes draw other pixels than shown, except in the first frames
 };
@@ -32,7 +32,12 @@ std::vector<Way> ways() {
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, false, 1, true},
         {"DB, 3 ranges", {"--db", "3"}, exact, false, 1, true},
         {"DPlex, 3 turns", {"--dplex", "3"}, exact, false, 1, false},
-        {"shift by the viewport: tiling lean, 2x2", {"--tiles", "2x2", "--tiling", "lean"}, notPromised, false, 1, true},
+        {"shift by the viewport: tiling lean, 2x2",
+         {"--tiles", "2x2", "--tiling", "lean"},
+         notPromised,
+         false,
+         1,
+         true},
         {"pixel, kernel of 2x1", {"--pixel", "2x1"}, notPromised, false, 1, true, true},
         {"pixel, kernel of 2x2", {"--pixel", "2x2"}, notPromised, false, 1, false, true},
         {"zoom of 0.75", {"--zoom", "0.75"}, notPromised, false, 1, false, true},
@@ -40,7 +45,13 @@ std::vector<Way> ways() {
         {"one sample", {}, notPromised, true, 1, true},
         {"zoom of 2", {"--zoom", "2"}, notPromised, true, 1, false, true},
     };
-    for (const int n : {2, 4, 8}) all.push_back({fmt::format("{} samples", n), {"--subpixel", std::to_string(n)}, notPromised, true, static_cast<double>(n), n == 2});
+    for (const int n : {2, 4, 8})
+        all.push_back({fmt::format("{} samples", n),
+                       {"--subpixel", std::to_string(n)},
+                       notPromised,
+                       true,
+                       static_cast<double>(n),
+                       n == 2});
     return all;
 }
 
@@ -63,7 +74,8 @@ Result<Replayed> replayed(const AccuracyRuns& runs, const std::string& recording
     Replayed r{std::move(*pictures), 0, 0, 0};
     std::ifstream file(report);
     const auto told = nlohmann::json::parse(file, nullptr, false);
-    if (!told.is_object() || !told.contains("nodes") || !told["nodes"].is_array()) return Error{report + " says nothing of the nodes"};
+    if (!told.is_object() || !told.contains("nodes") || !told["nodes"].is_array())
+        return Error{report + " says nothing of the nodes"};
     r.frames = told.value("frames", int64_t{0});
     for (const auto& node : told["nodes"]) {
         r.cpuSeconds += node.value("replaySeconds", 0.0) + node.value("readbackSeconds", 0.0);
@@ -78,12 +90,15 @@ Result<void> checkRecording(const std::string& recording, const SayProgress& say
     auto reader = trace::TraceReader::open(recording);
     if (!reader) return reader.error();
     if (auto whole = reader.value()->verify(); !whole) return whole.error();
-    if (reader.value()->frames() == 0) return Error{"recording " + recording + " has no frame: its program showed no picture; mural dump prints its calls"};
+    if (reader.value()->frames() == 0)
+        return Error{"recording " + recording +
+                     " has no frame: its program showed no picture; mural dump prints its calls"};
     if (!reader.value()->notice().empty()) say(reader.value()->notice());
     return {};
 }
 
-void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows) {
+void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say,
+                      std::vector<AccuracyRow>& rows) {
     const std::string name = std::filesystem::path(recording).stem().string(), group = "Recording: " + name;
     const auto one = replayed(runs, recording, {});
     if (!one) { // without a reference: reported in one line
@@ -95,16 +110,26 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         if (quick && !way.quick) continue;
         say(name + ": " + way.name);
         const Result<Replayed>& wanted = way.manySamples ? many : one;
-        AccuracyRow row{group, way.name, way.manySamples ? fmt::format("{} samples", kMaxSamples) : "one node", {}, way.bound, {}, {}};
+        AccuracyRow row{group, way.name,  way.manySamples ? fmt::format("{} samples", kMaxSamples) : "one node",
+                        {},    way.bound, {},
+                        {}};
         const auto got = wanted ? replayed(runs, recording, way.options) : Result<Replayed>(wanted.error());
-        if (!got) row.failure = got.error().message;
-        else if (got.value().pictures.size() != wanted.value().pictures.size()) row.failure = fmt::format("{} pictures came instead of {}", got.value().pictures.size(), wanted.value().pictures.size());
-        else if (way.otherPixels && got.value().pictures.size() <= kWholeFrames) row.failure = fmt::format("the first {} frames do not count, and there are no others; record more", kWholeFrames);
+        if (!got)
+            row.failure = got.error().message;
+        else if (got.value().pictures.size() != wanted.value().pictures.size())
+            row.failure = fmt::format("{} pictures came instead of {}", got.value().pictures.size(),
+                                      wanted.value().pictures.size());
+        else if (way.otherPixels && got.value().pictures.size() <= kWholeFrames)
+            row.failure =
+                fmt::format("the first {} frames do not count, and there are no others; record more", kWholeFrames);
         if (row.failure.empty()) {
             const Replayed &a = wanted.value(), &b = got.value();
-            for (size_t p = way.otherPixels ? kWholeFrames : 0; p < a.pictures.size(); ++p) row.error.add(errorOf(a.pictures[p].view(), b.pictures[p].view()));
-            const double pixels = static_cast<double>(std::max<int64_t>(b.frames, 1)) * b.pictures.front().width() * b.pictures.front().height();
-            row.cost = Cost{1e9 * b.cpuSeconds / pixels, b.exchangeBytes > 0 ? static_cast<double>(b.exchangeBytes) / pixels : 4 * way.pictures};
+            for (size_t p = way.otherPixels ? kWholeFrames : 0; p < a.pictures.size(); ++p)
+                row.error.add(errorOf(a.pictures[p].view(), b.pictures[p].view()));
+            const double pixels = static_cast<double>(std::max<int64_t>(b.frames, 1)) * b.pictures.front().width() *
+                                  b.pictures.front().height();
+            row.cost = Cost{1e9 * b.cpuSeconds / pixels,
+                            b.exchangeBytes > 0 ? static_cast<double>(b.exchangeBytes) / pixels : 4 * way.pictures};
         }
         rows.push_back(row);
     }

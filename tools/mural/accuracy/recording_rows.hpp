@@ -9,6 +9,7 @@ namespace mural::cli {
 // Validates the whole trace before replay.
 Result<void> checkRecording(const std::string& recording, const SayProgress& say);
 
-void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say, std::vector<AccuracyRow>& rows);
+void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say,
+                      std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

@@ -23,7 +23,9 @@ ResultFile::~ResultFile() {
     if (unused_) unlink(path_.c_str());
 }
 
-Error ResultFile::failed() const { return Error{name_ + " can't be written: " + std::strerror(errno) + "; name another file"}; }
+Error ResultFile::failed() const {
+    return Error{name_ + " can't be written: " + std::strerror(errno) + "; name another file"};
+}
 
 Result<void> ResultFile::write(const std::string& text) {
     if (path_.empty()) return {};

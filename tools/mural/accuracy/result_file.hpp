@@ -13,7 +13,11 @@ class ResultFile {
 public:
     // Opens the file; an empty path discards the output. Existing contents stay until write().
     static Result<ResultFile> open(const std::string& option, const std::string& path);
-    ResultFile(ResultFile&& other) noexcept : name_(std::move(other.name_)), path_(std::move(other.path_)), file_(std::move(other.file_)), unused_(std::exchange(other.unused_, false)) {}
+    ResultFile(ResultFile&& other) noexcept
+        : name_(std::move(other.name_)),
+          path_(std::move(other.path_)),
+          file_(std::move(other.file_)),
+          unused_(std::exchange(other.unused_, false)) {}
     ResultFile(const ResultFile&) = delete;
     ~ResultFile(); // removes a file that it created and did not write
 

@@ -50,7 +50,8 @@ std::vector<SceneRows::Way> SceneRows::ways() {
     const Bound mean{0.001, {}, 60.0};
     const Bounds meanScenes{mean, mean, mean, mean, mean, kNotPromised};
     const Bound kernelOfPolygons{{}, {}, 40.0};
-    const Bounds kernels{kernelOfPolygons, kernelOfPolygons, Bound::exact(), kNotPromised, kernelOfPolygons, kNotPromised};
+    const Bounds kernels{kernelOfPolygons, kernelOfPolygons, Bound::exact(),
+                         kNotPromised,     kernelOfPolygons, kNotPromised};
     const Bounds exactScenes(scenes::kSceneNames.size(), Bound::exact());
     const Bounds notPromised(scenes::kSceneNames.size(), kNotPromised);
     const Bound lean{0.0025, {}, 50.0};
@@ -62,15 +63,30 @@ std::vector<SceneRows::Way> SceneRows::ways() {
         {"DB, 2 ranges", {"--db", "2"}, exact},
         {"DB, 3 ranges", {"--db", "3"}, exact, R::Native, 1, true},
         {"DPlex, 3 turns", {"--dplex", "3"}, exact, R::Native, 1, true},
-        {"mixed: 2x1 tiles of 2 ranges", {"--tiles", "2x1", "--db", "2", "--local-nodes", "4"}, exact, R::Native, 1, true},
+        {"mixed: 2x1 tiles of 2 ranges",
+         {"--tiles", "2x1", "--db", "2", "--local-nodes", "4"},
+         exact,
+         R::Native,
+         1,
+         true},
         {"mixed: 2 turns of 1x2 tiles", {"--dplex", "2", "--tiles", "1x2", "--local-nodes", "4"}, exact},
-        {"2D, tiling lean, 2x2", {"--tiles", "2x2", "--tiling", "lean"}, {lean, lean, {{}, {}, 45.0}, lean, lean, kNotPromised}, R::Native, 1, true},
+        {"2D, tiling lean, 2x2",
+         {"--tiles", "2x2", "--tiling", "lean"},
+         {lean, lean, {{}, {}, 45.0}, lean, lean, kNotPromised},
+         R::Native,
+         1,
+         true},
         {"stereo, left eye", eye("left"), movedScenes, R::LeftEye, 1, true},
-        {"stereo, right eye of 2x1 tiles", eye("right", {"--tiles", "2x1", "--local-nodes", "2"}), movedScenes, R::RightEye},
+        {"stereo, right eye of 2x1 tiles", eye("right", {"--tiles", "2x1", "--local-nodes", "2"}), movedScenes,
+         R::RightEye},
         {"stereo, anaglyph", eye("anaglyph"), movedScenes, R::BothEyes},
         {"subpixel, 2 samples", {"--subpixel", "2"}, meanScenes, R::Mean, 2, true},
         {"subpixel, 4 samples", {"--subpixel", "4"}, meanScenes, R::Mean, 4},
-        {"mixed: 2x1 tiles of 2 samples", {"--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"}, meanScenes, R::Mean, 2},
+        {"mixed: 2x1 tiles of 2 samples",
+         {"--subpixel", "2", "--tiles", "2x1", "--local-nodes", "4"},
+         meanScenes,
+         R::Mean,
+         2},
         {"pixel, kernel of 2x1", {"--pixel", "2x1"}, kernels, R::Native, 1, false, true},
         {"pixel, kernel of 2x2", {"--pixel", "2x2"}, kernels, R::Native, 1, true, true},
         {"pixel, kernel of 3x1", {"--pixel", "3"}, kernels, R::Native, 1, false, true},
@@ -82,14 +98,16 @@ std::vector<SceneRows::Way> SceneRows::ways() {
 
 Words SceneRows::program(const Words& more) const {
     auto path = AccuracyRuns::scenesProgram();
-    Words words{path ? *path : "mural-scenes", "--size", fmt::format("{}x{}", width(), height()), "--frames", std::to_string(kRounds * scenes::kSceneNames.size())};
+    Words words{path ? *path : "mural-scenes", "--size", fmt::format("{}x{}", width(), height()), "--frames",
+                std::to_string(kRounds * scenes::kSceneNames.size())};
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
 
 std::string SceneRows::subject() const {
     const OwnedPicture& first = native_.front();
-    return fmt::format("{} scenes of mural-scenes, {} frames of {}x{} pixels", scenes::kSceneNames.size(), native_.size(), first.width(), first.height());
+    return fmt::format("{} scenes of mural-scenes, {} frames of {}x{} pixels", scenes::kSceneNames.size(),
+                       native_.size(), first.width(), first.height());
 }
 
 Result<std::vector<OwnedPicture>> SceneRows::drawNatively(const Words& more) {
@@ -117,7 +135,8 @@ Result<void> SceneRows::prepare() {
     auto drawn = drawNatively({});
     if (!drawn) return drawn.error();
     native_ = std::move(*drawn);
-    if (native_.size() != kRounds * scenes::kSceneNames.size()) return Error{"the scenes were not all drawn; run mural-scenes by itself to see why"};
+    if (native_.size() != kRounds * scenes::kSceneNames.size())
+        return Error{"the scenes were not all drawn; run mural-scenes by itself to see why"};
     return {};
 }
 
@@ -129,8 +148,10 @@ Result<std::vector<OwnedPicture>> SceneRows::meanOf(int samples) {
         const Jitter jitter = jitterOf({i, samples});
         auto drawn = drawNatively({"--move", fmt::format("{:.17g},{:.17g}", -jitter.x, -jitter.y)});
         if (!drawn) return drawn.error();
-        if (mean.empty()) mean = std::move(*drawn);
-        else if (drawn->size() != mean.size()) return Error{"the scenes were not all drawn"};
+        if (mean.empty())
+            mean = std::move(*drawn);
+        else if (drawn->size() != mean.size())
+            return Error{"the scenes were not all drawn"};
         sums.resize(mean.size());
         for (size_t p = 0; p < mean.size(); ++p) {
             const Picture from = i == 0 ? mean[p].view() : (*drawn)[p].view();
@@ -140,7 +161,8 @@ Result<std::vector<OwnedPicture>> SceneRows::meanOf(int samples) {
     }
     const auto n = static_cast<unsigned>(samples);
     for (size_t p = 0; p < mean.size(); ++p)
-        for (size_t b = 0; b < sums[p].size(); ++b) mean[p].data()[b] = static_cast<std::byte>((2 * sums[p][b] + n) / (2 * n));
+        for (size_t b = 0; b < sums[p].size(); ++b)
+            mean[p].data()[b] = static_cast<std::byte>((2 * sums[p][b] + n) / (2 * n));
     return mean;
 }
 
@@ -158,7 +180,8 @@ Result<std::vector<OwnedPicture>> SceneRows::reduced(const Words& more) {
             for (size_t b = 0; b < to.rowBytes(); ++b) {
                 const size_t at = b / kPixel * 2 * kPixel + b % kPixel;
                 const std::byte *upper = from.row(2 * y) + at, *lower = from.row(2 * y + 1) + at;
-                const unsigned sum = std::to_integer<unsigned>(upper[0]) + std::to_integer<unsigned>(upper[kPixel]) + std::to_integer<unsigned>(lower[0]) + std::to_integer<unsigned>(lower[kPixel]);
+                const unsigned sum = std::to_integer<unsigned>(upper[0]) + std::to_integer<unsigned>(upper[kPixel]) +
+                                     std::to_integer<unsigned>(lower[0]) + std::to_integer<unsigned>(lower[kPixel]);
                 to.row(y)[b] = static_cast<std::byte>((sum + 2) / 4);
             }
     }
@@ -166,7 +189,8 @@ Result<std::vector<OwnedPicture>> SceneRows::reduced(const Words& more) {
 }
 
 Result<std::vector<OwnedPicture>> SceneRows::anaglyph() {
-    auto left = drawNatively({"--eye", fmt::format("{},{}", -kEye, kFocus)}), right = drawNatively({"--eye", fmt::format("{},{}", kEye, kFocus)});
+    auto left = drawNatively({"--eye", fmt::format("{},{}", -kEye, kFocus)}),
+         right = drawNatively({"--eye", fmt::format("{},{}", kEye, kFocus)});
     if (!left) return left.error();
     if (!right) return right.error();
     if (left->size() != right->size()) return Error{"the scenes were not all drawn"};
@@ -195,8 +219,10 @@ void SceneRows::measure(std::vector<AccuracyRow>& rows) {
     for (const Way& way : ways()) {
         if (quick_ && !way.quick) continue;
         say_(way.name);
-        if (way.otherPixels) measureEachScene(way, rows);
-        else measureAllScenes(way, rows);
+        if (way.otherPixels)
+            measureEachScene(way, rows);
+        else
+            measureAllScenes(way, rows);
     }
 }
 
@@ -205,8 +231,11 @@ AccuracyRow SceneRows::rowOf(const Way& way, size_t scene) {
     const bool exact = way.bounds.size() == 1;
     AccuracyRow row;
     row.group = exact ? "Decompositions that are exact" : "Decompositions that round otherwise, or approximate";
-    row.reference = way.reference == R::Native ? "native" : way.reference == R::Mean ? fmt::format("mean of {} native", way.samples)
-                  : way.reference == R::BothEyes ? "two native eyes" : way.reference == R::TwiceAsLarge ? "native, twice as large, reduced" : "native eye";
+    row.reference = way.reference == R::Native         ? "native"
+                    : way.reference == R::Mean         ? fmt::format("mean of {} native", way.samples)
+                    : way.reference == R::BothEyes     ? "two native eyes"
+                    : way.reference == R::TwiceAsLarge ? "native, twice as large, reduced"
+                                                       : "native eye";
     row.what = exact ? way.name : way.name + ": " + scenes::kSceneNames[scene];
     row.bound = way.bounds[scene];
     return row;
@@ -220,13 +249,15 @@ void SceneRows::measureAllScenes(const Way& way, std::vector<AccuracyRow>& rows)
     if (!got || got->size() != wanted->size()) {
         AccuracyRow row = rowOf(way, 0);
         row.what = way.name;
-        row.failure = got ? fmt::format("{} pictures came instead of {}", got->size(), wanted->size()) : got.error().message;
+        row.failure =
+            got ? fmt::format("{} pictures came instead of {}", got->size(), wanted->size()) : got.error().message;
         rows.push_back(row);
         return;
     }
     for (size_t scene = 0; scene < way.bounds.size(); ++scene) {
         AccuracyRow row = rowOf(way, scene);
-        for (size_t p = exact ? 0 : scene; p < got->size(); p += step) row.error.add(errorOf((*wanted)[p].view(), (*got)[p].view()));
+        for (size_t p = exact ? 0 : scene; p < got->size(); p += step)
+            row.error.add(errorOf((*wanted)[p].view(), (*got)[p].view()));
         rows.push_back(row);
     }
 }
@@ -237,9 +268,12 @@ void SceneRows::measureEachScene(const Way& way, std::vector<AccuracyRow>& rows)
         AccuracyRow row = rowOf(way, scene);
         auto wanted = way.reference == Way::Reference::TwiceAsLarge ? reduced(alone) : drawNatively(alone);
         auto got = wanted ? drawByMural(way.options, alone) : Result<std::vector<OwnedPicture>>(wanted.error());
-        if (!got) row.failure = got.error().message;
-        else if (got->size() != wanted->size()) row.failure = fmt::format("{} pictures came instead of {}", got->size(), wanted->size());
-        for (size_t p = kWholeFrames; row.failure.empty() && p < got->size(); ++p) row.error.add(errorOf((*wanted)[p].view(), (*got)[p].view()));
+        if (!got)
+            row.failure = got.error().message;
+        else if (got->size() != wanted->size())
+            row.failure = fmt::format("{} pictures came instead of {}", got->size(), wanted->size());
+        for (size_t p = kWholeFrames; row.failure.empty() && p < got->size(); ++p)
+            row.error.add(errorOf((*wanted)[p].view(), (*got)[p].view()));
         rows.push_back(row);
     }
 }

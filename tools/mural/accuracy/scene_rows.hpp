@@ -8,7 +8,8 @@ namespace mural::cli {
 
 class SceneRows {
 public:
-    SceneRows(const AccuracyRuns& runs, bool quick, SayProgress say) : runs_(runs), quick_(quick), say_(std::move(say)) {}
+    SceneRows(const AccuracyRuns& runs, bool quick, SayProgress say)
+        : runs_(runs), quick_(quick), say_(std::move(say)) {}
 
     // Draws the references. Errors: no scenes program, no GL.
     Result<void> prepare();

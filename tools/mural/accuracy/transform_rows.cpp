@@ -16,12 +16,15 @@ const Frustum kWhole{-0.83, 0.91, -0.47, 0.52, 0.1, 100};
 // and edges.
 template <class Real> double brightness(Real x, Real y) {
     const double wave = 0.5 + 0.5 * std::sin(static_cast<double>(x) * 420) * std::cos(static_cast<double>(y) * 310);
-    return std::fmod(std::floor(static_cast<double>(x) * 9 + static_cast<double>(y) * 5) + 1000, 2) == 0 ? wave : 1 - wave;
+    return std::fmod(std::floor(static_cast<double>(x) * 9 + static_cast<double>(y) * 5) + 1000, 2) == 0 ? wave
+                                                                                                         : 1 - wave;
 }
 
 // Returns the position of pixel i's centre in a part, as shaders interpolate it.
 template <class Real> Real placeOf(double first, double last, int i, int pixels) {
-    return static_cast<Real>(first) + (static_cast<Real>(i) + static_cast<Real>(0.5)) * ((static_cast<Real>(last) - static_cast<Real>(first)) / static_cast<Real>(pixels));
+    return static_cast<Real>(first) +
+           (static_cast<Real>(i) + static_cast<Real>(0.5)) *
+               ((static_cast<Real>(last) - static_cast<Real>(first)) / static_cast<Real>(pixels));
 }
 
 template <class Real> AccuracyRow transformRow(const char* what, const Bound& bound) {
@@ -29,9 +32,11 @@ template <class Real> AccuracyRow transformRow(const char* what, const Bound& bo
     int64_t tookNs = 0;
     std::vector<Real> xs, ys;
     for (int t = 0; t < kColumns * kRows; ++t) {
-        const int x0 = kWidth * (t % kColumns) / kColumns, x1 = kWidth * (t % kColumns + 1) / kColumns, y0 = kHeight * (t / kColumns) / kRows, y1 = kHeight * (t / kColumns + 1) / kRows;
+        const int x0 = kWidth * (t % kColumns) / kColumns, x1 = kWidth * (t % kColumns + 1) / kColumns,
+                  y0 = kHeight * (t / kColumns) / kRows, y1 = kHeight * (t / kColumns + 1) / kRows;
         const int64_t beganNs = threadCpuNowNs();
-        const Frustum f = compound::partOf(kWhole, {1. * x0 / kWidth, 1. * y0 / kHeight, 1. * (x1 - x0) / kWidth, 1. * (y1 - y0) / kHeight});
+        const Frustum f = compound::partOf(
+            kWhole, {1. * x0 / kWidth, 1. * y0 / kHeight, 1. * (x1 - x0) / kWidth, 1. * (y1 - y0) / kHeight});
         xs.clear();
         ys.clear();
         for (int y = 0; y < y1 - y0; ++y)
@@ -43,7 +48,9 @@ template <class Real> AccuracyRow transformRow(const char* what, const Bound& bo
         size_t i = 0;
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x, ++i) {
-                const double wanted = std::round(255 * brightness(placeOf<long double>(kWhole.left, kWhole.right, x, kWidth), placeOf<long double>(kWhole.bottom, kWhole.top, y, kHeight)));
+                const double wanted =
+                    std::round(255 * brightness(placeOf<long double>(kWhole.left, kWhole.right, x, kWidth),
+                                                placeOf<long double>(kWhole.bottom, kWhole.top, y, kHeight)));
                 const double d = std::round(255 * brightness(xs[i], ys[i])) - wanted;
                 row.error.addValue(d);
                 ++row.error.pixels;

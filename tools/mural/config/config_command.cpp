@@ -31,15 +31,18 @@ void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
     size_t warnings = 0;
     for (const config::Diagnostic& d : loaded.diagnostics.all()) {
         if (!isError(d) && ++warnings > kMaxWarnings && wrong) continue;
-        fmt::print(where, "{}{}\n", d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
+        fmt::print(where, "{}{}\n",
+                   d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
     }
-    if (wrong && warnings > kMaxWarnings) fmt::print(where, "note: {} more warnings are left out; mend what is wrong first\n", warnings - kMaxWarnings);
+    if (wrong && warnings > kMaxWarnings)
+        fmt::print(where, "note: {} more warnings are left out; mend what is wrong first\n", warnings - kMaxWarnings);
 }
 
 // Returns an option that does not apply to the requested output; empty: none.
 std::string unusedOption(const ConfigArguments& a) {
     if (a.resolved && a.verb != "print") return "--resolved is for print";
-    if (!a.resolved && (a.frame >= 0 || !a.layout.empty() || !a.stereo.empty())) return "--frame, --layout and --stereo are for print --resolved";
+    if (!a.resolved && (a.frame >= 0 || !a.layout.empty() || !a.stereo.empty()))
+        return "--frame, --layout and --stereo are for print --resolved";
     if (a.verb == "check" && !a.out.empty()) return "--out is for print and draw";
     return {};
 }
@@ -50,9 +53,10 @@ int check(const LoadedConfig& loaded) {
         for (const std::string& line : summaryOf(loaded)) fmt::print("{}\n", line);
     }
     for (const std::string& line : fieldsWithoutEffect(loaded.diagnostics)) fmt::print("note: {}\n", line);
-    const auto warnings = loaded.diagnostics.all().size() - std::min(loaded.diagnostics.all().size(), static_cast<size_t>(loaded.diagnostics.errors()));
-    fmt::print("{}: {} error{}, {} warning{}\n", loaded.diagnostics.file(), loaded.diagnostics.errors(), loaded.diagnostics.errors() == 1 ? "" : "s",
-               warnings, warnings == 1 ? "" : "s");
+    const auto warnings = loaded.diagnostics.all().size() -
+                          std::min(loaded.diagnostics.all().size(), static_cast<size_t>(loaded.diagnostics.errors()));
+    fmt::print("{}: {} error{}, {} warning{}\n", loaded.diagnostics.file(), loaded.diagnostics.errors(),
+               loaded.diagnostics.errors() == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s");
     return loaded.ok() ? 0 : launch::kExitUsage;
 }
 
@@ -63,7 +67,9 @@ bool showLayout(const config::ResolvedConfig& c, const std::string& name, compou
     for (size_t canvas = 0; canvas < c.canvases.size(); ++canvas) {
         for (size_t l = 0; l < c.canvases[canvas].layouts.size(); ++l) {
             const compound::Index layout = c.canvases[canvas].layouts[l];
-            if (layout == compound::kNone || (c.layouts[config::ResolvedConfig::at(layout)].name != name && std::to_string(layout) != name)) continue;
+            if (layout == compound::kNone ||
+                (c.layouts[config::ResolvedConfig::at(layout)].name != name && std::to_string(layout) != name))
+                continue;
             input.activeLayouts[canvas] = static_cast<compound::Index>(l);
             found = true;
         }
@@ -77,14 +83,18 @@ Result<std::string> resolvedText(const LoadedConfig& loaded, const ConfigArgumen
     if (!a.layout.empty() && !showLayout(loaded.resolved, a.layout, input)) {
         return Error{"no canvas has a layout " + a.layout + "; name one that mural config draw shows, or its number"};
     }
-    if (!a.stereo.empty()) input.views.assign(loaded.resolved.views.size(), {a.stereo == "on" ? config::ViewMode::Stereo : config::ViewMode::Mono, 1, {}});
+    if (!a.stereo.empty())
+        input.views.assign(loaded.resolved.views.size(),
+                           {a.stereo == "on" ? config::ViewMode::Stereo : config::ViewMode::Mono, 1, {}});
     return planText(loaded.resolved, compound::planFrame(loaded.resolved, input));
 }
 
 Result<std::string> outputOf(const LoadedConfig& loaded, const ConfigArguments& a) {
     if (a.verb == "draw") {
         const std::string name = a.file.substr(a.file.find_last_of('/') + 1);
-        return drawing::drawConfig(loaded.resolved, loaded.resolved.name.empty() ? name : loaded.resolved.name + " (" + name + ")", loaded.file.heading);
+        return drawing::drawConfig(loaded.resolved,
+                                   loaded.resolved.name.empty() ? name : loaded.resolved.name + " (" + name + ")",
+                                   loaded.file.heading);
     }
     return a.resolved ? resolvedText(loaded, a) : config::writeConfig(loaded.file);
 }
@@ -98,21 +108,29 @@ int write(const std::string& text, const std::string& path) {
     out << text;
     out.close();
     if (out) return 0;
-    fmt::print(stderr, "mural config: {} can't be written: {}; name another file with --out\n", path, std::strerror(errno));
+    fmt::print(stderr, "mural config: {} can't be written: {}; name another file with --out\n", path,
+               std::strerror(errno));
     return 1;
 }
 
 } // namespace
 
 void describeConfig(CLI::App& command, ConfigArguments& a) {
-    command.add_option("VERB", a.verb, "check, print or draw")->required()->check(CLI::IsMember({"check", "print", "draw"}));
+    command.add_option("VERB", a.verb, "check, print or draw")
+        ->required()
+        ->check(CLI::IsMember({"check", "print", "draw"}));
     command.add_option("FILE", a.file, "the configuration, in Equalizer's format (.eqc)")->required();
     command.add_flag("--strict", a.strict, "warnings are errors");
     command.add_option("--out", a.out, "print, draw: into this file, not to standard output")->type_name("FILE");
-    command.add_flag("--resolved", a.resolved, "print: what every channel does in a frame, with its contexts, instead of the configuration");
-    command.add_option("--frame", a.frame, "with --resolved: the frame's number (0)")->type_name("NUMBER")->check(CLI::Range(int64_t{0}, INT64_MAX, "NUMBER from 0 on"));
-    command.add_option("--layout", a.layout, "with --resolved: the layout that is shown, by name or number")->type_name("NAME");
-    command.add_option("--stereo", a.stereo, "with --resolved: on or off (as each view says)")->check(CLI::IsMember({"on", "off"}));
+    command.add_flag("--resolved", a.resolved,
+                     "print: what every channel does in a frame, with its contexts, instead of the configuration");
+    command.add_option("--frame", a.frame, "with --resolved: the frame's number (0)")
+        ->type_name("NUMBER")
+        ->check(CLI::Range(int64_t{0}, INT64_MAX, "NUMBER from 0 on"));
+    command.add_option("--layout", a.layout, "with --resolved: the layout that is shown, by name or number")
+        ->type_name("NAME");
+    command.add_option("--stereo", a.stereo, "with --resolved: on or off (as each view says)")
+        ->check(CLI::IsMember({"on", "off"}));
 }
 
 int configCommand(const ConfigArguments& a) {

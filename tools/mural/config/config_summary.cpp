@@ -15,33 +15,39 @@ std::string counted(size_t count, const std::string& one) {
     return fmt::format("{} {}{}", count, one, count == 1 ? "" : irregular ? "es" : "s");
 }
 
-std::string versionText(double version) { return version > 0 ? fmt::format("Equalizer's format {}", version) : "Equalizer's format, without a header"; }
+std::string versionText(double version) {
+    return version > 0 ? fmt::format("Equalizer's format {}", version) : "Equalizer's format, without a header";
+}
 
 } // namespace
 
 std::vector<std::string> summaryOf(const compound::LoadedConfig& loaded) {
     const config::ResolvedConfig& c = loaded.resolved;
-    const auto destinations = static_cast<size_t>(std::count_if(c.channels.begin(), c.channels.end(), [](const auto& one) { return one.isDestination(); }));
+    const auto destinations = static_cast<size_t>(
+        std::count_if(c.channels.begin(), c.channels.end(), [](const auto& one) { return one.isDestination(); }));
     std::vector<std::string> lines;
     lines.push_back("format      " + versionText(loaded.file.version));
-    lines.push_back(fmt::format("resources   {}, {}, {}, {}", counted(c.nodes.size(), "node"), counted(c.pipes.size(), "pipe"),
-                                counted(c.windows.size(), "window"), counted(c.channels.size() - destinations, "channel")));
-    lines.push_back(fmt::format("displays    {} with {}, {} with {}, {}", counted(c.canvases.size(), "canvas"), counted(c.segments.size(), "segment"),
-                                counted(c.layouts.size(), "layout"),
+    lines.push_back(fmt::format("resources   {}, {}, {}, {}", counted(c.nodes.size(), "node"),
+                                counted(c.pipes.size(), "pipe"), counted(c.windows.size(), "window"),
+                                counted(c.channels.size() - destinations, "channel")));
+    lines.push_back(fmt::format("displays    {} with {}, {} with {}, {}", counted(c.canvases.size(), "canvas"),
+                                counted(c.segments.size(), "segment"), counted(c.layouts.size(), "layout"),
                                 counted(c.views.size(), "view"), counted(destinations, "destination channel")));
     size_t outputs = 0, generated = 0;
     std::map<std::string, size_t> equalizers;
     for (const config::ResolvedCompound& one : c.compounds) {
         outputs += one.outputFrames.size();
         generated += one.isGenerated ? 1 : 0;
-        for (const config::Equalizer& e : one.equalizers) ++equalizers[std::string(std::visit([](const auto& which) { return config::sectionName(which); }, e))];
+        for (const config::Equalizer& e : one.equalizers)
+            ++equalizers[std::string(std::visit([](const auto& which) { return config::sectionName(which); }, e))];
     }
     const std::string unwritten = generated > 0 ? fmt::format(" ({} of them not in the file)", generated) : "";
-    lines.push_back(fmt::format("compounds   {}{} in {}, {}", counted(c.compounds.size(), "compound"), unwritten, counted(c.roots.size(), "tree"),
-                                counted(outputs, "frame")));
+    lines.push_back(fmt::format("compounds   {}{} in {}, {}", counted(c.compounds.size(), "compound"), unwritten,
+                                counted(c.roots.size(), "tree"), counted(outputs, "frame")));
     if (!equalizers.empty()) {
         std::string names;
-        for (const auto& [name, count] : equalizers) names += (names.empty() ? "" : ", ") + (count > 1 ? fmt::format("{} {}", count, name) : name);
+        for (const auto& [name, count] : equalizers)
+            names += (names.empty() ? "" : ", ") + (count > 1 ? fmt::format("{} {}", count, name) : name);
         lines.push_back("equalizers  " + names);
     }
     lines.push_back(fmt::format("latency     {}", counted(c.latency, "frame")));

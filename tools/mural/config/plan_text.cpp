@@ -24,7 +24,9 @@ std::string called(const char* what, const std::string& name, Index index) {
 
 std::string areaText(const PixelViewport& v) { return fmt::format("[ {} {} {} {} ]", v.x, v.y, v.w, v.h); }
 std::string partText(const Viewport& v) { return fmt::format("[ {:.6g} {:.6g} {:.6g} {:.6g} ]", v.x, v.y, v.w, v.h); }
-std::string frustumText(const Frustum& f) { return fmt::format("[ {:.6g} {:.6g} {:.6g} {:.6g} ]", f.left, f.right, f.bottom, f.top); }
+std::string frustumText(const Frustum& f) {
+    return fmt::format("[ {:.6g} {:.6g} {:.6g} {:.6g} ]", f.left, f.right, f.bottom, f.top);
+}
 
 std::string buffersText(config::BufferSet buffers) {
     std::string text = buffers.has(config::Buffer::Color) ? "color" : "";
@@ -35,19 +37,25 @@ std::string buffersText(config::BufferSet buffers) {
 // Prints the attributes of a context that differ from the defaults.
 std::string contextText(const RenderContext& c) {
     std::string text = fmt::format("eye {} pixels {} part {}", nameOf(c.eye), areaText(c.viewport), partText(c.part));
-    if (c.viewport.x != c.area.x || c.viewport.y != c.area.y) text += fmt::format(" offset [ {} {} ]", c.area.x, c.area.y);
+    if (c.viewport.x != c.area.x || c.viewport.y != c.area.y)
+        text += fmt::format(" offset [ {} {} ]", c.area.x, c.area.y);
     if (!c.range.full()) text += fmt::format(" range [ {:.6g} {:.6g} ]", c.range.start, c.range.end);
     if (!c.pixel.whole()) text += fmt::format(" pixel [ {} {} {} {} ]", c.pixel.x, c.pixel.y, c.pixel.w, c.pixel.h);
-    if (!c.subPixel.whole()) text += fmt::format(" subpixel [ {} {} ] jitter [ {:.4g} {:.4g} ]", c.subPixel.index, c.subPixel.size, c.jitter.x, c.jitter.y);
+    if (!c.subPixel.whole())
+        text += fmt::format(" subpixel [ {} {} ] jitter [ {:.4g} {:.4g} ]", c.subPixel.index, c.subPixel.size,
+                            c.jitter.x, c.jitter.y);
     if (!c.zoom.none()) text += fmt::format(" zoom [ {:.4g} {:.4g} ]", c.zoom.x, c.zoom.y);
     if (c.period > 1) text += fmt::format(" phase {} period {}", c.phase, c.period);
     return text;
 }
 
 std::string stereoText(const RenderContext& c) {
-    if (c.drawBuffer != DrawBuffer::Back) return c.drawBuffer == DrawBuffer::BackLeft ? " into the left buffer" : " into the right buffer";
+    if (c.drawBuffer != DrawBuffer::Back)
+        return c.drawBuffer == DrawBuffer::BackLeft ? " into the left buffer" : " into the right buffer";
     using config::ColorComponent;
-    if (c.colorMask.has(ColorComponent::Red) && c.colorMask.has(ColorComponent::Green) && c.colorMask.has(ColorComponent::Blue)) return {};
+    if (c.colorMask.has(ColorComponent::Red) && c.colorMask.has(ColorComponent::Green) &&
+        c.colorMask.has(ColorComponent::Blue))
+        return {};
     std::string mask;
     if (c.colorMask.has(ColorComponent::Red)) mask += " red";
     if (c.colorMask.has(ColorComponent::Green)) mask += " green";
@@ -64,13 +72,16 @@ std::string taskText(const FramePlan& plan, const PlannedTask& task) {
     text += "\n";
     for (const Index f : task.outputs) {
         const PlannedFrame& frame = plan.frames[at(f)];
-        text += fmt::format("             gives \"{}\": {} of {}", frame.name, buffersText(frame.buffers), areaText(frame.area));
+        text += fmt::format("             gives \"{}\": {} of {}", frame.name, buffersText(frame.buffers),
+                            areaText(frame.area));
         if (!frame.zoom.none()) text += fmt::format(" as {}x{}", frame.size.w, frame.size.h);
-        text += fmt::format("{}{}\n", frame.type == config::FrameType::Texture ? ", as a texture" : "", frame.codec != "auto" ? ", codec " + frame.codec : "");
+        text += fmt::format("{}{}\n", frame.type == config::FrameType::Texture ? ", as a texture" : "",
+                            frame.codec != "auto" ? ", codec " + frame.codec : "");
     }
     for (const FrameUse& use : task.inputs) {
         text += fmt::format("             takes \"{}\" to {} {}", plan.frames[at(use.frame)].name, use.x, use.y);
-        if (!use.kernel.whole()) text += fmt::format(" pixel [ {} {} {} {} ]", use.kernel.x, use.kernel.y, use.kernel.w, use.kernel.h);
+        if (!use.kernel.whole())
+            text += fmt::format(" pixel [ {} {} {} {} ]", use.kernel.x, use.kernel.y, use.kernel.w, use.kernel.h);
         if (!use.zoom.none()) text += fmt::format(" zoom [ {:.4g} {:.4g} ]", use.zoom.x, use.zoom.y);
         text += "\n";
     }
@@ -93,7 +104,8 @@ std::string planText(const config::ResolvedConfig& config, const FramePlan& plan
         for (const PlannedTask& task : c.tasks) text += taskText(plan, task);
     }
     for (const PlannedQueue& q : plan.queues) text += fmt::format("queue {}: {} tiles\n", q.name, q.tiles.size());
-    for (const PlannedBarrier& b : plan.barriers) text += fmt::format("barrier \"{}\": {} windows\n", b.name, b.windows.size());
+    for (const PlannedBarrier& b : plan.barriers)
+        text += fmt::format("barrier \"{}\": {} windows\n", b.name, b.windows.size());
     if (plan.interleaved) text += "channels that share a window wait for each other: each needs a buffer of its own\n";
     return text;
 }

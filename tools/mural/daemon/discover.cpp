@@ -11,7 +11,9 @@ namespace mural::cli {
 
 namespace {
 
-std::string meansOf(const FoundNode& n) { return n.byBeacon && n.byAvahi ? "beacon, avahi" : n.byBeacon ? "beacon" : "avahi"; }
+std::string meansOf(const FoundNode& n) {
+    return n.byBeacon && n.byAvahi ? "beacon, avahi" : n.byBeacon ? "beacon" : "avahi";
+}
 
 void printJson(const Discovered& d) {
     nlohmann::json nodes = nlohmann::json::array();
@@ -19,7 +21,12 @@ void printJson(const Discovered& d) {
         nlohmann::json means = nlohmann::json::array();
         if (n.byBeacon) means.push_back("beacon");
         if (n.byAvahi) means.push_back("avahi");
-        nodes.push_back({{"name", n.name}, {"uuid", uuidText(n.uuid)}, {"addresses", n.addresses}, {"port", n.port}, {"version", n.version}, {"by", means}});
+        nodes.push_back({{"name", n.name},
+                         {"uuid", uuidText(n.uuid)},
+                         {"addresses", n.addresses},
+                         {"port", n.port},
+                         {"version", n.version},
+                         {"by", means}});
     }
     const nlohmann::json all{{"nodes", nodes}, {"beaconTrouble", d.beaconTrouble}, {"avahiTrouble", d.avahiTrouble}};
     fmt::print("{}\n", all.dump());
@@ -28,19 +35,27 @@ void printJson(const Discovered& d) {
 void printTable(const Discovered& d) {
     size_t nameColumns = 6;
     for (const FoundNode& n : d.nodes) nameColumns = std::max(nameColumns, n.name.size() + 1);
-    if (!d.nodes.empty()) fmt::print("{:<{}}{:<38}{:<7}{:<9}{:<15}{}\n", "name", nameColumns, "uuid", "port", "version", "by", "addresses");
+    if (!d.nodes.empty())
+        fmt::print("{:<{}}{:<38}{:<7}{:<9}{:<15}{}\n", "name", nameColumns, "uuid", "port", "version", "by",
+                   "addresses");
     for (const FoundNode& n : d.nodes) {
         std::string addresses;
         for (const std::string& a : n.addresses) addresses += (addresses.empty() ? "" : " ") + a;
-        fmt::print("{:<{}}{:<38}{:<7}{:<9}{:<15}{}\n", n.name, nameColumns, uuidText(n.uuid), n.port, n.version, meansOf(n), addresses);
+        fmt::print("{:<{}}{:<38}{:<7}{:<9}{:<15}{}\n", n.name, nameColumns, uuidText(n.uuid), n.port, n.version,
+                   meansOf(n), addresses);
     }
 }
 
 } // namespace
 
 void describeDiscover(CLI::App& command, DiscoverArguments& a) {
-    command.add_option("--seconds", a.seconds, "how long to look (2)")->type_name("SECONDS")->check(CLI::Range(0.1, 600.0));
-    command.add_option("--interface", a.interface, "network interface of the beacon, name or address (all that do multicast)")->type_name("NAME");
+    command.add_option("--seconds", a.seconds, "how long to look (2)")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.1, 600.0));
+    command
+        .add_option("--interface", a.interface,
+                    "network interface of the beacon, name or address (all that do multicast)")
+        ->type_name("NAME");
     command.add_flag("--no-beacon", a.noBeacon, "by Avahi alone");
     command.add_flag("--no-avahi", a.noAvahi, "by the beacon alone");
     command.add_flag("--json", a.asJson, "one line, for programs");
@@ -51,14 +66,19 @@ int discoverCommand(const DiscoverArguments& a) {
         fmt::print(stderr, "mural discover: --no-beacon and --no-avahi leave nothing to look by; give one of them\n");
         return launch::kExitUsage;
     }
-    const Discovered d = discoverNodes({!a.noBeacon, !a.noAvahi, a.interface}, Deadline::inMs(static_cast<int64_t>(a.seconds * 1000)));
-    if (a.asJson) printJson(d);
-    else printTable(d);
+    const Discovered d =
+        discoverNodes({!a.noBeacon, !a.noAvahi, a.interface}, Deadline::inMs(static_cast<int64_t>(a.seconds * 1000)));
+    if (a.asJson)
+        printJson(d);
+    else
+        printTable(d);
     if (!d.nodes.empty()) return 0;
     // The beacon works without Avahi, so problems are reported only if nothing was found.
     for (const std::string& trouble : {d.beaconTrouble, d.avahiTrouble})
         if (!trouble.empty() && !a.asJson) fmt::print(stderr, "mural discover: {}\n", trouble);
-    if (!a.asJson) fmt::print(stderr, "mural discover: no node waits on this network; start one with: mural node --wait --secret FILE\n");
+    if (!a.asJson)
+        fmt::print(stderr,
+                   "mural discover: no node waits on this network; start one with: mural node --wait --secret FILE\n");
     return 1;
 }
 

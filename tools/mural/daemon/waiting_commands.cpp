@@ -25,7 +25,9 @@ namespace mural::cli {
 
 namespace {
 
-DiscoveryOptions discoveryOf(const std::string& text) { return {text == "auto" || text == "beacon", text == "auto" || text == "avahi", {}}; }
+DiscoveryOptions discoveryOf(const std::string& text) {
+    return {text == "auto" || text == "beacon", text == "auto" || text == "avahi", {}};
+}
 
 int failed(const char* command, const std::string& why, int status = 1) {
     fmt::print(stderr, "mural {}: {}\n", command, why);
@@ -39,7 +41,8 @@ std::string machineName() {
 }
 
 bool announceable(const std::string& name) {
-    return !name.empty() && name.size() <= kMaxAnnouncedText && std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~' && c != '@' && c != ','; });
+    return !name.empty() && name.size() <= kMaxAnnouncedText &&
+           std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~' && c != '@' && c != ','; });
 }
 
 // Returns a descriptor that is readable after a termination signal. Call before any thread starts.
@@ -54,24 +57,35 @@ Result<FileDescriptor> endSignals() {
     return fd;
 }
 
-void log(const std::string& line) {
-    fmt::print(stderr, "mural node: {}\n", line);
-}
+void log(const std::string& line) { fmt::print(stderr, "mural node: {}\n", line); }
 
 } // namespace
 
 void describeWait(CLI::App& node, WaitArguments& a) {
-    CLI::Option* wait = node.add_flag("--wait", a.wait, "wait for heads that know the secret, and draw for one after the other");
-    node.add_option("--secret", a.secretFile, "with --wait: file with the secret, at least 16 bytes; -: standard input")->type_name("FILE")->needs(wait);
-    node.add_option("--listen", a.listen, "with --wait: where, all addresses and port 4279 by default")->type_name("[ADDRESS]:PORT")->needs(wait);
+    CLI::Option* wait =
+        node.add_flag("--wait", a.wait, "wait for heads that know the secret, and draw for one after the other");
+    node.add_option("--secret", a.secretFile, "with --wait: file with the secret, at least 16 bytes; -: standard input")
+        ->type_name("FILE")
+        ->needs(wait);
+    node.add_option("--listen", a.listen, "with --wait: where, all addresses and port 4279 by default")
+        ->type_name("[ADDRESS]:PORT")
+        ->needs(wait);
     node.add_option("--name", a.name, "with --wait: by which it is found (the machine's name)")->needs(wait);
-    node.add_option("--discovery", a.discovery, "with --wait: announce it by beacon, avahi, auto (both) or off")->check(CLI::IsMember({"auto", "beacon", "avahi", "off"}))->needs(wait);
+    node.add_option("--discovery", a.discovery, "with --wait: announce it by beacon, avahi, auto (both) or off")
+        ->check(CLI::IsMember({"auto", "beacon", "avahi", "off"}))
+        ->needs(wait);
 }
 
 int waitCommand(const WaitArguments& a) {
-    if (a.secretFile.empty()) return failed("node", "--wait needs --secret FILE: heads show that they know it", launch::kExitUsage);
+    if (a.secretFile.empty())
+        return failed("node", "--wait needs --secret FILE: heads show that they know it", launch::kExitUsage);
     const std::string name = a.name.empty() ? machineName() : a.name;
-    if (!announceable(name)) return failed("node", fmt::format("--name \"{}\": must be 1 to {} printable ASCII characters without blank, comma and @", name, kMaxAnnouncedText), launch::kExitUsage);
+    if (!announceable(name))
+        return failed(
+            "node",
+            fmt::format("--name \"{}\": must be 1 to {} printable ASCII characters without blank, comma and @", name,
+                        kMaxAnnouncedText),
+            launch::kExitUsage);
     auto secret = rsp::readSecret(a.secretFile);
     if (!secret) return failed("node", secret.error().message, launch::kExitUsage);
     auto signals = endSignals();
@@ -83,11 +97,13 @@ int waitCommand(const WaitArguments& a) {
     if (a.discovery != "off") {
         auto id = nodeId();
         if (!id) return failed("node", id.error().message + ", or give --discovery off");
-        auto started = Announcing::start({AnnouncementKind::Here, (*node)->port(), *id, name, muralVersion()}, discoveryOf(a.discovery));
+        auto started = Announcing::start({AnnouncementKind::Here, (*node)->port(), *id, name, muralVersion()},
+                                         discoveryOf(a.discovery));
         if (!started) return failed("node", started.error().message);
         announcing = std::move(*started);
     }
-    log(fmt::format("{} waits for heads at port {}{}", name, (*node)->port(), announcing ? "; mural discover finds it" : ""));
+    log(fmt::format("{} waits for heads at port {}{}", name, (*node)->port(),
+                    announcing ? "; mural discover finds it" : ""));
     const auto r = (*node)->serve(signals->get());
     announcing.reset();
     return r ? 0 : failed("node", r.error().message);
@@ -95,8 +111,11 @@ int waitCommand(const WaitArguments& a) {
 
 void describeCall(CLI::App& call, CallArguments& a) {
     call.add_option("--secret", a.secretFile, "file with the secret of the nodes")->type_name("FILE");
-    call.add_option("--discovery", a.discovery, "how @NAME is found: beacon, avahi, auto (both)")->check(CLI::IsMember({"auto", "beacon", "avahi"}));
-    call.add_option("--seconds", a.seconds, "how long @NAME is looked for (5)")->type_name("SECONDS")->check(CLI::Range(0.1, 600.0));
+    call.add_option("--discovery", a.discovery, "how @NAME is found: beacon, avahi, auto (both)")
+        ->check(CLI::IsMember({"auto", "beacon", "avahi"}));
+    call.add_option("--seconds", a.seconds, "how long @NAME is looked for (5)")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.1, 600.0));
     call.prefix_command();
 }
 
@@ -119,11 +138,14 @@ Result<DaemonClient> placeOf(const std::string& host, const CallArguments& a) {
     }
     const std::string name = host.substr(1);
     const auto isIt = [&](const FoundNode& n) { return n.name == name || uuidText(n.uuid) == name; };
-    const Discovered d = discoverNodes(discoveryOf(a.discovery), Deadline::inMs(static_cast<int64_t>(a.seconds * 1000)),
-        [&](const std::vector<FoundNode>& nodes) { return std::ranges::any_of(nodes, isIt); });
+    const Discovered d =
+        discoverNodes(discoveryOf(a.discovery), Deadline::inMs(static_cast<int64_t>(a.seconds * 1000)),
+                      [&](const std::vector<FoundNode>& nodes) { return std::ranges::any_of(nodes, isIt); });
     const auto found = std::ranges::find_if(d.nodes, isIt);
-    if (found == d.nodes.end()) return Error{"no node is found by the name " + name + "; mural discover lists those that are"};
-    if (std::ranges::count_if(d.nodes, isIt) > 1) return Error{"several nodes have the name " + name + "; take the UUID that mural discover tells: @UUID"};
+    if (found == d.nodes.end())
+        return Error{"no node is found by the name " + name + "; mural discover lists those that are"};
+    if (std::ranges::count_if(d.nodes, isIt) > 1)
+        return Error{"several nodes have the name " + name + "; take the UUID that mural discover tells: @UUID"};
     call.addresses = found->addresses;
     call.port = found->port;
     return call;
@@ -133,10 +155,16 @@ Result<DaemonClient> placeOf(const std::string& host, const CallArguments& a) {
 
 int callCommand(const CallArguments& a) {
     std::signal(SIGPIPE, SIG_IGN);
-    if (a.command.size() < 3) return failed("call", "a host, the path of mural there and its arguments are needed, as mural run gives them to --launch", launch::kExitUsage);
-    if (a.secretFile.empty()) return failed("call", "--secret FILE is needed: the nodes take orders only of who knows it", launch::kExitUsage);
+    if (a.command.size() < 3)
+        return failed(
+            "call", "a host, the path of mural there and its arguments are needed, as mural run gives them to --launch",
+            launch::kExitUsage);
+    if (a.secretFile.empty())
+        return failed("call", "--secret FILE is needed: the nodes take orders only of who knows it",
+                      launch::kExitUsage);
     // Standard input belongs to the node.
-    if (a.secretFile == "-") return failed("call", "--secret -: standard input belongs to the node; give a file", launch::kExitUsage);
+    if (a.secretFile == "-")
+        return failed("call", "--secret -: standard input belongs to the node; give a file", launch::kExitUsage);
     auto secret = rsp::readSecret(a.secretFile);
     if (!secret) return failed("call", secret.error().message, launch::kExitUsage);
     auto call = placeOf(a.command[0], a);

@@ -21,7 +21,7 @@ int waitCommand(const WaitArguments& arguments);
 struct CallArguments {
     std::string secretFile;
     std::string discovery = "auto";
-    double seconds = 5; // timeout of the search by name
+    double seconds = 5;               // timeout of the search by name
     std::vector<std::string> command; // HOST MURAL ARGUMENTS...
 };
 void describeCall(CLI::App& call, CallArguments& arguments);

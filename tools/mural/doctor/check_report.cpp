@@ -25,12 +25,15 @@ const char* word(Health health) {
 void printChecks(const std::vector<Check>& checks) {
     size_t columns = kMinNameColumns;
     for (const Check& c : checks) columns = std::max(columns, c.name.size() + 1);
-    for (const Check& c : checks) fmt::print("{:<5}{:<{}}{}{}{}\n", word(c.health), c.name, columns, c.found, c.advice.empty() ? "" : " -> ", c.advice);
+    for (const Check& c : checks)
+        fmt::print("{:<5}{:<{}}{}{}{}\n", word(c.health), c.name, columns, c.found, c.advice.empty() ? "" : " -> ",
+                   c.advice);
 }
 
 nlohmann::json toJson(const std::vector<Check>& checks) {
     nlohmann::json list = nlohmann::json::array();
-    for (const Check& c : checks) list.push_back({{"health", word(c.health)}, {"name", c.name}, {"found", c.found}, {"advice", c.advice}});
+    for (const Check& c : checks)
+        list.push_back({{"health", word(c.health)}, {"name", c.name}, {"found", c.found}, {"advice", c.advice}});
     return list;
 }
 

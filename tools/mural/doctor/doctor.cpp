@@ -15,8 +15,11 @@ std::vector<Check> allChecks() {
     bool draws = false;
     const auto gl = checkGl(draws);
     checks.insert(checks.end(), gl.begin(), gl.end());
-    if (!draws) checks.push_back({Health::Bad, "GL", "no GL of this machine draws", "install Debian's package libegl-mesa0 or the graphics driver's"});
-    for (const auto check : {checkDisplay, checkPrivateDisplay, checkSharedMemory, checkMemoryFolder, checkOpenFiles, checkVideo, checkRemote}) {
+    if (!draws)
+        checks.push_back({Health::Bad, "GL", "no GL of this machine draws",
+                          "install Debian's package libegl-mesa0 or the graphics driver's"});
+    for (const auto check : {checkDisplay, checkPrivateDisplay, checkSharedMemory, checkMemoryFolder, checkOpenFiles,
+                             checkVideo, checkRemote}) {
         checks.push_back(check());
     }
     return checks;
@@ -32,7 +35,8 @@ int doctorCommand(bool asJson) {
         fmt::print("{}\n", all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else {
         printChecks(checks);
-        fmt::print("{}\n", good ? "Mural can be used on this machine." : "Mural cannot be used on this machine yet: mend the lines that begin with \"bad\".");
+        fmt::print("{}\n", good ? "Mural can be used on this machine."
+                                : "Mural cannot be used on this machine yet: mend the lines that begin with \"bad\".");
     }
     return good ? 0 : 1;
 }

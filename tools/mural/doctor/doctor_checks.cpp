@@ -68,14 +68,19 @@ Isolated inChild(const std::function<Isolated()>& work, int64_t limitMs) {
 Check checkVersions() {
     utsname system{};
     uname(&system);
-    return {Health::Ok, "versions", fmt::format("mural {}, kernel {}, glibc {}, {}", muralVersion(), system.release, gnu_get_libc_version(), system.machine), {}};
+    return {Health::Ok,
+            "versions",
+            fmt::format("mural {}, kernel {}, glibc {}, {}", muralVersion(), system.release, gnu_get_libc_version(),
+                        system.machine),
+            {}};
 }
 
 Check checkCaptureLibrary() {
     auto library = launch::findCaptureLibrary(launch::ownBinary());
     if (!library) return {Health::Bad, "library", library.error().message, "build or install all of Mural"};
     if (access(library->eglVendorFile.c_str(), R_OK) != 0) {
-        return {Health::Warn, "library", library->path + ", without " + library->eglVendorFile, "programs that use EGL are not captured; build or install all of Mural"};
+        return {Health::Warn, "library", library->path + ", without " + library->eglVendorFile,
+                "programs that use EGL are not captured; build or install all of Mural"};
     }
     return {Health::Ok, "library", library->path, {}};
 }
@@ -95,55 +100,73 @@ Check checkPreload() {
     if (!child) return {Health::Bad, "preload", child.error().message, "check the installation"};
     if (!child->waitUntil(Deadline::inMs(kPreloadMs))) {
         child->end(Deadline::inMs(0));
-        return {Health::Bad, "preload", "a program with the library does not come to its end", "run: LD_DEBUG=libs LD_PRELOAD=" + library->path + " true"};
+        return {Health::Bad, "preload", "a program with the library does not come to its end",
+                "run: LD_DEBUG=libs LD_PRELOAD=" + library->path + " true"};
     }
     if (child->exitStatus() != 0) {
-        return {Health::Bad, "preload", "the loader does not take the library (" + child->describeEnd() + ")", "run: LD_PRELOAD=" + library->path + " true, and read what the loader says"};
+        return {Health::Bad, "preload", "the loader does not take the library (" + child->describeEnd() + ")",
+                "run: LD_PRELOAD=" + library->path + " true, and read what the loader says"};
     }
     return {Health::Ok, "preload", "the loader takes the library into programs", {}};
 }
 
 Check checkDisplay() {
     const std::string name = launch::Environment::current().get("DISPLAY").value_or("");
-    if (name.empty()) return {Health::Ok, "display", "none (DISPLAY is not set): programs run on a private display", {}};
+    if (name.empty())
+        return {Health::Ok, "display", "none (DISPLAY is not set): programs run on a private display", {}};
     if (launch::displayUsable(name)) return {Health::Ok, "display", name, {}};
-    return {Health::Warn, "display", name + " cannot be opened", "check that it runs, or unset DISPLAY to run without one"};
+    return {Health::Warn, "display", name + " cannot be opened",
+            "check that it runs, or unset DISPLAY to run without one"};
 }
 
 Check checkPrivateDisplay() {
     const bool there = installed("Xvfb");
     const bool needed = !launch::displayUsable(launch::Environment::current().get("DISPLAY").value_or(""));
-    if (!there) return {needed ? Health::Bad : Health::Warn, "private display", "Xvfb was not found", "install Debian's package xvfb: it is needed without a display and for --size"};
+    if (!there)
+        return {needed ? Health::Bad : Health::Warn, "private display", "Xvfb was not found",
+                "install Debian's package xvfb: it is needed without a display and for --size"};
     auto display = launch::PrivateDisplay::start(64, 64);
-    if (!display) return {needed ? Health::Bad : Health::Warn, "private display", display.error().message, "run Xvfb :99 by hand and read what it says"};
+    if (!display)
+        return {needed ? Health::Bad : Health::Warn, "private display", display.error().message,
+                "run Xvfb :99 by hand and read what it says"};
     return {Health::Ok, "private display", "Xvfb starts", {}};
 }
 
 Check checkSharedMemory() {
     const uint64_t wanted = uint64_t{capture::kDefaultChunks} * capture::kChunkBytes + capture::kReplyBytes;
     const int fd = memfd_create("mural-doctor", MFD_CLOEXEC);
-    if (fd < 0) return {Health::Bad, "shared memory", "memfd_create: " + std::string(std::strerror(errno)), "a kernel of 3.17 or later is needed, and no sandbox that forbids it"};
+    if (fd < 0)
+        return {Health::Bad, "shared memory", "memfd_create: " + std::string(std::strerror(errno)),
+                "a kernel of 3.17 or later is needed, and no sandbox that forbids it"};
     const bool sized = ftruncate(fd, static_cast<off_t>(wanted)) == 0;
     void* at = sized ? mmap(nullptr, wanted, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0) : MAP_FAILED;
     const int reason = errno;
     if (at != MAP_FAILED) munmap(at, wanted);
     close(fd);
-    if (at == MAP_FAILED) return {Health::Bad, "shared memory", fmt::format("no {} MiB: {}", wanted / kMiB, std::strerror(reason)), "raise the memory limit (ulimit -v, container)"};
+    if (at == MAP_FAILED)
+        return {Health::Bad, "shared memory", fmt::format("no {} MiB: {}", wanted / kMiB, std::strerror(reason)),
+                "raise the memory limit (ulimit -v, container)"};
     return {Health::Ok, "shared memory", fmt::format("{} MiB for each captured program", wanted / kMiB), {}};
 }
 
 Check checkMemoryFolder() {
     struct statvfs facts {};
-    if (statvfs("/dev/shm", &facts) != 0) return {Health::Warn, "/dev/shm", std::strerror(errno), "mount a tmpfs there: programs and X servers exchange pictures by it"};
+    if (statvfs("/dev/shm", &facts) != 0)
+        return {Health::Warn, "/dev/shm", std::strerror(errno),
+                "mount a tmpfs there: programs and X servers exchange pictures by it"};
     const uint64_t sizeMiB = facts.f_blocks * facts.f_frsize / kMiB;
-    if (sizeMiB < 64) return {Health::Warn, "/dev/shm", fmt::format("{} MiB", sizeMiB), "give it 64 MiB or more (containers: --shm-size)"};
+    if (sizeMiB < 64)
+        return {Health::Warn, "/dev/shm", fmt::format("{} MiB", sizeMiB),
+                "give it 64 MiB or more (containers: --shm-size)"};
     return {Health::Ok, "/dev/shm", fmt::format("{} MiB", sizeMiB), {}};
 }
 
 Check checkOpenFiles() {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);
-    if (limit.rlim_cur < kNeededFiles) return {Health::Warn, "open files", fmt::format("at most {}", limit.rlim_cur), fmt::format("ulimit -n {}", kNeededFiles)};
+    if (limit.rlim_cur < kNeededFiles)
+        return {Health::Warn, "open files", fmt::format("at most {}", limit.rlim_cur),
+                fmt::format("ulimit -n {}", kNeededFiles)};
     return {Health::Ok, "open files", fmt::format("at most {}", limit.rlim_cur), {}};
 }
 
@@ -154,25 +177,29 @@ Check checkVideo() {
 
 Check checkRemote() {
     if (installed("ssh")) return {Health::Ok, "other hosts", "ssh", {}};
-    return {Health::Warn, "other hosts", "ssh was not found", "install Debian's package openssh-client for --nodes, or give --launch"};
+    return {Health::Warn, "other hosts", "ssh was not found",
+            "install Debian's package openssh-client for --nodes, or give --launch"};
 }
 
 std::vector<Check> checkGl(bool& usable) {
     std::vector<Check> checks;
     usable = false;
     for (const char* backend : {"egl", "osmesa", "glx"}) {
-        const Isolated result = inChild([backend]() -> Isolated {
-            auto platform = gl::openPlatform(backend);
-            if (!platform) return {false, platform.error().message};
-            const auto found = gl::probe(**platform, gl::Api::Desktop, false);
-            if (!found) return {false, found.error().message};
-            const gl::GlProbe& p = found.value();
-            return {true, fmt::format("{}, pictures up to {} pixels wide", p.backend, p.maxSurfaceSize)};
-        }, kGlMs);
+        const Isolated result = inChild(
+            [backend]() -> Isolated {
+                auto platform = gl::openPlatform(backend);
+                if (!platform) return {false, platform.error().message};
+                const auto found = gl::probe(**platform, gl::Api::Desktop, false);
+                if (!found) return {false, found.error().message};
+                const gl::GlProbe& p = found.value();
+                return {true, fmt::format("{}, pictures up to {} pixels wide", p.backend, p.maxSurfaceSize)};
+            },
+            kGlMs);
         usable = usable || result.ok;
         const char* advice = "";
         if (!result.ok) advice = "only matters for --gl with this name, as long as another GL draws";
-        checks.push_back({result.ok ? Health::Ok : Health::Warn, fmt::format("GL by {}", backend), result.text, advice});
+        checks.push_back(
+            {result.ok ? Health::Ok : Health::Warn, fmt::format("GL by {}", backend), result.text, advice});
     }
     return checks;
 }

@@ -26,7 +26,7 @@ using rsp::Group;
 
 constexpr size_t kPieceBytes = 256 * 1024;
 constexpr size_t kPieces = 128; // pieces of a stream per read
-constexpr size_t kWarmUp = 20; // messages before the measurement
+constexpr size_t kWarmUp = 20;  // messages before the measurement
 
 double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; }
 
@@ -73,7 +73,8 @@ Result<rsp::GroupOptions> optionsOf(const NetperfArguments& a) {
     o.bytesPerS = *rate;
     auto window = rsp::parseSize(a.window);
     if (!window) return window.error();
-    if (*window < 64 || *window > 65'536 || (*window & (*window - 1)) != 0) return Error{"a window has 64 to 65536 datagrams, a power of two"};
+    if (*window < 64 || *window > 65'536 || (*window & (*window - 1)) != 0)
+        return Error{"a window has 64 to 65536 datagrams, a power of two"};
     o.windowDatagrams = static_cast<uint32_t>(*window);
     return o;
 }
@@ -94,14 +95,17 @@ Result<Plan> planOf(const NetperfArguments& a) {
         return plan;
     }
     if (!needsSecret) return plan;
-    if (a.secretFile.empty()) return Error{"--secret-file is needed (or secret=FILE in --stream): sender and receivers show each other that they know it"};
+    if (a.secretFile.empty())
+        return Error{"--secret-file is needed (or secret=FILE in --stream): sender and receivers show each other that "
+                     "they know it"};
     auto secret = rsp::readSecret(a.secretFile);
     if (!secret) return secret.error();
     o.secret = *secret;
     return plan;
 }
 
-Result<void> sendMessages(Group& group, const NetperfArguments& a, uint64_t messageBytes, Deadline deadline, Measured& m) {
+Result<void> sendMessages(Group& group, const NetperfArguments& a, uint64_t messageBytes, Deadline deadline,
+                          Measured& m) {
     std::vector<std::byte> message(messageBytes);
     for (size_t i = 0; i < a.count + kWarmUp; ++i) {
         if (!a.unchecked) fillPattern(message, i * messageBytes);
@@ -136,7 +140,8 @@ Result<Measured> send(Group& group, const Plan& plan, const NetperfArguments& a)
     const size_t membersAtFirst = group.members().size();
     const double began = nowS();
     const double cpuBegan = cpuS();
-    auto r = plan.messageBytes > 0 ? sendMessages(group, a, plan.messageBytes, deadline, m) : sendBytes(group, a, plan.bytes, deadline, m);
+    auto r = plan.messageBytes > 0 ? sendMessages(group, a, plan.messageBytes, deadline, m)
+                                   : sendBytes(group, a, plan.bytes, deadline, m);
     if (!r) return r.error();
     m.elapsedS = nowS() - began;
     m.cpuS = cpuS() - cpuBegan;
@@ -151,7 +156,8 @@ Result<Measured> receive(Group& group, const NetperfArguments& a) {
     m.role = "receiver " + std::to_string(group.self());
     m.timeline = Timeline(static_cast<int64_t>(a.timelineMs) * kNsPerMs);
     PatternCheck check;
-    const Deadline leave = a.leaveAfterSeconds > 0 ? Deadline::inMs(static_cast<int64_t>(a.leaveAfterSeconds * 1000)) : Deadline::never();
+    const Deadline leave =
+        a.leaveAfterSeconds > 0 ? Deadline::inMs(static_cast<int64_t>(a.leaveAfterSeconds * 1000)) : Deadline::never();
     const auto withinNs = static_cast<int64_t>(a.withinSeconds * kNsPerS);
     double firstS = 0;
     double cpuBegan = cpuS();
@@ -189,15 +195,18 @@ int failed(const std::string& why) {
 }
 
 std::string faultOf(const Measured& m) {
-    return "what came is not what was sent: " + m.wrong + "; with any seal but none this is a fault of mural, please report it";
+    return "what came is not what was sent: " + m.wrong +
+           "; with any seal but none this is a fault of mural, please report it";
 }
 
 int sendRole(const Plan& plan, const NetperfArguments& a) {
     auto group = Group::host(plan.options);
     if (!group) return failed(group.error().message);
     // Not part of the results.
-    fmt::print(stderr, "waiting for {} receivers; start each with: mural netperf receive --control HOST:PORT --secret-file …, the host listens at {}\n",
-        a.members, (*group)->controlAddress());
+    fmt::print(stderr,
+               "waiting for {} receivers; start each with: mural netperf receive --control HOST:PORT --secret-file …, "
+               "the host listens at {}\n",
+               a.members, (*group)->controlAddress());
     auto m = send(**group, plan, a);
     if (!m) return failed(m.error().message);
     print(*m, a.asJson);
@@ -215,7 +224,9 @@ int receiveRole(const Plan& plan, const NetperfArguments& a) {
     m->joinedNs = joinedNs;
     print(*m, a.asJson);
     if (!m->wrong.empty()) return failed(faultOf(*m));
-    return m->cut.empty() ? 0 : failed("the stream ended after " + std::to_string(m->bytes) + " bytes, before its end: " + m->cut);
+    return m->cut.empty()
+               ? 0
+               : failed("the stream ended after " + std::to_string(m->bytes) + " bytes, before its end: " + m->cut);
 }
 
 // Runs all roles in one process over the loopback.
@@ -253,28 +264,43 @@ int localRole(const Plan& plan, const NetperfArguments& a) {
 } // namespace
 
 void describeNetperf(CLI::App& command, NetperfArguments& a) {
-    command.add_option("ROLE", a.role, "send, receive, or local: all on this machine")->check(CLI::IsMember({"send", "receive", "local"}));
+    command.add_option("ROLE", a.role, "send, receive, or local: all on this machine")
+        ->check(CLI::IsMember({"send", "receive", "local"}));
     command.add_option("--members", a.members, "receivers to wait for")->check(CLI::Range(1, 1000));
     command.add_option("--bytes", a.bytes, "how much is sent: 64M")->type_name("SIZE");
-    command.add_option("--message", a.message, "send messages of this size instead, each when all have the one before")->type_name("SIZE");
+    command.add_option("--message", a.message, "send messages of this size instead, each when all have the one before")
+        ->type_name("SIZE");
     command.add_option("--count", a.count, "so many messages")->check(CLI::Range(1, 10'000'000));
-    auto* stream = command.add_option("--stream", a.stream, "the group as a description, rsp://GROUP:PORT?parameter=value&…, instead of the options for one of them (docs/reference/connections.md lists them)");
-    command.add_option("--rate", a.rate, "at most: 200mbit, 1gbit; 0: nine tenths of what the card tells")->type_name("RATE");
+    auto* stream = command.add_option("--stream", a.stream,
+                                      "the group as a description, rsp://GROUP:PORT?parameter=value&…, instead of the "
+                                      "options for one of them (docs/reference/connections.md lists them)");
+    command.add_option("--rate", a.rate, "at most: 200mbit, 1gbit; 0: nine tenths of what the card tells")
+        ->type_name("RATE");
     command.add_option("--group", a.group, "multicast address and port")->type_name("ADDRESS:PORT");
     command.add_option("--interface", a.interface, "network interface, by name or address");
-    command.add_option("--control", a.control, "send: where to listen; receive: where the sender listens")->type_name("HOST:PORT");
+    command.add_option("--control", a.control, "send: where to listen; receive: where the sender listens")
+        ->type_name("HOST:PORT");
     command.add_option("--secret-file", a.secretFile, "file with the secret that both ends know; -: standard input");
     command.add_option("--seal", a.seal, "auto (encrypted), siphash, aes-256-gcm, chacha20-poly1305, none");
-    command.add_option("--datagram", a.datagramBytes, "bytes of a datagram; 0: what the interface carries whole")->check(CLI::Range(0, 65'000));
+    command.add_option("--datagram", a.datagramBytes, "bytes of a datagram; 0: what the interface carries whole")
+        ->check(CLI::Range(0, 65'000));
     command.add_option("--window", a.window, "datagrams under way at most, a power of two");
-    command.add_option("--within", a.withinSeconds, "give up after so many seconds")->type_name("SECONDS")->check(CLI::Range(0.1, 86'400.0));
-    command.add_option("--leave-after", a.leaveAfterSeconds, "receive: leave the group so many seconds after joining")->type_name("SECONDS")->check(CLI::Range(0.0, 86'400.0));
-    command.add_option("--timeline", a.timelineMs, "with --json: tell the bytes of every so many milliseconds, too")->type_name("MS")->check(CLI::Range(0, 10'000));
-    command.add_flag("--unchecked", a.unchecked, "neither fill nor compare the bytes, at both ends: what the transport alone costs");
+    command.add_option("--within", a.withinSeconds, "give up after so many seconds")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.1, 86'400.0));
+    command.add_option("--leave-after", a.leaveAfterSeconds, "receive: leave the group so many seconds after joining")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.0, 86'400.0));
+    command.add_option("--timeline", a.timelineMs, "with --json: tell the bytes of every so many milliseconds, too")
+        ->type_name("MS")
+        ->check(CLI::Range(0, 10'000));
+    command.add_flag("--unchecked", a.unchecked,
+                     "neither fill nor compare the bytes, at both ends: what the transport alone costs");
     command.add_flag("--no-parity", a.noParity, "mend losses by sending again, to compare");
     command.add_flag("--no-multicast", a.noMulticast, "receive: through the host's connection");
     command.add_flag("--json", a.asJson, "one line of JSON for each end");
-    for (const char* single : {"--rate", "--group", "--interface", "--seal", "--datagram", "--window", "--no-parity", "--no-multicast"})
+    for (const char* single :
+         {"--rate", "--group", "--interface", "--seal", "--datagram", "--window", "--no-parity", "--no-multicast"})
         stream->excludes(command.get_option(single));
 }
 

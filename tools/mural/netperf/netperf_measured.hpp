@@ -33,13 +33,13 @@ struct Measured {
     double cpuS = 0;
     int64_t joinBeganNs = 0; // receiver: on the monotonic clock
     int64_t joinedNs = 0;
-    size_t membersLost = 0; // sender: members at the start that are missing at the end
+    size_t membersLost = 0;          // sender: members at the start that are missing at the end
     std::vector<double> latenciesUs; // sorted
     Timeline timeline;
     rsp::GroupReport report;
     uint64_t beganAt = 0; // receiver: position of its first byte in the stream
-    std::string cut; // reason of a premature end; empty: none
-    std::string wrong; // first wrong byte; empty: none
+    std::string cut;      // reason of a premature end; empty: none
+    std::string wrong;    // first wrong byte; empty: none
 
     [[nodiscard]] double mbit() const { return elapsedS > 0 ? static_cast<double>(bytes) * 8e-6 / elapsedS : 0; }
     [[nodiscard]] double cpuPerGB() const { return bytes > 0 ? cpuS / (static_cast<double>(bytes) * 1e-9) : 0; }

@@ -37,7 +37,8 @@ bool isPattern(std::span<const std::byte> bytes, uint64_t place) {
     const auto words = bytes.subspan(before, (bytes.size() - before) / kWordBytes * kWordBytes);
     uint64_t word = ((place + before) / kWordBytes + 1) * kFactor;
     uint64_t wrong = 0;
-    for (size_t at = 0; at < words.size(); at += kWordBytes, word += kFactor) wrong |= loadLittle<uint64_t>(words.data() + at) ^ word;
+    for (size_t at = 0; at < words.size(); at += kWordBytes, word += kFactor)
+        wrong |= loadLittle<uint64_t>(words.data() + at) ^ word;
     const size_t behind = before + words.size();
     return wrong == 0 && isFilled(bytes.first(before), place) && isFilled(bytes.subspan(behind), place + behind);
 }
@@ -98,7 +99,8 @@ void PatternCheck::compare(std::span<const std::byte> bytes) {
             const auto wrongAt = static_cast<size_t>(std::ranges::mismatch(piece, expected).in1 - piece.begin());
             const uint64_t place = place_ + wrongAt;
             const auto came = findPattern(bytes.subspan(wrongAt));
-            fault_ = came && *came != place ? fmt::format("at byte {} came what belongs at byte {}", place, *came) : fmt::format("byte {} was changed", place);
+            fault_ = came && *came != place ? fmt::format("at byte {} came what belongs at byte {}", place, *came)
+                                            : fmt::format("byte {} was changed", place);
             return;
         }
         place_ += piece.size();

@@ -32,7 +32,7 @@ private:
 
     bool found_ = false;
     uint64_t beganAt_ = 0;
-    uint64_t place_ = 0; // of the next byte
+    uint64_t place_ = 0;           // of the next byte
     std::vector<std::byte> first_; // until the position is known
     std::string fault_;
 };

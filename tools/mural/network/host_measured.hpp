@@ -10,11 +10,11 @@
 namespace mural::cli {
 
 struct WayMeasured {
-    bool to = false; // small datagrams arrive at the host
-    bool from = false; // small datagrams arrive from the host
-    bool toLater = false; // at the end of the survey
+    bool to = false;         // small datagrams arrive at the host
+    bool from = false;       // small datagrams arrive from the host
+    bool toLater = false;    // at the end of the survey
     size_t largestBytes = 0; // largest UDP payload that arrives at the host
-    std::string trouble; // error at either end
+    std::string trouble;     // error at either end
 };
 
 struct HostMeasured {
@@ -22,15 +22,15 @@ struct HostMeasured {
     std::string failure; // reason why the host could not be surveyed; empty: none
     std::string version;
     std::string reached, own, unreachedWhy; // of the TCP connection from the host
-    std::string interfaceTowards; // interface of this machine; empty: unknown
+    std::string interfaceTowards;           // interface of this machine; empty: unknown
     MachineFacts facts;
     std::array<WayMeasured, std::size(kProbeWays)> ways;
     std::string streamFailure; // empty: the stream was measured
-    bool multicast = false; // the stream used multicast, not the member's connection
+    bool multicast = false;    // the stream used multicast, not the member's connection
     uint64_t datagrams = 0;
     double bytesPerS = 0;
-    double lostShare = 0; // in the network
-    double droppedShare = 0; // by the host's socket
+    double lostShare = 0;      // in the network
+    double droppedShare = 0;   // by the host's socket
     uint64_t queueDropped = 0; // packets dropped by the host's kernel before a socket
 
     [[nodiscard]] const WayMeasured& way(ProbeWay w) const { return ways[static_cast<size_t>(w)]; }
@@ -41,9 +41,9 @@ struct HostMeasured {
 struct HereMeasured {
     std::string version;
     MachineFacts facts;
-    std::string group; // address and port
+    std::string group;       // address and port
     size_t headerBytes = 28; // IP and UDP headers
-    size_t cardBytes = 0; // largest UDP payload without fragmentation, as RSP uses it
+    size_t cardBytes = 0;    // largest UDP payload without fragmentation, as RSP uses it
 };
 
 } // namespace mural::cli

@@ -14,8 +14,8 @@ using nlohmann::json;
 constexpr int64_t kAnswerMs = 10'000;
 constexpr int64_t kJoinMs = 15'000;
 constexpr int64_t kArriveMs = 20'000; // timeout for complete delivery after the end of a stream
-constexpr int64_t kUnderWayMs = 150; // transit time of a probe
-constexpr unsigned kCopies = 5; // copies of each probe: one arrival suffices
+constexpr int64_t kUnderWayMs = 150;  // transit time of a probe
+constexpr unsigned kCopies = 5;       // copies of each probe: one arrival suffices
 constexpr int kBetweenProbesMs = 1;
 constexpr size_t kExactBytes = 4; // resolution of the largest size
 constexpr size_t kPieceBytes = 64 * 1024;
@@ -38,7 +38,8 @@ void takeTroubles(const json& answer, HostMeasured& m) {
     const auto list = answer.find("troubles");
     if (list == answer.end() || !list->is_array()) return;
     for (size_t i = 0; i < std::min(list->size(), m.ways.size()); ++i) {
-        if ((*list)[i].is_string() && !(*list)[i].get<std::string>().empty()) m.ways[i].trouble = "there: " + (*list)[i].get<std::string>();
+        if ((*list)[i].is_string() && !(*list)[i].get<std::string>().empty())
+            m.ways[i].trouble = "there: " + (*list)[i].get<std::string>();
     }
 }
 
@@ -105,7 +106,11 @@ Result<void> HostSurvey::probeThere(const std::vector<size_t>& sizes, const std:
 
 Result<void> HostSurvey::probeBack() {
     (void)sockets_.take();
-    const json order{{"do", "send"}, {"to", m_.reached}, {"port", sockets_.port()}, {"sizes", {kMinProbeBytes}}, {"copies", kCopies}};
+    const json order{{"do", "send"},
+                     {"to", m_.reached},
+                     {"port", sockets_.port()},
+                     {"sizes", {kMinProbeBytes}},
+                     {"copies", kCopies}};
     auto answer = process_.ask(order, Deadline::inMs(kAnswerMs));
     if (!answer) return answer.error();
     takeTroubles(*answer, m_);
@@ -117,7 +122,8 @@ Result<void> HostSurvey::probeBack() {
 // Tries common sizes first, then bisects between the largest arrival and the smallest loss.
 Result<void> HostSurvey::findLargest(ProbeWay way) {
     // Interfaces accept packets somewhat larger than their MTU, but cannot send replies of that size.
-    const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kMinProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes : plan_.cardBytes;
+    const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kMinProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes
+                                                                                 : plan_.cardBytes;
     const size_t most = std::min(plan_.cardBytes, theirs);
     std::vector<size_t> sizes{kMinProbeBytes};
     for (const size_t packet : kKnownPackets) {
@@ -149,7 +155,8 @@ Result<void> HostSurvey::stream() {
     const std::string control = (brackets ? "[" + m_.reached + "]" : m_.reached) + ":" + std::to_string(where->port);
     auto joined = process_.ask({{"do", "join"}, {"control", control}}, Deadline::inMs(kJoinMs));
     if (!joined) return joined.error();
-    if (!joined->contains("joined") || (*joined)["joined"] != true) return Error{"it could not join the group: " + textOf(*joined, "why")};
+    if (!joined->contains("joined") || (*joined)["joined"] != true)
+        return Error{"it could not join the group: " + textOf(*joined, "why")};
     auto r = streamTo(**group);
     group->reset();
     auto left = process_.ask({{"do", "leave"}}, Deadline::inMs(kAnswerMs));
@@ -174,7 +181,8 @@ Result<void> HostSurvey::streamTo(rsp::Group& group) {
     const double tookS = static_cast<double>(monotonicNowNs() - beganNs) * 1e-9;
     const rsp::GroupReport report = group.report();
     // A group without members discards its stream at any rate, so the measured rate would be meaningless.
-    if (report.members.size() != 1) return Error{"the host's member was lost during the stream: it said nothing, or did not take it"};
+    if (report.members.size() != 1)
+        return Error{"the host's member was lost during the stream: it said nothing, or did not take it"};
     const auto& member = report.members.front();
     m_.multicast = member.info.multicast;
     m_.datagrams = report.sender.datagrams;

@@ -11,7 +11,7 @@ namespace mural::cli {
 struct SurveyPlan {
     rsp::GroupOptions group; // options of the host role
     size_t headerBytes = 28; // IP and UDP headers
-    size_t cardBytes = 0; // largest UDP payload of this machine's interface
+    size_t cardBytes = 0;    // largest UDP payload of this machine's interface
     double seconds = 1;
 };
 

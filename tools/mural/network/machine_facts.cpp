@@ -23,7 +23,8 @@ std::vector<std::string> silentBridges(const std::string& root) {
     std::error_code failed;
     for (const auto& entry : std::filesystem::directory_iterator(root + "/sys/class/net", failed)) {
         const std::string bridge = entry.path().string() + "/bridge";
-        if (numberIn(bridge + "/multicast_snooping") == 1 && numberIn(bridge + "/multicast_querier") == 0) names.push_back(entry.path().filename());
+        if (numberIn(bridge + "/multicast_snooping") == 1 && numberIn(bridge + "/multicast_querier") == 0)
+            names.push_back(entry.path().filename());
     }
     std::ranges::sort(names);
     return names;
@@ -55,7 +56,8 @@ MachineFacts readMachineFacts(const rsp::NetworkInterface& interface, size_t buf
     f.sendLimitBytes = numberIn(root + "/proc/sys/net/core/wmem_max");
     // The stricter setting applies; 1 is strict, 2 is loose.
     const std::string filters = root + "/proc/sys/net/ipv4/conf/";
-    f.strictReturnPath = std::max(numberIn(filters + "all/rp_filter").value_or(0), numberIn(filters + interface.name + "/rp_filter").value_or(0)) == 1;
+    f.strictReturnPath = std::max(numberIn(filters + "all/rp_filter").value_or(0),
+                                  numberIn(filters + interface.name + "/rp_filter").value_or(0)) == 1;
     f.silentBridges = silentBridges(root);
     return f;
 }
@@ -73,8 +75,14 @@ uint64_t droppedByQueues(const std::string& root) {
 }
 
 nlohmann::json toJson(const MachineFacts& f) {
-    nlohmann::json j{{"interface", f.interface}, {"mtu", f.mtuBytes}, {"linkMbit", f.linkBytesPerS * 8e-6}, {"multicast", f.multicast}, {"loopback", f.loopback},
-        {"bufferBytes", f.bufferBytes}, {"strictReturnPath", f.strictReturnPath}, {"silentBridges", f.silentBridges}};
+    nlohmann::json j{{"interface", f.interface},
+                     {"mtu", f.mtuBytes},
+                     {"linkMbit", f.linkBytesPerS * 8e-6},
+                     {"multicast", f.multicast},
+                     {"loopback", f.loopback},
+                     {"bufferBytes", f.bufferBytes},
+                     {"strictReturnPath", f.strictReturnPath},
+                     {"silentBridges", f.silentBridges}};
     if (f.receiveLimitBytes) j["receiveLimitBytes"] = *f.receiveLimitBytes;
     if (f.sendLimitBytes) j["sendLimitBytes"] = *f.sendLimitBytes;
     return j;

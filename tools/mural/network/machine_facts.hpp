@@ -18,7 +18,7 @@ struct MachineFacts {
     double linkBytesPerS = 0; // 0: unknown
     bool multicast = false;
     bool loopback = false;
-    size_t bufferBytes = 0; // granted receive buffer
+    size_t bufferBytes = 0;                                    // granted receive buffer
     std::optional<uint64_t> receiveLimitBytes, sendLimitBytes; // net.core.rmem_max, wmem_max
     bool strictReturnPath = false; // rp_filter: drops packets whose source is reached through another interface
     std::vector<std::string> silentBridges; // bridges with IGMP snooping and no querier

@@ -30,38 +30,73 @@ size_t largestOf(const HostMeasured& h) {
 }
 
 void printTable(const std::vector<HostMeasured>& hosts) {
-    fmt::print("{:<20} {:<12} {:>10} {:>12} {:>8} {:>10}\n", "host", "reached by", "datagram", "rate", "lost", "buffer");
+    fmt::print("{:<20} {:<12} {:>10} {:>12} {:>8} {:>10}\n", "host", "reached by", "datagram", "rate", "lost",
+               "buffer");
     for (const HostMeasured& h : hosts) {
         const bool streamed = h.failure.empty() && h.streamFailure.empty() && !h.reached.empty();
-        fmt::print("{:<20} {:<12} {:>10} {:>12} {:>8} {:>10}\n", h.host, reachOf(h), largestOf(h) > 0 ? fmt::format("{} B", largestOf(h)) : "-",
-            streamed ? fmt::format("{:.0f} Mbit/s", h.bytesPerS * 8e-6) : "-", streamed ? fmt::format("{:.2f} %", h.lostShare * 100) : "-",
-            h.facts.bufferBytes > 0 ? fmt::format("{:.3g} MiB", static_cast<double>(h.facts.bufferBytes) / (1 << 20)) : "-");
+        fmt::print("{:<20} {:<12} {:>10} {:>12} {:>8} {:>10}\n", h.host, reachOf(h),
+                   largestOf(h) > 0 ? fmt::format("{} B", largestOf(h)) : "-",
+                   streamed ? fmt::format("{:.0f} Mbit/s", h.bytesPerS * 8e-6) : "-",
+                   streamed ? fmt::format("{:.2f} %", h.lostShare * 100) : "-",
+                   h.facts.bufferBytes > 0
+                       ? fmt::format("{:.3g} MiB", static_cast<double>(h.facts.bufferBytes) / (1 << 20))
+                       : "-");
     }
 }
 
 json hostJson(const HostMeasured& h, const std::vector<Check>& checks) {
-    json j{{"host", h.host}, {"reachedBy", reachOf(h)}, {"failure", h.failure}, {"version", h.version}, {"connection", {{"to", h.reached}, {"from", h.own}, {"why", h.unreachedWhy}}},
-        {"machine", toJson(h.facts)}, {"checks", toJson(checks)}};
+    json j{{"host", h.host},
+           {"reachedBy", reachOf(h)},
+           {"failure", h.failure},
+           {"version", h.version},
+           {"connection", {{"to", h.reached}, {"from", h.own}, {"why", h.unreachedWhy}}},
+           {"machine", toJson(h.facts)},
+           {"checks", toJson(checks)}};
     constexpr const char* kNames[] = {"single", "group", "linkLocal"};
     for (const ProbeWay w : kProbeWays) {
         const WayMeasured& way = h.way(w);
-        j["ways"][kNames[static_cast<size_t>(w)]] = {{"arrivesThere", way.to}, {"arrivesHere", way.from}, {"atTheEnd", way.toLater}, {"largestBytes", way.largestBytes}, {"trouble", way.trouble}};
+        j["ways"][kNames[static_cast<size_t>(w)]] = {{"arrivesThere", way.to},
+                                                     {"arrivesHere", way.from},
+                                                     {"atTheEnd", way.toLater},
+                                                     {"largestBytes", way.largestBytes},
+                                                     {"trouble", way.trouble}};
     }
-    j["stream"] = {{"failure", h.streamFailure}, {"multicast", h.multicast}, {"mbit", h.bytesPerS * 8e-6}, {"datagrams", h.datagrams}, {"lostShare", h.lostShare}, {"droppedShare", h.droppedShare}, {"queueDropped", h.queueDropped}};
+    j["stream"] = {{"failure", h.streamFailure},    {"multicast", h.multicast}, {"mbit", h.bytesPerS * 8e-6},
+                   {"datagrams", h.datagrams},      {"lostShare", h.lostShare}, {"droppedShare", h.droppedShare},
+                   {"queueDropped", h.queueDropped}};
     return j;
 }
 
 } // namespace
 
 CLI::Option* describeNetworkDoctor(CLI::App& doctor, NetworkArguments& a) {
-    CLI::Option* network = doctor.add_option("--network", a.hosts, "look at the network between this machine and hosts, by a member that is started on each");
+    CLI::Option* network =
+        doctor.add_option("--network", a.hosts,
+                          "look at the network between this machine and hosts, by a member that is started on each");
     network->type_name("[H1,H2]")->expected(0, 1);
-    doctor.add_option("--launch", a.launchCommand, "network: command that runs a command on a host (ssh -o BatchMode=yes)")->type_name("CMD")->needs(network);
-    doctor.add_option("--remote-mural", a.remoteMural, "network: path of mural on the hosts (this one's)")->type_name("PATH")->needs(network);
-    doctor.add_option("--group", a.group, "network: multicast address and port (239.255.77.85:4277)")->type_name("ADDRESS:PORT")->needs(network);
-    doctor.add_option("--interface", a.interface, "network: interface to send by, name or address (the one that leads to the first host)")->type_name("NAME")->needs(network);
-    doctor.add_option("--rate", a.rate, "network: at most, such as 900mbit (nine tenths of what the card tells)")->type_name("RATE")->needs(network);
-    doctor.add_option("--seconds", a.seconds, "network: length of the stream to each host (1)")->type_name("SECONDS")->check(CLI::Range(0.1, 60.0))->needs(network);
+    doctor
+        .add_option("--launch", a.launchCommand,
+                    "network: command that runs a command on a host (ssh -o BatchMode=yes)")
+        ->type_name("CMD")
+        ->needs(network);
+    doctor.add_option("--remote-mural", a.remoteMural, "network: path of mural on the hosts (this one's)")
+        ->type_name("PATH")
+        ->needs(network);
+    doctor.add_option("--group", a.group, "network: multicast address and port (239.255.77.85:4277)")
+        ->type_name("ADDRESS:PORT")
+        ->needs(network);
+    doctor
+        .add_option("--interface", a.interface,
+                    "network: interface to send by, name or address (the one that leads to the first host)")
+        ->type_name("NAME")
+        ->needs(network);
+    doctor.add_option("--rate", a.rate, "network: at most, such as 900mbit (nine tenths of what the card tells)")
+        ->type_name("RATE")
+        ->needs(network);
+    doctor.add_option("--seconds", a.seconds, "network: length of the stream to each host (1)")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.1, 60.0))
+        ->needs(network);
     return network;
 }
 
@@ -90,7 +125,8 @@ int networkDoctorCommand(const NetworkArguments& arguments, bool asJson) {
     } else {
         printTable(survey.value().hosts);
         printChecks(all);
-        fmt::print("{}\n", good ? "The network carries Mural." : "The network needs mending: see the lines that begin with \"bad\".");
+        fmt::print("{}\n", good ? "The network carries Mural."
+                                : "The network needs mending: see the lines that begin with \"bad\".");
     }
     return good ? 0 : 1;
 }

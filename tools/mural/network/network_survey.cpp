@@ -41,7 +41,9 @@ std::string quoted(const std::string& word) {
 std::vector<std::string> memberCommand(const NetworkArguments& a, const std::string& host) {
     if (a.hosts.empty()) return {launch::ownBinary(), "network-member"};
     std::vector<std::string> command = split(a.launchCommand, ' ');
-    for (const std::string& word : {host, quoted(a.remoteMural.empty() ? launch::ownBinary() : a.remoteMural), std::string("network-member")}) command.push_back(word);
+    for (const std::string& word :
+         {host, quoted(a.remoteMural.empty() ? launch::ownBinary() : a.remoteMural), std::string("network-member")})
+        command.push_back(word);
     return command;
 }
 
@@ -69,7 +71,8 @@ public:
 
     Result<Survey> run(const std::function<void(const std::string&)>& progress) {
         if (auto r = open(); !r) return r.error();
-        const std::vector<std::string> hosts = a_.hosts.empty() ? std::vector<std::string>{"this machine"} : split(a_.hosts, ',');
+        const std::vector<std::string> hosts =
+            a_.hosts.empty() ? std::vector<std::string>{"this machine"} : split(a_.hosts, ',');
         // Surveys hold pointers to these elements.
         survey_.hosts.resize(hosts.size());
         for (size_t i = 0; i < hosts.size(); ++i) survey_.hosts[i].host = hosts[i];
@@ -82,7 +85,8 @@ public:
         }
         // Checks the first hosts again, because switches forget multicast groups after some time.
         for (size_t i = 0; i + 1 < hosts.size(); ++i) {
-            if (started_[i].survey && survey_.hosts[i].failure.empty()) note(started_[i].survey->lookAgain(), survey_.hosts[i]);
+            if (started_[i].survey && survey_.hosts[i].failure.empty())
+                note(started_[i].survey->lookAgain(), survey_.hosts[i]);
         }
         return std::move(survey_);
     }
@@ -117,7 +121,8 @@ private:
         plan_.headerBytes = group->family() == AF_INET ? kUdpOverIpv4Bytes : kUdpOverIpv6Bytes;
         plan_.cardBytes = std::min(interface_.mtuBytes - plan_.headerBytes, kMaxDatagramBytes);
         plan_.seconds = a_.seconds;
-        survey_.here = {muralVersion(), readMachineFacts(interface_, sockets_->bufferBytes()), a_.group, plan_.headerBytes, plan_.cardBytes};
+        survey_.here = {muralVersion(), readMachineFacts(interface_, sockets_->bufferBytes()), a_.group,
+                        plan_.headerBytes, plan_.cardBytes};
         // Members test their connection to this machine here.
         auto listening = rsp::Group::host(plan_.group);
         if (!listening) return listening.error();
@@ -137,7 +142,8 @@ private:
             for (const SocketAddress& address : i.addresses) {
                 const std::string text = numericText(address);
                 if (address.family() != family_) continue;
-                if (text.find('%') == std::string::npos && std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
+                if (text.find('%') == std::string::npos && std::ranges::find(texts, text) == texts.end())
+                    texts.push_back(text);
             }
         }
         return texts;
@@ -150,11 +156,16 @@ private:
             return {};
         }
         const SocketAddress* ours = interface_.address(family_);
-        const std::string towards = a_.hosts.empty() ? (ours ? numericText(*ours) : "") : ownAddressTowards(h.host, family_);
+        const std::string towards =
+            a_.hosts.empty() ? (ours ? numericText(*ours) : "") : ownAddressTowards(h.host, family_);
         if (auto way = rsp::findInterface(towards, family_); way && !towards.empty()) h.interfaceTowards = way->name;
         auto port = splitHostPort(listening_->controlAddress());
-        const nlohmann::json order{{"secret", toHex(secret_)}, {"addresses", addressesFor(towards)}, {"port", port ? port->port : 0}, {"group", a_.group},
-            {"interface", a_.hosts.empty() ? interface_.name : ""}, {"survey", number_}};
+        const nlohmann::json order{{"secret", toHex(secret_)},
+                                   {"addresses", addressesFor(towards)},
+                                   {"port", port ? port->port : 0},
+                                   {"group", a_.group},
+                                   {"interface", a_.hosts.empty() ? interface_.name : ""},
+                                   {"survey", number_}};
         if (auto r = (*process)->say(order); !r) {
             h.failure = r.error().message;
             return {};
@@ -178,7 +189,7 @@ private:
     SurveyPlan plan_;
     SessionSecret secret_{};
     uint64_t number_ = 0; // random number of this survey, sent in clear
-    int family_ = 0; // of the group's address
+    int family_ = 0;      // of the group's address
     rsp::NetworkInterface interface_;
     std::optional<ProbeSockets> sockets_;
     std::unique_ptr<rsp::Group> listening_;
@@ -187,7 +198,8 @@ private:
 
 } // namespace
 
-Result<Survey> surveyNetwork(const NetworkArguments& arguments, const std::function<void(const std::string& host)>& progress) {
+Result<Survey> surveyNetwork(const NetworkArguments& arguments,
+                             const std::function<void(const std::string& host)>& progress) {
     return Surveying(arguments).run(progress);
 }
 

@@ -18,6 +18,7 @@ struct Survey {
 };
 
 // Errors concern this machine: nothing could be measured. `progress` receives the current host.
-Result<Survey> surveyNetwork(const NetworkArguments& arguments, const std::function<void(const std::string& host)>& progress);
+Result<Survey> surveyNetwork(const NetworkArguments& arguments,
+                             const std::function<void(const std::string& host)>& progress);
 
 } // namespace mural::cli

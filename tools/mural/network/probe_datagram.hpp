@@ -13,8 +13,8 @@ namespace mural::cli {
 
 // Destination of a probe.
 enum class ProbeWay : uint8_t {
-    Single = 0, // the machine's unicast address
-    Group = 1, // the multicast group
+    Single = 0,    // the machine's unicast address
+    Group = 1,     // the multicast group
     LinkLocal = 2, // a multicast group that switches always forward (RFC 4541, 2.1.2)
 };
 constexpr ProbeWay kProbeWays[] = {ProbeWay::Single, ProbeWay::Group, ProbeWay::LinkLocal};

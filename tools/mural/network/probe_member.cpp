@@ -25,7 +25,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int64_t kSilenceMs = 600'000; // other hosts are surveyed in the meantime
-constexpr int64_t kConnectMs = 2'000; // per address
+constexpr int64_t kConnectMs = 2'000;   // per address
 constexpr int64_t kJoinGroupMs = 10'000;
 constexpr int64_t kSpeakMs = 10'000;
 constexpr int kBetweenDatagramsMs = 1;
@@ -33,8 +33,8 @@ constexpr int kBetweenDatagramsMs = 1;
 // The route to the doctor's machine.
 struct Route {
     std::string reached; // reachable address of the doctor's machine
-    std::string own; // source address chosen by the kernel
-    std::string why; // reason if none is reachable
+    std::string own;     // source address chosen by the kernel
+    std::string why;     // reason if none is reachable
 };
 
 Route findRoute(const std::vector<std::string>& addresses, uint16_t port) {
@@ -46,8 +46,10 @@ Route findRoute(const std::vector<std::string>& addresses, uint16_t port) {
         int code = ::connect(fd.get(), address->get(), address->sizeBytes) == 0 ? 0 : errno;
         if (code == EINPROGRESS) {
             socklen_t size = sizeof code;
-            if (waitForSocket(fd.get(), POLLOUT, Deadline::inMs(kConnectMs)) == 0) code = ETIMEDOUT;
-            else if (getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &code, &size) != 0) code = errno;
+            if (waitForSocket(fd.get(), POLLOUT, Deadline::inMs(kConnectMs)) == 0)
+                code = ETIMEDOUT;
+            else if (getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &code, &size) != 0)
+                code = errno;
         }
         if (code == 0) return {host, numericText(localTcpAddress(fd.get())), {}};
         route.why += fmt::format("{}{}: {}", route.why.empty() ? "" : ", ", host, errnoText(code));
@@ -65,7 +67,10 @@ public:
     }
     [[nodiscard]] json report() const {
         const rsp::GroupReport r = group_->report();
-        return {{"bytes", bytes_.load()}, {"socketDropped", r.socketDropped}, {"refused", r.refused.all()}, {"queueDropped", droppedByQueues() - queueDropped_}};
+        return {{"bytes", bytes_.load()},
+                {"socketDropped", r.socketDropped},
+                {"refused", r.refused.all()},
+                {"queueDropped", droppedByQueues() - queueDropped_}};
     }
 
 private:
@@ -90,12 +95,15 @@ public:
 
     int run() {
         auto first = lines_.read(Deadline::inMs(kSilenceMs));
-        if (!first) return failed("no word from mural doctor on standard input: " + first.error().message + "; it is started by mural doctor --network");
+        if (!first)
+            return failed("no word from mural doctor on standard input: " + first.error().message +
+                          "; it is started by mural doctor --network");
         try {
             if (auto r = begin(json::parse(*first)); !r) return failed(r.error().message);
             return converse();
         } catch (const json::exception& e) {
-            return failed(std::string("what mural doctor says makes no sense here: ") + e.what() + "; do both run the same version?");
+            return failed(std::string("what mural doctor says makes no sense here: ") + e.what() +
+                          "; do both run the same version?");
         }
     }
 
@@ -111,7 +119,8 @@ private:
         if (!secret) return secret.error();
         auto group = numericEndpoint(order.at("group").get<std::string>());
         if (!group) return group.error();
-        const Route route = findRoute(order.at("addresses").get<std::vector<std::string>>(), order.at("port").get<uint16_t>());
+        const Route route =
+            findRoute(order.at("addresses").get<std::vector<std::string>>(), order.at("port").get<uint16_t>());
         // Default: the interface that leads to the doctor.
         std::string wanted = order.at("interface").get<std::string>();
         if (wanted.empty()) wanted = route.own;
@@ -124,8 +133,13 @@ private:
         options_.secret = *secret;
         options_.group = order.at("group").get<std::string>();
         options_.interface = interface->name;
-        const json hello{{"version", muralVersion()}, {"reached", route.reached}, {"own", route.own}, {"why", route.why}, {"port", sockets_->port()},
-            {"troubles", troubles()}, {"facts", toJson(readMachineFacts(*interface, sockets_->bufferBytes()))}};
+        const json hello{{"version", muralVersion()},
+                         {"reached", route.reached},
+                         {"own", route.own},
+                         {"why", route.why},
+                         {"port", sockets_->port()},
+                         {"troubles", troubles()},
+                         {"facts", toJson(readMachineFacts(*interface, sockets_->bufferBytes()))}};
         return lines_.write(hello.dump(), Deadline::inMs(kSpeakMs));
     }
 
@@ -156,7 +170,8 @@ private:
     json seen() {
         (void)sockets_->listen(Deadline::inMs(0)); // already received
         json list = json::array();
-        for (const auto& [probe, count] : sockets_->take()) list.push_back({{"way", static_cast<int>(probe.way)}, {"size", probe.sizeBytes}, {"count", count}});
+        for (const auto& [probe, count] : sockets_->take())
+            list.push_back({{"way", static_cast<int>(probe.way)}, {"size", probe.sizeBytes}, {"count", count}});
         return {{"seen", list}};
     }
 

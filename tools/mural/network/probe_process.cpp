@@ -45,7 +45,9 @@ ProbeProcess::~ProbeProcess() {
     process_.end(Deadline::inMs(0));
 }
 
-Result<void> ProbeProcess::say(const nlohmann::json& words) { return lines_.write(words.dump(), Deadline::inMs(kSayMs)); }
+Result<void> ProbeProcess::say(const nlohmann::json& words) {
+    return lines_.write(words.dump(), Deadline::inMs(kSayMs));
+}
 
 Result<nlohmann::json> ProbeProcess::hear(Deadline deadline) {
     auto line = lines_.read(deadline);

@@ -26,7 +26,8 @@ public:
     Result<nlohmann::json> ask(const nlohmann::json& words, Deadline deadline);
 
 private:
-    ProbeProcess(launch::ChildProcess process, LineChannel lines) : process_(std::move(process)), lines_(std::move(lines)) {}
+    ProbeProcess(launch::ChildProcess process, LineChannel lines)
+        : process_(std::move(process)), lines_(std::move(lines)) {}
     launch::ChildProcess process_;
     LineChannel lines_;
 };

@@ -12,7 +12,8 @@ constexpr const char* kLinkLocal4 = "224.0.0.254";
 constexpr const char* kLinkLocal6 = "ff02::114";
 } // namespace
 
-Result<ProbeSockets> ProbeSockets::open(const SocketAddress& group, const rsp::NetworkInterface& interface, uint64_t survey, bool doctor) {
+Result<ProbeSockets> ProbeSockets::open(const SocketAddress& group, const rsp::NetworkInterface& interface,
+                                        uint64_t survey, bool doctor) {
     auto linkLocal = numericAddress(group.family() == AF_INET ? kLinkLocal4 : kLinkLocal6, tcpPort(group));
     if (!linkLocal) return linkLocal.error();
     auto own = rsp::UdpSocket::openOwn(interface, group.family(), kWantedBufferBytes);
@@ -22,8 +23,10 @@ Result<ProbeSockets> ProbeSockets::open(const SocketAddress& group, const rsp::N
     sockets.linkLocal_ = *linkLocal;
     const auto join = [&](ProbeWay way, const SocketAddress& address, std::optional<rsp::UdpSocket>& into) {
         auto socket = rsp::UdpSocket::openGroup(address, interface, kWantedBufferBytes);
-        if (socket) into.emplace(std::move(*socket));
-        else sockets.troubles_[static_cast<size_t>(way)] = socket.error().message;
+        if (socket)
+            into.emplace(std::move(*socket));
+        else
+            sockets.troubles_[static_cast<size_t>(way)] = socket.error().message;
     };
     join(ProbeWay::Group, group, sockets.inGroup_);
     join(ProbeWay::LinkLocal, *linkLocal, sockets.inLinkLocal_);
@@ -37,14 +40,17 @@ void ProbeSockets::send(ProbeWay way, size_t sizeBytes, const SocketAddress& sin
     writeProbe({survey_, way, doctor_, static_cast<uint16_t>(sizeBytes)}, datagram);
     const SocketAddress& to = way == ProbeWay::Single ? single : way == ProbeWay::Group ? group_ : linkLocal_;
     // A rejected long datagram is not reported as an error; it is missing in the arrivals.
-    if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kMinProbeBytes) troubles_[static_cast<size_t>(way)] = r.error().message;
+    if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kMinProbeBytes)
+        troubles_[static_cast<size_t>(way)] = r.error().message;
 }
 
 void ProbeSockets::hear(rsp::UdpSocket& socket, bool multicast) {
     do {
         for (const rsp::UdpSocket::Datagram& d : socket.fetch()) {
             const auto probe = readProbe(d.bytes);
-            if (!probe || probe->survey != survey_ || probe->fromDoctor == doctor_ || (probe->way != ProbeWay::Single) != multicast) continue;
+            if (!probe || probe->survey != survey_ || probe->fromDoctor == doctor_ ||
+                (probe->way != ProbeWay::Single) != multicast)
+                continue;
             ++seen_[{probe->way, probe->sizeBytes}];
         }
     } while (socket.mayBeMore());
@@ -52,8 +58,10 @@ void ProbeSockets::hear(rsp::UdpSocket& socket, bool multicast) {
 
 bool ProbeSockets::listen(Deadline deadline, int alsoFd) {
     while (true) {
-        std::array<pollfd, 4> look{{{own_.descriptor(), POLLIN, 0}, {inGroup_ ? inGroup_->descriptor() : -1, POLLIN, 0},
-            {inLinkLocal_ ? inLinkLocal_->descriptor() : -1, POLLIN, 0}, {alsoFd, POLLIN, 0}}};
+        std::array<pollfd, 4> look{{{own_.descriptor(), POLLIN, 0},
+                                    {inGroup_ ? inGroup_->descriptor() : -1, POLLIN, 0},
+                                    {inLinkLocal_ ? inLinkLocal_->descriptor() : -1, POLLIN, 0},
+                                    {alsoFd, POLLIN, 0}}};
         const int64_t leftNs = deadline.leftNs(kNsPerS);
         (void)poll(look.data(), look.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
         hear(own_, false);

@@ -15,7 +15,8 @@ constexpr size_t kWantedBufferBytes = size_t{8} << 20; // as rsp::GroupOptions
 
 class ProbeSockets {
 public:
-    static Result<ProbeSockets> open(const SocketAddress& group, const rsp::NetworkInterface& interface, uint64_t survey, bool doctor);
+    static Result<ProbeSockets> open(const SocketAddress& group, const rsp::NetworkInterface& interface,
+                                     uint64_t survey, bool doctor);
 
     [[nodiscard]] uint16_t port() const; // of the unicast socket
     // Returns the granted part of kWantedBufferBytes; the kernel doubles the value for its overhead.
@@ -37,7 +38,8 @@ public:
     [[nodiscard]] std::map<Seen, unsigned> take() { return std::exchange(seen_, {}); }
 
 private:
-    ProbeSockets(rsp::UdpSocket own, uint64_t survey, bool doctor) : own_(std::move(own)), survey_(survey), doctor_(doctor) {}
+    ProbeSockets(rsp::UdpSocket own, uint64_t survey, bool doctor)
+        : own_(std::move(own)), survey_(survey), doctor_(doctor) {}
     void hear(rsp::UdpSocket& socket, bool multicast);
 
     rsp::UdpSocket own_;

@@ -26,7 +26,9 @@ public:
     ~NativeReport() { close(fd_); }
 
     [[nodiscard]] bool ok() const { return fd_ >= 0; }
-    [[nodiscard]] std::string path() const { return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_); }
+    [[nodiscard]] std::string path() const {
+        return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_);
+    }
 
     struct Count {
         int64_t frames = 0;
@@ -47,7 +49,8 @@ public:
             const char* end = std::strchr(line, '\n');
             Count count;
             long long frames = 0, cpuFrames = 0;
-            if (end != nullptr && std::sscanf(line, "%lld %lf %lf %lld", &frames, &count.seconds, &count.cpuSeconds, &cpuFrames) == 4) {
+            if (end != nullptr &&
+                std::sscanf(line, "%lld %lf %lf %lld", &frames, &count.seconds, &count.cpuSeconds, &cpuFrames) == 4) {
                 count.frames = frames;
                 count.cpuFrames = cpuFrames;
                 last = count;
@@ -63,13 +66,19 @@ private:
 
 void tell(const std::optional<NativeReport::Count>& count, const PreparedRun& run, Console& console) {
     if (!count || count->frames == 0) {
-        console.error("no frame was counted: " + run.program.front() + " never showed a picture by GL; is it an OpenGL program?");
+        console.error("no frame was counted: " + run.program.front() +
+                      " never showed a picture by GL; is it an OpenGL program?");
         return;
     }
     // n pictures have n - 1 intervals.
     const double rate = count->seconds > 0 ? static_cast<double>(count->frames - 1) / count->seconds : 0.0;
     console.say(fmt::format("native: {} frames in {:.1f} s, {:.1f} frames/s", count->frames, count->seconds, rate));
-    writeReport(run, fmt::format(R"({{"event":"report","native":true,"frames":{},"seconds":{:.6f},"framesPerSecond":{:.3f},"frameCpuSeconds":{:.6f},"frameCpuFrames":{}}})", count->frames, count->seconds, rate, count->cpuSeconds, count->cpuFrames), console);
+    writeReport(
+        run,
+        fmt::format(
+            R"({{"event":"report","native":true,"frames":{},"seconds":{:.6f},"framesPerSecond":{:.3f},"frameCpuSeconds":{:.6f},"frameCpuFrames":{}}})",
+            count->frames, count->seconds, rate, count->cpuSeconds, count->cpuFrames),
+        console);
 }
 
 // Returns true when the requested number of frames is reached.
@@ -98,7 +107,8 @@ int runNative(PreparedRun& run, Console& console) {
     auto supervisor = launch::ProgramSupervisor::create();
     const NativeReport report;
     if (!supervisor || !report.ok()) {
-        console.error(supervisor ? "no memory for the count of frames: " + std::string(std::strerror(errno)) : supervisor.error().message);
+        console.error(supervisor ? "no memory for the count of frames: " + std::string(std::strerror(errno))
+                                 : supervisor.error().message);
         return launch::kExitUsage;
     }
     launch::ProgramSupervisor& program = *supervisor.value();

@@ -18,7 +18,8 @@ std::string newSessionName() {
 }
 
 void createSessionSocket(PreparedRun& run) {
-    auto socket = launch::SessionSocket::create(run.config.session, run.programEnvironment.get("XDG_RUNTIME_DIR").value_or(""));
+    auto socket =
+        launch::SessionSocket::create(run.config.session, run.programEnvironment.get("XDG_RUNTIME_DIR").value_or(""));
     if (!socket) return;
     run.socket = std::move(socket.value());
     run.config.socketPath = run.socket->path();
@@ -35,8 +36,10 @@ Result<void> checkOutput(const std::string& out) {
     if (folder.empty()) return {};
     std::error_code failed;
     fs::create_directories(folder, failed);
-    if (failed) return Error{fmt::format("--out {}: the folder cannot be made: {}; give another place", out, failed.message())};
-    if (access(folder.c_str(), W_OK) != 0) return Error{fmt::format("--out {}: may not be written: {}; give another place", out, std::strerror(errno))};
+    if (failed)
+        return Error{fmt::format("--out {}: the folder cannot be made: {}; give another place", out, failed.message())};
+    if (access(folder.c_str(), W_OK) != 0)
+        return Error{fmt::format("--out {}: may not be written: {}; give another place", out, std::strerror(errno))};
     return {};
 }
 
@@ -51,7 +54,8 @@ std::string earlierPictures(const std::string& out) {
         count += name.starts_with("frame-") && name.ends_with(".png");
     }
     if (count == 0) return {};
-    return fmt::format("--out {}: {} picture{} of an earlier run {} there; only those of the same frames are replaced", out, count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
+    return fmt::format("--out {}: {} picture{} of an earlier run {} there; only those of the same frames are replaced",
+                       out, count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
 }
 
 Result<void> checkReport(const std::string& file) {
@@ -70,8 +74,11 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
     const std::string own = run.programEnvironment.get("DISPLAY").value_or("");
     const bool sized = c.width > 0;
     const bool usable = launch::displayUsable(own);
-    const Error unusable{own.empty() ? "--display app and windows need an X display, and DISPLAY is not set; set it, or use --display none"
-                                     : "the X display \"" + own + "\" (DISPLAY) cannot be opened; check that it runs, or unset DISPLAY to run without one"};
+    const Error unusable{
+        own.empty()
+            ? "--display app and windows need an X display, and DISPLAY is not set; set it, or use --display none"
+            : "the X display \"" + own +
+                  "\" (DISPLAY) cannot be opened; check that it runs, or unset DISPLAY to run without one"};
     if (c.display == Display::Windows && !usable) return unusable;
     if (!options.displayChosen && !usable && !own.empty() && !sized) return unusable;
     if (options.displayChosen && c.display == Display::App && !usable && !sized) return unusable;
@@ -79,7 +86,8 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
 
     c.displayName = own;
     if ((usable && !sized) || (!programNeedsOne && c.display == Display::None)) return {};
-    auto display = launch::PrivateDisplay::start(sized ? c.width : launch::kDefaultScreenWidth, sized ? c.height : launch::kDefaultScreenHeight);
+    auto display = launch::PrivateDisplay::start(sized ? c.width : launch::kDefaultScreenWidth,
+                                                 sized ? c.height : launch::kDefaultScreenHeight);
     if (!display) return display.error();
     run.display = std::move(display.value());
     run.display->use(run.programEnvironment);
@@ -88,7 +96,8 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
         run.display->use(run.headEnvironment);
     }
     if (!sized) return {};
-    auto manager = launch::WallWindowManager::open(run.display->name(), run.display->authority().cookie(), c.width, c.height);
+    auto manager =
+        launch::WallWindowManager::open(run.display->name(), run.display->authority().cookie(), c.width, c.height);
     if (!manager) return manager.error();
     run.windowManager = std::move(manager.value());
     return {};

@@ -8,7 +8,9 @@
 namespace mural::cli {
 
 void waitTurn(PreparedRun& run, launch::ProgramSupervisor& program, int extraFd) {
-    pollfd waiting[3] = {{program.signalFd(), POLLIN, 0}, {extraFd, POLLIN, 0}, {run.windowManager ? run.windowManager->fd() : -1, POLLIN, 0}};
+    pollfd waiting[3] = {{program.signalFd(), POLLIN, 0},
+                         {extraFd, POLLIN, 0},
+                         {run.windowManager ? run.windowManager->fd() : -1, POLLIN, 0}};
     poll(waiting, 3, kTurnMs); // poll ignores negative descriptors
     program.tick();
     // Without the display the program ends by itself, and the loop waits for that.

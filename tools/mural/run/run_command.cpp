@@ -12,12 +12,14 @@ namespace mural::cli {
 namespace {
 
 // A program whose GL library is not GLVND's needs the preloaded front.
-launch::Fronts chooseFronts(const RunOptions& options, const launch::ProgramCheck& program, const launch::Environment& environment) {
+launch::Fronts chooseFronts(const RunOptions& options, const launch::ProgramCheck& program,
+                            const launch::Environment& environment) {
     if (options.front == FrontChoice::Preload) return launch::Fronts::VendorAndPreload;
     if (options.front == FrontChoice::Glvnd || program.binary.empty()) return launch::Fronts::Vendor;
     const auto own = launch::ownGlLibraries(program.binary, environment);
     if (own.empty()) return launch::Fronts::Vendor;
-    if (options.config.explain) Console(true).error("front: preloaded, for " + own.front() + ", which GLVND does not lead to");
+    if (options.config.explain)
+        Console(true).error("front: preloaded, for " + own.front() + ", which GLVND does not lead to");
     return launch::Fronts::VendorAndPreload;
 }
 
@@ -42,13 +44,15 @@ int runCommand(const RunOptions& options) {
     run.headEnvironment = run.programEnvironment;
     launch::removeCapture(run.headEnvironment);
 
-    const launch::ProgramCheck program = launch::checkProgram(options.program.front(), run.programEnvironment.get("PATH").value_or("/usr/bin:/bin"));
+    const launch::ProgramCheck program =
+        launch::checkProgram(options.program.front(), run.programEnvironment.get("PATH").value_or("/usr/bin:/bin"));
     if (!program.ok()) return complain(program.message, program.exitStatus);
     run.programPath = program.path;
     const auto library = launch::findCaptureLibrary(launch::ownBinary());
     if (!library.ok()) return complain(library.error().message, launch::kExitUsage);
     const launch::Fronts fronts = chooseFronts(options, program, run.programEnvironment);
-    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, fronts); !r) return complain(r.error().message, launch::kExitUsage);
+    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, fronts); !r)
+        return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkReport(run.reportFile); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = chooseDisplay(options, true, run); !r) return complain(r.error().message, launch::kExitUsage);

@@ -101,10 +101,12 @@ Result<void> choose(std::string_view option, const RunArguments::Text& text, con
     return badValue(option, *text, "must be one of " + names);
 }
 
-Result<void> readNumber(std::string_view option, const RunArguments::Text& text, int64_t lowest, int64_t highest, int64_t& into) {
+Result<void> readNumber(std::string_view option, const RunArguments::Text& text, int64_t lowest, int64_t highest,
+                        int64_t& into) {
     if (!text) return {};
     const auto value = wholeNumber(*text, lowest, highest);
-    if (!value && highest >= INT32_MAX) return badValue(option, *text, fmt::format("must be a whole number from {} on", lowest));
+    if (!value && highest >= INT32_MAX)
+        return badValue(option, *text, fmt::format("must be a whole number from {} on", lowest));
     if (!value) return badValue(option, *text, fmt::format("must be a whole number from {} to {}", lowest, highest));
     into = *value;
     return {};
@@ -115,7 +117,8 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"culled", Tiling::Culled}, {"lean", Tiling::Lean}};
     const Choice<CapturePolicy> policies[] = {{"state", CapturePolicy::State}, {"full", CapturePolicy::Full}};
     const Choice<Economy> economies[] = {{"auto", Economy::Auto}, {"on", Economy::On}, {"off", Economy::Off}};
-    const Choice<Readback> readbacks[] = {{"auto", Readback::Auto}, {"direct", Readback::Direct}, {"buffer", Readback::Buffer}};
+    const Choice<Readback> readbacks[] = {
+        {"auto", Readback::Auto}, {"direct", Readback::Direct}, {"buffer", Readback::Buffer}};
     const Choice<const char*> backends[] = {{"auto", "auto"}, {"egl", "egl"}, {"osmesa", "osmesa"}, {"glx", "glx"}};
     const char* backend = "auto";
     if (auto r = choose("--display", a.display, displays, c.display); !r) return r;
@@ -131,18 +134,26 @@ Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
 Result<void> readSizes(const RunArguments& a, SessionConfig& c) {
     if (a.tiles) {
         const auto tiles = pairOf(*a.tiles, 'x', 1, kMaxTilesPerSide);
-        if (!tiles) return badValue("--tiles", *a.tiles, fmt::format("must be COLUMNSxROWS, each from 1 to {}, such as 2x2", kMaxTilesPerSide));
+        if (!tiles)
+            return badValue("--tiles", *a.tiles,
+                            fmt::format("must be COLUMNSxROWS, each from 1 to {}, such as 2x2", kMaxTilesPerSide));
         std::tie(c.columns, c.rows) = *tiles;
     }
     if (a.tileQueue) {
         const auto tile = pairOf(*a.tileQueue, 'x', 1, launch::kMaxScreenSize);
-        if (!tile) return badValue("--tile-queue", *a.tileQueue, fmt::format("must be WIDTHxHEIGHT of a tile in pixels, each from 1 to {}, such as 64x64", launch::kMaxScreenSize));
+        if (!tile)
+            return badValue("--tile-queue", *a.tileQueue,
+                            fmt::format("must be WIDTHxHEIGHT of a tile in pixels, each from 1 to {}, such as 64x64",
+                                        launch::kMaxScreenSize));
         if (a.tiles) return Error{"--tiles and --tile-queue both say which tiles nodes draw; leave one of them out"};
         std::tie(c.tileWidth, c.tileHeight) = *tile;
     }
     if (a.size) {
         const auto size = pairOf(*a.size, 'x', 1, launch::kMaxScreenSize);
-        if (!size) return badValue("--size", *a.size, fmt::format("must be WIDTHxHEIGHT in pixels, each from 1 to {}, such as 7680x4320", launch::kMaxScreenSize));
+        if (!size)
+            return badValue("--size", *a.size,
+                            fmt::format("must be WIDTHxHEIGHT in pixels, each from 1 to {}, such as 7680x4320",
+                                        launch::kMaxScreenSize));
         std::tie(c.width, c.height) = *size;
     }
     if (a.position) {
@@ -166,7 +177,8 @@ Result<void> checkStream(const std::string& stream) {
     if (stream == "auto" || stream == "tcp") return {};
     auto parsed = parseConnectionDescription(stream);
     if (!parsed || parsed->kind != ConnectionDescription::Kind::Rsp)
-        return badValue("--stream", stream, "must be auto, tcp, or a multicast group such as rsp://239.255.77.1:4277?rate=800mbit");
+        return badValue("--stream", stream,
+                        "must be auto, tcp, or a multicast group such as rsp://239.255.77.1:4277?rate=800mbit");
     auto options = rsp::groupOptionsOf(*parsed);
     if (!options) return Error{"--stream: " + options.error().message};
     return {};
@@ -183,14 +195,21 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         });
         if (bad) return badValue("--nodes", *a.nodes, "must be host names separated by commas, such as wall1,wall2");
         // Rejects numbers as host names, because connecting to them would only time out.
-        const bool counts = std::any_of(c.hosts.begin(), c.hosts.end(), [](const std::string& h) { return h.find_first_not_of("0123456789") == std::string::npos; });
-        if (counts) return badValue("--nodes", *a.nodes, "must be host names, such as wall1,wall2; how many nodes run on this machine says --local-nodes");
+        const bool counts = std::any_of(c.hosts.begin(), c.hosts.end(), [](const std::string& h) {
+            return h.find_first_not_of("0123456789") == std::string::npos;
+        });
+        if (counts)
+            return badValue(
+                "--nodes", *a.nodes,
+                "must be host names, such as wall1,wall2; how many nodes run on this machine says --local-nodes");
     }
     const int asked = c.localNodes + static_cast<int>(c.hosts.size());
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
     if (asked > 0 && !a.tiles && !a.tileQueue) std::tie(c.columns, c.rows) = gridFor(std::max(1, asked / passes));
     if (!a.tileQueue && asked > c.columns * c.rows * passes) {
-        return Error{fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes", asked, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
+        return Error{
+            fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes",
+                        asked, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
     }
     if (a.launch) c.launchCommand = *a.launch;
     if (a.stream) {
@@ -199,7 +218,8 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     }
     if (a.store) {
         const auto store = byteSizeOf(*a.store);
-        if (!store || *store < (1 << 20) || *store > int64_t{1} << 40) return badValue("--store", *a.store, "must be a size from 1MiB to 1024GiB, such as 512MiB");
+        if (!store || *store < (1 << 20) || *store > int64_t{1} << 40)
+            return badValue("--store", *a.store, "must be a size from 1MiB to 1024GiB, such as 512MiB");
         c.storeBytes = *store;
     }
     c.remoteMural = a.remoteMural.value_or("");
@@ -209,8 +229,12 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     int64_t least = c.leastNodes;
     if (auto r = readNumber("--least-nodes", a.leastNodes, 1, kMaxRestarts, least); !r) return r;
     c.leastNodes = static_cast<int>(least);
-    if (asked > 0 && c.leastNodes > asked) return badValue("--least-nodes", *a.leastNodes, fmt::format("must be at most {}: there are no more nodes", asked));
-    if (c.leastNodes > 0 && c.restartNodes == 0) return Error{"--least-nodes has the others started again until they come, which --restart-nodes 0 forbids; leave one of them out"};
+    if (asked > 0 && c.leastNodes > asked)
+        return badValue("--least-nodes", *a.leastNodes,
+                        fmt::format("must be at most {}: there are no more nodes", asked));
+    if (c.leastNodes > 0 && c.restartNodes == 0)
+        return Error{"--least-nodes has the others started again until they come, which --restart-nodes 0 forbids; "
+                     "leave one of them out"};
     return {};
 }
 
@@ -224,7 +248,9 @@ std::optional<double> realNumber(std::string_view text, double lowest, double hi
 Result<void> readReal(std::string_view option, const RunArguments::Text& text, double lowest, double& into) {
     if (!text) return {};
     const auto value = realNumber(*text, lowest, 1e9);
-    if (!value) return badValue(option, *text, fmt::format("must be a number from {} on, in the program's units, such as 0.5", lowest));
+    if (!value)
+        return badValue(option, *text,
+                        fmt::format("must be a number from {} on, in the program's units, such as 0.5", lowest));
     into = *value;
     return {};
 }
@@ -241,9 +267,13 @@ constexpr double kMinZoom = 0.01; // one pixel of a hundred remains
 Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
     if (!a.zoom) return {};
     const size_t x = a.zoom->find('x');
-    for (const auto& [text, into] : {std::pair(a.zoom->substr(0, x), &zoom.x), {a.zoom->substr(x == std::string::npos ? 0 : x + 1), &zoom.y}}) {
+    for (const auto& [text, into] :
+         {std::pair(a.zoom->substr(0, x), &zoom.x), {a.zoom->substr(x == std::string::npos ? 0 : x + 1), &zoom.y}}) {
         const auto number = realNumber(text, kMinZoom, kMaxZoom);
-        if (!number) return badValue("--zoom", *a.zoom, fmt::format("must be a number from {} to {}, or two, such as 0.5 or 0.5x1", kMinZoom, kMaxZoom));
+        if (!number)
+            return badValue(
+                "--zoom", *a.zoom,
+                fmt::format("must be a number from {} to {}, or two, such as 0.5 or 0.5x1", kMinZoom, kMaxZoom));
         *into = *number;
     }
     return {};
@@ -251,18 +281,28 @@ Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
 
 // Reads the options for frames in several passes.
 Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
-    const Choice<StereoMode> modes[] = {{"off", StereoMode::Off},          {"anaglyph", StereoMode::Anaglyph}, {"side-by-side", StereoMode::SideBySide},
-                                        {"top-bottom", StereoMode::TopBottom}, {"left", StereoMode::Left},     {"right", StereoMode::Right},
+    const Choice<StereoMode> modes[] = {{"off", StereoMode::Off},
+                                        {"anaglyph", StereoMode::Anaglyph},
+                                        {"side-by-side", StereoMode::SideBySide},
+                                        {"top-bottom", StereoMode::TopBottom},
+                                        {"left", StereoMode::Left},
+                                        {"right", StereoMode::Right},
                                         {"quad", StereoMode::Quad}};
     PassCounts& p = c.passes;
     if (auto r = choose("--stereo", a.stereo, modes, p.stereo); !r) return r;
     if (auto r = readReal("--eye-base", a.eyeBase, 0, c.eyeBase); !r) return r;
     if (auto r = readReal("--focus", a.focus, 1e-9, c.focusDistance); !r) return r;
-    if ((a.eyeBase || a.focus) && p.stereo == StereoMode::Off && !a.config) return Error{std::string(a.eyeBase ? "--eye-base" : "--focus") + " is for stereo; add --stereo, such as --stereo anaglyph"};
+    if ((a.eyeBase || a.focus) && p.stereo == StereoMode::Off && !a.config)
+        return Error{std::string(a.eyeBase ? "--eye-base" : "--focus") +
+                     " is for stereo; add --stereo, such as --stereo anaglyph"};
     if (a.pixel) {
         const auto columns = wholeNumber(*a.pixel, 1, kMaxKernel);
-        const auto kernel = columns ? std::optional(std::pair(static_cast<int>(*columns), 1)) : pairOf(*a.pixel, 'x', 1, kMaxKernel);
-        if (!kernel) return badValue("--pixel", *a.pixel, fmt::format("must be a number of nodes or COLUMNSxROWS, each from 1 to {}, such as 2x2", kMaxKernel));
+        const auto kernel =
+            columns ? std::optional(std::pair(static_cast<int>(*columns), 1)) : pairOf(*a.pixel, 'x', 1, kMaxKernel);
+        if (!kernel)
+            return badValue(
+                "--pixel", *a.pixel,
+                fmt::format("must be a number of nodes or COLUMNSxROWS, each from 1 to {}, such as 2x2", kMaxKernel));
         std::tie(p.kernelWidth, p.kernelHeight) = *kernel;
     }
     if (auto r = readCount("--subpixel", a.subpixel, kMaxPasses, p.samples); !r) return r;
@@ -271,25 +311,37 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (auto r = readZoom(a, p.zoom); !r) return r;
     if (a.chunkQueue) {
         const auto chunks = wholeNumber(*a.chunkQueue, 2, kMaxChunks);
-        if (!chunks) return badValue("--chunk-queue", *a.chunkQueue, fmt::format("must be a number of chunks from 2 to {}, such as 64", kMaxChunks));
-        if (p.ranges == 1 && !a.config) return Error{"--chunk-queue is for nodes that share draws; add --db N, such as --db 4"};
+        if (!chunks)
+            return badValue("--chunk-queue", *a.chunkQueue,
+                            fmt::format("must be a number of chunks from 2 to {}, such as 64", kMaxChunks));
+        if (p.ranges == 1 && !a.config)
+            return Error{"--chunk-queue is for nodes that share draws; add --db N, such as --db 4"};
         c.chunks = static_cast<int>(*chunks);
     }
     if (a.codec) {
-        if (auto wanted = wantedCodec(*a.codec); !wanted) return badValue("--codec", *a.codec, "must be auto, lossy or the name of a codec; " + wanted.error().message);
+        if (auto wanted = wantedCodec(*a.codec); !wanted)
+            return badValue("--codec", *a.codec,
+                            "must be auto, lossy or the name of a codec; " + wanted.error().message);
         c.codec = *a.codec;
     }
     if (a.composition) {
         std::string names = "auto";
         for (const compositor::Strategy s : compositor::kEveryStrategy) names += std::string(", ") + nameOf(s);
-        if (*a.composition != "auto" && !compositor::strategyNamed(*a.composition)) return badValue("--composition", *a.composition, "must be one of " + names);
-        if (p.ranges == 1 && !a.config) return Error{"--composition is for nodes that share draws; add --db N, such as --db 4"};
+        if (*a.composition != "auto" && !compositor::strategyNamed(*a.composition))
+            return badValue("--composition", *a.composition, "must be one of " + names);
+        if (p.ranges == 1 && !a.config)
+            return Error{"--composition is for nodes that share draws; add --db N, such as --db 4"};
         c.composition = *a.composition;
     }
     const size_t passes = passesOf(p).size() * static_cast<size_t>(p.ranges);
-    if (passes > kMaxPasses) return Error{fmt::format("--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; at most {} can be drawn", passes, kMaxPasses)};
-    if (passes > 1 && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel, --dplex or --db; leave it out"};
-    if (!p.zoom.none() && c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --zoom; leave one of them out"};
+    if (passes > kMaxPasses)
+        return Error{fmt::format(
+            "--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; at most {} can be drawn", passes,
+            kMaxPasses)};
+    if (passes > 1 && c.tiling == Tiling::Lean)
+        return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel, --dplex or --db; leave it out"};
+    if (!p.zoom.none() && c.tiling == Tiling::Lean)
+        return Error{"--tiling lean does not go with --zoom; leave one of them out"};
     if (p.period > 1 && !a.latency) c.latency = p.period; // required for overlapping turns
     return {};
 }
@@ -304,20 +356,37 @@ Result<void> readFrusta(const RunArguments& a, SessionConfig& c) {
 Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     SessionConfig& c = options.config;
     if (!a.config) {
-        const std::pair<const char*, bool> ofFiles[] = {{"--here", a.here}, {"--canvas", a.canvas.has_value()}, {"--layout", !a.layouts.empty()}, {"--frusta", a.frusta.has_value()}, {"--model-unit", a.modelUnit.has_value()}};
+        const std::pair<const char*, bool> ofFiles[] = {{"--here", a.here},
+                                                        {"--canvas", a.canvas.has_value()},
+                                                        {"--layout", !a.layouts.empty()},
+                                                        {"--frusta", a.frusta.has_value()},
+                                                        {"--model-unit", a.modelUnit.has_value()}};
         for (const auto& [option, given] : ofFiles)
             if (given) return Error{fmt::format("{} is for a configuration file; add --config FILE", option)};
         return {};
     }
-    const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()}, {"--tile-queue", a.tileQueue.has_value()}, {"--chunk-queue", a.chunkQueue.has_value()}, {"--nodes", a.nodes.has_value()}, {"--local-nodes", a.localNodes.has_value()}, {"--stereo", a.stereo.has_value()},
-                                                          {"--pixel", a.pixel.has_value()}, {"--subpixel", a.subpixel.has_value()}, {"--dplex", a.dplex.has_value()}, {"--db", a.db.has_value()}, {"--zoom", a.zoom.has_value()}};
+    const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()},
+                                                          {"--tile-queue", a.tileQueue.has_value()},
+                                                          {"--chunk-queue", a.chunkQueue.has_value()},
+                                                          {"--nodes", a.nodes.has_value()},
+                                                          {"--local-nodes", a.localNodes.has_value()},
+                                                          {"--stereo", a.stereo.has_value()},
+                                                          {"--pixel", a.pixel.has_value()},
+                                                          {"--subpixel", a.subpixel.has_value()},
+                                                          {"--dplex", a.dplex.has_value()},
+                                                          {"--db", a.db.has_value()},
+                                                          {"--zoom", a.zoom.has_value()}};
     for (const auto& [option, given] : contradicting)
         if (given) return Error{fmt::format("{} and --config both say who draws what; leave one of them out", option)};
     if (c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --config; leave it out"};
     const auto loaded = compound::loadConfig(*a.config, compound::processEnvironment);
     for (const config::Diagnostic& d : loaded.diagnostics.all())
         if (d.severity == config::Severity::Warning) options.notices.push_back(loaded.diagnostics.text(d));
-    if (!loaded.ok()) return Error{loaded.diagnostics.firstError() + (loaded.diagnostics.errors() > 1 ? fmt::format(" (and {} more: mural config check {})", loaded.diagnostics.errors() - 1, *a.config) : "")};
+    if (!loaded.ok())
+        return Error{loaded.diagnostics.firstError() + (loaded.diagnostics.errors() > 1
+                                                            ? fmt::format(" (and {} more: mural config check {})",
+                                                                          loaded.diagnostics.errors() - 1, *a.config)
+                                                            : "")};
     if (auto r = readFrusta(a, c); !r) return r;
     const PlanOptions wishes{"", a.here, a.canvas.value_or(""), a.layouts, c.frusta, c.modelUnit};
     auto plan = planOf(loaded, wishes);
@@ -330,7 +399,8 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     if (!a.eyeBase) c.eyeBase = plan->eyeBase.value_or(c.eyeBase);
     if (!a.focus) c.focusDistance = plan->focusDistance.value_or(c.focusDistance);
     const int processes = static_cast<int>(plan->nodes.size());
-    if (processes > kMaxNodes) return Error{fmt::format("{}: {} render nodes; at most {} can run", *a.config, processes, kMaxNodes)};
+    if (processes > kMaxNodes)
+        return Error{fmt::format("{}: {} render nodes; at most {} can run", *a.config, processes, kMaxNodes)};
     for (const NodePlan& node : plan->nodes)
         if (node.reach == NodeReach::LaunchCommand) c.hosts.push_back(node.where);
     int turns = 1;
@@ -339,7 +409,9 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     if (a.size || a.tiles) return {};
     const compound::PixelSize wall = wallSizeOf(loaded, wishes);
     if (wall.w > launch::kMaxScreenSize || wall.h > launch::kMaxScreenSize || wall.w < 1 || wall.h < 1)
-        return Error{fmt::format("{}: its wall has {}x{} pixels, a screen has at most {} in each direction; give a smaller one by --size WxH", *a.config, wall.w, wall.h, launch::kMaxScreenSize)};
+        return Error{fmt::format("{}: its wall has {}x{} pixels, a screen has at most {} in each direction; give a "
+                                 "smaller one by --size WxH",
+                                 *a.config, wall.w, wall.h, launch::kMaxScreenSize)};
     c.width = wall.w;
     c.height = wall.h;
     return {};
@@ -362,20 +434,25 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.samples = c.passes.samples;
     form.frames = c.passes.period;
     form.zoom = c.passes.zoom;
-    if (c.passes.kernelHeight > 1) return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width height ] into a file"};
+    if (c.passes.kernelHeight > 1)
+        return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width "
+                     "height ] into a file"};
     if (c.tileWidth > 0) {
         constexpr int kTakers = 4; // default number of nodes, as in planSession()
         const int nodes = c.localNodes + static_cast<int>(c.hosts.size());
         form.tileWidth = c.tileWidth;
         form.tileHeight = c.tileHeight;
-        form.takers = nodes == 0 ? kTakers : std::max(1, nodes / static_cast<int>(passesOf(c.passes).size() * static_cast<size_t>(c.passes.ranges)));
+        form.takers = nodes == 0 ? kTakers
+                                 : std::max(1, nodes / static_cast<int>(passesOf(c.passes).size() *
+                                                                        static_cast<size_t>(c.passes.ranges)));
     }
     switch (c.passes.stereo) {
     case StereoMode::Off: break;
     case StereoMode::Anaglyph: form.stereo = config::StereoPreset::Anaglyph; break;
     case StereoMode::SideBySide: form.stereo = config::StereoPreset::SideBySide; break;
     case StereoMode::Quad: form.stereo = config::StereoPreset::Quad; break;
-    default: return Error{"--print-config: a configuration has no such stereo mode; anaglyph, side-by-side and quad it has"};
+    default:
+        return Error{"--print-config: a configuration has no such stereo mode; anaglyph, side-by-side and quad it has"};
     }
     if (c.width > 0) form.width = c.width;
     if (c.height > 0) form.height = c.height;
@@ -393,24 +470,32 @@ Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
     if (!a.out) return Error{"--save needs --out: say where the pictures go, such as --out shots"};
     for (const std::string& part : listOf(*a.save)) {
         const auto frame = wholeNumber(part, 1, INT64_MAX);
-        if (!frame) return badValue("--save", *a.save, "must be frame numbers from 1 on, separated by commas, such as 1,30,90");
+        if (!frame)
+            return badValue("--save", *a.save, "must be frame numbers from 1 on, separated by commas, such as 1,30,90");
         c.saveFrames.push_back(*frame);
     }
     std::sort(c.saveFrames.begin(), c.saveFrames.end());
     c.saveFrames.erase(std::unique(c.saveFrames.begin(), c.saveFrames.end()), c.saveFrames.end());
-    if (c.frames > 0 && c.saveFrames.back() > c.frames) return badValue("--save", *a.save, fmt::format("must have no frame behind the last one, {} by --frames", c.frames));
+    if (c.frames > 0 && c.saveFrames.back() > c.frames)
+        return badValue("--save", *a.save,
+                        fmt::format("must have no frame behind the last one, {} by --frames", c.frames));
     return {};
 }
 
 Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
     if ((a.fullScreen || a.position.has_value()) && c.display != Display::Windows) {
-        return Error{std::string(a.fullScreen ? "--fullscreen" : "--position") + " is for wall windows; add --display windows"};
+        return Error{std::string(a.fullScreen ? "--fullscreen" : "--position") +
+                     " is for wall windows; add --display windows"};
     }
     if (a.native && (a.out.has_value() || a.record.has_value() || c.verifyEvery > 0)) {
-        return Error{std::string(c.verifyEvery > 0 ? "--verify" : a.out ? "--out" : "--record") + " needs captured frames; leave --native out"};
+        return Error{std::string(c.verifyEvery > 0 ? "--verify"
+                                 : a.out           ? "--out"
+                                                   : "--record") +
+                     " needs captured frames; leave --native out"};
     }
     if (c.width > 0 && (c.columns > c.width || c.rows > c.height)) {
-        return Error{fmt::format("{}x{} tiles do not fit in {}x{} pixels; give fewer tiles", c.columns, c.rows, c.width, c.height)};
+        return Error{fmt::format("{}x{} tiles do not fit in {}x{} pixels; give fewer tiles", c.columns, c.rows, c.width,
+                                 c.height)};
     }
     return {};
 }
@@ -419,54 +504,138 @@ Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
 
 void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.option_defaults()->take_last();
-    command.add_option("--tiles", a.tiles, "tiles of the wall, columns x rows (1x1, or one for each node)")->type_name("CxR");
-    command.add_option("--tile-queue", a.tileQueue, "tiles of so many pixels, taken from frame to frame by whichever node is free earlier (each node keeps its tiles)")->type_name("WxH");
-    command.add_option("--chunk-queue", a.chunkQueue, "with --db: draws in so many chunks, taken from frame to frame by whichever node is free earlier (each node has an equal share)")->type_name("N");
+    command.add_option("--tiles", a.tiles, "tiles of the wall, columns x rows (1x1, or one for each node)")
+        ->type_name("CxR");
+    command
+        .add_option("--tile-queue", a.tileQueue,
+                    "tiles of so many pixels, taken from frame to frame by whichever node is free earlier (each node "
+                    "keeps its tiles)")
+        ->type_name("WxH");
+    command
+        .add_option("--chunk-queue", a.chunkQueue,
+                    "with --db: draws in so many chunks, taken from frame to frame by whichever node is free earlier "
+                    "(each node has an equal share)")
+        ->type_name("N");
     command.add_option("--nodes", a.nodes, "render nodes on these hosts, separated by commas")->type_name("H1,H2");
-    command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (as many as tiles, at most 4)")->type_name("N");
-    command.add_option("--size", a.size, "size of the wall: the program runs on a private display of this size")->type_name("WxH");
-    command.add_option("--frames", a.frames, "end the program after this many frames; no later one is saved")->type_name("N");
-    command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")->type_name("DIR|VIDEO");
+    command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (as many as tiles, at most 4)")
+        ->type_name("N");
+    command.add_option("--size", a.size, "size of the wall: the program runs on a private display of this size")
+        ->type_name("WxH");
+    command.add_option("--frames", a.frames, "end the program after this many frames; no later one is saved")
+        ->type_name("N");
+    command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")
+        ->type_name("DIR|VIDEO");
     command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
-    command.add_option("--record", a.record, "record the program's GL stream into this file, for mural replay")->type_name("FILE");
-    command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")->type_name("FILE");
+    command.add_option("--record", a.record, "record the program's GL stream into this file, for mural replay")
+        ->type_name("FILE");
+    command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")
+        ->type_name("FILE");
     command.add_option("--canvas", a.canvas, "show this canvas of the file alone (all)")->type_name("NAME");
-    command.add_option("--frusta", a.frusta, "screens of the file show one flat picture, the program's, or each the scene as it is seen from the room: auto, program, room (auto: the room's where screens stand at angles)")->type_name("WHOSE");
-    command.add_option("--model-unit", a.modelUnit, "length of a metre of the room in the program's units (1)")->type_name("N");
-    command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")->type_name("NAME")->take_all();
+    command
+        .add_option("--frusta", a.frusta,
+                    "screens of the file show one flat picture, the program's, or each the scene as it is seen from "
+                    "the room: auto, program, room (auto: the room's where screens stand at angles)")
+        ->type_name("WHOSE");
+    command.add_option("--model-unit", a.modelUnit, "length of a metre of the room in the program's units (1)")
+        ->type_name("N");
+    command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")
+        ->type_name("NAME")
+        ->take_all();
     command.add_flag("--here", a.here, "run all nodes of the file on this machine");
-    command.add_flag("--print-config", a.printConfig, "print the configuration file that the other options stand for, and run nothing");
-    command.add_option("--stereo", a.stereo, "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, quad (windows of the wall with a buffer for each eye), or left, right alone (off)")->type_name("MODE");
+    command.add_flag("--print-config", a.printConfig,
+                     "print the configuration file that the other options stand for, and run nothing");
+    command
+        .add_option("--stereo", a.stereo,
+                    "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, quad (windows of the "
+                    "wall with a buffer for each eye), or left, right alone (off)")
+        ->type_name("MODE");
     command.add_option("--eye-base", a.eyeBase, "distance of the eyes, in the program's units (0.05)")->type_name("D");
-    command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")->type_name("D");
-    command.add_option("--subpixel", a.subpixel, "antialiasing: every pixel is the mean of N jittered pictures, each drawn by nodes of its own (1)")->type_name("N");
-    command.add_option("--zoom", a.zoom, "every node draws its part smaller, or larger, by this, and it is shown as large as ever: below 1 quicker and coarser, above 1 with smooth edges (1)")->type_name("Z|XxY");
-    command.add_option("--pixel", a.pixel, "interleaved pixels: each node draws every Nth column (or one pixel of each CxR), with little memory; approximate (1)")->type_name("N|CxR");
+    command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")
+        ->type_name("D");
+    command
+        .add_option("--subpixel", a.subpixel,
+                    "antialiasing: every pixel is the mean of N jittered pictures, each drawn by nodes of its own (1)")
+        ->type_name("N");
+    command
+        .add_option("--zoom", a.zoom,
+                    "every node draws its part smaller, or larger, by this, and it is shown as large as ever: below 1 "
+                    "quicker and coarser, above 1 with smooth edges (1)")
+        ->type_name("Z|XxY");
+    command
+        .add_option("--pixel", a.pixel,
+                    "interleaved pixels: each node draws every Nth column (or one pixel of each CxR), with little "
+                    "memory; approximate (1)")
+        ->type_name("N|CxR");
     command.add_option("--dplex", a.dplex, "time-multiplex: N nodes take turns at whole frames (1)")->type_name("N");
-    command.add_option("--db", a.db, "sort-last: N nodes share what is drawn, by ranges of each frame's draws, and compose by depth (1)")->type_name("N");
-    command.add_option("--composition", a.composition, "how they put their picture together: serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming, or auto, by their number (auto)")->type_name("HOW");
-    command.add_option("--codec", a.codec, "how pictures travel from nodes: auto (from other machines packed by the quickest that loses nothing), lossy (the quickest of all), or a name: raw, bitplane, bitplane-zstd, lz4, zstd, yuv420, jpeg-1 to jpeg-100 (auto)")->type_name("HOW");
-    command.add_option("--display", a.display, "where the wall is shown: app (the program's own window), windows (one per tile), none")->type_name("WHERE");
-    command.add_option("--tiling", a.tiling, "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with a depth buffer; lean: less memory (exact)")->type_name("HOW");
-    command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")->type_name("WHAT");
+    command
+        .add_option("--db", a.db,
+                    "sort-last: N nodes share what is drawn, by ranges of each frame's draws, and compose by depth (1)")
+        ->type_name("N");
+    command
+        .add_option("--composition", a.composition,
+                    "how they put their picture together: serial, direct-send, binary-swap, 2-3-swap, radix-k, "
+                    "streaming, or auto, by their number (auto)")
+        ->type_name("HOW");
+    command
+        .add_option("--codec", a.codec,
+                    "how pictures travel from nodes: auto (from other machines packed by the quickest that loses "
+                    "nothing), lossy (the quickest of all), or a name: raw, bitplane, bitplane-zstd, lz4, zstd, "
+                    "yuv420, jpeg-1 to jpeg-100 (auto)")
+        ->type_name("HOW");
+    command
+        .add_option("--display", a.display,
+                    "where the wall is shown: app (the program's own window), windows (one per tile), none")
+        ->type_name("WHERE");
+    command
+        .add_option("--tiling", a.tiling,
+                    "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with "
+                    "a depth buffer; lean: less memory (exact)")
+        ->type_name("HOW");
+    command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")
+        ->type_name("WHAT");
     command.add_option("--gl", a.gl, "GL of the render nodes: auto, egl, osmesa, glx (auto)")->type_name("GL");
-    command.add_option("--front", a.front, "how the program's GL is caught: glvnd, preload (also a GL library of its own), auto: as its libraries want")->type_name("WAY");
+    command
+        .add_option("--front", a.front,
+                    "how the program's GL is caught: glvnd, preload (also a GL library of its own), auto: as its "
+                    "libraries want")
+        ->type_name("WAY");
     command.add_option("--latency", a.latency, "frames that the program may be ahead of the wall (1)")->type_name("N");
     command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with this machine's own picture");
     command.add_flag("--fullscreen", a.fullScreen, "wall windows without borders, one per monitor");
-    command.add_option("--position", a.position, "upper left corner of the wall windows on the screen")->type_name("X,Y");
+    command.add_option("--position", a.position, "upper left corner of the wall windows on the screen")
+        ->type_name("X,Y");
     command.add_flag("--no-placement", a.noPlacement, "leave threads where the kernel puts them");
     command.add_flag("--explain", a.explain, "say which decomposition and rewriting were chosen, and why");
     command.add_flag("--native", a.native, "run without Mural, and only count frames and time");
-    command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")->type_name("CMD");
-    command.add_option("--stream", a.stream, "how the stream travels to other machines: auto (by multicast when there are two or more), tcp (to each), or rsp://GROUP:PORT?interface=…&rate=… (auto)")->type_name("HOW");
-    command.add_option("--readback", a.readback, "how pictures leave the nodes' GL: direct (read before the next frame is drawn), buffer (waited for by another thread), auto (by which of both the drawing thread loses less) (auto)")->type_name("HOW");
-    command.add_option("--economy", a.economy, "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")->type_name("WHICH");
-    command.add_option("--store", a.store, "memory for that in the head and in each of those nodes (1GiB)")->type_name("SIZE");
-    command.add_option("--restart-nodes", a.restartNodes, "start a node that is lost again, up to N times in a row; 0: its tiles stay as they were (3)")->type_name("N");
-    command.add_option("--least-nodes", a.leastNodes, "begin when N nodes are there; those that are late or fail come later, as lost ones do (all)")->type_name("N");
+    command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")
+        ->type_name("CMD");
+    command
+        .add_option("--stream", a.stream,
+                    "how the stream travels to other machines: auto (by multicast when there are two or more), tcp (to "
+                    "each), or rsp://GROUP:PORT?interface=…&rate=… (auto)")
+        ->type_name("HOW");
+    command
+        .add_option("--readback", a.readback,
+                    "how pictures leave the nodes' GL: direct (read before the next frame is drawn), buffer (waited "
+                    "for by another thread), auto (by which of both the drawing thread loses less) (auto)")
+        ->type_name("HOW");
+    command
+        .add_option("--economy", a.economy,
+                    "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")
+        ->type_name("WHICH");
+    command.add_option("--store", a.store, "memory for that in the head and in each of those nodes (1GiB)")
+        ->type_name("SIZE");
+    command
+        .add_option("--restart-nodes", a.restartNodes,
+                    "start a node that is lost again, up to N times in a row; 0: its tiles stay as they were (3)")
+        ->type_name("N");
+    command
+        .add_option("--least-nodes", a.leastNodes,
+                    "begin when N nodes are there; those that are late or fail come later, as lost ones do (all)")
+        ->type_name("N");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
-    command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")->type_name("FILE");
+    command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")
+        ->type_name("FILE");
     command.add_flag("--quiet", a.quiet, "say nothing but errors");
     command.footer(kRunFooter);
 }
@@ -484,16 +653,19 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     if (auto r = readNodes(a, c); !r) return r.error();
     if (auto r = readConfigFile(a, options); !r) return r.error();
     int64_t verify = 0;
-    if (auto r = readNumber("--verify", a.verify.empty() ? RunArguments::Text() : a.verify, 1, INT32_MAX, verify); !r) return r.error();
+    if (auto r = readNumber("--verify", a.verify.empty() ? RunArguments::Text() : a.verify, 1, INT32_MAX, verify); !r)
+        return r.error();
     c.verifyEvery = static_cast<int>(verify);
     if (verify > 0 && (c.passes.stereo != StereoMode::Off || c.passes.samples > 1 || !c.passes.zoom.none()))
-        return Error{"--verify compares with the program's own picture, which --stereo, --subpixel and --zoom change; leave one of them out"};
+        return Error{"--verify compares with the program's own picture, which --stereo, --subpixel and --zoom change; "
+                     "leave one of them out"};
     if (auto r = readOutput(a, c); !r) return r.error();
     if (auto r = checkTogether(a, c); !r) return r.error();
     c.fullScreen = a.fullScreen;
     c.placeThreads = !a.noPlacement;
     c.explain = a.explain;
-    const Choice<FrontChoice> fronts[] = {{"auto", FrontChoice::Auto}, {"glvnd", FrontChoice::Glvnd}, {"preload", FrontChoice::Preload}};
+    const Choice<FrontChoice> fronts[] = {
+        {"auto", FrontChoice::Auto}, {"glvnd", FrontChoice::Glvnd}, {"preload", FrontChoice::Preload}};
     if (auto r = choose("--front", a.front, fronts, options.front); !r) return r.error();
     options.displayChosen = a.display.has_value();
     options.native = a.native;
@@ -507,7 +679,8 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
         options.configText = std::move(*text);
         return options;
     }
-    if (options.program.empty()) return Error{"no program was given; put it after --, such as: mural run --tiles 2x2 -- glxgears"};
+    if (options.program.empty())
+        return Error{"no program was given; put it after --, such as: mural run --tiles 2x2 -- glxgears"};
     return options;
 }
 

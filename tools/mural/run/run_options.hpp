@@ -18,21 +18,22 @@ namespace mural::cli {
 enum class FrontChoice { Auto, Glvnd, Preload };
 
 struct RunOptions {
-    SessionConfig config; // everything except session and displayName
+    SessionConfig config;       // everything except session and displayName
     bool displayChosen = false; // --display was given
     FrontChoice front = FrontChoice::Auto;
     bool native = false;
     bool quiet = false;
-    std::string configText; // --print-config: equivalent configuration; empty: not requested
+    std::string configText;           // --print-config: equivalent configuration; empty: not requested
     std::vector<std::string> notices; // warnings about the configuration file
-    std::string reportFile; // --report; empty: none
+    std::string reportFile;           // --report; empty: none
     std::vector<std::string> program; // name and arguments
 };
 
 // Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
     using Text = std::optional<std::string>;
-    Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream, remoteMural, front, restartNodes, leastNodes;
+    Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream,
+        remoteMural, front, restartNodes, leastNodes;
     Text config, canvas, frusta, modelUnit, economy, store;
     std::vector<std::string> layouts;
     bool here = false, printConfig = false;

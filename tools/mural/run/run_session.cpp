@@ -66,9 +66,11 @@ private:
             if (program_.stopSignal() != 0) return 128 + program_.stopSignal();
             if (!head_->connected() && !ready_) {
                 head_->process().waitUntil(Deadline::inMs(1000));
-                return fail("the head process ended before the session began (" + head_->process().describeEnd() + "); see mural doctor");
+                return fail("the head process ended before the session began (" + head_->process().describeEnd() +
+                            "); see mural doctor");
             }
-            if (deadline.passed()) return fail("the render nodes were not ready in time; see mural doctor, or try --local-nodes 1");
+            if (deadline.passed())
+                return fail("the render nodes were not ready in time; see mural doctor, or try --local-nodes 1");
         }
         return {};
     }
@@ -137,7 +139,8 @@ private:
         const auto& wanted = run_.config.saveFrames; // in ascending order
         if (wanted.empty() || report_->frames == 0 || wanted.back() <= report_->frames) return;
         const auto first = std::upper_bound(wanted.begin(), wanted.end(), report_->frames);
-        console_.error(fmt::format("--save: frame {} was not saved{}, as the program showed {}", *first, std::next(first) == wanted.end() ? "" : ", nor those behind it", report_->frames));
+        console_.error(fmt::format("--save: frame {} was not saved{}, as the program showed {}", *first,
+                                   std::next(first) == wanted.end() ? "" : ", nor those behind it", report_->frames));
     }
 
     std::string whyNoFrame() {
@@ -145,8 +148,12 @@ private:
         if (everClients_) return name + " made a GL context but never showed a picture (no buffer swap)";
         const bool failed = program_.exitStatus() != 0 && !program_.askedToStop();
         if (std::string bypass = bypass_.aboutEnded(failed); !bypass.empty()) return bypass;
-        if (failed) return name + " ended before it made a GL context (" + program_.describeEnd() + "); what it said is above. Try it without Mural, or by mural run --native; mural doctor looks at display and GL";
-        return name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its children?";
+        if (failed)
+            return name + " ended before it made a GL context (" + program_.describeEnd() +
+                   "); what it said is above. Try it without Mural, or by mural run --native; mural doctor looks at "
+                   "display and GL";
+        return name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its "
+                      "children?";
     }
 
     // Reports programs that draw without the capture library: their own notes, and at most one line from an

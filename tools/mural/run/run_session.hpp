@@ -18,15 +18,15 @@ constexpr int64_t kEndGraceMs = 3'000; // time for a program to end after the re
 
 // Result of the preparations before the capture.
 struct PreparedRun {
-    SessionConfig config; // complete
+    SessionConfig config;   // complete
     std::string reportFile; // empty: none
     std::string programPath;
     std::vector<std::string> program; // argv[0] is the user's spelling
     launch::Environment programEnvironment;
     launch::Environment headEnvironment;
     std::vector<std::string> headCommand;
-    std::unique_ptr<launch::SessionSocket> socket; // null: creation failed
-    std::unique_ptr<launch::PrivateDisplay> display; // null: the user's display
+    std::unique_ptr<launch::SessionSocket> socket;            // null: creation failed
+    std::unique_ptr<launch::PrivateDisplay> display;          // null: the user's display
     std::unique_ptr<launch::WallWindowManager> windowManager; // null: no --size
 };
 

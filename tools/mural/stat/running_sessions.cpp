@@ -43,7 +43,8 @@ FileDescriptor connectTo(const std::string& session) {
     if (!fd.valid()) return {};
     setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
     setsockopt(fd.get(), SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
-    if (uninterrupted([&] { return connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), length); }) != 0) return {};
+    if (uninterrupted([&] { return connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), length); }) != 0)
+        return {};
     return fd;
 }
 
@@ -61,11 +62,14 @@ std::optional<nlohmann::json> askSession(const std::string& name) {
     hello.magic = capture::kStatusMagic;
     hello.version = capture::kVersion;
     hello.pid = getpid();
-    if (uninterrupted([&] { return send(fd.get(), &hello, sizeof hello, MSG_NOSIGNAL); }) != static_cast<ssize_t>(sizeof hello)) return {};
+    if (uninterrupted([&] { return send(fd.get(), &hello, sizeof hello, MSG_NOSIGNAL); }) !=
+        static_cast<ssize_t>(sizeof hello))
+        return {};
     std::string text;
     char part[65536];
     ssize_t n = 0;
-    while (text.size() < kMaxBytes && (n = uninterrupted([&] { return recv(fd.get(), part, sizeof part, 0); })) > 0) text.append(part, static_cast<size_t>(n));
+    while (text.size() < kMaxBytes && (n = uninterrupted([&] { return recv(fd.get(), part, sizeof part, 0); })) > 0)
+        text.append(part, static_cast<size_t>(n));
     nlohmann::json state = nlohmann::json::parse(text, nullptr, false);
     if (!state.is_object()) return {};
     return state;
@@ -86,7 +90,8 @@ std::vector<std::string> sessionNamesIn(const std::string& unixSockets) {
 
 Result<std::vector<nlohmann::json>> askRunningSessions() {
     std::ifstream file("/proc/net/unix", std::ios::binary);
-    if (!file) return Error{std::string("/proc/net/unix can't be read: ") + std::strerror(errno) + "; is /proc mounted?"};
+    if (!file)
+        return Error{std::string("/proc/net/unix can't be read: ") + std::strerror(errno) + "; is /proc mounted?"};
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     std::vector<nlohmann::json> sessions;
     for (const std::string& name : sessionNamesIn(text))

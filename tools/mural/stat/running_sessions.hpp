@@ -12,8 +12,8 @@ namespace mural::cli {
 // Returns the session names ("mural-PID-RANDOM") in the lines of /proc/net/unix, without duplicates. Pure.
 std::vector<std::string> sessionNamesIn(const std::string& unixSockets);
 
-// Returns the state of each session (nodes/head/session/session_status.hpp), without sessions that do not answer or belong to
-// others.
+// Returns the state of each session (nodes/head/session/session_status.hpp), without sessions that do not answer or
+// belong to others.
 Result<std::vector<nlohmann::json>> askRunningSessions();
 
 } // namespace mural::cli

@@ -32,12 +32,14 @@ std::vector<Json> entries(const Json& object, const char* name) {
     std::vector<Json> result;
     const Json& list = part(object, name);
     if (!list.is_array()) return result;
-    std::copy_if(list.begin(), list.end(), std::back_inserter(result), [](const Json& entry) { return entry.is_object(); });
+    std::copy_if(list.begin(), list.end(), std::back_inserter(result),
+                 [](const Json& entry) { return entry.is_object(); });
     return result;
 }
 
 const Json* find(const std::vector<Json>& list, const char* key, const Json& value) {
-    const auto found = std::find_if(list.begin(), list.end(), [&](const Json& entry) { return part(entry, key) == value; });
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const Json& entry) { return part(entry, key) == value; });
     return found == list.end() ? nullptr : &*found;
 }
 
@@ -52,7 +54,8 @@ Json programRates(const Json& before, const Json& now, double seconds) {
     }
     Json shares = Json::object();
     for (const auto& [what, total] : part(now, "waitSeconds").items()) {
-        if (total.is_number()) shares[what] = (total.get<double>() - number(part(before, "waitSeconds"), what.c_str())) / seconds;
+        if (total.is_number())
+            shares[what] = (total.get<double>() - number(part(before, "waitSeconds"), what.c_str())) / seconds;
     }
     rates["waitShares"] = shares;
     return rates;
@@ -66,12 +69,14 @@ Json nodeRates(const Json& before, const Json& now, double seconds) {
 // Rates over all programs, per frame of the wall.
 Json economyRates(const Json& before, const Json& now, double frames) {
     Json rates = Json::object();
-    for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "storeHits", "newPages", "patches", "encodeSeconds", "programBytes", "heldRecords", "leftOutRecords", "leftOutBytes"})
+    for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "storeHits", "newPages", "patches",
+                             "encodeSeconds", "programBytes", "heldRecords", "leftOutRecords", "leftOutBytes"})
         rates[std::string(name) + "PerFrame"] = (number(now, name) - number(before, name)) / frames;
     return rates;
 }
 
-void addRates(const Json& before, Json& now, const char* list, const char* key, double seconds, Json (*rates)(const Json&, const Json&, double)) {
+void addRates(const Json& before, Json& now, const char* list, const char* key, double seconds,
+              Json (*rates)(const Json&, const Json&, double)) {
     const std::vector<Json> then = entries(before, list);
     std::vector<Json> entriesNow = entries(now, list);
     for (Json& entry : entriesNow) {
@@ -83,9 +88,10 @@ void addRates(const Json& before, Json& now, const char* list, const char* key, 
 
 // Describes a program's waits, longest first: "waits 61 % for the nodes' frames".
 std::string waitText(const Json& program) {
-    static constexpr std::pair<const char*, const char*> kWords[] = {
-        {"frames", "for the nodes to finish frames"}, {"room", "for room: nodes take no more"},
-        {"answer", "for answers to round trips"}, {"window", "for its window to show the picture"}};
+    static constexpr std::pair<const char*, const char*> kWords[] = {{"frames", "for the nodes to finish frames"},
+                                                                     {"room", "for room: nodes take no more"},
+                                                                     {"answer", "for answers to round trips"},
+                                                                     {"window", "for its window to show the picture"}};
     const Json& shares = part(part(program, "recent"), "waitShares");
     const char* what = nullptr;
     double most = 0.005;
@@ -98,14 +104,18 @@ std::string waitText(const Json& program) {
     for (const Json& node : part(program, "waitsForNodes"))
         if (node.is_number_integer()) nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", node.get<int>());
     if (!nodes.empty()) nodes = ", now for node " + nodes;
-    return (what == nullptr ? "does not wait" : fmt::format("waits {:.0f} % of the time {}", 100 * std::min(most, 1.0), what)) + nodes;
+    return (what == nullptr ? "does not wait"
+                            : fmt::format("waits {:.0f} % of the time {}", 100 * std::min(most, 1.0), what)) +
+           nodes;
 }
 
 std::string tripsText(const Json& program) {
     const Json& recent = part(program, "recent");
     const double all = number(program, "roundTrips");
-    const std::string line = recent.contains("roundTripsPerFrame") ? fmt::format("{:.2f} round trips per frame, {:.0f} in all", number(recent, "roundTripsPerFrame"), all)
-                                                                   : fmt::format("{:.0f} round trip{} in all", all, all == 1 ? "" : "s");
+    const std::string line =
+        recent.contains("roundTripsPerFrame")
+            ? fmt::format("{:.2f} round trips per frame, {:.0f} in all", number(recent, "roundTripsPerFrame"), all)
+            : fmt::format("{:.0f} round trip{} in all", all, all == 1 ? "" : "s");
     std::map<std::string, int64_t> counts;
     for (const auto& [command, count] : part(program, "roundTripsBy").items())
         if (count.is_number()) counts[command] = count.get<int64_t>();
@@ -118,7 +128,9 @@ void addProgram(const Json& program, std::vector<std::string>& lines) {
     lines.push_back(fmt::format("  program {:.0f}  {}", number(program, "pid"), memberText(program, "command")));
     std::string line = fmt::format("    {:.0f} frames", number(program, "frames"));
     if (recent.contains("framesPerSecond")) line += fmt::format(", {:.1f} frames/s", number(recent, "framesPerSecond"));
-    if (recent.contains("callsPerFrame")) line += fmt::format(", {:.0f} calls and {} per frame", number(recent, "callsPerFrame"), sizeText(number(recent, "bytesPerFrame")));
+    if (recent.contains("callsPerFrame"))
+        line += fmt::format(", {:.0f} calls and {} per frame", number(recent, "callsPerFrame"),
+                            sizeText(number(recent, "bytesPerFrame")));
     lines.push_back(line);
     lines.push_back("    " + tripsText(program));
     lines.push_back("    " + waitText(program));
@@ -128,23 +140,33 @@ void addEconomy(const Json& economy, std::vector<std::string>& lines) {
     const Json& recent = part(economy, "recent");
     if (!recent.contains("rawBytesPerFrame")) return;
     const double pages = number(recent, "storeHitsPerFrame") + number(recent, "newPagesPerFrame");
-    lines.push_back(fmt::format("  economy  {} per frame, {} of it new to the nodes, {} compressed; {:.1f} of {:.1f} pages per frame they had, packing {:.0f} us", sizeText(number(recent, "rawBytesPerFrame")),
-                                sizeText(number(recent, "stagedBytesPerFrame")), sizeText(number(recent, "wireBytesPerFrame")), number(recent, "storeHitsPerFrame"), pages,
-                                1e6 * number(recent, "encodeSecondsPerFrame")));
+    lines.push_back(fmt::format("  economy  {} per frame, {} of it new to the nodes, {} compressed; {:.1f} of {:.1f} "
+                                "pages per frame they had, packing {:.0f} us",
+                                sizeText(number(recent, "rawBytesPerFrame")),
+                                sizeText(number(recent, "stagedBytesPerFrame")),
+                                sizeText(number(recent, "wireBytesPerFrame")), number(recent, "storeHitsPerFrame"),
+                                pages, 1e6 * number(recent, "encodeSecondsPerFrame")));
     if (number(economy, "heldRecords") + number(economy, "leftOutRecords") > 0)
-        lines.push_back(fmt::format("           of {} per frame {} were left out ({:.1f} records); {} held back now", sizeText(number(recent, "programBytesPerFrame")), sizeText(number(recent, "leftOutBytesPerFrame")),
+        lines.push_back(fmt::format("           of {} per frame {} were left out ({:.1f} records); {} held back now",
+                                    sizeText(number(recent, "programBytesPerFrame")),
+                                    sizeText(number(recent, "leftOutBytesPerFrame")),
                                     number(recent, "leftOutRecordsPerFrame"), sizeText(number(economy, "heldBytes"))));
 }
 
 void addQueue(const Json& queue, std::vector<std::string>& lines) {
     if (number(queue, "columns") == 0) return;
     std::string nodes;
-    for (const Json& node : entries(queue, "nodes")) nodes += fmt::format("{}node {:.0f} has {:.0f}", nodes.empty() ? "" : ", ", number(node, "node"), number(node, "tiles"));
+    for (const Json& node : entries(queue, "nodes"))
+        nodes += fmt::format("{}node {:.0f} has {:.0f}", nodes.empty() ? "" : ", ", number(node, "node"),
+                             number(node, "tiles"));
     const double frames = number(queue, "frames");
     const std::string of = memberText(queue, "of");
-    const std::string pieces = of == "chunks" ? fmt::format("{:.0f} chunks", number(queue, "columns"))
-                                              : fmt::format("{:.0f}x{:.0f} tiles of {:.0f}x{:.0f} pixels", number(queue, "columns"), number(queue, "rows"), number(queue, "tileWidth"), number(queue, "tileHeight"));
-    lines.push_back(fmt::format("  queue \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames, {:.2f} {} per frame", memberText(queue, "name"), pieces, nodes, number(queue, "moves"), frames,
+    const std::string pieces =
+        of == "chunks" ? fmt::format("{:.0f} chunks", number(queue, "columns"))
+                       : fmt::format("{:.0f}x{:.0f} tiles of {:.0f}x{:.0f} pixels", number(queue, "columns"),
+                                     number(queue, "rows"), number(queue, "tileWidth"), number(queue, "tileHeight"));
+    lines.push_back(fmt::format("  queue \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames, {:.2f} {} per frame",
+                                memberText(queue, "name"), pieces, nodes, number(queue, "moves"), frames,
                                 frames > 0 ? number(queue, "tilesMoved") / frames : 0, of));
 }
 
@@ -152,26 +174,37 @@ void addNode(const Json& node, std::vector<std::string>& lines) {
     std::string state = memberText(node, "state");
     if (state == "alive") {
         state = fmt::format("{:.0f} frames", number(node, "frames"));
-        if (node.contains("recent")) state += fmt::format(", busy {:.0f} %", 100 * number(part(node, "recent"), "busyShare"));
-        if (const double frames = number(node, "frames"); frames > 0 && number(node, "pictureRawBytes") > 0) state += fmt::format(", pictures of {} came in {} per frame", sizeText(number(node, "pictureRawBytes") / frames), sizeText(number(node, "pictureBytes") / frames));
-        if (number(node, "joins") > 0) state += fmt::format(", came back {:.0f} time{}, the last time in {:.1f} s with {}", number(node, "joins"), number(node, "joins") == 1 ? "" : "s", number(node, "secondsToBack"), sizeText(number(node, "snapshotBytes")));
-        if (number(node, "silentSeconds") > 5) state += fmt::format(", silent for {:.0f} s", number(node, "silentSeconds"));
+        if (node.contains("recent"))
+            state += fmt::format(", busy {:.0f} %", 100 * number(part(node, "recent"), "busyShare"));
+        if (const double frames = number(node, "frames"); frames > 0 && number(node, "pictureRawBytes") > 0)
+            state +=
+                fmt::format(", pictures of {} came in {} per frame", sizeText(number(node, "pictureRawBytes") / frames),
+                            sizeText(number(node, "pictureBytes") / frames));
+        if (number(node, "joins") > 0)
+            state += fmt::format(", came back {:.0f} time{}, the last time in {:.1f} s with {}", number(node, "joins"),
+                                 number(node, "joins") == 1 ? "" : "s", number(node, "secondsToBack"),
+                                 sizeText(number(node, "snapshotBytes")));
+        if (number(node, "silentSeconds") > 5)
+            state += fmt::format(", silent for {:.0f} s", number(node, "silentSeconds"));
     }
     const std::string stream = memberText(node, "stream");
     const std::string by = stream.empty() || stream == "memory" ? "" : ", by " + stream;
-    lines.push_back(fmt::format("  node {:.0f}  {}{}, pid {:.0f}, {}: {}", number(node, "node"), memberText(node, "where"), by, number(node, "pid"), memberText(node, "gl"), state));
+    lines.push_back(fmt::format("  node {:.0f}  {}{}, pid {:.0f}, {}: {}", number(node, "node"),
+                                memberText(node, "where"), by, number(node, "pid"), memberText(node, "gl"), state));
 }
 
 } // namespace
 
 std::vector<Json> withRates(const std::vector<Json>& before, std::vector<Json> now) {
     for (Json& session : now) {
-        const auto then = std::find_if(before.begin(), before.end(), [&](const Json& s) { return part(s, "session") == part(session, "session"); });
+        const auto then = std::find_if(before.begin(), before.end(),
+                                       [&](const Json& s) { return part(s, "session") == part(session, "session"); });
         if (then == before.end()) continue;
         const double seconds = number(session, "atSeconds") - number(*then, "atSeconds");
         addRates(*then, session, "programs", "client", seconds, programRates);
         const double frames = number(session, "frames") - number(*then, "frames");
-        if (session.contains("economy") && session["economy"].is_object() && frames > 0) session["economy"]["recent"] = economyRates(part(*then, "economy"), part(session, "economy"), frames);
+        if (session.contains("economy") && session["economy"].is_object() && frames > 0)
+            session["economy"]["recent"] = economyRates(part(*then, "economy"), part(session, "economy"), frames);
         addRates(*then, session, "nodes", "node", seconds, nodeRates);
     }
     return now;
@@ -179,8 +212,9 @@ std::vector<Json> withRates(const std::vector<Json>& before, std::vector<Json> n
 
 std::vector<std::string> statLines(const Json& session) {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("session {:.0f}  {} tiles, display {}, {:.0f} frames on the wall; head {:.0f}", number(session, "runPid"), memberText(session, "tiles"),
-                                memberText(session, "display"), number(session, "frames"), number(session, "headPid")));
+    lines.push_back(fmt::format("session {:.0f}  {} tiles, display {}, {:.0f} frames on the wall; head {:.0f}",
+                                number(session, "runPid"), memberText(session, "tiles"), memberText(session, "display"),
+                                number(session, "frames"), number(session, "headPid")));
     const std::vector<Json> programs = entries(session, "programs");
     for (const Json& program : programs) addProgram(program, lines);
     if (programs.empty()) lines.emplace_back("  no program draws yet, or any more");

@@ -39,13 +39,20 @@ Result<trace::DumpOptions> dumpOptionsFrom(const DumpArguments& a) {
     options.summary = a.summary;
     if (a.calls) {
         options.calls = patternsIn(*a.calls);
-        if (options.calls.empty()) return Error{"--calls \"" + *a.calls + "\": must name calls, such as glTexImage*,Mural.Swap (see mural dump --help)"};
+        if (options.calls.empty())
+            return Error{"--calls \"" + *a.calls +
+                         "\": must name calls, such as glTexImage*,Mural.Swap (see mural dump --help)"};
         const auto unknown = std::ranges::find_if_not(options.calls, trace::fitsSomeCall);
-        if (unknown != options.calls.end()) return Error{"--calls \"" + *unknown + "\": no command has such a name; mural list-commands has all names of GL, docs/reference/wire-format.md those of Mural.…"};
+        if (unknown != options.calls.end())
+            return Error{"--calls \"" + *unknown +
+                         "\": no command has such a name; mural list-commands has all names of GL, "
+                         "docs/reference/wire-format.md those of Mural.…"};
     }
     if (!a.frames) return options;
     const auto range = frameRangeOf(*a.frames);
-    if (!range) return Error{"--frames \"" + *a.frames + "\": must be N or N-M, counted from 1, such as 30-32 (see mural dump --help)"};
+    if (!range)
+        return Error{"--frames \"" + *a.frames +
+                     "\": must be N or N-M, counted from 1, such as 30-32 (see mural dump --help)"};
     std::tie(options.firstFrame, options.lastFrame) = *range;
     return options;
 }
@@ -54,7 +61,8 @@ Result<trace::DumpOptions> dumpOptionsFrom(const DumpArguments& a) {
 std::string absentCalls(const DumpArguments& a, const std::vector<std::string>& absent) {
     std::string names;
     for (const std::string& name : absent) names += (names.empty() ? "" : ",") + name;
-    return "--calls \"" + names + "\": there is no such call in " + (a.frames ? "frames " + *a.frames + " of " : "") + a.file;
+    return "--calls \"" + names + "\": there is no such call in " + (a.frames ? "frames " + *a.frames + " of " : "") +
+           a.file;
 }
 
 } // namespace
@@ -62,7 +70,8 @@ std::string absentCalls(const DumpArguments& a, const std::vector<std::string>& 
 void describeDump(CLI::App& command, DumpArguments& a) {
     command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
     command.add_option("--frames", a.frames, "these frames, counted from 1 (all)")->type_name("N-M");
-    command.add_option("--calls", a.calls, "these calls, separated by commas; * stands for anything (all)")->type_name("glA,glB*");
+    command.add_option("--calls", a.calls, "these calls, separated by commas; * stands for anything (all)")
+        ->type_name("glA,glB*");
     command.add_flag("--summary", a.summary, "counts and bytes by call, for each frame and for all");
     command.footer(kDumpFooter);
 }
@@ -79,9 +88,11 @@ int dumpCommand(const DumpArguments& a) {
     if (!opened) return complain(opened.error());
     trace::TraceReader& reader = **opened;
     if (a.frames)
-        if (const auto there = trace::checkFrames(reader, options.value().lastFrame); !there) return complain(there.error());
+        if (const auto there = trace::checkFrames(reader, options.value().lastFrame); !there)
+            return complain(there.error());
     if (!reader.notice().empty()) errors.error(reader.notice());
-    const auto dumped = trace::dump(reader, options.value(), [](const std::string& line) { return std::puts(line.c_str()) >= 0; });
+    const auto dumped =
+        trace::dump(reader, options.value(), [](const std::string& line) { return std::puts(line.c_str()) >= 0; });
     // main reports output errors.
     if (dumped && (dumped.value().absent.empty() || std::ferror(stdout) != 0)) return 0;
     std::fflush(stdout); // the message follows the calls

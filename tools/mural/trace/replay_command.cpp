@@ -27,7 +27,8 @@ void describeReplay(CLI::App& command, ReplayArguments& a) {
     command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
     describeRunOptions(command, a.run);
     // Options about the program itself do not apply to a trace.
-    for (const char* name : {"--size", "--native", "--verify", "--policy", "--front", "--print-config"}) command.remove_option(command.get_option(name));
+    for (const char* name : {"--size", "--native", "--verify", "--policy", "--front", "--print-config"})
+        command.remove_option(command.get_option(name));
     command.add_flag("--pace", a.pace, "at the times at which it was recorded");
     command.add_flag("--loop", a.loop, "again and again, until --frames or Ctrl-C");
     command.footer(kReplayFooter);
@@ -41,7 +42,8 @@ Result<RunOptions> replayOptionsFrom(const ReplayArguments& a) {
     auto options = runOptionsFrom(run);
     if (!options) return options;
     std::error_code none;
-    if (!options->config.record.empty() && std::filesystem::equivalent(options->config.record, a.file, none)) return Error{"--record " + a.file + " is what is being replayed; give another file"};
+    if (!options->config.record.empty() && std::filesystem::equivalent(options->config.record, a.file, none))
+        return Error{"--record " + a.file + " is what is being replayed; give another file"};
     return options;
 }
 

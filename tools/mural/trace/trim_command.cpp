@@ -38,19 +38,24 @@ int trimCommand(const TrimArguments& a) {
         return launch::kExitUsage;
     };
     const auto range = frameRangeOf(a.frames);
-    if (!range) return complain("frames \"" + a.frames + "\": must be N or N-M, counted from 1, such as 30-90 (see mural trim --help)");
+    if (!range)
+        return complain("frames \"" + a.frames +
+                        "\": must be N or N-M, counted from 1, such as 30-90 (see mural trim --help)");
     auto opened = trace::TraceReader::open(a.file);
     if (!opened) return complain(opened.error().message);
     trace::TraceReader& reader = **opened;
     if (reader.frames() < range->second) return complain(reader.noSuchFrames(reader.frames()).message);
     std::error_code none;
-    if (std::filesystem::equivalent(a.file, a.out, none)) return complain("-o " + a.out + " is what is being trimmed; give another file");
+    if (std::filesystem::equivalent(a.file, a.out, none))
+        return complain("-o " + a.out + " is what is being trimmed; give another file");
     if (!reader.notice().empty()) console.error(reader.notice());
     const auto trimmed = trace::trim(reader, range->first, range->second, a.out);
     if (!trimmed) return complain(trimmed.error().message);
     const trace::TrimReport& r = trimmed.value();
-    console.say(fmt::format("{} of {} frames in {}, {}; of the frames before, {} of {} records were left out, {} of {} draws", r.frames, reader.frames(), a.out,
-                            sizeText(static_cast<double>(r.fileBytes)), r.recordsBefore - r.recordsKept, r.recordsBefore, r.drawsBefore - r.drawsKept, r.drawsBefore));
+    console.say(
+        fmt::format("{} of {} frames in {}, {}; of the frames before, {} of {} records were left out, {} of {} draws",
+                    r.frames, reader.frames(), a.out, sizeText(static_cast<double>(r.fileBytes)),
+                    r.recordsBefore - r.recordsKept, r.recordsBefore, r.drawsBefore - r.drawsKept, r.drawsBefore));
     return 0;
 }
 

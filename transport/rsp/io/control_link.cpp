@@ -21,7 +21,8 @@ void ControlLink::start(Events events) {
     events_ = std::make_shared<const Events>(std::move(events));
     error_code ignored;
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
-    static_cast<void>(setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof kUnsentBytes));
+    static_cast<void>(
+        setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof kUnsentBytes));
     flush();
     read();
 }
@@ -94,7 +95,8 @@ void ControlLink::hangUp() {
 void ControlLink::read() {
     socket_.async_read_some(asio::buffer(in_), [self = shared_from_this()](const error_code& failed, size_t bytes) {
         if (self->ended_) return;
-        if (failed) return self->close(failed == asio::error::eof ? "the peer broke off without a goodbye" : failed.message());
+        if (failed)
+            return self->close(failed == asio::error::eof ? "the peer broke off without a goodbye" : failed.message());
         self->took(bytes);
         if (!self->ended_) self->read();
     });

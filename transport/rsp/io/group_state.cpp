@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kShareOfLink = 0.9;
 constexpr size_t kMaxWindowsWaiting = 2; // queued in a member's connection, per stream
-constexpr int64_t kGoodbyeMs = 1000; // longest wait of a leaving member for acknowledgement
+constexpr int64_t kGoodbyeMs = 1000;     // longest wait of a leaving member for acknowledgement
 constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
 
@@ -119,7 +119,8 @@ Result<void> Group::State::openHost() {
     auto where = splitHostPort(options_.control);
     if (!where) return where.error();
     error_code failed;
-    const auto address = where->host.empty() ? asio::ip::address(asio::ip::address_v6::any()) : asio::ip::make_address(where->host, failed);
+    const auto address = where->host.empty() ? asio::ip::address(asio::ip::address_v6::any())
+                                             : asio::ip::make_address(where->host, failed);
     if (failed) return Error{"\"" + where->host + "\" is no address to listen at; give numbers"};
     try {
         acceptor_.emplace(context_, Tcp::endpoint(address, where->port));
@@ -140,10 +141,12 @@ Result<void> Group::State::openMember(Deadline deadline) {
     auto addresses = resolveTcp(where->host, where->port, TcpRole::Connect, deadline);
     if (!addresses) return addresses.error();
     auto connected = connectRacing(*addresses, deadline);
-    if (!connected) return Error{"can't reach the group's host at " + options_.control + ": " + connected.error().message};
+    if (!connected)
+        return Error{"can't reach the group's host at " + options_.control + ": " + connected.error().message};
     const bool isIpv4 = localTcpAddress(connected->get()).family() == AF_INET;
     Tcp::socket socket(context_, isIpv4 ? Tcp::v4() : Tcp::v6(), connected->release());
-    auto link = std::make_shared<ControlLink>(std::move(socket), SecureChannel::connecting(options_.name, options_.secret));
+    auto link =
+        std::make_shared<ControlLink>(std::move(socket), SecureChannel::connecting(options_.name, options_.secret));
     hostAddress_ = link->peerAddress();
     asio::post(context_, [this, link] { startLink(kHost, link); });
     startThread();
@@ -276,8 +279,10 @@ void Group::State::updateLoop() {
 
 void Group::State::ignoreOwn() {
     if (!groupSocket_) return;
-    if (loop_) groupSocket_->ignoreMember(core->self());
-    else groupSocket_->ignoreNobody();
+    if (loop_)
+        groupSocket_->ignoreMember(core->self());
+    else
+        groupSocket_->ignoreNobody();
 }
 
 // Drops of looped-back own datagrams are not losses.
@@ -291,8 +296,10 @@ uint32_t Group::State::dropped() const {
 void Group::State::sendControl(MemberId to, const ControlMessage& message) {
     const auto found = links_.find(to);
     if (found == links_.end()) return;
-    if (std::holds_alternative<Tunnel>(message)) found->second->offer(message, kMaxWindowsWaiting * windowBytes_ * links_.size());
-    else found->second->send(message);
+    if (std::holds_alternative<Tunnel>(message))
+        found->second->offer(message, kMaxWindowsWaiting * windowBytes_ * links_.size());
+    else
+        found->second->send(message);
 }
 
 // May be called from any thread. The links belong to the group's thread and change under the lock.
@@ -372,7 +379,8 @@ GroupReport Group::State::report() const {
         r.bytesPerS = s->rate().limited() ? s->rate().bytesPerS() : 0;
         for (const auto& [id, state] : s->members()) {
             const auto info = core->members().find(id);
-            r.members.push_back({id, info == core->members().end() ? MemberInfo{} : info->second, state, s->waitsFor(state)});
+            r.members.push_back(
+                {id, info == core->members().end() ? MemberInfo{} : info->second, state, s->waitsFor(state)});
         }
     }
     if (opener_) r.refused = opener_->refused();

@@ -52,18 +52,19 @@ struct Group::State : GroupOutput {
         std::condition_variable wake;
         size_t sleeping = 0; // number of threads, without the leader
     };
-    Waits room; // the writer
-    Waits arrived; // threads in waitArrived()
-    Waits data; // readers
-    std::condition_variable changed; // membership
+    Waits room;                           // the writer
+    Waits arrived;                        // threads in waitArrived()
+    Waits data;                           // readers
+    std::condition_variable changed;      // membership
     std::vector<MemberId> waitingForData; // awaited members, one entry per waiting thread
     // Sleeps until the condition may hold or a slice of time is over. Returns false after the deadline. The first
     // waiting thread becomes the leader: it polls sockets and timer while the group's thread sleeps.
     bool wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline);
-    Result<size_t> readable(std::unique_lock<std::mutex>& lock, MemberId from, std::span<std::span<const std::byte>> pieces, Deadline deadline);
+    Result<size_t> readable(std::unique_lock<std::mutex>& lock, MemberId from,
+                            std::span<std::span<const std::byte>> pieces, Deadline deadline);
 
     std::unique_ptr<GroupCore> core;
-    std::string failure; // reason for the end of the group; empty: alive
+    std::string failure;   // reason for the end of the group; empty: alive
     bool hostLeft = false; // the host ended the group in order: end of its stream, not a failure
     std::set<MemberId> accepted;
     std::vector<MemberEvent> news; // unread membership events
@@ -112,28 +113,28 @@ private:
     std::optional<UdpSocket> groupSocket_;
     std::optional<SocketPoller> arrivals_;
     std::optional<boost::asio::posix::stream_descriptor> watched_; // wakes the group's thread while there is no leader
-    const Waits* leaderWaitsFor_ = nullptr; // null: no leader
+    const Waits* leaderWaitsFor_ = nullptr;                        // null: no leader
     bool leaderSleeps_ = false;
     int64_t leaderUntilNs_ = 0; // end of the leader's sleep
     bool leaderCalled_ = false; // the leader's condition may hold
-    bool isWatched_ = true; // otherwise there is a leader, or takeOver_ is armed
+    bool isWatched_ = true;     // otherwise there is a leader, or takeOver_ is armed
     std::optional<HandoverTimer> takeOver_;
     std::optional<boost::asio::posix::stream_descriptor> takeOverRings_;
     ReceiveModeration moderation_{GroupSettings{}.socketDatagrams};
-    int64_t lookedNs_ = INT64_MIN / 2; // last poll of the sockets
+    int64_t lookedNs_ = INT64_MIN / 2;       // last poll of the sockets
     int64_t askedDroppedNs_ = INT64_MIN / 2; // last query of the sockets' drop counters
-    unsigned looksUnasked_ = 0; // reads since the last poll
+    unsigned looksUnasked_ = 0;              // reads since the last poll
     std::optional<SendBatcher> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;
-    std::map<MemberId, MemberInfo> known_; // including members whose departure is not reported yet
+    std::map<MemberId, MemberInfo> known_;             // including members whose departure is not reported yet
     std::set<std::shared_ptr<ControlLink>> strangers_; // not authenticated yet
-    size_t windowBytes_ = 0; // of one stream of this group
+    size_t windowBytes_ = 0;                           // of one stream of this group
     std::string hostAddress_;
     std::set<std::string> ownAddresses_; // addresses of this machine
-    bool loop_ = true; // multicast loopback is on
-    int64_t timerNs_ = INT64_MAX; // time of the next due work
-    int64_t toldNs_ = INT64_MAX; // time set in arrivals_
+    bool loop_ = true;                   // multicast loopback is on
+    int64_t timerNs_ = INT64_MAX;        // time of the next due work
+    int64_t toldNs_ = INT64_MAX;         // time set in arrivals_
     std::thread thread_;
 };
 

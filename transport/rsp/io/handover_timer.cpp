@@ -12,7 +12,9 @@ namespace mural::rsp {
 Result<HandoverTimer> HandoverTimer::open() {
     HandoverTimer t;
     t.timer_ = FileDescriptor(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-    if (!t.timer_.valid()) return Error{"can't make a multicast group's timer: " + errnoText(errno) + "; raise the limit of open files (ulimit -n)"};
+    if (!t.timer_.valid())
+        return Error{"can't make a multicast group's timer: " + errnoText(errno) +
+                     "; raise the limit of open files (ulimit -n)"};
     return t;
 }
 

@@ -15,11 +15,11 @@ namespace {
 // losses need repair, and otherwise.
 constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
 constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
-constexpr unsigned kMaxLooksInARow = 3; // consecutive reads of a socket; more would exceed the processor's cache
-constexpr unsigned kAsksSocketsEvery = 8; // reads of a flowing socket between two polls
+constexpr unsigned kMaxLooksInARow = 3;       // consecutive reads of a socket; more would exceed the processor's cache
+constexpr unsigned kAsksSocketsEvery = 8;     // reads of a flowing socket between two polls
 constexpr int64_t kCaughtUpNs = 6 * kNsPerMs; // longer than a reader's rest
 constexpr int64_t kBetweenDroppedNs = 20 * kNsPerMs; // the writer is informed, but does not react
-constexpr int64_t kMaxPauseNs = 2 * kNsPerMs; // pause of a writer between two batches
+constexpr int64_t kMaxPauseNs = 2 * kNsPerMs;        // pause of a writer between two batches
 } // namespace
 
 bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadline deadline) {
@@ -76,14 +76,15 @@ void Group::State::letWatch() {
 
 // Group's thread: takes over from a leader that does not return.
 void Group::State::watchLeaders() {
-    takeOverRings_->async_wait(asio::posix::stream_descriptor::wait_read, [this](const boost::system::error_code& failed) {
-        if (failed) return;
-        {
-            const std::lock_guard lock(mutex);
-            if (takeOver_->rang(quickNowNs()) && !leaderWaitsFor_) letWatch();
-        }
-        watchLeaders();
-    });
+    takeOverRings_->async_wait(asio::posix::stream_descriptor::wait_read,
+                               [this](const boost::system::error_code& failed) {
+                                   if (failed) return;
+                                   {
+                                       const std::lock_guard lock(mutex);
+                                       if (takeOver_->rang(quickNowNs()) && !leaderWaitsFor_) letWatch();
+                                   }
+                                   watchLeaders();
+                               });
 }
 
 // Group's thread: does the work while there is no leader.
@@ -118,7 +119,8 @@ bool Group::State::ownIsOnItsWay() const {
 // input before it may send.
 int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
     const Sender* s = core->sender();
-    if (what == &room && s && s->canSend() && data.sleeping == 0 && timerNs_ != INT64_MAX) return std::clamp<int64_t>(timerNs_ - nowNs, 0, kMaxPauseNs);
+    if (what == &room && s && s->canSend() && data.sleeping == 0 && timerNs_ != INT64_MAX)
+        return std::clamp<int64_t>(timerNs_ - nowNs, 0, kMaxPauseNs);
     if (what == &arrived || what == &room || arrived.sleeping > 0 || room.sleeping > 0) return 0;
     return moderation_.restNs(nowNs);
 }

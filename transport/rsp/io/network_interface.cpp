@@ -94,12 +94,15 @@ Result<NetworkInterface> findInterface(std::string_view nameOrAddress, int famil
                          " address; give it one, or use a group of the other kind"};
         }
         if (!i.address(family)) continue;
-        if (i.loopback) loopback = &i;
-        else if (nameOrAddress.empty() && i.multicast) return i;
+        if (i.loopback)
+            loopback = &i;
+        else if (nameOrAddress.empty() && i.multicast)
+            return i;
     }
     if (nameOrAddress.empty() && loopback) return *loopback;
     if (nameOrAddress.empty()) return Error{"no network interface is up that could do multicast; there are: " + known};
-    return Error{"there is no network interface \"" + std::string(nameOrAddress) + "\" that is up; there are: " + known};
+    return Error{"there is no network interface \"" + std::string(nameOrAddress) +
+                 "\" that is up; there are: " + known};
 }
 
 } // namespace mural::rsp

@@ -44,7 +44,8 @@ void SendBatcher::flush() {
     if (count_ == 0) return;
     const SocketAddress* to = addressOf(to_);
     if (sealer_ && to && to->sizeBytes != 0) {
-        if (auto sent = socket_.send(*to, std::span(bytes_).first(used_), segmentBytes_); !sent) error_ = sent.error().message;
+        if (auto sent = socket_.send(*to, std::span(bytes_).first(used_), segmentBytes_); !sent)
+            error_ = sent.error().message;
         datagrams_ += count_;
         ++sendings_;
     }

@@ -42,7 +42,7 @@ private:
     std::map<MemberId, SocketAddress> members_;
     std::vector<std::byte> bytes_;
     MemberId to_ = 0;
-    size_t used_ = 0; // bytes of sealed datagrams
+    size_t used_ = 0;      // bytes of sealed datagrams
     size_t openBytes_ = 0; // bytes of the datagram in progress, after them
     size_t segmentBytes_ = 0;
     size_t count_ = 0;

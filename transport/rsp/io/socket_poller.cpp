@@ -32,13 +32,15 @@ Result<SocketPoller> SocketPoller::open() {
     a.watched_ = FileDescriptor(epoll_create1(EPOLL_CLOEXEC));
     a.timer_ = FileDescriptor(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
     if (!a.watched_.valid() || !a.timer_.valid()) return noDescriptor("make a multicast group's timer");
-    if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.timer_.get())) return noDescriptor("watch a multicast group's timer");
+    if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.timer_.get()))
+        return noDescriptor("watch a multicast group's timer");
     a.all_[a.count_++] = {a.timer_.get(), POLLIN, 0};
     return a;
 }
 
 Result<void> SocketPoller::add(int socket) {
-    if (isWatched_ && !control(watched_.get(), EPOLL_CTL_ADD, socket)) return noDescriptor("watch a multicast group's sockets");
+    if (isWatched_ && !control(watched_.get(), EPOLL_CTL_ADD, socket))
+        return noDescriptor("watch a multicast group's sockets");
     all_.at(count_++) = {socket, POLLIN, 0};
     return {};
 }
@@ -67,7 +69,8 @@ std::span<const int> SocketPoller::wait(int64_t timeoutNs) {
 
 void SocketPoller::setWatched(bool on) {
     if (on == std::exchange(isWatched_, on)) return;
-    for (const pollfd& one : std::span(all_).first(count_)) control(watched_.get(), on ? EPOLL_CTL_ADD : EPOLL_CTL_DEL, one.fd);
+    for (const pollfd& one : std::span(all_).first(count_))
+        control(watched_.get(), on ? EPOLL_CTL_ADD : EPOLL_CTL_DEL, one.fd);
 }
 
 } // namespace mural::rsp

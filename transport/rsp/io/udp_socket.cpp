@@ -50,8 +50,9 @@ Result<void> chooseInterface(int fd, const NetworkInterface& interface, int fami
         good = set(fd, IPPROTO_IP, IP_MULTICAST_IF, request) && set(fd, IPPROTO_IP, IP_MULTICAST_LOOP, 1) &&
                set(fd, IPPROTO_IP, IP_MULTICAST_TTL, 1) && set(fd, IPPROTO_IP, IP_MTU_DISCOVER, IP_PMTUDISC_DO);
     } else {
-        good = set(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, interface.index) && set(fd, IPPROTO_IPV6, IPV6_MULTICAST_LOOP, 1) &&
-               set(fd, IPPROTO_IPV6, IPV6_MULTICAST_HOPS, 1) && set(fd, IPPROTO_IPV6, IPV6_MTU_DISCOVER, IPV6_PMTUDISC_DO);
+        good = set(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, interface.index) &&
+               set(fd, IPPROTO_IPV6, IPV6_MULTICAST_LOOP, 1) && set(fd, IPPROTO_IPV6, IPV6_MULTICAST_HOPS, 1) &&
+               set(fd, IPPROTO_IPV6, IPV6_MTU_DISCOVER, IPV6_PMTUDISC_DO);
     }
     if (!good) return failed("send multicast through network interface " + interface.name);
     return {};
@@ -87,8 +88,10 @@ struct UdpSocket::Slots {
         }
         plain = wantsPlain;
         for (size_t i = 0; i < kMaxAtOnce; ++i) {
-            if (i < landing.places.size()) pieces[i] = {landing.places[i], landing.placeBytes};
-            else pieces[i] = {bytes.get() + i * kSlotStrideBytes, kSlotBytes};
+            if (i < landing.places.size())
+                pieces[i] = {landing.places[i], landing.placeBytes};
+            else
+                pieces[i] = {bytes.get() + i * kSlotStrideBytes, kSlotBytes};
             msghdr& h = messages[i].msg_hdr;
             h = {};
             h.msg_iov = &pieces[i];
@@ -116,7 +119,8 @@ void UdpSocket::prepare(size_t bufferBytes) {
     set(fd, IPPROTO_UDP, UDP_GRO, 1);
 }
 
-Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const NetworkInterface& interface, size_t bufferBytes) {
+Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const NetworkInterface& interface,
+                                       size_t bufferBytes) {
     FileDescriptor fd(::socket(group.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (!fd.valid()) return failed("open a UDP socket");
     UdpSocket socket(std::move(fd));
@@ -124,7 +128,9 @@ Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const Network
     set(socket.descriptor(), SOL_SOCKET, SO_REUSEADDR, 1);
     SocketAddress place = group;
     // A link-local IPv6 group exists once per interface.
-    if (auto* six = reinterpret_cast<sockaddr_in6*>(&place.storage); place.family() == AF_INET6 && IN6_IS_ADDR_MC_LINKLOCAL(&six->sin6_addr)) six->sin6_scope_id = interface.index;
+    if (auto* six = reinterpret_cast<sockaddr_in6*>(&place.storage);
+        place.family() == AF_INET6 && IN6_IS_ADDR_MC_LINKLOCAL(&six->sin6_addr))
+        six->sin6_scope_id = interface.index;
     if (bind(socket.descriptor(), place.get(), place.sizeBytes) != 0)
         return failed("listen to the multicast group's port " + std::to_string(tcpPort(group)));
     if (auto r = joinGroup(socket.descriptor(), group, interface); !r) return r.error();
@@ -147,7 +153,8 @@ Result<UdpSocket> UdpSocket::openOwn(const NetworkInterface& interface, int fami
 
 void UdpSocket::setLoop(bool loop) {
     const int value = loop ? 1 : 0;
-    if (!set(socket_.get(), IPPROTO_IP, IP_MULTICAST_LOOP, value)) set(socket_.get(), IPPROTO_IPV6, IPV6_MULTICAST_LOOP, value);
+    if (!set(socket_.get(), IPPROTO_IP, IP_MULTICAST_LOOP, value))
+        set(socket_.get(), IPPROTO_IPV6, IPV6_MULTICAST_LOOP, value);
 }
 
 void UdpSocket::ignoreMember(MemberId self) {
@@ -295,7 +302,8 @@ std::span<const UdpSocket::Datagram> UdpSocket::fetch(const ReceiveBuffers& land
         if ((h.msg_flags & MSG_TRUNC) != 0) continue;
         if (tellsSenders_) s.from[i].sizeBytes = h.msg_namelen;
         auto* const data = static_cast<std::byte*>(s.pieces[i].iov_base);
-        for (size_t at = 0; at < bytes; at += segment) fetched_.push_back({{data + at, std::min(segment, bytes - at)}, &s.from[i]});
+        for (size_t at = 0; at < bytes; at += segment)
+            fetched_.push_back({{data + at, std::min(segment, bytes - at)}, &s.from[i]});
     }
     if (joined_ == Joined::Unknown) lookForJoined(messages, fetched_.size(), !landing.places.empty());
     return fetched_;
@@ -304,8 +312,10 @@ std::span<const UdpSocket::Datagram> UdpSocket::fetch(const ReceiveBuffers& land
 // Detects GRO from the first burst: with it, coalescing saves more than the copy costs; without it, datagrams are
 // received in place.
 void UdpSocket::lookForJoined(size_t messages, size_t datagrams, bool wantsLanding) {
-    if (datagrams > messages) joined_ = Joined::Some;
-    else if (messages >= kSeveral) single_ += messages;
+    if (datagrams > messages)
+        joined_ = Joined::Some;
+    else if (messages >= kSeveral)
+        single_ += messages;
     if (joined_ != Joined::Unknown || single_ < kProofDatagrams || !wantsLanding) return;
     set(socket_.get(), IPPROTO_UDP, UDP_GRO, 0);
     joined_ = Joined::Never;

@@ -23,7 +23,8 @@ namespace mural::rsp {
 class UdpSocket {
 public:
     // Opens a socket for datagrams to the group.
-    static Result<UdpSocket> openGroup(const SocketAddress& group, const NetworkInterface& interface, size_t bufferBytes);
+    static Result<UdpSocket> openGroup(const SocketAddress& group, const NetworkInterface& interface,
+                                       size_t bufferBytes);
     // Opens a socket on any free port, for sending, and for datagrams to this member.
     static Result<UdpSocket> openOwn(const NetworkInterface& interface, int family, size_t bufferBytes);
 

@@ -34,8 +34,10 @@ public:
         bool anyDirect = false;
         for (const auto& [id, m] : core_.members_) {
             if (to_ != kEverybody && to_ != id) continue;
-            if (m.multicast) anyDirect = true;
-            else core_.tunnel(id, copy_);
+            if (m.multicast)
+                anyDirect = true;
+            else
+                core_.tunnel(id, copy_);
         }
         if (anyDirect) copyBytes(copy_, core_.out_.datagram(to_, copy_.size()));
     }
@@ -50,7 +52,8 @@ private:
 GroupCore::GroupCore(const GroupSettings& settings, GroupOutput& out)
     : settings_(settings), out_(out), datagrams_(std::make_unique<Datagrams>(*this)), probeNonce_(settings.probeSeed) {
     if (!settings_.host) return;
-    shape_ = {settings_.datagramBytes - kStreamHeadBytes - kLengthBytes - tagBytes(settings_.keys.seal), settings_.windowDatagrams};
+    shape_ = {settings_.datagramBytes - kStreamHeadBytes - kLengthBytes - tagBytes(settings_.keys.seal),
+              settings_.windowDatagrams};
     makeSender();
     live_ = true;
 }
@@ -178,8 +181,10 @@ void GroupCore::deliver(std::span<const std::byte> datagram, int64_t nowNs) {
 int64_t GroupCore::tick(int64_t nowNs) {
     int64_t next = nowNs + settings_.heartbeatNs;
     if (!late_.empty()) {
-        if (nowNs - lateSinceNs_ > kMaxLateNs || !out_.behind()) takeLate(nowNs);
-        else next = std::min(next, lateSinceNs_ + kMaxLateNs + 1);
+        if (nowNs - lateSinceNs_ > kMaxLateNs || !out_.behind())
+            takeLate(nowNs);
+        else
+            next = std::min(next, lateSinceNs_ + kMaxLateNs + 1);
     }
     if (settings_.host) {
         probe(nowNs);

@@ -21,13 +21,13 @@ namespace mural::rsp {
 
 constexpr MemberId kHost = 0;
 constexpr int64_t kBetweenProbesNs = 50'000'000;
-constexpr int64_t kMaxLateNs = 100'000'000; // longest time that tunnelled input waits for the sockets
-constexpr int64_t kBetweenWatchesNs = 5'000'000; // interval of checks for silent or stalled members
+constexpr int64_t kMaxLateNs = 100'000'000;        // longest time that tunnelled input waits for the sockets
+constexpr int64_t kBetweenWatchesNs = 5'000'000;   // interval of checks for silent or stalled members
 constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // plus the nonce; padding fills the datagram
 
 // Action for a member that stalls the stream.
 enum class StallPolicy : uint8_t {
-    Wait, // wait without limit, as in the thesis
+    Wait,  // wait without limit, as in the thesis
     Eject, // evict; the member may join again
 };
 
@@ -35,7 +35,7 @@ struct GroupSettings {
     bool host = false;
     Uuid uuid{};
     bool multicast = true; // this member wants multicast
-    uint16_t udpPort = 0; // port of its unicast socket
+    uint16_t udpPort = 0;  // port of its unicast socket
     uint32_t socketDatagrams = 4096;
     uint16_t mostDatagramBytes = 1472;
     uint8_t seals = 0xff; // supported by this member
@@ -59,7 +59,7 @@ struct GroupSettings {
 
 struct MemberInfo {
     Uuid uuid{};
-    std::string name; // name whose secret it has proven to know; set at the host only
+    std::string name;    // name whose secret it has proven to know; set at the host only
     std::string address; // as seen by the host
     uint16_t udpPort = 0;
     bool multicast = false;
@@ -138,9 +138,9 @@ private:
     // Host: a member without multicast, which is probed at intervals.
     struct Unreached {
         uint32_t nonce = 0;
-        int64_t againNs = 0; // time of the next probe
-        int64_t waitNs = 0; // interval to the following one; grows with each loss of multicast
-        int64_t soonNs = 0; // shorter interval that applies first
+        int64_t againNs = 0;                  // time of the next probe
+        int64_t waitNs = 0;                   // interval to the following one; grows with each loss of multicast
+        int64_t soonNs = 0;                   // shorter interval that applies first
         std::optional<int64_t> silentSinceNs; // start of the silence that caused this state; empty once it is heard
     };
     class Datagrams; // the Outbox with tunnels
@@ -162,7 +162,9 @@ private:
     void part(MemberId id, GoneReason reason);
     void remove(MemberId id, GoneReason reason);
     void makeSender();
-    [[nodiscard]] int64_t heartbeatNs(MemberId writer) const { return writer == kHost ? settings_.heartbeatNs : settings_.memberHeartbeatNs; }
+    [[nodiscard]] int64_t heartbeatNs(MemberId writer) const {
+        return writer == kHost ? settings_.heartbeatNs : settings_.memberHeartbeatNs;
+    }
     void probe(int64_t nowNs);
     void watchMembers(int64_t nowNs);
     void takeLate(int64_t nowNs);
@@ -192,8 +194,8 @@ private:
         MemberId from = 0;
         Receiver* receiver = nullptr; // null: look it up
     } heard_;
-    int64_t receiversDueNs_ = INT64_MIN; // earliest due time of all receivers
-    std::vector<MemberId> touched_; // receivers with input since the last tick
+    int64_t receiversDueNs_ = INT64_MIN;     // earliest due time of all receivers
+    std::vector<MemberId> touched_;          // receivers with input since the last tick
     std::map<MemberId, MemberInfo> members_; // without this member
     // Reordering guard: a tunnelled datagram that overtakes datagrams still queued in the sockets would mark them as
     // lost. Tunnelled input waits until the sockets are drained, as does later input of connections.
@@ -204,7 +206,7 @@ private:
     std::map<MemberId, Candidate> candidates_;
     std::map<MemberId, Unreached> unreached_;
     bool tunnelled_ = false; // this member is tunnelled
-    bool unshown_ = false; // tunnelled since joining, without any multicast so far
+    bool unshown_ = false;   // tunnelled since joining, without any multicast so far
     uint32_t probeNonce_ = 0;
     uint32_t nextId_ = 1; // ids are never reused: a key must not repeat counters
     int64_t probedNs_ = INT64_MIN;

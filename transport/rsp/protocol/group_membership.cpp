@@ -7,7 +7,7 @@
 namespace mural::rsp {
 
 namespace {
-constexpr int64_t kJoinNs = 10'000'000'000; // timeout of the first message on a connection
+constexpr int64_t kJoinNs = 10'000'000'000;    // timeout of the first message on a connection
 constexpr int64_t kTryAgainNs = 3'000'000'000; // interval of probes for multicast
 constexpr int64_t kMaxTryAgainNs = 60'000'000'000;
 constexpr int64_t kTrySoonNs = 20'000'000; // the same after silence: the member may only have been stopped
@@ -25,7 +25,8 @@ void GroupCore::take(MemberId from, const Join& m, int64_t nowNs) {
     std::string why;
     if (members_.size() >= kMaxMembers) why = "the group is full: " + std::to_string(kMaxMembers) + " members";
     if ((m.seals >> static_cast<int>(settings_.keys.seal) & 1) == 0)
-        why = std::string("this member can't do the session's encryption, ") + nameOf(settings_.keys.seal) + "; choose another for the session";
+        why = std::string("this member can't do the session's encryption, ") + nameOf(settings_.keys.seal) +
+              "; choose another for the session";
     if (!why.empty()) {
         out_.control(from, Refused{why});
         candidates_.erase(found);
@@ -116,7 +117,8 @@ void GroupCore::probeUnreached(int64_t nowNs) {
 // Runs at the host.
 void GroupCore::take(MemberId from, const Probed& m, int64_t nowNs) {
     if (!settings_.host) return;
-    if (const auto u = unreached_.find(from); u != unreached_.end() && u->second.nonce == m.nonce && !members_.at(from).multicast)
+    if (const auto u = unreached_.find(from);
+        u != unreached_.end() && u->second.nonce == m.nonce && !members_.at(from).multicast)
         return reroute(from, true, m.nonce);
     const auto found = candidates_.find(from);
     if (found == candidates_.end() || !found->second.joined || found->second.nonce != m.nonce) return;
@@ -224,8 +226,10 @@ void GroupCore::toConnection(MemberId id, bool silent, int64_t nowNs) {
     u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMaxTryAgainNs);
     u.againNs = nowNs + u.waitNs;
     u.soonNs = u.waitNs;
-    if (silent) u.silentSinceNs = nowNs;
-    else u.silentSinceNs.reset();
+    if (silent)
+        u.silentSinceNs = nowNs;
+    else
+        u.silentSinceNs.reset();
     u.nonce = ++probeNonce_;
     reroute(id, false, u.nonce);
 }
@@ -269,11 +273,14 @@ void GroupCore::watchMembers(int64_t nowNs) {
             hopeless.emplace_back(id, GoneReason::Silent);
         else if (settings_.stalled == StallPolicy::Eject && stillNs > settings_.stalledNs)
             hopeless.emplace_back(id, GoneReason::Stalled);
-        else if (members_.at(id).multicast && (quietNs > settings_.silentNs / 2 || (lacks && stillNs > settings_.stalledNs / 2)))
+        else if (members_.at(id).multicast &&
+                 (quietNs > settings_.silentNs / 2 || (lacks && stillNs > settings_.stalledNs / 2)))
             unreached.emplace_back(id, quietNs > kSilentBeats * settings_.heartbeatNs);
     }
     for (const auto& [id, reason] : hopeless)
-        expel(id, reason, reason == GoneReason::Silent ? "it has said nothing for too long" : "everyone waited for it for too long");
+        expel(id, reason,
+              reason == GoneReason::Silent ? "it has said nothing for too long"
+                                           : "everyone waited for it for too long");
     for (const auto& [id, silent] : unreached) toConnection(id, silent, nowNs);
 }
 

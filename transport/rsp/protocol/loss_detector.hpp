@@ -23,7 +23,7 @@ public:
     // Declares expired gaps lost. Returns true if there are any.
     bool look(int64_t nowNs);
 
-    [[nodiscard]] Sequence highest() const { return highest_; } // one past the newest known sequence number
+    [[nodiscard]] Sequence highest() const { return highest_; }       // one past the newest known sequence number
     [[nodiscard]] Sequence lostBefore() const { return lostBefore_; } // missing datagrams before it are lost
     // Expiry of the oldest gap; INT64_MAX: none.
     [[nodiscard]] int64_t whenNs() const;

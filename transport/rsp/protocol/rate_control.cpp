@@ -7,12 +7,12 @@ namespace mural::rsp {
 
 namespace {
 constexpr double kCrowded = 0.02; // loss above the floor that counts as congestion; less is repaired without a reaction
-constexpr double kMinFloor = 0.005; // floor below which losses count as random
-constexpr double kMaxDecrease = 0.2; // largest single decrease
-constexpr double kIncreasePerS = 0.1; // of the maximum rate
+constexpr double kMinFloor = 0.005;           // floor below which losses count as random
+constexpr double kMaxDecrease = 0.2;          // largest single decrease
+constexpr double kIncreasePerS = 0.1;         // of the maximum rate
 constexpr int64_t kMaxRiseNs = 1'000'000'000; // longest time that one round's increase covers
-constexpr double kFloorFalls = 1.0 / 8; // of the difference, per round with fewer losses
-constexpr double kChance = 3.0; // in standard deviations
+constexpr double kFloorFalls = 1.0 / 8;       // of the difference, per round with fewer losses
+constexpr double kChance = 3.0;               // in standard deviations
 // Bucket size: what a process catches up after a scheduling gap. Queues on the path hold more.
 constexpr double kBucketS = 0.005;
 constexpr double kMinBucketBytes = 48 * 1024.0;
@@ -21,7 +21,9 @@ constexpr double kBatchS = 0.001;
 } // namespace
 
 RateControl::RateControl(const RateSettings& settings)
-    : most_(settings.mostBytesPerS), least_(most_ * settings.leastShare), rate_(most_),
+    : most_(settings.mostBytesPerS),
+      least_(most_ * settings.leastShare),
+      rate_(most_),
       depth_(std::clamp(most_ * kBucketS, kMinBucketBytes, kMaxBucketBytes)) {}
 
 int64_t RateControl::roundNs(int64_t roundTripNs) { return std::max<int64_t>(50'000'000, 4 * roundTripNs); }

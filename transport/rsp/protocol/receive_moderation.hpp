@@ -21,7 +21,7 @@ public:
 
     struct Look {
         size_t datagrams = 0;
-        bool urgent = false; // one of them must be processed immediately
+        bool urgent = false;    // one of them must be processed immediately
         bool mayBeMore = false; // the read reached its limit
     };
 
@@ -56,11 +56,11 @@ public:
     static constexpr int64_t kMaxSilenceNs = 10'000'000;
 
 private:
-    int64_t beganNs_ = INT64_MIN / 2; // start of the flow
-    int64_t foundNs_ = INT64_MIN / 2; // last non-empty read
+    int64_t beganNs_ = INT64_MIN / 2;   // start of the flow
+    int64_t foundNs_ = INT64_MIN / 2;   // last non-empty read
     int64_t emptiedNs_ = INT64_MIN / 2; // last time that the socket was empty
-    uint64_t gathered_ = 0; // datagrams since then
-    int64_t betweenNs_ = kMaxRestNs; // interval between two datagrams
+    uint64_t gathered_ = 0;             // datagrams since then
+    int64_t betweenNs_ = kMaxRestNs;    // interval between two datagrams
     uint32_t roomDatagrams_;
     bool mayBeMore_ = false;
 };

@@ -24,9 +24,16 @@ constexpr size_t placeBytes(size_t payloadBytes) {
 } // namespace
 
 ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
-    : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(placeBytes(shape.payloadBytes), shape.windowDatagrams + kMaxAtOnce), places_(shape.windowDatagrams), lengths_(shape.windowDatagrams),
-      groupBases_(shape.windowDatagrams), groups_(shape.windowDatagrams), known_(shape.windowDatagrams), cumulative_(first), reading_(first),
+    : payloadBytes_(shape.payloadBytes),
+      mask_(shape.windowDatagrams - 1),
+      payloads_(placeBytes(shape.payloadBytes), shape.windowDatagrams + kMaxAtOnce),
+      places_(shape.windowDatagrams),
+      lengths_(shape.windowDatagrams),
+      groupBases_(shape.windowDatagrams),
+      groups_(shape.windowDatagrams),
+      known_(shape.windowDatagrams),
+      cumulative_(first),
+      reading_(first),
       forgotten_(first) {
     landing_.fill(kNoPlace);
 }
@@ -90,7 +97,9 @@ ReceiveBuffers ReceiveWindow::landing() {
 
 // Returns the slot that already contains the payload, otherwise a slot with a copy.
 uint32_t ReceiveWindow::placeFor(std::span<const std::byte> payload) {
-    const auto isAt = [&](size_t i) { return landing_[i] != kNoPlace && landingBytes_[i] + kStreamHeadBytes == payload.data(); };
+    const auto isAt = [&](size_t i) {
+        return landing_[i] != kNoPlace && landingBytes_[i] + kStreamHeadBytes == payload.data();
+    };
     for (size_t k = 0; k < kMaxAtOnce; ++k) { // usually the next one
         const size_t i = (landed_ + k) % kMaxAtOnce;
         if (!isAt(i)) continue;
@@ -200,7 +209,8 @@ bool ReceiveWindow::addPresent(const Group& g, Row& row) const {
 bool ReceiveWindow::takeSymbol(Group& g, int index, std::span<const std::byte> symbol) {
     const size_t bytes = loadLittle<uint16_t>(symbol.data());
     const Sequence s = g.base + index;
-    if (bytes == 0 || bytes > payloadBytes_ || bytes + kLengthBytes > symbol.size() || !inWindow(s) || has(s)) return false;
+    if (bytes == 0 || bytes > payloadBytes_ || bytes + kLengthBytes > symbol.size() || !inWindow(s) || has(s))
+        return false;
     store(g, s, symbol.subspan(kLengthBytes, bytes));
     return true;
 }
@@ -273,8 +283,10 @@ Missing ReceiveWindow::missingFrom(Sequence from, Sequence until) const {
     for (int64_t i = s - m.base; i < span; ++i) {
         const Sequence at = m.base + i;
         // Another group begins here, so the unknown one ends.
-        if (at != m.base && inWindow(at) && known_[slot(at)]) span = i;
-        else if (!has(at)) m.missing |= 1u << i;
+        if (at != m.base && inWindow(at) && known_[slot(at)])
+            span = i;
+        else if (!has(at))
+            m.missing |= 1u << i;
     }
     m.span = static_cast<uint8_t>(span);
     m.rows = g ? static_cast<uint8_t>(std::min<size_t>(255, g->rows.size())) : 0;

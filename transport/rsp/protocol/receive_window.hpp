@@ -20,9 +20,9 @@ namespace mural::rsp {
 struct ReceiveCounters {
     uint64_t datagrams = 0; // new datagrams of any type
     uint64_t duplicates = 0;
-    uint64_t outside = 0; // outside of the window
+    uint64_t outside = 0;   // outside of the window
     uint64_t recovered = 0; // restored from parity
-    uint64_t refused = 0; // inconsistent with earlier data, or in itself
+    uint64_t refused = 0;   // inconsistent with earlier data, or in itself
 };
 
 class ReceiveWindow {
@@ -63,7 +63,7 @@ private:
     };
     struct Group {
         Sequence base;
-        uint8_t size = 0; // 0: unknown
+        uint8_t size = 0;  // 0: unknown
         uint32_t have = 0; // bit i: base + i has been received
         std::vector<Row> rows;
         [[nodiscard]] uint32_t missing() const { return (size == kMaxInGroup ? ~0u : (1u << size) - 1) & ~have; }
@@ -84,24 +84,26 @@ private:
     void advance();
     void forget();
     void forgetDatagram(size_t at);
-    [[nodiscard]] std::span<const std::byte> payload(Sequence s) const { return {payloads_.at(places_[slot(s)]) + kStreamHeadBytes, lengths_[slot(s)]}; }
+    [[nodiscard]] std::span<const std::byte> payload(Sequence s) const {
+        return {payloads_.at(places_[slot(s)]) + kStreamHeadBytes, lengths_[slot(s)]};
+    }
 
     size_t payloadBytes_;
     uint32_t mask_;
     SlotPool payloads_;
-    std::array<uint32_t, kMaxAtOnce> landing_{}; // slots for the next datagrams; kNoPlace: occupied
+    std::array<uint32_t, kMaxAtOnce> landing_{};        // slots for the next datagrams; kNoPlace: occupied
     std::array<std::byte*, kMaxAtOnce> landingBytes_{}; // address of each
-    size_t landed_ = 0; // one past the last occupied one
-    std::vector<uint32_t> places_; // slot per received datagram
-    std::vector<uint16_t> lengths_; // 0: missing
-    std::vector<Sequence> groupBases_; // per received datagram
-    std::vector<Group> groups_; // indexed by the group's first datagram
+    size_t landed_ = 0;                                 // one past the last occupied one
+    std::vector<uint32_t> places_;                      // slot per received datagram
+    std::vector<uint16_t> lengths_;                     // 0: missing
+    std::vector<Sequence> groupBases_;                  // per received datagram
+    std::vector<Group> groups_;                         // indexed by the group's first datagram
     std::vector<bool> known_; // validity of groups_, separate because most datagrams begin no group
     std::vector<std::byte> scratch_;
     Sequence cumulative_;
-    Sequence reading_; // datagram that is being read
+    Sequence reading_;     // datagram that is being read
     size_t readBytes_ = 0; // of it
-    Sequence forgotten_; // slots before it are free
+    Sequence forgotten_;   // slots before it are free
     size_t rowsHeld_ = 0;
     ReceiveCounters counters_;
 };

@@ -12,9 +12,13 @@ constexpr int64_t kMinSpacingNs = 500'000; // interval of unsolicited feedback: 
 } // namespace
 
 Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
-    : settings_(settings), window_(settings.shape, first), gaps_(first),
+    : settings_(settings),
+      window_(settings.shape, first),
+      gaps_(first),
       ackEvery_(std::max(1u, std::min(settings.shape.windowDatagrams, settings.socketDatagrams) / 2)),
-      sinceAck_(settings.self * 37u % ackEvery_), toldEdge_(first), countedLost_(first),
+      sinceAck_(settings.self * 37u % ackEvery_),
+      toldEdge_(first),
+      countedLost_(first),
       repairNs_(kFirstRepairNs) {}
 
 // The window protects the ring and, while this process sleeps, the socket. An advertised edge is never reduced.

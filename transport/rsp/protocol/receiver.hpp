@@ -63,7 +63,7 @@ private:
     uint32_t lost_ = 0;
     uint32_t dropped_ = 0;
     uint32_t newestUs_ = 0; // send time of the newest datagram
-    int64_t newestNs_ = 0; // its arrival time
+    int64_t newestNs_ = 0;  // its arrival time
     int64_t toldNs_ = INT64_MIN;
     int64_t repairNs_; // expected delay of a repair
     int64_t askedNs_ = INT64_MIN;

@@ -93,8 +93,8 @@ std::optional<RetransmitPlanner::Repair> RetransmitPlanner::takeFrom(State& s, u
     return Repair{s.base, true, index, s.rowsSent};
 }
 
-std::optional<RetransmitPlanner::Repair> RetransmitPlanner::take(
-    Sequence oldest, std::optional<Sequence> partial, bool blocked, uint32_t sentUs) {
+std::optional<RetransmitPlanner::Repair> RetransmitPlanner::take(Sequence oldest, std::optional<Sequence> partial,
+                                                                 bool blocked, uint32_t sentUs) {
     while (!queue_.empty()) {
         const Sequence base = queue_.front();
         State& s = states_[base.value() & mask_];

@@ -52,8 +52,8 @@ private:
         uint8_t rowsSent = 0;
         uint8_t rowsWanted = 0;
         uint8_t rowsAhead = 0;
-        uint32_t missing = 0; // at any member, as reported
-        uint32_t resend = 0; // datagrams to retransmit
+        uint32_t missing = 0;  // at any member, as reported
+        uint32_t resend = 0;   // datagrams to retransmit
         uint32_t resentUs = 0; // time of the last retransmission
         bool hasResent = false;
         std::array<uint32_t, kTimes> sentUs{}; // parity symbol r at r % kTimes

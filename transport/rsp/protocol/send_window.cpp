@@ -6,9 +6,14 @@
 namespace mural::rsp {
 
 SendWindow::SendWindow(const StreamShape& shape, Sequence first)
-    : payloadBytes_(shape.payloadBytes), mask_(shape.windowDatagrams - 1),
-      payloads_(std::make_unique_for_overwrite<std::byte[]>(shape.payloadBytes * shape.windowDatagrams)), lengths_(shape.windowDatagrams),
-      groupBases_(shape.windowDatagrams), groupSizes_(shape.windowDatagrams), base_(first), filled_(first),
+    : payloadBytes_(shape.payloadBytes),
+      mask_(shape.windowDatagrams - 1),
+      payloads_(std::make_unique_for_overwrite<std::byte[]>(shape.payloadBytes * shape.windowDatagrams)),
+      lengths_(shape.windowDatagrams),
+      groupBases_(shape.windowDatagrams),
+      groupSizes_(shape.windowDatagrams),
+      base_(first),
+      filled_(first),
       groupBase_(first) {}
 
 size_t SendWindow::roomBytes() const {

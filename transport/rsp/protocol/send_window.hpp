@@ -13,7 +13,7 @@
 namespace mural::rsp {
 
 struct StreamShape {
-    size_t payloadBytes = 1430; // of a full datagram
+    size_t payloadBytes = 1430;      // of a full datagram
     uint32_t windowDatagrams = 4096; // a power of two, 64 to 2^16
 };
 
@@ -28,7 +28,7 @@ public:
     // Closes the open group: it needs a repair, and no more data follows.
     void closeGroup();
 
-    [[nodiscard]] Sequence base() const { return base_; } // oldest retained datagram
+    [[nodiscard]] Sequence base() const { return base_; }     // oldest retained datagram
     [[nodiscard]] Sequence filled() const { return filled_; } // one past the newest complete datagram
     [[nodiscard]] bool empty() const { return base_ == filled_ && openBytes_ == 0; }
     [[nodiscard]] size_t roomBytes() const;
@@ -36,7 +36,7 @@ public:
 
     struct Group {
         Sequence base;
-        uint8_t size = 0; // 0: open
+        uint8_t size = 0;   // 0: open
         uint8_t filled = 0; // datagrams so far
     };
     // Returns the group of a datagram within base() .. filled().
@@ -58,7 +58,7 @@ private:
     std::unique_ptr<std::byte[]> payloads_;
     std::vector<uint16_t> lengths_;
     std::vector<Sequence> groupBases_; // per datagram
-    std::vector<uint8_t> groupSizes_; // indexed by the group's first datagram
+    std::vector<uint8_t> groupSizes_;  // indexed by the group's first datagram
     Sequence base_;
     Sequence filled_;
     Sequence groupBase_; // of the open group, or of the next one

@@ -20,8 +20,14 @@ uint32_t toUs(int64_t ns) { return static_cast<uint32_t>(ns / 1000); }
 } // namespace
 
 Sender::Sender(const SenderSettings& settings, Sequence first)
-    : settings_(settings), window_(settings.shape, first), repairs_(settings.shape.windowDatagrams),
-      rate_(settings.rate), next_(first), acknowledged_(first), flushed_(first), roundNext_(first) {}
+    : settings_(settings),
+      window_(settings.shape, first),
+      repairs_(settings.shape.windowDatagrams),
+      rate_(settings.rate),
+      next_(first),
+      acknowledged_(first),
+      flushed_(first),
+      roundNext_(first) {}
 
 Sequence Sender::addMember(MemberId id, int64_t nowNs) {
     window_.flush(); // the new member's stream begins with a group
@@ -126,7 +132,8 @@ void Sender::skipAll() {
     roundNext_ = next_;
 }
 
-void Sender::sendRow(const RetransmitPlanner::Repair& r, const SendWindow::Group& group, int64_t nowNs, DatagramSink& out) {
+void Sender::sendRow(const RetransmitPlanner::Repair& r, const SendWindow::Group& group, int64_t nowNs,
+                     DatagramSink& out) {
     size_t longest = 0;
     for (int i = 0; i < group.size; ++i) longest = std::max(longest, window_.payload(group.base + i).size());
     StreamDatagram d;
@@ -234,8 +241,8 @@ int64_t Sender::sendWhatMay(int64_t nowNs, DatagramSink& out) {
         if (!waitsFor(m)) m.movedNs = nowNs;
     }
     endRound(nowNs);
-    const auto bytes = static_cast<double>(
-        kWireOverheadBytes + kStreamHeadBytes + kLengthBytes + settings_.shape.payloadBytes + settings_.tagBytes);
+    const auto bytes = static_cast<double>(kWireOverheadBytes + kStreamHeadBytes + kLengthBytes +
+                                           settings_.shape.payloadBytes + settings_.tagBytes);
     // While more than a batch waits, send whole batches only: the kernel's cost per system call is independent of their
     // size.
     const int64_t worth = worthSending(bytes);
@@ -244,7 +251,8 @@ int64_t Sender::sendWhatMay(int64_t nowNs, DatagramSink& out) {
             const double whole = static_cast<double>(worth) * bytes;
             if (!rate_.has(whole, nowNs)) return std::min(rate_.whenNs(whole, nowNs), nowNs + settings_.heartbeatNs);
         }
-        if (!rate_.take(bytes, nowNs)) return std::min(rate_.whenNs(batchBytes(bytes), nowNs), nowNs + settings_.heartbeatNs);
+        if (!rate_.take(bytes, nowNs))
+            return std::min(rate_.whenNs(batchBytes(bytes), nowNs), nowNs + settings_.heartbeatNs);
         const bool more = next_ < limit();
         if ((repairCredit_ > 0 || !more) && sendRepair(nowNs, out)) continue;
         if (!more) break;

@@ -19,7 +19,7 @@ struct SenderSettings {
     MemberId self = 0;
     RateSettings rate;
     size_t tagBytes = 0; // size of the tag per datagram, for the rate
-    bool parity = true; // false: repairs by retransmission only, for comparisons
+    bool parity = true;  // false: repairs by retransmission only, for comparisons
     int64_t heartbeatNs = 100'000'000;
 };
 
@@ -27,11 +27,11 @@ struct SenderSettings {
 struct MemberState {
     Sequence cumulative;
     Sequence edge;
-    int64_t heardNs = 0; // last time that it is known to have received a datagram
-    int64_t movedNs = 0; // last progress of cumulative or edge, or last time without unacknowledged data
+    int64_t heardNs = 0;     // last time that it is known to have received a datagram
+    int64_t movedNs = 0;     // last progress of cumulative or edge, or last time without unacknowledged data
     int64_t roundTripNs = 0; // smoothed; 0: unknown
     int64_t roundTripVarNs = 0;
-    uint32_t lost = 0; // as reported
+    uint32_t lost = 0;    // as reported
     uint32_t dropped = 0; // by its socket, as reported
     double lostShare = 0; // in the last round
 };
@@ -71,7 +71,9 @@ public:
     // Returns true if an unsent datagram may be sent: a full one, or a flushed one.
     [[nodiscard]] bool canSend() const { return next_ < limit(); }
     // Returns true if there is enough room that a waiting writer does not soon wait again.
-    [[nodiscard]] bool muchRoom() const { return window_.roomBytes() >= settings_.shape.payloadBytes * settings_.shape.windowDatagrams / 8; }
+    [[nodiscard]] bool muchRoom() const {
+        return window_.roomBytes() >= settings_.shape.payloadBytes * settings_.shape.windowDatagrams / 8;
+    }
     // Returns true if all members have acknowledged all flushed data.
     [[nodiscard]] bool allArrived() const { return acknowledged_ == window_.filled(); }
 
@@ -122,19 +124,19 @@ private:
     SenderCounters counters_;
     uint64_t writtenBytes_ = 0;
 
-    Sequence next_; // first datagram that was never sent
-    Sequence acknowledged_; // everything before is acknowledged by all
-    Sequence flushed_; // end of the last flush
-    Sequence edge_; // smallest window edge of all members; meaningless without members
-    int repairCredit_ = 0; // repairs that may precede the next datagram
-    double needShare_ = 0; // recently needed parity symbols per datagram
+    Sequence next_;              // first datagram that was never sent
+    Sequence acknowledged_;      // everything before is acknowledged by all
+    Sequence flushed_;           // end of the last flush
+    Sequence edge_;              // smallest window edge of all members; meaningless without members
+    int repairCredit_ = 0;       // repairs that may precede the next datagram
+    double needShare_ = 0;       // recently needed parity symbols per datagram
     int64_t sentNs_ = INT64_MIN; // time of the last datagram of any type
     int64_t pollAtNs_ = INT64_MAX;
     int pollsWithoutAnswer_ = 0;
     bool pollNow_ = false;
     int64_t tickedNs_ = INT64_MIN;
     int64_t dueNs_ = INT64_MIN; // time of the next due work
-    bool changed_ = false; // state has changed since dueNs_ was computed
+    bool changed_ = false;      // state has changed since dueNs_ was computed
     int64_t roundBeganNs_ = INT64_MIN;
     Sequence roundNext_;
     std::map<MemberId, uint32_t> roundLost_;

@@ -14,7 +14,9 @@ class SlotPool {
 public:
     // Memory is committed on first use.
     SlotPool(size_t placeBytes, uint32_t places)
-        : placeBytes_(placeBytes), bytes_(std::make_unique_for_overwrite<std::byte[]>(placeBytes * places)), free_((places + 63) / 64, ~uint64_t{0}) {}
+        : placeBytes_(placeBytes),
+          bytes_(std::make_unique_for_overwrite<std::byte[]>(placeBytes * places)),
+          free_((places + 63) / 64, ~uint64_t{0}) {}
 
     // Returns a free slot. The user never exceeds the capacity.
     uint32_t take() {
@@ -35,7 +37,7 @@ private:
     size_t placeBytes_;
     std::unique_ptr<std::byte[]> bytes_;
     std::vector<uint64_t> free_; // one bit per slot
-    size_t lowest_ = 0; // no word before it has a free slot
+    size_t lowest_ = 0;          // no word before it has a free slot
 };
 
 } // namespace mural::rsp

@@ -108,7 +108,7 @@ std::optional<Feedback> readFeedback(std::span<const std::byte> d) {
         const std::byte* at = d.data() + kFeedbackHeadBytes + i * kFeedbackEntryBytes;
         Missing& m = f.entries[i];
         m = {Sequence(loadLittle<uint32_t>(at)), loadLittle<uint32_t>(at + 4), std::to_integer<uint8_t>(at[8]),
-            std::to_integer<uint8_t>(at[9])};
+             std::to_integer<uint8_t>(at[9])};
         if (m.span == 0 || m.span > kMaxInGroup) return {};
         if (m.span < 32 && m.missing >> m.span != 0) return {};
     }

@@ -33,8 +33,8 @@ constexpr size_t kStreamHeadBytes = 32; // of DATA, PARITY and POLL
 constexpr size_t kFeedbackHeadBytes = 48;
 constexpr size_t kFeedbackEntryBytes = 12;
 constexpr size_t kMaxEntries = 64; // per FEEDBACK: bounds the retransmissions that a member can request at once
-constexpr int kMaxInGroup = 32; // bitmaps have 32 bits
-constexpr int kMaxRows = 224; // 256 - kMaxInGroup: the field has no more elements
+constexpr int kMaxInGroup = 32;    // bitmaps have 32 bits
+constexpr int kMaxRows = 224;      // 256 - kMaxInGroup: the field has no more elements
 constexpr size_t kLengthBytes = 2; // a parity symbol also covers the lengths of the group's datagrams
 // Overhead of Ethernet, IPv4 and UDP per datagram, including gap and preamble, for link rates.
 constexpr size_t kWireOverheadBytes = 66;
@@ -42,7 +42,7 @@ constexpr size_t kWireOverheadBytes = 66;
 enum class Type : uint8_t { Data = 1, Parity = 2, Poll = 3, Feedback = 4, Probe = 5 };
 
 namespace flag {
-constexpr uint8_t kPoll = 1; // requests immediate feedback
+constexpr uint8_t kPoll = 1;   // requests immediate feedback
 constexpr uint8_t kRepair = 2; // retransmission
 } // namespace flag
 
@@ -59,13 +59,13 @@ struct StreamDatagram {
     Type type = Type::Data;
     uint8_t flags = 0;
     MemberId from = 0;
-    Sequence sequence; // DATA: its own; otherwise that of the group's first datagram
-    uint8_t index = 0; // DATA: index in the group
+    Sequence sequence;     // DATA: its own; otherwise that of the group's first datagram
+    uint8_t index = 0;     // DATA: index in the group
     uint8_t groupSize = 0; // 0: not known yet
-    uint8_t row = 0; // PARITY: index of the parity symbol
+    uint8_t row = 0;       // PARITY: index of the parity symbol
     uint8_t rowsSent = 0;
     uint32_t sentUs = 0; // sender's clock, wraps
-    Sequence next; // one past the newest sequence number sent
+    Sequence next;       // one past the newest sequence number sent
     std::span<const std::byte> payload;
 
     [[nodiscard]] Sequence groupBase() const { return type == Type::Data ? sequence - index : sequence; }
@@ -74,20 +74,20 @@ struct StreamDatagram {
 struct Missing {
     Sequence base;
     uint32_t missing = 0; // bit i: base + i is missing
-    uint8_t rows = 0; // received parity symbols of this group
-    uint8_t span = 0; // sequence numbers covered from base on, 1 to 32
+    uint8_t rows = 0;     // received parity symbols of this group
+    uint8_t span = 0;     // sequence numbers covered from base on, 1 to 32
 };
 
 struct Feedback {
     MemberId from = 0;
     uint8_t flags = 0;
-    MemberId to = 0; // writer of the stream
-    Sequence cumulative; // cumulative acknowledgement: everything before has been received
-    Sequence edge; // end of the receive window
-    Sequence highest; // one past the newest received sequence number
-    uint32_t echoUs = 0; // send time of the newest datagram
-    uint32_t heldUs = 0; // time since its arrival
-    uint32_t lost = 0; // total lost in the network
+    MemberId to = 0;      // writer of the stream
+    Sequence cumulative;  // cumulative acknowledgement: everything before has been received
+    Sequence edge;        // end of the receive window
+    Sequence highest;     // one past the newest received sequence number
+    uint32_t echoUs = 0;  // send time of the newest datagram
+    uint32_t heldUs = 0;  // time since its arrival
+    uint32_t lost = 0;    // total lost in the network
     uint32_t dropped = 0; // total dropped by the receiver's socket
     uint16_t entryCount = 0;
     std::array<Missing, kMaxEntries> entries{};
@@ -106,7 +106,8 @@ inline uint8_t byteAt(std::span<const std::byte> d, size_t at) { return std::to_
     if (d.size() < kHeadBytes || byteAt(d, 0) >> 4 != kVersion) return {};
     const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
     if (type < Type::Data || type > Type::Probe) return {};
-    return Head{type, byteAt(d, 1), loadLittle<uint16_t>(d.data() + 2), loadLittle<uint32_t>(d.data() + 4), loadLittle<uint64_t>(d.data() + 8)};
+    return Head{type, byteAt(d, 1), loadLittle<uint16_t>(d.data() + 2), loadLittle<uint32_t>(d.data() + 4),
+                loadLittle<uint64_t>(d.data() + 8)};
 }
 // Returns true if the datagram must be processed immediately: POLL, PROBE, or FEEDBACK while this member has
 // unacknowledged data. Requires a valid head.

@@ -10,7 +10,8 @@ namespace {
 
 unsigned char* raw(std::span<std::byte> b) { return reinterpret_cast<unsigned char*>(b.data()); }
 constexpr size_t kNonceBytes = 12;
-static_assert(crypto_aead_aes256gcm_NPUBBYTES == kNonceBytes && crypto_aead_chacha20poly1305_ietf_NPUBBYTES == kNonceBytes);
+static_assert(crypto_aead_aes256gcm_NPUBBYTES == kNonceBytes &&
+              crypto_aead_chacha20poly1305_ietf_NPUBBYTES == kNonceBytes);
 static_assert(crypto_aead_aes256gcm_ABYTES == 16 && crypto_aead_chacha20poly1305_ietf_ABYTES == 16);
 static_assert(crypto_shorthash_BYTES == 8 && crypto_shorthash_KEYBYTES <= kKeyBytes);
 
@@ -49,12 +50,12 @@ void DatagramCipher::seal(std::span<std::byte> datagram) const {
     case Seal::None: return;
     case Seal::Tag: crypto_shorthash(tag, raw(datagram), covered.size(), key); return;
     case Seal::AesGcm:
-        crypto_aead_aes256gcm_encrypt_detached_afternm(
-            body, tag, nullptr, body, bodyBytes, raw(datagram), kHeadBytes, nullptr, nonce.data(), &prepared_->state);
+        crypto_aead_aes256gcm_encrypt_detached_afternm(body, tag, nullptr, body, bodyBytes, raw(datagram), kHeadBytes,
+                                                       nullptr, nonce.data(), &prepared_->state);
         return;
     case Seal::ChaCha:
-        crypto_aead_chacha20poly1305_ietf_encrypt_detached(
-            body, tag, nullptr, body, bodyBytes, raw(datagram), kHeadBytes, nullptr, nonce.data(), key);
+        crypto_aead_chacha20poly1305_ietf_encrypt_detached(body, tag, nullptr, body, bodyBytes, raw(datagram),
+                                                           kHeadBytes, nullptr, nonce.data(), key);
         return;
     }
 }
@@ -75,11 +76,11 @@ bool DatagramCipher::open(std::span<std::byte> datagram) const {
         return sodium_memcmp(expected.data(), tag, expected.size()) == 0;
     }
     case Seal::AesGcm:
-        return crypto_aead_aes256gcm_decrypt_detached_afternm(
-                   body, nullptr, body, bodyBytes, tag, raw(datagram), kHeadBytes, nonce.data(), &prepared_->state) == 0;
+        return crypto_aead_aes256gcm_decrypt_detached_afternm(body, nullptr, body, bodyBytes, tag, raw(datagram),
+                                                              kHeadBytes, nonce.data(), &prepared_->state) == 0;
     case Seal::ChaCha:
-        return crypto_aead_chacha20poly1305_ietf_decrypt_detached(
-                   body, nullptr, body, bodyBytes, tag, raw(datagram), kHeadBytes, nonce.data(), key) == 0;
+        return crypto_aead_chacha20poly1305_ietf_decrypt_detached(body, nullptr, body, bodyBytes, tag, raw(datagram),
+                                                                  kHeadBytes, nonce.data(), key) == 0;
     }
     return false;
 }

@@ -1,5 +1,5 @@
-// Authenticated encryption of datagrams, with replay protection. An attacker without a session key cannot inject, change
-// or (with encryption) read a datagram.
+// Authenticated encryption of datagrams, with replay protection. An attacker without a session key cannot inject,
+// change or (with encryption) read a datagram.
 //
 // The head (16 bytes) is readable and authenticated; the body is encrypted. The counter is the nonce: each member
 // counts its datagrams with its own key. Checks run in this order: length, version, session, member, counter, tag. A

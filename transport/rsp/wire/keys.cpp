@@ -39,7 +39,7 @@ SessionKeys makeSessionKeys(Seal seal) {
 Key memberKey(const SessionKeys& keys, MemberId member) {
     Key key;
     crypto_kdf_derive_from_key(reinterpret_cast<unsigned char*>(key.data()), key.size(), member, kContext,
-        reinterpret_cast<const unsigned char*>(keys.secret.data()));
+                               reinterpret_cast<const unsigned char*>(keys.secret.data()));
     return key;
 }
 

@@ -15,8 +15,8 @@ using Key = std::array<std::byte, kKeyBytes>;
 
 // Protection of datagrams.
 enum class Seal : uint8_t {
-    None = 0, // for measurements
-    Tag = 1, // SipHash-2-4, 64 bits: authentication without encryption
+    None = 0,   // for measurements
+    Tag = 1,    // SipHash-2-4, 64 bits: authentication without encryption
     AesGcm = 2, // AES-256-GCM, if the processor has instructions for it
     ChaCha = 3, // ChaCha20-Poly1305
 };

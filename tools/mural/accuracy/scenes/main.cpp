@@ -19,11 +19,12 @@ using mural::scenes::Look;
 struct Options {
     int width = 509, height = 383, frames = 6;
     std::string save; // folder; empty: nothing is saved
-    int scene = -1; // a single scene; -1: all in sequence
+    int scene = -1;   // a single scene; -1: all in sequence
     Look look;
 };
 
-const char* const kUsage = "usage: mural-scenes [--size WxH] [--frames N] [--scene NAME] [--save FOLDER] [--move X,Y] [--eye E,FOCUS]\n";
+const char* const kUsage =
+    "usage: mural-scenes [--size WxH] [--frames N] [--scene NAME] [--save FOLDER] [--move X,Y] [--eye E,FOCUS]\n";
 
 bool take(const std::string& name, const char* value, Options& o) {
     if (name == "--size") return std::sscanf(value, "%dx%d", &o.width, &o.height) == 2 && o.width > 0 && o.height > 0;
@@ -58,11 +59,13 @@ int drawAll(const Options& o) {
     std::string why;
     const auto window = mural::scenes::SceneWindow::open(o.width, o.height, why);
     if (!window) throw std::runtime_error(why);
-    std::printf("%s, %s\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)), reinterpret_cast<const char*>(glGetString(GL_VERSION)));
+    std::printf("%s, %s\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
+                reinterpret_cast<const char*>(glGetString(GL_VERSION)));
     const mural::scenes::Scenes scenes(o.width, o.height, o.look);
     for (int frame = 0; frame < o.frames; ++frame) {
         scenes.draw(o.scene < 0 ? frame : frame * static_cast<int>(mural::scenes::kSceneNames.size()) + o.scene);
-        if (const GLenum error = glGetError(); error != GL_NO_ERROR) throw std::runtime_error("GL error " + std::to_string(error) + " in frame " + std::to_string(frame));
+        if (const GLenum error = glGetError(); error != GL_NO_ERROR)
+            throw std::runtime_error("GL error " + std::to_string(error) + " in frame " + std::to_string(frame));
         if (!o.save.empty()) save(o, frame);
         window->show();
     }

@@ -5,6 +5,7 @@
 
 namespace mural::scenes {
 
-inline constexpr std::array<const char*, 6> kSceneNames{"triangles", "lighting", "textures", "lines", "blending", "depths"};
+inline constexpr std::array<const char*, 6> kSceneNames{"triangles", "lighting", "textures",
+                                                        "lines",     "blending", "depths"};
 
 } // namespace mural::scenes

@@ -24,7 +24,8 @@ std::unique_ptr<SceneWindow> SceneWindow::open(int width, int height, std::strin
         return nullptr;
     }
     // 24 bits of depth and no stencil, as most programs request.
-    int wanted[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_DEPTH_SIZE, 24, None};
+    int wanted[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_RED_SIZE, 8,   GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE,
+                    8,        GLX_DEPTH_SIZE,   24,           None};
     XVisualInfo* visual = glXChooseVisual(x.display, DefaultScreen(x.display), wanted);
     if (visual == nullptr) {
         why = "this display has no OpenGL (GLX) with a depth buffer; see mural doctor";
@@ -35,8 +36,9 @@ std::unique_ptr<SceneWindow> SceneWindow::open(int width, int height, std::strin
     XSetWindowAttributes attributes{};
     attributes.colormap = x.colours;
     attributes.override_redirect = True; // prevents resizing by a window manager
-    x.window = XCreateWindow(x.display, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0, visual->depth, InputOutput,
-                             visual->visual, CWColormap | CWOverrideRedirect | CWBorderPixel, &attributes);
+    x.window = XCreateWindow(x.display, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0,
+                             visual->depth, InputOutput, visual->visual,
+                             CWColormap | CWOverrideRedirect | CWBorderPixel, &attributes);
     XStoreName(x.display, x.window, "mural-scenes");
     XMapWindow(x.display, x.window);
     XSync(x.display, False);

@@ -61,7 +61,8 @@ unsigned programOf(const char* vertex, const char* fragment) {
     glLinkProgram(program);
     int linked = 0;
     glGetProgramiv(program, GL_LINK_STATUS, &linked);
-    if (linked == GL_FALSE) throw std::runtime_error("a GLSL 1.20 program does not link here; the scenes need OpenGL 2.1");
+    if (linked == GL_FALSE)
+        throw std::runtime_error("a GLSL 1.20 program does not link here; the scenes need OpenGL 2.1");
     return program;
 }
 
@@ -71,7 +72,14 @@ unsigned chequeredTexture() {
     for (int y = 0; y < kTextureSize; ++y)
         for (int x = 0; x < kTextureSize; ++x) {
             const bool light = (x / 8 + y / 8) % 2 != 0, line = x % 32 == 0 || y % 32 == 0;
-            for (const int value : {line ? 255 : light ? 230 : 40, line ? 80 : light ? 220 : 60, light ? 200 : 120 + x / 4}) texels.push_back(static_cast<unsigned char>(value));
+            for (const int value : {line    ? 255
+                                    : light ? 230
+                                            : 40,
+                                    line    ? 80
+                                    : light ? 220
+                                            : 60,
+                                    light ? 200 : 120 + x / 4})
+                texels.push_back(static_cast<unsigned char>(value));
         }
     unsigned texture = 0;
     glGenTextures(1, &texture);
@@ -98,20 +106,25 @@ std::vector<float> triangleSoup() {
 
 } // namespace
 
-Scenes::Scenes(int width, int height, const Look& look) : width_(width), height_(height), look_(look), soup_(triangleSoup()) {
+Scenes::Scenes(int width, int height, const Look& look)
+    : width_(width), height_(height), look_(look), soup_(triangleSoup()) {
     int major = 0;
     if (const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION))) major = version[0] - '0';
-    if (major < 4 && (look.moveX != 0 || look.moveY != 0)) throw std::runtime_error("viewports in fractions of a pixel need OpenGL 4.1");
-    program_ = programOf("#version 120\nattribute vec3 place; attribute vec3 tone; uniform mat4 whole; varying vec3 tint;\n"
-                         "void main() { tint = tone; gl_Position = whole * vec4(place, 1.0); }\n",
-                         "#version 120\nvarying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n");
+    if (major < 4 && (look.moveX != 0 || look.moveY != 0))
+        throw std::runtime_error("viewports in fractions of a pixel need OpenGL 4.1");
+    program_ =
+        programOf("#version 120\nattribute vec3 place; attribute vec3 tone; uniform mat4 whole; varying vec3 tint;\n"
+                  "void main() { tint = tone; gl_Position = whole * vec4(place, 1.0); }\n",
+                  "#version 120\nvarying vec3 tint; void main() { gl_FragColor = vec4(tint, 1.0); }\n");
     texture_ = chequeredTexture();
 }
 
 // Integer coordinates if nothing is moved, as programs use them.
 void Scenes::useViewport() const {
-    if (look_.moveX == 0 && look_.moveY == 0) glViewport(0, 0, width_, height_);
-    else glViewportIndexedf(0, look_.moveX, look_.moveY, static_cast<float>(width_), static_cast<float>(height_));
+    if (look_.moveX == 0 && look_.moveY == 0)
+        glViewport(0, 0, width_, height_);
+    else
+        glViewportIndexedf(0, look_.moveX, look_.moveY, static_cast<float>(width_), static_cast<float>(height_));
 }
 
 void Scenes::usePerspective(double nearPlane, double farPlane, int round) const {
@@ -185,7 +198,8 @@ void Scenes::drawLighting(int) const {
             for (int k = 0; k < 2; ++k) {
                 const double a = kTurn * (i + k) / kAround, b = kTurn * j / kAcross;
                 glNormal3d(std::cos(a) * std::cos(b), std::sin(b), std::sin(a) * std::cos(b));
-                glVertex3d(std::cos(a) * (2.2 + 0.9 * std::cos(b)), 0.9 * std::sin(b), std::sin(a) * (2.2 + 0.9 * std::cos(b)));
+                glVertex3d(std::cos(a) * (2.2 + 0.9 * std::cos(b)), 0.9 * std::sin(b),
+                           std::sin(a) * (2.2 + 0.9 * std::cos(b)));
             }
         glEnd();
     }

@@ -8,8 +8,8 @@ namespace mural::scenes {
 // Transformations of Mural's passes, done by the program itself as their reference.
 struct Look {
     float moveX = 0, moveY = 0; // of the viewport, in pixels
-    float eye = 0; // to the right of the centre, in scene units
-    float focus = 6; // distance at which all eyes converge
+    float eye = 0;              // to the right of the centre, in scene units
+    float focus = 6;            // distance at which all eyes converge
 };
 
 class Scenes {
