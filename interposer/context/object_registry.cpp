@@ -8,6 +8,7 @@
 #include "interposer/diagnostics/driver_events.hpp"
 #include "interposer/encode/session.hpp"
 #include "interposer/context/thread_state.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

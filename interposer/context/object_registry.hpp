@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "interposer/context/context.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::known {
 

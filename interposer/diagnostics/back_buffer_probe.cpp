@@ -8,6 +8,7 @@
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/encode/session.hpp"
 #include "interposer/context/window_size.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -10,6 +10,7 @@
 #include "interposer/diagnostics/log.hpp"
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/context/thread_state.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

@@ -7,6 +7,7 @@
 #include "interposer/memory/pixel_store.hpp"
 #include "interposer/memory/readable.hpp"
 #include "interposer/encode/session.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -3,6 +3,8 @@
 
 #include <GL/gl.h>
 
+#include "streamcodec/wire/control_records.hpp"
+
 namespace mural {
 
 struct ThreadState;

@@ -22,6 +22,7 @@
 #include "interposer/encode/session.hpp"
 #include "interposer/readback/drawable_textures.hpp"
 #include "interposer/x11/shown.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

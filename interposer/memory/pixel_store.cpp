@@ -5,6 +5,7 @@
 #include "interposer/readback/node_requests.hpp"
 #include "interposer/context/context.hpp"
 #include "interposer/encode/real_gl.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

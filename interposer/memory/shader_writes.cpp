@@ -9,6 +9,7 @@
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/encode/session.hpp"
 #include "interposer/memory/shader_storage_scan.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

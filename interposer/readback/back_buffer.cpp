@@ -10,6 +10,7 @@
 #include "interposer/memory/pixel_store.hpp"
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/readback/window_colours.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 extern "C" void mural_glBindFramebuffer(GLenum target, GLuint framebuffer);
 extern "C" void mural_glReadBuffer(GLenum buffer);

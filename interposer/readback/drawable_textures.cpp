@@ -11,6 +11,7 @@
 #include "interposer/memory/pixel_store.hpp"
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/encode/session.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -8,6 +8,7 @@
 #include "interposer/encode/control_record_writer.hpp"
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/encode/session.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

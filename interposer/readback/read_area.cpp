@@ -7,6 +7,7 @@
 #include "interposer/context/context.hpp"
 #include "interposer/memory/pixel_store.hpp"
 #include "interposer/encode/real_gl.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -6,6 +6,7 @@
 #include "interposer/context/context.hpp"
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/context/thread_state.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -4,6 +4,7 @@
 #include "interposer/entry/own_functions.hpp"
 #include "interposer/context/object_registry.hpp"
 #include "interposer/encode/control_record_writer.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

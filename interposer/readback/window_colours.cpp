@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "interposer/context/context.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

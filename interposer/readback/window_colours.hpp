@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "streamcodec/wire/control_records.hpp"
+
 namespace mural {
 
 struct Context;

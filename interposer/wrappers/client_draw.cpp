@@ -5,6 +5,7 @@
 #include "interposer/encode/real_gl.hpp"
 #include "streamcodec/sizes/index_range.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

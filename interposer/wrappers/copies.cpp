@@ -11,6 +11,7 @@
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/encode/session.hpp"
 #include "interposer/readback/window_colours.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 using namespace mural;
 

@@ -8,6 +8,7 @@
 #include "interposer/context/context.hpp"
 #include "interposer/encode/real_gl.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 using namespace mural;
 

@@ -2,6 +2,7 @@
 
 #include "interposer/readback/node_requests.hpp"
 #include "interposer/memory/pixel_store.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::quiet {
 

@@ -1,6 +1,7 @@
 #include "nodes/render/heartbeat.hpp"
 
 #include "common/base/clock.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

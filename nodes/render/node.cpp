@@ -30,6 +30,10 @@
 #include "nodes/session/session_config.hpp"
 #include "nodes/session/session_secret.hpp"
 #include "nodes/session/stream_build.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "transport/tcp/socket_address.hpp"
 
 namespace mural {

@@ -13,6 +13,8 @@
 #include "nodes/trace_player/player_windows.hpp"
 #include "streamcodec/trace/trace_reader.hpp"
 #include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 namespace {

@@ -28,7 +28,7 @@ public:
     }
 
     // Returns the batch with its head, valid until the next call. `plain`: the Texts section holds mostly plain records
-    // (Packer::beginFrame), so its compressor uses a window that contains previous frames. Error: out of memory.
+    // (DeltaEncoder::beginFrame), so its compressor uses a window that contains previous frames. Error: out of memory.
     Result<std::span<const std::byte>> encode(const SectionBytes& sections, double linkNsPerByte, bool plain = false);
     // Returns the measured compression ratio of this section.
     [[nodiscard]] double ratio(Section section) const { return choices_[static_cast<size_t>(section)].ratio(); }

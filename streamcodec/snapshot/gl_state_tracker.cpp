@@ -7,6 +7,8 @@
 
 #include "gl_opcodes.hpp"
 #include "streamcodec/trace/record_values.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {

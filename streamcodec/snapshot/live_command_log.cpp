@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "streamcodec/snapshot/liveness_sweep.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {

@@ -3,6 +3,8 @@
 #include <cstring>
 
 #include "streamcodec/snapshot/packet_splitter.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 

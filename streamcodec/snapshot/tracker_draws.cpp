@@ -8,6 +8,7 @@
 #include "gl_opcodes.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::trace {
 namespace {

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "streamcodec/wire/packet.hpp"
+
 namespace mural::trace {
 
 constexpr char kMagic[8] = {'M', 'U', 'R', 'A', 'L', 'R', 'E', 'C'};

@@ -6,6 +6,7 @@
 #include <zstd.h>
 
 #include "streamcodec/trace/checksum.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {

@@ -36,8 +36,8 @@ enum Op : uint16_t {
     kOpDestroyImage = 23,   // u64 image
     kOpRequestProgram = 24, // u32 request, u32 program: reads the recipe of its linked state
     kOpProgramRecipe =
-        25,            // u32 program, a reply to kOpRequestProgram: for glProgramBinary; empty: the binary was refused
-    kOpErrorTold = 26, // glGetError has returned an error of the program's own GL
+        25, // u32 program, a reply to kOpRequestProgram: for glProgramBinary; empty: the binary was refused
+    kOpErrorReported = 26, // glGetError has returned an error of the program's own GL
     kOpLastOwn = 63,
 };
 constexpr uint16_t kFirstGlOpcode = 64;

@@ -6,16 +6,16 @@
 namespace mural::wire {
 
 // Part of the reply to request `requestId` (kOpRequest…).
-struct AnswerHeader {
+struct ReplyPartHeader {
     uint32_t client;
     uint32_t requestId;
-    uint32_t kind;       // AnswerKind
+    uint32_t kind;       // ReplyKind
     uint32_t groupBytes; // bytes per pixel (rectangles)
     int32_t x, y, w, h;  // the part of the requested rectangle that follows (rectangles)
     uint32_t first;      // 1: the bytes are the complete reply: the whole rectangle, or data that is equal on all nodes
     uint32_t last;       // 1: the last part from this node for this request
 };
-enum class AnswerKind : uint32_t {
+enum class ReplyKind : uint32_t {
     Rectangle = 1, // disjoint parts of a picture, each from the node that drew it
     Bytes = 2,     // equal on all nodes: the bytes of the first living node count
     Sum = 3,       // u64 values, added over nodes
@@ -26,7 +26,7 @@ enum class AnswerKind : uint32_t {
 // no node sent are 0.
 struct ReplyHeader {
     uint32_t requestId;
-    uint32_t kind;       // AnswerKind
+    uint32_t kind;       // ReplyKind
     uint64_t sizeBytes;  // of the following bytes
     int32_t x, y, w, h;  // the union of the parts (rectangles)
     uint32_t groupBytes; // bytes per pixel (rectangles)
@@ -37,7 +37,7 @@ static_assert(sizeof(ReplyHeader) == 40);
 // Kinds of driver events.
 enum class DriverEventKind : uint32_t {
     DebugMessage = 1, // the arguments of glDebugMessageCallback
-    OutOfMemory = 2,  // GL_OUT_OF_MEMORY; `type`: number of kOpErrorTold before it
+    OutOfMemory = 2,  // GL_OUT_OF_MEMORY; `type`: number of kOpErrorReported before it
     ContextLost = 3,  // `type`: result of glGetGraphicsResetStatus
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/filter/seen_model.hpp"
 #include "tests/trace/recorded.hpp"
 

@@ -3,6 +3,8 @@
 #include <random>
 
 #include "streamcodec/filter/command_filter.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/filter/seen_model.hpp"
 #include "tests/trace/recorded.hpp"
 #include "tests/sanitized.hpp"

@@ -9,6 +9,7 @@
 #include "nodes/frame_transfer/picture_sender.hpp"
 #include "nodes/frame_transfer/picture_unpacker.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 namespace {

@@ -6,6 +6,9 @@
 
 #include "encoders.hpp"
 #include "interposer/encode/control_record_writer.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 
 namespace mural {

@@ -2,6 +2,9 @@
 
 #include <cstring>
 
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "tests/fuzz/fake_gl.hpp"
 
 namespace mural::fuzz {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::fuzz {
 

@@ -1,5 +1,6 @@
 // The shares that the head announces, from the reports of nodes.
 #include "nodes/head/balancing/chunk_equalizer.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 #include <functional>
 #include <gtest/gtest.h>

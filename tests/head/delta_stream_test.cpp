@@ -93,7 +93,7 @@ TEST(DeltaStream, keepsDataAfterThePacketIsGone) {
     if (!economy->empty()) take();
     EXPECT_GE(batches.size(), 2u);
     delta::BatchDecoder decoder;
-    delta::Unpacker unpacker(economy->limits());
+    delta::DeltaDecoder records(economy->limits());
     size_t got = 0;
     for (const auto& batch : batches) {
         delta::BatchHeadReader head;
@@ -101,11 +101,11 @@ TEST(DeltaStream, keepsDataAfterThePacketIsGone) {
         while (at < batch.size() && !head.add(batch[at++])) {}
         auto sections = decoder.decode(head.head(), std::span(batch).subspan(at));
         ASSERT_TRUE(sections.ok());
-        unpacker.begin(*sections);
+        records.begin(*sections);
         uint32_t stream = 0;
         std::span<const std::byte> bytes;
         while (true) {
-            auto more = unpacker.next(stream, bytes);
+            auto more = records.next(stream, bytes);
             ASSERT_TRUE(more.ok());
             if (!*more) break;
             ASSERT_LT(got, sent.size());

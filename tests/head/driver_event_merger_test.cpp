@@ -1,5 +1,6 @@
 // A driver event that all nodes report reaches the program once.
 #include "nodes/head/results/driver_event_merger.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 #include <gtest/gtest.h>
 

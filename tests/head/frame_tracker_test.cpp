@@ -1,5 +1,6 @@
 // The frame tracker: completion of frames by several nodes, and credit for the program.
 #include "nodes/head/frames/frame_tracker.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

@@ -1,4 +1,7 @@
 // The complete head, with fake nodes and fake programs.
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "tests/head/support/session_harness.hpp"
 
 #include <gtest/gtest.h>

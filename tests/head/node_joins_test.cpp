@@ -9,6 +9,10 @@
 #include "nodes/head/results/driver_event_merger.hpp"
 #include "nodes/head/frames/picture_assembler.hpp"
 #include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "tests/trace/recorded.hpp"
 
 namespace mural {

@@ -1,5 +1,6 @@
 // Parts of pictures from several nodes become whole frames.
 #include "nodes/head/frames/picture_assembler.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 #include <cstring>
 #include <gtest/gtest.h>

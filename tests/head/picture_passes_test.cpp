@@ -1,5 +1,6 @@
 // Pictures of several passes: which parts belong together, and the effect of lost nodes on a pass.
 #include "nodes/head/frames/picture_assembler.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 #include <cstring>
 #include <gtest/gtest.h>

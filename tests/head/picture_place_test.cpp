@@ -1,5 +1,6 @@
 // The place and size of a node's picture on the wall.
 #include "nodes/head/frames/picture_place.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Replies to a request from several nodes are combined into one.
 #include "nodes/head/results/reply_assembler.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 #include <cstring>
 #include <gtest/gtest.h>

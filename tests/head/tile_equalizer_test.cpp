@@ -1,5 +1,6 @@
 // The areas that the head announces, from the reports of nodes.
 #include "nodes/head/balancing/tile_equalizer.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include "common/ipc/capture_ring.hpp"
 #include "encoders.hpp"
 #include "interposer/encode/control_record_writer.hpp"
+#include "streamcodec/wire/control_records.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 #include "tests/interposer/record_reader.hpp"
 

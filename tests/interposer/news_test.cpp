@@ -12,6 +12,7 @@
 #include "interposer/diagnostics/log.hpp"
 #include "interposer/diagnostics/driver_events.hpp"
 #include "interposer/encode/real_gl.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

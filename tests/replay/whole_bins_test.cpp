@@ -8,6 +8,9 @@
 #include "encoders.hpp"
 #include "interposer/encode/control_record_writer.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 #include "tests/fuzz/fake_gl.hpp"
 #include "tests/interposer/encoder_harness.hpp"
 

@@ -7,6 +7,8 @@
 #include "streamcodec/trace/dump/dump.hpp"
 #include "streamcodec/trace/dump/record_text.hpp"
 #include "streamcodec/trace/dump/value_text.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/trace/recorded.hpp"
 
 namespace mural::trace {

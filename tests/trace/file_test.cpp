@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/trace/recorded.hpp"
 
 namespace mural::trace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "streamcodec/trace/stream_recorder.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/trace/recorded.hpp"
 
 namespace mural::trace {

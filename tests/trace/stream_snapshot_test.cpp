@@ -3,6 +3,8 @@
 
 #include "gl_opcodes.hpp"
 #include "streamcodec/snapshot/stream_snapshot.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/trace/recorded.hpp"
 
 #include <GL/gl.h>

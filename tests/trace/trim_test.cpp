@@ -9,6 +9,8 @@
 #include "gl_opcodes.hpp"
 #include "streamcodec/trace/dump/dump.hpp"
 #include "streamcodec/trace/trim/trim.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/trace/recorded.hpp"
 
 namespace mural::trace {

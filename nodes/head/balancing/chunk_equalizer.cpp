@@ -1,5 +1,7 @@
 #include "nodes/head/balancing/chunk_equalizer.hpp"
 
+#include "streamcodec/wire/node_messages.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>

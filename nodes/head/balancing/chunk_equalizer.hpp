@@ -15,6 +15,7 @@
 #include "nodes/head/balancing/work_queue.hpp"
 #include "nodes/head/planning/node_plan.hpp"
 #include "nodes/session/range_assignment.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

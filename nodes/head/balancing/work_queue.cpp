@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "balancer/equalizers/random_areas.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -9,6 +9,7 @@
 #include "balancer/equalizers/tile_queue.hpp"
 #include "nodes/head/frames/frame_times.hpp"
 #include "nodes/head/balancing/queue_totals.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

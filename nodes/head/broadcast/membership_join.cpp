@@ -6,6 +6,8 @@
 
 #include "nodes/head/broadcast/head_command.hpp"
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 namespace {

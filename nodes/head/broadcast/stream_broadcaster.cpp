@@ -7,6 +7,8 @@
 
 #include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/broadcast/head_command.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

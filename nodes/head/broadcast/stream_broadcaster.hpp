@@ -17,6 +17,7 @@
 #include "nodes/head/broadcast/node_multicast.hpp"
 #include "nodes/head/broadcast/delta_stream.hpp"
 #include "streamcodec/trace/stream_recorder.hpp"
+#include "streamcodec/wire/head_messages.hpp"
 
 namespace mural {
 

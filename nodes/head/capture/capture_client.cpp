@@ -7,6 +7,7 @@
 
 #include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/capture/life_mark.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 namespace {

@@ -4,6 +4,9 @@
 #include <poll.h>
 
 #include "nodes/head/frames/picture_replies.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 namespace {

@@ -15,6 +15,7 @@
 #include "nodes/head/capture/capture_client.hpp"
 #include "nodes/head/capture/capture_server.hpp"
 #include "nodes/head/session/session_status.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

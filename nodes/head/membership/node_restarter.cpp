@@ -1,5 +1,7 @@
 #include "nodes/head/membership/node_restarter.hpp"
 
+#include "streamcodec/wire/node_messages.hpp"
+
 #include <algorithm>
 #include <poll.h>
 #include <utility>

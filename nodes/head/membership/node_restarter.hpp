@@ -10,6 +10,7 @@
 
 #include "nodes/head/membership/node_resync.hpp"
 #include "nodes/head/membership/node_launcher.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -11,6 +11,8 @@
 #include <thread>
 
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -5,6 +5,8 @@
 
 #include "streamcodec/snapshot/stream_snapshot.hpp"
 #include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

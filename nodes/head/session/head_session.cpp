@@ -7,6 +7,9 @@
 #include <thread>
 
 #include "nodes/head/frames/picture_place.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 namespace {

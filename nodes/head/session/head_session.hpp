@@ -34,6 +34,8 @@
 #include "nodes/head/session/slowdown_advice.hpp"
 #include "nodes/head/balancing/tile_equalizer.hpp"
 #include "nodes/session/session_config.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

@@ -4,6 +4,8 @@
 #include <sstream>
 
 #include "nodes/head/session/head_session.hpp"
+#include "streamcodec/wire/head_messages.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 namespace {

@@ -9,6 +9,7 @@
 #include "nodes/head/session/head_session.hpp"
 #include "nodes/affinity/placement.hpp"
 #include "nodes/session/session_secret.hpp"
+#include "streamcodec/wire/head_messages.hpp"
 
 namespace mural {
 namespace {

@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

@@ -3,6 +3,7 @@
 #include <EGL/eglext.h>
 
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

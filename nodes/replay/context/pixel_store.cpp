@@ -2,6 +2,7 @@
 // client attribute stack is here too, because it consists mostly of that state.
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/engine/to_int.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

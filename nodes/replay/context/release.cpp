@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

@@ -8,6 +8,8 @@
 #include "common/base/clock.hpp"
 #include "nodes/replay/features/pixel_mapping.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

@@ -7,6 +7,9 @@
 #include "nodes/replay/features/window_use.hpp"
 #include "streamcodec/wire/context_flags.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

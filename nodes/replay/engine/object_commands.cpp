@@ -5,6 +5,7 @@
 #include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

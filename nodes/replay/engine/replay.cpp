@@ -6,6 +6,7 @@
 #include "gl_opcodes.hpp"
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/opcode_names.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

@@ -2,6 +2,7 @@
 // next dependent command. That command must be the program's, not one that the node adds.
 #include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

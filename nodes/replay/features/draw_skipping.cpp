@@ -13,6 +13,7 @@ namespace {
 
 constexpr auto kDraws = std::tuple(
 #include "skippable_draws.inc"
+#include "streamcodec/wire/control_records.hpp"
 );
 
 template <class... A> void leaveOut(void (*&function)(A...)) {

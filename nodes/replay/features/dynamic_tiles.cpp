@@ -17,6 +17,8 @@
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
 #include "streamcodec/command_traits.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

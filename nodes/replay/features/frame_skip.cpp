@@ -7,6 +7,7 @@
 #include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -10,6 +10,7 @@
 #include "nodes/frame_transfer/scale_picture.hpp"
 #include "nodes/replay/features/pixel_mapping.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

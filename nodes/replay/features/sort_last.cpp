@@ -21,6 +21,8 @@
 #include "nodes/replay/engine/command_uses.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/command_traits.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

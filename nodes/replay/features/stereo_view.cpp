@@ -13,6 +13,7 @@
 #include "nodes/replay/engine/command_uses.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/command_parameters.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

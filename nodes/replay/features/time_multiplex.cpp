@@ -18,6 +18,8 @@
 #include "nodes/replay/context/raster_bins.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
 

@@ -10,6 +10,7 @@
 #include "gl_opcodes.hpp"
 #include "nodes/replay/engine/command_uses.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -1,6 +1,7 @@
 // Program binaries. A driver's binary is useless to other drivers. The interposer therefore requests the recipe of the
 // program and stores it with the binary. It sends the recipe back when the program loads the binary.
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

@@ -9,6 +9,7 @@
 
 #include "nodes/replay/readback/async_readback.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
 

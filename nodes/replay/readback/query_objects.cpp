@@ -6,6 +6,8 @@
 
 #include "common/ipc/capture_ring.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/replies.hpp"
 
 namespace mural {
 

@@ -8,6 +8,8 @@
 #include "streamcodec/trace/dump/record_text.hpp"
 #include "streamcodec/trace/wall_frames.hpp"
 #include "streamcodec/command_table.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {

@@ -7,6 +7,7 @@
 #include "streamcodec/wire/client_arrays.hpp"
 #include "streamcodec/command_parameters.hpp"
 #include "streamcodec/opcode_names.hpp"
+#include "streamcodec/wire/control_records.hpp"
 
 namespace mural::trace {
 namespace {

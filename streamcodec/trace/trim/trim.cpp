@@ -8,6 +8,8 @@
 #include "streamcodec/snapshot/stream_snapshot.hpp"
 #include "streamcodec/snapshot/packet_splitter.hpp"
 #include "streamcodec/registry_digest.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 
 namespace mural::trace {
 namespace {
