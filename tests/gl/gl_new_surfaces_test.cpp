@@ -32,7 +32,9 @@ protected:
         open(GetParam());
     }
     void TearDown() override {
-        if (platform_) EXPECT_TRUE(platform_->makeCurrent(nullptr, nullptr, nullptr));
+        if (platform_) {
+            EXPECT_TRUE(platform_->makeCurrent(nullptr, nullptr, nullptr));
+        }
     }
 
     [[nodiscard]] gl::SurfaceConfig bits(int width, int height) const {

@@ -43,7 +43,7 @@ protected:
     }
 
     std::vector<std::string> said_;
-    KeptStream stream_{size_t{1} << 20, [this](const std::string& line) { said_.push_back(line); }};
+    StreamSnapshot stream_{size_t{1} << 20, [this](const std::string& line) { said_.push_back(line); }};
     uint32_t frame_ = 0;
 };
 
