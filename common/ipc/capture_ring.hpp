@@ -20,8 +20,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "streamcodec/wire/replies.hpp"
-
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
