@@ -229,13 +229,13 @@ struct Hello {
 // (nodes/head/session/session_status.hpp) and closes the connection.
 constexpr uint32_t kStatusMagic = 0x4d535441; // "MSTA"
 
-enum Policy : uint32_t { kPolicyState = 0, kPolicyFull = 1 };
+enum LocalRendering : uint32_t { kLocalRenderingOff = 0, kLocalRenderingOn = 1 };
 
 struct Welcome {
     uint32_t magic;
     uint32_t version;
     uint32_t clientId;
-    uint32_t policy;
+    uint32_t localRendering;
     uint32_t latency;       // frames that the app may be ahead of the nodes
     uint32_t verifyEvery;   // 0: never; n: compare every n-th frame with the local picture
     uint32_t nodeCount;     // render nodes; 1: copies need no gathering

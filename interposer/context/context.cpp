@@ -410,7 +410,8 @@ bool hasBuffers(const Window& w) { return w.announced && (w.isEgl || w.drawable 
 bool swapLocally() {
     Session* s = Session::current();
     // With --verify the program's own GL must draw the picture to compare with.
-    return !s || !s->alive() || s->welcome().policy == capture::kPolicyFull || s->welcome().verifyEvery > 0;
+    return !s || !s->alive() || s->welcome().localRendering == capture::kLocalRenderingOn ||
+           s->welcome().verifyEvery > 0;
 }
 
 bool swapsItself(Window* w) {

@@ -156,7 +156,7 @@ struct Window {
     Window* next = nullptr;
 };
 
-// Sets drawLocally from the policy, list compilation, the render mode and the state of the head.
+// Sets drawLocally from --local-rendering, list compilation, the render mode and the state of the head.
 void refreshDrawLocally(ThreadState& t);
 
 // Returns the id of a context that the nodes have and that shares c's objects. 0: none.

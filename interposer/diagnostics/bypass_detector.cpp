@@ -89,7 +89,7 @@ bool bypassesCapture(ThreadState& t, Window& w) {
     const char* library = loadedOwnGl();
     sayBypass(
         "the program shows pictures, but its GL calls go past Mural%s%s: its window shows its own picture from now on. "
-        "Try --front preload",
+        "Try --capture-via preload",
         library ? ", by " : "", library ? library : "");
     return true;
 }

@@ -1,6 +1,6 @@
-// Harmless replacements for draws. With policy `state`, the program's own context executes a draw only for its errors.
-// Each call below passes the checks of its original call and draws nothing. Arguments that are invalid by themselves
-// are passed on unchanged. Verified against the original calls: tests/programs/draw_errors*.cpp.
+// Harmless replacements for draws. With local rendering off, the program's own context executes a draw only for its
+// errors. Each call below passes the checks of its original call and draws nothing. Arguments that are invalid by
+// themselves are passed on unchanged. Verified against the original calls: tests/programs/draw_errors*.cpp.
 #pragma once
 
 #include "interposer/context/context.hpp"

@@ -55,7 +55,7 @@ LaunchOptions launchOptionsOf(const SessionConfig& config) {
     options.executable = launch::ownBinary();
     options.remoteMural = config.remoteMural.empty() ? options.executable : config.remoteMural;
     options.launchCommand = config.launchCommand;
-    options.leastNodes = config.leastNodes;
+    options.minNodes = config.minNodes;
     return options;
 }
 
@@ -119,8 +119,8 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& hos
     if (config.configFile.empty()) return planSession(config, host);
     const auto loaded = compound::loadConfig(config.configFile, compound::processEnvironment);
     if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
-    auto plan = planOf(
-        loaded, {host, config.here, config.canvas, config.layouts, config.frusta, config.modelUnit, config.width});
+    auto plan = planOf(loaded, {host, config.allLocal, config.canvas, config.layouts, config.projection,
+                                config.modelUnit, config.width});
     if (plan) chooseComposition(*plan, config.composition);
     if (plan) chooseCodecs(*plan, config.codec);
     if (plan) settleQueues(*plan, config);

@@ -80,7 +80,7 @@ std::string describe(const Finding& f) {
     case Drawing::OwnGl:
         return f.program + " draws by " + f.path +
                ", which GLVND does not lead to, and so past Mural; its window shows its own picture. "
-               "Run it with --front preload, or without that library (LD_LIBRARY_PATH)";
+               "Run it with --capture-via preload, or without that library (LD_LIBRARY_PATH)";
     case Drawing::OffScreen:
         return f.program + " draws by OSMesa (" + f.path +
                ") into its own memory, where Mural sees nothing; "

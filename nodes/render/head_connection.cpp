@@ -110,17 +110,17 @@ Result<void> HeadConnection::endBatch() {
     return {};
 }
 
-Result<void> HeadConnection::unpackBatches(uint64_t storeBytes, const std::string& plant) {
+Result<void> HeadConnection::unpackBatches(uint64_t cacheBytes, const std::string& plant) {
     delta::Limits limits;
-    limits.storeBytes = storeBytes;
+    limits.cacheBytes = cacheBytes;
     if (auto ended = endBatch(); !ended) return ended;
     unpacker_.reset(); // frees the old memory before the new allocation
     batchDecoder_ = std::make_unique<delta::BatchDecoder>();
     unpacker_ = std::make_unique<delta::DeltaDecoder>(limits);
     if (!unpacker_->ready())
-        return Error{"no memory for a store of " + std::to_string(storeBytes >> 20) +
-                     " MiB; give a smaller one by --store"};
-    if (plant == "economy") unpacker_->loseWords();
+        return Error{"no memory for a delta cache of " + std::to_string(cacheBytes >> 20) +
+                     " MiB; choose a smaller --cache-size"};
+    if (plant == "delta") unpacker_->loseWords();
     return {};
 }
 

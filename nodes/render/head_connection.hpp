@@ -34,7 +34,7 @@ public:
 
     // Packets arrive in batches from now on, with an empty dictionary. Errors: out of memory; called within a batch.
     // `plant`: fault injection for tests.
-    Result<void> unpackBatches(uint64_t storeBytes, const std::string& plant);
+    Result<void> unpackBatches(uint64_t cacheBytes, const std::string& plant);
 
     // Returns the next packet; its payload is valid until the next call. Errors: the head is gone; invalid data, which
     // has been reported to the head.

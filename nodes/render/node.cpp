@@ -198,7 +198,7 @@ private:
             if (!followed) ready["ownStream"] = followed.error().message;
         }
         const char* const plant = std::getenv("MURAL_PLANT");
-        if (setup_.economy) {
+        if (setup_.delta) {
             if (!unpackBatches()) return false;
         }
         if (setup_.pass.ranges > 1) {
@@ -269,7 +269,7 @@ private:
     // Starts with an empty dictionary.
     bool unpackBatches() {
         const char* const plant = std::getenv("MURAL_PLANT");
-        const auto unpacks = line_->unpackBatches(static_cast<uint64_t>(setup_.storeBytes), plant ? plant : "");
+        const auto unpacks = line_->unpackBatches(static_cast<uint64_t>(setup_.cacheBytes), plant ? plant : "");
         return unpacks || fail(unpacks.error().message);
     }
 

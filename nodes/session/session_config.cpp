@@ -21,17 +21,17 @@ template <> struct EnumNames<Display> {
     static constexpr std::pair<Display, const char*> kAll[] = {
         {Display::None, "none"}, {Display::App, "app"}, {Display::Windows, "windows"}};
 };
-template <> struct EnumNames<CapturePolicy> {
-    static constexpr std::pair<CapturePolicy, const char*> kAll[] = {{CapturePolicy::State, "state"},
-                                                                     {CapturePolicy::Full, "full"}};
+template <> struct EnumNames<LocalRendering> {
+    static constexpr std::pair<LocalRendering, const char*> kAll[] = {{LocalRendering::Off, "off"},
+                                                                      {LocalRendering::On, "on"}};
 };
-template <> struct EnumNames<Frusta> {
-    static constexpr std::pair<Frusta, const char*> kAll[] = {
-        {Frusta::Auto, "auto"}, {Frusta::Program, "program"}, {Frusta::Room, "room"}};
+template <> struct EnumNames<ProjectionChoice> {
+    static constexpr std::pair<ProjectionChoice, const char*> kAll[] = {
+        {ProjectionChoice::Auto, "auto"}, {ProjectionChoice::Program, "program"}, {ProjectionChoice::Room, "room"}};
 };
-template <> struct EnumNames<Economy> {
-    static constexpr std::pair<Economy, const char*> kAll[] = {
-        {Economy::Auto, "auto"}, {Economy::On, "on"}, {Economy::Off, "off"}};
+template <> struct EnumNames<DeltaMode> {
+    static constexpr std::pair<DeltaMode, const char*> kAll[] = {
+        {DeltaMode::Auto, "auto"}, {DeltaMode::On, "on"}, {DeltaMode::Off, "off"}};
 };
 template <> struct EnumNames<Readback> {
     static constexpr std::pair<Readback, const char*> kAll[] = {
@@ -65,16 +65,16 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("hosts", c.hosts);
     visit("launchCommand", c.launchCommand);
     visit("stream", c.stream);
-    visit("economy", c.economy);
-    visit("storeBytes", c.storeBytes, 1 << 20);
+    visit("delta", c.delta);
+    visit("cacheBytes", c.cacheBytes, 1 << 20);
     visit("restartNodes", c.restartNodes);
-    visit("leastNodes", c.leastNodes);
+    visit("minNodes", c.minNodes);
     visit("remoteMural", c.remoteMural);
     visit("configFile", c.configFile);
-    visit("here", c.here);
+    visit("allLocal", c.allLocal);
     visit("canvas", c.canvas);
     visit("layouts", c.layouts);
-    visit("frusta", c.frusta);
+    visit("projection", c.projection);
     visit("modelUnit", c.modelUnit);
     visit("stereo", c.passes.stereo);
     visit("kernelWidth", c.passes.kernelWidth, 1);
@@ -91,7 +91,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("focusDistance", c.focusDistance);
     visit("tiling", c.tiling);
     visit("display", c.display);
-    visit("policy", c.policy);
+    visit("localRendering", c.localRendering);
     visit("glBackend", c.glBackend);
     visit("latency", c.latency, 0);
     visit("verifyEvery", c.verifyEvery, 0);
@@ -168,11 +168,11 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("displayName", s.displayName);
     visit("stream", s.stream);
     visit("streamSecret", s.streamSecret);
-    visit("economy", s.economy);
+    visit("delta", s.delta);
     visit("catchesUp", s.isResyncing);
     visit("skipsFrames", s.skipsFrames);
     visit("life", s.life);
-    visit("storeBytes", s.storeBytes, 1 << 20);
+    visit("cacheBytes", s.cacheBytes, 1 << 20);
     visit("collector", s.collector, 0);
     visit("composition", s.composition);
     visit("exchangeSecret", s.exchangeSecret);

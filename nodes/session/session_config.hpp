@@ -17,14 +17,14 @@ namespace mural {
 
 enum class Tiling { Exact, Culled, Lean };
 enum class Display { None, App, Windows };
-enum class CapturePolicy { State, Full };
+enum class LocalRendering { Off, On };
 // The viewpoint of walls that a configuration file describes.
-enum class Frusta {
+enum class ProjectionChoice {
     Auto,    // Room if screens stand at angles, otherwise Program
     Program, // all screens form one flat picture with the program's view
     Room     // each screen is seen from the observer's eyes
 };
-enum class Economy { Auto, On, Off };
+enum class DeltaMode { Auto, On, Off };
 
 struct SessionConfig {
     std::string session;    // abstract Unix socket name that programs connect to
@@ -37,18 +37,18 @@ struct SessionConfig {
     std::vector<std::string> hosts;                     // --nodes
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
     std::string stream = "auto";                        // --stream: transport to other machines: auto, tcp, rsp://…
-    Economy economy = Economy::Auto;                    // --economy: delta coding
-    int64_t storeBytes = int64_t{1} << 30;              // --store: dictionary size, in each node and in the head
+    DeltaMode delta = DeltaMode::Auto;                  // --delta: delta coding
+    int64_t cacheBytes = int64_t{1} << 30;              // --cache-size: dictionary size, in each node and in the head
     int restartNodes = 3;                               // --restart-nodes: consecutive restarts of a lost node
-    int leastNodes = 0;               // --least-nodes: number of nodes for the start, others may join later; 0: all
+    int minNodes = 0;                 // --min-nodes: number of nodes for the start, others may join later; 0: all
     std::string remoteMural;          // --remote-mural: path of mural on the hosts; empty: the local path
     std::string configFile;           // --config; empty: the other options describe the wall
-    bool here = false;                // --here: all nodes of the file run on this machine
+    bool allLocal = false;            // --all-local: all nodes of the file run on this machine
     std::string canvas;               // --canvas
     std::vector<std::string> layouts; // --layout: layouts of the file's canvases
-    Frusta frusta = Frusta::Auto;     // --frusta
-    double modelUnit = 1;             // --model-unit: program units per metre of the file
-    PassCounts passes;                // --stereo, --pixel, --subpixel, --dplex, --db, --zoom
+    ProjectionChoice projection = ProjectionChoice::Auto; // --projection
+    double modelUnit = 1;                                 // --model-unit: program units per metre of the file
+    PassCounts passes;                                    // --stereo, --pixel, --subpixel, --dplex, --db, --zoom
     std::string codec = "auto"; // --codec: encoding of transferred pictures: a name for PlaneEncoder (nodes/pictures)
     Readback readback = Readback::Auto; // --readback: transfer from GL to memory
     std::string composition = "auto";   // --composition: auto, or the name of a compositor::Strategy
@@ -56,7 +56,7 @@ struct SessionConfig {
     double focusDistance = 1;           // --focus: distance at which both eyes converge, in the program's units
     Tiling tiling = Tiling::Exact;
     Display display = Display::None;
-    CapturePolicy policy = CapturePolicy::State;
+    LocalRendering localRendering = LocalRendering::Off;
     std::string glBackend = "auto";  // --gl: auto, egl, osmesa, glx
     int latency = 1;                 // credit: frames that the program may be ahead of the wall
     int verifyEvery = 0;             // --verify[=n]
@@ -111,8 +111,8 @@ struct NodeSetup {
     std::string displayName;
     std::string stream;       // rsp://…: group that carries the packets; empty: this connection does
     std::string streamSecret; // secret of that group, in hex
-    bool economy = false;     // packets arrive in batches (streamcodec/delta/batch_head.hpp)
-    int64_t storeBytes = int64_t{1} << 30;
+    bool delta = false;       // packets arrive in batches (streamcodec/delta/batch_head.hpp)
+    int64_t cacheBytes = int64_t{1} << 30;
     // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Activate)
     bool isResyncing = false;
     bool skipsFrames = false; // with catchesUp: skips drawing until Synchronize

@@ -142,7 +142,7 @@ bool DeltaEncoder::runOn() {
     } else {
         ++run_;
         if (!item.page) news_->found(log.cursor, 1);
-        counts_.storeHits += item.page;
+        counts_.pageHits += item.page;
         index_->appendAgain(log.end(), log.cursor, item.sizeBytes);
         ++log.cursor;
         log.append(history_.again(item));
@@ -405,7 +405,7 @@ bool DeltaEncoder::fromStore(bool inPlace) {
         pagesFrom_ = slot;
     }
     ++pagesRun_;
-    ++counts_.storeHits;
+    ++counts_.pageHits;
     const DictionaryEntry item = history_.fromStore(slot, piece.sizeBytes);
     log_->replaces(item);
     append(item, static_cast<uint32_t>(hashOf(piece)));
@@ -429,7 +429,7 @@ void DeltaEncoder::run() {
     if (pagesRun_ != 0) settle();
     ++run_;
     const DictionaryEntry item = log_->at(log_->cursor);
-    if (item.page) ++counts_.storeHits;
+    if (item.page) ++counts_.pageHits;
     append(history_.again(item), index_->hashAt(log_->cursor++));
 }
 

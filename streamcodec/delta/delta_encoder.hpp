@@ -30,7 +30,7 @@ struct DeltaEncoderCounts {
     uint64_t records = 0;
     uint64_t rawBytes = 0;
     uint64_t stagedBytes = 0; // after delta coding, before compression
-    uint64_t storeHits = 0;   // pages that the nodes had
+    uint64_t pageHits = 0;    // pages that the nodes had
     uint64_t newPages = 0;    // pages that the nodes did not have
     uint64_t patches = 0;     // entries sent as changed words
 };
@@ -65,7 +65,7 @@ public:
     [[nodiscard]] uint64_t rawBytes() const { return batchRawBytes_; }
     [[nodiscard]] uint64_t pageBytes() const { return batchPageBytes_; } // in pages of long records
     // Bytes in short records that were sent plain because they followed many new ones.
-    [[nodiscard]] uint64_t leftOutBytes() const { return batchLeftOutBytes_; }
+    [[nodiscard]] uint64_t droppedBytes() const { return batchLeftOutBytes_; }
     void clear();
     // Returns true if the last packet ends within a blob. Nodes cannot act on an incomplete blob.
     [[nodiscard]] bool endsInValue() const { return endsInValue_; }

@@ -22,7 +22,7 @@ public:
     explicit Dictionary(const Limits& limits)
         : limits_(limits),
           text_(limits.textBytes),
-          pages_(limits.storeBytes),
+          pages_(limits.cacheBytes),
           first_(std::make_unique<EntryLog>(limits.logItems)) {}
 
     [[nodiscard]] bool ready() const { return pages_.ready(); }

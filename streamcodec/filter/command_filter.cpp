@@ -27,8 +27,8 @@ CommandFilter::CommandFilter(uint64_t mostBytes, Take take)
       }) {}
 
 void CommandFilter::countLeftOut(size_t records, size_t sizeBytes) {
-    counts_.leftOutRecords += records;
-    counts_.leftOutBytes += sizeBytes;
+    counts_.droppedRecords += records;
+    counts_.droppedBytes += sizeBytes;
 }
 
 void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {

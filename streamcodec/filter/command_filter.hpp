@@ -27,11 +27,11 @@ namespace mural::filter {
 
 struct CommandFilterCounts {
     uint64_t inBytes = 0, outBytes = 0;
-    uint64_t heldRecords = 0;    // total deferred
-    uint64_t leftOutRecords = 0; // dropped: overwritten, redundant, or deleted with their object
-    uint64_t leftOutBytes = 0;
-    uint64_t heldBytes = 0;    // currently deferred
-    uint64_t alikeRecords = 0; // equal to the previous frame, and therefore not followed
+    uint64_t deferredRecords = 0; // total deferred
+    uint64_t droppedRecords = 0;  // dropped: overwritten, redundant, or deleted with their object
+    uint64_t droppedBytes = 0;
+    uint64_t deferredBytes = 0; // currently deferred
+    uint64_t alikeRecords = 0;  // equal to the previous frame, and therefore not followed
 };
 
 // Not thread-safe.
@@ -102,7 +102,7 @@ private:
     void sendStateOf(Stream& stream);
     void sendUniformsOf(Group& group);
     template <size_t Words> void dropWaiting(const StateCache<Words>& cells) {
-        counts_.heldBytes -= cells.waitingBytes();
+        counts_.deferredBytes -= cells.waitingBytes();
         countLeftOut(cells.waitingRecords(), cells.waitingBytes());
     }
 

@@ -62,14 +62,14 @@ void CommandFilter::releaseOne(At& at, Object& object) {
 // Frees room for this number of bytes by flushing the oldest objects, and some more to amortise the search. Returns
 // false if nothing can be flushed.
 bool CommandFilter::makeRoom(Stream& stream, Output& output, size_t from, uint64_t sizeBytes) {
-    const auto wants = [&] { return counts_.heldBytes + pendingBytes_ + sizeBytes; };
+    const auto wants = [&] { return counts_.deferredBytes + pendingBytes_ + sizeBytes; };
     if (wants() <= mostBytes_) return true;
     const uint64_t tooMuch = wants() - mostBytes_ / 8 * 7;
     std::vector<Object*> oldest;
     uint64_t sum = 0;
     for (Object* const object : stream.context->group->held) {
         if (sum >= tooMuch) break;
-        sum += object->heldBytes + object->uniforms.waitingBytes();
+        sum += object->deferredBytes + object->uniforms.waitingBytes();
         oldest.push_back(object);
     }
     if (!oldest.empty()) release(stream, output, from, oldest, Because::NoRoom);
@@ -126,8 +126,8 @@ void CommandFilter::dropQueue(Group& group, Object& object) {
 // Removes the queue after it was sent or dropped.
 void CommandFilter::emptyQueue(Group& group, Object& object) {
     ++group.heldChanges;
-    counts_.heldBytes -= object.heldBytes;
-    object.heldBytes = 0;
+    counts_.deferredBytes -= object.deferredBytes;
+    object.deferredBytes = 0;
     object.gained = false;
     std::vector<Item>().swap(object.queue);
     std::erase(group.held, &object);
@@ -141,7 +141,7 @@ void CommandFilter::release(Stream& stream, Output& output, size_t from, std::sp
     const Object* const unpack = textures ? bufferAt(c, GL_PIXEL_UNPACK_BUFFER) : nullptr;
     if (unpack != nullptr) put<2>(output, from, op::glBindBuffer, {GL_PIXEL_UNPACK_BUFFER, 0});
     for (Object* const object : objects) {
-        counts_.heldBytes -= object->uniforms.waitingBytes();
+        counts_.deferredBytes -= object->uniforms.waitingBytes();
         if (!loses_)
             sendQueue(c, output, from, *object);
         else

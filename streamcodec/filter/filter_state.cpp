@@ -69,16 +69,16 @@ bool CommandFilter::smallState(Stream& stream, Output& output, const RecordView&
     countFate(outcome, r.sizeBytes);
     if (outcome.fate == Disposition::Goes) return false;
     output.leaveOut(r.offset, r.offset + r.sizeBytes);
-    if (counts_.heldBytes + pendingBytes_ > mostBytes_) sendState(stream, output, r.offset + r.sizeBytes);
+    if (counts_.deferredBytes + pendingBytes_ > mostBytes_) sendState(stream, output, r.offset + r.sizeBytes);
     return true;
 }
 
 void CommandFilter::countFate(const SetResult& outcome, size_t sizeBytes) {
     countLeftOut(outcome.gone, outcome.goneBytes);
     if (outcome.fate == Disposition::Goes) return;
-    counts_.heldBytes += sizeBytes;
-    counts_.heldBytes -= outcome.goneBytes;
-    if (outcome.fate == Disposition::Waits) ++counts_.heldRecords;
+    counts_.deferredBytes += sizeBytes;
+    counts_.deferredBytes -= outcome.goneBytes;
+    if (outcome.fate == Disposition::Waits) ++counts_.deferredRecords;
 }
 
 bool CommandFilter::setsNothing(const Group& group, uint32_t list) const {
@@ -88,7 +88,7 @@ bool CommandFilter::setsNothing(const Group& group, uint32_t list) const {
 
 void CommandFilter::sendState(Stream& stream, Output& output, size_t from) {
     if (stream.context == nullptr || !stream.context->state.waiting()) return;
-    counts_.heldBytes -= stream.context->state.waitingBytes();
+    counts_.deferredBytes -= stream.context->state.waitingBytes();
     stream.context->state.send([&](std::span<const std::byte> record) {
         if (!loses_) output.insert(from, record);
     });

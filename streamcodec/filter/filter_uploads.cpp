@@ -125,7 +125,7 @@ void CommandFilter::upload(At& at) {
     }
     const Object::Replaced gone = object->replaces(*u);
     countLeftOut(gone.records, gone.sizeBytes);
-    counts_.heldBytes -= gone.sizeBytes;
+    counts_.deferredBytes -= gone.sizeBytes;
     if (object->queue.empty() && gone.records == 0 &&
         (small || !u->given || u->kind == UploadKind::Storage || (!uniform && !deferrable(at.group, *object)))) {
         if (at.stream.values > 0) inVain ? at.stream.waiting.lost() : at.stream.waiting.won();
@@ -182,9 +182,9 @@ void CommandFilter::hold(At& at, Object& object, const Upload* upload, bool barr
         item.shape = upload->shape;
     }
     at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
-    counts_.heldRecords += item.records;
-    counts_.heldBytes += item.bytes.size();
-    object.heldBytes += item.bytes.size();
+    counts_.deferredRecords += item.records;
+    counts_.deferredBytes += item.bytes.size();
+    object.deferredBytes += item.bytes.size();
     object.queue.push_back(std::move(item));
     waitsFor(at, object);
 }

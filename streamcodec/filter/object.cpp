@@ -55,7 +55,7 @@ Object::Replaced Object::replaces(const Upload& u) {
             gone.sizeBytes += queue[i].bytes.size();
         }
         queue = std::move(left);
-        heldBytes -= gone.sizeBytes;
+        deferredBytes -= gone.sizeBytes;
         gained = true;
         return gone;
     }

@@ -70,7 +70,7 @@ struct Object {
     std::vector<Item> queue; // deferred commands in order
     StateCache<kUniformWords>
         uniforms; // program: uniforms that are not arrays, by location; deferred ones follow the queue
-    size_t heldBytes = 0;
+    size_t deferredBytes = 0;
     uint64_t heldSince = 0; // frame of the first deferred command
     bool filled = false;    // has been uploaded to
     bool gained = false;    // a deferred upload was overwritten

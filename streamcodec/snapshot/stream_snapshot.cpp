@@ -30,7 +30,7 @@ void StreamSnapshot::append(uint32_t stream, std::span<const std::byte> payload)
     const size_t keptBytes = log_.sizeBytes();
     log_.clear();
     say_("what a node that comes late would need has grown to " + std::to_string(keptBytes >> 20) +
-         " MiB: from now on none can come; give more by --store");
+         " MiB: from now on none can come; give more by --cache-size");
 }
 
 void StreamSnapshot::event(const ClientEvent& event) {

@@ -1,7 +1,7 @@
 // Packets of the stream from the head to the render nodes, in traces, and on the way from the program to the head.
 // Little-endian, 4-byte aligned. Grammar and versions: docs/reference/wire-format.md.
 //
-//   stream  = Packet*; after a Setup with `economy`: batches of packets (streamcodec/delta/batch_head.hpp)
+//   stream  = Packet*; after a Setup with `delta`: batches of packets (streamcodec/delta/batch_head.hpp)
 //   Packet  = PacketHeader payload[sizeBytes]
 //   payload of a packet of a capture stream = Record* (record.hpp, control_records.hpp)
 #pragma once

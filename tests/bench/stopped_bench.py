@@ -22,7 +22,7 @@ def fault_of(a, number):
     with tempfile.TemporaryDirectory(prefix="mural-stopped.") as folder:
         inside = os.path.join(folder, "temporary")
         os.mkdir(inside)
-        process = subprocess.Popen([sys.executable, os.path.join(TOP, "tools", "bench", "economy"), "--program", "glxgears", "--frames", "1000000",
+        process = subprocess.Popen([sys.executable, os.path.join(TOP, "tools", "bench", "delta"), "--program", "glxgears", "--frames", "1000000",
                                     "--mural", a.mural, "--stream-sizes", a.stream_sizes],
                                    env=dict(os.environ, TMPDIR=inside), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         if not until(lambda: any(line.split()[0].endswith("glxgears") for line in processes_with(inside).values()), START_SECONDS):

@@ -23,7 +23,7 @@ struct Packet {
 };
 
 inline Limits tinyLimits() {
-    return {.storeBytes = 8 * kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024};
+    return {.cacheBytes = 8 * kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024};
 }
 
 class BothSides {

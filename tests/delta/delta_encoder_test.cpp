@@ -297,7 +297,7 @@ TEST(DeltaEncoder, preservesPlainRecordsWithAnyWalkResult) {
     for (const RecordOffsets& told :
          {RecordOffsets{50, 12, {}}, RecordOffsets{50, 1 << 20, {}}, RecordOffsets{50, 12, {size + 4096}},
           RecordOffsets{50, 12, {size - 12}}, RecordOffsets{50, 12, {0, 24, 60}}}) {
-        BothSides sides(Limits{.storeBytes = 1 << 20});
+        BothSides sides(Limits{.cacheBytes = 1 << 20});
         sides.walked = &told;
         sides.packer.beginFrame(true);
         for (int i = 0; i < 3; ++i) sides.send(packet);
@@ -325,8 +325,8 @@ TEST(DeltaEncoder, findsLongRecordsAmongPlainOnesByTheWalkResult) {
     for (BothSides* each : {&untold, &sides}) each->packer.beginFrame(true);
     for (uint32_t number = 1; number < 6; ++number)
         EXPECT_EQ(sides.send(frame(number)), untold.send(frame(number))) << number;
-    EXPECT_EQ(sides.packer.counts().storeHits, 4 * 3u);
-    EXPECT_EQ(sides.packer.counts().storeHits, untold.packer.counts().storeHits);
+    EXPECT_EQ(sides.packer.counts().pageHits, 4 * 3u);
+    EXPECT_EQ(sides.packer.counts().pageHits, untold.packer.counts().pageHits);
     EXPECT_EQ(sides.packer.counts().records, untold.packer.counts().records);
 }
 
@@ -334,7 +334,7 @@ TEST(DeltaEncoder, findsLongRecordsAmongPlainOnesByTheWalkResult) {
 TEST(DeltaEncoder, usesNoMemoryForAPageThatChangesConstantly) {
     for (const uint32_t framesAsItIs : {1u, 3u}) {
         Limits limits;
-        limits.storeBytes = 64 * kPageBytes;
+        limits.cacheBytes = 64 * kPageBytes;
         BothSides sides(limits);
         const Bytes other = textureOf(noise(40 * kPageBytes, 11));
         sides.send({{0x10000, other}});
@@ -391,7 +391,7 @@ TEST(DeltaEncoder, storesAnyNumberOfReturningStates) {
 
 TEST(DeltaEncoder, keepsUsedPagesWhenTheStoreIsFull) {
     Limits limits;
-    limits.storeBytes = 4 << 20;
+    limits.cacheBytes = 4 << 20;
     BothSides sides{limits};
     const auto kept = packetsOf(textureOf(noise(1 << 20, 1)));
     sides.send(kept);

@@ -90,7 +90,7 @@ void compare(const Limits& limits, uint32_t seed, uint32_t streams, int frames) 
 
 TEST(Identity, holdsWithLargeDictionaries) {
     for (uint32_t seed = 1; seed <= 4; ++seed)
-        compare(Limits{.storeBytes = 64 << 20, .textBytes = 1 << 20, .logItems = 1 << 16, .streams = 8}, seed, 3, 60);
+        compare(Limits{.cacheBytes = 64 << 20, .textBytes = 1 << 20, .logItems = 1 << 16, .streams = 8}, seed, 3, 60);
 }
 
 TEST(Identity, holdsWithTinyDictionaries) {
@@ -99,12 +99,12 @@ TEST(Identity, holdsWithTinyDictionaries) {
 
 TEST(Identity, holdsWithLogsOfOneItemAndOnePage) {
     for (uint32_t seed = 1; seed <= 6; ++seed)
-        compare({.storeBytes = kPageBytes, .textBytes = 4096, .logItems = 1, .streams = 1}, seed, 2, 60);
+        compare({.cacheBytes = kPageBytes, .textBytes = 4096, .logItems = 1, .streams = 1}, seed, 2, 60);
 }
 
 // Smooth motion is predicted from more shared state than jumps.
 TEST(Identity, holdsForSmoothMotion) {
-    for (const Limits& limits : {Limits{.storeBytes = 1 << 20}, tinyLimits()}) {
+    for (const Limits& limits : {Limits{.cacheBytes = 1 << 20}, tinyLimits()}) {
         BothSides sides{limits};
         std::mt19937 random(5);
         double time = 0, sum = 0;

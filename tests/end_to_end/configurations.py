@@ -203,7 +203,7 @@ def check_canvases(run, path, canvases, said):
     if not other_canvases(said):
         return "", None
     run = Run(argparse.Namespace(**{**vars(run.arguments), "size": CANVAS_SIZE}), run.display)
-    run.picture(["--config", path, "--here", "--frusta", "program"])
+    run.picture(["--config", path, "--all-local", "--projection", "program"])
     canvases = run.canvases
     for name, times, _ in other_canvases(said):
         shown = canvases[name]
@@ -224,7 +224,7 @@ def check_canvases(run, path, canvases, said):
 
 def check(run, path, native):
     """Returns None or an error, and a line about the checks."""
-    shown, said = run.picture(["--config", path, "--here", "--frusta", "program"])
+    shown, said = run.picture(["--config", path, "--all-local", "--projection", "program"])
     about_canvases, wrong = check_canvases(run, path, run.canvases, said)
     if wrong:
         return wrong, ""
@@ -254,7 +254,7 @@ def check(run, path, native):
     # not compared.
     one = shown
     if sent and " eye" in said:
-        one = run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
+        one = run.picture(["--config", path, "--all-local", "--projection", "program", "--eye-base", "0"])[0]
     eyes_as_one = one is shown or difference(native, one, areas)[0] == 0
     for area, way, place in sent if eyes_as_one else []:
         most = way_difference(native, one, area, way, place)
@@ -273,9 +273,9 @@ def check(run, path, native):
             return "samples change nothing", ""
     eyes = [word for word in ("left eye", "right eye") if word in said]
     if eyes:
-        flat = one if one is not shown else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0"])[0]
+        flat = one if one is not shown else run.picture(["--config", path, "--all-local", "--projection", "program", "--eye-base", "0"])[0]
         # The file's own eye base is sufficient where it moves a pixel.
-        apart = shown if shown[2] != flat[2] else run.picture(["--config", path, "--here", "--frusta", "program", "--eye-base", "0.5"])[0]
+        apart = shown if shown[2] != flat[2] else run.picture(["--config", path, "--all-local", "--projection", "program", "--eye-base", "0.5"])[0]
         if apart[2] == flat[2]:
             return "the eyes see the same, however far apart", ""
         # With eye base 0 both eyes see the picture of one.

@@ -97,7 +97,7 @@ def hooked(name, program, frames, options=()):
 
 
 hooked("reloaded", ["gl_reloaded", "both", "untouched"], 18)
-hooked("with_front", ["gl_reloaded", "both", "untouched"], 18, ["--front", "preload"])
+hooked("with_capture_via", ["gl_reloaded", "both", "untouched"], 18, ["--capture-via", "preload"])
 
 
 def sandboxed(name, unshare, script='exec "$@"'):

@@ -57,7 +57,7 @@ def main():
     build = os.path.abspath(arguments.build)
     mural = arguments.mural or os.path.join(build, "bin", "mural")
     program = [os.path.join(build, "tests", "programs", "object_churn"), "--frames", "100000", "--size", "96x96"]
-    # Without the rejoin log, which grows with lists that call lists, up to --store, and is not tested here.
+    # Without the rejoin log, which grows with lists that call lists, up to --cache-size, and is not tested here.
     wall = ["--tiles", "2x1", "--display", "none", "--restart-nodes", "0"]
     wrong = 0
     with display.PrivateDisplay() as name:

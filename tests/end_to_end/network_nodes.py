@@ -137,11 +137,11 @@ def killed(lab, *options):
         return too_many(drawn) if good else "status %s, %d frames, %d before it was back; it said:\n%s" % (status, drawn, drawn_before, said)
 
 
-def killed_without_economy(lab):
-    return killed(lab, "--economy", "off")
+def killed_without_delta(lab):
+    return killed(lab, "--delta", "off")
 
 
-CASES = {f.__name__: f for f in (good, loss, short_packets, tcp, not_reached, no_group, ceases_and_returns, killed, killed_without_economy)}
+CASES = {f.__name__: f for f in (good, loss, short_packets, tcp, not_reached, no_group, ceases_and_returns, killed, killed_without_delta)}
 
 
 def main():

@@ -55,11 +55,11 @@ caught("es2", "es2_scene", "egl")
 caught("egl_proc", "route_egl_proc", "egl")
 caught("once_by_both_fronts", "immediate", "forwarding")
 caught("once_by_both_fronts_dlsym", "route_dlsym", "forwarding")
-caught("glvnd_with_front", "immediate", "none", ("--front", "preload"))
-caught("glvnd_with_front_dlsym", "route_dlsym", "none", ("--front", "preload"))
+caught("glvnd_with_preload", "immediate", "none", ("--capture-via", "preload"))
+caught("glvnd_with_preload_dlsym", "route_dlsym", "none", ("--capture-via", "preload"))
 # The advice in the message of told_mixed_….
 caught("mixed_linked_when_glvnd_is_first", "mixed_linked", "none", more={"LD_PRELOAD": "libGL.so.1"})
-caught("in_script_when_asked", "immediate", "glx", ("--front", "preload"), in_script=True)
+caught("in_script_when_asked", "immediate", "glx", ("--capture-via", "preload"), in_script=True)
 
 
 def told(case_name, program, words, in_script=None, options=(), output=None, shell=None, status=0):
@@ -90,10 +90,10 @@ def told(case_name, program, words, in_script=None, options=(), output=None, she
     cases.case(check)
 
 
-told("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--front preload"], "glx")
-told("own_gl_with_front_off", "immediate", ["own_gl/glx/libGL.so.1", "--front preload"], "glx", ("--front", "glvnd"))
+told("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx")
+told("own_gl_with_preload_off", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx", ("--capture-via", "glvnd"))
 told("osmesa", "osmesa_window", ["OSMesa", "libOSMesa.so", "no frame was captured"])
-told("drawn_elsewhere", "route_glapi", ["go past Mural", "--front preload"], output="the window shows the picture")
+told("drawn_elsewhere", "route_glapi", ["go past Mural", "--capture-via preload"], output="the window shows the picture")
 for name, library in (("mixed_glx_driver", "libGLX_mesa.so.0"), ("mixed_glx_osmesa", "libOSMesa.so.8"),
                       ("mixed_egl_osmesa", "libOSMesa.so.8"), ("mixed_linked", "libOSMesa.so.8")):
     told(name, name, ["part of the program's GL calls", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")

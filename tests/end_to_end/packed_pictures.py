@@ -84,7 +84,7 @@ def by_file(context, frame, taken="", more=()):
         with open(path, "w", encoding="ascii") as file:
             file.write(FILE % {"w": passes.SIZE[0], "h": passes.SIZE[1], "frame": frame, "taken": taken})
         command = [context.program("fixed_lighting"), "--frames", "3", "--size", "%dx%d" % passes.SIZE]
-        with context.run(command, ["--display", "none", "--config", path, "--frusta", "program", "--explain", "--out", folder] + list(more)) as run:
+        with context.run(command, ["--display", "none", "--config", path, "--projection", "program", "--explain", "--out", folder] + list(more)) as run:
             status = run.status()
             said = "\n".join(run.standard_error)
         names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))

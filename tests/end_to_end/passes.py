@@ -387,7 +387,7 @@ def room_walls_have_windows(context, notes):
         with open(path, "w", encoding="ascii") as file:
             file.write(ROOM % {"w": size[0], "h": size[1], "compounds": ""})
         command = [context.program("pass_scene"), "--size", "%dx%d" % (3 * size[0], size[1]), "--frames", "100000", "--draw", "mvp", "--around"]
-        shown, saved, wrong = shown_and_saved(context, command, ["--config", path, "--here"], ["Mural " + name for name in names], out)
+        shown, saved, wrong = shown_and_saved(context, command, ["--config", path, "--all-local"], ["Mural " + name for name in names], out)
     if wrong:
         return wrong
     walls = [[[row[3 * i * size[0]:3 * (i + 1) * size[0]] for row in p.rows] for p in saved] for i in range(3)]

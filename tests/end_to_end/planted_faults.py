@@ -5,7 +5,7 @@ Values of MURAL_PLANT:
   opcode     changes one argument of one command
   shift      moves one tile by a pixel
   drop       skips one frame's draws
-  economy    loses the changed parts of commands that a node has received before
+  delta      loses the changed parts of commands that a node has received before
   held       the head loses all uploads that it has deferred
   range      loses the other nodes' pictures (nodes that divide draws)
   tie        the earlier draw wins at equal depths
@@ -26,13 +26,13 @@ import sys
 PROGRAMS = "immediate,draw_calls,es2_scene"
 RANGES = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 2", "--frames", "4"]
 SWAPS = ["--programs", "range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --composition direct-send", "--frames", "4"]
-ECONOMY = ["--programs", "same_scene,immediate", "--layouts", "2x1", "--options", "--display none --economy on"]
-HELD = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--display none --economy on", "--frames", "3"]
+DELTA = ["--programs", "same_scene,immediate", "--layouts", "2x1", "--options", "--display none --delta on"]
+HELD = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--display none --delta on", "--frames", "3"]
 CHUNKS = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --chunk-queue 40", "--frames", "12"]
 EDGES = ["--programs", "blended_rectangles", "--layouts", "3x2", "--frames", "4"]
 AREAS = ["--programs", "clears_in_turns,es2_scene", "--tile-queue", "16x16", "--layouts", "2,3", "--frames", "12"]
 # Settings of the runs, and the faults that they must detect.
-SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (ECONOMY, ("economy",)), (HELD, ("held",)), (EDGES, ("edges",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
+SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (DELTA, ("delta",)), (HELD, ("held",)), (EDGES, ("edges",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
 
 
 def compare(arguments, setting, fault):

@@ -103,7 +103,7 @@ def files_open_them(context, notes):
         path = os.path.join(folder, "quad.eqc")
         with open(path, "w", encoding="ascii") as file:
             file.write(FILE)
-        windows, _, said = shown_in_quad(context, ["--config", path, "--frusta", "program"] + EYES)
+        windows, _, said = shown_in_quad(context, ["--config", path, "--projection", "program"] + EYES)
     if len(windows) != 1:
         return "%d windows instead of 1: %s" % (len(windows), said)
     return wrong_eyes(native_eyes(context), windows[0])

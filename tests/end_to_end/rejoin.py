@@ -217,9 +217,9 @@ def several_one_after_the_other(context):
 
 
 @case
-def with_economy(context):
+def with_delta(context):
     """The dictionary of delta coding starts again with each rejoin."""
-    return kill_and_look(context, options=("--economy", "on"), victims=(1, 0))
+    return kill_and_look(context, options=("--delta", "on"), victims=(1, 0))
 
 
 @case
@@ -450,8 +450,8 @@ def ranges_in_turns(context):
 
 
 @case
-def ranges_with_economy(context):
-    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("direct-send", 2) + ("--economy", "on"))
+def ranges_with_delta(context):
+    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("direct-send", 2) + ("--delta", "on"))
 
 
 @case
@@ -681,8 +681,8 @@ def never(context):
 
 @case
 def more_than_is_kept(context):
-    """A program that has sent more than --store: the line about the loss says so, and no rejoin is tried."""
-    return lost_for_good(context, ("--store", "4MiB"), "--store gives more")
+    """A program that has sent more than --cache-size: the line about the loss says so, and no rejoin is tried."""
+    return lost_for_good(context, ("--cache-size", "4MiB"), "--cache-size gives more")
 
 
 LATE_HOST = "#!/bin/sh\n# HOST COMMAND...\nhost=$1; shift\n%s\nexec \"$@\"\n"
@@ -695,7 +695,7 @@ def late_node(context, how, words):
         with open(script, "w", encoding="ascii") as file:
             file.write(LATE_HOST % ("if [ $host = 127.0.0.3 ] && ! [ -e %s ]; then : >%s; %s; fi" % (tried, tried, how)))
         os.chmod(script, 0o755)
-        watch = Watch(context, options=("--nodes", "127.0.0.2,127.0.0.3", "--launch", script, "--stream", "tcp", "--least-nodes", "1"))
+        watch = Watch(context, options=("--nodes", "127.0.0.2,127.0.0.3", "--launch", script, "--stream", "tcp", "--min-nodes", "1"))
         with watch.start() as run:
             if not run.wait_for_line("frame 5 "):
                 return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -726,9 +726,9 @@ def late_node_that_is_slow(context):
 @case
 def late_nodes_too_many(context):
     """Fewer nodes came than are required: one line, and no program."""
-    watch = Watch(context, 10, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", "false", "--least-nodes", "1"))
+    watch = Watch(context, 10, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", "false", "--min-nodes", "1"))
     with watch.start() as run:
-        return cases.check_end(run, 2) or (None if len(said(run, "fewer than --least-nodes 1 are left")) == 1 else "it was not said: " + " | ".join(run.standard_error[-3:]))
+        return cases.check_end(run, 2) or (None if len(said(run, "fewer than --min-nodes 1 are left")) == 1 else "it was not said: " + " | ".join(run.standard_error[-3:]))
 
 
 @case

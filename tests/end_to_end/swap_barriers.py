@@ -83,7 +83,7 @@ def files_say_it(context):
             path = os.path.join(folder, "wall.eqc")
             with open(path, "w", encoding="utf-8") as file:
                 file.write(FILE % barrier)
-            lines, numbers, wrong = swapped_together(context, ["--config", path, "--here"], folder)
+            lines, numbers, wrong = swapped_together(context, ["--config", path, "--all-local"], folder)
         wrong = wrong or (wrong_numbers(numbers, members) if members else None)
         if wrong:
             return "%s: %s" % (barrier or "without", wrong)

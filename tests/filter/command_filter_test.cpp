@@ -65,11 +65,11 @@ TEST_F(Holding, defersATextureUntilADrawHasItBound) {
     for (uint32_t frame = 1; frame <= 100; ++frame)
         send(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
     EXPECT_EQ(seen_.uploads(), 0u);
-    EXPECT_EQ(holder_.counts().heldRecords, 1u);
-    EXPECT_GT(holder_.counts().heldBytes, 1024u);
+    EXPECT_EQ(holder_.counts().deferredRecords, 1u);
+    EXPECT_GT(holder_.counts().deferredBytes, 1024u);
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(seen_.uploads(), 1u);
-    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
 }
 
 // Shaders may use the texture without a binding.
@@ -107,8 +107,8 @@ TEST_F(Holding, dropsUploadsReplacedBeforeTheirUse) {
     EXPECT_EQ(seen_.uploads(), 0u);
     send(draw());
     EXPECT_EQ(seen_.uploads(), 2u);
-    EXPECT_EQ(holder_.counts().leftOutRecords, 18u);
-    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes);
+    EXPECT_EQ(holder_.counts().droppedRecords, 18u);
+    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().droppedBytes);
 }
 
 TEST_F(Holding, sendsUploadsReadBeforeTheirReplacement) {
@@ -131,7 +131,7 @@ TEST_F(Holding, dropsUploadsThatChangeNothing) {
                  .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
                  .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), 2u) << "the first is not remembered: most never comes again";
-    EXPECT_EQ(holder_.counts().leftOutRecords, 8u);
+    EXPECT_EQ(holder_.counts().droppedRecords, 8u);
 }
 
 TEST_F(Holding, dropsUploadsOfObjectsDeletedUnused) {
@@ -142,7 +142,7 @@ TEST_F(Holding, dropsUploadsOfObjectsDeletedUnused) {
              .record(op::glDeleteTextures, {1, 4, 1})
              .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(seen_.uploads(), 0u);
-    EXPECT_EQ(holder_.counts().leftOutRecords, 1u);
+    EXPECT_EQ(holder_.counts().droppedRecords, 1u);
 }
 
 TEST_F(Holding, forwardsUploadsThatAreAlwaysUsedAtOnce) {
@@ -154,7 +154,7 @@ TEST_F(Holding, forwardsUploadsThatAreAlwaysUsedAtOnce) {
                  .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
                  .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), 40u);
-    EXPECT_EQ(holder_.counts().heldRecords, 2u) << "nothing was won twice";
+    EXPECT_EQ(holder_.counts().deferredRecords, 2u) << "nothing was won twice";
 }
 
 TEST_F(Holding, releasesEverythingForAnUnknownCommand) {
@@ -226,7 +226,7 @@ TEST_F(Holding, respectsItsMemoryLimit) {
     for (uint32_t i = 0; i < 2000; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
     EXPECT_GT(seen_.uploads(), 900u);
-    EXPECT_LE(holder_.counts().heldBytes, kBound);
+    EXPECT_LE(holder_.counts().deferredBytes, kBound);
     holder_.releaseAll();
     EXPECT_EQ(seen_.uploads(), 2000u);
 }
@@ -250,16 +250,16 @@ TEST_F(Holding, waitsForBlobs) {
     EXPECT_EQ(seen_.uploads(), 0u);
     send(draw());
     EXPECT_EQ(seen_.uploads(), 1u);
-    EXPECT_EQ(holder_.counts().leftOutRecords, kPieces + 2u);
+    EXPECT_EQ(holder_.counts().droppedRecords, kPieces + 2u);
     give(2);
     send(draw());
     EXPECT_EQ(seen_.uploads(), 1u) << "it is there";
     give(3);
     EXPECT_EQ(holder_.counts().inBytes,
-              holder_.counts().outBytes + holder_.counts().leftOutBytes + holder_.counts().heldBytes);
+              holder_.counts().outBytes + holder_.counts().droppedBytes + holder_.counts().deferredBytes);
     holder_.clientGone(1);
     EXPECT_EQ(seen_.uploads(), 1u) << "nobody needs it";
-    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
 }
 
 // The number of sent records with this opcode.
@@ -282,8 +282,8 @@ TEST_F(Holding, dropsUnchangedState) {
         EXPECT_EQ(countOf(opcode), 1u);
     EXPECT_EQ(countOf(op::glActiveTexture), 0u) << "0 is active from the start";
     EXPECT_EQ(countOf(op::glDrawArrays), 50u);
-    EXPECT_EQ(holder_.counts().leftOutRecords, 4u * 49 + 50);
-    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().leftOutBytes);
+    EXPECT_EQ(holder_.counts().droppedRecords, 4u * 49 + 50);
+    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().droppedBytes);
 }
 
 TEST_F(Holding, defersStateUntilADrawNeedsIt) {
@@ -300,14 +300,14 @@ TEST_F(Holding, defersStateUntilADrawNeedsIt) {
                  .record(op::glMatrixMode, {GL_MODELVIEW})
                  .swap(1, frame));
     EXPECT_EQ(countOf(op::glEnable) + countOf(op::glDepthFunc), 1u);
-    EXPECT_GT(holder_.counts().heldBytes, 0u);
+    EXPECT_GT(holder_.counts().deferredBytes, 0u);
     send(PacketBuilder().record(op::glClear, {GL_COLOR_BUFFER_BIT}));
     EXPECT_EQ(countOf(op::glEnable), 1u);
     EXPECT_EQ(countOf(op::glDepthFunc), 2u);
-    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
     // Restored before it was used.
     send(PacketBuilder().record(op::glDisable, {GL_DEPTH_TEST}).record(op::glEnable, {GL_DEPTH_TEST}));
-    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
     send(draw());
     EXPECT_EQ(countOf(op::glDisable), 1u);
 }
@@ -354,7 +354,7 @@ TEST_F(Holding, sendsUniformsOfTheDrawingProgram) {
     send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(countOf(op::glUniform4f), 1u);
     EXPECT_EQ(countOf(op::glUniform1f), 2u);
-    EXPECT_EQ(holder_.counts().heldBytes, 0u);
+    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
 }
 
 // State set by another thread meanwhile is unknown.
@@ -517,16 +517,16 @@ TEST_F(Holding, defersLittleThatIsAlwaysDrawnAtOnce) {
                  .append(draw())
                  .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), kTextures);
-    EXPECT_LT(holder_.counts().heldRecords, 60u);
+    EXPECT_LT(holder_.counts().deferredRecords, 60u);
     // A waiting object shows that deferring pays.
     for (uint32_t i = 0; i < 20; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1000 + i}).record(op::glTexImage2D, image(i)));
     for (uint32_t i = 0; i < 5; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()).swap(1, 300 + i));
-    const uint64_t held = holder_.counts().heldRecords;
+    const uint64_t held = holder_.counts().deferredRecords;
     for (uint32_t i = 0; i < 100; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2000 + i}).record(op::glTexImage2D, image(i)));
-    EXPECT_EQ(holder_.counts().heldRecords, held + 100);
+    EXPECT_EQ(holder_.counts().deferredRecords, held + 100);
 }
 
 TEST_F(Holding, examinesUniformsOnlyWithSmallState) {
@@ -601,7 +601,7 @@ TEST_F(Holding, pairsPrimitivesOfLists) {
                     .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
                     .record(op::glTexImage2D, image(5))
                     .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
-            EXPECT_EQ(holder.counts().heldRecords, ends ? 1u : 0u) << "a list that leaves one open is not followed";
+            EXPECT_EQ(holder.counts().deferredRecords, ends ? 1u : 0u) << "a list that leaves one open is not followed";
         }
     }
 }

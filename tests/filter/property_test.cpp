@@ -341,14 +341,14 @@ public:
         }
         if (from < bytes.size()) give(stream, bytes.subspan(from));
         ASSERT_EQ(held_.seen(), whole_.seen());
-        ASSERT_LE(holder_.counts().heldBytes, mostBytes_);
+        ASSERT_LE(holder_.counts().deferredBytes, mostBytes_);
     }
     void ends(Won& won) {
         holder_.releaseAll();
         EXPECT_EQ(held_.all(), whole_.all()) << "what was held is lost";
-        EXPECT_EQ(holder_.counts().heldBytes, 0u);
-        won.held += holder_.counts().heldRecords;
-        won.dropped += holder_.counts().leftOutRecords;
+        EXPECT_EQ(holder_.counts().deferredBytes, 0u);
+        won.held += holder_.counts().deferredRecords;
+        won.dropped += holder_.counts().droppedRecords;
         won.alike += holder_.counts().alikeRecords;
     }
 

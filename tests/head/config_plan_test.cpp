@@ -177,23 +177,23 @@ TEST(ConfigPlan, treatsScreensAtAnglesAsARoom) {
     }
 }
 
-TEST(ConfigPlan, selectsTheViewpointByFrusta) {
-    const auto screens = [](const std::string& file, Frusta frusta) {
-        auto plan = planOf(load(file), {"me", true, "", {}, frusta});
+TEST(ConfigPlan, selectsTheViewpointByProjection) {
+    const auto screens = [](const std::string& file, ProjectionChoice projection) {
+        auto plan = planOf(load(file), {"me", true, "", {}, projection});
         EXPECT_TRUE(plan.ok());
         return std::ranges::count_if(plan->nodes, [](const NodePlan& n) { return n.screen.has_value(); });
     };
-    EXPECT_EQ(screens("cave.eqc", Frusta::Program), 0);
-    EXPECT_EQ(screens("cave.eqc", Frusta::Auto), 3);
-    EXPECT_EQ(screens("wall-2x2.eqc", Frusta::Auto), 0) << "flat";
-    EXPECT_EQ(screens("wall-2x2.eqc", Frusta::Room), 4);
+    EXPECT_EQ(screens("cave.eqc", ProjectionChoice::Program), 0);
+    EXPECT_EQ(screens("cave.eqc", ProjectionChoice::Auto), 3);
+    EXPECT_EQ(screens("wall-2x2.eqc", ProjectionChoice::Auto), 0) << "flat";
+    EXPECT_EQ(screens("wall-2x2.eqc", ProjectionChoice::Room), 4);
 }
 
 // An eye half a metre to the right is half a metre in the program's units.
 TEST(ConfigPlan, convertsEyesToTheProgramsUnits) {
     const auto loaded = load("stereo-passive.eqc");
     for (const double unit : {1., 100.}) {
-        auto plan = planOf(loaded, {"me", true, "", {}, Frusta::Room, unit});
+        auto plan = planOf(loaded, {"me", true, "", {}, ProjectionChoice::Room, unit});
         ASSERT_TRUE(plan.ok());
         for (const NodePlan& n : plan->nodes)
             EXPECT_NEAR(n.screen->fromProgram.m[0][3], (n.pass.eye == Eye::Left ? .0325 : -.0325) * unit, 1e-9);
@@ -480,7 +480,7 @@ TEST(ConfigPlan, plansEveryExampleFile) {
             EXPECT_LT(n.picture, n.canvas == 0 ? picturesOf(plan->wall)
                                                : picturesOf(plan->canvases[static_cast<size_t>(n.canvas) - 1].wall))
                 << file;
-            EXPECT_EQ(n.reach, NodeReach::SharedMemory) << "--here";
+            EXPECT_EQ(n.reach, NodeReach::SharedMemory) << "--all-local";
         }
     }
 }

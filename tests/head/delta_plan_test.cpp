@@ -22,16 +22,16 @@ TEST(DeltaPlan, codesForNetworksButNotForSharedMemory) {
         planOf({NodeReach::SharedMemory, NodeReach::Tcp, NodeReach::LaunchCommand, NodeReach::Tcp});
     const auto third = [](int node) { return node == 3; };
     SessionConfig config;
-    EXPECT_EQ(planEconomy(config, plan, third).nodes, (std::vector<int>{2, 3}));
-    EXPECT_EQ(planEconomy(config, plan, [](int) { return false; }).nodes, (std::vector<int>{2}));
-    config.economy = Economy::On;
-    config.storeBytes = 64 << 20;
-    const DeltaPlan all = planEconomy(config, plan, third);
+    EXPECT_EQ(planDelta(config, plan, third).nodes, (std::vector<int>{2, 3}));
+    EXPECT_EQ(planDelta(config, plan, [](int) { return false; }).nodes, (std::vector<int>{2}));
+    config.delta = DeltaMode::On;
+    config.cacheBytes = 64 << 20;
+    const DeltaPlan all = planDelta(config, plan, third);
     EXPECT_EQ(all.nodes.size(), 4u);
     EXPECT_NE(all.explain.find("4 nodes"), std::string::npos) << all.explain;
     EXPECT_NE(all.explain.find("64 MiB"), std::string::npos) << all.explain;
-    config.economy = Economy::Off;
-    EXPECT_TRUE(planEconomy(config, plan, third).nodes.empty());
+    config.delta = DeltaMode::Off;
+    EXPECT_TRUE(planDelta(config, plan, third).nodes.empty());
 }
 
 } // namespace

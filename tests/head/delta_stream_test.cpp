@@ -15,11 +15,11 @@ namespace {
 
 constexpr uint32_t kStream = wire::streamOf(1, 0);
 
-std::unique_ptr<DeltaStream> smallEconomy() {
+std::unique_ptr<DeltaStream> smallDeltaStream() {
     delta::Limits limits;
-    limits.storeBytes = 16 << 20;
-    auto economy = DeltaStream::open(limits);
-    return economy ? std::move(*economy) : nullptr;
+    limits.cacheBytes = 16 << 20;
+    auto deltaStream = DeltaStream::open(limits);
+    return deltaStream ? std::move(*deltaStream) : nullptr;
 }
 
 // One record with different words.
@@ -32,50 +32,50 @@ std::vector<std::byte> record(uint16_t opcode, uint32_t words) {
 }
 
 TEST(DeltaStream, isFullByNewDataOrByTotalSize) {
-    auto economy = smallEconomy();
-    ASSERT_NE(economy, nullptr);
-    EXPECT_TRUE(economy->empty());
+    auto deltaStream = smallDeltaStream();
+    ASSERT_NE(deltaStream, nullptr);
+    EXPECT_TRUE(deltaStream->empty());
     const auto value = record(wire::kOpBlobData, 12'000);
-    economy->add(kStream, value);
-    EXPECT_FALSE(economy->empty());
-    EXPECT_FALSE(economy->full());
+    deltaStream->add(kStream, value);
+    EXPECT_FALSE(deltaStream->empty());
+    EXPECT_FALSE(deltaStream->full());
     auto other = value;
     for (size_t i = 4; i < other.size(); ++i) other[i] = ~other[i];
-    economy->add(kStream, other);
-    EXPECT_TRUE(economy->full()) << "96 kB of new bytes";
-    ASSERT_TRUE(economy->take().ok());
-    EXPECT_TRUE(economy->empty());
+    deltaStream->add(kStream, other);
+    EXPECT_TRUE(deltaStream->full()) << "96 kB of new bytes";
+    ASSERT_TRUE(deltaStream->take().ok());
+    EXPECT_TRUE(deltaStream->empty());
     int packets = 0;
-    for (; !economy->full() && packets < 1000; ++packets) economy->add(kStream, value);
+    for (; !deltaStream->full() && packets < 1000; ++packets) deltaStream->add(kStream, value);
     EXPECT_EQ(packets, 88) << "4 MiB that the node has to copy";
-    EXPECT_LE(economy->take()->size(), 400u);
-    EXPECT_EQ(economy->counts().packer.packets, 90u);
-    EXPECT_EQ(economy->counts().packer.rawBytes, 90u * 48'000);
+    EXPECT_LE(deltaStream->take()->size(), 400u);
+    EXPECT_EQ(deltaStream->counts().packer.packets, 90u);
+    EXPECT_EQ(deltaStream->counts().packer.rawBytes, 90u * 48'000);
 }
 
 TEST(DeltaStream, detectsAnIncompleteBlob) {
-    auto economy = smallEconomy();
-    ASSERT_NE(economy, nullptr);
-    economy->add(kStream, record(wire::kOpBlobBegin, 3));
-    EXPECT_TRUE(economy->inValue());
-    economy->add(kStream, record(wire::kOpBlobData, 300));
-    EXPECT_TRUE(economy->inValue());
-    economy->add(kStream, record(wire::kFirstGlOpcode, 3));
-    EXPECT_FALSE(economy->inValue());
+    auto deltaStream = smallDeltaStream();
+    ASSERT_NE(deltaStream, nullptr);
+    deltaStream->add(kStream, record(wire::kOpBlobBegin, 3));
+    EXPECT_TRUE(deltaStream->inValue());
+    deltaStream->add(kStream, record(wire::kOpBlobData, 300));
+    EXPECT_TRUE(deltaStream->inValue());
+    deltaStream->add(kStream, record(wire::kFirstGlOpcode, 3));
+    EXPECT_FALSE(deltaStream->inValue());
 }
 
 // Plain bytes are borrowed while their packet exists. The batch may be taken after the packet is gone.
 TEST(DeltaStream, keepsDataAfterThePacketIsGone) {
-    auto economy = smallEconomy();
-    ASSERT_NE(economy, nullptr);
-    economy->holdNothing();
+    auto deltaStream = smallDeltaStream();
+    ASSERT_NE(deltaStream, nullptr);
+    deltaStream->holdNothing();
     std::vector<std::vector<std::byte>> sent, batches;
     const auto take = [&] {
-        auto batch = economy->take();
+        auto batch = deltaStream->take();
         ASSERT_TRUE(batch.ok());
         batches.emplace_back(batch->begin(), batch->end());
     };
-    economy->sendBy(take);
+    deltaStream->sendBy(take);
     uint32_t number = 0;
     // Short packets with new data below and above the size of a batch, and a long one that starts the next batch.
     for (const size_t records : {2000, 10, 500, 30'000, 3000, 500}) {
@@ -87,13 +87,13 @@ TEST(DeltaStream, keepsDataAfterThePacketIsGone) {
             packet.insert(packet.end(), one.begin(), one.end());
         }
         sent.push_back(packet);
-        economy->add(kStream, packet);
+        deltaStream->add(kStream, packet);
         std::ranges::fill(packet, std::byte{0x55});
     }
-    if (!economy->empty()) take();
+    if (!deltaStream->empty()) take();
     EXPECT_GE(batches.size(), 2u);
     delta::BatchDecoder decoder;
-    delta::DeltaDecoder records(economy->limits());
+    delta::DeltaDecoder records(deltaStream->limits());
     size_t got = 0;
     for (const auto& batch : batches) {
         delta::BatchHeadReader head;

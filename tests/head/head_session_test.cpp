@@ -26,7 +26,7 @@ TEST(HeadSession, announcesCommonFeaturesOfAllNodes) {
     SessionHarness head(3);
     head.config.latency = 2;
     head.config.verifyEvery = 5;
-    head.config.policy = CapturePolicy::Full;
+    head.config.localRendering = LocalRendering::On;
     head.start();
     const auto ready = head.waitFor("ready");
     EXPECT_EQ(ready["nodes"].size(), 3u);
@@ -40,7 +40,7 @@ TEST(HeadSession, announcesCommonFeaturesOfAllNodes) {
     EXPECT_EQ(program.welcome().nodeCount, 3u);
     EXPECT_EQ(program.welcome().latency, 2u);
     EXPECT_EQ(program.welcome().verifyEvery, 5u);
-    EXPECT_EQ(program.welcome().policy, capture::kPolicyFull);
+    EXPECT_EQ(program.welcome().localRendering, capture::kLocalRenderingOn);
     EXPECT_EQ(program.welcome().nodeGlVersion, 40u);
     EXPECT_EQ(program.text(), "GL_COMMON");
     head.finish();

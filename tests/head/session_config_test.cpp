@@ -18,7 +18,7 @@ TEST(SessionConfig, roundTripsEveryField) {
     c.remoteMural = "/opt/mural";
     c.tiling = Tiling::Lean;
     c.display = Display::App;
-    c.policy = CapturePolicy::Full;
+    c.localRendering = LocalRendering::On;
     c.glBackend = "osmesa";
     c.latency = 0;
     c.verifyEvery = 4;
@@ -114,7 +114,7 @@ TEST(SessionConfig, namesTheFieldInErrors) {
         {R"({"kernelWidth":-1})", "kernelWidth"},
         {R"({"period":"2"})", "period"},
         {R"({"eyeBase":"wide"})", "eyeBase"},
-        {R"({"frusta":"cave"})", "auto program room"},
+        {R"({"projection":"cave"})", "auto program room"},
         {R"({"columns":2.5})", "columns"},
         {R"({"columns":4294967296})", "columns"},
         {R"({"frames":18446744073709551615})", "frames"},

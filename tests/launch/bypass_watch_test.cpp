@@ -24,7 +24,7 @@ TEST_F(Bypass, aLibraryOfTheProgramsOwnIsNamed) {
     const std::string own = library("libGL.so.1", {"libglapi.so.0"});
     const std::string line = describeBypass({{"/opt/app/bin/app", {library("libX11.so.6", {}), own}}});
     EXPECT_NE(line.find("app draws by " + own), std::string::npos) << line;
-    EXPECT_NE(line.find("--front preload"), std::string::npos) << line;
+    EXPECT_NE(line.find("--capture-via preload"), std::string::npos) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 

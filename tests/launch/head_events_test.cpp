@@ -59,13 +59,14 @@ TEST(Report, saysWhatWasNotVerified) {
 TEST(Report, saysWhatTheNodesWereSpared) {
     const HeadEvent e = event(
         R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,)"
-        R"("economy":{"records":1000,"rawBytes":50000,"stagedBytes":3000,"wireBytes":1200,"storeHits":90,"newPages":10,"encodeSeconds":0.0003,"heldRecords":7,"leftOutRecords":5,"leftOutBytes":4096}})");
+        R"("delta":{"records":1000,"rawBytes":50000,"stagedBytes":3000,"wireBytes":1200,"pageHits":90,"newPages":10,"encodeSeconds":0.0003,"deferredRecords":7,"droppedRecords":5,"droppedBytes":4096}})");
     ASSERT_EQ(reportLines(e.report).size(), 3u);
     EXPECT_EQ(reportLines(e.report)[2],
-              "held back: 7 records waited for their first use; 5 of 4.1 kB never went, as nobody needed them");
-    EXPECT_EQ(reportLines(e.report)[1], "economy: of 5.0 kB per frame 300 B were new to the nodes, 120 B compressed; "
-                                        "90 of 100 pages they had; packing took 30 us per frame, 300 ns per call");
-    EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"economy":null})").report).size(), 1u);
+              "filter: 7 records deferred until first use; 5 unused records dropped (4.1 kB)");
+    EXPECT_EQ(reportLines(e.report)[1],
+              "delta coding: 5.0 kB per frame, 300 B of it new to the nodes, 120 B compressed; "
+              "90 of 100 pages were cached; encoding took 30 us per frame, 300 ns per call");
+    EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"delta":null})").report).size(), 1u);
 }
 
 TEST(Report, saysHowTilesWereTaken) {

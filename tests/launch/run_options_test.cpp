@@ -62,18 +62,18 @@ TEST(RunOptions, readEveryOption) {
         a.save = "90,1,30,30";
         a.display = "windows";
         a.tiling = "lean";
-        a.policy = "full";
+        a.localRendering = "on";
         a.gl = "osmesa";
         a.latency = "0";
-        a.front = "preload";
+        a.captureVia = "preload";
         a.verify = "5";
         a.fullScreen = true;
         a.position = "-10,20";
         a.noPlacement = true;
         a.launch = "rsh";
         a.remoteMural = "/opt/mural";
-        a.economy = "off";
-        a.store = "64MiB";
+        a.delta = "off";
+        a.cacheSize = "64MiB";
     });
     const SessionConfig& c = o.config;
     EXPECT_EQ(c.columns, 7);
@@ -87,7 +87,7 @@ TEST(RunOptions, readEveryOption) {
     EXPECT_EQ(c.saveFrames, (std::vector<int64_t>{1, 30, 90}));
     EXPECT_EQ(c.display, Display::Windows);
     EXPECT_EQ(c.tiling, Tiling::Lean);
-    EXPECT_EQ(c.policy, CapturePolicy::Full);
+    EXPECT_EQ(c.localRendering, LocalRendering::On);
     EXPECT_EQ(c.glBackend, "osmesa");
     EXPECT_EQ(c.latency, 0);
     EXPECT_EQ(c.verifyEvery, 5);
@@ -97,9 +97,9 @@ TEST(RunOptions, readEveryOption) {
     EXPECT_FALSE(c.placeThreads);
     EXPECT_EQ(c.launchCommand, "rsh");
     EXPECT_EQ(c.remoteMural, "/opt/mural");
-    EXPECT_EQ(c.economy, Economy::Off);
-    EXPECT_EQ(c.storeBytes, 64 << 20);
-    EXPECT_EQ(o.front, FrontChoice::Preload);
+    EXPECT_EQ(c.delta, DeltaMode::Off);
+    EXPECT_EQ(c.cacheBytes, 64 << 20);
+    EXPECT_EQ(o.captureVia, EntryChoice::Preload);
 }
 
 TEST(RunOptions, giveNodesOneTileEachByDefault) {
@@ -127,18 +127,18 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValue) {
     EXPECT_NE(refusal([](RunArguments& a) { a.latency = "-1"; }).find("--latency"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.verify = "0"; }).find("--verify"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.gl = "vulkan"; }).find("auto, egl, osmesa, glx"), std::string::npos);
-    EXPECT_NE(refusal([](RunArguments& a) { a.front = "both"; }).find("auto, glvnd, preload"), std::string::npos);
-    EXPECT_NE(refusal([](RunArguments& a) { a.economy = "yes"; }).find("auto, on, off"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.captureVia = "both"; }).find("auto, glvnd, preload"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.delta = "yes"; }).find("auto, on, off"), std::string::npos);
     for (const char* bad : {"", "GiB", "1GB", "-1MiB", "1023KiB", "1025GiB", "9223372036854775807GiB", "1 GiB"})
-        EXPECT_NE(refusal([&](RunArguments& a) { a.store = bad; }).find("--store"), std::string::npos) << bad;
-    EXPECT_EQ(accepted([](RunArguments& a) { a.store = "1048576"; }).config.storeBytes, 1 << 20);
+        EXPECT_NE(refusal([&](RunArguments& a) { a.cacheSize = bad; }).find("--cache-size"), std::string::npos) << bad;
+    EXPECT_EQ(accepted([](RunArguments& a) { a.cacheSize = "1048576"; }).config.cacheBytes, 1 << 20);
     EXPECT_NE(refusal([](RunArguments& a) { a.position = "1"; }).find("--position"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "h1,-oProxyCommand=x"; }).find("--nodes"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.nodes = "3"; }).find("--local-nodes"), std::string::npos)
         << "a number is hardly a host";
     EXPECT_NE(refusal([](RunArguments& a) {
-                  a.nodes = "h1,h2", a.leastNodes = "3";
-              }).find("--least-nodes \"3\": must be at most 2"),
+                  a.nodes = "h1,h2", a.minNodes = "3";
+              }).find("--min-nodes \"3\": must be at most 2"),
               std::string::npos);
 }
 
@@ -241,10 +241,10 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
             a.stereo = "left";
             a.focus = bad;
         });
-    names("--frusta is for a configuration file", [](RunArguments& a) { a.frusta = "room"; });
-    names("--frusta", [](RunArguments& a) {
+    names("--projection is for a configuration file", [](RunArguments& a) { a.projection = "room"; });
+    names("--projection", [](RunArguments& a) {
         a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc";
-        a.frusta = "cave";
+        a.projection = "cave";
     });
     names("--model-unit", [](RunArguments& a) {
         a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc";

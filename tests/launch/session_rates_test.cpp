@@ -71,28 +71,21 @@ TEST(SessionRates, areDifferencesOfTwoStates) {
 
 TEST(SessionRates, includeDeltaCoding) {
     const auto with = [](Json session, int frames) {
-        session["economy"] = {{"records", 100 * frames},
-                              {"rawBytes", 5000 * frames},
-                              {"stagedBytes", 300 * frames},
-                              {"wireBytes", 120 * frames},
-                              {"storeHits", 9 * frames},
-                              {"newPages", frames},
-                              {"patches", 2 * frames},
-                              {"encodeSeconds", 3e-5 * frames},
-                              {"programBytes", 9000 * frames},
-                              {"heldRecords", 4},
-                              {"heldBytes", 2000},
-                              {"leftOutRecords", 2 * frames},
-                              {"leftOutBytes", 4000 * frames}};
+        session["delta"] = {
+            {"records", 100 * frames},      {"rawBytes", 5000 * frames},      {"stagedBytes", 300 * frames},
+            {"wireBytes", 120 * frames},    {"pageHits", 9 * frames},         {"newPages", frames},
+            {"patches", 2 * frames},        {"encodeSeconds", 3e-5 * frames}, {"programBytes", 9000 * frames},
+            {"deferredRecords", 4},         {"deferredBytes", 2000},          {"droppedRecords", 2 * frames},
+            {"droppedBytes", 4000 * frames}};
         return session;
     };
     const auto both =
         withRates({with(look(10, 100, 1000, 5000, 4, 1.0), 100)}, {with(look(12, 150, 2000, 105000, 29, 2.5), 150)});
-    EXPECT_DOUBLE_EQ(both[0]["economy"]["recent"]["wireBytesPerFrame"].get<double>(), 120);
-    EXPECT_EQ(statLines(both[0])[5], "  economy  5.0 kB per frame, 300 B of it new to the nodes, 120 B compressed; 9.0 "
-                                     "of 10.0 pages per frame they had, packing 30 us");
+    EXPECT_DOUBLE_EQ(both[0]["delta"]["recent"]["wireBytesPerFrame"].get<double>(), 120);
+    EXPECT_EQ(statLines(both[0])[5], "  delta    5.0 kB per frame, 300 B of it new to the nodes, 120 B compressed; 9.0 "
+                                     "of 10.0 pages per frame cached, encoding 30 us");
     EXPECT_EQ(statLines(both[0])[6],
-              "           of 9.0 kB per frame 4.0 kB were left out (2.0 records); 2.0 kB held back now");
+              "  filter   9.0 kB per frame, 4.0 kB of it dropped (2.0 records); 2.0 kB deferred now");
 }
 
 TEST(SessionRates, includeTransferredPictures) {

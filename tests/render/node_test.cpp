@@ -103,8 +103,8 @@ INSTANTIATE_TEST_SUITE_P(Builds, ForeignBuild,
 TEST_F(NodeTest, endsWithOneLineAfterADamagedBatch) {
     NodeSetup setup;
     setup.build = streamBuild();
-    setup.economy = true;
-    setup.storeBytes = 1 << 20;
+    setup.delta = true;
+    setup.cacheBytes = 1 << 20;
     sendSetup(setup);
     const std::vector<std::byte> batch{std::byte{2 << 1 | 1}, std::byte{0xff}, std::byte{0xff}};
     (void)head_->write(batch, Deadline::inMs(kAnswerMs));

@@ -1,5 +1,5 @@
 // Bytes per frame of a trace, with Mural's delta coding and with competitors; one line of JSON. Run by
-// tools/bench/economy.
+// tools/bench/delta.
 //
 //   stream_sizes FILE.mural [WARM_FRAMES]     the first frames are start-up and reported separately
 //
@@ -14,7 +14,7 @@
 
 #include "common/base/clock.hpp"
 #include "common/memory/malloc_tuning.hpp"
-#include "tools/bench/stream/ways.hpp"
+#include "tools/bench/stream/stream_coding.hpp"
 
 using namespace mural;
 using namespace mural::bench;
@@ -52,17 +52,17 @@ struct Frames {
     uint64_t startRaw = 0, raw = 0;
 };
 
-Result<std::unique_ptr<Way>> makeWay(size_t number) {
+Result<std::unique_ptr<StreamCoding>> makeCoding(size_t number) {
     switch (number) {
-    case 0: return sentWay(kStoreBytes);
-    case 1: return zstdWay(kZstdLevel);
-    case 2: return differenceWay();
-    default: return allPackedWay(kStoreBytes);
+    case 0: return filteredDeltaCoding(kStoreBytes);
+    case 1: return zstdCoding(kZstdLevel);
+    case 2: return differenceCoding();
+    default: return unfilteredDeltaCoding(kStoreBytes);
     }
 }
-constexpr size_t kWays = 4;
+constexpr size_t kCodings = 4;
 
-Result<Counted> run(Way& way, const char* path, int64_t warm, Frames& frames) {
+Result<Counted> run(StreamCoding& coding, const char* path, int64_t warm, Frames& frames) {
     Counted counted;
     std::string wrong;
     frames = {};
@@ -70,31 +70,31 @@ Result<Counted> run(Way& way, const char* path, int64_t warm, Frames& frames) {
     FrameReader to;
     to.packet = [&](const StreamPacket& p) {
         frameRaw += p.payload.size();
-        way.packet(p);
+        coding.packet(p);
     };
     to.ended = [&](int64_t frame) {
         const bool start = frame <= warm;
         (start ? frames.startRaw : frames.raw) += std::exchange(frameRaw, 0);
         ++(start ? frames.start : frames.counted);
-        auto bytes = way.frameEnds();
+        auto bytes = coding.frameEnds();
         if (!bytes)
             wrong = "frame " + std::to_string(frame) + ": " + bytes.error().message;
         else
             (start ? counted.startBytes : counted.bytes) += static_cast<double>(*bytes);
-        if (start) counted.startCpuNs = static_cast<double>(way.cpuNs());
+        if (start) counted.startCpuNs = static_cast<double>(coding.cpuNs());
     };
     if (auto read = readFrames(path, to); !read) return read.error();
-    counted.cpuNs = static_cast<double>(way.cpuNs()) - counted.startCpuNs;
+    counted.cpuNs = static_cast<double>(coding.cpuNs()) - counted.startCpuNs;
     int64_t shown = 0;
     FrameReader again;
     again.packet = [&](const StreamPacket& p) {
         if (!wrong.empty() || shown >= frames.start + frames.counted) return; // nothing is sent after the last frame
-        if (auto same = way.comesOut(p); !same)
+        if (auto same = coding.comesOut(p); !same)
             wrong = "frame " + std::to_string(shown + 1) + ": " + same.error().message;
     };
     again.ended = [&](int64_t frame) { shown = frame; };
     if (auto read = readFrames(path, again); !read) return read.error();
-    if (!wrong.empty()) return Error{way.name() + ", " + wrong};
+    if (!wrong.empty()) return Error{coding.name() + ", " + wrong};
     return counted;
 }
 
@@ -120,17 +120,17 @@ int main(int argc, char** argv) {
         return fail("give a recording that mural run --record has made, and how many frames are start-up");
     const int64_t warm = argc > 2 ? std::strtoll(argv[2], nullptr, 10) : 10;
     Frames frames;
-    std::vector<std::string> names(kWays);
-    std::vector<std::vector<Counted>> all(kWays);
+    std::vector<std::string> names(kCodings);
+    std::vector<std::vector<Counted>> all(kCodings);
     const Deadline longEnough = Deadline::inMs(kLongEnoughMs);
     for (int round = 0; round < kMinRounds || (round < kMaxRounds && !longEnough.passed()); ++round)
-        for (size_t i = 0; i < kWays; ++i) {
+        for (size_t i = 0; i < kCodings; ++i) {
             haveMemory();
-            auto way = makeWay(i);
-            if (!way) return fail(way.error().message);
-            auto counted = run(**way, argv[1], warm, frames);
+            auto coding = makeCoding(i);
+            if (!coding) return fail(coding.error().message);
+            auto counted = run(**coding, argv[1], warm, frames);
             if (!counted) return fail(counted.error().message);
-            names[i] = (*way)->name();
+            names[i] = (*coding)->name();
             all[i].push_back(*counted);
         }
     if (frames.counted == 0)
@@ -144,12 +144,12 @@ int main(int argc, char** argv) {
     report["startFrames"] = frames.start;
     report["rawBytesPerFrame"] = static_cast<double>(frames.raw) / count;
     report["startRawBytes"] = frames.startRaw;
-    for (size_t i = 0; i < kWays; ++i) {
-        nlohmann::json& way = report["ways"][names[i]];
-        way["bytesPerFrame"] = median(all[i], &Counted::bytes) / count;
-        way["startBytes"] = median(all[i], &Counted::startBytes);
-        way["startCpuUs"] = median(all[i], &Counted::startCpuNs) / 1000;
-        way["cpuUsPerFrame"] = median(all[i], &Counted::cpuNs) / 1000 / count;
+    for (size_t i = 0; i < kCodings; ++i) {
+        nlohmann::json& coding = report["codings"][names[i]];
+        coding["bytesPerFrame"] = median(all[i], &Counted::bytes) / count;
+        coding["startBytes"] = median(all[i], &Counted::startBytes);
+        coding["startCpuUs"] = median(all[i], &Counted::startCpuNs) / 1000;
+        coding["cpuUsPerFrame"] = median(all[i], &Counted::cpuNs) / 1000 / count;
     }
     std::cout << report.dump() << '\n';
     return 0;

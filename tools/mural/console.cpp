@@ -87,22 +87,22 @@ std::vector<std::string> reportLines(const SessionReport& r) {
             fmt::format(" ({:.2f} per frame: {})", static_cast<double>(r.roundTrips) / static_cast<double>(r.frames),
                         roundTripText(r.roundTripsBy));
     lines.push_back(first);
-    if (r.economy.on && r.frames > 0) {
-        const EconomyReport& e = r.economy;
+    if (r.delta.on && r.frames > 0) {
+        const DeltaReport& e = r.delta;
         const auto frames = static_cast<double>(r.frames);
-        lines.push_back(fmt::format("economy: of {} per frame {} were new to the nodes, {} compressed; {:.0f} of "
-                                    "{:.0f} pages they had; packing took {:.0f} us per frame, {:.0f} ns per call",
+        lines.push_back(fmt::format("delta coding: {} per frame, {} of it new to the nodes, {} compressed; {:.0f} of "
+                                    "{:.0f} pages were cached; encoding took {:.0f} us per frame, {:.0f} ns per call",
                                     sizeText(e.rawBytes / frames), sizeText(e.stagedBytes / frames),
-                                    sizeText(e.wireBytes / frames), e.storeHits, e.storeHits + e.newPages,
+                                    sizeText(e.wireBytes / frames), e.pageHits, e.pageHits + e.newPages,
                                     1e6 * e.encodeSeconds / frames,
                                     e.records > 0 ? 1e9 * e.encodeSeconds / e.records : 0.0));
-        if (e.heldRecords + e.leftOutRecords > 0)
-            lines.push_back(fmt::format("held back: {:.0f} record{} waited for {} first use", e.heldRecords,
-                                        plural(static_cast<int64_t>(e.heldRecords)),
-                                        e.heldRecords == 1 ? "its" : "their") +
-                            (e.leftOutRecords > 0 ? fmt::format("; {:.0f} of {} never went, as nobody needed them",
-                                                                e.leftOutRecords, sizeText(e.leftOutBytes))
-                                                  : ""));
+        if (e.deferredRecords + e.droppedRecords > 0)
+            lines.push_back(fmt::format("filter: {:.0f} record{} deferred until first use", e.deferredRecords,
+                                        plural(static_cast<int64_t>(e.deferredRecords))) +
+                            (e.droppedRecords > 0
+                                 ? fmt::format("; {:.0f} unused record{} dropped ({})", e.droppedRecords,
+                                               plural(static_cast<int64_t>(e.droppedRecords)), sizeText(e.droppedBytes))
+                                 : ""));
     }
     double packed = 0, raw = 0;
     for (const NodeReport& n : r.nodes) packed += n.pictureBytes, raw += n.pictureRawBytes;

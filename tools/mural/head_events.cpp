@@ -39,19 +39,19 @@ HeadEvent::Kind kindOf(const std::string& name) {
     return Kind::Unknown;
 }
 
-EconomyReport economyFrom(const Json& j) {
+DeltaReport deltaFrom(const Json& j) {
     if (!j.is_object()) return {};
     return {true,
             real(j, "records"),
             real(j, "rawBytes"),
             real(j, "stagedBytes"),
             real(j, "wireBytes"),
-            real(j, "storeHits"),
+            real(j, "pageHits"),
             real(j, "newPages"),
             real(j, "encodeSeconds"),
-            real(j, "heldRecords"),
-            real(j, "leftOutRecords"),
-            real(j, "leftOutBytes")};
+            real(j, "deferredRecords"),
+            real(j, "droppedRecords"),
+            real(j, "droppedBytes")};
 }
 
 std::vector<QueueReport> queuesFrom(const Json& list) {
@@ -113,7 +113,7 @@ SessionReport reportFrom(const Json& j) {
     r.recording = text(j, "recording");
     r.recordedFrames = whole(j, "recordedFrames");
     r.recordedBytes = whole(j, "recordedBytes");
-    if (const auto economy = j.find("economy"); economy != j.end()) r.economy = economyFrom(*economy);
+    if (const auto delta = j.find("delta"); delta != j.end()) r.delta = deltaFrom(*delta);
     if (const auto queues = j.find("queues"); queues != j.end()) r.queues = queuesFrom(*queues);
     if (const auto nodes = j.find("nodes"); nodes != j.end() && nodes->is_array()) {
         for (const Json& n : *nodes) {

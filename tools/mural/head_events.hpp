@@ -29,16 +29,16 @@ struct NodeReport {
 };
 
 // Savings by the filter and delta coding.
-struct EconomyReport {
+struct DeltaReport {
     bool on = false;
     double records = 0;
     double rawBytes = 0;
     double stagedBytes = 0; // size after replacement by references
     double wireBytes = 0;   // size after compression
-    double storeHits = 0, newPages = 0;
+    double pageHits = 0, newPages = 0;
     double encodeSeconds = 0;
-    double heldRecords = 0;                      // records deferred until their first use
-    double leftOutRecords = 0, leftOutBytes = 0; // deferred records that were never needed
+    double deferredRecords = 0;                  // records deferred until their first use
+    double droppedRecords = 0, droppedBytes = 0; // deferred records that were never needed
 };
 
 // Numbers of one tile or chunk queue.
@@ -71,7 +71,7 @@ struct SessionReport {
     std::string recording; // path; empty: no recording
     int64_t recordedFrames = 0;
     int64_t recordedBytes = 0;
-    EconomyReport economy;
+    DeltaReport delta;
     std::vector<QueueReport> queues;
     std::vector<NodeReport> nodes;
     std::string json; // the complete report of the head

@@ -30,14 +30,14 @@ int64_t (*clockFor(size_t sizeBytes))() { return sizeBytes >= kLongBytes ? threa
 Result<std::unique_ptr<DeltaStream>> DeltaStream::open(const delta::Limits& limits) {
     auto coder = freshCoder(limits);
     if (!coder) return coder.error();
-    std::unique_ptr<DeltaStream> economy(new DeltaStream(limits, std::move(*coder)));
+    std::unique_ptr<DeltaStream> deltaStream(new DeltaStream(limits, std::move(*coder)));
     haveKeptMemory(kFirstBytes);
-    return economy;
+    return deltaStream;
 }
 
 DeltaStream::DeltaStream(const delta::Limits& limits, std::unique_ptr<Coder> coder)
     : limits_(limits),
-      holder_(std::min(kMaxHeldBytes, limits.storeBytes / 4),
+      holder_(std::min(kMaxHeldBytes, limits.cacheBytes / 4),
               [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
                   pack(stream, payload, walked);
               }),
@@ -49,15 +49,15 @@ DeltaStream::Coder::Coder(const delta::Limits& limits)
 Result<std::unique_ptr<DeltaStream::Coder>> DeltaStream::freshCoder(const delta::Limits& limits) {
     auto coder = std::make_unique<Coder>(limits);
     if (!coder->packer.ready())
-        return Error{"no memory for a store of " + std::to_string(limits.storeBytes >> 20) +
-                     " MiB; give a smaller one by --store"};
+        return Error{"no memory for a delta cache of " + std::to_string(limits.cacheBytes >> 20) +
+                     " MiB; choose a smaller --cache-size"};
     return coder;
 }
 
 std::unique_ptr<DeltaStream::Coder> DeltaStream::beginAnew(std::unique_ptr<Coder> fresh) {
     const delta::DeltaEncoderCounts& c = coder_->packer.counts();
-    before_ = {before_.packets + c.packets,         before_.records + c.records,     before_.rawBytes + c.rawBytes,
-               before_.stagedBytes + c.stagedBytes, before_.storeHits + c.storeHits, before_.newPages + c.newPages,
+    before_ = {before_.packets + c.packets,         before_.records + c.records,   before_.rawBytes + c.rawBytes,
+               before_.stagedBytes + c.stagedBytes, before_.pageHits + c.pageHits, before_.newPages + c.newPages,
                before_.patches + c.patches};
     return std::exchange(coder_, std::move(fresh));
 }
@@ -120,7 +120,7 @@ void DeltaStream::pack(uint32_t stream, std::span<const std::byte> payload, cons
 
 // Returns whether references already replace most bytes. Another coding then gains little, and loses dictionary space.
 bool DeltaStream::isMostLeftOut() const {
-    return measured_.rawBytes >= kWorthAWayBytes && measured_.leftOutBytes > measured_.rawBytes / 2;
+    return measured_.rawBytes >= kWorthAWayBytes && measured_.droppedBytes > measured_.rawBytes / 2;
 }
 
 bool DeltaStream::full() const {
@@ -134,7 +134,7 @@ Result<std::span<const std::byte>> DeltaStream::take() {
     const int64_t beganNs = timed ? now() : 0;
     measured_.rawBytes += packer.rawBytes();
     measured_.pageBytes += packer.pageBytes();
-    measured_.leftOutBytes += packer.leftOutBytes();
+    measured_.droppedBytes += packer.droppedBytes();
     auto batch = coder_->encoder.encode(packer.finish(), link_.nsPerByte(), packer.plain());
     packer.clear();
     packets_ = 0;
@@ -177,7 +177,7 @@ void DeltaStream::publishCounts() {
     set(published_.records, b.records + c.records);
     set(published_.rawBytes, b.rawBytes + c.rawBytes);
     set(published_.stagedBytes, b.stagedBytes + c.stagedBytes);
-    set(published_.storeHits, b.storeHits + c.storeHits);
+    set(published_.pageHits, b.pageHits + c.pageHits);
     set(published_.newPages, b.newPages + c.newPages);
     set(published_.patches, b.patches + c.patches);
     set(published_.wireBytes, wireBytes_);
@@ -185,22 +185,22 @@ void DeltaStream::publishCounts() {
     const filter::CommandFilterCounts& h = holder_.counts();
     set(published_.holdInBytes, h.inBytes);
     set(published_.holdOutBytes, h.outBytes);
-    set(published_.heldRecords, h.heldRecords);
-    set(published_.leftOutRecords, h.leftOutRecords);
-    set(published_.leftOutBytes, h.leftOutBytes);
-    set(published_.heldBytes, h.heldBytes);
+    set(published_.deferredRecords, h.deferredRecords);
+    set(published_.droppedRecords, h.droppedRecords);
+    set(published_.droppedBytes, h.droppedBytes);
+    set(published_.deferredBytes, h.deferredBytes);
 }
 
 DeltaCounts DeltaStream::counts() const {
     const auto of = [](const std::atomic<uint64_t>& from) { return from.load(std::memory_order_relaxed); };
     DeltaCounts c;
     c.on = true;
-    c.packer = {of(published_.packets),   of(published_.records),  of(published_.rawBytes), of(published_.stagedBytes),
-                of(published_.storeHits), of(published_.newPages), of(published_.patches)};
+    c.packer = {of(published_.packets),  of(published_.records),  of(published_.rawBytes), of(published_.stagedBytes),
+                of(published_.pageHits), of(published_.newPages), of(published_.patches)};
     c.wireBytes = of(published_.wireBytes);
     c.encodeNs = of(published_.encodeNs);
-    c.holder = {of(published_.holdInBytes),    of(published_.holdOutBytes), of(published_.heldRecords),
-                of(published_.leftOutRecords), of(published_.leftOutBytes), of(published_.heldBytes)};
+    c.holder = {of(published_.holdInBytes),    of(published_.holdOutBytes), of(published_.deferredRecords),
+                of(published_.droppedRecords), of(published_.droppedBytes), of(published_.deferredBytes)};
     return c;
 }
 

@@ -96,14 +96,14 @@ private:
     MedianTimer takeNs_;          // the same, per batch
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
-        uint64_t rawBytes = 0, pageBytes = 0, leftOutBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0,
+        uint64_t rawBytes = 0, pageBytes = 0, droppedBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0,
                  holdNs = 0;
     } measured_; // since the last choice of the coding, about one frame
     struct Published {
-        std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, storeHits{0}, newPages{0},
-            patches{0}, wireBytes{0}, encodeNs{0};
-        std::atomic<uint64_t> holdInBytes{0}, holdOutBytes{0}, heldRecords{0}, leftOutRecords{0}, leftOutBytes{0},
-            heldBytes{0};
+        std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, pageHits{0}, newPages{0}, patches{0},
+            wireBytes{0}, encodeNs{0};
+        std::atomic<uint64_t> holdInBytes{0}, holdOutBytes{0}, deferredRecords{0}, droppedRecords{0}, droppedBytes{0},
+            deferredBytes{0};
     } published_;
 };
 

@@ -62,7 +62,7 @@ Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(ui
     // the new dictionary is constructed, and the old one destroyed, without the lock
     std::unique_ptr<DeltaStream::Coder> history;
     if (to.joinsBatches()) {
-        auto fresh = DeltaStream::freshCoder(economy_->limits());
+        auto fresh = DeltaStream::freshCoder(deltaStream_->limits());
         if (!fresh) return fresh.error();
         history = std::move(*fresh);
     }
@@ -79,9 +79,9 @@ Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(ui
     if (history) {
         // The last batch of the old dictionary announces the new one. This node receives batches from here on.
         const auto anew = commandBytes(wire::HeadCommand::ResetDictionary, {});
-        economy_->add(wire::streamOf(0, 0), anew);
+        deltaStream_->add(wire::streamOf(0, 0), anew);
         sendBatchLocked();
-        history = economy_->beginAnew(std::move(history));
+        history = deltaStream_->beginAnew(std::move(history));
         const wire::PacketHeader header{static_cast<uint32_t>(anew.size()), wire::streamOf(0, 0)};
         sendTo(to, std::as_bytes(std::span(&header, 1)), anew);
         to.setInBatches(true);

@@ -17,9 +17,9 @@ void StreamBroadcaster::add(std::unique_ptr<NodeConnection> link) {
     owned_.push_back(std::move(link));
 }
 
-void StreamBroadcaster::economizeBy(std::unique_ptr<DeltaStream> economy) {
-    economy_ = std::move(economy);
-    economy_->sendBy([this] {
+void StreamBroadcaster::setDeltaStream(std::unique_ptr<DeltaStream> deltaStream) {
+    deltaStream_ = std::move(deltaStream);
+    deltaStream_->sendBy([this] {
         sendBatchLocked();
         flushLinksLocked();
     });
@@ -70,14 +70,14 @@ bool StreamBroadcaster::broadcast(wire::HeadCommand command, Deadline deadline) 
 
 bool StreamBroadcaster::sendLocked(uint32_t stream, std::span<const std::byte> payload) {
     const bool plain = sendPacketLocked(stream, payload);
-    if (!economy_) return plain;
+    if (!deltaStream_) return plain;
     const bool batched =
         std::ranges::any_of(links_, [](const NodeConnection* link) { return link->inBatches() && link->alive(); });
     if (!batched) {
-        economy_->miss(stream, payload); // its state must still follow the programs
+        deltaStream_->miss(stream, payload); // its state must still follow the programs
         return plain;
     }
-    economy_->add(stream, payload);
+    deltaStream_->add(stream, payload);
     return true;
 }
 
@@ -102,13 +102,13 @@ bool StreamBroadcaster::sendToLinksLocked(std::span<const std::byte> header, std
     }
     if (byMulticast) multicastLocked(header, payload);
     sendingTo_ = kNobody;
-    if (inBatches || !economy_) bytesSent_.fetch_add(header.size() + payload.size(), std::memory_order_relaxed);
+    if (inBatches || !deltaStream_) bytesSent_.fetch_add(header.size() + payload.size(), std::memory_order_relaxed);
     return any;
 }
 
 void StreamBroadcaster::sendBatchLocked() {
-    if (!economy_ || economy_->empty()) return;
-    auto batch = economy_->take();
+    if (!deltaStream_ || deltaStream_->empty()) return;
+    auto batch = deltaStream_->take();
     if (!batch) {
         for (NodeConnection* link : links_)
             if (link->inBatches()) link->lose(batch.error().message);
@@ -116,7 +116,7 @@ void StreamBroadcaster::sendBatchLocked() {
     }
     const int64_t beganNs = monotonicNowNs();
     sendToLinksLocked(batch.value(), {}, true);
-    economy_->wrote(batch->size(), monotonicNowNs() - beganNs);
+    deltaStream_->wrote(batch->size(), monotonicNowNs() - beganNs);
 }
 
 void StreamBroadcaster::sendTo(NodeConnection& link, std::span<const std::byte> header,
@@ -167,7 +167,7 @@ void StreamBroadcaster::flush() {
 
 bool StreamBroadcaster::flushActionable() {
     const std::lock_guard lock(sendMutex_);
-    const bool stays = economy_ && !economy_->empty() && economy_->inValue();
+    const bool stays = deltaStream_ && !deltaStream_->empty() && deltaStream_->inValue();
     if (stays)
         flushLinksLocked();
     else

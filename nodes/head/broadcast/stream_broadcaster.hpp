@@ -31,8 +31,8 @@ public:
     // first broadcast.
     void setRecorder(trace::StreamRecorder* recorder) { recorder_ = recorder; }
     // Sets the encoder of batches. Call before the first broadcast.
-    void economizeBy(std::unique_ptr<DeltaStream> economy);
-    [[nodiscard]] DeltaCounts economyCounts() const { return economy_ ? economy_->counts() : DeltaCounts(); }
+    void setDeltaStream(std::unique_ptr<DeltaStream> deltaStream);
+    [[nodiscard]] DeltaCounts deltaCounts() const { return deltaStream_ ? deltaStream_->counts() : DeltaCounts(); }
     // Sets the rejoin log. Call before the first broadcast.
     void keepBy(std::unique_ptr<RejoinLog> kept) { kept_ = std::move(kept); }
     void startReading();
@@ -113,7 +113,7 @@ private:
     void keepLocked(uint32_t stream, std::span<const std::byte> payload);
 
     trace::StreamRecorder* recorder_ = nullptr; // null: no recording
-    std::unique_ptr<DeltaStream> economy_;      // null: no delta coding
+    std::unique_ptr<DeltaStream> deltaStream_;  // null: no delta coding
     std::unique_ptr<NodeMulticast> multicast_;  // null: each node has its own stream
     // for watch(): group members that still receive their packets on both transports
     std::vector<NodeMulticast::Change> comers_;

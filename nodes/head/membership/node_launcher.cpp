@@ -113,7 +113,7 @@ Result<bool> lookForConnection(LaunchedNode& node, NodeAcceptor& gate, Deadline 
 Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* gate, const LaunchOptions& options,
                               Deadline deadline, const std::function<bool()>& cancelled) {
     const auto all = static_cast<int>(nodes.size());
-    const int enough = options.leastNodes > 0 ? std::min(options.leastNodes, all) : all;
+    const int enough = options.minNodes > 0 ? std::min(options.minNodes, all) : all;
     std::optional<Deadline> late;
     while (true) {
         int come = 0, gone = 0;
@@ -126,9 +126,8 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
             come += node.connection ? 1 : 0;
             gone += node.absence.empty() ? 0 : 1;
             if (all - gone < enough)
-                return Error{
-                    nameOf(node.plan) + " " + node.absence +
-                    (enough < all ? "; fewer than --least-nodes " + std::to_string(enough) + " are left" : "")};
+                return Error{nameOf(node.plan) + " " + node.absence +
+                             (enough < all ? "; fewer than --min-nodes " + std::to_string(enough) + " are left" : "")};
             if (!node.absence.empty() && node.plan.pass.ranges > 1)
                 return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
         }

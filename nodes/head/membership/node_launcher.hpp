@@ -32,7 +32,7 @@ struct LaunchOptions {
     std::string executable;    // path of `mural` on this machine
     std::string remoteMural;   // path of `mural` on other hosts
     std::string launchCommand; // prefix that runs a command on a host
-    int leastNodes = 0;        // the session starts with this many nodes; others have lateMs to connect; 0: all nodes
+    int minNodes = 0;          // the session starts with this many nodes; others have lateMs to connect; 0: all nodes
     int64_t lateMs = 5'000;
 };
 

@@ -482,7 +482,7 @@ private:
         const config::ResolvedPipe& pipe = config_.pipeOf(config_.channels[at(c.channel)]);
         const config::ResolvedNode& machine = config_.nodes[at(pipe.node)];
         node.where = "local";
-        if (wishes_.here || machine.isApplication || machine.host.empty()) return;
+        if (wishes_.allLocal || machine.isApplication || machine.host.empty()) return;
         node.where = machine.host;
         node.reach = reachOf(machine.host, wishes_.ownHost);
     }
@@ -508,7 +508,7 @@ private:
         for (size_t a = 0; a < shows.size(); ++a)
             for (size_t b = 0; b < a; ++b) {
                 const bool sameChannel = channels_[node(*shows[a])] == channels_[node(*shows[b])];
-                if (sameChannel || (wishes_.here && !intersect(*shows[a]->area, *shows[b]->area).empty()))
+                if (sameChannel || (wishes_.allLocal && !intersect(*shows[a]->area, *shows[b]->area).empty()))
                     return headShowsIt();
             }
         for (NodePlan* n : shows) {
@@ -538,7 +538,7 @@ private:
         const config::ResolvedPipe& pipe = config_.pipes[at(window.pipe)];
         NodeWindow shown;
         shown.title = "Mural " + nameOf(channel, index);
-        if (wishes_.here) return shown;
+        if (wishes_.allLocal) return shown;
         const compound::DisplaySizes& sizes = input_.sizes;
         shown.asOnWall = false;
         shown.x = sizes.windows[at(channel.window)].x + sizes.channels[at(index)].x;
@@ -574,14 +574,16 @@ private:
 
     void lookIntoRoom() {
         const bool atAngles = standAtAngles();
-        inRoom_ = wishes_.frusta == Frusta::Room || (wishes_.frusta == Frusta::Auto && atAngles);
+        inRoom_ =
+            wishes_.projection == ProjectionChoice::Room || (wishes_.projection == ProjectionChoice::Auto && atAngles);
         if (inRoom_)
-            plan_.explain.push_back(std::string(atAngles ? "its screens stand at angles to each other: " : "") +
-                                    "each screen shows the scene from the observer's eyes (--frusta program: all of "
-                                    "them one flat picture)");
+            plan_.explain.push_back(
+                std::string(atAngles ? "its screens stand at angles to each other: " : "") +
+                "each screen shows the scene from the observer's eyes (--projection program: all of "
+                "them one flat picture)");
         else if (atAngles)
             plan_.explain.push_back("its screens stand at angles to each other; the program's picture is laid over "
-                                    "them as over a flat wall (--frusta program)");
+                                    "them as over a flat wall (--projection program)");
         if (!inRoom_) return;
         std::set<Index> behind;
         for (const Draw& d : draws_)

@@ -14,11 +14,11 @@ namespace mural {
 
 struct PlanOptions {
     std::string ownHost;
-    bool here = false;  // all nodes on this machine
-    std::string canvas; // name of the canvas to show; empty: all that show something
+    bool allLocal = false; // all nodes on this machine
+    std::string canvas;    // name of the canvas to show; empty: all that show something
     // names of the layouts to show; a canvas without any of them shows its first layout
     std::vector<std::string> layouts;
-    Frusta frusta = Frusta::Auto;
+    ProjectionChoice projection = ProjectionChoice::Auto;
     double modelUnit = 1; // units of the program per metre of the file
     int width = 0;        // of the program's picture in pixels; 0: as in the file
 };

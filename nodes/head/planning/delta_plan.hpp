@@ -1,4 +1,4 @@
-// Selects the nodes that receive a delta-coded stream (streamcodec/delta/), from the user's --economy. Pure.
+// Selects the nodes that receive a delta-coded stream (streamcodec/delta/), from the user's --delta. Pure.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ struct DeltaPlan {
 };
 
 // All nodes of the multicast group receive the same encoding.
-DeltaPlan planEconomy(const SessionConfig& config, const SessionPlan& plan,
-                      const std::function<bool(int node)>& byMulticast);
+DeltaPlan planDelta(const SessionConfig& config, const SessionPlan& plan,
+                    const std::function<bool(int node)>& byMulticast);
 
 } // namespace mural

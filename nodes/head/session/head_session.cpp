@@ -122,7 +122,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     terms.tries = config_.restartNodes;
     terms.readyPatienceMs = options_.readyPatienceMs;
     if (terms.tries > 0 && options_.startNode)
-        nodes_.keepBy(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.storeBytes)));
+        nodes_.keepBy(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes)));
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
     if (!sendsPictures_) return;
     PictureOutputConfig output;
@@ -445,7 +445,7 @@ SessionStatus HeadSession::status() {
     result.rows = config_.rows;
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
-    result.economy = nodes_.economyCounts();
+    result.delta = nodes_.deltaCounts();
     result.queues = queues();
     if (!result.queues.empty() && !result.queues.front().chunks && result.queues.front().columns > 0) {
         result.columns = result.queues.front().columns;
@@ -480,7 +480,7 @@ SessionNumbers HeadSession::numbers() {
     SessionNumbers result;
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
-    result.economy = nodes_.economyCounts();
+    result.delta = nodes_.deltaCounts();
     result.queues = queues();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();

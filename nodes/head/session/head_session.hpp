@@ -104,7 +104,7 @@ private:
 
     Result<void> bringUp();
     void openMulticast();
-    Result<void> openEconomy();
+    Result<void> openDeltaStream();
     void introduceNodes();
     NodeSetup setupFor(const NodePlan& plan);
     Result<void> awaitReady();
@@ -142,9 +142,9 @@ private:
     HeadOptions options_;
     const int nodeCount_;
     const bool sendsPictures_;
-    std::string placement_;   // placement of the head's threads
-    std::string economyLine_; // for --explain: nodes with delta coding
-    std::string streamLine_;  // for --explain: transport of the stream; empty: shared memory only
+    std::string placement_;  // placement of the head's threads
+    std::string deltaLine_;  // for --explain: nodes with delta coding
+    std::string streamLine_; // for --explain: transport of the stream; empty: shared memory only
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameTracker frames_;
@@ -165,7 +165,7 @@ private:
     std::atomic<bool> serving_{false};
     const std::map<int, std::string> absences_; // nodes absent at the start, with the reason
     std::set<int> multicastNodes_;              // nodes that receive the stream by multicast if it reaches them
-    std::set<int> economical_;                  // nodes with delta coding
+    std::set<int> deltaNodes_;                  // nodes with delta coding
     std::string exchangeSecret_; // in hex; for nodes that exchange parts of pictures or share a swap barrier
     ProgressMeter meter_;
     int64_t lastProgressNs_ = 0;

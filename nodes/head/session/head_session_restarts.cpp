@@ -34,8 +34,8 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
     hooks.introduce = [this](int node) { introduceAgain(node); };
     hooks.whyNever = [this](int) -> std::string {
         if (!nodes_.canJoin())
-            return "programs have sent more than the " + std::to_string(config_.storeBytes >> 20) +
-                   " MiB that are kept to start a node again; --store gives more";
+            return "programs have sent more than the " + std::to_string(config_.cacheBytes >> 20) +
+                   " MiB that are kept to start a node again; --cache-size gives more";
         return "";
     };
     // Only members know the state of time-multiplexed nodes and of moving areas.
@@ -75,7 +75,7 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     NodeEvents& events = *this; // a private base: make_unique could not convert
     auto link = std::make_unique<NodeConnection>(NodePlace{node, plan.where}, std::move(starting.node.connection),
                                                  std::move(starting.node.process), events);
-    link->setJoinsBatches(economical_.contains(node));
+    link->setJoinsBatches(deltaNodes_.contains(node));
     link->setJoinsGroup(multicastNodes_.contains(node));
     nodes_.replace(node, std::move(link));
     nodes_.link(node).unpackBy(plan.pictureCodec, plan.way);
@@ -85,7 +85,7 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     setup.life = life;
     setup.swapMembers = 0; // the other members of its swap barrier continue without it
     setup.skipsFrames = returns_->skipsFrames();
-    setup.economy = false; // its snapshot is not delta-coded; ResetDictionary starts the batches
+    setup.delta = false; // its snapshot is not delta-coded; ResetDictionary starts the batches
     nodes_.sendAlone(node, wire::HeadCommand::Setup, toJson(setup));
 }
 

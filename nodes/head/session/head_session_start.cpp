@@ -40,7 +40,7 @@ Result<void> HeadSession::bringUp() {
     for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.way);
     nodes_.startReading();
     openMulticast();
-    if (auto opened = openEconomy(); !opened) return opened;
+    if (auto opened = openDeltaStream(); !opened) return opened;
     if (std::ranges::any_of(plan_.nodes, [this](const NodePlan& n) {
             return n.pass.ranges > 1 || !swapMembersOf(config_, plan_, n).empty();
         })) {
@@ -70,8 +70,8 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
         setup.stream = nodes_.multicast()->invitation();
         setup.streamSecret = toHex(nodes_.multicast()->secret());
     }
-    setup.economy = nodes_.link(plan.node).inBatches();
-    setup.storeBytes = config_.storeBytes;
+    setup.delta = nodes_.link(plan.node).inBatches();
+    setup.cacheBytes = config_.cacheBytes;
     return setup;
 }
 
@@ -104,19 +104,19 @@ void HeadSession::openMulticast() {
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
 }
 
-Result<void> HeadSession::openEconomy() {
-    const DeltaPlan plan = planEconomy(config_, plan_, [this](int node) { return nodes_.link(node).byMulticast(); });
-    economyLine_ = plan.explain;
+Result<void> HeadSession::openDeltaStream() {
+    const DeltaPlan plan = planDelta(config_, plan_, [this](int node) { return nodes_.link(node).byMulticast(); });
+    deltaLine_ = plan.explain;
     if (plan.nodes.empty()) return {};
     delta::Limits limits;
-    limits.storeBytes = static_cast<uint64_t>(config_.storeBytes);
-    auto economy = DeltaStream::open(limits);
-    if (!economy) return economy.error();
+    limits.cacheBytes = static_cast<uint64_t>(config_.cacheBytes);
+    auto deltaStream = DeltaStream::open(limits);
+    if (!deltaStream) return deltaStream.error();
     if (const char* const plant = std::getenv("MURAL_PLANT"); plant != nullptr && std::string_view(plant) == "held")
-        (*economy)->losesWhatItHolds();
-    nodes_.economizeBy(std::move(*economy));
+        (*deltaStream)->losesWhatItHolds();
+    nodes_.setDeltaStream(std::move(*deltaStream));
     for (const int node : plan.nodes) nodes_.link(node).setInBatches(!absences_.contains(node));
-    economical_.insert(plan.nodes.begin(), plan.nodes.end());
+    deltaNodes_.insert(plan.nodes.begin(), plan.nodes.end());
     return {};
 }
 
@@ -171,7 +171,8 @@ Result<void> HeadSession::checkSize() {
 void HeadSession::openTables() {
     ProgramTerms terms;
     capture::Welcome& welcome = terms.welcome;
-    welcome.policy = config_.policy == CapturePolicy::Full ? capture::kPolicyFull : capture::kPolicyState;
+    welcome.localRendering =
+        config_.localRendering == LocalRendering::On ? capture::kLocalRenderingOn : capture::kLocalRenderingOff;
     welcome.latency = static_cast<uint32_t>(config_.latency);
     welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
     // A recording must play on any number of nodes. The program therefore fetches the pixels that it copies from a
@@ -237,7 +238,7 @@ std::vector<std::string> HeadSession::explainLines() {
                             std::to_string(node.node));
     lines.push_back(explainTiling(config_.tiling));
     if (!streamLine_.empty()) lines.push_back(streamLine_);
-    lines.push_back(economyLine_);
+    lines.push_back(deltaLine_);
     lines.push_back("threads of the head: " + placement_);
     const std::lock_guard lock(mutex_);
     for (const NodePlan& plan : plan_.nodes) {

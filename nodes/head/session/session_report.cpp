@@ -100,15 +100,21 @@ Json queuesJson(const std::vector<QueueTotals>& queues) {
     return list;
 }
 
-Json economyJson(const DeltaCounts& c) {
+Json deltaJson(const DeltaCounts& c) {
     if (!c.on) return nullptr;
-    return {{"records", c.packer.records},          {"rawBytes", c.packer.rawBytes},
-            {"stagedBytes", c.packer.stagedBytes},  {"wireBytes", c.wireBytes},
-            {"storeHits", c.packer.storeHits},      {"newPages", c.packer.newPages},
-            {"patches", c.packer.patches},          {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))},
-            {"programBytes", c.holder.inBytes},     {"heldRecords", c.holder.heldRecords},
-            {"heldBytes", c.holder.heldBytes},      {"leftOutRecords", c.holder.leftOutRecords},
-            {"leftOutBytes", c.holder.leftOutBytes}};
+    return {{"records", c.packer.records},
+            {"rawBytes", c.packer.rawBytes},
+            {"stagedBytes", c.packer.stagedBytes},
+            {"wireBytes", c.wireBytes},
+            {"pageHits", c.packer.pageHits},
+            {"newPages", c.packer.newPages},
+            {"patches", c.packer.patches},
+            {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))},
+            {"programBytes", c.holder.inBytes},
+            {"deferredRecords", c.holder.deferredRecords},
+            {"deferredBytes", c.holder.deferredBytes},
+            {"droppedRecords", c.holder.droppedRecords},
+            {"droppedBytes", c.holder.droppedBytes}};
 }
 
 Json reportOf(const SessionNumbers& n) {
@@ -140,7 +146,7 @@ Json reportOf(const SessionNumbers& n) {
         // Between the first and the last frame lie frames - 1 intervals.
         {"framesPerSecond", seconds > 0 ? static_cast<double>(frames - 1) / seconds : 0.0},
         {"bytesPerFrame", frames > 0 ? n.bytesSent / static_cast<uint64_t>(frames) : 0},
-        {"economy", economyJson(n.economy)},
+        {"delta", deltaJson(n.delta)},
         {"queues", queuesJson(n.queues)},
         {"calls", calls},
         {"roundTrips", n.programs.roundTrips},

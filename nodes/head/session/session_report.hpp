@@ -45,7 +45,7 @@ void readBye(const std::string& json, NodeTotals& totals);
 struct SessionNumbers {
     FrameTotals frames;
     uint64_t bytesSent = 0; // to each node
-    DeltaCounts economy;
+    DeltaCounts delta;
     std::vector<QueueTotals> queues;
     CaptureCounts programs;
     OutputTotals output;
@@ -60,7 +60,7 @@ struct SessionNumbers {
 nlohmann::json queuesJson(const std::vector<QueueTotals>& queues);
 
 // Returns {"records": …, "rawBytes": …}. Null: delta coding is off.
-nlohmann::json economyJson(const DeltaCounts& counts);
+nlohmann::json deltaJson(const DeltaCounts& counts);
 
 nlohmann::json reportOf(const SessionNumbers& numbers);
 

@@ -66,7 +66,7 @@ Json statusOf(const SessionStatus& status) {
         {"tiles", std::to_string(status.columns) + "x" + std::to_string(status.rows)},
         {"display", status.display},
         {"frames", status.wallFrames},
-        {"economy", economyJson(status.economy)},
+        {"delta", deltaJson(status.delta)},
         {"queues", queuesJson(status.queues)},
         {"programs", programs},
         {"nodes", nodes},

@@ -41,7 +41,7 @@ struct SessionStatus {
     int columns = 1, rows = 1;
     std::string display; // app, windows, none
     int64_t wallFrames = 0;
-    DeltaCounts economy;
+    DeltaCounts delta;
     std::vector<QueueTotals> queues;
     std::vector<ProgramStatus> programs;
     std::vector<NodeStatus> nodes;

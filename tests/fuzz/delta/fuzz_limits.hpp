@@ -7,7 +7,7 @@
 namespace mural::fuzz {
 
 inline delta::Limits fuzzLimits() {
-    return {.storeBytes = 4 * delta::kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024};
+    return {.cacheBytes = 4 * delta::kPageBytes, .textBytes = 4096, .logItems = 64, .streams = 2, .modelWords = 1024};
 }
 
 } // namespace mural::fuzz

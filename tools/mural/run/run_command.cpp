@@ -14,8 +14,8 @@ namespace {
 // A program whose GL library is not GLVND's needs the preloaded front.
 launch::Fronts chooseFronts(const RunOptions& options, const launch::ProgramCheck& program,
                             const launch::Environment& environment) {
-    if (options.front == FrontChoice::Preload) return launch::Fronts::VendorAndPreload;
-    if (options.front == FrontChoice::Glvnd || program.binary.empty()) return launch::Fronts::Vendor;
+    if (options.captureVia == EntryChoice::Preload) return launch::Fronts::VendorAndPreload;
+    if (options.captureVia == EntryChoice::Glvnd || program.binary.empty()) return launch::Fronts::Vendor;
     const auto own = launch::ownGlLibraries(program.binary, environment);
     if (own.empty()) return launch::Fronts::Vendor;
     if (options.config.explain)

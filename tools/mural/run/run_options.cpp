@@ -115,17 +115,17 @@ Result<void> readNumber(std::string_view option, const RunArguments::Text& text,
 Result<void> readChoices(const RunArguments& a, SessionConfig& c) {
     const Choice<Display> displays[] = {{"app", Display::App}, {"windows", Display::Windows}, {"none", Display::None}};
     const Choice<Tiling> tilings[] = {{"exact", Tiling::Exact}, {"culled", Tiling::Culled}, {"lean", Tiling::Lean}};
-    const Choice<CapturePolicy> policies[] = {{"state", CapturePolicy::State}, {"full", CapturePolicy::Full}};
-    const Choice<Economy> economies[] = {{"auto", Economy::Auto}, {"on", Economy::On}, {"off", Economy::Off}};
+    const Choice<LocalRendering> localRenderings[] = {{"off", LocalRendering::Off}, {"on", LocalRendering::On}};
+    const Choice<DeltaMode> deltaModes[] = {{"auto", DeltaMode::Auto}, {"on", DeltaMode::On}, {"off", DeltaMode::Off}};
     const Choice<Readback> readbacks[] = {
         {"auto", Readback::Auto}, {"direct", Readback::Direct}, {"buffer", Readback::Buffer}};
     const Choice<const char*> backends[] = {{"auto", "auto"}, {"egl", "egl"}, {"osmesa", "osmesa"}, {"glx", "glx"}};
     const char* backend = "auto";
     if (auto r = choose("--display", a.display, displays, c.display); !r) return r;
     if (auto r = choose("--tiling", a.tiling, tilings, c.tiling); !r) return r;
-    if (auto r = choose("--policy", a.policy, policies, c.policy); !r) return r;
+    if (auto r = choose("--local-rendering", a.localRendering, localRenderings, c.localRendering); !r) return r;
     if (auto r = choose("--gl", a.gl, backends, backend); !r) return r;
-    if (auto r = choose("--economy", a.economy, economies, c.economy); !r) return r;
+    if (auto r = choose("--delta", a.delta, deltaModes, c.delta); !r) return r;
     if (auto r = choose("--readback", a.readback, readbacks, c.readback); !r) return r;
     c.glBackend = backend;
     return {};
@@ -216,24 +216,23 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         c.stream = *a.stream;
         if (auto r = checkStream(c.stream); !r) return r;
     }
-    if (a.store) {
-        const auto store = byteSizeOf(*a.store);
-        if (!store || *store < (1 << 20) || *store > int64_t{1} << 40)
-            return badValue("--store", *a.store, "must be a size from 1MiB to 1024GiB, such as 512MiB");
-        c.storeBytes = *store;
+    if (a.cacheSize) {
+        const auto size = byteSizeOf(*a.cacheSize);
+        if (!size || *size < (1 << 20) || *size > int64_t{1} << 40)
+            return badValue("--cache-size", *a.cacheSize, "must be a size from 1MiB to 1024GiB, such as 512MiB");
+        c.cacheBytes = *size;
     }
     c.remoteMural = a.remoteMural.value_or("");
     int64_t restarts = c.restartNodes;
     if (auto r = readNumber("--restart-nodes", a.restartNodes, 0, kMaxRestarts, restarts); !r) return r;
     c.restartNodes = static_cast<int>(restarts);
-    int64_t least = c.leastNodes;
-    if (auto r = readNumber("--least-nodes", a.leastNodes, 1, kMaxRestarts, least); !r) return r;
-    c.leastNodes = static_cast<int>(least);
-    if (asked > 0 && c.leastNodes > asked)
-        return badValue("--least-nodes", *a.leastNodes,
-                        fmt::format("must be at most {}: there are no more nodes", asked));
-    if (c.leastNodes > 0 && c.restartNodes == 0)
-        return Error{"--least-nodes has the others started again until they come, which --restart-nodes 0 forbids; "
+    int64_t minNodes = c.minNodes;
+    if (auto r = readNumber("--min-nodes", a.minNodes, 1, kMaxRestarts, minNodes); !r) return r;
+    c.minNodes = static_cast<int>(minNodes);
+    if (asked > 0 && c.minNodes > asked)
+        return badValue("--min-nodes", *a.minNodes, fmt::format("must be at most {}: there are no more nodes", asked));
+    if (c.minNodes > 0 && c.restartNodes == 0)
+        return Error{"--min-nodes has the others started again until they come, which --restart-nodes 0 forbids; "
                      "leave one of them out"};
     return {};
 }
@@ -346,9 +345,10 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     return {};
 }
 
-Result<void> readFrusta(const RunArguments& a, SessionConfig& c) {
-    const Choice<Frusta> all[] = {{"auto", Frusta::Auto}, {"program", Frusta::Program}, {"room", Frusta::Room}};
-    if (auto r = choose("--frusta", a.frusta, all, c.frusta); !r) return r;
+Result<void> readProjection(const RunArguments& a, SessionConfig& c) {
+    const Choice<ProjectionChoice> all[] = {
+        {"auto", ProjectionChoice::Auto}, {"program", ProjectionChoice::Program}, {"room", ProjectionChoice::Room}};
+    if (auto r = choose("--projection", a.projection, all, c.projection); !r) return r;
     return readReal("--model-unit", a.modelUnit, 1e-9, c.modelUnit);
 }
 
@@ -356,10 +356,10 @@ Result<void> readFrusta(const RunArguments& a, SessionConfig& c) {
 Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     SessionConfig& c = options.config;
     if (!a.config) {
-        const std::pair<const char*, bool> ofFiles[] = {{"--here", a.here},
+        const std::pair<const char*, bool> ofFiles[] = {{"--all-local", a.allLocal},
                                                         {"--canvas", a.canvas.has_value()},
                                                         {"--layout", !a.layouts.empty()},
-                                                        {"--frusta", a.frusta.has_value()},
+                                                        {"--projection", a.projection.has_value()},
                                                         {"--model-unit", a.modelUnit.has_value()}};
         for (const auto& [option, given] : ofFiles)
             if (given) return Error{fmt::format("{} is for a configuration file; add --config FILE", option)};
@@ -387,13 +387,13 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
                                                             ? fmt::format(" (and {} more: mural config check {})",
                                                                           loaded.diagnostics.errors() - 1, *a.config)
                                                             : "")};
-    if (auto r = readFrusta(a, c); !r) return r;
-    const PlanOptions wishes{"", a.here, a.canvas.value_or(""), a.layouts, c.frusta, c.modelUnit};
+    if (auto r = readProjection(a, c); !r) return r;
+    const PlanOptions wishes{"", a.allLocal, a.canvas.value_or(""), a.layouts, c.projection, c.modelUnit};
     auto plan = planOf(loaded, wishes);
     if (!plan) return plan.error();
     std::error_code failed;
     c.configFile = std::filesystem::absolute(*a.config, failed).string();
-    c.here = a.here;
+    c.allLocal = a.allLocal;
     c.canvas = wishes.canvas;
     c.layouts = a.layouts;
     if (!a.eyeBase) c.eyeBase = plan->eyeBase.value_or(c.eyeBase);
@@ -532,7 +532,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("FILE");
     command.add_option("--canvas", a.canvas, "show this canvas of the file alone (all)")->type_name("NAME");
     command
-        .add_option("--frusta", a.frusta,
+        .add_option("--projection", a.projection,
                     "screens of the file show one flat picture, the program's, or each the scene as it is seen from "
                     "the room: auto, program, room (auto: the room's where screens stand at angles)")
         ->type_name("WHOSE");
@@ -541,7 +541,7 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")
         ->type_name("NAME")
         ->take_all();
-    command.add_flag("--here", a.here, "run all nodes of the file on this machine");
+    command.add_flag("--all-local", a.allLocal, "run all nodes of the file on this machine");
     command.add_flag("--print-config", a.printConfig,
                      "print the configuration file that the other options stand for, and run nothing");
     command
@@ -591,11 +591,13 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
                     "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with "
                     "a depth buffer; lean: less memory (exact)")
         ->type_name("HOW");
-    command.add_option("--policy", a.policy, "state: the program's own GL draws nothing; full: it draws too (state)")
+    command
+        .add_option("--local-rendering", a.localRendering,
+                    "off: the program's own GL draws nothing; on: it draws too (off)")
         ->type_name("WHAT");
     command.add_option("--gl", a.gl, "GL of the render nodes: auto, egl, osmesa, glx (auto)")->type_name("GL");
     command
-        .add_option("--front", a.front,
+        .add_option("--capture-via", a.captureVia,
                     "how the program's GL is caught: glvnd, preload (also a GL library of its own), auto: as its "
                     "libraries want")
         ->type_name("WAY");
@@ -620,17 +622,17 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
                     "for by another thread), auto (by which of both the drawing thread loses less) (auto)")
         ->type_name("HOW");
     command
-        .add_option("--economy", a.economy,
+        .add_option("--delta", a.delta,
                     "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")
         ->type_name("WHICH");
-    command.add_option("--store", a.store, "memory for that in the head and in each of those nodes (1GiB)")
+    command.add_option("--cache-size", a.cacheSize, "memory for that in the head and in each of those nodes (1GiB)")
         ->type_name("SIZE");
     command
         .add_option("--restart-nodes", a.restartNodes,
                     "start a node that is lost again, up to N times in a row; 0: its tiles stay as they were (3)")
         ->type_name("N");
     command
-        .add_option("--least-nodes", a.leastNodes,
+        .add_option("--min-nodes", a.minNodes,
                     "begin when N nodes are there; those that are late or fail come later, as lost ones do (all)")
         ->type_name("N");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
@@ -664,9 +666,9 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     c.fullScreen = a.fullScreen;
     c.placeThreads = !a.noPlacement;
     c.explain = a.explain;
-    const Choice<FrontChoice> fronts[] = {
-        {"auto", FrontChoice::Auto}, {"glvnd", FrontChoice::Glvnd}, {"preload", FrontChoice::Preload}};
-    if (auto r = choose("--front", a.front, fronts, options.front); !r) return r.error();
+    const Choice<EntryChoice> entries[] = {
+        {"auto", EntryChoice::Auto}, {"glvnd", EntryChoice::Glvnd}, {"preload", EntryChoice::Preload}};
+    if (auto r = choose("--capture-via", a.captureVia, entries, options.captureVia); !r) return r.error();
     options.displayChosen = a.display.has_value();
     options.native = a.native;
     options.quiet = a.quiet;

@@ -15,12 +15,12 @@ class App;
 namespace mural::cli {
 
 // Selects whether GL libraries outside of GLVND are captured as well.
-enum class FrontChoice { Auto, Glvnd, Preload };
+enum class EntryChoice { Auto, Glvnd, Preload };
 
 struct RunOptions {
     SessionConfig config;       // everything except session and displayName
     bool displayChosen = false; // --display was given
-    FrontChoice front = FrontChoice::Auto;
+    EntryChoice captureVia = EntryChoice::Auto;
     bool native = false;
     bool quiet = false;
     std::string configText;           // --print-config: equivalent configuration; empty: not requested
@@ -32,11 +32,11 @@ struct RunOptions {
 // Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
     using Text = std::optional<std::string>;
-    Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, policy, gl, launch, stream,
-        remoteMural, front, restartNodes, leastNodes;
-    Text config, canvas, frusta, modelUnit, economy, store;
+    Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, localRendering, gl, launch,
+        stream, remoteMural, captureVia, restartNodes, minNodes;
+    Text config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
-    bool here = false, printConfig = false;
+    bool allLocal = false, printConfig = false;
     Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
     Text localNodes, frames, latency, report, record;
     std::string verify; // empty: not given

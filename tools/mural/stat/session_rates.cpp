@@ -67,10 +67,10 @@ Json nodeRates(const Json& before, const Json& now, double seconds) {
 }
 
 // Rates over all programs, per frame of the wall.
-Json economyRates(const Json& before, const Json& now, double frames) {
+Json deltaRates(const Json& before, const Json& now, double frames) {
     Json rates = Json::object();
-    for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "storeHits", "newPages", "patches",
-                             "encodeSeconds", "programBytes", "heldRecords", "leftOutRecords", "leftOutBytes"})
+    for (const char* name : {"records", "rawBytes", "stagedBytes", "wireBytes", "pageHits", "newPages", "patches",
+                             "encodeSeconds", "programBytes", "deferredRecords", "droppedRecords", "droppedBytes"})
         rates[std::string(name) + "PerFrame"] = (number(now, name) - number(before, name)) / frames;
     return rates;
 }
@@ -136,21 +136,21 @@ void addProgram(const Json& program, std::vector<std::string>& lines) {
     lines.push_back("    " + waitText(program));
 }
 
-void addEconomy(const Json& economy, std::vector<std::string>& lines) {
-    const Json& recent = part(economy, "recent");
+void addDelta(const Json& delta, std::vector<std::string>& lines) {
+    const Json& recent = part(delta, "recent");
     if (!recent.contains("rawBytesPerFrame")) return;
-    const double pages = number(recent, "storeHitsPerFrame") + number(recent, "newPagesPerFrame");
-    lines.push_back(fmt::format("  economy  {} per frame, {} of it new to the nodes, {} compressed; {:.1f} of {:.1f} "
-                                "pages per frame they had, packing {:.0f} us",
+    const double pages = number(recent, "pageHitsPerFrame") + number(recent, "newPagesPerFrame");
+    lines.push_back(fmt::format("  delta    {} per frame, {} of it new to the nodes, {} compressed; {:.1f} of {:.1f} "
+                                "pages per frame cached, encoding {:.0f} us",
                                 sizeText(number(recent, "rawBytesPerFrame")),
                                 sizeText(number(recent, "stagedBytesPerFrame")),
-                                sizeText(number(recent, "wireBytesPerFrame")), number(recent, "storeHitsPerFrame"),
+                                sizeText(number(recent, "wireBytesPerFrame")), number(recent, "pageHitsPerFrame"),
                                 pages, 1e6 * number(recent, "encodeSecondsPerFrame")));
-    if (number(economy, "heldRecords") + number(economy, "leftOutRecords") > 0)
-        lines.push_back(fmt::format("           of {} per frame {} were left out ({:.1f} records); {} held back now",
-                                    sizeText(number(recent, "programBytesPerFrame")),
-                                    sizeText(number(recent, "leftOutBytesPerFrame")),
-                                    number(recent, "leftOutRecordsPerFrame"), sizeText(number(economy, "heldBytes"))));
+    if (number(delta, "deferredRecords") + number(delta, "droppedRecords") > 0)
+        lines.push_back(fmt::format(
+            "  filter   {} per frame, {} of it dropped ({:.1f} records); {} deferred now",
+            sizeText(number(recent, "programBytesPerFrame")), sizeText(number(recent, "droppedBytesPerFrame")),
+            number(recent, "droppedRecordsPerFrame"), sizeText(number(delta, "deferredBytes"))));
 }
 
 void addQueue(const Json& queue, std::vector<std::string>& lines) {
@@ -203,8 +203,8 @@ std::vector<Json> withRates(const std::vector<Json>& before, std::vector<Json> n
         const double seconds = number(session, "atSeconds") - number(*then, "atSeconds");
         addRates(*then, session, "programs", "client", seconds, programRates);
         const double frames = number(session, "frames") - number(*then, "frames");
-        if (session.contains("economy") && session["economy"].is_object() && frames > 0)
-            session["economy"]["recent"] = economyRates(part(*then, "economy"), part(session, "economy"), frames);
+        if (session.contains("delta") && session["delta"].is_object() && frames > 0)
+            session["delta"]["recent"] = deltaRates(part(*then, "delta"), part(session, "delta"), frames);
         addRates(*then, session, "nodes", "node", seconds, nodeRates);
     }
     return now;
@@ -218,7 +218,7 @@ std::vector<std::string> statLines(const Json& session) {
     const std::vector<Json> programs = entries(session, "programs");
     for (const Json& program : programs) addProgram(program, lines);
     if (programs.empty()) lines.emplace_back("  no program draws yet, or any more");
-    addEconomy(part(session, "economy"), lines);
+    addDelta(part(session, "delta"), lines);
     for (const Json& queue : entries(session, "queues")) addQueue(queue, lines);
     for (const Json& node : entries(session, "nodes")) addNode(node, lines);
     return lines;

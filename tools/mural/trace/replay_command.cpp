@@ -27,7 +27,7 @@ void describeReplay(CLI::App& command, ReplayArguments& a) {
     command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
     describeRunOptions(command, a.run);
     // Options about the program itself do not apply to a trace.
-    for (const char* name : {"--size", "--native", "--verify", "--policy", "--front", "--print-config"})
+    for (const char* name : {"--size", "--native", "--verify", "--local-rendering", "--capture-via", "--print-config"})
         command.remove_option(command.get_option(name));
     command.add_flag("--pace", a.pace, "at the times at which it was recorded");
     command.add_flag("--loop", a.loop, "again and again, until --frames or Ctrl-C");

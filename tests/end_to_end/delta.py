@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Traffic to the nodes with delta coding: little for similar frames, with exact pictures.
 
-economy.py --build build/release [--cases same_scene,same_texture] [--list]
+delta.py --build build/release [--cases same_scene,same_texture] [--list]
 """
 
 import json
@@ -16,7 +16,7 @@ PATCH_BYTES = 64 * 64 * 4
 
 def report_of(context, program, frames, *options):
     """Returns the report of a run, or an error text."""
-    with tempfile.TemporaryDirectory(prefix="mural-economy.") as folder:
+    with tempfile.TemporaryDirectory(prefix="mural-delta.") as folder:
         report_file = os.path.join(folder, "report.json")
         command = [context.program(program), "--frames", str(frames), "--size", "253x191"]
         with context.run(command, ["--display", "none", "--quiet", "--report", report_file, *options]) as run:
@@ -29,7 +29,7 @@ def report_of(context, program, frames, *options):
 
 def verified(context, program, frames, *options, every=1):
     """Returns the report of a run with exact pictures; every Nth frame is compared."""
-    report = report_of(context, program, frames, "--economy", "on", "--verify=%d" % every, *options)
+    report = report_of(context, program, frames, "--delta", "on", "--verify=%d" % every, *options)
     if isinstance(report, dict) and (report["verifiedFrames"] != frames // every or report["differingPixels"] != 0):
         return "%s %s: %d frames verified, %d pixels differ" % (program, " ".join(options), report["verifiedFrames"], report["differingPixels"])
     return report
@@ -40,12 +40,12 @@ def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
     def check(context):
         wire = []
         for count in frames:
-            report = report_of(context, program, count, "--economy", "on")
+            report = report_of(context, program, count, "--delta", "on")
             if not isinstance(report, dict):
                 return report
             if report["frames"] != count:
                 return "%d frames instead of %d" % (report["frames"], count)
-            wire.append(report["economy"]["wireBytes"])
+            wire.append(report["delta"]["wireBytes"])
         each = (wire[1] - wire[0]) / (frames[1] - frames[0])
         if not at_least <= each <= at_most:
             return "%.0f bytes per frame on the wire instead of %d to %d; in all %s" % (each, at_least, at_most, wire)
@@ -77,15 +77,15 @@ def verified_values(context):
 def verified_texture(context):
     """Patches arrive at their position, also with a store that is too small for the texture."""
     for store in ("1GiB", "1MiB"):
-        report = verified(context, "changed_texture", 3, "--store", store)
+        report = verified(context, "changed_texture", 3, "--cache-size", store)
         if not isinstance(report, dict):
             return report
     return None
 
 
 def left_out_of(report):
-    e, frames = report["economy"], report["frames"]
-    print("  %d records held, %d left out; %.0f of %.0f kB per frame" % (e["heldRecords"], e["leftOutRecords"], e["rawBytes"] / frames / 1e3, e["programBytes"] / frames / 1e3))
+    e, frames = report["delta"], report["frames"]
+    print("  %d records held, %d left out; %.0f of %.0f kB per frame" % (e["deferredRecords"], e["droppedRecords"], e["rawBytes"] / frames / 1e3, e["programBytes"] / frames / 1e3))
     return e
 
 
@@ -98,7 +98,7 @@ def late_uploads(context):
     e = left_out_of(report)
     # Dropped per frame, at least: two of three textures and of three buffers, two of four parts, the unused, the equal
     # and the deleted one.
-    if e["leftOutRecords"] < 900 or e["heldRecords"] < 600 or e["rawBytes"] > 0.7 * e["programBytes"]:
+    if e["droppedRecords"] < 900 or e["deferredRecords"] < 600 or e["rawBytes"] > 0.7 * e["programBytes"]:
         return "too little was left out: %s" % e
     return None
 
@@ -116,7 +116,7 @@ def equal_state(context):
     e = left_out_of(report)
     # Each of 48 objects makes 2 x 19 state changes, of which at least 30 have no effect on its draw. That is over 1 400
     # per frame, in at least eight frames of a run.
-    if e["leftOutRecords"] < 8 * 1400 or e["programBytes"] - e["rawBytes"] < 0.4 * 8 / 300 * e["programBytes"]:
+    if e["droppedRecords"] < 8 * 1400 or e["programBytes"] - e["rawBytes"] < 0.4 * 8 / 300 * e["programBytes"]:
         return "too little was left out: %s" % e
     return None
 
@@ -127,7 +127,7 @@ def off(context):
     report = report_of(context, "same_scene", 5)
     if not isinstance(report, dict):
         return report
-    return None if report["economy"] is None and report["bytesPerFrame"] > 1000 else "the report says %s" % report
+    return None if report["delta"] is None and report["bytesPerFrame"] > 1000 else "the report says %s" % report
 
 
 if __name__ == "__main__":

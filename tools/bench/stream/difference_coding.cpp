@@ -5,7 +5,7 @@
 
 #include "common/base/clock.hpp"
 #include "streamcodec/trace/record_walk.hpp"
-#include "tools/bench/stream/ways.hpp"
+#include "tools/bench/stream/stream_coding.hpp"
 
 namespace mural::bench {
 namespace {
@@ -26,7 +26,7 @@ bool isSame(std::span<const std::byte> a, std::span<const std::byte> b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-class DifferenceWay final : public Way {
+class DifferenceCoding final : public StreamCoding {
 public:
     [[nodiscard]] std::string name() const override { return "difference + LZ4"; }
 
@@ -86,6 +86,6 @@ private:
 
 } // namespace
 
-std::unique_ptr<Way> differenceWay() { return std::make_unique<DifferenceWay>(); }
+std::unique_ptr<StreamCoding> differenceCoding() { return std::make_unique<DifferenceCoding>(); }
 
 } // namespace mural::bench

@@ -3,14 +3,14 @@
 #include <zstd.h>
 
 #include "common/base/clock.hpp"
-#include "tools/bench/stream/ways.hpp"
+#include "tools/bench/stream/stream_coding.hpp"
 
 namespace mural::bench {
 namespace {
 
-class ZstdWay final : public Way {
+class ZstdCoding final : public StreamCoding {
 public:
-    explicit ZstdWay(int level) : level_(level), compressor_(ZSTD_createCCtx(), ZSTD_freeCCtx) {}
+    explicit ZstdCoding(int level) : level_(level), compressor_(ZSTD_createCCtx(), ZSTD_freeCCtx) {}
 
     [[nodiscard]] std::string name() const override { return "zstd -" + std::to_string(level_); }
     void packet(const StreamPacket& p) override {
@@ -49,6 +49,6 @@ private:
 
 } // namespace
 
-std::unique_ptr<Way> zstdWay(int level) { return std::make_unique<ZstdWay>(level); }
+std::unique_ptr<StreamCoding> zstdCoding(int level) { return std::make_unique<ZstdCoding>(level); }
 
 } // namespace mural::bench

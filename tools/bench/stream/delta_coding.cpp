@@ -6,17 +6,17 @@
 #include "common/base/clock.hpp"
 #include "streamcodec/delta/delta_decoder.hpp"
 #include "nodes/head/broadcast/delta_stream.hpp"
-#include "tools/bench/stream/ways.hpp"
+#include "tools/bench/stream/stream_coding.hpp"
 
 namespace mural::bench {
 namespace {
 
-class EconomyWay final : public Way {
+class DeltaCoding final : public StreamCoding {
 public:
-    EconomyWay(std::unique_ptr<DeltaStream> economy, const delta::Limits& limits, bool holds)
-        : economy_(std::move(economy)), unpacker_(limits), holds_(holds) {
-        economy_->sendBy([this] { take(); });
-        if (!holds) economy_->holdNothing(); // decoded packets are compared with the originals
+    DeltaCoding(std::unique_ptr<DeltaStream> deltaStream, const delta::Limits& limits, bool holds)
+        : deltaStream_(std::move(deltaStream)), unpacker_(limits), holds_(holds) {
+        deltaStream_->sendBy([this] { take(); });
+        if (!holds) deltaStream_->holdNothing(); // decoded packets are compared with the originals
     }
 
     [[nodiscard]] std::string name() const override { return holds_ ? "sent" : "all packed"; }
@@ -27,8 +27,8 @@ public:
 
     Result<uint64_t> frameEnds() override {
         const int64_t beganNs = threadCpuNowNs();
-        for (const Sent& s : sent_) economy_->add(s.stream, s.payload);
-        if (!economy_->empty()) take();
+        for (const Sent& s : sent_) deltaStream_->add(s.stream, s.payload);
+        if (!deltaStream_->empty()) take();
         cpuNs_ += threadCpuNowNs() - beganNs;
         sent_.clear();
         if (!wrong_.empty()) return Error{wrong_};
@@ -62,7 +62,7 @@ private:
     };
 
     void take() {
-        auto batch = economy_->take();
+        auto batch = deltaStream_->take();
         if (!batch) {
             wrong_ = batch.error().message;
             return;
@@ -84,7 +84,7 @@ private:
         return {};
     }
 
-    std::unique_ptr<DeltaStream> economy_;
+    std::unique_ptr<DeltaStream> deltaStream_;
     delta::BatchDecoder decoder_;
     delta::DeltaDecoder unpacker_;
     std::vector<Sent> sent_;                     // of the frame
@@ -99,15 +99,17 @@ private:
 
 } // namespace
 
-static Result<std::unique_ptr<Way>> economyWay(uint64_t storeBytes, bool holds) {
+static Result<std::unique_ptr<StreamCoding>> deltaCoding(uint64_t cacheBytes, bool holds) {
     delta::Limits limits;
-    limits.storeBytes = storeBytes;
-    auto economy = DeltaStream::open(limits);
-    if (!economy) return economy.error();
-    return std::unique_ptr<Way>(new EconomyWay(std::move(*economy), limits, holds));
+    limits.cacheBytes = cacheBytes;
+    auto deltaStream = DeltaStream::open(limits);
+    if (!deltaStream) return deltaStream.error();
+    return std::unique_ptr<StreamCoding>(new DeltaCoding(std::move(*deltaStream), limits, holds));
 }
 
-Result<std::unique_ptr<Way>> sentWay(uint64_t storeBytes) { return economyWay(storeBytes, true); }
-Result<std::unique_ptr<Way>> allPackedWay(uint64_t storeBytes) { return economyWay(storeBytes, false); }
+Result<std::unique_ptr<StreamCoding>> filteredDeltaCoding(uint64_t cacheBytes) { return deltaCoding(cacheBytes, true); }
+Result<std::unique_ptr<StreamCoding>> unfilteredDeltaCoding(uint64_t cacheBytes) {
+    return deltaCoding(cacheBytes, false);
+}
 
 } // namespace mural::bench

@@ -1,5 +1,5 @@
-// Writes the corpus of economy_fuzz: the packer's output for frames that resemble each other.
-//   economy_fuzz_seeds FOLDER
+// Writes the corpus of delta_fuzz: the packer's output for frames that resemble each other.
+//   delta_fuzz_seeds FOLDER
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -125,7 +125,7 @@ void write(const std::filesystem::path& path, const Bytes& input) {
 
 int main(int argc, char** argv) {
     if (argc != 2) {
-        std::fprintf(stderr, "economy_fuzz_seeds FOLDER\n");
+        std::fprintf(stderr, "delta_fuzz_seeds FOLDER\n");
         return 2;
     }
     std::filesystem::create_directories(argv[1]);

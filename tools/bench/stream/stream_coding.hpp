@@ -11,9 +11,9 @@
 
 namespace mural::bench {
 
-class Way {
+class StreamCoding {
 public:
-    virtual ~Way() = default;
+    virtual ~StreamCoding() = default;
     [[nodiscard]] virtual std::string name() const = 0;
     virtual void packet(const StreamPacket& packet) = 0;
     // Ends the frame; returns its size as sent.
@@ -25,13 +25,13 @@ public:
 };
 
 // Mural as in the head: command filter, then delta coding.
-Result<std::unique_ptr<Way>> sentWay(uint64_t storeBytes);
+Result<std::unique_ptr<StreamCoding>> filteredDeltaCoding(uint64_t cacheBytes);
 // Delta coding without the filter: batches are kept, decoded and compared.
-Result<std::unique_ptr<Way>> allPackedWay(uint64_t storeBytes);
+Result<std::unique_ptr<StreamCoding>> unfilteredDeltaCoding(uint64_t cacheBytes);
 // Zstandard over each whole frame.
-std::unique_ptr<Way> zstdWay(int level);
+std::unique_ptr<StreamCoding> zstdCoding(int level);
 // Omits commands equal to the one at the same position of the previous frame; LZ4 over the rest. Source: Neal, Hunkin,
 // McGregor, "Distributed OpenGL rendering in network bandwidth constrained environments" (ClusterGL), 2011.
-std::unique_ptr<Way> differenceWay();
+std::unique_ptr<StreamCoding> differenceCoding();
 
 } // namespace mural::bench
