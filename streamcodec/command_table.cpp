@@ -16,7 +16,7 @@ const CommandInfo* findCommand(std::string_view name) { return find(commandTable
 
 bool extensionCarried(std::string_view name) {
     const ExtensionInfo* e = find(extensionTable(), name);
-    return !e || e->carried;
+    return !e || e->supported;
 }
 
 const char* registeredExtension(std::string_view name) {

@@ -11,12 +11,12 @@ struct CommandInfo {
     const char* name;
     const char* commandClass; // state object draw query sync transfer frame unsupported
     const char* reason;       // why it is unsupported; otherwise empty
-    bool carried;
+    bool supported;
     uint16_t opcode; // 0: never in a stream
 };
 struct ExtensionInfo {
     const char* name;
-    bool carried; // all of its commands are supported; otherwise it is hidden from programs
+    bool supported; // all of its commands are supported; otherwise it is hidden from programs
     const char* firstLacking;
 };
 

@@ -22,7 +22,7 @@ Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline de
     const ConnectionDescription& to = parsed.value();
     switch (to.kind) {
     case Kind::Tcp:
-        if (to.host.empty() || to.port == 0) return useless(text, "connecting needs a host and a port");
+        if (to.host.empty() || to.port == 0) return useless(text, "a connection needs a host and a port");
         return connectTcp(to.host, to.port, deadline);
     case Kind::SharedMemory:
         if (to.descriptor >= 0) return openSharedMemory(to.descriptor);
@@ -31,7 +31,7 @@ Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline de
         auto options = rsp::groupOptionsOf(to);
         if (!options) return options.error();
         if (!to.parameters.contains("control"))
-            return useless(text, "joining needs control=HOST:PORT, where the group's host listens");
+            return useless(text, "a member needs control=HOST:PORT, the address of the group's host");
         return rsp::joinGroup(*options, deadline);
     }
     case Kind::Plugin: {
@@ -42,8 +42,7 @@ Result<std::unique_ptr<Connection>> connectTo(std::string_view text, Deadline de
     case Kind::Pipe: break;
     }
     return useless(
-        text,
-        "has no other end to connect to; give tcp://host:port, shm:descriptor or rsp://group:port?control=host:port");
+        text, "has no peer to connect to; use tcp://host:port, shm:descriptor or rsp://group:port?control=host:port");
 }
 
 Result<std::unique_ptr<Listener>> listenAt(std::string_view text) {
@@ -56,7 +55,7 @@ Result<std::unique_ptr<Listener>> listenAt(std::string_view text) {
         if (!plugin) return plugin.error();
         return listenByPlugin(*plugin.value(), std::string(text));
     }
-    if (at.kind != Kind::Rsp) return useless(text, "nobody can listen there; give tcp://host:port or rsp://group:port");
+    if (at.kind != Kind::Rsp) return useless(text, "cannot be listened on; use tcp://host:port or rsp://group:port");
     auto options = rsp::groupOptionsOf(at);
     if (!options) return options.error();
     return rsp::hostGroup(*options);

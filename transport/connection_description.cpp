@@ -39,10 +39,10 @@ Result<ConnectionDescription> parseEndpoint(std::string_view text, std::string_v
     const bool brackets = host.size() >= 2 && host.front() == '[' && host.back() == ']';
     if (brackets) host = host.substr(1, host.size() - 2);
     if (brackets ? host.empty() : host.find_first_of(":[]") != std::string_view::npos) {
-        return invalid(text, "an IPv6 address must stand in brackets");
+        return invalid(text, "an IPv6 address must be in brackets");
     }
     if (host.find_first_of("/@ \t") != std::string_view::npos) {
-        return invalid(text, "the host has a character that no host name has");
+        return invalid(text, "the host contains an invalid character");
     }
     result.host = host;
     return result;
@@ -59,7 +59,7 @@ Result<ConnectionDescription> parseWithParameters(std::string_view text, std::st
         list.remove_prefix(std::min(list.size(), pair.size() + 1));
         const size_t equals = pair.find('=');
         if (equals == 0 || equals == std::string_view::npos)
-            return invalid(text, "parameters are written name=value, with & in between");
+            return invalid(text, "parameters must be name=value, separated by &");
         const std::string name(pair.substr(0, equals));
         if (!result->parameters.emplace(name, pair.substr(equals + 1)).second)
             return invalid(text, name + " is given twice");

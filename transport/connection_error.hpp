@@ -9,18 +9,17 @@
 namespace mural {
 
 namespace ending {
-inline constexpr const char* kPeerGone = "the other end is gone; its own messages say why";
-inline constexpr const char* kClosedHere = "closed at this end";
-inline constexpr const char* kIdle = "deadline passed, the other end is idle or slow; try again later";
-inline constexpr const char* kCutInHalf =
-    "deadline passed in the middle of a message, the connection is closed; connect again";
+inline constexpr const char* kPeerGone = "the peer has closed the connection; see its messages";
+inline constexpr const char* kClosedHere = "closed by this end";
+inline constexpr const char* kIdle = "deadline passed, the peer is idle or slow; try again later";
+inline constexpr const char* kCutInHalf = "deadline passed within a message, the connection is closed; connect again";
 } // namespace ending
 
 // Returns "tcp://wall1:4711 read, 3 of 8 bytes done: the other end is gone; ...".
 inline Error connectionError(const std::string& description, const char* verb, size_t doneBytes, size_t wantedBytes,
                              const std::string& reason) {
     return Error{description + " " + verb + ", " + std::to_string(doneBytes) + " of " + std::to_string(wantedBytes) +
-                 " bytes done: " + reason};
+                 " bytes: " + reason};
 }
 
 } // namespace mural

@@ -43,9 +43,8 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
                 tried += config.compounds.size();
                 if (tried > kMaxCompounds) {
                     diagnostics.warn({},
-                                     "there are more layouts and frame numbers than can be tried for frames that wait "
-                                     "for each other",
-                                     "divide the file, or give shorter periods");
+                                     "too many layouts and frame numbers to check for frames that wait for each other",
+                                     "divide the file, or use shorter periods");
                     return;
                 }
                 const FramePlan plan = planFrame(config, input);
@@ -58,8 +57,8 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
                 const PlannedFrame& first = plan.frames[at(plan.deadlock.front())];
                 const std::string who = names.size() == 1 ? "frame " + circle + " waits for itself"
                                                           : "frames " + circle + " wait for each other";
-                diagnostics.error(config.compounds[at(first.compound)].at, who + ": nothing is ever drawn",
-                                  "let one of them be read back before it is needed");
+                diagnostics.error(config.compounds[at(first.compound)].at, who + ": no picture is ever drawn",
+                                  "read one of them back before it is needed");
             }
         }
     }
@@ -72,12 +71,11 @@ void checkEqualizers(const ResolvedConfig& config, config::Diagnostics& diagnost
                 std::holds_alternative<config::LoadEqualizer>(e) || std::holds_alternative<config::TreeEqualizer>(e);
             const config::SourcePosition place = std::visit([](const auto& one) { return one.at; }, e);
             if (divides && c.children.size() < 2)
-                diagnostics.warn(place,
-                                 "this equalizer has nothing to divide: its compound has fewer than two children",
-                                 "put it into the compound whose children it balances");
+                diagnostics.warn(place, "this equalizer has no effect: its compound has fewer than two children",
+                                 "move it to the compound whose children it balances");
             if (divides && c.destination == kNone)
-                diagnostics.warn(place, "this equalizer stands in a compound without a channel",
-                                 "put it into the compound that has the destination's channel");
+                diagnostics.warn(place, "this equalizer belongs to a compound without a channel",
+                                 "move it to the compound with the destination's channel");
         }
     }
 }
@@ -95,13 +93,15 @@ void checkDisplays(const ResolvedConfig& config, config::Diagnostics& diagnostic
     for (size_t l = 0; l < used.size(); ++l) {
         if (!used[l])
             diagnostics.warn(config.layouts[l].at,
-                             "layout " + nameOr(config.layouts[l].name, l) + " is on no canvas and never shown",
-                             "name it in a canvas, or remove it");
+                             "layout " + nameOr(config.layouts[l].name, l) +
+                                 " is not used by a canvas and is never shown",
+                             "add it to a canvas, or remove it");
     }
     for (size_t v = 0; v < seen.size(); ++v) {
         if (!seen[v] && used[at(config.views[v].layout)])
             diagnostics.warn(config.views[v].at,
-                             "view " + nameOr(config.views[v].name, v) + " falls onto no segment and is never shown",
+                             "view " + nameOr(config.views[v].name, v) +
+                                 " does not overlap a segment and is never shown",
                              "move its viewport over a segment");
     }
 }
@@ -111,8 +111,8 @@ void checkNames(const ResolvedConfig& config, config::Diagnostics& diagnostics) 
     std::set<std::string> names;
     for (const config::ResolvedChannel& c : config.channels) {
         if (c.isDestination() || c.name.empty() || names.insert(c.name).second) continue;
-        diagnostics.warn(c.at, "there is a channel \"" + c.name + "\" already, this one can't be named",
-                         "give it another name");
+        diagnostics.warn(c.at, "duplicate channel name \"" + c.name + "\": references find only the first one",
+                         "rename it");
     }
 }
 
@@ -124,7 +124,7 @@ void checkConfig(const ResolvedConfig& config, config::Diagnostics& diagnostics)
     checkEqualizers(config, diagnostics);
     checkFrames(config, diagnostics);
     if (config.channels.empty())
-        diagnostics.warn({}, "there is no channel, so nothing is drawn",
+        diagnostics.warn({}, "the file has no channel, so nothing is drawn",
                          "define a node with a pipe, a window and a channel");
     if (diagnostics.errors() == 0) checkDeadlocks(config, diagnostics);
 }

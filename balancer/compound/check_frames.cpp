@@ -65,17 +65,18 @@ private:
                 continue;
             if (std::any_of(c.outputFrames.begin(), c.outputFrames.end(), named)) {
                 diagnostics_.warn(
-                    frame.at, "frame \"" + frame.name + "\" is made twice in this tree, only the first one is taken",
-                    "give them different names");
+                    frame.at, "frame \"" + frame.name + "\" is defined twice in this tree, only the first one is used",
+                    "rename one of them");
             }
         }
         if (!taken)
-            diagnostics_.warn(frame.at, "nobody in this tree takes frame \"" + frame.name + "\", it is not read back",
-                              "take it with an inputframe of that name, or remove it");
+            diagnostics_.warn(frame.at,
+                              "no compound of this tree uses frame \"" + frame.name + "\", it is not read back",
+                              "add an inputframe of that name, or remove it");
         else if (!maker.readsBack)
-            diagnostics_.warn(
-                frame.at, "frame \"" + frame.name + "\" is never made: the tasks of its compound leave out READBACK",
-                "add READBACK to them");
+            diagnostics_.warn(frame.at,
+                              "frame \"" + frame.name + "\" is never created: the tasks of its compound lack READBACK",
+                              "add READBACK to the tasks");
     }
 
     void checkInput(const Known& taker, const config::ResolvedFrame& frame) {
@@ -92,18 +93,17 @@ private:
             checkTexture(taker, other, *found, frame);
         }
         if (maker == nullptr)
-            diagnostics_.warn(frame.at, "nobody in this tree makes frame \"" + frame.name + "\", it is not waited for",
-                              "name an outputframe so, or remove it");
+            diagnostics_.warn(frame.at, "no compound of this tree creates frame \"" + frame.name + "\", it is ignored",
+                              "add an outputframe of that name, or remove it");
         else if (!together)
-            diagnostics_.warn(
-                frame.at,
-                "frame \"" + frame.name +
-                    "\" is never made for the eyes and frame numbers that it is taken for, it is not waited for",
-                "let eyes, periods and phases of both meet");
+            diagnostics_.warn(frame.at,
+                              "frame \"" + frame.name +
+                                  "\" is never created for the eyes and frame numbers that use it, it is ignored",
+                              "make eyes, periods and phases of both agree");
         else if (!taker.assembles)
             diagnostics_.warn(frame.at,
-                              "frame \"" + frame.name + "\" is not used: the tasks of this compound leave out ASSEMBLE",
-                              "add ASSEMBLE to them");
+                              "frame \"" + frame.name + "\" is not used: the tasks of this compound lack ASSEMBLE",
+                              "add ASSEMBLE to the tasks");
     }
 
     void checkTexture(const Known& taker, const Known& maker, const config::ResolvedFrame& made,
@@ -117,8 +117,8 @@ private:
         if (pipeOf(taker) != pipeOf(maker))
             diagnostics_.warn(frame.at,
                               "frame \"" + frame.name +
-                                  "\" is a texture, and taken by another pipe, it is handed over in memory",
-                              "write type memory, or use channels of one pipe");
+                                  "\" is a texture, but another pipe uses it, it is transferred through memory",
+                              "use type memory, or channels of one pipe");
     }
 
     void checkInputQueue(const config::ResolvedQueue& queue) {
@@ -128,8 +128,8 @@ private:
                                [&](const config::ResolvedQueue& q) { return q.name == queue.name; });
         });
         if (!filled)
-            diagnostics_.error(queue.at, "nobody in this tree fills the queue \"" + queue.name + "\"",
-                               "give a compound outputtiles of that name");
+            diagnostics_.error(queue.at, "no compound of this tree fills the queue \"" + queue.name + "\"",
+                               "add outputtiles of that name to a compound");
     }
 
     void checkOutputQueue(const config::ResolvedQueue& queue) {
@@ -137,7 +137,7 @@ private:
                            (queue.size.range && *queue.size.range > 0);
         if (!sized)
             diagnostics_.error(queue.at, "the queue \"" + queue.name + "\" has no size",
-                               "give it size [ width height ] in pixels, or size and a part of the range");
+                               "set size [ width height ] in pixels, or size as a fraction of the range");
     }
 
     const ResolvedConfig& config_;
@@ -158,9 +158,9 @@ void checkFrames(const ResolvedConfig& config, config::Diagnostics& diagnostics)
                 const std::string phase = std::to_string(k.inherited.phase),
                                   period = std::to_string(k.inherited.period);
                 diagnostics.warn(config.compounds[at(k.compound)].at,
-                                 "phase " + phase + " never comes with a period of " + period +
+                                 "phase " + phase + " does not occur with a period of " + period +
                                      ", so this compound never draws",
-                                 "give a phase below the period");
+                                 "choose a phase below the period");
             }
         }
     }

@@ -127,11 +127,11 @@ Globals globalsOfEnvironment(const EnvironmentLookup& lookup, Diagnostics& diagn
         const TokenList list = tokenize(*value, inside);
         TokenReader tokens(list.tokens, inside);
         const auto read = readGlobalValue(tokens, g);
-        if (!tokens.ended()) tokens.fail({}, "there is more than one value", "give one");
+        if (!tokens.ended()) tokens.fail({}, "there is more than one value", "set one value");
         if (inside.errors() == 0 && read)
             globals[name] = *read;
         else
-            diagnostics.warn({}, inside.firstError(), "it is left out");
+            diagnostics.warn({}, inside.firstError(), "it is ignored");
     }
     return globals;
 }

@@ -222,19 +222,19 @@ Result<ConfigFile> shortForm(const Preset& form) {
                           {"dplex", form.frames},
                           {"local-nodes", form.takers}}) {
         if (n.value < 1)
-            return Error{std::string("--") + n.option + " can't be " + std::to_string(n.value) + "; give 1 or more"};
+            return Error{std::string("--") + n.option + " cannot be " + std::to_string(n.value) + "; use 1 or more"};
         channels = std::min(channels * n.value, kMaxChannels + 1);
     }
     if (channels > kMaxChannels)
-        return Error{"that makes more than " + std::to_string(kMaxChannels) +
-                     " parts of a picture; give smaller numbers"};
+        return Error{"the options create more than " + std::to_string(kMaxChannels) +
+                     " parts of a picture; use smaller numbers"};
     if (form.width < form.columns || form.height < form.rows || form.width > 1 << 20 || form.height > 1 << 20) {
         return Error{"a picture of " + std::to_string(form.width) + "x" + std::to_string(form.height) +
-                     " pixels can't be divided so; give another size"};
+                     " pixels cannot be divided this way; choose another size"};
     }
     for (const std::string& host : form.nodes) {
         if (host.empty() || host.find_first_of("\"\n") != std::string::npos)
-            return Error{"\"" + host + "\" is no host; give names or addresses"};
+            return Error{"\"" + host + "\" is not a host; use names or addresses"};
     }
     return Maker(form).make();
 }

@@ -91,9 +91,9 @@ std::string drawConfig(const ResolvedConfig& config, const std::string& title,
         y = std::max(y + 20, box.bottom());
         width = std::max(width, box.w);
     };
-    if (!config.canvases.empty()) section("What is shown", drawDisplays);
+    if (!config.canvases.empty()) section("Displays", drawDisplays);
     section("Machines", drawMachines);
-    if (!config.roots.empty()) section("Who draws what", drawCompounds);
+    if (!config.roots.empty()) section("Compounds", drawCompounds);
     return svg.finish(width + 2 * kMargin, y + kMargin);
 }
 

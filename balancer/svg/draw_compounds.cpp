@@ -42,7 +42,7 @@ std::vector<std::string> wordsOf(const ResolvedCompound& c) {
     for (const auto& e : c.equalizers)
         words.emplace_back(std::visit([](const auto& one) { return std::string(config::sectionName(one)); }, e));
     for (const auto& q : c.outputQueues) words.push_back("fills " + q.name);
-    for (const auto& q : c.inputQueues) words.push_back("works off " + q.name);
+    for (const auto& q : c.inputQueues) words.push_back("takes from " + q.name);
     if (c.barrier) words.push_back("waits at " + c.barrier->name);
     return words;
 }
@@ -223,7 +223,7 @@ private:
                   .strokeWidth = c.channel != kNone && c.channel == c.destination ? 2.2 : 1.2,
                   .rounding = 5,
                   .dash = c.isGenerated ? "4 3" : ""},
-                 c.isGenerated ? "not in the file: it follows from the canvases" : "");
+                 c.isGenerated ? "not in the file: created for the canvases" : "");
         svg.rect({box.x, box.y, box.w, kTop - 4},
                  {.fill = paleColorOf(config_, c.executing), .rounding = 5, .dash = {}});
         svg.text({box.x + box.w / 2, box.y + 14}, titleOf(config_, c),
@@ -266,8 +266,8 @@ Box drawCompounds(Svg& svg, const ResolvedConfig& config, Point corner, double w
     constexpr double kTreeGap = 46;
     double x = corner.x, y = corner.y, row = 0, right = corner.x + 780;
     svg.text({x, y + 2},
-             "clear, draw, join (assemble), read (back): what a box does; arrows: pictures on their way; thick "
-             "borders: what is shown; dashed: not in the file",
+             "clear, draw, join (assemble), read (back): tasks of a box; arrows: transferred pictures; thick borders: "
+             "shown pictures; dashed: not in the file",
              {10, "#7b8794", false, Align::Left});
     y += 18;
     for (const Index root : config.roots) {

@@ -71,7 +71,7 @@ void drawLayout(Svg& svg, const ResolvedConfig& config, const config::ResolvedCa
         const Style style{
             .fill = "#ffd166", .stroke = "#b7791f", .rounding = 2, .dash = v.surface ? "" : "3 2", .opacity = .55};
         svg.rect({part.x + 2, part.y + 2, part.w - 4, part.h - 4}, style,
-                 v.surface ? "a view with a wall of its own" : "a view");
+                 v.surface ? "a view with its own wall" : "a view");
         std::string text = l.views.size() > 1 || !v.name.empty() ? nameOr(v.name, "view", i) : "";
         if (v.mode == config::ViewMode::Stereo) text += " stereo";
         svg.text({part.x + part.w / 2, part.y + part.h / 2 + 3}, text, {9, "#5c3c00", false, Align::Middle},
@@ -103,7 +103,7 @@ Box drawDisplays(Svg& svg, const ResolvedConfig& config, Point corner, double wi
             nameSegment(svg, config, segment, box, static_cast<size_t>(stacked));
         }
         double x = box.right() + 34, top = y + 18, lowest = box.bottom();
-        svg.text({x, y + 8}, c.layouts.size() == 1 ? "layout" : "layouts, the first is shown first",
+        svg.text({x, y + 8}, c.layouts.size() == 1 ? "layout" : "layouts; the first one is shown at the start",
                  {11, "#52606d", false, Align::Left});
         const double smallHeight = std::min(kSmall / aspect, 90.);
         for (size_t l = 0; l < c.layouts.size(); ++l) {

@@ -17,7 +17,7 @@ std::string sizeText(const PlaneView& p) {
 std::string orderText(const DrawOrder& o) { return std::to_string(o.first) + " to " + std::to_string(o.end); }
 
 Error mismatch(const char* what, const PlaneView& into, const PlaneView& part, const char* next) {
-    return Error{std::string(what) + ": the part is " + sizeText(part) + ", the picture " + sizeText(into) + "; " +
+    return Error{std::string(what) + ": the part has " + sizeText(part) + ", the picture " + sizeText(into) + "; " +
                  next};
 }
 
@@ -26,8 +26,8 @@ Error misplaced(const char* what, const PixelViewport& into, const PixelViewport
         return std::to_string(v.w) + "x" + std::to_string(v.h) + " at " + std::to_string(v.x) + "," +
                std::to_string(v.y);
     };
-    return Error{std::string(what) + ": the drawn part " + text(part) + " is not inside the picture " + text(into) +
-                 "; give both the same frame of reference"};
+    return Error{std::string(what) + ": the drawn part " + text(part) + " is outside of the picture " + text(into) +
+                 "; use the same frame of reference for both"};
 }
 
 // The drawn rectangles of `part` in the pixels of `into`, and the inverse mapping.
@@ -67,26 +67,26 @@ Result<void> assembleCopy(Image& into, const Image& part) {
         return true;
     };
     if (!copy(into.colour, part.colour))
-        return mismatch(what, into.colour->view(), part.colour->view(), "read both back in one format");
+        return mismatch(what, into.colour->view(), part.colour->view(), "use one format for both");
     if (!copy(into.depth, part.depth))
-        return mismatch(what, into.depth->view(), part.depth->view(), "read both back in one format");
+        return mismatch(what, into.depth->view(), part.depth->view(), "use one format for both");
     take(into, part, *placed);
     return {};
 }
 
 Result<void> assembleDepth(Image& into, const Image& part, const DepthAssembly& how) {
-    const char* what = "composing by depth";
+    const char* what = "compositing by depth";
     if (!into.depth || !part.depth)
         return Error{std::string(what) + ": a picture has no depth plane; read depth back for both"};
     if (into.depth->format() != part.depth->format() || !isDepth(part.depth->format()))
-        return mismatch(what, into.depth->view(), part.depth->view(), "read depth back in one format");
+        return mismatch(what, into.depth->view(), part.depth->view(), "use one depth format");
     if (into.colour.has_value() != part.colour.has_value())
         return Error{std::string(what) + ": only one of the pictures has colour; read colour back for both"};
     if (into.colour && into.colour->format() != part.colour->format())
-        return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
+        return mismatch(what, into.colour->view(), part.colour->view(), "use one colour format");
     if (!apart(into.order, part.order))
-        return Error{std::string(what) + ": parts " + orderText(part.order) + " of the draw order lie in between " +
-                     orderText(into.order) + "; compose only ranges that are apart"};
+        return Error{std::string(what) + ": parts " + orderText(part.order) + " of the draw order lie between " +
+                     orderText(into.order) + "; composite only separate ranges"};
     auto placed = place(what, into, part);
     if (!placed) return placed.error();
     DepthRule rule;
@@ -94,7 +94,7 @@ Result<void> assembleDepth(Image& into, const Image& part, const DepthAssembly& 
     rule.format = part.depth->format() == PlaneFormat::D24S8 ? DepthFormat::D24S8 : DepthFormat::D32F;
     if (how.coverage == Coverage::Stencil && rule.format != DepthFormat::D24S8)
         return Error{std::string(what) + ": " + nameOf(part.depth->format()) +
-                     " has no stencil to tell what was drawn; use D24S8"};
+                     " has no stencil for coverage; use D24S8"};
     rule.sourceIsLater = part.order.first >= into.order.end;
     rule.coverage = how.coverage;
     rule.clearBits = how.clearBits;
@@ -129,11 +129,11 @@ Result<void> assembleBlended(Image& into, const Image& part) {
     if (!into.colour || !part.colour)
         return Error{std::string(what) + ": a picture has no colour plane; read colour back for both"};
     if (into.colour->format() != part.colour->format())
-        return mismatch(what, into.colour->view(), part.colour->view(), "read colour back in one format");
+        return mismatch(what, into.colour->view(), part.colour->view(), "use one colour format");
     if (!adjacent(into.order, part.order))
         return Error{std::string(what) + ": parts " + orderText(part.order) +
-                     " of the draw order are no neighbours of " + orderText(into.order) +
-                     "; blend what comes in between first"};
+                     " of the draw order are not adjacent to " + orderText(into.order) +
+                     "; blend the parts between them first"};
     auto placed = place(what, into, part);
     if (!placed) return placed.error();
     const SourceSide side = part.order.first == into.order.end ? SourceSide::InFront : SourceSide::Behind;
@@ -159,14 +159,15 @@ int32_t countOf(int32_t size, int32_t first, int32_t step) {
 Result<PixelViewport> withinPicture(const PlaneView& picture, const PlaneView& part, const PixelKernel& k) {
     const char* what = "interleaving pixels";
     if (!k.valid())
-        return Error{std::string(what) + ": there is no pixel " + std::to_string(k.x) + "," + std::to_string(k.y) +
-                     " in a kernel of " + std::to_string(k.w) + "x" + std::to_string(k.h) + "; check the compound"};
+        return Error{std::string(what) + ": pixel " + std::to_string(k.x) + "," + std::to_string(k.y) +
+                     " is outside of a kernel of " + std::to_string(k.w) + "x" + std::to_string(k.h) +
+                     "; check the compound"};
     const PixelViewport within{0, 0, countOf(picture.width, k.x, k.w), countOf(picture.height, k.y, k.h)};
     const PixelViewport most = apply({0, 0, picture.width, picture.height}, k);
     if (part.format != picture.format || part.width < within.w || part.height < within.h || part.width > most.w ||
         part.height > most.h)
-        return Error{std::string(what) + ": the part is " + sizeText(part) + " and not " + std::to_string(within.w) +
-                     "x" + std::to_string(within.h) + " " + nameOf(picture.format) +
+        return Error{std::string(what) + ": the part has " + sizeText(part) + " instead of " +
+                     std::to_string(within.w) + "x" + std::to_string(within.h) + " " + nameOf(picture.format) +
                      "; draw it with its kernel's size"};
     return within;
 }
@@ -209,10 +210,10 @@ ChannelMask channelMaskOf(PlaneFormat format, const ColourMask& mask) {
 
 Result<void> assembleMasked(const MutablePlaneView& into, const PlaneView& part, const ColourMask& mask) {
     if (!sameShape(into, part))
-        return mismatch("mixing by colour mask", into, part, "draw both eyes in one size and format");
+        return mismatch("combining by colour mask", into, part, "draw both eyes with one size and format");
     if (isDepth(into.format))
-        return Error{std::string("mixing by colour mask: ") + nameOf(into.format) +
-                     " has no colours; give colour planes"};
+        return Error{std::string("combining by colour mask: ") + nameOf(into.format) +
+                     " has no colours; use colour planes"};
     const ChannelMask bytes = channelMaskOf(into.format, mask);
     for (int32_t y = 0; y < into.height; ++y) maskChannelsRow(into.row(y), part.row(y), into.rowBytes(), bytes);
     return {};

@@ -51,10 +51,11 @@ Result<void> Average::add(const PlaneView& picture) {
     if (!sameShape(shape_, picture) || isDepth(picture.format))
         return Error{"averaging: a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
                      " " + nameOf(picture.format) + " among " + std::to_string(shape_.width) + "x" +
-                     std::to_string(shape_.height) + " " + nameOf(shape_.format) + "; draw all in one size and format"};
+                     std::to_string(shape_.height) + " " + nameOf(shape_.format) +
+                     "; draw all of them with one size and format"};
     if (count_ >= most())
         return Error{"averaging: " + std::to_string(count_) +
-                     " pictures are as many as the sums hold; write the average and begin anew"};
+                     " pictures are the maximum of a sum; write the average and restart"};
     if (in16Bits_ == kMaxIn16Bits) widen();
     for (int32_t y = 0; y < picture.height; ++y) {
         const std::byte* from = picture.row(y);
@@ -87,7 +88,7 @@ Result<void> Average::add(const PlaneView& picture) {
 
 Result<void> Average::write(const MutablePlaneView& into) const {
     if (!sameShape(shape_, into))
-        return Error{"averaging: the result's size or format is not the pictures'; give it a plane of the same shape"};
+        return Error{"averaging: the result has another size or format; use a plane of the same shape"};
     if (count_ == 0) return Error{"averaging: there is no picture yet; add one before the average is written"};
     std::vector<uint32_t> sums(shape_.format == PlaneFormat::Rgba8 && !wide_.empty() ? rowComponents_ : 0);
     for (int32_t y = 0; y < into.height; ++y) {

@@ -87,7 +87,7 @@ Result<void> CodecRegistry::open(const std::string& name) {
     if (pluginFolder_.empty() || name.empty() || !std::ranges::all_of(name, mayBeFile)) {
         std::string names;
         for (const CodecInfo& c : known_) names += c.name + ", ";
-        return Error{"there is no codec \"" + name + "\"; there are " + names + "and jpeg-N with N from 1 to 100"};
+        return Error{"unknown codec \"" + name + "\"; use " + names + "or jpeg-N with N from 1 to 100"};
     }
     auto plugin = openCodecPlugin(name, pluginFolder_);
     if (!plugin) return plugin.error();

@@ -87,26 +87,26 @@ Result<size_t> TileDeltaEncoder::encode(const PlaneView& plane, Codec& codec, st
 Result<void> TileDeltaDecoder::decode(std::span<const std::byte> bytes, Codec& codec, const MutablePlaneView& into) {
     const auto damaged = [&](const char* what) {
         number_ = 0;
-        return damagedPlane("unchanged tiles", into, bytes.size(), what);
+        return damagedPlane("tile delta", into, bytes.size(), what);
     };
     if (into.empty()) return bytes.empty() ? Result<void>() : damaged("an empty plane has no bytes");
     const Tiles tiles(into.width, into.height);
-    if (bytes.size() < tiles.headBytes()) return damaged("its head is cut short");
+    if (bytes.size() < tiles.headBytes()) return damaged("its header is truncated");
     const uint32_t number = loadLittle<uint32_t>(bytes.data()), before = loadLittle<uint32_t>(bytes.data() + 4);
     const auto present = [&](size_t t) {
         return std::to_integer<unsigned>(bytes[8 + t / 8] >> (t % 8) & std::byte{1}) != 0;
     };
-    if (number == 0) return damaged("it has no number");
-    if (before != 0 && before != number_) return damaged("it changes another plane than the one that is here");
+    if (number == 0) return damaged("its number is 0");
+    if (before != 0 && before != number_) return damaged("its previous plane is not the current one");
     for (size_t t = 0; t < 8 * (tiles.headBytes() - 8); ++t)
         if (t < tiles.count() ? before == 0 && !present(t) : present(t))
-            return damaged("its tiles are not the plane's");
+            return damaged("its tiles do not match the plane");
     std::span<const std::byte> left = bytes.subspan(tiles.headBytes());
     Result<void> result;
     tiles.forRuns(present, [&](int32_t y, int32_t first, int32_t end) {
         const size_t size = left.size() < 4 ? 0 : loadLittle<uint32_t>(left.data());
         if (left.size() < 4 || size > left.size() - 4)
-            result = damaged("a run of tiles is cut short");
+            result = damaged("a run of tiles is truncated");
         else
             result = codec.decode(left.subspan(4, size), into.part(tiles.area(y, first, end)));
         if (result) left = left.subspan(4 + size);
@@ -116,7 +116,7 @@ Result<void> TileDeltaDecoder::decode(std::span<const std::byte> bytes, Codec& c
         number_ = 0;
         return result;
     }
-    if (!left.empty()) return damaged("there are bytes behind its end");
+    if (!left.empty()) return damaged("there are bytes after its end");
     number_ = number;
     return {};
 }

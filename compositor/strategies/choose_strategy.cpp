@@ -13,8 +13,8 @@ Strategy chooseStrategy(int ranks) { return ranks <= kLongestChain ? Strategy::S
 
 const char* whyStrategy(int ranks) {
     if (chooseStrategy(ranks) == Strategy::Streaming)
-        return "each folds into what its neighbour sends, the collector least of all";
-    return "a chain of so many would be long; each folds a band, in rounds of up to eight";
+        return "each node composites the picture that its neighbour sends, and the collector does the least work";
+    return "a chain would be too long; each node composites a band, in rounds of up to eight nodes";
 }
 
 } // namespace mural::compositor

@@ -58,10 +58,9 @@ bool hasPicture(Context& c, const Window& w) {
 void sayInPart() {
     char libraries[700];
     const bool any = librariesPastUs(libraries, sizeof libraries);
-    sayBypass(
-        "part of the program's GL calls go past Mural (by names of %s): its window shows its own picture from now on. "
-        "Try LD_PRELOAD=libGL.so.1, which puts GLVND's names before those of a linked library",
-        any ? libraries : "its driver");
+    sayBypass("some GL calls of the program bypass Mural (through names of %s): its own window shows the picture from "
+              "now on. Try LD_PRELOAD=libGL.so.1, which resolves GLVND's names before those of a linked library",
+              any ? libraries : "its driver");
 }
 
 } // namespace
@@ -87,10 +86,9 @@ bool bypassesCapture(ThreadState& t, Window& w) {
     const bool proof = changed || stateChanged(c) || (++c.emptyFrames >= kEmptyFrames && hasPicture(c, w));
     if (!proof) return false;
     const char* library = loadedOwnGl();
-    sayBypass(
-        "the program shows pictures, but its GL calls go past Mural%s%s: its window shows its own picture from now on. "
-        "Try --capture-via preload",
-        library ? ", by " : "", library ? library : "");
+    sayBypass("the GL calls of the program bypass Mural%s%s: its own window shows the picture from now on. Try "
+              "--capture-via preload",
+              library ? ", by " : "", library ? library : "");
     return true;
 }
 

@@ -114,8 +114,8 @@ void tellLost(Context& c, const wire::DriverEvent& n) {
     }
     static bool once = false;
     if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-        say("a node's graphics driver was reset, and this program did not ask to be told: its pictures are incomplete "
-            "from now on; start it again");
+        say("a node's graphics driver was reset, and this program did not enable reset notification: its pictures are "
+            "incomplete from now on; restart it");
 }
 
 void tell(Context& c, const Waiting& w) {

@@ -81,7 +81,7 @@ void verifyFrame(ThreadState& t, Window& w) {
     const ColourReads reads = colourReadsOf(*t.context, w);
     if (w.config.red > 8 && reads.type == GL_UNSIGNED_BYTE)
         MURAL_SAY_ONCE(
-            "a window has %d bits per channel; --verify compares 8 of them, as OpenGL ES before 3 reads no more",
+            "a window has %d bits per channel; --verify compares 8 of them, because OpenGL ES before 3 reads no more",
             w.config.red);
     auto* mine = static_cast<uint8_t*>(std::calloc(pixels, reads.pixelBytes));
     if (!mine) return countUncompared(Uncompared::NoMemory);

@@ -140,7 +140,7 @@ GLsizei readableElements(const void* value, GLsizei count, uint32_t elementBytes
 void unsupportedCalled(const char* name, const char* reason) {
     if (Session* s = Session::current(); s && s->alive()) {
         if (s->header()->callsUnsupported.fetch_add(1, std::memory_order_relaxed) == 0)
-            say("%s is not carried to the wall (%s); further such calls are only counted", name, reason);
+            say("%s is not supported on the wall (%s); further such calls are only counted", name, reason);
     }
 }
 

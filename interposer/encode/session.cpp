@@ -120,7 +120,7 @@ bool Session::connect() {
 
 void Session::die(const char* why) {
     if (!__atomic_exchange_n(&alive_, false, __ATOMIC_ACQ_REL)) return;
-    if (why) say("%s; the program goes on alone", why);
+    if (why) say("%s; the program continues alone", why);
 }
 
 // Returns whether the head lives. The kernel marks headLife if the head ends without setting headGone
@@ -163,11 +163,11 @@ bool Session::publishLocked(ThreadState& t, bool last) {
         return tail - header_->publishedHead.load(std::memory_order_acquire) >= header_->chunkCount;
     };
     if (full()) {
-        Waiting waiting(*header_, capture::Wait::Room);
+        Waiting waiting(*header_, capture::Wait::Space);
         do {
             if (!headAlive()) return false;
             if (waiting.forNs() > kStuckNs) {
-                die("the head takes nothing for 60 s");
+                die("the head read nothing for 60 s");
                 return false;
             }
             timespec nap{0, 200'000};
@@ -204,10 +204,10 @@ bool Session::takeChunk(ThreadState& t) {
             }
         }
         if (!waiting) {
-            waiting.emplace(*header_, capture::Wait::Room);
+            waiting.emplace(*header_, capture::Wait::Space);
         } else {
             if (!headAlive()) return false;
-            if (waiting->forNs() > kStuckNs) die("the head frees no memory for 60 s");
+            if (waiting->forNs() > kStuckNs) die("the head returned no memory for 60 s");
         }
         futexWait(header_->freedTail, seen, kSliceNs);
     }
@@ -236,7 +236,7 @@ void Session::waitForCredit() {
     for (bool inVain = false; alive() && tooMany(done); inVain = true) {
         if (inVain) { // most frames skip these checks
             if (!headAlive()) return;
-            if (waiting.forNs() > 10 * kStuckNs) die("no frame came back for 10 minutes");
+            if (waiting.forNs() > 10 * kStuckNs) die("no frame was completed for 10 minutes");
         }
         header_->framesWanted.store(capture::kFramesWanted | (submitted - welcome_.latency), std::memory_order_relaxed);
         std::atomic_thread_fence(std::memory_order_seq_cst);
@@ -290,7 +290,7 @@ bool Session::aheadAnswer(uint32_t request, uint64_t& value) {
         }
         const bool later = here != 0 && static_cast<int32_t>((here - request) << 1) > 0;
         if (later || (waiting && waiting->forNs() > kStuckNs)) break; // the caller sends a new request then
-        if (!waiting) waiting.emplace(*header_, capture::Wait::Answer);
+        if (!waiting) waiting.emplace(*header_, capture::Wait::Reply);
         futexWait(answer.request, here, kSliceNs);
         if (!headAlive()) break;
     }
@@ -306,10 +306,10 @@ bool Session::answerBytes(void* into, uint64_t sizeBytes) {
         uint32_t have = tail - head;
         if (have == 0) {
             if (!waiting) {
-                waiting.emplace(*header_, capture::Wait::Answer);
+                waiting.emplace(*header_, capture::Wait::Reply);
             } else {
                 if (!headAlive()) return false;
-                if (waiting->forNs() > kStuckNs) die("the nodes did not answer for 60 s");
+                if (waiting->forNs() > kStuckNs) die("the nodes sent no reply for 60 s");
                 if (!alive()) return false;
             }
             futexWait(header_->replyTail, tail, kSliceNs);

@@ -3,5 +3,5 @@
 
 namespace mural {
 void (*wrapperAt(int index))();
-bool carriedAt(int index);
+bool isSupportedAt(int index);
 } // namespace mural

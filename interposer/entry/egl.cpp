@@ -338,7 +338,7 @@ void* openVendor() {
     for (const char* name : {"libEGL_mesa.so.0", "libEGL_nvidia.so.0"}) {
         if (void* handle = loader::openLibrary(name, RTLD_LAZY)) return handle;
     }
-    say("no EGL driver is found (libEGL_mesa.so.0): install libegl-mesa0");
+    say("no EGL driver found (libEGL_mesa.so.0): install libegl-mesa0");
     return nullptr;
 }
 

@@ -44,7 +44,7 @@ void tellCreated(EGLImage image, EGLContext native, EGLenum target, EGLClientBuf
     if (!ofGlObject(target) || !sharer) {
         static bool once = false;
         if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-            say("eglCreateImage of target 0x%x is not carried to the wall (such images exist on one machine only)",
+            say("eglCreateImage of target 0x%x is not supported on the wall (such images exist on one machine only)",
                 target);
         return;
     }

@@ -359,7 +359,7 @@ void* openVendor() {
         snprintf(name, sizeof name, "libGLX_%s.so.0", vendor);
         if (void* handle = loader::openLibrary(name, RTLD_LAZY)) return handle;
     }
-    say("no GLX driver is found (libGLX_mesa.so.0): install libglx-mesa0");
+    say("no GLX driver found (libGLX_mesa.so.0): install libglx-mesa0");
     return nullptr;
 }
 

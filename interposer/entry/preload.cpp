@@ -15,8 +15,8 @@ extern "C" __attribute__((visibility("default"))) Entry mural_front_entry(const 
         static bool told = false;
         const char* own = loadedOwnGl();
         if (own && !__atomic_exchange_n(&told, true, __ATOMIC_RELAXED))
-            sayBypass("the program uses two GL libraries; GLVND's is on the wall, what %s draws stays in the program's "
-                      "own window",
+            sayBypass("the program uses two GL libraries; only GLVND's is captured, and drawings of %s stay in the "
+                      "program's own window",
                       own);
         return nullptr;
     }

@@ -58,8 +58,8 @@ void inheritedUsed(Window* window) {
     static bool once = false;
     if (window) window->inherited = true;
     if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-        say("a forked child draws with a context of its parent: it draws on its own, not on the wall; make the context "
-            "after the fork");
+        say("a forked child draws with a context of its parent, which is not captured; create the context after the "
+            "fork");
 }
 
 } // namespace mural

@@ -114,8 +114,8 @@ char* receiveText(const Transfer& transfer, uint32_t bytes) {
 void sayNoDescriptor() {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);
-    say("no descriptor is free for the memory shared with the head (the program may have %llu open): raise ulimit -n; "
-        "this program draws on its own",
+    say("no file descriptor for the memory shared with the head (limit: %llu): raise ulimit -n; this program is not "
+        "captured",
         static_cast<unsigned long long>(limit.rlim_cur));
 }
 
@@ -125,13 +125,13 @@ capture::CaptureHeader* mapMemory(int memory) {
     void* const mapping =
         size > 0 ? mmap(nullptr, static_cast<size_t>(size), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0) : MAP_FAILED;
     if (mapping == MAP_FAILED) {
-        say("can't map %ld bytes shared with the head (%s): raise ulimit -v or free memory; this program draws on its "
-            "own",
+        say("cannot map %ld bytes shared with the head (%s): raise ulimit -v or free memory; this program is not "
+            "captured",
             static_cast<long>(size), std::strerror(errno));
         return nullptr;
     }
     if (madvise(mapping, static_cast<size_t>(size), MADV_DONTFORK) != 0) {
-        say("can't keep forked children out of the memory shared with the head (%s); this program draws on its own",
+        say("cannot exclude forked children from the memory shared with the head (%s); this program is not captured",
             std::strerror(errno));
         munmap(mapping, static_cast<size_t>(size));
         return nullptr;
@@ -148,18 +148,18 @@ bool shakeHands(int socket, Handshake& result) {
     OwnedFd memory;
     capture::Welcome& welcome = result.welcome;
     if (!transfer.send(&hello, sizeof hello) || !transfer.receive(&welcome, sizeof welcome, &memory)) {
-        say("the head does not answer (%s); this program draws on its own",
+        say("the head does not reply (%s); this program is not captured",
             errno ? std::strerror(errno) : "it closed the connection");
         return false;
     }
     if (welcome.magic != capture::kMagic || welcome.version != capture::kVersion) {
-        say("the head does not speak this version: run the interposer and mural of one build; this program draws on "
-            "its own");
+        say("the head uses another version of the protocol: install capture library and mural from one build; this "
+            "program is not captured");
         return false;
     }
     result.extensions = receiveText(transfer, welcome.extensionBytes);
     if (welcome.refused)
-        say("not captured: %s", result.extensions ? result.extensions + 1 : "the head refuses it");
+        say("not captured: %s", result.extensions ? result.extensions + 1 : "the head rejected it");
     else if (memory.get() < 0)
         sayNoDescriptor();
     else if (result.extensions)

@@ -73,7 +73,7 @@ int openHeadSocket() {
     if (fd < 0 && launch.socketPath) fd = connectByName(launch.socketPath, false);
     if (fd < 0 && launch.socketPath) fd = connectByRoot(launch.session, launch.socketPath);
     if (fd < 0)
-        say("no head answers at session %s (%s): this program draws on its own. A sandbox must show it %s",
+        say("no head at session %s (%s): this program is not captured. A sandbox must give it access to %s",
             launch.session, std::strerror(errno), launch.socketPath ? launch.socketPath : "the network of mural run");
     return fd;
 }

@@ -74,7 +74,7 @@ void textureFromLocal(GLenum target, bool alpha) {
     if (t.context->api != wire::Api::Desktop || !gReal.glGetTexImage || !gReal.glGetTexLevelParameteriv) {
         static bool once = false;
         if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-            say("pixmaps as textures of OpenGL ES contexts are not carried to the wall");
+            say("pixmaps as textures of OpenGL ES contexts are not supported on the wall");
         return;
     }
     GLint width = 0, height = 0;

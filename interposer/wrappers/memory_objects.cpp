@@ -47,7 +47,7 @@ void mural_glImportMemoryFdEXT(GLuint memory, GLuint64 size, GLenum handleType, 
         return gReal.glImportMemoryFdEXT(memory, size, handleType, fd);
     static bool once = false;
     if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED))
-        say("memory of other APIs (glImportMemoryFdEXT) cannot be on the wall: the program gets an error");
+        say("memory of other APIs (glImportMemoryFdEXT) is not supported on the wall: the program receives an error");
     stashError(*t.context, driverError());
     stashError(*t.context, GL_INVALID_OPERATION);
 }

@@ -35,12 +35,12 @@ PlacementChoice choosePlacement(const MachineView& machine, DeviceKind kind) {
         ++count;
         if (best == nullptr || device.rank > best->rank) best = &device;
     }
-    if (best == nullptr) return stay(std::string("no ") + kindName(kind) + " was found");
+    if (best == nullptr) return stay(std::string("no ") + kindName(kind) + " found");
     std::set<unsigned> near;
     std::ranges::set_intersection(best->cpus, machine.allowedCpus, std::inserter(near, near.end()));
     const std::string device = best->name + (count > 1 ? " (of " + std::to_string(count) + ")" : "");
-    if (near.empty()) return stay("no core near " + device + " may be used");
-    if (near == machine.allowedCpus) return stay("all cores that may be used are near " + device);
+    if (near.empty()) return stay("no core close to " + device + " may be used");
+    if (near == machine.allowedCpus) return stay("all cores that may be used are close to " + device);
     return {near, "on cores " + rangesOf(near) + ", near " + device};
 }
 

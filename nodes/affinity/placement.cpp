@@ -55,7 +55,7 @@ Placement placeThread(DeviceKind kind) {
     const PlacementChoice choice = choosePlacement(machine, kind);
     if (choice.cpus.empty()) return {choice.description, false};
     if (bindThisThread(topology.get(), choice.cpus)) return {choice.description, true};
-    return {std::string("not placed: the kernel refuses (") + std::strerror(errno) + ")", false};
+    return {std::string("not placed: the kernel refuses the core set (") + std::strerror(errno) + ")", false};
 }
 
 } // namespace mural

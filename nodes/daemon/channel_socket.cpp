@@ -16,7 +16,7 @@ Result<void> ChannelSocket::flush(Deadline deadline) {
         if (n >= 0) {
             at += static_cast<size_t>(n);
         } else if (errno == EAGAIN) {
-            if (waitForSocket(socket_.get(), POLLOUT, deadline) == 0) return Error{"the peer takes nothing"};
+            if (waitForSocket(socket_.get(), POLLOUT, deadline) == 0) return Error{"the peer does not read"};
         } else if (errno != EINTR) {
             return Error{"the connection is lost: " + errnoText(errno)};
         }
@@ -36,7 +36,7 @@ Result<void> ChannelSocket::fetch() {
         auto r = channel_.input(std::span(piece).first(static_cast<size_t>(n)), records);
         for (const auto& record : records) {
             auto message = decodeNodeMessage(record);
-            if (!message) return Error{"what the peer says is no message; do both run the same version?"};
+            if (!message) return Error{"invalid message from the peer; check that both run the same version"};
             messages_.push_back(std::move(*message));
         }
         if (!r) return r.error();
@@ -48,8 +48,7 @@ Result<void> ChannelSocket::open(Deadline deadline) {
     while (true) {
         if (auto r = flush(deadline); !r) return r;
         if (channel_.open()) return {};
-        if (waitForSocket(socket_.get(), POLLIN, deadline) == 0)
-            return Error{"the peer does not show that it knows the secret"};
+        if (waitForSocket(socket_.get(), POLLIN, deadline) == 0) return Error{"the peer's secret differs"};
         if (auto r = fetch(); !r) return r;
     }
 }
@@ -69,7 +68,7 @@ std::optional<NodeMessage> ChannelSocket::next() {
 Result<NodeMessage> ChannelSocket::receive(Deadline deadline) {
     while (true) {
         if (auto message = next()) return std::move(*message);
-        if (waitForSocket(socket_.get(), POLLIN, deadline) == 0) return Error{"the peer says nothing"};
+        if (waitForSocket(socket_.get(), POLLIN, deadline) == 0) return Error{"no message from the peer in time"};
         if (auto r = fetch(); !r && messages_.empty()) return r.error();
     }
 }

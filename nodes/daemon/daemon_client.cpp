@@ -21,7 +21,7 @@ constexpr int64_t kProofMs = 10'000;
 constexpr int64_t kSendMs = 10'000;
 
 Result<FileDescriptor> connectTo(const DaemonClient& call) {
-    std::string why = "no address to try";
+    std::string why = "the host has no address";
     std::vector<TcpAddress> addresses;
     for (const std::string& host : call.addresses) {
         auto resolved = resolveTcp(host, call.port, TcpRole::Connect, Deadline::inMs(kConnectMs));
@@ -33,17 +33,17 @@ Result<FileDescriptor> connectTo(const DaemonClient& call) {
     if (!addresses.empty()) {
         auto socket = connectRacing(addresses, Deadline::inMs(kConnectMs));
         if (socket && prepareTcpSocket(socket->get())) return socket;
-        why = socket ? "the connection was lost at once" : socket.error().message;
+        why = socket ? "the connection was closed immediately" : socket.error().message;
     }
-    return Error{"no connection to port " + std::to_string(call.port) + ": " + why +
-                 "; does `mural node --wait` run there?"};
+    return Error{"cannot connect to port " + std::to_string(call.port) + ": " + why +
+                 "; check that `mural node --wait` runs there"};
 }
 
 Result<void> writeAll(int fd, std::span<const std::byte> bytes) {
     for (size_t at = 0; at < bytes.size();) {
         const ssize_t n = ::write(fd, bytes.data() + at, bytes.size() - at);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return Error{"can't write what the node says: " + errnoText(errno)};
+        if (n < 0) return Error{"cannot write the node's output: " + errnoText(errno)};
         at += static_cast<size_t>(n);
     }
     return {};
@@ -60,7 +60,8 @@ Result<int> callNode(const DaemonClient& call) {
     bool input = true;
     while (true) {
         while (auto m = channel.next()) {
-            if (m->kind == NodeMessageKind::Refused) return Error{"the node there refused: " + textOf(m->body)};
+            if (m->kind == NodeMessageKind::Refused)
+                return Error{"the daemon rejected the command: " + textOf(m->body)};
             if (m->kind == NodeMessageKind::Ended) return m->body.empty() ? 1 : std::to_integer<int>(m->body.front());
             if (m->kind != NodeMessageKind::Output && m->kind != NodeMessageKind::Errors) continue;
             if (auto r = writeAll(m->kind == NodeMessageKind::Output ? STDOUT_FILENO : STDERR_FILENO, m->body); !r)
@@ -69,14 +70,14 @@ Result<int> callNode(const DaemonClient& call) {
         // A session has no time limit. TCP keepalive detects a lost head within 14 s.
         std::array<pollfd, 2> look{{{channel.descriptor(), POLLIN, 0}, {input ? STDIN_FILENO : -1, POLLIN, 0}}};
         if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR)
-            return Error{"can't wait for the node: " + errnoText(errno)};
+            return Error{"cannot wait for the node: " + errnoText(errno)};
         if (look[0].revents != 0) {
             if (auto r = channel.fetch(); !r) {
                 // Reads the queued messages first, because the process may have ended normally.
                 for (auto m = channel.next(); m; m = channel.next())
                     if (m->kind == NodeMessageKind::Ended && !m->body.empty())
                         return std::to_integer<int>(m->body.front());
-                return Error{"the node there is lost: " + r.error().message};
+                return Error{"the connection to the daemon is lost: " + r.error().message};
             }
         }
         if (look[1].revents != 0) {

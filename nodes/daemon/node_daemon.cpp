@@ -42,7 +42,7 @@ Result<FileDescriptor> listenAt(const std::string& text) {
             return fd;
         why = errnoText(errno);
     }
-    return Error{"can't listen at " + text + ": " + why + "; give another --listen ADDRESS:PORT"};
+    return Error{"cannot listen at " + text + ": " + why + "; choose another --listen ADDRESS:PORT"};
 }
 
 // An IPv4 peer of an IPv6 socket appears as "::ffff:10.0.0.1".
@@ -83,22 +83,23 @@ void NodeDaemon::take(FileDescriptor socket, const std::string& peer) {
     const ChannelSecret secret = options_.secret;
     ChannelSocket channel(std::move(socket),
                           SecureChannel::accepting([secret](const std::string&) { return std::optional(secret); }));
-    if (auto r = channel.open(Deadline::inMs(kProofMs)); !r) return say(peer + " was sent away: " + r.error().message);
+    if (auto r = channel.open(Deadline::inMs(kProofMs)); !r)
+        return say(peer + " was not accepted: " + r.error().message);
     const auto refuse = [&](const std::string& why) {
         (void)channel.send(textMessage(NodeMessageKind::Refused, why), Deadline::inMs(kAnswerMs));
-        say(peer + " was refused: " + why);
+        say(peer + " was rejected: " + why);
     };
     auto order = channel.receive(Deadline::inMs(kProofMs));
-    if (!order) return say(peer + " ordered nothing: " + order.error().message);
+    if (!order) return say(peer + " sent no command: " + order.error().message);
     auto arguments = orderArguments(*order);
     if (!arguments || !isAllowedCommand(*arguments))
-        return refuse("only render nodes can be ordered here; do both run the same version?");
+        return refuse("only render nodes can be started here; check that both run the same version");
     completeOrder(*arguments, peer);
-    if (!enter(peer)) return refuse("another head has its nodes here; try again when it has ended");
-    say(peer + " has a " + arguments->front() + " here now");
+    if (!enter(peer)) return refuse("another head uses this machine; try again after its session");
+    say(peer + " started a " + arguments->front() + " on this machine");
     auto how = runOrdered(options_.executable, *arguments, channel, stop_);
     leave(peer);
-    say(peer + ": the " + arguments->front() + " has ended: " + (how ? *how : how.error().message));
+    say(peer + ": the " + arguments->front() + " ended: " + (how ? *how : how.error().message));
 }
 
 Result<void> NodeDaemon::serve(int stopFd) {
@@ -106,7 +107,7 @@ Result<void> NodeDaemon::serve(int stopFd) {
     while (true) {
         std::array<pollfd, 2> look{{{socket_.get(), POLLIN, 0}, {stopFd, POLLIN, 0}}};
         if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR) {
-            result = Error{"can't wait for heads: " + errnoText(errno)};
+            result = Error{"cannot wait for heads: " + errnoText(errno)};
             break;
         }
         if (look[1].revents != 0) break;

@@ -33,7 +33,7 @@ struct Streams {
                                         std::pair(&s.errors, &s.itsErrors)}) {
             int ends[2];
             if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-                return Error{"no socket for a process: " + errnoText(errno)};
+                return Error{"cannot create a socket for a process: " + errnoText(errno)};
             *ours = FileDescriptor(ends[0]);
             *its = FileDescriptor(ends[1]);
             (void)fcntl(ends[0], F_SETFL, O_NONBLOCK);
@@ -70,7 +70,7 @@ public:
             if (auto r = tell(s_.errors, NodeMessageKind::Errors); !r) return r.error();
             if (ended) return end();
         }
-        return Error{"this node stops waiting"};
+        return Error{"this daemon is stopping"};
     }
 
 private:
@@ -79,7 +79,7 @@ private:
             if (message->kind == NodeMessageKind::InputEnd) inputEnded_ = true;
             if (message->kind == NodeMessageKind::Input)
                 waiting_.insert(waiting_.end(), message->body.begin(), message->body.end());
-            if (waiting_.size() > kMaxWaiting) return Error{"the head sends more than the process reads"};
+            if (waiting_.size() > kMaxWaiting) return Error{"the head sends data faster than the process reads it"};
         }
         return {};
     }

@@ -92,13 +92,15 @@ size_t boundBytesOf(const PixelViewport& box, const RowRange& rows) {
 Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId& id, const RowRange& rows,
                              const CompositeRule& rule, PlaneDecoder& decoder,
                              const std::function<void(const ArrivedPiece&)>& each) {
-    const auto damaged = [](const std::string& what) { return Error{"a damaged part of a picture came: " + what}; };
-    if (message.size() < kHeadBytes) return damaged("it is cut short");
+    const auto damaged = [](const std::string& what) {
+        return Error{"invalid message with a part of a picture: " + what};
+    };
+    if (message.size() < kHeadBytes) return damaged("it is shorter than its header");
     const PictureId came{loadLittle<uint32_t>(message.data()),
                          loadLittle<uint64_t>(message.data() + 4),
                          {int32At(message, 12), int32At(message, 16), int32At(message, 20), int32At(message, 24)}};
     if (came != id || RowRange{int32At(message, 28), int32At(message, 32)} != rows)
-        return Error{"parts of different pictures came together: this one is incomplete"};
+        return Error{"parts of different pictures arrived together; this picture is incomplete"};
     const PartState state = int32At(message, 36) == 0 ? PartState::Complete : PartState::Incomplete;
     const uint32_t pieces = loadLittle<uint32_t>(message.data() + 40);
     const PixelViewport band{0, rows.first, id.box.w, rows.count()};
@@ -113,7 +115,8 @@ Result<PartState> unpackPart(std::span<const std::byte> message, const PictureId
         const size_t colourBytes = loadLittle<uint32_t>(rest.data() + 20),
                      depthBytes = loadLittle<uint32_t>(rest.data() + 24);
         rest = rest.subspan(kPieceBytes);
-        if (area.empty() || !band.contains(area) || area.area() > left) return damaged("a piece does not lie in it");
+        if (area.empty() || !band.contains(area) || area.area() > left)
+            return damaged("a piece lies outside of the part");
         if (colourBytes > rest.size() || depthBytes > rest.size() - colourBytes)
             return damaged("it ends before its last piece");
         left -= area.area();

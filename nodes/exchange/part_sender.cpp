@@ -36,7 +36,7 @@ Result<void> PartSender::send(std::vector<std::byte> message, Deadline deadline)
     std::unique_lock lock(mutex_);
     const auto ready = [this] { return waiting_.size() < kMaxWaiting || !failure_.empty(); };
     if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(3600 * kNsPerS)), ready))
-        return Error{"it takes no pictures"};
+        return Error{"it does not read pictures"};
     if (!failure_.empty()) return Error{failure_};
     waiting_.push_back(std::move(message));
     changed_.notify_all();

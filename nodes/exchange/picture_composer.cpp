@@ -16,8 +16,7 @@ void PictureComposer::agree() {
     if (std::exchange(agreed_, false) || strategy_ == Strategy::Serial || config_.rank == 0 || lost_.contains(0))
         return;
     auto word = routes_.receive(0, 1, Deadline::inMs(config_.wordMs));
-    if (!word || word->size() != 1)
-        return lost(0, word ? "range 1 said how to go on in a way that is none" : word.error().message);
+    if (!word || word->size() != 1) return lost(0, word ? "range 1 sent an invalid strategy" : word.error().message);
     if (word->front() != std::byte{0}) serially();
 }
 
@@ -121,7 +120,7 @@ void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Ki
 
 void PictureComposer::lost(int rank, const std::string& why) {
     incomplete_ = true;
-    if (lost_.insert(rank).second) log_("a range of the picture is missing for now: " + why);
+    if (lost_.insert(rank).second) log_("a range of the picture is missing until its node rejoins: " + why);
 }
 
 } // namespace mural

@@ -59,7 +59,7 @@ Result<void> PictureExchange::connectTo(int rank, const std::string& host, uint1
     std::array<std::byte, 4 + kWelcomeBytes> welcome; // after the length prefix
     if (auto came = (*secure)->read(welcome, deadline); !came) return came.error();
     if (loadLittle<uint32_t>(welcome.data()) != kWelcomeBytes)
-        return Error{"it does not greet; head and nodes must be of one build"};
+        return Error{"no greeting from the node; install the same version of mural on all machines"};
     add({rank, loadLittle<uint32_t>(welcome.data() + 4)}, std::move(*secure), Side::Connected);
     return {};
 }
@@ -140,9 +140,9 @@ Result<PictureExchange::Peer*> PictureExchange::peerOf(int rank, Deadline deadli
             arrived_.wait_for(lock, std::chrono::milliseconds(kAcceptSliceMs));
             continue;
         }
-        return Error{"no connection of " + rangeText(rank) + " came"};
+        return Error{"no connection from " + rangeText(rank) + " came"};
     }
-    if (peer.gone) return Error{rangeText(rank) + " is gone"};
+    if (peer.gone) return Error{rangeText(rank) + " is disconnected"};
     return &peer;
 }
 
@@ -171,8 +171,8 @@ Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t mostByt
         if (auto r = c.read(size, deadline); !r) return r.error();
         const size_t bytes = loadLittle<uint32_t>(size.data());
         if (bytes > mostBytes)
-            return Error{"a picture of " + std::to_string(bytes) + " bytes came where " + std::to_string(mostBytes) +
-                         " are the most"};
+            return Error{"the size of a picture, " + std::to_string(bytes) + " bytes, exceeds the limit of " +
+                         std::to_string(mostBytes)};
         std::vector<std::byte> message(bytes);
         if (auto r = c.read(message, deadline); !r) return r.error();
         return message;

@@ -65,8 +65,7 @@ bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
     };
     if (stuck_ || !await(lock, room)) {
         if (!std::exchange(stuck_, true))
-            log_("its pictures do not get away: none has gone for " + std::to_string(config_.roomMs / 1000) +
-                 " s; it ends");
+            log_("no picture could be sent for " + std::to_string(config_.roomMs / 1000) + " s; the node ends");
         return false;
     }
     frames_ += isFrame ? 1 : 0;
@@ -165,7 +164,8 @@ void PictureSender::sendFrame(Frame& frame) {
     const int64_t beganCpuNs = threadCpuNowNs();
     auto read = frame.picture->bytes(Deadline::inMs(config_.readMs));
     if (!read && !std::exchange(saidLost_, true))
-        log_("a picture is black, as are all that are lost like it: " + read.error().message);
+        log_("readback failed; this picture, and later ones after the same failure, are black: " +
+             read.error().message);
     if (!read) black_.assign(static_cast<size_t>(h.w) * static_cast<size_t>(h.h) * 4, std::byte{0});
     std::span<const std::byte> pixels = read ? *read : black_;
     const int64_t beganNs = monotonicNowNs();

@@ -12,7 +12,7 @@ Result<void> PictureUnpacker::unpack(uint32_t client, uint32_t window, int32_t w
                                      std::span<const std::byte> packed, std::span<std::byte> into) {
     const compositor::PlaneShape shape{compositor::PlaneFormat::Rgba8, width, height};
     if (width <= 0 || height <= 0 || into.size() != shape.sizeBytes())
-        return Error{"a packed picture of an impossible size"};
+        return Error{"an encoded picture of invalid size"};
     Window& w = windows_[{client, window}];
     if (w.last.width() != width || w.last.height() != height) w = {{}, {shape.format, width, height}};
     if (auto done = w.tiles.decode(packed, codec_, w.last.view()); !done) return done.error();

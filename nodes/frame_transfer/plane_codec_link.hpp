@@ -20,7 +20,7 @@ public:
         return packed_.size() + 1;
     }
     [[nodiscard]] Result<void> decode(std::span<const std::byte>, const compositor::MutablePlaneView&) override {
-        return Error{"this end packs"};
+        return Error{"this end only encodes"};
     }
 
     void transferred(uint64_t bytes, int64_t ns) { encoder_.transferred(bytes, ns); }
@@ -38,11 +38,11 @@ public:
         return 1 + shape.sizeBytes();
     }
     [[nodiscard]] Result<size_t> encode(const compositor::PlaneView&, std::span<std::byte>) override {
-        return Error{"this end unpacks"};
+        return Error{"this end only decodes"};
     }
     [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes,
                                       const compositor::MutablePlaneView& into) override {
-        if (bytes.empty()) return Error{"a plane without its codec"};
+        if (bytes.empty()) return Error{"a plane with an unknown codec"};
         return decoder_.decode(static_cast<CodecNumber>(bytes.front()), bytes.subspan(1), into);
     }
 

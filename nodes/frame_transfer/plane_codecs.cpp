@@ -139,7 +139,8 @@ PlaneDecoder::~PlaneDecoder() = default;
 
 Result<void> PlaneDecoder::decode(CodecNumber codec, std::span<const std::byte> bytes, const MutablePlaneView& into) {
     if (codec >= codecs_.size() || !codecs_[codec])
-        return Error{"a plane by codec " + std::to_string(codec) + ", which there is not"};
+        return Error{"a plane with the unknown codec " + std::to_string(codec) +
+                     "; install the same version of mural on all machines"};
     return codecs_[codec]->decode(bytes, into);
 }
 

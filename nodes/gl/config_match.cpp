@@ -105,7 +105,7 @@ bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other) { return wha
 
 Result<void> checkSize(const std::string& backend, const SurfaceConfig& wish, int maxSize) {
     if (wish.width >= 1 && wish.height >= 1 && wish.width <= maxSize && wish.height <= maxSize) return {};
-    return Error{backend + " can't make a surface of " + std::to_string(wish.width) + "x" +
+    return Error{backend + " cannot make a surface of " + std::to_string(wish.width) + "x" +
                  std::to_string(wish.height) + " pixels (1x1 to " + std::to_string(maxSize) + "x" +
                  std::to_string(maxSize) + "): draw a smaller picture"};
 }

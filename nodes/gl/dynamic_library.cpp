@@ -12,7 +12,7 @@ Result<DynamicLibrary> DynamicLibrary::open(const std::vector<std::string>& name
         const char* said = dlerror();
         if (reason.empty()) reason = said ? said : "the loader gave no reason";
     }
-    return Error{"can't load " + names.front() + " (" + reason + "): install the package " + package};
+    return Error{"cannot load " + names.front() + " (" + reason + "): install the package " + package};
 }
 
 void* DynamicLibrary::symbol(const char* name) const { return dlsym(handle_, name); }

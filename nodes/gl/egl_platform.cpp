@@ -89,7 +89,7 @@ public:
         auto& context = static_cast<EglContext&>(*context_);
         display_->egl.bindApi(context.api());
         if (display_->egl.makeCurrent(display_->display, context.dummy(), context.dummy(), context.handle())) return {};
-        return Error{"EGL can't make the context of a second thread current: " + takeEglError(display_->egl) +
+        return Error{"EGL cannot make the context of a second thread current: " + takeEglError(display_->egl) +
                      "; use --readback direct"};
     }
     void leave() override {
@@ -202,7 +202,7 @@ Result<std::unique_ptr<EglSurface>> EglPlatform::createPbuffer(const SurfaceConf
         std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels" + (wish.srgb ? " in sRGB" : "");
     EGLSurface handle = egl.createPbufferSurface(display_->display, config->handle, list.data());
     if (handle == EGL_NO_SURFACE)
-        return Error{"EGL can't make a pbuffer of " + what + ": " + takeEglError(egl) +
+        return Error{"EGL cannot make a pbuffer of " + what + ": " + takeEglError(egl) +
                      "; try a smaller picture or another --gl backend"};
     auto surface = std::make_unique<EglSurface>(display_, handle, config->bits);
     EGLint width = 0, height = 0;
@@ -227,7 +227,7 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
     if (!egl.makeCurrent(display_->display, surface.handle(), surface.handle(), clearing->handle())) {
         const std::string why = takeEglError(egl);
         egl.bindApi(currentApi_);
-        return Error{"EGL can't clear a new pbuffer: " + why + "; see mural doctor"};
+        return Error{"EGL cannot clear a new pbuffer: " + why + "; see mural doctor"};
     }
     clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
     if (before == EGL_NO_CONTEXT && !display_->mesa) { // stays current until others are (EglLeftOvers)
@@ -237,7 +237,7 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
     // A release acts on the bound API.
     if (before != EGL_NO_CONTEXT) egl.bindApi(currentApi_);
     if (!egl.makeCurrent(display_->display, draw, read, before))
-        return Error{"EGL can't make the context current again after clearing a pbuffer: " + takeEglError(egl) +
+        return Error{"EGL cannot make the context current again after clearing a pbuffer: " + takeEglError(egl) +
                      "; see mural doctor"};
     egl.bindApi(currentApi_);
     return {};
@@ -288,7 +288,7 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
     const std::string why = handle == EGL_NO_CONTEXT ? takeEglError(egl) : "";
     egl.bindApi(currentApi_);
     if (handle == EGL_NO_CONTEXT)
-        return Error{"EGL can't make an " + describeContext(wish) + " context" +
+        return Error{"EGL cannot make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " + why + "; see mural doctor"};
     return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, tellsReset, std::move(dummy)));
 }
@@ -325,7 +325,7 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
         if (wanted) display_->left.destroy(egl, display_->display);
         return {};
     }
-    return Error{"EGL can't make the context current: " + takeEglError(egl) +
+    return Error{"EGL cannot make the context current: " + takeEglError(egl) +
                  "; check that context and surfaces were made for the same kind of surface"};
 }
 
@@ -349,7 +349,7 @@ Result<std::unique_ptr<Image>> EglPlatform::createImage(const ImageSource& sourc
     EGLImageKHR handle = egl.createImage(display_->display, context->handle(), source.target,
                                          reinterpret_cast<EGLClientBuffer>(uintptr_t{source.name}), list.data());
     if (handle != EGL_NO_IMAGE_KHR) return std::unique_ptr<Image>(std::make_unique<EglImage>(display_, handle));
-    return Error{"EGL can't make an image of object " + std::to_string(source.name) + ": " + takeEglError(egl) +
+    return Error{"EGL cannot make an image of object " + std::to_string(source.name) + ": " + takeEglError(egl) +
                  "; its format may be unknown to this driver"};
 }
 

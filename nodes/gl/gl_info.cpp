@@ -77,7 +77,8 @@ Result<GlInfo> readGlInfo(Platform& platform) {
     info.vendor = text(gl, GL_VENDOR);
     info.renderer = text(gl, GL_RENDERER);
     info.glVersion = parseGlVersion(info.version);
-    if (info.glVersion == 0) return Error{"the GL driver tells no version ('" + info.version + "'): see mural doctor"};
+    if (info.glVersion == 0)
+        return Error{"the GL driver reports no version ('" + info.version + "'): see mural doctor"};
     info.es = info.version.rfind("OpenGL ES", 0) == 0;
     info.extensions = readExtensions(gl, info.glVersion);
     GLint dimensions[2] = {0, 0};

@@ -9,14 +9,14 @@ Result<std::unique_ptr<Image>> Platform::createImage(const ImageSource&) {
 }
 
 Result<std::unique_ptr<SharedReader>> Platform::createReader(const ContextConfig&, Context&) {
-    return Error{describe() + " has all its contexts in one thread: use --gl egl"};
+    return Error{describe() + " uses all its contexts in one thread: use --gl egl"};
 }
 
 Result<std::unique_ptr<Platform>> openPlatform(const std::string& name) {
     if (name == "egl") return openEgl();
     if (name == "osmesa") return openOsmesa();
     if (name == "glx") return openGlx();
-    if (name != "auto") return Error{"no GL backend is named '" + name + "': use auto, egl, osmesa or glx"};
+    if (name != "auto") return Error{"unknown GL backend '" + name + "': use auto, egl, osmesa or glx"};
     auto egl = openEgl();
     if (egl) return egl;
     auto osmesa = openOsmesa();

@@ -88,7 +88,7 @@ Result<void> openGlxDisplay(GlxDisplayState& state) {
     state.name = name ? name : "";
     state.display = state.glx.openDisplay(nullptr);
     if (!state.display)
-        return Error{name ? "can't open the X display '" + state.name + "': start the X server or use --gl egl"
+        return Error{name ? "cannot open the X display '" + state.name + "': start the X server or use --gl egl"
                           : "DISPLAY is not set: GLX needs an X server; start one or use --gl egl"};
     state.screen = state.glx.defaultScreen(state.display);
     int major = 0, minor = 0;

@@ -129,7 +129,7 @@ Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConf
     XErrorTrap trap(*display_);
     GLXPbuffer handle = glx.createPbuffer(display_->display, config->handle, list);
     if (const std::string why = trap.take(); !why.empty() || !handle)
-        return Error{"GLX can't make a pbuffer of " + what + ": " + (why.empty() ? "no reason given" : why) +
+        return Error{"GLX cannot make a pbuffer of " + what + ": " + (why.empty() ? "no reason given" : why) +
                      "; try a smaller picture or --gl egl"};
     auto surface = std::make_unique<GlxSurface>(display_, handle, config->bits);
     unsigned width = 0, height = 0;
@@ -156,7 +156,7 @@ Result<void> GlxPlatform::clear(const GlxSurface& surface) {
     const GLXContext before = glx.getCurrentContext();
     const GLXDrawable draw = glx.getCurrentDrawable(), read = glx.getCurrentReadDrawable();
     const auto failed = [](const std::string& why) {
-        return Error{"GLX can't clear a new pbuffer: " + (why.empty() ? "no reason given" : why) + "; use --gl egl"};
+        return Error{"GLX cannot clear a new pbuffer: " + (why.empty() ? "no reason given" : why) + "; use --gl egl"};
     };
     XErrorTrap trap(*display_);
     if (!glx.makeContextCurrent(display_->display, surface.handle(), surface.handle(),
@@ -233,7 +233,7 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
         if (handle) display_->tellsResets = false;
     }
     if (!handle || !why.empty())
-        return Error{"GLX can't make an " + describeContext(wish) + " context" +
+        return Error{"GLX cannot make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " +
                      (why.empty() ? "the driver does not have it" : why) + "; see mural doctor"};
     return std::unique_ptr<Context>(
@@ -256,7 +256,7 @@ Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
                                                        wanted ? wanted->handle() : nullptr);
     const std::string why = trap.take();
     if (made && why.empty()) return {};
-    return Error{"GLX can't make the context current: " + (why.empty() ? "no reason given" : why) +
+    return Error{"GLX cannot make the context current: " + (why.empty() ? "no reason given" : why) +
                  "; check that context and surfaces were made for the same kind of surface"};
 }
 

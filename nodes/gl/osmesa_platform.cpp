@@ -181,14 +181,15 @@ void OsmesaContext::evict() {
 }
 
 Result<void> OsmesaContext::bind(OsmesaSurface* surface) {
-    const Error failed{"OSMesa can't make the context current: not enough memory? try a smaller picture"};
+    const Error failed{
+        "OSMesa cannot make the context current, probably because memory is short; try a smaller picture"};
     if (!surface) {
         evict();
         if (!bindMemory(dummy_, 1, 1)) return failed;
         return {};
     }
     if (!sameBits(surface->config(), config_.surface))
-        return Error{"OSMesa can't draw with one context to surfaces of different bits: use --gl egl"};
+        return Error{"OSMesa cannot draw with one context to surfaces of different depths: use --gl egl"};
     if (surface->home_ != this) {
         evict();
         if (surface->home_) surface->home_->evict();
@@ -235,7 +236,7 @@ Result<std::unique_ptr<Surface>> OsmesaPlatform::createSurface(const SurfaceConf
 
 Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
     if (wish.api != Api::Desktop || wish.forwardCompatible)
-        return Error{"OSMesa can't make an " + describeContext(wish) + " context: use --gl egl"};
+        return Error{"OSMesa cannot make an " + describeContext(wish) + " context: use --gl egl"};
     auto chosen = chooseFormat(wish.surface);
     if (!chosen) return chosen.error();
     ContextConfig config = wish;
@@ -259,7 +260,7 @@ Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConf
     OSMesaContext share = shareWith ? static_cast<OsmesaContext*>(shareWith)->handle() : nullptr;
     OSMesaContext handle = state_->osmesa.createContextAttribs(list, share);
     if (!handle)
-        return Error{"OSMesa can't make an " + describeContext(wish) + " context" +
+        return Error{"OSMesa cannot make an " + describeContext(wish) + " context" +
                      (shareWith ? " that shares objects" : "") + ": the driver does not have it; see mural doctor"};
     return std::unique_ptr<Context>(std::make_unique<OsmesaContext>(state_, handle, config, chosen->format));
 }
@@ -268,9 +269,9 @@ Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surfac
     if (!context) {
         state_->current = nullptr;
         if (state_->osmesa.makeCurrent(nullptr, nullptr, 0, 0, 0)) return {};
-        return Error{"OSMesa can't release the context: install a newer libosmesa6"};
+        return Error{"OSMesa cannot release the context: install a newer libosmesa6"};
     }
-    if (read && read != draw) return Error{"OSMesa can't draw to one surface and read from another: use --gl egl"};
+    if (read && read != draw) return Error{"OSMesa cannot draw to one surface and read from another: use --gl egl"};
     return static_cast<OsmesaContext*>(context)->bind(static_cast<OsmesaSurface*>(draw));
 }
 

@@ -47,7 +47,7 @@ Result<SessionConfig> receiveConfig(ControlChannel& control) {
     do {
         if (const auto line = control.receive(deadline)) return sessionConfigFromJson(*line);
     } while (!control.broken() && !deadline.passed() && asked == 0);
-    return Error{"no session configuration came; `mural head` is started by `mural run`"};
+    return Error{"no session configuration on the control connection; start `mural head` with `mural run`"};
 }
 
 LaunchOptions launchOptionsOf(const SessionConfig& config) {

@@ -78,21 +78,20 @@ Finding findingOf(const UnseenProgram& program) {
 std::string describe(const Finding& f) {
     switch (f.drawing) {
     case Drawing::OwnGl:
-        return f.program + " draws by " + f.path +
-               ", which GLVND does not lead to, and so past Mural; its window shows its own picture. "
-               "Run it with --capture-via preload, or without that library (LD_LIBRARY_PATH)";
+        return f.program + " uses " + f.path +
+               ", which GLVND does not load, so its GL calls bypass Mural and its own window shows the picture. Use "
+               "--capture-via preload, or remove that library (LD_LIBRARY_PATH)";
     case Drawing::OffScreen:
-        return f.program + " draws by OSMesa (" + f.path +
-               ") into its own memory, where Mural sees nothing; "
-               "its window shows its own picture. Run a build of it that uses GLX or EGL";
+        return f.program + " draws with OSMesa (" + f.path +
+               ") into its own memory, which Mural cannot capture; its own window shows the picture. Use a build with "
+               "GLX or EGL";
     case Drawing::Vulkan:
-        return f.program + " seems to draw by Vulkan (" + f.path +
-               "), which Mural does not carry; "
-               "its window shows its own picture. Choose OpenGL in its options";
+        return f.program + " seems to draw with Vulkan (" + f.path +
+               "), which Mural does not support; its own window shows the picture. Select OpenGL in its options";
     case Drawing::X11:
         if (f.glvnd) return {};
-        return f.program + " has a window but loads no GL library: it draws by X11 itself, which Mural does not carry. "
-                           "Choose OpenGL in its options";
+        return f.program + " has a window but loads no GL library: it draws with X11, which Mural does not support. "
+                           "Select OpenGL in its options";
     default: return {};
     }
 }
@@ -124,13 +123,13 @@ std::string describeUncaptured(const UnseenProgram& program) {
     }
     if (gl.empty()) return {};
     return std::string(baseName(program.program)) + " uses GL (" + gl +
-           ") without Mural's library: what started it left LD_PRELOAD out of its environment, "
-           "or a sandbox hides the library's folder. What it draws stays in its own window";
+           ") without the capture library: its parent removed LD_PRELOAD from the environment, or a sandbox hides the "
+           "library's folder. Its own window shows the picture";
 }
 
 Result<std::unique_ptr<BypassWatch>> BypassWatch::create() {
     const int fd = memfd_create("mural-notes", MFD_CLOEXEC);
-    if (fd < 0) return Error{std::string("no memory for the programs' notes: ") + std::strerror(errno)};
+    if (fd < 0) return Error{std::string("no memory for bypass notes of programs: ") + std::strerror(errno)};
     return std::unique_ptr<BypassWatch>(new BypassWatch(fd));
 }
 

@@ -74,7 +74,8 @@ void rememberSignals() {
 
 Result<ChildProcess> ChildProcess::start(const SpawnRequest& request) {
     int report[2];
-    if (pipe2(report, O_CLOEXEC) != 0) return Error{"no pipe for a new process: " + std::string(std::strerror(errno))};
+    if (pipe2(report, O_CLOEXEC) != 0)
+        return Error{"cannot create a pipe for a process: " + std::string(std::strerror(errno))};
     auto arguments = pointers(request.arguments);
     auto environment = pointers(request.environment);
     const pid_t parent = getpid();
@@ -84,7 +85,7 @@ Result<ChildProcess> ChildProcess::start(const SpawnRequest& request) {
     close(report[1]);
     if (pid < 0) {
         close(report[0]);
-        return Error{"no new process for " + request.file + ": " + std::strerror(forkReason)};
+        return Error{"cannot create a process for " + request.file + ": " + std::strerror(forkReason)};
     }
     const int reason = reasonFrom(report[0]);
     close(report[0]);

@@ -147,7 +147,7 @@ Result<LibraryFacts> readLibrary(const std::string& path) {
     const bool whole = file.readAt(&header, sizeof header, 0) == sizeof header;
     if (!whole || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64 ||
         header.e_phentsize != sizeof(Elf64_Phdr)) {
-        return Error{path + " is no 64-bit library; check the file"};
+        return Error{path + " is not a 64-bit library; check the file"};
     }
     const auto programs = readTable<Elf64_Phdr>(file, header.e_phoff, uint64_t{header.e_phnum} * sizeof(Elf64_Phdr));
     std::vector<Elf64_Dyn> dynamic;

@@ -131,7 +131,7 @@ Result<void> addCapture(Environment& environment, const CaptureLibrary& library,
     const std::string folder = library.path.substr(0, library.path.rfind('/'));
     if (folder.find_first_of(":;") != std::string::npos) {
         return Error{"the folder " + folder +
-                     " has a ':' or ';' in its name, which the loader cannot take; move Mural elsewhere"};
+                     " contains ':' or ';', which the loader does not accept; move Mural to another folder"};
     }
     std::string place = folder + "/";
     if (place.find_first_of(" \t\n") != std::string::npos) {

@@ -92,13 +92,13 @@ SpawnRequest serverRequest(const std::string& binary, int width, int height, con
 Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int height) {
     const ProgramCheck binary = findProgram("Xvfb", Environment::current().get("PATH").value_or("/usr/bin:/bin"));
     if (!binary.ok()) {
-        return Error{"Xvfb is needed to run a program without a display of its own size, and was not found; install "
-                     "Debian's package xvfb"};
+        return Error{"--size and missing displays require Xvfb, which was not found; install Debian's package xvfb"};
     }
     auto authority = XAuthority::create();
     if (!authority) return authority.error();
     int number[2];
-    if (pipe2(number, O_CLOEXEC) != 0) return Error{"no pipe for Xvfb: " + std::string(std::strerror(errno))};
+    if (pipe2(number, O_CLOEXEC) != 0)
+        return Error{"cannot create a pipe for Xvfb: " + std::string(std::strerror(errno))};
     OwnedFd readEnd(number[0]);
     OwnedFd writeEnd(number[1]);
     const OwnedFd log(memfd_create("mural-xvfb-log", MFD_CLOEXEC));
@@ -113,7 +113,7 @@ Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int hei
     const std::string text = readDisplayNumber(readEnd.get(), display->server_);
     if (text.empty()) {
         const std::string words = lastLine(log.get());
-        return Error{"Xvfb gave no private display of " + std::to_string(width) + "x" + std::to_string(height) +
+        return Error{"Xvfb did not start a private display of " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels" + (words.empty() ? std::string() : ": " + words) +
                      "; check free memory and /tmp/.X11-unix"};
     }

@@ -31,7 +31,7 @@ ProgramCheck verifyFile(const std::string& name, const std::string& path) {
         return failure(path, kExitNotExecutable, name + " is a folder; give the program inside it");
     }
     if (access(path.c_str(), X_OK) != 0) {
-        return failure(path, kExitNotExecutable, name + " may not be executed; give it the right: chmod +x " + path);
+        return failure(path, kExitNotExecutable, name + " is not executable; run: chmod +x " + path);
     }
     return {path, {}, 0, {}};
 }
@@ -46,13 +46,13 @@ std::string loaderObstacle(const std::string& path, const ExecutableFacts& facts
     if (stat(path.c_str(), &file) != 0) return {};
     if ((file.st_mode & S_ISUID) != 0 || (file.st_mode & S_ISGID) != 0) {
         return path + " is a " + ((file.st_mode & S_ISUID) != 0 ? "setuid" : "setgid") +
-               " program, and the loader ignores LD_PRELOAD for those; run a copy without that bit";
+               " program, for which the loader ignores LD_PRELOAD; run a copy without that bit";
     }
     if (getuid() != 0 && hasFileCapabilities(path)) {
-        return path + " has file capabilities, and the loader ignores LD_PRELOAD for those; run a copy without them";
+        return path + " has file capabilities, so the loader ignores LD_PRELOAD; run a copy without them";
     }
     if (facts.bits != ownBits()) {
-        return path + " is a " + std::to_string(facts.bits) + "-bit program and this is the " +
+        return path + " is a " + std::to_string(facts.bits) + "-bit program, but this is the " +
                std::to_string(ownBits()) + "-bit Mural; install the program's " + std::to_string(ownBits()) +
                "-bit build";
     }
@@ -61,7 +61,7 @@ std::string loaderObstacle(const std::string& path, const ExecutableFacts& facts
                "); install this machine's build";
     }
     if (!facts.hasInterpreter) {
-        return path + " is statically linked, so no library can be loaded into it; use a dynamically linked build";
+        return path + " is statically linked, so no library can be preloaded; use a dynamically linked build";
     }
     return {};
 }
@@ -69,7 +69,7 @@ std::string loaderObstacle(const std::string& path, const ExecutableFacts& facts
 } // namespace
 
 ProgramCheck findProgram(const std::string& name, const std::string& searchPath) {
-    if (name.empty()) return failure(name, kExitNotFound, "the program's name is empty; give it after --");
+    if (name.empty()) return failure(name, kExitNotFound, "the program's name is empty; add it after --");
     if (name.find('/') != std::string::npos) return verifyFile(name, name);
     std::string blocked;
     size_t at = 0;
@@ -105,7 +105,7 @@ ProgramCheck checkProgram(const std::string& name, const std::string& searchPath
         case FileKind::Script: {
             const ProgramCheck next = verifyFile(facts.value().scriptInterpreter, facts.value().scriptInterpreter);
             if (!next.ok())
-                return failure(found.path, next.exitStatus, path + " asks for the interpreter " + next.message);
+                return failure(found.path, next.exitStatus, path + " requests the interpreter " + next.message);
             path = next.path;
             break;
         }
@@ -115,7 +115,8 @@ ProgramCheck checkProgram(const std::string& name, const std::string& searchPath
         }
     }
     return failure(found.path, kExitNotExecutable,
-                   name + " is a chain of more than " + std::to_string(kMaxScriptDepth) + " scripts; run the last one");
+                   name + " is a chain of more than " + std::to_string(kMaxScriptDepth) +
+                       " scripts; run the last one directly");
 }
 
 } // namespace mural::launch

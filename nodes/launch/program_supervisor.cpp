@@ -33,7 +33,7 @@ Result<std::unique_ptr<ProgramSupervisor>> ProgramSupervisor::create() {
     ::signal(SIGXFSZ, SIG_IGN);
     adoptOrphans();
     const int fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
-    if (fd < 0) return Error{"no descriptor for signals: " + std::string(std::strerror(errno))};
+    if (fd < 0) return Error{"cannot create a descriptor for signals: " + std::string(std::strerror(errno))};
     return std::unique_ptr<ProgramSupervisor>(new ProgramSupervisor(fd));
 }
 

@@ -53,7 +53,7 @@ Result<std::unique_ptr<SessionSocket>> SessionSocket::create(const std::string& 
         if (!fitsSocket(path)) continue;
         removeStaleSockets(place);
         if (mkdir(folder.c_str(), 0700) == 0) return std::unique_ptr<SessionSocket>(new SessionSocket(path));
-        reason = folder + " can't be made: " + std::strerror(errno);
+        reason = folder + " cannot be created: " + std::strerror(errno);
     }
     return Error{reason};
 }

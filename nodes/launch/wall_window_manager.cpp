@@ -33,8 +33,7 @@ Result<std::unique_ptr<WallWindowManager>> WallWindowManager::open(const std::st
     xcb_connection_t* connection = xcb_connect_to_display_with_auth_info(display.c_str(), &authority, nullptr);
     if (xcb_connection_has_error(connection) != 0) {
         xcb_disconnect(connection);
-        return Error{"the private display " + display +
-                     " takes no connection; try again, and without --size if it stays so"};
+        return Error{"the private display " + display + " accepts no connection; try again, or omit --size"};
     }
     std::unique_ptr<WallWindowManager> manager(new WallWindowManager(connection, width, height));
     if (!manager->takeRoot())

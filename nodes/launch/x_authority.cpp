@@ -38,7 +38,8 @@ std::string authorityFile(const XAuthority::Cookie& cookie) {
 Result<std::unique_ptr<XAuthority>> XAuthority::create() {
     Cookie cookie{};
     if (getrandom(cookie.data(), cookie.size(), 0) != static_cast<ssize_t>(cookie.size())) {
-        return Error{"no random bytes for the key of the private display: " + std::string(std::strerror(errno))};
+        return Error{"cannot get random bytes for the key of the private display: " +
+                     std::string(std::strerror(errno))};
     }
     const int fd = memfd_create("mural-xauthority", MFD_CLOEXEC);
     if (fd < 0) return Error{"no memory for the key of the private display: " + std::string(std::strerror(errno))};

@@ -38,12 +38,12 @@ bool hasMasks(const PixelFormat& format, uint32_t red, uint32_t green, uint32_t 
 
 Result<PixelConverter> PixelConverter::make(const PixelFormat& format) {
     if (!contiguous(format.redMask) || !contiguous(format.greenMask) || !contiguous(format.blueMask)) {
-        return Error{fmt::format("pixels with the channel masks {:#x} {:#x} {:#x} are not known", format.redMask,
-                                 format.greenMask, format.blueMask)};
+        return Error{fmt::format("unknown channel masks of pixels: {:#x} {:#x} {:#x}", format.redMask, format.greenMask,
+                                 format.blueMask)};
     }
     if (format.bitsPerPixel % 8 != 0 || format.bitsPerPixel < 8 || format.bitsPerPixel > 32 ||
         format.rowPadBits % 8 != 0 || format.rowPadBits < 8)
-        return Error{fmt::format("pixels of {} bits are not known", format.bitsPerPixel)};
+        return Error{fmt::format("pixels with {} bits are not supported", format.bitsPerPixel)};
     PixelConverter converter;
     converter.format_ = format;
     converter.bytesPerPixel_ = static_cast<size_t>(format.bitsPerPixel) / 8;

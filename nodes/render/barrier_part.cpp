@@ -16,10 +16,10 @@ constexpr int64_t kConnectMs = 10'000;
 Result<uint16_t> BarrierPart::open() {
     if (rank_ != 0) return uint16_t{0};
     const auto secret = sessionSecretFromHex(secretHex_);
-    if (!secret) return Error{"the head gave no secret for the swap barrier: " + secret.error().message};
+    if (!secret) return Error{"the head sent an invalid secret for the swap barrier: " + secret.error().message};
     auto leader = std::make_unique<BarrierLeader>(members_, secret.value(), log_);
     if (auto listening = leader->listen(here_); !listening)
-        return Error{"no node can be let in to the swap barrier: " + listening.error().message};
+        return Error{"cannot listen for the swap barrier: " + listening.error().message};
     const uint16_t port = leader->port();
     barrier_ = std::move(leader);
     return port;
@@ -29,14 +29,14 @@ void BarrierPart::follow(const std::string& host, uint16_t port) {
     if (rank_ == 0 || barrier_) return;
     const auto secret = sessionSecretFromHex(secretHex_);
     if (!secret)
-        return log_("the head gave no secret for the swap barrier: " + secret.error().message +
-                    "; windows of this node show frames when they are drawn");
+        return log_("the head sent an invalid secret for the swap barrier: " + secret.error().message +
+                    "; windows of this node show frames without the barrier");
     auto follower = BarrierFollower::connect(rank_, secret.value(), host, port, Deadline::inMs(kConnectMs), log_);
     if (follower)
         barrier_ = std::move(*follower);
     else
-        log_("the leader of the swap barrier is not reached at " + endpointText(host, port) + ": " +
-             follower.error().message + "; windows of this node show frames when they are drawn");
+        log_("cannot connect to the leader of the swap barrier at " + endpointText(host, port) + ": " +
+             follower.error().message + "; windows of this node show frames without the barrier");
 }
 
 } // namespace mural

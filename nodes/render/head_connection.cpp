@@ -26,7 +26,7 @@ Result<std::unique_ptr<Connection>> connectByTcp(const NodeOptions& options) {
     std::string line;
     std::getline(std::cin, line);
     const auto secret = sessionSecretFromHex(line);
-    if (!secret) return Error{"no session secret on standard input: nodes are started by `mural run --nodes`"};
+    if (!secret) return Error{"no session secret on standard input; nodes are started by `mural run --nodes`"};
     const Deadline deadline = Deadline::inMs(kConnectMs);
     auto connection = connectTcp(where->host, where->port, deadline);
     if (!connection) return connection.error();
@@ -74,8 +74,8 @@ Result<void> HeadConnection::follow(const std::string& stream, const std::string
 
 void HeadConnection::joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name) {
     const auto failed = [this](const std::string& why) {
-        sendText(wire::NodeMessage::Log, "its stream goes on through its own connection (TCP), not by multicast: " +
-                                             why + "; mural doctor --network may say why");
+        sendText(wire::NodeMessage::Log,
+                 "its stream uses TCP instead of multicast: " + why + "; see mural doctor --network");
     };
     auto options = groupOptions(stream, secretHex, name);
     if (!options) return failed(options.error().message);
@@ -83,7 +83,7 @@ void HeadConnection::joinBeside(const std::string& stream, const std::string& se
 }
 
 Result<void> HeadConnection::changeOver(uint64_t skipBytes) {
-    if (!late_) return Error{"it was not told of a group"};
+    if (!late_) return Error{"the head sent no multicast group"};
     if (auto ended = endBatch(); !ended) return ended;
     auto stream = late_->goOn(skipBytes, Deadline::inMs(kChangeOverMs));
     late_.reset();
@@ -105,7 +105,8 @@ Result<void> HeadConnection::endBatch() {
     std::span<const std::byte> payload;
     const auto more = unpacker_->next(stream, payload);
     if (!more || more.value())
-        return Error{"the head sent more in a batch than its last command; head and nodes must be of one build"};
+        return Error{
+            "the head sent data after the last command of a batch; install the same version of mural on all machines"};
     inBatch_ = false;
     return {};
 }
@@ -181,7 +182,8 @@ Result<delta::BatchHead> HeadConnection::readBatch() {
 
 Result<void> HeadConnection::readPayload(uint32_t sizeBytes, uint32_t mostBytes) {
     if (sizeBytes > mostBytes)
-        return Error{"the head sent a packet of " + std::to_string(sizeBytes) + " bytes: it is of another build"};
+        return Error{"the head sent an invalid packet of " + std::to_string(sizeBytes) +
+                     " bytes; install the same version of mural on all machines"};
     payload_.resize(sizeBytes);
     // no deadline: the head may pause in the middle; its end closes the connection
     return line().read(payload_, Deadline::never());

@@ -52,7 +52,7 @@ double processCpuSeconds() {
 // Places the replay thread near the GPU. Not with software rendering, because the driver's threads then need all cores.
 std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
     if (!setup.placeThreads) return "not placed: --no-placement";
-    if (gl::drawsWithoutGpu(renderer)) return "not placed: drawn without a GPU";
+    if (gl::drawsWithoutGpu(renderer)) return "not placed: no GPU draws";
     return placeThread(DeviceKind::Gpu).description;
 }
 
@@ -133,7 +133,7 @@ private:
         callsBefore_ = replay_->counts().commands;
         clientInHand_ = wire::clientOf(header.stream);
         if (!replay_->packet(header.stream, payload))
-            line_->sendText(wire::NodeMessage::Log, "a broken packet of a program's stream was dropped");
+            line_->sendText(wire::NodeMessage::Log, "an invalid packet of a program's stream was dropped");
         calls_[clientInHand_] += replay_->counts().commands - callsBefore_;
         callsBefore_ = replay_->counts().commands;
         return !invalid_ && !stuck_;
@@ -185,7 +185,7 @@ private:
         setup_ = setup.value();
         catchesUp_ = setup_.isResyncing;
         if (setup_.build != streamBuild())
-            return fail("the head speaks another stream (" + (setup_.build.empty() ? "unnamed" : setup_.build) +
+            return fail("the head uses another stream format (" + (setup_.build.empty() ? "unnamed" : setup_.build) +
                         ") than this node (" + streamBuild() + "): install the same version of mural on both machines");
         auto platform = gl::openPlatform(setup_.glBackend);
         if (!platform) return fail(platform.error().message);
@@ -276,12 +276,13 @@ private:
     // Opens the exchange with the nodes that draw the other ranges of the same picture.
     Result<void> openExchange(nlohmann::json& ready) {
         const auto secret = sessionSecretFromHex(setup_.exchangeSecret);
-        if (!secret) return Error{"the head gave no secret for pictures between nodes: " + secret.error().message};
+        if (!secret)
+            return Error{"the head sent an invalid secret for the picture exchange: " + secret.error().message};
         ComposerConfig composer;
         const auto strategy = compositor::strategyNamed(setup_.composition);
         if (!strategy)
-            return Error{"the head names a composition that there is not, \"" + setup_.composition +
-                         "\": install the same version of mural on both machines"};
+            return Error{"the head sent the unknown composition \"" + setup_.composition +
+                         "\"; install the same version of mural on both machines"};
         composer.strategy = *strategy;
         composer.rank = setup_.pass.range;
         composer.ranks = setup_.pass.ranges;
@@ -293,7 +294,7 @@ private:
             composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
         // Every node listens, even one without initial peers: a restarted node connects to those present.
         if (auto listening = exchange_->listen(setup_.exchangeHere); !listening)
-            return Error{"no pictures of other nodes can be taken: " + listening.error().message};
+            return Error{"cannot listen for pictures of other nodes: " + listening.error().message};
         ready["exchange"] = endpointText(setup_.exchangeHere ? "127.0.0.1" : line_->ownAddress(), exchange_->port());
         return {};
     }
@@ -315,20 +316,20 @@ private:
             const auto where = addressIn(json, "pictures", setup_.collector + rank);
             if (!where && setup_.isResyncing) continue; // that node is lost or not ready
             if (!where)
-                return fail(
-                    "the head named no node to send pictures to: install the same version of mural on all machines");
+                return fail("the head sent no addresses for the picture exchange; install the same version of mural on "
+                            "all machines");
             const auto connected = exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kMeetMs));
             if (!connected)
                 line_->sendText(wire::NodeMessage::Log,
-                                "the node with range " + std::to_string(rank + 1) + " is not reached at " +
+                                "cannot connect to the node with range " + std::to_string(rank + 1) + " at " +
                                     endpointText(where->host, where->port) + ": " + connected.error().message +
-                                    "; what nodes would send each other there is missing");
+                                    "; their parts of the picture are missing");
         }
         if (!swaps_ || setup_.swapRank == 0) return true;
         const auto leader = addressIn(json, "swaps", setup_.swapLeader);
         if (!leader)
-            return fail(
-                "the head named no leader of the swap barrier: install the same version of mural on all machines");
+            return fail("the head sent no address of the swap barrier's leader; install the same version of mural on "
+                        "all machines");
         swaps_->follow(leader->host, leader->port);
         return true;
     }
@@ -395,8 +396,8 @@ private:
     // Ends this node, because it has skipped frames that its pictures depend on. No picture of it is shown from now on.
     void invalid() {
         if (catchesUp_ || std::exchange(invalid_, true)) return;
-        line_->sendText(wire::NodeMessage::Log, "its frames build on earlier ones that it did not draw while it caught "
-                                                "up; it ends, to be started again and draw them");
+        line_->sendText(wire::NodeMessage::Log, "its frames depend on earlier frames that it skipped while it caught "
+                                                "up; it ends and is restarted to draw all frames");
     }
 
     // A node becomes a member. If it is this node, other nodes have sent all earlier messages.
@@ -486,7 +487,7 @@ private:
         std::memcpy(&command, arguments.data(), sizeof command);
         if (command.node != static_cast<uint32_t>(setup_.node)) return true;
         const auto changed = line_->changeOver(uint64_t{command.skipHigh} << 32 | command.skipLow);
-        return changed || fail("its stream can't go on by multicast: " + changed.error().message);
+        return changed || fail("its stream cannot switch to multicast: " + changed.error().message);
     }
 
     // Reports a window whose picture loses bits, once, on the first node.
@@ -495,9 +496,10 @@ private:
         if (!shows || f.config.red <= 8 || f.format != PictureFormat::Bgra8 ||
             !saidEightBits_.insert({f.client, f.window}).second)
             return;
-        line_->sendText(wire::NodeMessage::Log, "the program's window has " + std::to_string(f.config.red) +
-                                                    " bits per channel; its picture is shown and saved with 8, and "
-                                                    "what the program reads of it keeps all bits");
+        line_->sendText(
+            wire::NodeMessage::Log,
+            "the program's window has " + std::to_string(f.config.red) +
+                " bits per channel; its picture is shown and saved with 8; replies to the program have all bits");
     }
 
     void frameDone(const ReplayOutputs::Frame& f) {
@@ -604,7 +606,7 @@ private:
         if (const auto numbers = swaps_ && swaps_->barrier() ? swaps_->barrier()->numbers() : std::nullopt)
             bye["swapBarrier"] = {{"members", setup_.swapMembers},      {"swaps", numbers->skew.swaps},
                                   {"medianNs", numbers->skew.medianNs}, {"p99Ns", numbers->skew.p99Ns},
-                                  {"mostNs", numbers->skew.mostNs},     {"clockErrorNs", numbers->clockErrorNs}};
+                                  {"maxNs", numbers->skew.maxNs},       {"clockErrorNs", numbers->clockErrorNs}};
         line_->sendText(wire::NodeMessage::Goodbye, bye.dump());
     }
 

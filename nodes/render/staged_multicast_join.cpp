@@ -30,7 +30,7 @@ void StagedMulticastJoin::work() {
         if (!readSome()) return;
     if (stop_) return;
     group_.reset(); // leaves the group, so that the writer does not wait
-    failed_("the head did not say where in the stream to go on");
+    failed_("the head sent no stream position for the switch to multicast");
 }
 
 // Returns false after the end of the stream.
@@ -46,11 +46,11 @@ bool StagedMulticastJoin::readSome() {
 Result<std::unique_ptr<Connection>> StagedMulticastJoin::goOn(uint64_t skipBytes, Deadline deadline) {
     stop_ = true;
     if (thread_.joinable()) thread_.join();
-    if (!group_) return Error{"it is not in the group"};
+    if (!group_) return Error{"it is not a member of the group"};
     while (come_.size() < skipBytes) {
         skipBytes -= come_.size();
         come_.clear();
-        if (deadline.passed()) return Error{"the beginning of its stream did not come"};
+        if (deadline.passed()) return Error{"the beginning of its stream did not arrive in time"};
         if (!readSome()) return Error{"the group has ended"};
     }
     come_.erase(come_.begin(), come_.begin() + static_cast<std::ptrdiff_t>(skipBytes));

@@ -287,7 +287,7 @@ template <class Config> Result<Config> read(const std::string& line, const std::
     Json json = Json::parse(line, nullptr, false);
     if (!json.is_object()) {
         return Error{what + " is not a JSON object: " + line.substr(0, 60) +
-                     "; both ends must be of one build of Mural"};
+                     "; install the same version of mural on both ends"};
     }
     Config config;
     std::string error;
@@ -300,7 +300,8 @@ template <class Config> Result<Config> read(const std::string& line, const std::
     });
     if (!error.empty()) return Error{error};
     if (!json.empty()) {
-        return Error{what + ": unknown field " + json.begin().key() + "; both ends must be of one build of Mural"};
+        return Error{what + ": unknown field " + json.begin().key() +
+                     "; install the same version of mural on both ends"};
     }
     return config;
 }
@@ -342,10 +343,10 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
     const RenderPass& p = setup->pass;
     if (p.kernelX >= p.kernelWidth || p.kernelY >= p.kernelHeight || p.sample >= p.samples || p.phase >= p.period ||
         p.range >= p.ranges)
-        return Error{"node setup: its pass is none of the session's"};
+        return Error{"node setup: its pass does not belong to the session"};
     if (!isPossible(p.zoom) || !isPossible(p.shown)) return noSuchZoom("node setup");
     if (!isPossible(setup->way) || setup->way.x > 1 || setup->way.y > 1)
-        return Error{"node setup: the size of its pictures on their way is not above 0, or above 1"};
+        return Error{"node setup: the transfer scale of its pictures is not above 0, or above 1"};
     return setup;
 }
 

@@ -23,7 +23,7 @@ Result<SessionSecret> makeSessionSecret() {
         const ssize_t got = getrandom(secret.data() + have, secret.size() - have, 0);
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) {
-            return Error{std::string("no random numbers for the session's secret (getrandom): ") +
+            return Error{std::string("cannot get random bytes for the session's secret (getrandom): ") +
                          std::strerror(errno)};
         }
         have += static_cast<size_t>(got);
@@ -43,8 +43,8 @@ std::string toHex(const SessionSecret& secret) {
 
 Result<SessionSecret> sessionSecretFromHex(const std::string& line) {
     const std::string hex = line.substr(0, line.find_last_not_of("\r\n") + 1);
-    const Error error{"the session's secret on standard input is not a line of 64 hex digits; "
-                      "`mural head` starts nodes with it"};
+    const Error error{
+        "the session secret on standard input is not a line of 64 hex digits; nodes are started by `mural head`"};
     if (hex.size() != 2 * kChannelSecretBytes) return error;
     SessionSecret secret;
     for (size_t i = 0; i < kChannelSecretBytes; ++i) {

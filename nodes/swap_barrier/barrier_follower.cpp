@@ -35,7 +35,7 @@ Result<BarrierGo> BarrierFollower::ask(const SwapKey& key) {
     if (auto came = leader_->read(bytes, Deadline::inMs(kAnswerMs)); !came) return came.error();
     const int64_t nowNs = monotonicNowNs();
     const BarrierGo go = decodeGo(bytes);
-    if (go.key != key) return Error{"it answered for another swap"};
+    if (go.key != key) return Error{"it replied for another swap"};
     clock_.add({ready.sentNs, go.arrivedNs, go.leftNs, nowNs});
     return go;
 }
@@ -45,8 +45,8 @@ int64_t BarrierFollower::await(const SwapKey& key) {
     auto go = ask(key);
     if (go && go->showNs == 0) return 0; // released alone: there is no common time to wait for
     if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMaxSleepNs);
-    log_("the swap barrier is broken: its leader is gone: " + go.error().message +
-         "; windows of this node show frames when they are drawn");
+    log_("the swap barrier is disconnected: its leader is lost: " + go.error().message +
+         "; windows of this node show frames without the barrier");
     leader_.reset();
     return 0;
 }

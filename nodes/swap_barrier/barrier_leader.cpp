@@ -82,7 +82,7 @@ void BarrierLeader::follow(int rank, Connection& connection) {
         take(rank, decodeReady(bytes), nowNs);
     }
     if (stop_) return;
-    log_(memberText(rank) + " is gone: the others swap without it");
+    log_(memberText(rank) + " is lost: the others swap without it");
     const std::lock_guard lock(mutex_);
     apply(rounds_.gone(rank, monotonicNowNs()));
 }
@@ -108,8 +108,8 @@ int64_t BarrierLeader::worstClockNs(Whose whose) const {
 void BarrierLeader::apply(const BarrierRounds::Step& step) {
     for (const int rank : step.late) {
         const std::string who = rank == 0 ? "the leader of the swap barrier" : memberText(rank);
-        log_(who + " has not come for " + std::to_string(patienceMs_) +
-             " ms: the others swap without it until it comes again");
+        log_(who + " did not reply for " + std::to_string(patienceMs_) +
+             " ms: the others swap without it until it replies");
     }
     for (const BarrierRounds::Release& release : step.releases) {
         skew_.released(release.key, release.members.size());

@@ -27,7 +27,7 @@ void SkewMeter::shown(const SwapKey& key, int64_t atNs) {
     const int64_t skewNs = found->lastNs - found->firstNs;
     open_.erase(found);
     ++swaps_;
-    mostNs_ = std::max(mostNs_, skewNs);
+    maxNs_ = std::max(maxNs_, skewNs);
     if (last_.size() < kKept)
         last_.push_back(skewNs);
     else
@@ -35,7 +35,7 @@ void SkewMeter::shown(const SwapKey& key, int64_t atNs) {
 }
 
 SkewNumbers SkewMeter::numbers() const {
-    SkewNumbers n{swaps_, 0, 0, mostNs_};
+    SkewNumbers n{swaps_, 0, 0, maxNs_};
     if (last_.empty()) return n;
     std::vector<int64_t> sorted = last_;
     std::ranges::sort(sorted);

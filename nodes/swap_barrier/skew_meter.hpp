@@ -13,7 +13,7 @@ namespace mural {
 struct SkewNumbers {
     int64_t swaps = 0;               // shown by at least two members
     int64_t medianNs = 0, p99Ns = 0; // over the last 4096 swaps
-    int64_t mostNs = 0;
+    int64_t maxNs = 0;
 };
 
 class SkewMeter {
@@ -33,7 +33,7 @@ private:
     std::deque<Open> open_; // bounded: windows that never report are dropped
     std::vector<int64_t> last_;
     size_t next_ = 0;
-    int64_t swaps_ = 0, mostNs_ = 0;
+    int64_t swaps_ = 0, maxNs_ = 0;
 };
 
 } // namespace mural

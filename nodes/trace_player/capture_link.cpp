@@ -22,12 +22,12 @@ Result<FileDescriptor> connectAbstract(const std::string& session) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     if (session.empty() || session.size() >= sizeof address.sun_path)
-        return linkError(session, "is no session's name; start the player by mural replay");
+        return linkError(session, "is not a session name; start the player with mural replay");
     std::memcpy(address.sun_path + 1, session.data(), session.size()); // [0] = 0: abstract
     const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + session.size());
     FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
     if (!socket.valid() || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0)
-        return linkError(session, std::string("can't be reached: ") + std::strerror(errno) + "; start it again");
+        return linkError(session, std::string("cannot be reached: ") + std::strerror(errno) + "; start it again");
     return socket;
 }
 
@@ -65,7 +65,7 @@ Result<std::unique_ptr<CaptureLink>> CaptureLink::connect(const std::string& ses
     if (!socket) return socket.error();
     const capture::Hello hello{capture::kMagic, capture::kVersion, registryDigest(), getpid(), 0};
     if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello)
-        return linkError(session, "takes nothing; start it again");
+        return linkError(session, "does not read; start it again");
     capture::Welcome welcome{};
     FileDescriptor memory;
     if (!receiveWhole(socket->get(), std::as_writable_bytes(std::span(&welcome, 1)), &memory, deadline))
@@ -82,7 +82,7 @@ Result<std::unique_ptr<CaptureLink>> CaptureLink::connect(const std::string& ses
                      : MAP_FAILED;
     if (base == MAP_FAILED)
         return linkError(session,
-                         std::string("its memory can't be mapped: ") + std::strerror(errno) + "; is memory short?");
+                         std::string("its memory cannot be mapped: ") + std::strerror(errno) + "; is memory short?");
     return std::unique_ptr<CaptureLink>(new CaptureLink(
         std::move(*socket), welcome, static_cast<capture::CaptureHeader*>(base), static_cast<size_t>(size)));
 }

@@ -72,10 +72,10 @@ private:
             const uint32_t value = word.load(std::memory_order_acquire);
             if (done()) return {};
             dropAnswers();
-            if (link.headGone() || link.gone(0)) return Error{"the session has ended before the recording"};
+            if (link.headGone() || link.gone(0)) return Error{"the session ended before the end of the trace"};
             if (deadline.passed())
                 return Error{std::string("the session ") + what + " for " + std::to_string(patienceMs / 1000) +
-                             " s; mural stat says what it waits for"};
+                             " s; see mural stat"};
             futexWait(word, value, deadline.leftNs(kSliceNs));
         }
     }
@@ -121,24 +121,24 @@ private:
 
     Result<void> send(CaptureLink& link, uint32_t stream, std::span<const std::byte> packet) {
         if (packet.size() > capture::kChunkBytes)
-            return Error{"the recording has a packet of " + std::to_string(packet.size()) +
-                         " bytes, which no program can send; record again"};
+            return Error{"the trace has a packet of " + std::to_string(packet.size()) +
+                         " bytes, more than a program can send; record it again"};
         // Waits until the previous program's packets are taken, so that nodes receive all packets in the recorded
         // order.
         if (last_ != nullptr && last_ != &link)
-            if (auto r = await(*last_, last_->chunkWord(), kRoomPatienceMs, "took nothing",
+            if (auto r = await(*last_, last_->chunkWord(), kRoomPatienceMs, "did not read",
                                [&] { return last_->allTaken(); });
                 !r)
                 return r;
         last_ = &link;
         uint32_t frame = wire::kUnseenFrame;
-        if (auto r = await(link, link.answersWord(), kRoomPatienceMs, "gave no answer",
+        if (auto r = await(link, link.answersWord(), kRoomPatienceMs, "did not reply",
                            [&] { return link.unanswered() <= kMaxUnanswered; });
             !r)
             return r;
         if (auto r = prepare(link, stream, packet, frame); !r) return r;
         const auto thread = static_cast<uint16_t>(stream);
-        if (auto r = await(link, link.chunkWord(), kRoomPatienceMs, "took nothing",
+        if (auto r = await(link, link.chunkWord(), kRoomPatienceMs, "did not read",
                            [&] { return link.publish(thread, packet_); });
             !r)
             return r;
@@ -189,7 +189,7 @@ private:
         if (found == links_.end()) return {};
         CaptureLink& link = *found->second;
         const auto taken =
-            await(link, link.chunkWord(), kRoomPatienceMs, "took nothing", [&] { return link.allTaken(); });
+            await(link, link.chunkWord(), kRoomPatienceMs, "did not read", [&] { return link.allTaken(); });
         link.leave();
         // Waits for the head, so that the next program's packets follow the end of this one.
         const Deadline deadline = Deadline::inMs(kLeavePatienceMs);

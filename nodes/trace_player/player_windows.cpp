@@ -40,7 +40,7 @@ Result<uint32_t> PlayerWindows::make(const WindowOwner& owner, uint32_t width, u
     const XAnswer answer = x_->check(made, Deadline::inMs(kXPatienceMs), error);
     if (answer == XAnswer::Reply && !error) return id;
     if (error)
-        return Error{"the X display " + x_->displayName() + " makes no window (error " +
+        return Error{"the X display " + x_->displayName() + " cannot create a window (error " +
                      std::to_string(error->error_code) + "); use --display none"};
     return x_->describe(answer);
 }

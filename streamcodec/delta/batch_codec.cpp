@@ -40,7 +40,7 @@ Result<void> BatchEncoder::encodeSections(const SectionBytes& sections, double l
         if (coding == Coding::Lz4 || coding == Coding::Zstd) {
             const bool timed = !frames && choices_[i].wantsTime(coding, bytes.size());
             const int64_t beganNs = timed ? nowNs_(bytes.size()) : 0;
-            if (!compress(i, coding, bytes)) return Error{"the stream can't be compressed: no memory"};
+            if (!compress(i, coding, bytes)) return Error{"cannot compress the stream: no memory"};
             if (!frames)
                 choices_[i].measured(coding, bytes.size(), coded_[i].size(),
                                      timed ? std::optional(nowNs_(bytes.size()) - beganNs) : std::nullopt);
@@ -75,8 +75,8 @@ bool BatchDecoder::decompress(size_t section, Coding coding, std::span<const std
 }
 
 Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::byte> body) {
-    const Error broken{
-        "the head's stream can't be unpacked: a batch of impossible sizes; head and nodes must be of one build"};
+    const Error broken{"cannot decode the head's stream: a batch has invalid sizes; install the same version of mural "
+                       "on all machines"};
     SectionBytes result;
     auto left = body;
     if (head.sections) {
@@ -102,8 +102,8 @@ Result<SectionBytes> BatchDecoder::decode(BatchHead head, std::span<const std::b
             if (codingOf(i) != Coding::Lz4 && codingOf(i) != Coding::Zstd) continue;
             sections_[i].resize(sizes[i]);
             if (!decompress(i, codingOf(i), bytes))
-                return Error{"the head's stream can't be unpacked: compressed bytes that are none; head and nodes must "
-                             "be of one build"};
+                return Error{"cannot decode the head's stream: invalid compressed data; install the same version of "
+                             "mural on all machines"};
             result[i] = sections_[i];
         }
     }

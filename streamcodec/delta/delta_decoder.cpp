@@ -46,10 +46,10 @@ Result<bool> DeltaDecoder::next(uint32_t& stream, std::span<const std::byte>& pa
         const DeltaOp what = control_.what(n);
         Problem problem = control_.bad() ? nullptr : step(what, n);
         if (control_.bad()) problem = "its control bytes end in the middle of a packet";
-        if (!problem && ++steps_ > kMaxSteps) problem = "more steps than a batch needs";
+        if (!problem && ++steps_ > kMaxSteps) problem = "more steps than the maximum of a batch";
         if (problem)
-            return Error{std::string("the head's stream can't be unpacked: ") + problem +
-                         "; head and nodes must be of one build"};
+            return Error{std::string("cannot decode the head's stream: ") + problem +
+                         "; install the same version of mural on all machines"};
     }
     stream = stream_;
     packet = {packet_.get(), packetBytes_};
@@ -63,13 +63,13 @@ DeltaDecoder::Problem DeltaDecoder::step(DeltaOp what, uint32_t n) {
     case DeltaOp::Run: return run(n);
     case DeltaOp::Patch: return patch(n);
     case DeltaOp::NewText:
-        return n >= 1 && n <= kMaxTextBytes / 4 ? fresh(n * 4, false) : "a new text of an impossible size";
+        return n >= 1 && n <= kMaxTextBytes / 4 ? fresh(n * 4, false) : "a new record of invalid size";
     case DeltaOp::NewPage:
         return n == 0 || (n > kMaxTextBytes / 4 && n < kPageBytes / 4) ? fresh(n == 0 ? kPageBytes : n * 4, true)
-                                                                       : "a new page of an impossible size";
+                                                                       : "a new page of invalid size";
     case DeltaOp::Skip: log_->cursor += n; return nullptr;
     case DeltaOp::Seek:
-        if (n == 0 || n > log_->end()) return "a place before the first item";
+        if (n == 0 || n > log_->end()) return "a reference before the first entry";
         log_->cursor = log_->end() - n;
         return nullptr;
     case DeltaOp::Pages: return pages(n);
@@ -80,9 +80,9 @@ DeltaDecoder::Problem DeltaDecoder::step(DeltaOp what, uint32_t n) {
 
 DeltaDecoder::Problem DeltaDecoder::run(uint32_t n) {
     while (n > 0) {
-        if (!log_->holds(log_->cursor)) return "an item that is not remembered";
+        if (!log_->holds(log_->cursor)) return "a reference to an unknown entry";
         if (const Dictionary::Stretch s = history_.stretch(*log_, n); s.items > 0) {
-            if (!room(s.bytes.size())) return "a packet or batch that is too large";
+            if (!room(s.bytes.size())) return "the packet or batch is too large";
             put(s.bytes);
             history_.againAll(*log_, s.items);
             n -= static_cast<uint32_t>(s.items);
@@ -90,7 +90,7 @@ DeltaDecoder::Problem DeltaDecoder::run(uint32_t n) {
         }
         --n;
         const DictionaryEntry item = log_->at(log_->cursor);
-        if (!room(item.sizeBytes)) return "a packet or batch that is too large";
+        if (!room(item.sizeBytes)) return "the packet or batch is too large";
         put(history_.bytesOf(item));
         ++log_->cursor;
         log_->append(history_.again(item));
@@ -99,9 +99,9 @@ DeltaDecoder::Problem DeltaDecoder::run(uint32_t n) {
 }
 
 DeltaDecoder::Problem DeltaDecoder::patch(uint32_t spans) {
-    if (!log_->holds(log_->cursor)) return "a change of an item that is not remembered";
+    if (!log_->holds(log_->cursor)) return "a delta of an unknown entry";
     DictionaryEntry item = log_->at(log_->cursor);
-    if (!room(item.sizeBytes)) return "a packet or batch that is too large";
+    if (!room(item.sizeBytes)) return "the packet or batch is too large";
     const auto bytes = put(history_.bytesOf(item));
     std::vector<std::byte> old;
     if (loseWords_ && opcodeOf(bytes) >= wire::kFirstGlOpcode) old.assign(bytes.begin(), bytes.end());
@@ -122,11 +122,11 @@ DeltaDecoder::Problem DeltaDecoder::eachSpan(Reader& reader, std::span<std::byte
     for (; spans > 0; --spans) {
         uint32_t kept = 0, changed = 0;
         reader.span(kept, changed);
-        if (reader.bad()) return "fewer spans than it names";
+        if (reader.bad()) return "fewer spans than announced";
         at += uint64_t{kept} * 4;
         const uint64_t sizeBytes = uint64_t{changed} * 4;
-        if (at + sizeBytes > bytes.size()) return "a change behind the end of what it changes";
-        if (!change(at, bytes.subspan(at, sizeBytes))) return "fewer words than it names";
+        if (at + sizeBytes > bytes.size()) return "a delta beyond the end of its entry";
+        if (!change(at, bytes.subspan(at, sizeBytes))) return "fewer words than announced";
         at += sizeBytes;
     }
     return nullptr;
@@ -153,8 +153,8 @@ void DeltaDecoder::changeWords(size_t at, std::span<std::byte> words) {
 
 DeltaDecoder::Problem DeltaDecoder::fresh(uint32_t sizeBytes, bool page) {
     std::span<const std::byte> bytes;
-    if (!room(sizeBytes)) return "a packet or batch that is too large";
-    if (!take(page ? Section::Pages : Section::Texts, sizeBytes, bytes)) return "fewer bytes than it names";
+    if (!room(sizeBytes)) return "the packet or batch is too large";
+    if (!take(page ? Section::Pages : Section::Texts, sizeBytes, bytes)) return "fewer bytes than announced";
     const DictionaryEntry item = keep(put(bytes), page);
     log_->replaces(item);
     log_->append(item);
@@ -167,8 +167,8 @@ DeltaDecoder::Problem DeltaDecoder::pages(uint32_t n) {
         const uint64_t slot = uint64_t{from} + i;
         const auto page = slot < history_.pages().slots() ? history_.pages().at(static_cast<uint32_t>(slot))
                                                           : std::span<const std::byte>();
-        if (page.empty()) return "a page that is not in the store";
-        if (!room(page.size())) return "a packet or batch that is too large";
+        if (page.empty()) return "a reference to an unknown page";
+        if (!room(page.size())) return "the packet or batch is too large";
         put(page);
         const DictionaryEntry item =
             history_.fromStore(static_cast<uint32_t>(slot), static_cast<uint32_t>(page.size()));
@@ -185,11 +185,11 @@ DeltaDecoder::Problem DeltaDecoder::other(uint32_t n) {
         ended_ = true;
         return nullptr;
     case ControlOp::Done:
-        if (log_ || packetBytes_ > 0) return "an end in the middle of a packet";
+        if (log_ || packetBytes_ > 0) return "an end within a packet";
         done_ = true;
         return nullptr;
     case ControlOp::Stream:
-        if (log_) return "another stream in the middle of a packet";
+        if (log_) return "another stream within a packet";
         stream_ = control_.number();
         return nullptr;
     case ControlOp::Bytes: return plain({});
@@ -202,11 +202,11 @@ DeltaDecoder::Problem DeltaDecoder::other(uint32_t n) {
 DeltaDecoder::Problem DeltaDecoder::plain(std::optional<uint32_t> slot) {
     const uint32_t sizeBytes = control_.number();
     std::span<const std::byte> bytes;
-    if (!room(sizeBytes)) return "a packet or batch that is too large";
-    if (!take(Section::Texts, sizeBytes, bytes)) return "fewer bytes than it names";
+    if (!room(sizeBytes)) return "the packet or batch is too large";
+    if (!take(Section::Texts, sizeBytes, bytes)) return "fewer bytes than announced";
     put(bytes);
     if (!slot) return nullptr;
-    if (*slot >= RawRunCache::kSlots || sizeBytes > RawRunCache::kMaxBytes) return "a run of records that nobody keeps";
+    if (*slot >= RawRunCache::kSlots || sizeBytes > RawRunCache::kMaxBytes) return "a run of records without its owner";
     history_.runs().keep(*slot, bytes);
     return nullptr;
 }
@@ -214,8 +214,8 @@ DeltaDecoder::Problem DeltaDecoder::plain(std::optional<uint32_t> slot) {
 DeltaDecoder::Problem DeltaDecoder::changedRun(uint32_t slot) {
     const uint32_t spans = control_.number();
     const auto kept = slot < RawRunCache::kSlots ? history_.runs().at(slot) : std::span<std::byte>();
-    if (kept.empty()) return "a change of a run of records that is not remembered";
-    if (!room(kept.size())) return "a packet or batch that is too large";
+    if (kept.empty()) return "a delta of an unknown run of records";
+    if (!room(kept.size())) return "the packet or batch is too large";
     std::vector<std::byte> old;
     if (loseWords_) old.assign(kept.begin(), kept.end());
     if (const Problem problem = changeSpans(kept, spans)) return problem;

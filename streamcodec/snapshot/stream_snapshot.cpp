@@ -29,8 +29,8 @@ void StreamSnapshot::append(uint32_t stream, std::span<const std::byte> payload)
     overrun_ = true;
     const size_t keptBytes = log_.sizeBytes();
     log_.clear();
-    say_("what a node that comes late would need has grown to " + std::to_string(keptBytes >> 20) +
-         " MiB: from now on none can come; give more by --cache-size");
+    say_("the snapshot for late nodes has grown to " + std::to_string(keptBytes >> 20) +
+         " MiB: no node can join from now on; use a larger --cache-size");
 }
 
 void StreamSnapshot::event(const ClientEvent& event) {

@@ -22,7 +22,7 @@ std::string toJson(const About& about) {
 
 Result<About> aboutFromJson(const std::string& text) {
     const Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object()) return Error{"what it says of itself is not JSON"};
+    if (!json.is_object()) return Error{"its description is not JSON"};
     About about;
     about.version = textOf(json, "version");
     about.trimmed = textOf(json, "trimmed");

@@ -48,8 +48,8 @@ void StreamRecorder::put(uint32_t stream, std::span<const std::byte> payload) {
     while (queue_.size() + entryBytes(payload.size()) > config_.queueBytes && !queue_.empty() && !ended_) {
         if (patience.passed()) {
             lock.unlock();
-            return end("nothing was written for " + std::to_string(config_.patienceMs / 1000) +
-                       " s; is the disk too slow? Give another place");
+            return end("no block was written for " + std::to_string(config_.patienceMs / 1000) +
+                       " s, the disk may be too slow; choose another place");
         }
         changed_.wait_for(lock, leftOf(patience));
     }
@@ -60,8 +60,8 @@ void StreamRecorder::put(uint32_t stream, std::span<const std::byte> payload) {
 
 void StreamRecorder::end(const std::string& why) {
     if (ended_.exchange(true)) return;
-    const std::string line = why.starts_with("recording ") ? why : "recording " + path_ + ": " + why;
-    config_.say(line + "; the recording ends after " + std::to_string(wholeFrames_) + " frames, the program goes on");
+    const std::string line = why.starts_with("trace ") ? why : "trace " + path_ + ": " + why;
+    config_.say(line + "; the trace ends after " + std::to_string(wholeFrames_) + " frames, the program continues");
 }
 
 void StreamRecorder::work() {
@@ -122,7 +122,7 @@ WriterTotals StreamRecorder::finish(Deadline deadline) {
     if (done_) return totals_;
     stop_ = true;
     lock.unlock();
-    end("its last blocks could not be written in time; is the disk too slow?");
+    end("its last blocks could not be written in time, the disk may be too slow");
     return {};
 }
 

@@ -21,21 +21,20 @@ bool soundShape(const BlockHeader& h) {
            h.packedBytes <= ZSTD_COMPRESSBOUND(kMaxBlockBytes);
 }
 
-constexpr const char* kEndMissing = "its end is missing (was the head killed, or the file cut?)";
+constexpr const char* kEndMissing = "its end is missing (the head was killed, or the file is truncated)";
 
 } // namespace
 
 Result<std::unique_ptr<TraceReader>> TraceReader::open(const std::string& path) {
     FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (!file.valid())
-        return Error{"recording " + path + ": can't be read: " + std::strerror(errno) + "; check the name"};
+    if (!file.valid()) return Error{"trace " + path + ": cannot be read: " + std::strerror(errno) + "; check the name"};
     return open(std::move(file), path);
 }
 
 Result<std::unique_ptr<TraceReader>> TraceReader::open(FileDescriptor file, const std::string& name) {
     struct stat about {};
     if (fstat(file.get(), &about) != 0 || !S_ISREG(about.st_mode))
-        return Error{"recording " + name + ": is not a file; give one that mural run --record has made"};
+        return Error{"trace " + name + ": is not a file; choose a file of mural run --record"};
     std::unique_ptr<TraceReader> reader(new TraceReader(std::move(file), name));
     reader->sizeBytes_ = static_cast<uint64_t>(about.st_size);
     if (auto r = reader->readHeader(); !r) return r.error();
@@ -52,7 +51,7 @@ TraceReader::TraceReader(FileDescriptor file, std::string name)
 TraceReader::~TraceReader() { ZSTD_freeDCtx(unpacker_); }
 
 Error TraceReader::damaged(uint64_t offset, const std::string& what, const std::string& next) const {
-    return Error{"recording " + name_ + " is damaged at byte " + std::to_string(offset) + ": " + what + "; " + next};
+    return Error{"trace " + name_ + " is damaged at byte " + std::to_string(offset) + ": " + what + "; " + next};
 }
 
 Error TraceReader::damagedBlock(size_t number, const std::string& what) const {
@@ -62,20 +61,20 @@ Error TraceReader::damagedBlock(size_t number, const std::string& what) const {
     if (before == 0) return damaged(offset, what + ", and no frame ends before it", kElsewhere);
     const std::string good = before == 1 ? "1" : "1-" + std::to_string(before);
     return damaged(offset, what,
-                   "the frames before it are good (" + good + "): keep them by mural trim " + name_ + " " + good +
+                   "earlier frames are valid (" + good + "): extract them with mural trim " + name_ + " " + good +
                        " -o good.mural, " + kElsewhere);
 }
 
 Error TraceReader::noSuchFrames(int64_t frames) const {
     if (frames > 0) {
-        return Error{"the recording has " + std::to_string(frames) + " frames" +
-                     (notice_.empty() ? "" : std::string(", as ") + kEndMissing) + "; give some of them, such as 1-" +
+        return Error{"the trace has " + std::to_string(frames) + " frames" +
+                     (notice_.empty() ? "" : std::string(", as ") + kEndMissing) + "; choose some of them, such as 1-" +
                      std::to_string(frames)};
     }
     if (notice_.empty())
-        return Error{"recording " + name_ +
-                     " has no frame: its program showed no picture; mural dump prints its calls"};
-    return Error{"recording " + name_ + " has no whole frame: " + kEndMissing + ", what is whole ends at byte " +
+        return Error{"trace " + name_ +
+                     " has no frame, because its program showed no picture; mural dump prints its calls"};
+    return Error{"trace " + name_ + " has no complete frame: " + kEndMissing + ", valid data ends at byte " +
                  std::to_string(blocksEnd_) + " of " + std::to_string(sizeBytes_) + "; " + kElsewhere};
 }
 
@@ -94,26 +93,26 @@ Result<void> TraceReader::readHeader() {
     Header header{};
     const bool read = readAt(0, bytesOf(header));
     if (!read || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0)
-        return Error{name_ + " is not a recording of Mural; give a file that mural run --record has made"};
+        return Error{name_ + " is not a trace of Mural; choose a file of mural run --record"};
     if (header.version != kVersion) {
-        return Error{"recording " + name_ + " has version " + std::to_string(header.version) +
-                     " of the format, this Mural reads version " + std::to_string(kVersion) +
-                     "; use the Mural that it was made with, or a newer one"};
+        return Error{"trace " + name_ + " has version " + std::to_string(header.version) +
+                     " of the format, but this Mural reads version " + std::to_string(kVersion) +
+                     "; use the Mural that recorded it"};
     }
     blocksAt_ = sizeof header + header.aboutBytes;
     if (header.aboutBytes > kMaxAboutBytes || blocksAt_ > sizeBytes_)
         return damaged(0, "its header is longer than the file");
     std::string text(header.aboutBytes, '\0');
     if (!readAt(sizeof header, std::as_writable_bytes(std::span(text))))
-        return damaged(sizeof header, "its header can't be read");
+        return damaged(sizeof header, "its header cannot be read");
     if (checksumOf({beforeChecksum(header), std::as_bytes(std::span(text))}) != header.checksum)
-        return damaged(0, "its header is not as it was written");
+        return damaged(0, "the checksum of its header is wrong");
     auto about = aboutFromJson(text);
     if (!about) return damaged(sizeof header, about.error().message);
     about_ = std::move(*about);
     if (header.wireVersion == wire::kVersion && header.registryDigest == registryDigest()) return {};
-    return Error{"recording " + name_ + " was made by a Mural with other commands (version " + about_.version +
-                 "); use that one to read it, or record again"};
+    return Error{"trace " + name_ + " was recorded by a Mural with other commands (version " + about_.version +
+                 "); read it with that version, or record it again"};
 }
 
 Result<bool> TraceReader::readIndex() {
@@ -124,25 +123,25 @@ Result<bool> TraceReader::readIndex() {
     IndexHeader header{};
     if (checksumOf({beforeChecksum(trailer)}) != trailer.checksum || at < blocksAt_ || at > end ||
         end - at < sizeof header || !readAt(at, bytesOf(header)))
-        return damaged(end, "its last bytes are not as they were written");
+        return damaged(end, "the checksum of its last bytes is wrong");
     if (header.magic != kIndexMagic || (end - at - sizeof header) / sizeof(IndexRow) != header.blocks ||
         (end - at - sizeof header) % sizeof(IndexRow) != 0)
-        return damaged(at, "there is no index");
+        return damaged(at, "its index is missing");
     blocks_.resize(header.blocks);
     const auto rows = std::as_writable_bytes(std::span(blocks_));
     if (!readAt(at + sizeof header, rows) || checksumOf({beforeChecksum(header), rows}) != header.checksum)
-        return damaged(at, "its index is not as it was written");
+        return damaged(at, "the checksum of its index is wrong");
     frames_ = static_cast<int64_t>(header.frames);
     blocksEnd_ = at;
     // Rows must be contiguous. Blocks are validated when they are read, so a bad block does not affect earlier ones.
     uint64_t least = blocksAt_;
     for (const IndexRow& row : blocks_) {
         if (row.offset < least || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader))
-            return damaged(at, "its index is of no blocks");
+            return damaged(at, "its index has invalid entries");
         least = row.offset + sizeof(BlockHeader);
     }
     if ((blocks_.empty() ? blocksEnd_ : blocks_.front().offset) != blocksAt_)
-        return damaged(at, "its index begins elsewhere");
+        return damaged(at, "its index begins at a wrong offset");
     return true;
 }
 
@@ -160,8 +159,8 @@ Result<void> TraceReader::findBlocks() {
         at += sizeof block + block.packedBytes;
     }
     blocksEnd_ = at;
-    notice_ = "recording " + name_ + ": its end is missing (was the head killed, or the file cut?); " +
-              std::to_string(frames_) + " whole frames are there, up to byte " + std::to_string(at) + " of " +
+    notice_ = "trace " + name_ + ": its end is missing (the head was killed, or the file is truncated); " +
+              std::to_string(frames_) + " complete frames, up to byte " + std::to_string(at) + " of " +
               std::to_string(sizeBytes_);
     return {};
 }
@@ -175,15 +174,15 @@ Result<void> TraceReader::verify() {
 Result<BlockHeader> TraceReader::readPacked(size_t number) {
     const IndexRow& row = blocks_[number];
     BlockHeader header{};
-    if (!readAt(row.offset, bytesOf(header)) || !soundShape(header)) return damagedBlock(number, "there is no block");
+    if (!readAt(row.offset, bytesOf(header)) || !soundShape(header)) return damagedBlock(number, "a block is missing");
     if (row.offset + sizeof header + header.packedBytes != endOf(number))
-        return damagedBlock(number, "a block does not end where the next one begins");
+        return damagedBlock(number, "a block does not end at the start of the next one");
     packed_.resize(header.packedBytes);
-    if (!readAt(row.offset + sizeof header, packed_)) return damagedBlock(number, "a block can't be read");
+    if (!readAt(row.offset + sizeof header, packed_)) return damagedBlock(number, "a block cannot be read");
     const bool same =
         header.firstFrame == row.firstFrame && header.framesEnded == row.framesEnded && header.entries == row.entries;
     if (!same || checksumOf({beforeChecksum(header), packed_}) != header.checksum)
-        return damagedBlock(number, "a block is not as it was written");
+        return damagedBlock(number, "the checksum of a block is wrong");
     return header;
 }
 
@@ -193,7 +192,8 @@ Result<std::span<const std::byte>> TraceReader::read(size_t number) {
     const BlockHeader& header = packed.value();
     raw_.resize(header.rawBytes);
     const size_t rawBytes = ZSTD_decompressDCtx(unpacker_, raw_.data(), raw_.size(), packed_.data(), packed_.size());
-    if (ZSTD_isError(rawBytes) || rawBytes != header.rawBytes) return damagedBlock(number, "a block can't be unpacked");
+    if (ZSTD_isError(rawBytes) || rawBytes != header.rawBytes)
+        return damagedBlock(number, "a block cannot be decompressed");
     EntryWalk walk(raw_);
     Entry entry;
     ClientEvent event;
@@ -201,10 +201,9 @@ Result<std::span<const std::byte>> TraceReader::read(size_t number) {
     while (walk.next(entry)) {
         ++entries;
         if (entry.stream == 0 && !parseEvent(entry.payload, event))
-            return damagedBlock(number, "an event in a block is unknown");
+            return damagedBlock(number, "a block has an unknown event");
     }
-    if (walk.malformed() || entries != header.entries)
-        return damagedBlock(number, "the entries of a block are not entries");
+    if (walk.malformed() || entries != header.entries) return damagedBlock(number, "a block has invalid entries");
     return std::span<const std::byte>(raw_);
 }
 

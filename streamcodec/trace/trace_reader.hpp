@@ -41,7 +41,7 @@ public:
 
 private:
     // next step for an unusable file
-    static constexpr const char* kElsewhere = "take another copy of it, or record again";
+    static constexpr const char* kElsewhere = "use another copy of it, or record it again";
 
     TraceReader(FileDescriptor file, std::string name);
     Result<void> readHeader();

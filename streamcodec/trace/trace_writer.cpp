@@ -18,7 +18,7 @@ template <class T> std::span<const std::byte> bytesOf(const T& value) { return s
 Result<std::unique_ptr<TraceWriter>> TraceWriter::create(const std::string& path, int level) {
     FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     if (!file.valid())
-        return Error{"recording " + path + ": can't be written: " + std::strerror(errno) + "; give another place"};
+        return Error{"trace " + path + ": cannot be written: " + std::strerror(errno) + "; choose another place"};
     return std::unique_ptr<TraceWriter>(new TraceWriter(path, std::move(file), level));
 }
 
@@ -28,8 +28,8 @@ TraceWriter::TraceWriter(std::string path, FileDescriptor file, int level)
 TraceWriter::~TraceWriter() { ZSTD_freeCCtx(packer_); }
 
 Error TraceWriter::fileError(const char* what) const {
-    return Error{"recording " + path_ + ": " + what + ": " + std::strerror(errno) +
-                 "; make room there, or give another place"};
+    return Error{"trace " + path_ + ": " + what + ": " + std::strerror(errno) +
+                 "; free space, or choose another place"};
 }
 
 Result<void> TraceWriter::write(std::span<const std::byte> bytes) {
@@ -37,7 +37,7 @@ Result<void> TraceWriter::write(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t n = pwrite(file_.get(), bytes.data(), bytes.size(), at);
         if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return fileError("can't be written");
+        if (n <= 0) return fileError("cannot be written");
         at += n;
         bytes = bytes.subspan(static_cast<size_t>(n));
     }
@@ -80,8 +80,8 @@ Result<void> TraceWriter::flush() {
     const size_t packedBytes =
         ZSTD_compressCCtx(packer_, packed_.data(), packed_.size(), raw_.data(), raw_.size(), level_);
     if (ZSTD_isError(packedBytes))
-        return Error{"recording " + path_ + ": a block can't be packed: " + ZSTD_getErrorName(packedBytes) +
-                     "; is memory short?"};
+        return Error{"trace " + path_ + ": cannot compress a block: " + ZSTD_getErrorName(packedBytes) +
+                     "; memory may be short"};
     const auto packed = std::span<const std::byte>(packed_).first(packedBytes);
     BlockHeader header{};
     header.magic = kBlockMagic;
@@ -114,7 +114,7 @@ Result<void> TraceWriter::finish() {
     trailer.checksum = checksumOf({beforeChecksum(trailer)});
     std::memcpy(trailer.magic, kEndMagic, sizeof kEndMagic);
     if (ftruncate(file_.get(), static_cast<off_t>(totals_.fileBytes)) != 0)
-        return fileError("can't be cut to its last block");
+        return fileError("cannot be truncated to its last block");
     if (auto r = write(bytesOf(header)); !r) return r;
     if (auto r = write(rows); !r) return r;
     return write(bytesOf(trailer));

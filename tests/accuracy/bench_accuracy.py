@@ -62,7 +62,7 @@ def quick(folder):
     # Approximations must have a visible effect: a kernel or an eye without any wrong pixel did nothing.
     for kind in ('pixel, kernel of 2x2: triangles', 'zoom of 0.5: triangles', 'yuv420'):
         expect(any(row['what'].startswith(kind) and row['differingPixels'] > 0 for row in rows), '%s changed nothing' % kind)
-    expect('%d measured, 0 broken, 0 failed' % len(rows) in out, 'the table tells something else')
+    expect('%d measured, 0 broken, 0 failed' % len(rows) in out, 'the table differs')
     # Costs of recordings, codecs and blending. More samples are closer to the reference and cost more.
     costs = {row['what']: row for row in rows if row['group'] == 'Recording: scenes'}
     expect(all(row['cpuNsPerPixel'] > 0 and row['bytesPerPixel'] > 0 for row in costs.values()) and len(costs) >= 5, 'costs of the recording: %s' % list(costs))
@@ -91,7 +91,7 @@ def program(folder):
 
 
 def refused(folder):
-    for words, wanted in ((('accuracy', '--'), 'no program stands after --'), (('speed',), 'speed'), (('accuracy', '--frames', '0'), '--frames')):
+    for words, wanted in ((('accuracy', '--'), 'the program after -- is missing'), (('speed',), 'speed'), (('accuracy', '--frames', '0'), '--frames')):
         status, out, err = run(*words)
         expect(status == 2 and wanted in err and err.count('\n') == 1 and not out, '%s: %d %s %s' % (words, status, out, err))
     refused_before(folder)
@@ -111,14 +111,14 @@ def refused_before(folder):
         middle = len(content) // 2
         f.write(content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1:])
     for words, wanted in ((('--', 'mural-no-such-program'), 'was not found in PATH'), (('--', lost), 'No such file or directory'), (('--', kept), 'may not be executed'),
-                          (('--recording', damaged, '--', 'true'), 'not beside a program'), (('--recording', '/etc/passwd'), 'is not a recording of Mural'),
-                          (('--recording', damaged), 'is damaged'), (('--recording', lost), "can't be read"),
-                          (('--json', lost), "--json %s can't be written: No such file" % lost), (('--svg', folder), 'Is a directory'),
-                          (('--json', left, '--svg', lost), "--svg %s can't be written" % lost), (('--json', kept, '--svg', lost), "--svg %s can't be written" % lost),
+                          (('--recording', damaged, '--', 'true'), 'omit --recording or the program'), (('--recording', '/etc/passwd'), 'is not a trace of Mural'),
+                          (('--recording', damaged), 'is damaged'), (('--recording', lost), "cannot be read"),
+                          (('--json', lost), "--json %s cannot be written: No such file" % lost), (('--svg', folder), 'Is a directory'),
+                          (('--json', left, '--svg', lost), "--svg %s cannot be written" % lost), (('--json', kept, '--svg', lost), "--svg %s cannot be written" % lost),
                           (('--json', left, '--', lost), 'No such file or directory')):
         status, out, err = run('accuracy', '--quick', *words)
         expect(status == 2 and wanted in err and err.count('\n') == 1 and not out, '%s: %d %s %s' % (words, status, out, err))
-    expect(not os.path.exists(left), 'an empty file is left behind')
+    expect(not os.path.exists(left), 'an empty file is left over')
     with open(kept, encoding='utf-8') as f:
         expect(f.read() == 'of last week', 'a file is emptied before there is anything to write')
 
@@ -138,7 +138,7 @@ def check_end(process, inside, name, status, result):
         out, err = process.communicate(timeout=END_SECONDS)
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
-        failures.append('%s: it goes on for %d s' % (name, END_SECONDS))
+        failures.append('%s: it continues for %d s' % (name, END_SECONDS))
         return ''
     expect(process.returncode == status and not out, '%s: status %d instead of %d; %s %s' % (name, process.returncode, status, out, err))
     expect(not os.listdir(inside), '%s: these are left: %s' % (name, os.listdir(inside)))
@@ -162,7 +162,7 @@ def stopped(folder):
             failures.append('%s: there was no such process within %d s' % (name, START_SECONDS))
         send(process.pid, number)
         err = check_end(process, inside, name, 128 + number, result)
-        expect(err.endswith('mural bench accuracy: stopped before all was measured; nothing is written\n'), '%s: it says %s' % (name, err))
+        expect(err.endswith('mural bench accuracy: the measurement was interrupted; nothing is written\n'), '%s: it prints %s' % (name, err))
 
 
 def unread(folder):

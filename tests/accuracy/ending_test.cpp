@@ -49,8 +49,8 @@ TEST(ResultFile, failsAtOnceWhenNotWritable) {
     const test::TemporaryFolder folder;
     const auto lost = ResultFile::open("--svg", folder.at("none/a.svg"));
     ASSERT_FALSE(lost);
-    EXPECT_EQ(lost.error().message,
-              "--svg " + folder.at("none/a.svg") + " can't be written: No such file or directory; name another file");
+    EXPECT_EQ(lost.error().message, "--svg " + folder.at("none/a.svg") +
+                                        " cannot be written: No such file or directory; choose another file");
     EXPECT_FALSE(ResultFile::open("--svg", folder.at("")));
 }
 

@@ -52,19 +52,18 @@ TEST(ChoosePlacement, keepsPlacementsThatCannotImprove) {
     MachineView m = twoSockets();
     m.allowedCpus = {0, 1};
     EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).description,
-              "not placed: no core near PCI 0000:81:00.0 (of 2) may be used");
+              "not placed: no core close to PCI 0000:81:00.0 (of 2) may be used");
     m.allowedCpus = {4, 5};
     const auto near = choosePlacement(m, DeviceKind::Gpu);
     EXPECT_TRUE(near.cpus.empty());
-    EXPECT_EQ(near.description, "not placed: all cores that may be used are near PCI 0000:81:00.0 (of 2)");
+    EXPECT_EQ(near.description, "not placed: all cores that may be used are close to PCI 0000:81:00.0 (of 2)");
 }
 
 TEST(ChoosePlacement, reportsThatThereIsNothingToChoose) {
     MachineView m = twoSockets();
     m.devices.clear();
     EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).description, "not placed: no GPU was found");
-    EXPECT_EQ(choosePlacement(m, DeviceKind::Network).description,
-              "not placed: no network interface that is up was found");
+    EXPECT_EQ(choosePlacement(m, DeviceKind::Network).description, "not placed: no network interface that is up found");
     m = twoSockets();
     m.numaNodes = 1;
     EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).description, "not placed: one NUMA node");

@@ -60,10 +60,10 @@ def bad():
         status, _, err = run('print', path, '--resolved', '--layout', 'none')
         expect(status == 2 and 'no canvas has a layout none' in err, 'a layout that is not there: %s' % err)
     status, out, _ = run('check', '/nonexistent.eqc')
-    expect(status == 2 and out.startswith("error: /nonexistent.eqc: can't be read"), 'a file that is not there: %s' % out)
+    expect(status == 2 and out.startswith("error: /nonexistent.eqc: cannot be read"), 'a file that is not there: %s' % out)
     expect(run('chek', '/nonexistent.eqc')[0] == 2, 'a verb that does not exist')
-    for words, said in ((('print', files[0], '--resolved', '--frame', '-3'), '--frame'), (('print', files[0], '--frame', '2'), 'are for print --resolved'),
-                        (('draw', files[0], '--resolved'), '--resolved is for print'), (('check', files[0], '--out', 'x'), '--out is for print and draw')):
+    for words, said in ((('print', files[0], '--resolved', '--frame', '-3'), '--frame'), (('print', files[0], '--frame', '2'), 'require print --resolved'),
+                        (('draw', files[0], '--resolved'), '--resolved is for print'), (('check', files[0], '--out', 'x'), '--out requires print or draw')):
         status, out, err = run(*words)
         expect(status == 2 and not out and said in err and err.count('\n') == 1, '%s: %d %s' % (' '.join(words), status, err))
     # Each word of a file that is no configuration causes a warning; the error must still be visible.
@@ -73,7 +73,7 @@ def bad():
             file.writelines('user%d:x:home\n' % i for i in range(40))
         status, out, _ = run('check', foreign)
     warnings = out.count('\nwarning: ') + out.startswith('warning: ')
-    expect(status == 2 and warnings == 10 and 'more warnings are left out' in out and 'error: ' in out, 'a foreign file: %d warnings, %s' % (warnings, out[-300:]))
+    expect(status == 2 and warnings == 10 and 'more warnings are not shown' in out and 'error: ' in out, 'a foreign file: %d warnings, %s' % (warnings, out[-300:]))
 
 
 files = sorted(os.path.join(sys.argv[2], f) for f in os.listdir(sys.argv[2]) if f.endswith('.eqc'))

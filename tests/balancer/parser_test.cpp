@@ -59,7 +59,7 @@ TEST(Parser, readsTheHeaderAfterComments) {
     const Parsed bad = parse("#Equalizer 1.1\nconfig { }");
     EXPECT_EQ(bad.file.version, 0);
     ASSERT_EQ(bad.lines.size(), 1u);
-    EXPECT_EQ(bad.lines[0], "f:1:1: this header is not understood and read as a comment; write: #Equalizer 1.2 ascii");
+    EXPECT_EQ(bad.lines[0], "f:1:1: unknown header, it is read as a comment; write: #Equalizer 1.2 ascii");
 }
 
 TEST(Parser, acceptsACommentAtTheEnd) { EXPECT_TRUE(parse("config { } # no newline").lines.empty()); }
@@ -105,7 +105,7 @@ TEST(Parser, reportsPositionProblemAndRemedyOfUnknownWords) {
     const Parsed p = parse("server { config {\n  latancy 3\n  latency 2 } }");
     ASSERT_EQ(p.lines.size(), 1u);
     EXPECT_EQ(p.lines[0],
-              "f:2:3: section config has no field latancy, it is left out; check its spelling, or remove it");
+              "f:2:3: section config has no field latancy, it is ignored; check its spelling, or remove it");
     EXPECT_EQ(p.file.config.latency, 2u);
     EXPECT_EQ(p.errors, 0);
     EXPECT_EQ(parse("server { config { latancy 3 } }", true).errors, 1);
@@ -122,7 +122,7 @@ TEST(Parser, acceptsLoadBalancersOfEarlyReleases) {
     Parsed p = inCompound("loadBalancer { mode DB damping .3 boundary .01 }");
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).mode, SplitMode::Db);
     EXPECT_EQ(std::get<LoadEqualizer>(compoundOf(p).equalizers.at(0)).damping, .3);
-    EXPECT_EQ(p.lines.at(0), "f:1:30: loadBalancer is called load_equalizer today; write load_equalizer");
+    EXPECT_EQ(p.lines.at(0), "f:1:30: loadBalancer was renamed to load_equalizer; write load_equalizer");
     EXPECT_TRUE(std::holds_alternative<FramerateEqualizer>(
         compoundOf(inCompound("loadBalancer { mode DPLEX }")).equalizers.at(0)));
     EXPECT_EQ(std::get<DfrEqualizer>(compoundOf(inCompound("loadBalancer { mode DFR framerate 20 }")).equalizers.at(0))
@@ -180,23 +180,23 @@ TEST(Parser, acceptsOtherKeywordsOfEarlyReleases) {
 }
 
 TEST(Parser, reportsEachErrorInOneLine) {
-    expectError("", "f:1:1: there is no configuration in this file; it begins with: server { config {");
-    expectError("config { name \"x }", "f:1:15: this text has no end; close it with \" on the same line");
-    expectError("config { latency -1 }", "f:1:18: latency can't be negative; give 0 or more");
-    expectError("config { latency 1.5 }", "f:1:18: latency can't be the number 1.5; it is a whole number");
-    expectError("config { latency 99999999999 }", "f:1:18: latency is too large a number; give one below 2147483648");
-    expectError(
-        "config { compound { range [ 0 1 2 ] } }",
-        "f:1:33: range ends with ], here is the number 2; add it, or look for a bracket that is missing before");
-    expectError("config { compound { range 0 }", "f:1:27: range begins with [, here is the number 0; add it");
+    expectError("", "f:1:1: the file contains no configuration; it begins with: server { config {");
+    expectError("config { name \"x }", "f:1:15: this string is not terminated; close it with \" on the same line");
+    expectError("config { latency -1 }", "f:1:18: latency cannot be negative; use 0 or more");
+    expectError("config { latency 1.5 }", "f:1:18: latency cannot be the number 1.5; use a whole number");
+    expectError("config { latency 99999999999 }", "f:1:18: latency is too large; use a number below 2147483648");
+    expectError("config { compound { range [ 0 1 2 ] } }",
+                "f:1:33: range ends with ], found the number 2; add it, or check for a missing bracket before it");
+    expectError("config { compound { range 0 }", "f:1:27: range begins with [, found the number 0; add it");
     expectError("config { compound { range [ 0 " + std::string(400, '9') + " ] } }",
-                "f:1:31: range is too large a number; give one that can be meant");
-    expectError("config { 3 }", "f:1:10: the number 3 belongs to no field of section config; remove it, or look for a "
-                                "bracket that is missing before");
+                "f:1:31: range is too large; use a smaller number");
+    expectError(
+        "config { 3 }",
+        "f:1:10: the number 3 is not a field of section config; remove it, or check for a missing bracket before it");
     expectError("config { layout { view { mode FISH } } }",
-                "f:1:31: mode can't be the word FISH; it is one of MONO, STEREO");
-    expectError("config { node {", "f:1:16: section node ends with }, here is the end of the file; add it, or look for "
-                                   "a bracket that is missing before");
+                "f:1:31: mode cannot be the word FISH; use one of MONO, STEREO");
+    expectError("config { node {", "f:1:16: section node ends with }, found the end of the file; add it, or check for "
+                                   "a missing bracket before it");
 }
 
 TEST(Parser, reportsDeepNestingInOneLine) {
@@ -205,7 +205,7 @@ TEST(Parser, reportsDeepNestingInOneLine) {
     const Parsed p = parse(text);
     EXPECT_EQ(p.errors, 1);
     EXPECT_EQ(p.lines.back().substr(p.lines.back().find(' ') + 1),
-              "more than 200 sections stand in each other; check the brackets");
+              "more than 200 sections are nested; check the brackets");
 }
 
 TEST(Parser, reportsEveryTruncatedFileInOneLine) {
@@ -224,7 +224,7 @@ TEST(Parser, reportsFewLinesForABinaryFile) {
     Diagnostics diagnostics("/nonexistent/x.eqc");
     readConfigFile("/nonexistent/x.eqc", diagnostics);
     EXPECT_EQ(diagnostics.firstError(),
-              "/nonexistent/x.eqc: can't be read: No such file or directory; check the name and its permissions");
+              "/nonexistent/x.eqc: cannot be read: No such file or directory; check the name and its permissions");
     Diagnostics folder("/");
     readConfigFile("/", folder);
     EXPECT_EQ(folder.errors(), 1);

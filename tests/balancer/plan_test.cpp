@@ -288,9 +288,9 @@ TEST(Check, reportsCyclicFrames) {
                        " compound { channel \"t\" task [ ASSEMBLE READBACK ] inputframe { name \"y\" } outputframe { "
                        "name \"x\" } } inputframe { name \"y\" } inputframe { name \"x\" } }");
     ASSERT_EQ(lines.size(), 1u);
-    EXPECT_EQ(lines[0], "error: frames \"x\", \"y\" wait for each other: nothing is ever drawn");
+    EXPECT_EQ(lines[0], "error: frames \"x\", \"y\" wait for each other: no picture is ever drawn");
     const auto itself = faults(kWall + "compound { channel ( ) inputframe { name \"x\" } outputframe { name \"x\" } }");
-    EXPECT_EQ(itself.back(), "error: frame \"x\" waits for itself: nothing is ever drawn");
+    EXPECT_EQ(itself.back(), "error: frame \"x\" waits for itself: no picture is ever drawn");
     // In different frames there is no cycle.
     EXPECT_TRUE(
         faults(kWall +
@@ -301,37 +301,36 @@ TEST(Check, reportsCyclicFrames) {
 
 TEST(Check, reportsNamesWithoutACounterpart) {
     EXPECT_EQ(faults(kWall + "compound { channel ( ) inputframe { name \"x\" } }"),
-              std::vector<std::string>{"nobody in this tree makes frame \"x\", it is not waited for"});
+              std::vector<std::string>{"no compound of this tree creates frame \"x\", it is ignored"});
     EXPECT_EQ(faults(kWall + "compound { channel ( ) outputframe { name \"x\" } }"),
-              std::vector<std::string>{"nobody in this tree takes frame \"x\", it is not read back"});
+              std::vector<std::string>{"no compound of this tree uses frame \"x\", it is not read back"});
     EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"s\" outputframe { } } compound { channel "
                              "\"t\" outputframe { name \"frame.s\" } } inputframe { name \"frame.s\" } }"),
-              std::vector<std::string>{"frame \"frame.s\" is made twice in this tree, only the first one is taken"});
+              std::vector<std::string>{"frame \"frame.s\" is defined twice in this tree, only the first one is used"});
     EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { eye [ LEFT ] channel \"s\" outputframe { } } compound "
                              "{ eye [ RIGHT ] task [ ASSEMBLE ] inputframe { name \"frame.s\" } } }"),
-              std::vector<std::string>{"frame \"frame.s\" is never made for the eyes and frame numbers that it is "
-                                       "taken for, it is not waited for"});
+              std::vector<std::string>{
+                  "frame \"frame.s\" is never created for the eyes and frame numbers that use it, it is ignored"});
     EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"s\" inputtiles { name \"q\" } } }"),
-              std::vector<std::string>{"error: nobody in this tree fills the queue \"q\""});
+              std::vector<std::string>{"error: no compound of this tree fills the queue \"q\""});
     EXPECT_EQ(
         faults(kWall + "compound { channel ( ) outputtiles { name \"q\" } compound { inputtiles { name \"q\" } } }"),
         std::vector<std::string>{"error: the queue \"q\" has no size"});
     EXPECT_EQ(faults(kWall + "compound { channel ( ) compound { channel \"t\" outputframe { type texture } } "
                              "inputframe { name \"frame.t\" } }"),
               std::vector<std::string>{
-                  "frame \"frame.t\" is a texture, and taken by another pipe, it is handed over in memory"});
+                  "frame \"frame.t\" is a texture, but another pipe uses it, it is transferred through memory"});
 }
 
 TEST(Check, reportsPartsThatAreNeverShown) {
     EXPECT_EQ(faults("layout { name \"a\" view { } } layout { name \"b\" view { viewport [ .6 0 .2 1 ] } } canvas { "
                      "layout \"b\" segment { channel \"d\" viewport [ 0 0 .5 1 ] } }"),
-              (std::vector<std::string>{"layout \"a\" is on no canvas and never shown",
-                                        "view number 1 falls onto no segment and is never shown"}));
+              (std::vector<std::string>{"layout \"a\" is not used by a canvas and is never shown",
+                                        "view number 1 does not overlap a segment and is never shown"}));
     EXPECT_EQ(faults(kWall + "compound { channel ( ) period 2 phase 2 }"),
-              std::vector<std::string>{"phase 2 never comes with a period of 2, so this compound never draws"});
-    EXPECT_EQ(
-        faults(kWall + "compound { channel ( ) load_equalizer { } }"),
-        std::vector<std::string>{"this equalizer has nothing to divide: its compound has fewer than two children"});
+              std::vector<std::string>{"phase 2 does not occur with a period of 2, so this compound never draws"});
+    EXPECT_EQ(faults(kWall + "compound { channel ( ) load_equalizer { } }"),
+              std::vector<std::string>{"this equalizer has no effect: its compound has fewer than two children"});
 }
 
 } // namespace mural::compound

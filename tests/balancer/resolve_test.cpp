@@ -83,9 +83,9 @@ TEST(Resolve, resolvesReferencesToChannels) {
     EXPECT_EQ(shown("( canvas 0 segment 1 layout \"two\" view \"w\" )"), "t 2");
     EXPECT_EQ(shown("( view \"w\" )"), "s 2");
     EXPECT_EQ(shown("( layout 1 )"), "s 1");
-    EXPECT_EQ(shown("( segment 5 )"), "there is no segment number 5; check the way to the compound's channel");
-    EXPECT_EQ(shown("( canvas \"x\" )"), "there is no canvas \"x\"; check the way to the compound's channel");
-    EXPECT_EQ(shown("\"z\""), "there is no channel \"z\"; define it in a window, or name another");
+    EXPECT_EQ(shown("( segment 5 )"), "there is no segment number 5; check the path of the compound's channel");
+    EXPECT_EQ(shown("( canvas \"x\" )"), "there is no canvas \"x\"; check the path of the compound's channel");
+    EXPECT_EQ(shown("\"z\""), "unknown channel \"z\"; define it in a window, or choose another one");
 }
 
 TEST(Resolve, completesFilesOlderThanCanvases) {
@@ -150,8 +150,8 @@ TEST(Resolve, readsEnvironmentVariables) {
     EXPECT_EQ(globals.size(), 4u);
     ASSERT_EQ(diagnostics.all().size(), 1u);
     EXPECT_EQ(diagnostics.text(diagnostics.all()[0]),
-              "f: environment variable EQ_CONFIG_FATTR_EYE_BASE:1:1: EQ_CONFIG_FATTR_EYE_BASE can't be the word x; it "
-              "is a number; it is left out");
+              "f: environment variable EQ_CONFIG_FATTR_EYE_BASE:1:1: EQ_CONFIG_FATTR_EYE_BASE cannot be the word x; "
+              "use a number; it is ignored");
 }
 
 TEST(Resolve, namesFramesAndBarriers) {
@@ -181,7 +181,7 @@ TEST(Resolve, subtractsBezels) {
     EXPECT_NEAR(seen.h, 1 - .07, 1e-12);
     EXPECT_EQ(r.config.segments[1].viewport, (Viewport{.5, 0, .5, 1}));
     EXPECT_EQ(with(wall + "segment { channel \"a\" viewport [ 0 0 .01 1 ] } }").lines.back(),
-              "f:2:246: bezels leave nothing of this segment, or are negative; they are millimetres of left, right, "
+              "f:2:246: bezels cover the whole segment, or are negative; set millimetres of left, right, "
               "bottom and top");
 }
 

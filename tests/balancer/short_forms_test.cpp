@@ -113,13 +113,13 @@ TEST(ShortForms, inheritTheCompositionInRanges) {
 TEST(ShortForms, areRejectedWhenInvalid) {
     Preset form;
     form.ranges = 0;
-    EXPECT_EQ(config::shortForm(form).error().message, "--db can't be 0; give 1 or more");
+    EXPECT_EQ(config::shortForm(form).error().message, "--db cannot be 0; use 1 or more");
     form.ranges = 4097;
     EXPECT_FALSE(config::shortForm(form).ok());
     form = {};
     form.columns = 3000;
     EXPECT_EQ(config::shortForm(form).error().message,
-              "a picture of 1920x1080 pixels can't be divided so; give another size");
+              "a picture of 1920x1080 pixels cannot be divided this way; choose another size");
     form = {};
     form.nodes = {"a\"b"};
     EXPECT_FALSE(config::shortForm(form).ok());

@@ -41,7 +41,7 @@ def moves_fault(folder, environment):
         status = process.wait(LIMIT_SECONDS)
     except subprocess.TimeoutExpired:
         process.kill()
-        return "it went on behind SIGTERM"
+        return "it continued after SIGTERM"
     if not was_dragged:
         return "the window saw no drag; it saw: " + events()[-2000:]
     return "" if status == 128 + signal.SIGTERM else "the program that a signal has ended has status %d" % status

@@ -33,11 +33,11 @@ def fault_of(a, number):
             said = process.communicate(timeout=END_SECONDS)[1].decode()
         except subprocess.TimeoutExpired:
             process.kill()
-            return "it went on for %d s" % END_SECONDS
+            return "it continued for %d s" % END_SECONDS
         if process.returncode != STOPPED:
-            return "its status is %d, not %d; it said: %s" % (process.returncode, STOPPED, said)
+            return "its status is %d, not %d; output: %s" % (process.returncode, STOPPED, said)
         if "stopped" not in said:
-            return "it does not say that it was stopped: " + said
+            return "it does not report the stop: " + said
         # Processes that Mural started end without help, soon.
         if not until(lambda: not processes_with(inside), END_SECONDS):
             return "these go on: " + ", ".join(processes_with(inside).values())

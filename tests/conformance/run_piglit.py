@@ -134,7 +134,7 @@ def main():
                     continue
                 wrong += 1
                 said = [line for line in output.splitlines() if line.strip() and "PIGLIT" not in line]
-                print("%s: status %s, %s instead of status %s, %s; it said: %s" % (
+                print("%s: status %s, %s instead of status %s, %s; output: %s" % (
                     command, status, " ".join(through) or "no result", native_status, " ".join(native),
                     " | ".join(said[-3:])), flush=True)
         end = wall.end()

@@ -30,17 +30,16 @@ TEST(DeltaDecoder, describesErrors) {
     const auto has = [](const std::string& text, const char* part) {
         return text.find(part) != std::string::npos && text.find("; head and nodes must be") != std::string::npos;
     };
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Run, 1); }), "an item that is not remembered"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Patch, 1); }),
-                    "a change of an item that is not remembered"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 4), "fewer bytes than it names"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 0); }), "impossible size"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 257); }, 2000), "impossible size"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewPage, 1024); }, 5000), "impossible size"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Run, 1); }), "a reference to an unknown entry"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Patch, 1); }), "a delta of an unknown entry"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 4), "fewer bytes than announced"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 0); }), "invalid size"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 257); }, 2000), "invalid size"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewPage, 1024); }, 5000), "invalid size"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Seek, 1); }), "before the first"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 1), c.number(0); }), "not in the store"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 1), c.number(0); }), "unknown page"));
     EXPECT_TRUE(
-        has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 2), c.number(UINT32_MAX); }), "not in the store"));
+        has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 2), c.number(UINT32_MAX); }), "unknown page"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::ControlOp, 9); }), "unknown"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(ControlOp::Stream); }), "in the middle"));
     EXPECT_TRUE(
@@ -51,7 +50,7 @@ TEST(DeltaDecoder, describesErrors) {
                             c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Skip, 1), c.put(DeltaOp::Patch, 1), c.span(2, 1);
                         },
                         8),
-                    "not remembered"));
+                    "unknown"));
     EXPECT_TRUE(has(problemOf(
                         [](ControlWriter& c) {
                             c.put(DeltaOp::NewPage, 300), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 300),
@@ -65,34 +64,34 @@ TEST(DeltaDecoder, describesErrors) {
                                 c.span(UINT32_MAX, 1);
                         },
                         8),
-                    "behind the end"));
+                    "beyond the end"));
     EXPECT_TRUE(has(problemOf(
                         [](ControlWriter& c) {
                             c.put(DeltaOp::NewText, 2), c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Patch, 9), c.span(0, 1),
                                 c.span(1, 1);
                         },
                         8),
-                    "behind the end"));
+                    "beyond the end"));
     const auto kept = [](ControlWriter& c, uint32_t slot) {
         c.put(ControlOp::KeptBytes), c.number(slot), c.number(2000);
     };
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 32); }, 2000), "nobody keeps"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 32); }, 2000), "without its owner"));
     EXPECT_TRUE(
         has(problemOf([](ControlWriter& c) { c.put(ControlOp::KeptBytes), c.number(3), c.number(65540); }, 65540),
-            "nobody keeps"));
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3); }, 1999), "fewer bytes than it names"));
+            "without its owner"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3); }, 1999), "fewer bytes than announced"));
     EXPECT_TRUE(
         has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(4), c.number(1); },
                       2000),
-            "not remembered"));
+            "unknown"));
     EXPECT_TRUE(
         has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(32), c.number(1); },
                       2000),
-            "not remembered"));
+            "unknown"));
     EXPECT_TRUE(
         has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(501); },
                       2004),
-            "behind the end"));
+            "beyond the end"));
     EXPECT_TRUE(has(problemOf(
                         [&](ControlWriter& c) {
                             kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500),

@@ -69,7 +69,7 @@ class Comparison:
                 problems.append("%d pixels differ" % numbers["differingPixels"])
         halves = os.path.basename(program) == "deep_framebuffers"  # pbuffers of half floats are not windows
         if "app" in options and (EIGHT_BITS in messages) != halves:
-            problems.append("the line about 8 bits " + ("is missing" if halves else "came"))
+            problems.append("the line about 8 bits " + ("is missing" if halves else "was printed"))
         return problems
 
     def compare(self, depth, options):
@@ -91,7 +91,7 @@ class Comparison:
                 command = [os.path.join(self.build, "bin", "mural"), "run", "--display", "none", "--out", os.path.join(folder, "out"), "--", program]
                 _, _, messages = run(command, display_name, self.seconds)
                 said = EIGHT_BITS in messages
-                self.say("depth %d, pictures in files" % depth, [] if said == expected else ["the line about 8 bits %s: %s" % ("is missing" if expected else "came", messages.strip())])
+                self.say("depth %d, pictures in files" % depth, [] if said == expected else ["the line about 8 bits %s: %s" % ("is missing" if expected else "was printed", messages.strip())])
 
 
 def main():
@@ -100,7 +100,7 @@ def main():
     parser.add_argument("--depths", default="16,24,30", help="of the X screens")
     parser.add_argument("--programs", default="window_colours,deep_framebuffers")
     parser.add_argument("--options", action="append", help="of one run; may be given several times")
-    parser.add_argument("--lines", action="store_true", help="look at what is said instead")
+    parser.add_argument("--lines", action="store_true", help="check the messages instead")
     parser.add_argument("--seconds", type=int, default=120, help="the longest that one run may take")
     arguments = parser.parse_args()
     comparison = Comparison(arguments)

@@ -153,7 +153,7 @@ def of_frames(said):
     area."""
     found = []
     for pass_text, area, shown in re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ ([^]]+) \] of the wall(?:, shown in \[ ([^]]+) \])?", said):
-        way = re.search(r"sent (\S+) by (\S+) times as large", pass_text)
+        way = re.search(r"transferred at (\S+) by (\S+) times the size", pass_text)
         if way or shown:
             numbers = lambda text: tuple(float(v) for v in text.split())
             found.append((numbers(area), tuple(float(v) for v in way.groups()) if way else (1, 1), numbers(shown or area)))
@@ -181,7 +181,7 @@ def side_by_side(left, right):
 def other_canvases(said):
     """Returns for each further canvas its name, its relative size, and the first of its nodes."""
     found = []
-    for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture, too, in (\d+)x(\d+) pixels where the first has (\d+)x(\d+)', said):
+    for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture with (\d+)x(\d+) pixels; the first canvas has (\d+)x(\d+)', said):
         after = said[said.index("canvas \"%s\" shows" % name if "canvas \"%s\" shows" % name in said else "canvas %s shows" % name):]
         first = re.search(r"node (\d+) \(local\) draws", after)
         found.append((name, (int(w) / int(own_w), int(h) / int(own_h)), int(first.group(1))))
@@ -231,7 +231,7 @@ def check(run, path, native):
     said = "\n".join(line for line in said.splitlines() if not of_other_canvas(line, said))
     told = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
     sent = of_frames(said)
-    nodes = [node[1:] for node in told if " zoom " not in node[0] and "times as large" not in node[0]]
+    nodes = [node[1:] for node in told if " zoom " not in node[0] and "times the size" not in node[0]]
     nodes = [node for node in nodes if not any(place != area and tuple(float(v) for v in node) == area for area, _, place in sent)]
     scaled = [(tuple(float(v) for v in node[1:]), tuple(float(v) for v in re.search(r" zoom (\S+) ([\d.]+)", node[0]).groups())) for node in told if " zoom " in node[0]]
     areas = [tuple(float(v) for v in node) for node in nodes]
@@ -262,7 +262,7 @@ def check(run, path, native):
             return "the part %s, sent %g by %g times as large, differs by %.2f of 255 from that of the native picture" % (place, *way, most), ""
         zoomed += ", what frames made smaller by at most %.2f of 255 from the native picture made so" % most
     if not told:
-        return "no node is told of", ""
+        return "no node is listed", ""
     # Antialiased, or every nth pixel, compared with the short form of the options.
     samples, kernel = re.search(r"sample \d+ of (\d+)", said), re.search(r"of each (\d+x\d+)", said)
     options = (["--subpixel", samples.group(1)] if samples else []) + (["--pixel", kernel.group(1)] if kernel else [])

@@ -21,7 +21,7 @@ def kill_during_run(context, pattern, how_many, after_line, words):
     frames = 60
     with context.drawing("long_run", frames) as run:
         if after_line and not run.wait_for_line(after_line):
-            return "the program did not come to \"%s\": %s" % (after_line, " | ".join(run.standard_error[-3:]))
+            return "the program did not reach \"%s\": %s" % (after_line, " | ".join(run.standard_error[-3:]))
         found = run.wait_for_processes(pattern, max(how_many, 1))
         if not found:
             return "no process fits \"%s\"" % pattern
@@ -59,17 +59,17 @@ def range_lost(context, composition):
             return "%d of 4 nodes run" % len(found)
         started = time.monotonic()
         cases.kill_all(sorted(found)[2:3])
-        if not run.wait_for_line("a range of the picture is missing for now: range 3"):
-            return "nobody said that a range is missing: " + " | ".join(run.standard_error[-3:])
+        if not run.wait_for_line("a range of the picture is missing until its node rejoins: range 3"):
+            return "no message about a missing range: " + " | ".join(run.standard_error[-3:])
         drawn = sum(line.startswith("frame ") for line in run.standard_output)
         if not run.wait_for_line("frame %d " % (drawn + 200)):
-            return "no frames came any more: " + " | ".join(run.standard_error[-3:])
+            return "no more frames: " + " | ".join(run.standard_error[-3:])
         if time.monotonic() - started > 60:
             return "it took %d s" % (time.monotonic() - started)
         run.process.send_signal(signal.SIGTERM)
         run.status()
         left = run.left_behind()
-        return "left behind: " + ", ".join(left) if left else None
+        return "left over: " + ", ".join(left) if left else None
 
 
 @cases.case
@@ -105,7 +105,7 @@ def all_nodes_killed(context):
         cases.kill_all(run.wait_for_processes(cases.NODE, 4))
         wrong = cases.check_end(run, 0, 60)
         if wrong is None and not cases.error_lines(run, ["was lost"]):
-            wrong = "nobody said that the nodes were lost"
+            wrong = "no message about the lost nodes"
         return wrong
 
 
@@ -117,8 +117,8 @@ def killed_while_frames_are_counted(context, pattern, how_many):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         cases.kill_all(run.wait_for_processes(pattern, how_many))
         wrong = cases.check_end(run, 1)
-        if wrong is None and len(cases.error_lines(run, ["--frames asked for"])) != 1:
-            wrong = "it said: " + " | ".join(run.standard_error[-4:])
+        if wrong is None and len(cases.error_lines(run, ["does not count frames any more"])) != 1:
+            wrong = "output: " + " | ".join(run.standard_error[-4:])
         return wrong
 
 
@@ -146,9 +146,9 @@ def node_without_memory(context):
         resource.prlimit(node, resource.RLIMIT_AS, (limit, limit))
         wrong = cases.check_end(run, 0, frames)
         if wrong is None and run.standard_output.count("no memory") != 1:
-            wrong = "it was told %d times" % run.standard_output.count("no memory")
-        if wrong is None and len(cases.error_lines(run, ["no memory for an object"])) == 0:
-            wrong = "nobody said which node had no memory"
+            wrong = "it received %d notifications" % run.standard_output.count("no memory")
+        if wrong is None and len(cases.error_lines(run, ["no memory for a GL object"])) == 0:
+            wrong = "no message about the node without memory"
         return wrong
 
 
@@ -161,13 +161,13 @@ def node_driver_reset(context):
         with context.run(command, environment={"MURAL_PLANT": "reset"}) as run:
             wrong = cases.check_end(run, 0, 60)
             said = [line for line in run.standard_output if line.startswith("lost")]
-            lines = cases.error_lines(run, ["did not ask to be told"])
+            lines = cases.error_lines(run, ["did not enable reset notification"])
             if wrong is None and said != told:
-                wrong = "it was told \"%s\" instead of \"%s\"" % (" | ".join(said), " | ".join(told))
+                wrong = "it received \"%s\" instead of \"%s\"" % (" | ".join(said), " | ".join(told))
             if wrong is None and len(lines) != (0 if told else 1):
-                wrong = "%d lines for a program that %s: %s" % (len(lines), "asked" if told else "did not ask", " | ".join(lines))
-            if wrong is None and not cases.error_lines(run, ["has lost a context"]):
-                wrong = "nobody said that the node's driver had lost a context"
+                wrong = "%d lines for a program that %s: %s" % (len(lines), "enabled reset notification" if told else "did not enable it", " | ".join(lines))
+            if wrong is None and not cases.error_lines(run, ["lost a context"]):
+                wrong = "no message about the lost context"
             if wrong:
                 return wrong
     return None
@@ -185,7 +185,7 @@ def node_stopped_and_continued(context):
         os.kill(nodes[0], signal.SIGCONT)
         wrong = cases.check_end(run, 0, 60)
         if wrong is None and cases.error_lines(run, ["was lost"]):
-            wrong = "it was said to be lost: " + " | ".join(cases.error_lines(run, ["was lost"]))
+            wrong = "it was reported as lost: " + " | ".join(cases.error_lines(run, ["was lost"]))
         return wrong
 
 
@@ -222,7 +222,7 @@ def interrupted(context, number):
         if status in (None, 0):
             return "status %s after the signal" % status
         left = run.left_behind()
-        return "left behind: " + ", ".join(left) if left else None
+        return "left over: " + ", ".join(left) if left else None
 
 
 @cases.case
@@ -292,7 +292,7 @@ def ends_picture_that_nobody_sees(context):
                 return wrong
             lines = cases.error_lines(run, ["private display"])
             if len(lines) != told:
-                return "%s: %d lines say where the window is, not %d" % (" ".join(options), len(lines), told)
+                return "%s: %d lines with the window position, not %d" % (" ".join(options), len(lines), told)
     return None
 
 
@@ -307,9 +307,9 @@ def complains(name, arguments, wanted_status, words, environment=None):
             if status not in wanted_status:
                 return "status %s instead of %s: %s" % (status, wanted_status, " | ".join(said))
             if len(said) != 1 or not any(word in said[0] for word in words):
-                return "it said %d lines: %s" % (len(said), " | ".join(said))
+                return "it printed %d lines: %s" % (len(said), " | ".join(said))
             left = run.left_behind()
-            return "left behind: " + ", ".join(left) if left else None
+            return "left over: " + ", ".join(left) if left else None
     check.__name__ = "arguments_" + name
     cases.case(check)
 
@@ -344,7 +344,7 @@ def arguments_setuid_program(context):
             status = run.status(30)
             said = [line for line in run.standard_error if line.strip()]
             if status != 2 or len(said) != 1 or "setuid" not in said[0]:
-                return "status %s, it said: %s" % (status, " | ".join(said))
+                return "status %s, output: %s" % (status, " | ".join(said))
             return None
 
 

@@ -63,10 +63,10 @@ def draw(arguments, screen, folder, program, size, options=None):
     run = programs.run_program(arguments.build, program, folder, screen, size, len(CASES), launcher, arguments.seconds)
     frames = [path for _, path in sorted(run.frames().items())]
     if options is not None and not drawn_by_nodes(report):
-        return None, "nothing went through the nodes; it said: " + " | ".join(run.output.splitlines()[-3:])
+        return None, "no frame was drawn by nodes; output: " + " | ".join(run.output.splitlines()[-3:])
     if run.status == 0 and len(frames) == len(CASES):
         return frames, ""
-    return None, "status %s, %d pictures; it said: %s" % (run.status, len(frames), " | ".join(run.output.splitlines()[-3:]))
+    return None, "status %s, %d pictures; output: %s" % (run.status, len(frames), " | ".join(run.output.splitlines()[-3:]))
 
 
 def cell_of(wanted, got):

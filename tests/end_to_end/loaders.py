@@ -45,16 +45,16 @@ def compared(context, command, frames, options=(), said=(), through=None):
             report = json.load(file)
     if run.standard_output != wanted:
         both = zip(run.standard_output + ["nothing"] * len(wanted), wanted)
-        return "it said %s" % next(("\"%s\" instead of \"%s\"" % pair for pair in both if pair[0] != pair[1]), "more")
+        return "it printed %s" % next(("\"%s\" instead of \"%s\"" % pair for pair in both if pair[0] != pair[1]), "more")
     if report["frames"] != frames:
         return "%d frames on the wall instead of %d; %s" % (report["frames"], frames, " | ".join(run.standard_error))
     if report["differingPixels"] != 0 or (frames and report["verifiedPixels"] == 0):
         return "%d of %d pixels differ" % (report["differingPixels"], report["verifiedPixels"])
     lines = [line for line in run.standard_error if line.startswith("mural:")]
     if len(lines) != len(said) or not all(word in line for word, line in zip(said, lines)):
-        return "it said %d lines: %s" % (len(lines), " | ".join(lines))
+        return "it printed %d lines: %s" % (len(lines), " | ".join(lines))
     left = sockets_of(run)
-    return "left behind: " + ", ".join(left) if left else None
+    return "left over: " + ", ".join(left) if left else None
 
 
 def reloaded(name, *arguments, frames):
@@ -145,7 +145,7 @@ def sandboxed_stale_sockets_go(context):
         if wrong is None and os.path.exists(stale):
             wrong = stale + " is still there"
         if wrong is None and not os.path.exists(foreign):
-            wrong = foreign + " is gone"
+            wrong = foreign + " is missing"
         return wrong
     finally:
         for folder in (stale, foreign):

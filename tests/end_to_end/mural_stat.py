@@ -81,9 +81,9 @@ def trips_are_named(context):
             if sum(by.values()) != report["roundTrips"] or any(not name.startswith("gl") for name in by):
                 return "%s: %d round trips, by %s" % (program, report["roundTrips"], by)
             if wanted == "" and (by or "0 round trips" not in said):
-                return "%s: round trips without need: %s; said: %s" % (program, by, said)
+                return "%s: round trips without need: %s; output: %s" % (program, by, said)
             if wanted and (by.get(wanted, 0) < 1 or wanted not in said):
-                return "%s: no %s in %s; said: %s" % (program, wanted, by, said)
+                return "%s: no %s in %s; output: %s" % (program, wanted, by, said)
     return None
 
 
@@ -94,7 +94,7 @@ def none_of_this_user(context):
     if shown.returncode == 0:
         return None if shown.stdout else "nothing shown, status 0"
     said = shown.stderr.decode()
-    return None if shown.returncode == 1 and said.count("\n") == 1 and said.startswith("mural stat: ") else "status %d, said: %s" % (shown.returncode, said)
+    return None if shown.returncode == 1 and said.count("\n") == 1 and said.startswith("mural stat: ") else "status %d, output: %s" % (shown.returncode, said)
 
 
 if __name__ == "__main__":

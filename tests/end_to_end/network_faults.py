@@ -50,7 +50,7 @@ class End:
         until = time.monotonic() + seconds
         while text not in self.said():
             if time.monotonic() > until or self.process.poll() is not None:
-                raise Wrong("%s did not say \"%s\"; it said: %s" % (self.name, text, self.said()))
+                raise Wrong("%s did not print \"%s\"; output: %s" % (self.name, text, self.said()))
             time.sleep(0.01)
 
     def status(self, seconds=ENDS_WITHIN_S):
@@ -59,7 +59,7 @@ class End:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
-            raise Wrong("%s did not end within %d s; it said: %s" % (self.name, seconds, self.said())) from None
+            raise Wrong("%s did not end within %d s; output: %s" % (self.name, seconds, self.said())) from None
 
     def measured(self):
         self.status()
@@ -113,7 +113,7 @@ class Lab:
         wanted, until = self._sent_bytes() + RATE_BYTES_PER_S // 10, time.monotonic() + seconds
         while self._sent_bytes() < wanted:
             if time.monotonic() > until or sender.process.poll() is not None:
-                raise Wrong("nothing flows; the sender said: %s" % sender.said())
+                raise Wrong("nothing flows; the sender printed: %s" % sender.said())
             time.sleep(0.02)
 
     @staticmethod
@@ -137,14 +137,14 @@ def whole(receivers, total_bytes):
     told = [r.measured() for r in receivers]
     for r, m in zip(receivers, told):
         if r.status() != 0 or m.get("bytes") != total_bytes or m.get("firstByte") != 0:
-            raise Wrong("%s: status %d, %s bytes from %s, not %d; it said: %s" % (r.name, r.status(), m.get("bytes"), m.get("firstByte"), total_bytes, r.said()))
+            raise Wrong("%s: status %d, %s bytes from %s, not %d; output: %s" % (r.name, r.status(), m.get("bytes"), m.get("firstByte"), total_bytes, r.said()))
     return told
 
 
 def content(sender, members_lost=0):
     m = sender.measured()
     if sender.status() != 0 or m.get("membersLost") != members_lost:
-        raise Wrong("the sender: status %d, %s receivers lost, not %d; it said: %s" % (sender.status(), m.get("membersLost"), members_lost, sender.said()))
+        raise Wrong("the sender: status %d, %s receivers lost, not %d; output: %s" % (sender.status(), m.get("membersLost"), members_lost, sender.said()))
     return m
 
 
@@ -215,8 +215,8 @@ def sender_killed(lab):
     sender.signal(signal.SIGKILL)
     began = time.monotonic()
     for r in receivers:
-        need(r.status() == 1, "%s: status %d; it said: %s" % (r.name, r.status(), r.said()))
-        need(len(r.said().splitlines()) == 1 and "the stream ended after" in r.said(), "%s said: %s" % (r.name, r.said()))
+        need(r.status() == 1, "%s: status %d; output: %s" % (r.name, r.status(), r.said()))
+        need(len(r.said().splitlines()) == 1 and "the stream was cut off after" in r.said(), "%s printed: %s" % (r.name, r.said()))
         need(r.measured()["bytes"] > 0 and "wrong" not in r.measured(), "%s: %s" % (r.name, r.measured()))
     return "known after %.2f s" % (time.monotonic() - began)
 
@@ -238,7 +238,7 @@ def comes_and_goes(lab):
     for g in guests:
         if g in killed:
             continue
-        need(g.status() == 0, "a guest: status %d; it said: %s" % (g.status(), g.said()))
+        need(g.status() == 0, "a guest: status %d; output: %s" % (g.status(), g.said()))
         heard += g.measured()["bytes"] > 0
     need(heard >= 5, "only %d guests heard anything" % heard)
     return "%d guests heard a part" % heard
@@ -268,7 +268,7 @@ def out_of_order(lab):
         late = counted(lab, "switch")
         need(late > 0.02 * sent["datagrams"], "only %d of %d datagrams were late" % (late, sent["datagrams"]))
         repairs = sent["parity"] + sent["resent"]
-        return "%d of %d late, %d repairs, %d came twice" % (late, sent["datagrams"], repairs, max(stream_of(m)["duplicates"] for m in told))
+        return "%d of %d late, %d repairs, %d arrived twice" % (late, sent["datagrams"], repairs, max(stream_of(m)["duplicates"] for m in told))
     finally:
         lab.network.end_detour()
 
@@ -280,7 +280,7 @@ def duplicates(lab):
     told = whole(receivers, total)
     content(sender)
     refused = min(m["refused"] for m in told)
-    need(refused > 300, "only %d datagrams came twice" % refused)
+    need(refused > 300, "only %d datagrams arrived twice" % refused)
     return "%d to %d refused by their counters" % (refused, max(m["refused"] for m in told))
 
 

@@ -15,9 +15,9 @@ from harness import display, own_network, session
 
 HERE = "10.79.0.1"
 NODES = {"wall1": "10.79.0.2", "wall2": "10.79.0.3"}
-MULTICAST = "by reliable multicast"
-UNREACHED = "does not answer to multicast"
-REACHED_AGAIN = "multicast reaches it again"
+MULTICAST = "with reliable multicast"
+UNREACHED = "no reply to multicast"
+REACHED_AGAIN = "multicast works again"
 MOST_FRAMES = 20000  # limit for runs that end after a few hundred frames, when enough was seen
 NO_MULTICAST = "ip daddr 239.0.0.0/8"
 
@@ -57,13 +57,13 @@ def finished(run, wants=(), wants_not=("was lost",)):
     status = run.status()
     said = "\n".join(run.standard_error)
     if status != 0:
-        return "status %s; it said:\n%s" % (status, said)
+        return "status %s; output:\n%s" % (status, said)
     missing = [text for text in (*wants, " 0 differ") if text not in said]
     extra = [text for text in wants_not if text in said]
     if missing or extra:
-        return "missing: %s, too much: %s; it said:\n%s" % (missing, extra, said)
+        return "missing: %s, too much: %s; output:\n%s" % (missing, extra, said)
     left = run.left_behind()
-    return "left behind: %s" % left if left else None
+    return "left over: %s" % left if left else None
 
 
 def good(lab):
@@ -109,10 +109,10 @@ def ceases_and_returns(lab):
             return "it did not begin: %s" % run.standard_error
         lab.network.drop("wall1", NO_MULTICAST)
         if not run.wait_for_line(UNREACHED):
-            return "nobody noticed that multicast ceased"
+            return "no message that multicast failed"
         lab.network.heal("wall1")
         if not run.wait_for_line(REACHED_AGAIN):
-            return "nobody noticed that multicast came back"
+            return "no message that multicast works again"
         lab.end_after(100)
         return finished(run) or too_many(drawn_by(run))
 
@@ -125,16 +125,16 @@ def killed(lab, *options):
         victim = run.wait_for_processes(r"^\S*mural node", 2)[0]
         os.kill(victim, 9)
         if not run.wait_for_line(REACHED_AGAIN):
-            return "it did not come back into the group; it said:\n%s" % "\n".join(run.standard_error)
+            return "it did not rejoin the group; output:\n%s" % "\n".join(run.standard_error)
         drawn_before = drawn_by(run)
         lab.end_after(drawn_before + 100)
-        wanted = [MULTICAST, "is back in the picture", " 0 differ"]
+        wanted = [MULTICAST, " rejoined ", " 0 differ"]
         status = run.status()
         said = "\n".join(run.standard_error)
         drawn = drawn_by(run)
         # Exactly once: a stream that continues at a wrong position ends the node again.
         good = status == 0 and all(text in said for text in wanted) and said.count("was lost: ") == 1 and drawn_before < drawn / 2
-        return too_many(drawn) if good else "status %s, %d frames, %d before it was back; it said:\n%s" % (status, drawn, drawn_before, said)
+        return too_many(drawn) if good else "status %s, %d frames, %d before it rejoined; output:\n%s" % (status, drawn, drawn_before, said)
 
 
 def killed_without_delta(lab):

@@ -32,7 +32,7 @@ def check(build, way, names):
     mural = [os.path.join(build, "bin", "mural"), "run", "--tiles", "2x2", "--display", "app", "--"]
     status, said, errors = run(mural + program, names)
     if status != 0 or said != native[1]:
-        return "status %d, %s instead of %s; it said: %s" % (status, said.split(), native[1].split(), errors)
+        return "status %d, %s instead of %s; output: %s" % (status, said.split(), native[1].split(), errors)
     return None
 
 

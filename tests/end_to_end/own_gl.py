@@ -34,9 +34,9 @@ def caught(case_name, program, kind, options=(), in_script=False, more=None):
                 wrong = cases.check_end(run, 0)
                 if wrong is not None:
                     return wrong
-                said = cases.error_lines(run, ["past Mural", "two GL libraries", "no frame was captured"])
+                said = cases.error_lines(run, ["bypass", "two GL libraries", "no frame was captured"])
                 if said:
-                    return "it said: " + " | ".join(said)
+                    return "output: " + " | ".join(said)
             with open(report_file, encoding="utf-8") as file:
                 report = json.load(file)
         if report["frames"] != FRAMES:
@@ -82,9 +82,9 @@ def told(case_name, program, words, in_script=None, options=(), output=None, she
                 return "%d frames are on the wall" % frames
         said = [line for line in run.standard_error if line.startswith("mural:")]
         if len(said) != 1 or not all(word in said[0] for word in words):
-            return "it said %d lines: %s" % (len(said), " | ".join(said))
+            return "it printed %d lines: %s" % (len(said), " | ".join(said))
         if output is not None and output not in run.standard_output:
-            return "the program said: " + " | ".join(run.standard_output)
+            return "the program printed: " + " | ".join(run.standard_output)
         return None
     check.__name__ = "told_" + case_name
     cases.case(check)
@@ -93,15 +93,15 @@ def told(case_name, program, words, in_script=None, options=(), output=None, she
 told("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx")
 told("own_gl_with_preload_off", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx", ("--capture-via", "glvnd"))
 told("osmesa", "osmesa_window", ["OSMesa", "libOSMesa.so", "no frame was captured"])
-told("drawn_elsewhere", "route_glapi", ["go past Mural", "--capture-via preload"], output="the window shows the picture")
+told("drawn_elsewhere", "route_glapi", ["bypass Mural", "--capture-via preload"], output="the window shows the picture")
 for name, library in (("mixed_glx_driver", "libGLX_mesa.so.0"), ("mixed_glx_osmesa", "libOSMesa.so.8"),
                       ("mixed_egl_osmesa", "libOSMesa.so.8"), ("mixed_linked", "libOSMesa.so.8")):
-    told(name, name, ["part of the program's GL calls", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
+    told(name, name, ["some GL calls of the program", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
 told("x11_only", "x11_window", ["loads no GL library"])
 # For a program that fails early, missing libraries mean nothing.
-told("failed_early", None, ["sh ended before it made a GL context (exit status 3)", "mural doctor"], shell="exit 3", status=3)
-told("killed_early", None, ["sh ended before it made a GL context (signal 9 (Killed))"], shell="kill -9 $$", status=137)
-told("never_tried", None, ["sh never reached GL"], shell="exit 0")
+told("failed_early", None, ["sh ended before it created a GL context (exit status 3)", "mural doctor"], shell="exit 3", status=3)
+told("killed_early", None, ["sh ended before it created a GL context (signal 9 (Killed))"], shell="kill -9 $$", status=137)
+told("never_tried", None, ["sh made no GL calls through Mural"], shell="exit 0")
 
 
 def silent(program):
@@ -116,7 +116,7 @@ def silent(program):
                 if wrong is not None:
                     return wrong
                 if run.standard_error:
-                    return "it said: " + " | ".join(run.standard_error)
+                    return "output: " + " | ".join(run.standard_error)
             with open(report_file, encoding="utf-8") as file:
                 frames = json.load(file)["frames"]
         return None if frames >= 5 else "only %d frames are on the wall" % frames
@@ -135,7 +135,7 @@ def says(context, program, expected):
     with context.run([context.program(program)], ["--display", "none", "--quiet"]) as run:
         wrong = cases.check_end(run, 0)
         if wrong is None and run.standard_output != [expected]:
-            wrong = "the program said: " + " | ".join(run.standard_output)
+            wrong = "the program printed: " + " | ".join(run.standard_output)
         return wrong
 
 
@@ -158,7 +158,7 @@ def told_extensions_in_order(context):
             lists.append([line.split() for line in run.standard_output])
     native, told = lists
     if [line[0] for line in told] != ["text", "names", "beyond"] or told[2] != native[2]:
-        return "the program said: %s, natively: %s" % (told, native)
+        return "the program printed: %s, natively: %s" % (told, native)
     for ours, drivers in zip(told[:2], native[:2]):
         kept = [name for name in drivers if name in ours]
         if ours != kept or len(ours) < 100:

@@ -94,16 +94,16 @@ def by_file(context, frame, taken="", more=()):
 @passes.case
 def files_say_how(context, notes):
     plain = passes.native(context, "fixed_lighting", frames=3)
-    for frame, taken, more, line in (("mural_codec \"zstd\"", "", (), "packed by zstd,"), ("", "mural_codec \"lz4\"", (), "packed by lz4,"),
-                                     ("mural_codec \"zstd\"", "", ("--codec", "bitplane"), "packed by bitplane,")):
+    for frame, taken, more, line in (("mural_codec \"zstd\"", "", (), "encoded with zstd,"), ("", "mural_codec \"lz4\"", (), "encoded with lz4,"),
+                                     ("mural_codec \"zstd\"", "", ("--codec", "bitplane"), "encoded with bitplane,")):
         status, said, got = by_file(context, frame, taken, more)
         wrong = passes.differing(plain, got)
         if status != 0 or wrong or line not in said:
             return "%s %s %s: status %s, %s: %s" % (frame, taken, more, status, wrong, said)
     status, said, got = by_file(context, "mural_codec \"jpeg-80\" mural_exact OFF")
-    if status != 0 or "which loses something" not in said or passes.differing(plain, got) is None or nearness(plain, got) < LEAST_DB:
+    if status != 0 or "lossy" not in said or passes.differing(plain, got) is None or nearness(plain, got) < LEAST_DB:
         return "jpeg-80 by a file: status %s: %s" % (status, said)
-    for frame, line in (("mural_codec \"jpeg-80\"", "loses something; say mural_exact OFF"), ("mural_codec \"none_such\"", "there is no codec \"none_such\"")):
+    for frame, line in (("mural_codec \"jpeg-80\"", "is lossy; set mural_exact OFF"), ("mural_codec \"none_such\"", "unknown codec \"none_such\"")):
         status, said, _ = by_file(context, frame)
         if status != 2 or line not in said:
             return "%s: status %s: %s" % (frame, status, said)

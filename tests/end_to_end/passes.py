@@ -91,7 +91,7 @@ def dplex_shares_the_work(context, notes):
     options = ["--display", "none", "--dplex", "3", "--explain"]
     with context.drawing("long_run", frames, options=options) as run:
         wrong = cases.check_end(run, 0, frames)
-        said = [line for line in run.standard_error if "one node goes on drawing" in line]
+        said = [line for line in run.standard_error if "one node draws all frames" in line]
     return wrong or (said[0] if said else None)
 
 

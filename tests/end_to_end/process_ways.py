@@ -38,7 +38,7 @@ def unlike(native, through):
     for i, line in enumerate(native):
         if i >= len(through) or through[i] != line:
             return "line %d is \"%s\" instead of \"%s\"" % (i + 1, through[i] if i < len(through) else "missing", line)
-    return "it told %d lines more" % (len(through) - len(native)) if len(through) > len(native) else None
+    return "it printed %d more lines" % (len(through) - len(native)) if len(through) > len(native) else None
 
 
 def differs(build, name, native, report):
@@ -50,7 +50,7 @@ def differs(build, name, native, report):
         return "status %d instead of %d: %s" % (status, native[0], said[-400:])
     wrong = unlike(native[1], told)
     if wrong:
-        return "%s; it said: %s" % (wrong, said[-400:])
+        return "%s; output: %s" % (wrong, said[-400:])
     with open(report, encoding="utf-8") as file:
         facts = json.load(file)
     if facts.get("differingPixels", 0):
@@ -58,7 +58,7 @@ def differs(build, name, native, report):
     if facts.get("verifiedFrames", 0) < frames:  # over all processes; "frames" counts only the main window's
         return "%d frames on the wall instead of %d: %s" % (facts.get("verifiedFrames", 0), frames, said[-400:])
     if SAID.get(name, "") not in said:
-        return "it did not say \"%s\"" % SAID[name]
+        return "it did not print \"%s\"" % SAID[name]
     return None
 
 

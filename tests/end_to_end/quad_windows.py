@@ -80,7 +80,7 @@ def both_eyes_are_whole(context, notes):
     if len(windows) != 1:
         return "%d windows instead of 1" % len(windows)
     if any("side by side" in line for line in said):
-        return "it said that there are no such windows: %s" % said
+        return "it reported missing windows: %s" % said
     if wrong_eyes(eyes[::-1], windows[0]) is None:
         return "eyes that are swapped are not found"
     return wrong_eyes(eyes, windows[0]) or passes.differing([passes.side_by_side(a, b) for a, b in zip(*eyes)], saved)
@@ -115,8 +115,8 @@ def without_such_windows_they_lie_side_by_side(context, notes):
     eyes = native_eyes(context)
     windows, saved, said = shown_in_quad(context, ["--stereo", "quad"] + EYES, double=False)
     lines = [line for line in said if "side by side" in line]
-    if windows or len(lines) != 1 or "no window with a buffer for each eye opens" not in lines[0]:
-        return "%d windows, it said: %s" % (len(windows), said)
+    if windows or len(lines) != 1 or "no window with a buffer for each eye can be opened" not in lines[0]:
+        return "%d windows, output: %s" % (len(windows), said)
     return passes.differing([passes.side_by_side(a, b) for a, b in zip(*eyes)], saved)
 
 
@@ -127,7 +127,7 @@ def elsewhere_than_in_windows_of_the_wall_too(context, notes):
         lines = [line for line in run.standard_error if "side by side" in line]
     if wrong:
         return wrong
-    return None if len(lines) == 1 and "--display windows" in lines[0] else "it said: %s" % lines
+    return None if len(lines) == 1 and "--display windows" in lines[0] else "output: %s" % lines
 
 
 if __name__ == "__main__":

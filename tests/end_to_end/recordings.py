@@ -234,15 +234,15 @@ def killed_head_leaves_what_is_whole(place):
         time.sleep(2.5)  # data older than about a second is in the file
         cases.kill_all(run.wait_for_processes(cases.HEAD))
         if not run.wait_for_line("head"):
-            return "nobody said that the head has ended"
+            return "no message about the ended head"
         run.process.send_signal(signal.SIGTERM)  # the program would continue without nodes
         run.status()
     done = place.mural("dump", place.path("a.mural"), "--summary")
-    if done.returncode == 2 and "is not a recording" in done.stderr:
+    if done.returncode == 2 and "is not a trace" in done.stderr:
         return "not even the header was written"
     if done.returncode != 0 or done.stderr.count("\n") != 1 or "its end is missing" not in done.stderr:
         return "status %d, %s" % (done.returncode, done.stderr)
-    frames = int(re.search(r"(\d+) whole frames", done.stderr).group(1))
+    frames = int(re.search(r"(\d+) complete frames", done.stderr).group(1))
     return None if len(place.replay(["--tiles", "2x1"])) >= frames else "not all whole frames were shown"
 
 
@@ -251,7 +251,7 @@ def full_disk_ends_the_recording_only(place):
     with place.context.drawing("long_run", 60, options=list(RECORD) + ["--record", "/dev/full"]) as run:
         wrong = cases.check_end(run, 0, 60)
         said = cases.error_lines(run, ["No space left"])
-    return wrong or (None if len(said) == 1 and "the program goes on" in said[0] else "it said: " + " | ".join(run.standard_error))
+    return wrong or (None if len(said) == 1 and "the program continues" in said[0] else "output: " + " | ".join(run.standard_error))
 
 
 @case
@@ -262,10 +262,10 @@ def arguments_that_are_wrong(place):
     place.record("immediate", frames=2)
     place.change("damaged", lambda whole: flipped(whole, len(whole) // 2))
     wrong = []
-    commands = {"is not a recording": ["replay", place.path("text")], "can't be read": ["replay", place.path("nowhere")], "is damaged": ["replay", place.path("damaged")],
-                "can't be written": ["run", "--record", "/nowhere/a.mural", "--display", "none", "--", place.context.program("immediate")],
-                "is not a recording ": ["dump", place.path("text")], "is damaged ": ["dump", place.path("damaged")], "--frames \"7-3\"": ["dump", place.path("a.mural"), "--frames", "7-3"],
-                "what is being replayed": ["replay", place.path("a.mural"), "--record", place.path("a.mural")]}
+    commands = {"is not a trace": ["replay", place.path("text")], "cannot be read": ["replay", place.path("nowhere")], "is damaged": ["replay", place.path("damaged")],
+                "cannot be written": ["run", "--record", "/nowhere/a.mural", "--display", "none", "--", place.context.program("immediate")],
+                "is not a trace ": ["dump", place.path("text")], "is damaged ": ["dump", place.path("damaged")], "--frames \"7-3\"": ["dump", place.path("a.mural"), "--frames", "7-3"],
+                "the file being replayed": ["replay", place.path("a.mural"), "--record", place.path("a.mural")]}
     for words, command in commands.items():
         done = place.mural(*command)
         if done.returncode != 2 or done.stderr.count("\n") != 1 or words.strip() not in done.stderr:
@@ -280,12 +280,12 @@ def arguments_of_a_damaged_file(place):
     place.change("damaged.mural", lambda whole: flipped(whole, len(whole) * 2 // 3))
     file = place.path("damaged.mural")
     done = place.mural("replay", file)
-    hint = re.search(r"the frames before it are good \(1-(\d+)\): keep them by mural (trim \S+ 1-\1) -o good\.mural, ", done.stderr)
+    hint = re.search(r"earlier frames are valid \(1-(\d+)\): extract them with mural (trim \S+ 1-\1) -o good\.mural, ", done.stderr)
     if done.returncode != 2 or done.stderr.count("\n") != 1 or hint is None:
         return "status %d, %s" % (done.returncode, done.stderr)
     frames = int(hint.group(1))
     if hint.group(2).split() != ["trim", file, "1-%d" % frames]:
-        return "it says: mural " + hint.group(2)
+        return "it suggests: mural " + hint.group(2)
     place.trim("1-%d" % frames, "damaged.mural")
     return place.refused(hint.group(0), "trim", file, "1-20", "-o", place.path("c.mural")) or differing(live[:frames], place.replay(["--tiles", "2x1"], "b.mural"))
 
@@ -296,9 +296,9 @@ def arguments_of_a_file_without_a_frame(place):
     place.record("immediate", frames=2)
     place.change("cut.mural", lambda whole: whole[:len(whole) // 2])
     cut = place.path("cut.mural")
-    why = "has no whole frame: its end is missing (was the head killed, or the file cut?)"
+    why = "has no complete frame: its end is missing (the head was killed, or the file is truncated)"
     return place.refused(why, "replay", cut) or place.refused(why, "trim", cut, "2-5", "-o", place.path("b.mural")) or place.refused(why, "dump", cut, "--frames", "1") or \
-        place.refused("0 whole frames are there", "dump", cut, status=0)
+        place.refused("0 complete frames", "dump", cut, status=0)
 
 
 # ---- trim
@@ -379,12 +379,12 @@ def trim_of_a_part(place):
 @case
 def trim_refuses(place):
     place.record("immediate", frames=2)
-    for frames, words in (("2-3", "the recording has 2 frames; give some of them, such as 1-2"), ("0-1", "must be N or N-M"), ("x", "must be N or N-M")):
+    for frames, words in (("2-3", "the trace has 2 frames; choose some of them, such as 1-2"), ("0-1", "must be N or N-M"), ("x", "must be N or N-M")):
         done = place.mural("trim", place.path("a.mural"), frames, "-o", place.path("b.mural"))
         if done.returncode != 2 or done.stderr.count("\n") != 1 or words not in done.stderr:
             return "%s: status %d, %s" % (frames, done.returncode, done.stderr)
     done = place.mural("trim", place.path("a.mural"), "1", "-o", place.path("a.mural"))
-    return None if done.returncode == 2 and "is what is being trimmed" in done.stderr else done.stderr
+    return None if done.returncode == 2 and "is the file being trimmed" in done.stderr else done.stderr
 
 
 # ---- dump
@@ -394,7 +394,7 @@ def dump_tells_the_calls(place):
     place.record("immediate", frames=2)
     done = place.mural("dump", place.path("a.mural"))
     lines = done.stdout.splitlines()
-    for wanted in (r"^     1 1    program came: immediate, pid \d+$", r"^     1 1\.\d+ +Mural\.CreateContext\(context=1, share=0, api=0, .*double\)$", r"^     2 1\.\d+ +Mural\.Swap\(window=1, frame=2\)$",
+    for wanted in (r"^     1 1    program started: immediate, pid \d+$", r"^     1 1\.\d+ +Mural\.CreateContext\(context=1, share=0, api=0, .*double\)$", r"^     2 1\.\d+ +Mural\.Swap\(window=1, frame=2\)$",
                    r"^     1 1\.\d+ +glClear\(mask=GL_DEPTH_BUFFER_BIT\|.*GL_COLOR_BUFFER_BIT\)$", r"^     1 1\.\d+ +glBegin\(mode=GL_TRIANGLES\)$", r"^     1 1\.\d+ +glVertex3f\(x=[-0-9.]+, y=[-0-9.]+, z=[-0-9.]+\)$"):
         if not any(re.match(wanted, line) for line in lines):
             return "no line is like %s among %d" % (wanted, len(lines))
@@ -413,12 +413,12 @@ def dump_refuses_what_is_not_there(place):
     """Unknown frames and names are errors; a known call without occurrences is reported."""
     place.record("immediate", frames=2)
     file = place.path("a.mural")
-    for words, arguments in (("the recording has 2 frames; give some of them, such as 1-2", ("--frames", "99")), ("the recording has 2 frames; give some of them, such as 1-2", ("--frames", "2-9")),
-                             ("--calls \"nosuch\": no command has such a name; mural list-commands has all", ("--calls", "nosuch")), ("--calls \"glbegin\": no", ("--calls", "glBegin,glbegin"))):
+    for words, arguments in (("the trace has 2 frames; choose some of them, such as 1-2", ("--frames", "99")), ("the trace has 2 frames; choose some of them, such as 1-2", ("--frames", "2-9")),
+                             ("--calls \"nosuch\": no command matches; mural list-commands lists the GL names", ("--calls", "nosuch")), ("--calls \"glbegin\": no", ("--calls", "glBegin,glbegin"))):
         wrong = place.refused(words, "dump", file, *arguments)
         if wrong is not None:
             return wrong
-    absent = "--calls \"glDispatchCompute\": there is no such call in "
+    absent = "--calls \"glDispatchCompute\": no such call in "
     wrong = place.refused(absent + file, "dump", file, "--calls", "glDispatchCompute", status=0) or \
         place.refused(absent + "frames 1-2 of " + file, "dump", file, "--calls", "glDispatchCompute", "--frames", "1-2", status=0)
     done = place.mural("dump", file, "--calls", "glDispatchCompute,glBegin")
@@ -426,7 +426,7 @@ def dump_refuses_what_is_not_there(place):
         wrong = "of two calls: status %d, %s" % (done.returncode, done.stderr)
     behind = place.mural("dump", file, "--frames", "3")  # the program's commands after its last picture
     if wrong is None and (behind.returncode != 0 or not behind.stdout.startswith("     3 ")):
-        wrong = "behind the last frame: status %d, %s" % (behind.returncode, behind.stderr)
+        wrong = "after the last frame: status %d, %s" % (behind.returncode, behind.stderr)
     return wrong
 
 

@@ -18,7 +18,7 @@ from harness import cases, pictures, programs, session
 
 case = cases.case
 WIDTH, HEIGHT = 252, 190
-BACK = "is back in the picture"
+BACK = "rejoined "
 PROGRAM = "long_scene"
 # limit of frames per run: on a busy machine a rejoin takes seconds, and a run without an end file takes too long
 MOST = 6000
@@ -168,7 +168,7 @@ def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1
             spans.append((frame - 3, missing_columns or columns[number]))
             os.kill(victim, signal.SIGKILL)
             if not run.wait_for_line(BACK, 30):
-                return "node %d did not come back (of %s): %s" % (number, pids, " | ".join(run.standard_error[-4:]))
+                return "node %d did not rejoin (of %s): %s" % (number, pids, " | ".join(run.standard_error[-4:]))
             time.sleep(0.3)  # a frame in progress at the rejoin contains only the other node's part
         watch.enough(run, max(TAIL, 4 * every))
         differing = watch.differing(run)
@@ -176,7 +176,7 @@ def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1
             return differing
         wrong = judged(differing, spans, max(EXACT, 3 * every), every)
         if wrong is None and every == 1 and not any(differing) and not tiles.startswith("queue"):
-            wrong = "nothing was ever missing: was nothing killed?"
+            wrong = "no picture was incomplete; check that a process was killed"
         if wrong is None and most is not None and sum(map(bool, differing)) > most:
             wrong = "%d frames lack something, not %d at most" % (sum(map(bool, differing)), most)
         nodes = watch.report()["nodes"]
@@ -256,7 +256,7 @@ def waiting_node(context):
                     frame = latest_frame(run)
                     os.kill(children_of(waiting.pid)[1], signal.SIGKILL)
                     if not run.wait_for_line(BACK, 30):
-                        return "it did not come back: " + " | ".join(run.standard_error[-4:])
+                        return "it did not rejoin: " + " | ".join(run.standard_error[-4:])
                     watch.enough(run)
                     differing = watch.differing(run)
                     return differing if isinstance(differing, str) else judged(differing, [(frame - 3, range(WIDTH))], EXACT)
@@ -285,7 +285,7 @@ def wall_windows(context):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(first_nodes(run)[1], signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
-            return "it did not come back: " + " | ".join(run.standard_error[-4:])
+            return "it did not rejoin: " + " | ".join(run.standard_error[-4:])
         watch.enough(run)
         wrong = watch.end(run)
         return "the wall was lost: " + " | ".join(said(run, "windows")) if wrong is None and said(run, "wall windows are lost") else wrong
@@ -366,7 +366,7 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
                 os.kill(pid, signal.SIGKILL)
             for _ in pids:
                 if not run.wait_for_line(BACK, 40):
-                    return "%s did not come back: %s" % (victims, " | ".join(run.standard_error[-8:]))
+                    return "%s did not rejoin: %s" % (victims, " | ".join(run.standard_error[-8:]))
             begin = latest_frame(run) + UNDER_WAY
             while latest_frame(run) < begin + 2 * UNDER_WAY and run.process.poll() is None:
                 time.sleep(0.01)
@@ -385,12 +385,12 @@ def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=N
         shown = [native.get(tuple(picture.rows)) for picture in saved]
         exact = {frame for frame in shown if frame is not None}
         print("    %s, %s: back after %s s; longest frame %.0f ms; of %d frames %d have pictures, %d differ" % (
-            " ".join(options), rounds, ", ".join("%.2f" % node["secondsToBack"] for node in report if node["joins"]), longest, frames, len(saved), shown.count(None)))
+            " ".join(options), rounds, ", ".join("%.2f" % node["secondsToRejoin"] for node in report if node["joins"]), longest, frames, len(saved), shown.count(None)))
         missing = [frame for first, end in whole for frame in range(first, end) if frame not in exact]
         if missing:
             return "frames %s are not exact; they should be from %s" % (missing[:8], whole)
         if len(exact) == frames:
-            return "nothing was ever missing: was nothing killed?"
+            return "no picture was incomplete; check that a process was killed"
         if longest > LONGEST_MS:
             return "a frame took %.1f s" % (longest / 1000)
         joins, wanted = sum(node["joins"] for node in report), sum(map(len, rounds))
@@ -421,7 +421,7 @@ def ranges_case(strategy):
     def check(context):
         return ranges_come_back(context, ((2,), (1,), (0,)), 3, by_ranges(strategy, 3))
     check.__name__ = "ranges_" + strategy.replace("-", "_")
-    check.__doc__ = "Nodes that share draws come back, each of them, by " + strategy
+    check.__doc__ = "Sort-last nodes rejoin, each of them, with " + strategy
     return case(check)
 
 
@@ -493,8 +493,8 @@ def chunks_of_a_lost_node(context):
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(node_pid(run, 1), signal.SIGKILL)
-        if not run.wait_for_line("the others take its chunks", 20):
-            return "nobody said who draws its chunks: " + " | ".join(run.standard_error[-4:])
+        if not run.wait_for_line("other nodes take its chunks", 20):
+            return "no message about its chunks: " + " | ".join(run.standard_error[-4:])
         begin = latest_frame(run) + UNDER_WAY
         watch.enough(run, UNDER_WAY + 60)
         wrong = watch.end(run)
@@ -503,7 +503,7 @@ def chunks_of_a_lost_node(context):
         behind = [columns_that_differ(a, b) for a, b in zip(watch.native(), saved_pictures(watch.out))][begin:]
         if len(behind) < 60:
             return "only %d frames were left" % len(behind)
-        return "%d of %d pictures behind its loss differ" % (sum(map(bool, behind)), len(behind)) if any(behind) else None
+        return "%d of %d pictures after its loss differ" % (sum(map(bool, behind)), len(behind)) if any(behind) else None
 
 
 @case
@@ -515,7 +515,7 @@ def ranges_over_earlier_frames(context):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(first_nodes(run)[0], signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
-            return "it did not come back: " + " | ".join(run.standard_error[-6:])
+            return "it did not rejoin: " + " | ".join(run.standard_error[-6:])
         watch.enough(run, UNDER_WAY + 100)
         wrong = watch.end(run)
         if wrong is not None:
@@ -556,14 +556,14 @@ def killed_while_it_catches_up(context):
             time.sleep(delay)
             os.kill(fresh, signal.SIGKILL)
         if not run.wait_for_line(BACK, 30):
-            return "it did not come back: " + " | ".join(run.standard_error[-4:])
+            return "it did not rejoin: " + " | ".join(run.standard_error[-4:])
         watch.enough(run)
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        tried = len(said(run, "did not come back:")) + len(said(run, "was lost:")) - 1
+        tried = len(said(run, "did not rejoin:")) + len(said(run, "was lost:")) - 1
         if tried != 2:
-            return "%d failed tries were said instead of 2: %s" % (tried, " | ".join(run.standard_error[-6:]))
+            return "%d failed attempts were reported instead of 2: %s" % (tried, " | ".join(run.standard_error[-6:]))
         return judged(differing, [(frame - 3, range(half, WIDTH))], EXACT)
 
 
@@ -590,7 +590,7 @@ def kill_and_compare_ends(context, options, tiles, victims, against=None, enviro
             os.kill(pids[number], signal.SIGKILL)
         for _ in victims:
             if not run.wait_for_line(BACK, 30):
-                return "they did not come back: " + " | ".join(run.standard_error[-6:])
+                return "they did not rejoin: " + " | ".join(run.standard_error[-6:])
         back = latest_frame(run)
         watch.enough(run, 2 * UNDER_WAY + TAIL)
         wrong = watch.end(run)
@@ -606,7 +606,7 @@ def kill_and_compare_ends(context, options, tiles, victims, against=None, enviro
         before = [columns_that_differ(a, b) for a, b in zip(native[:frame - 3], saved)]
         behind = [columns_that_differ(a, b) for a, b in zip(native[-TAIL:], saved[-TAIL:])]
         if any(before) or any(behind):
-            return "pictures differ: %d before, %d behind" % (sum(map(bool, before)), sum(map(bool, behind)))
+            return "pictures differ: %d before, %d after" % (sum(map(bool, before)), sum(map(bool, behind)))
         return None
 
 
@@ -648,7 +648,7 @@ def dies_again_and_again(context):
         if isinstance(differing, str):
             return differing
         if len(said(run, "tiles stay as they were")) != 2:  # until the rejoin, after 2 tries
-            return "it was not said that it stays lost: " + " | ".join(run.standard_error[-6:])
+            return "no message that it stays lost: " + " | ".join(run.standard_error[-6:])
         return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
 
 
@@ -669,7 +669,7 @@ def lost_for_good(context, options, words):
         if isinstance(differing, str):
             return differing
         if len(said(run, words)) != 1:
-            return "it was not said: " + " | ".join(run.standard_error[-3:])
+            return "no message: " + " | ".join(run.standard_error[-3:])
         return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
 
 
@@ -682,7 +682,7 @@ def never(context):
 @case
 def more_than_is_kept(context):
     """A program that has sent more than --cache-size: the line about the loss says so, and no rejoin is tried."""
-    return lost_for_good(context, ("--cache-size", "4MiB"), "--cache-size gives more")
+    return lost_for_good(context, ("--cache-size", "4MiB"), "a larger --cache-size")
 
 
 LATE_HOST = "#!/bin/sh\n# HOST COMMAND...\nhost=$1; shift\n%s\nexec \"$@\"\n"
@@ -700,27 +700,27 @@ def late_node(context, how, words):
             if not run.wait_for_line("frame 5 "):
                 return "the program did not start: " + " | ".join(run.standard_error[-3:])
             if len(said(run, words)) != 1:
-                return "it was not said that a node is not there: " + " | ".join(run.standard_error[-4:])
-            if not run.wait_for_line("came into the picture", 30):
-                return "it did not come: " + " | ".join(run.standard_error[-4:])
-            print("    " + said(run, "came into the picture")[0])
+                return "no message about the missing node: " + " | ".join(run.standard_error[-4:])
+            if not run.wait_for_line(" joined ", 30):
+                return "it did not join: " + " | ".join(run.standard_error[-4:])
+            print("    " + said(run, " joined ")[0])
             watch.enough(run)
             differing = watch.differing(run)
             if isinstance(differing, str):
                 return differing
             if not differing[0]:
-                return "nothing was missing in the first picture: was the node there?"
+                return "the first picture was complete although a node was missing"
             return judged(differing, [(0, range(WIDTH // 2, WIDTH))], EXACT)
 
 
 @case
 def late_node_that_failed(context):
-    return late_node(context, "exit 3", "is not there yet: it did not start: exit status 3")
+    return late_node(context, "exit 3", "is not connected yet: it did not start: exit status 3")
 
 
 @case
 def late_node_that_is_slow(context):
-    return late_node(context, "sleep 600", "is not there yet: it did not connect within 5 s of the others")
+    return late_node(context, "sleep 600", "is not connected yet: it did not connect within 5 s after the others")
 
 
 @case
@@ -728,14 +728,14 @@ def late_nodes_too_many(context):
     """Fewer nodes came than are required: one line, and no program."""
     watch = Watch(context, 10, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", "false", "--min-nodes", "1"))
     with watch.start() as run:
-        return cases.check_end(run, 2) or (None if len(said(run, "fewer than --min-nodes 1 are left")) == 1 else "it was not said: " + " | ".join(run.standard_error[-3:]))
+        return cases.check_end(run, 2) or (None if len(said(run, "fewer than --min-nodes 1 are left")) == 1 else "no message: " + " | ".join(run.standard_error[-3:]))
 
 
 @case
 def planted_fault_is_seen(context):
     """One packet of a node's snapshot is lost: the pictures must reveal it."""
     wrong = kill_and_look(context, environment={"MURAL_PLANT": "rejoin"})
-    return None if wrong is not None and "still differs" in wrong else "nobody saw it: %s" % wrong
+    return None if wrong is not None and "still differs" in wrong else "it was not detected: %s" % wrong
 
 
 @case
@@ -749,7 +749,7 @@ def large_store(context):
         frame = latest_frame(run)
         os.kill(first_nodes(run)[1], signal.SIGKILL)
         if not run.wait_for_line(BACK, 60):
-            return "it did not come back: " + " | ".join(run.standard_error[-4:])
+            return "it did not rejoin: " + " | ".join(run.standard_error[-4:])
         back = latest_frame(run)
         line = said(run, BACK)[0]
         print("    " + line)

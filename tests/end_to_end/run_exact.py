@@ -149,7 +149,7 @@ class Comparison:
         if status != 0:
             wrong = "status %s of the run for all programs" % status
         elif frames != nodes.wanted_frames:
-            wrong = "%d frames went through the nodes, not as many as by the first layout, %d" % (frames, nodes.wanted_frames)
+            wrong = "%d frames were drawn by nodes, not as many as by the first layout, %d" % (frames, nodes.wanted_frames)
         self.failures += wrong is not None
         print("%-24s %-9s %3d frames  %s%s" % ("by the same nodes", label, frames, "WRONG: " + wrong if wrong else "right", self.moves(label)), flush=True)
         shutil.rmtree(os.path.join(self.folder, "shared." + label), ignore_errors=True)
@@ -199,7 +199,7 @@ class Comparison:
             return "status %s instead of %s%s" % (
                 "none in time" if through.status is None else through.status, native.status, said(through))
         if through.captured == 0:
-            return "nothing went through the nodes" + said(through)
+            return "no frame was drawn by nodes" + said(through)
         expected, got = native.frames(), through.frames()
         if set(expected) != set(got):
             missing = sorted(set(expected) - set(got))
@@ -239,7 +239,7 @@ def got_name(frames):
 def said(run):
     """Returns the last lines that a failed run printed, on one line."""
     lines = [line for line in run.output.splitlines() if line.strip()]
-    return "; it said: " + " | ".join(lines[-3:]) if lines else ""
+    return "; output: " + " | ".join(lines[-3:]) if lines else ""
 
 
 def main(description=__doc__, add_arguments=lambda parser: None, comparison_class=Comparison):

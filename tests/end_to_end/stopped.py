@@ -38,7 +38,7 @@ def what_it_read(run, wanted_status=0):
     counts = [re.match(r"reads (\d+) differ (\d+) errors (\d+)", line) for line in run.standard_output]
     counts = [[int(number) for number in found.groups()] for found in counts if found]
     if status != wanted_status or not counts:
-        return "status %s, it printed %s; Mural said: %s" % (status, run.standard_output[-2:], " | ".join(run.standard_error[-4:]))
+        return "status %s, it printed %s; Mural printed: %s" % (status, run.standard_output[-2:], " | ".join(run.standard_error[-4:]))
     return counts[0]
 
 
@@ -118,7 +118,7 @@ def program_killed_while_stopped(context):
         if status != 128 + signal.SIGKILL or time.monotonic() - began > 15:
             return "status %s after %.0f s" % (status, time.monotonic() - began)
         left = run.left_behind()
-        return "left behind: " + ", ".join(left) if left else None
+        return "left over: " + ", ".join(left) if left else None
 
 
 def head_killed(context, kind):
@@ -171,7 +171,7 @@ def grabbed(context, way, like=None):
         if not took or took[0] > 10:  # a picture that waits for the head takes 5 s, each
             return "the grab lasted %s s" % took
         said = [line for line in run.standard_error if "does not answer" in line]
-        return "it was told: " + said[0] if said else None
+        return "it printed: " + said[0] if said else None
 
 
 # Another connection's grab holds up the program's own GL natively, so these are compared with the first way.

@@ -48,7 +48,7 @@ def wrong_numbers(numbers, members):
         return "not one barrier was reported"
     if numbers["members"] != members or not FRAMES - 3 <= numbers["swaps"] <= FRAMES:
         return "%d members and about %d swaps were wanted: %s" % (members, FRAMES, numbers)
-    in_order = 0 <= numbers["medianNs"] <= numbers["p99Ns"] <= numbers["mostNs"] and numbers["clockErrorNs"] > 0
+    in_order = 0 <= numbers["medianNs"] <= numbers["p99Ns"] <= numbers["maxNs"] and numbers["clockErrorNs"] > 0
     return None if in_order else "these are no times: %s" % numbers
 
 
@@ -63,7 +63,7 @@ def short_form(context):
             return "%s: %s" % (tiles, wrong)
         print("  %s: within %.2f ms (median), %.2f ms (99 %%)" % (tiles, numbers["medianNs"] / 1e6, numbers["p99Ns"] / 1e6))
         if not any("windows of %d nodes" % members in line for line in lines) or not any("ms of each other" in line for line in lines):
-            return "%s: said was %s" % (tiles, lines)
+            return "%s: output: %s" % (tiles, lines)
     return None
 
 
@@ -90,7 +90,7 @@ def files_say_it(context):
         if not members and (lines or numbers):
             return "no barrier was wanted: %s, %s" % (lines, numbers)
         if members and not any('swap barrier "front"' in line for line in lines):
-            return "said was %s" % lines
+            return "output: %s" % lines
     return None
 
 
@@ -103,17 +103,17 @@ def lost(context, which, words):
             return "%d nodes instead of 3" % len(nodes)
         os.kill(nodes[which], signal.SIGKILL)
         if not run.wait_for_line(words):
-            return "nobody said \"%s\": %s" % (words, " | ".join(run.standard_error[-5:]))
+            return "no message with \"%s\": %s" % (words, " | ".join(run.standard_error[-5:]))
         frame = max(int(n) for n in re.findall(r"frame (\d+)", " ".join(run.standard_output + run.standard_error)))
         if not run.wait_for_line("frame %d" % (frame // 50 * 50 + 100)):
-            return "no frames came after a node had been killed"
+            return "no frames after a node had been killed"
     return None
 
 
 @cases.case
 def leader_lost(context):
     """The leading node is killed: the others show their frames on their own."""
-    return lost(context, 0, "its leader is gone")
+    return lost(context, 0, "its leader is lost")
 
 
 @cases.case

@@ -22,7 +22,7 @@ def lines_of(process, wanted, seconds):
         line = process.stderr.readline()
         if wanted in line:
             return line
-    raise RuntimeError('the waiting node did not say "%s"' % wanted)
+    raise RuntimeError('the waiting node did not print "%s"' % wanted)
 
 
 def run(command, seconds=90):
@@ -76,9 +76,9 @@ class Case:
             finally:
                 node.terminate()
                 node.wait(20)
-        self.check('it ends when it is told to', node.returncode == 0, str(node.returncode))
+        self.check('it ends on SIGTERM', node.returncode == 0, str(node.returncode))
         found = run([self.mural, 'discover', '--seconds', '0.5', '--no-avahi', '--json'])
-        self.check('then it is gone', 'test%d"' % os.getpid() not in found.stdout, found.stdout)
+        self.check('its announcement has ended', 'test%d"' % os.getpid() not in found.stdout, found.stdout)
         self.perform_by_name(secret, expected, names)
         return self.good
 

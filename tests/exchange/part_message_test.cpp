@@ -96,7 +96,7 @@ TEST(PartMessage, distinguishesPictures) {
     EXPECT_FALSE(unpackInto(part, message, {32, 64}, rule));
     ++part.id.serial;
     EXPECT_EQ(unpackInto(part, message, {0, 32}, rule).error().message,
-              "parts of different pictures came together: this one is incomplete");
+              "parts of different pictures arrived together; this picture is incomplete");
 }
 
 TEST(PartMessage, reportsDamageInOneLine) {

@@ -110,8 +110,8 @@ TEST(PictureComposer, doesNotBlockOnALostNode) {
             const Outcome made = compose(scene, strategy, "", lost);
             ASSERT_FALSE(made.lines.empty());
             for (const std::string& line : made.lines)
-                EXPECT_EQ(line,
-                          "a range of the picture is missing for now: range " + std::to_string(lost + 1) + " is gone");
+                EXPECT_EQ(line, "a range of the picture is missing until its node rejoins: range " +
+                                    std::to_string(lost + 1) + " is gone");
         }
 }
 
@@ -168,7 +168,8 @@ TEST(PictureComposer, losesOnlyTheSilentNode) {
     for (const Strategy strategy : kEveryStrategy) {
         const Outcome made = compose(scene, strategy, "", 3, 300);
         for (const std::string& line : made.lines)
-            EXPECT_EQ(line, "a range of the picture is missing for now: range 4 is gone") << nameOf(strategy);
+            EXPECT_EQ(line, "a range of the picture is missing until its node rejoins: range 4 is disconnected")
+                << nameOf(strategy);
     }
 }
 

@@ -74,7 +74,7 @@ TEST(PictureExchange, closesTheConnectionAfterAnOversizedMessage) {
     ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
     ASSERT_TRUE(high.send(0, bytesOf(101, 7), Deadline::inMs(5000)));
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message,
-              "range 2: a picture of 101 bytes came where 100 are the most");
+              "range 2: the size of a picture, 101 bytes, exceeds the limit of 100");
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2 is gone");
 }
 

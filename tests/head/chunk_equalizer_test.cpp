@@ -166,7 +166,7 @@ TEST(ChunkEqualizer, doesNothingWithoutAQueueOrForTimeMultiplexedNodes) {
     const SessionPlan plan = planSession(turns, "me");
     EXPECT_FALSE(ChunkEqualizer(plan, [](const RangeAssignment&) { ADD_FAILURE(); }).deals());
     ASSERT_FALSE(plan.warnings.empty());
-    EXPECT_NE(plan.warnings[0].find("take turns"), std::string::npos) << plan.warnings[0];
+    EXPECT_NE(plan.warnings[0].find("in turn"), std::string::npos) << plan.warnings[0];
 }
 
 TEST(RangeAssignment, roundTripAndRejectInvalidOnes) {

@@ -176,7 +176,7 @@ TEST(HeadSession, dropsASilentNodeAndContinues) {
     EXPECT_TRUE(program.readAnswer(answer));
     EXPECT_TRUE(program.waitFramesDone(3));
     const std::string said = head.waitForSay("was lost");
-    EXPECT_EQ(said.rfind("node 1 (local) was lost: it said nothing for", 0), 0u) << said;
+    EXPECT_EQ(said.rfind("node 1 (local) was lost: no message for", 0), 0u) << said;
     const auto report = head.finish();
     EXPECT_EQ(report["nodes"][0]["lost"], false);
     EXPECT_EQ(report["nodes"][1]["lost"], true);
@@ -257,7 +257,7 @@ TEST(HeadSession, sendsUnchangedAreasOnce) {
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 5));
     ASSERT_TRUE(program.waitFramesDone(5));
-    head.waitForSay("its tiles stay with the nodes that have them");
+    head.waitForSay("tiles of a window stay with their nodes");
     head.finish();
     EXPECT_EQ(std::ranges::count_if(head.seen,
                                     [](const auto& e) {
@@ -420,7 +420,7 @@ TEST(HeadSession, drainsAnEndedProgramAndFreesItsContexts) {
     EXPECT_EQ(report["verifiedFrames"], 3);
     EXPECT_EQ(report["largestDifference"], 9);
     EXPECT_EQ(report["uncomparedFrames"], 3);
-    EXPECT_EQ(report["uncomparedFramesBy"], (nlohmann::json{{"front buffer", 2}, {"no answer from the nodes", 1}}));
+    EXPECT_EQ(report["uncomparedFramesBy"], (nlohmann::json{{"front buffer", 2}, {"no reply from the nodes", 1}}));
     const auto packets = head.node(1).packets();
     const std::vector<uint32_t> gone{static_cast<uint32_t>(wire::HeadCommand::ClientGone), id};
     EXPECT_EQ(packets[packets.size() - 2].words, gone);
@@ -570,7 +570,7 @@ TEST(HeadSession, letsProgramsContinueWithoutNodes) {
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 3));
     EXPECT_TRUE(program.waitHeadGone());
-    head.waitForSay("no render node is left");
+    head.waitForSay("all render nodes are lost");
     FakeProgram late;
     ASSERT_TRUE(late.connect(head.config.session));
     EXPECT_EQ(late.welcome().refused, 1u);

@@ -66,7 +66,7 @@ TEST(NodePlan, moreNodesThanTilesAreNotStarted) {
     const SessionPlan plan = planSession(config, "me");
     EXPECT_EQ(plan.nodes.size(), 2u);
     ASSERT_EQ(plan.warnings.size(), 1u);
-    EXPECT_EQ(plan.warnings[0].rfind("3 render nodes asked for", 0), 0u) << plan.warnings[0];
+    EXPECT_EQ(plan.warnings[0].rfind("3 render nodes requested", 0), 0u) << plan.warnings[0];
 }
 
 TEST(NodePlan, setupsSayWhatEachNodeDraws) {
@@ -156,11 +156,11 @@ TEST(NodePlan, queuesThatCanNotMoveStay) {
     EXPECT_TRUE(planned([](SessionConfig&) {}).first);
     EXPECT_TRUE(planned([](SessionConfig& c) { c.passes.stereo = StereoMode::Anaglyph; }).first);
     EXPECT_TRUE(planned([](SessionConfig& c) { c.passes.samples = 2; }).first);
-    const std::string stays = "queue \"tiles\": its tiles of 32x32 pixels are dealt out evenly, and stay: ";
+    const std::string stays = "queue \"tiles\": its tiles of 32x32 pixels are distributed evenly and fixed: ";
     const auto lean = planned([](SessionConfig& c) { c.tiling = Tiling::Lean; });
     EXPECT_EQ(lean, (std::pair(false, stays + "--tiling lean gives each node a framebuffer of its first tiles' size")));
     EXPECT_EQ(planned([](SessionConfig& c) { c.passes.ranges = 2; }),
-              (std::pair(false, stays + "their nodes share what they draw by ranges")));
+              (std::pair(false, stays + "its nodes draw ranges (--db)")));
     EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.period = 2; }).first);
     EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.kernelWidth = 2; }).first);
     EXPECT_EQ(planned([](SessionConfig& c) { c.localNodes = 1; }), (std::pair(false, std::string())));

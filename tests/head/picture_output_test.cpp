@@ -121,7 +121,7 @@ TEST(PictureOutput, reducesDeepPicturesForSinksWithoutDepth) {
     ASSERT_EQ(file.size(), 2u);
     EXPECT_EQ(file[0].left, std::byte{201});
     EXPECT_EQ(window, (std::vector{PictureFormat::Bgr10A2, PictureFormat::Bgr10A2}));
-    EXPECT_EQ(said, "the program's window has 10 bits per channel; --out saves its pictures with 8");
+    EXPECT_EQ(said, "the program's window has 10 bits per channel; --out saves 8 of them");
 }
 
 TEST(PictureOutput, savesOnlyACompleteVideo) {

@@ -58,7 +58,7 @@ void expectOneLine(const Said& said, int status, const std::string& word) {
 }
 
 TEST(BadArguments, areReportedForTheCommandItself) {
-    expectOneLine(mural({}), 2, "command is needed");
+    expectOneLine(mural({}), 2, "command is required");
     expectOneLine(mural({"rnu"}), 2, "rnu");
     expectOneLine(mural({"--nope"}), 2, "--nope");
     expectOneLine(mural({"version", "--nope"}), 2, "--nope");
@@ -75,7 +75,7 @@ TEST(BadArguments, includeLostOutput) {
                                                   {"run", "--help"},
                                                   {"run", "--print-config", "--tiles", "3x2"}}) {
         SCOPED_TRACE(words.front());
-        expectOneLine(mural(words, {}, "/dev/full"), 1, "the output can't be written: No space left");
+        expectOneLine(mural(words, {}, "/dev/full"), 1, "the output cannot be written: No space left");
     }
 }
 
@@ -85,18 +85,18 @@ TEST(BadArguments, includeUnwritableFilesBeforeTheRun) {
                   "--report /nodir/r.json: cannot be written");
     expectOneLine(mural({"run", "--report", "/tmp", "--", "true"}), 2, "is a folder");
     expectOneLine(mural({"run", "--out", folder.at("shots"), "--frames", "10", "--save", "4,45", "--", "true"}), 2,
-                  "behind the last one, 10");
+                  "after the last one, 10");
 }
 
 TEST(BadArguments, includeAWallThatNoNodeCanDraw) {
-    expectOneLine(mural({"run", "--size", "20000x100", "--", "true"}), 2, "give a smaller --size");
+    expectOneLine(mural({"run", "--size", "20000x100", "--", "true"}), 2, "choose a smaller --size");
 }
 
 TEST(GoodArguments, reportPicturesOfAnEarlierRun) {
     test::TemporaryFolder folder;
     const auto toldOf = [&](const std::string& out) {
         return mural({"run", "--tiles", "1x1", "--display", "none", "--out", out, "--", "true"})
-                   .errors.find("2 pictures of an earlier run are there") != std::string::npos;
+                   .errors.find("2 pictures of an earlier run") != std::string::npos;
     };
     folder.file("frame-000001.png", {}, 0644);
     folder.file("frame-000002.png", {}, 0644);
@@ -120,7 +120,7 @@ TEST(BadArguments, areReportedForRun) {
     expectOneLine(mural({"run"}), 2, "no program");
     expectOneLine(mural({"run", "--"}), 2, "no program");
     expectOneLine(mural({"run", "--tilez", "2x2", "--", "true"}), 2, "--tilez");
-    expectOneLine(mural({"run", "--tiles"}), 2, "needs a value");
+    expectOneLine(mural({"run", "--tiles"}), 2, "requires a value");
     expectOneLine(mural({"run", "--tiles", "2y2", "--", "true"}), 2, "COLUMNSxROWS");
     expectOneLine(mural({"run", "--size", "0x0", "--", "true"}), 2, "--size");
     expectOneLine(mural({"run", "--frames", "many", "--", "true"}), 2, "--frames");

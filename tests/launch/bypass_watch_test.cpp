@@ -75,13 +75,13 @@ TEST_F(Bypass, endedProgramsLeaveTheirLibraries) {
     std::ofstream(watch.value()->notesPath(), std::ios::app)
         << "ended\t/bin/app\t" << library("libOSMesa.so.8", {}) << "\n";
     watch.value()->news();
-    EXPECT_NE(watch.value()->aboutEnded(false).find("app draws by OSMesa"), std::string::npos);
+    EXPECT_NE(watch.value()->aboutEnded(false).find("app draws with OSMesa"), std::string::npos);
 }
 
 TEST_F(Bypass, saysSoWhenGlRunsWithoutTheCaptureLibrary) {
     const std::string gl = library("libGL.so.1", {"libGLdispatch.so.0"}), x11 = library("libX11.so.6", {});
     const std::string line = describeUncaptured({"/opt/app/bin/app", {x11, gl}});
-    EXPECT_EQ(line.find("app uses GL (" + gl + ") without Mural's library"), 0u) << line;
+    EXPECT_EQ(line.find("app uses GL (" + gl + ") without the capture library"), 0u) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos);
     EXPECT_EQ(describeUncaptured({"app", {gl, "/opt/mural/lib/libGLX_mural.so.0"}}), "");
     EXPECT_EQ(describeUncaptured({"app", {x11}}), "");

@@ -40,13 +40,13 @@ TEST(Report, saysWhatDiffersAndWhoWasLost) {
         R"({"event":"report","frames":90,"seconds":1.5,"framesPerSecond":60.0,"bytesPerFrame":12345,"verifiedFrames":90,)"
         R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"squaredDifference":9,"savedPictures":1,"lastPicture":"out/a.png","recording":"a.mural","recordedFrames":90,"recordedBytes":1234567,)"
         R"("callsUnsupported":1,"nodes":[{"node":0,"frames":90},{"node":1,"frames":12,"lost":true}]})");
-    EXPECT_EQ(reportLines(e.report),
-              (std::vector<std::string>{
-                  "90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node, 0 round trips",
-                  "verified 90 frames, 70778880 pixels: 3 differ, by up to 2 of 255, PSNR 123.1 dB",
-                  "saved 1 picture, the last in out/a.png", "recorded 90 frames in a.mural, 1.23 MB",
-                  "1 call of commands that Mural does not carry yet; see mural list-commands --unsupported",
-                  "node 1 was lost after 12 frames"}));
+    EXPECT_EQ(
+        reportLines(e.report),
+        (std::vector<std::string>{"90 frames in 1.5 s, 60.0 frames/s, 12.3 kB per frame to each node, 0 round trips",
+                                  "verified 90 frames, 70778880 pixels: 3 differ, by up to 2 of 255, PSNR 123.1 dB",
+                                  "saved 1 picture, the last in out/a.png", "recorded 90 frames in a.mural, 1.23 MB",
+                                  "1 call of unsupported commands; see mural list-commands --unsupported",
+                                  "node 1 was lost after 12 frames"}));
 }
 
 TEST(Report, saysWhatWasNotVerified) {
@@ -77,9 +77,9 @@ TEST(Report, saysHowTilesWereTaken) {
         R"({"name":"of nothing","columns":0},7]})");
     ASSERT_EQ(reportLines(e.report).size(), 3u);
     EXPECT_EQ(reportLines(e.report)[2], "queue \"draws\": 60 chunks moved after 1 of 1 frame, 6.00 chunks per frame; "
-                                        "in the end node 0 has 20, node 1 has 40");
+                                        "at the end node 0 has 20, node 1 has 40");
     EXPECT_EQ(reportLines(e.report)[1], "queue \"tiles\": 25x19 tiles of 32x32 pixels moved after 2 of 8 frames, 7.50 "
-                                        "tiles per frame; in the end node 0 has 95, node 1 has 380");
+                                        "tiles per frame; at the end node 0 has 95, node 1 has 380");
     EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"queues":null})").report).size(), 1u);
 }
 

@@ -194,7 +194,7 @@ TEST(RunOptions, allowCompositionOnlyForSharedDraws) {
         }),
         "--composition \"swap\": must be one of auto, serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming");
     EXPECT_EQ(refusal([](RunArguments& a) { a.composition = "serial"; }),
-              "--composition is for nodes that share draws; add --db N, such as --db 4");
+              "--composition requires sort-last nodes; add --db N, such as --db 4");
 }
 
 TEST(RunOptions, shareTilesAmongNodesOfSeveralPasses) {
@@ -241,7 +241,7 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
             a.stereo = "left";
             a.focus = bad;
         });
-    names("--projection is for a configuration file", [](RunArguments& a) { a.projection = "room"; });
+    names("--projection requires a configuration file", [](RunArguments& a) { a.projection = "room"; });
     names("--projection", [](RunArguments& a) {
         a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc";
         a.projection = "cave";
@@ -250,13 +250,13 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
         a.config = std::string(MURAL_SOURCE_DIR) + "/configs/cave.eqc";
         a.modelUnit = "0";
     });
-    names("--eye-base is for stereo", [](RunArguments& a) { a.eyeBase = "1"; });
-    names("--focus is for stereo", [](RunArguments& a) { a.focus = "1"; });
+    names("--eye-base requires stereo", [](RunArguments& a) { a.eyeBase = "1"; });
+    names("--focus requires stereo", [](RunArguments& a) { a.focus = "1"; });
     EXPECT_NE(refusal([](RunArguments& a) {
                   a.subpixel = "16";
                   a.pixel = "4x4";
                   a.stereo = "anaglyph";
-              }).find("512 passes together; at most 256"),
+              }).find("512 passes together; the maximum is 256"),
               std::string::npos);
     names("--verify compares with", [](RunArguments& a) {
         a.subpixel = "2";
@@ -266,7 +266,7 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
         a.zoom = "2";
         a.verify = "1";
     });
-    names("--tiling lean does not go with --zoom", [](RunArguments& a) {
+    names("--tiling lean does not support --zoom", [](RunArguments& a) {
         a.zoom = "2";
         a.tiling = "lean";
     });
@@ -275,7 +275,7 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
                   a.verify = "1";
               }).config.verifyEvery,
               1);
-    names("--tiling lean does not go with", [](RunArguments& a) {
+    names("--tiling lean does not support", [](RunArguments& a) {
         a.subpixel = "2";
         a.tiling = "lean";
     });
@@ -293,7 +293,7 @@ TEST(RunOptions, rejectMeaninglessCombinations) {
                   a.native = true;
                   a.record = "x";
               }),
-              "--record needs captured frames; leave --native out");
+              "--record requires captured frames; omit --native");
     EXPECT_NE(refusal([](RunArguments& a) { a.record = ""; }).find("--record"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) {
                   a.tiles = "2x2";
@@ -303,7 +303,7 @@ TEST(RunOptions, rejectMeaninglessCombinations) {
     EXPECT_NE(refusal([](RunArguments& a) {
                   a.tiles = "2x2";
                   a.tileQueue = "32x32";
-              }).find("leave one of them out"),
+              }).find("omit one of them"),
               std::string::npos);
     for (const char* bad : {"", "1", "5000", "x", "-3", "2.5"})
         EXPECT_EQ(refusal([&](RunArguments& a) {

@@ -70,7 +70,7 @@ TEST_F(RunSession, letsTheProgramOutliveItsHead) {
     const Outcome o = run("die", "sleep 0.3; exit 6");
     EXPECT_EQ(o.status, 6);
     EXPECT_EQ(o.words,
-              "mural: the head process was lost (signal 9 (Killed)); the program goes on alone, without the wall\n");
+              "mural: the head process was lost (signal 9 (Killed)); the program continues alone, without the wall\n");
     expectNobodyLeft();
 }
 

@@ -28,7 +28,7 @@ Json look(double atSeconds, int frames, int calls, int bytes, int trips, double 
                {"bytes", bytes},
                {"roundTrips", trips},
                {"roundTripsBy", {{"glReadPixels", trips}}},
-               {"waitSeconds", {{"frames", framesWait}, {"room", 0.0}}},
+               {"waitSeconds", {{"frames", framesWait}, {"space", 0.0}}},
                {"waitingFor", "frames"},
                {"waitsForNodes", {1, 3}}}}},
             {"nodes",

@@ -61,8 +61,8 @@ TEST(StreamPattern, detectsLossDuplicatesReorderingAndChanges) {
     }
     auto lost = right;
     lost.erase(lost.begin() + 5000, lost.begin() + 6430);
-    EXPECT_EQ(faultOf(lost, 20'000), "at byte 5000 came what belongs at byte 6430");
-    EXPECT_EQ(faultOf(std::vector<std::byte>(100), 100), "the first bytes that came are of no place in the stream");
+    EXPECT_EQ(faultOf(lost, 20'000), "byte 5000 has the contents of byte 6430");
+    EXPECT_EQ(faultOf(std::vector<std::byte>(100), 100), "the first received bytes do not occur in the stream");
 }
 
 } // namespace

@@ -75,10 +75,10 @@ TEST(NetworkVerdict, reportsMissingMulticast) {
     EXPECT_FALSE(has(fault(h).advice, "rp_filter"));
     h.facts.strictReturnPath = true;
     EXPECT_TRUE(has(fault(h).advice, "rp_filter=2"));
-    h.way(ProbeWay::Group).trouble = "can't send datagrams of 24 bytes: Operation not permitted";
+    h.way(ProbeWay::Group).trouble = "cannot send datagrams of 24 bytes: Operation not permitted";
     EXPECT_TRUE(has(fault(h).advice, "nft list ruleset"));
     h.interfaceTowards = "eth1";
-    EXPECT_EQ(fault(h).advice, "give --interface eth1");
+    EXPECT_EQ(fault(h).advice, "add --interface eth1");
 }
 
 TEST(NetworkVerdict, reportsMulticastThatStops) {
@@ -98,7 +98,7 @@ TEST(NetworkVerdict, reportsMissingUdp) {
     for (const ProbeWay way : kProbeWays) breakWay(h, way);
     h.multicast = false;
     EXPECT_EQ(fault(h).name, "wall1: datagrams");
-    EXPECT_TRUE(has(fault(h).found, "either way"));
+    EXPECT_TRUE(has(fault(h).found, "either direction"));
 }
 
 TEST(NetworkVerdict, reportsShorterPackets) {
@@ -127,7 +127,7 @@ TEST(NetworkVerdict, reportsLosses) {
     h.lostShare = 0;
     EXPECT_TRUE(has(fault(h).name, "0 faults"));
     h.droppedShare = 0.05;
-    EXPECT_TRUE(has(fault(h).found, "own socket"));
+    EXPECT_TRUE(has(fault(h).found, "its socket"));
 }
 
 TEST(NetworkVerdict, reportsSmallBuffersAndSlowCards) {

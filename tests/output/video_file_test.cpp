@@ -179,7 +179,7 @@ TEST(VideoFile, stopsAtTheDeadlineWhenTheEncoderDoesNotRead) {
     Result<void> shown;
     for (int i = 1; i < 100 && shown; ++i) shown = video.value()->show(i, picture.view());
     ASSERT_FALSE(shown);
-    EXPECT_NE(shown.error().message.find("takes no more data"), std::string::npos) << shown.error().message;
+    EXPECT_NE(shown.error().message.find("does not read more data"), std::string::npos) << shown.error().message;
     // The same for an encoder that does not end.
     auto second = VideoFile::open(config);
     ASSERT_TRUE(second);

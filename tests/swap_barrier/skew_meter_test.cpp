@@ -20,7 +20,7 @@ TEST(SkewMeter, measuresFromTheFirstWindowToTheLast) {
     EXPECT_EQ(n.swaps, 100);
     EXPECT_EQ(n.medianNs, 51);
     EXPECT_EQ(n.p99Ns, 100);
-    EXPECT_EQ(n.mostNs, 100);
+    EXPECT_EQ(n.maxNs, 100);
 }
 
 TEST(SkewMeter, ignoresSwapsOfASingleWindow) {
@@ -39,7 +39,7 @@ TEST(SkewMeter, forgetsWindowsThatNeverReport) {
     }
     meter.shown({1, 1, 1000}, 4);
     EXPECT_EQ(meter.numbers().swaps, 1);
-    EXPECT_EQ(meter.numbers().mostNs, 3);
+    EXPECT_EQ(meter.numbers().maxNs, 3);
 }
 
 } // namespace

@@ -97,13 +97,13 @@ TEST_F(Dumped, reportsMissingFrames) {
     write({});
     EXPECT_EQ(saidOf(2), "");
     for (const int64_t last : {int64_t{3}, int64_t{99}, INT64_MAX})
-        EXPECT_EQ(saidOf(last), "the recording has 2 frames; give some of them, such as 1-2") << last;
+        EXPECT_EQ(saidOf(last), "the trace has 2 frames; choose some of them, such as 1-2") << last;
 }
 
 TEST_F(Dumped, treatsRecordsAfterTheLastFrameAsOneMore) {
     write(PacketBuilder().record(op::glFlush, {}));
     EXPECT_EQ(saidOf(3), "");
-    EXPECT_EQ(saidOf(4), "the recording has 2 frames; give some of them, such as 1-2");
+    EXPECT_EQ(saidOf(4), "the trace has 2 frames; choose some of them, such as 1-2");
 }
 
 TEST_F(Dumped, reportsMissingCalls) {

@@ -113,19 +113,18 @@ TEST_F(RecordingFile, reportsProblemAndRemedy) {
         auto reader = readerOf(changed);
         return reader ? "" : reader.error().message;
     };
-    EXPECT_EQ(said(offsetof(Header, version), 2), "recording in memory has version 2 of the format, this Mural reads "
-                                                  "version 1; use the Mural that it was made with, or a newer one");
-    EXPECT_EQ(said(0, 0x464c457f),
-              "in memory is not a recording of Mural; give a file that mural run --record has made");
+    EXPECT_EQ(
+        said(offsetof(Header, version), 2),
+        "trace in memory has version 2 of the format, but this Mural reads version 1; use the Mural that recorded it");
+    EXPECT_EQ(said(0, 0x464c457f), "in memory is not a trace of Mural; choose a file of mural run --record");
     EXPECT_EQ(said(offsetof(Header, aboutBytes), 0xffffffff),
-              "recording in memory is damaged at byte 0: its header is longer than the file; take another copy of it, "
-              "or record again");
+              "trace in memory is damaged at byte 0: its header is longer than the file; use another copy of it, or "
+              "record it again");
     EXPECT_EQ(TraceReader::open("/nowhere.mural").error().message,
-              "recording /nowhere.mural: can't be read: No such file or directory; check the name");
-    EXPECT_EQ(TraceReader::open("/").error().message,
-              "recording /: is not a file; give one that mural run --record has made");
+              "trace /nowhere.mural: cannot be read: No such file or directory; check the name");
+    EXPECT_EQ(TraceReader::open("/").error().message, "trace /: is not a file; choose a file of mural run --record");
     EXPECT_EQ(TraceWriter::create("/nowhere/a.mural").error().message,
-              "recording /nowhere/a.mural: can't be written: No such file or directory; give another place");
+              "trace /nowhere/a.mural: cannot be written: No such file or directory; choose another place");
 }
 
 TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
@@ -140,20 +139,20 @@ TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
         EXPECT_EQ(entriesOf(**reader).size(), blocks[0].entries) << at;
         const auto verified = (*reader)->verify();
         ASSERT_FALSE(verified) << at;
-        EXPECT_TRUE(verified.error().message.starts_with("recording in memory is damaged at byte " +
+        EXPECT_TRUE(verified.error().message.starts_with("trace in memory is damaged at byte " +
                                                          std::to_string(blocks[1].offset) + ": "))
             << verified.error().message;
         EXPECT_TRUE(
-            verified.error().message.ends_with("; the frames before it are good (1): keep them by mural trim in memory "
-                                               "1 -o good.mural, take another copy of it, or record again"))
+            verified.error().message.ends_with("; earlier frames are valid (1): extract them with mural trim in memory "
+                                               "1 -o good.mural, use another copy of it, or record it again"))
             << verified.error().message;
     }
     Bytes changed = whole;
     changed[blocks[0].offset + sizeof(BlockHeader)] ^= std::byte{0xff};
     EXPECT_EQ((*readerOf(changed))->verify().error().message,
-              "recording in memory is damaged at byte " + std::to_string(blocks[0].offset) +
-                  ": a block is not as it was written, and no frame ends before it; take another copy of it, or record "
-                  "again");
+              "trace in memory is damaged at byte " + std::to_string(blocks[0].offset) +
+                  ": the checksum of a block is wrong, and no frame ends before it; use another copy of it, or record "
+                  "it again");
 }
 
 TEST_F(RecordingFile, explainsMissingFrames) {
@@ -162,17 +161,16 @@ TEST_F(RecordingFile, explainsMissingFrames) {
     const uint64_t first = (*TraceReader::open(path()))->blocks()[0].offset;
     const size_t bytes = first + sizeof(BlockHeader) + 1;
     EXPECT_EQ((*readerOf(std::span(whole).first(bytes)))->noSuchFrames(0).message,
-              "recording in memory has no whole frame: its end is missing (was the head killed, or the file cut?), "
-              "what is whole ends at byte " +
+              "trace in memory has no complete frame: its end is missing (the head was killed, or the file is "
+              "truncated), valid data ends at byte " +
                   std::to_string(first) + " of " + std::to_string(bytes) +
-                  "; take another copy of it, or record again");
+                  "; use another copy of it, or record it again");
     EXPECT_EQ((*readerOf(whole))->noSuchFrames(0).message,
-              "recording in memory has no frame: its program showed no picture; mural dump prints its calls");
-    EXPECT_EQ((*readerOf(whole))->noSuchFrames(3).message,
-              "the recording has 3 frames; give some of them, such as 1-3");
+              "trace in memory has no frame, because its program showed no picture; mural dump prints its calls");
+    EXPECT_EQ((*readerOf(whole))->noSuchFrames(3).message, "the trace has 3 frames; choose some of them, such as 1-3");
     EXPECT_EQ((*readerOf(std::span(whole).first(whole.size() - 1)))->noSuchFrames(3).message,
-              "the recording has 3 frames, as its end is missing (was the head killed, or the file cut?); give some of "
-              "them, such as 1-3");
+              "the trace has 3 frames, as its end is missing (the head was killed, or the file is truncated); choose "
+              "some of them, such as 1-3");
 }
 
 TEST_F(RecordingFile, rejectsOtherCommandTables) {
@@ -181,9 +179,9 @@ TEST_F(RecordingFile, rejectsOtherCommandTables) {
     ASSERT_TRUE((*writer)->finish());
     auto reader = TraceReader::open(path());
     ASSERT_FALSE(reader);
-    EXPECT_EQ(reader.error().message,
-              "recording " + path() +
-                  " was made by a Mural with other commands (version 9.9); use that one to read it, or record again");
+    EXPECT_EQ(reader.error().message, "recording " + path() +
+                                          " was recorded by a Mural with other commands (version 9.9); read it with "
+                                          "that version, or record it again");
 }
 
 TEST_F(RecordingFile, dividesLargeFramesIntoBoundedBlocks) {

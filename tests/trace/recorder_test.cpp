@@ -72,8 +72,8 @@ TEST_F(Recorder, stopsWithOneLineOnAFullDisk) {
     r->finish(Deadline::inMs(20'000));
     r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 101).bytes());
     ASSERT_EQ(said_.size(), 1u);
-    EXPECT_EQ(said_[0], "recording /dev/full: can't be written: No space left on device; make room there, or give "
-                        "another place; the recording ends after 0 frames, the program goes on");
+    EXPECT_EQ(said_[0], "trace /dev/full: cannot be written: No space left on device; free space, or choose another "
+                        "place; the trace ends after 0 frames, the program continues");
 }
 
 TEST_F(Recorder, stopsWithOneLineOnABlockedDisk) {

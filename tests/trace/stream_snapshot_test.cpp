@@ -165,7 +165,7 @@ TEST_F(Kept, reportsOnceThatItIsTooLarge) {
     for (uint32_t i = 0; i < 40'000; ++i) give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, i, 3}));
     EXPECT_FALSE(stream_.serves());
     ASSERT_EQ(said_.size(), 1u);
-    EXPECT_NE(said_[0].find("give more by --cache-size"), std::string::npos);
+    EXPECT_NE(said_[0].find("use a larger --cache-size"), std::string::npos);
     EXPECT_TRUE(stream_.snapshot().empty());
     EXPECT_LT(stream_.sizeBytes(), size_t{1} << 18);
 }

@@ -217,14 +217,14 @@ TEST_F(Trim, dropsBlobsWithTheirDraw) {
 TEST_F(Trim, reportsMissingFrames) {
     frame();
     trimmed(1, 2);
-    EXPECT_EQ(error_, "the recording has 1 frames; give some of them, such as 1-1");
+    EXPECT_EQ(error_, "the trace has 1 frames; choose some of them, such as 1-1");
 }
 
 TEST_F(Trim, explainsTracesWithoutFrames) {
     draw();
     trimmed(2, 5);
     EXPECT_EQ(error_, "recording " + (folder_ / "a").string() +
-                          " has no frame: its program showed no picture; mural dump prints its calls");
+                          " has no frame, because its program showed no picture; mural dump prints its calls");
 }
 
 TEST_F(Trim, keepsFramesBeforeADamagedBlock) {

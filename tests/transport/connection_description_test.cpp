@@ -83,9 +83,9 @@ TEST(ConnectionDescription, parsesGroupParameters) {
     EXPECT_FALSE(good->multicast);
     EXPECT_FALSE(good->parity);
     const std::pair<const char*, const char*> bad[] = {
-        {"rsp://10.0.0.1:5000", "no multicast address"},
+        {"rsp://10.0.0.1:5000", "not a multicast address"},
         {"rsp://wall:5000", "wall"},
-        {"rsp://239.0.0.1:5000?speed=1", "there is no parameter \"speed\"; there are control, datagram"},
+        {"rsp://239.0.0.1:5000?speed=1", "unknown parameter \"speed\"; use control, datagram"},
         {"rsp://239.0.0.1:5000?rate=fast", "rate: \"fast\""},
         {"rsp://239.0.0.1:5000?window=100", "power of two"},
         {"rsp://239.0.0.1:5000?silent-ms=-1", "silent-ms: \"-1\" must be"},

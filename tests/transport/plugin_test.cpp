@@ -25,18 +25,18 @@ void expectRefused(const std::string& scheme, const std::string& reason, const s
 } // namespace
 
 TEST(Plugin, isRejectedWithAReason) {
-    expectRefused("nobodyhas", "there is no plug-in");
+    expectRefused("nobodyhas", "the plug-in is missing");
     expectRefused("noentry", "has no function mural_get_transport_plugin");
     expectRefused("older", "version 0");
     expectRefused("short", "cut short");
-    expectRefused("renamed", "carries the scheme \"other\"");
+    expectRefused("renamed", "implements the scheme \"other\"");
 }
 
 TEST(Plugin, isRejectedWhenItIsNoLibrary) {
     const auto folder = std::filesystem::temp_directory_path() / ("mural_plugin_test." + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
     std::ofstream(folder / "libmural_transport_text.so") << "no library\n";
-    expectRefused("text", "can't load the plug-in", folder.string());
+    expectRefused("text", "cannot load the plug-in", folder.string());
     std::filesystem::remove_all(folder);
 }
 
@@ -49,7 +49,7 @@ TEST(Plugin, carriesBytesAndErrors) {
     EXPECT_TRUE(text.starts_with("wrapped://127.0.0.1:")) << text;
     const auto nobody = (*listener)->accept(Deadline::inMs(20));
     ASSERT_FALSE(nobody);
-    EXPECT_NE(nobody.error().message.find("nobody connected"), std::string::npos) << nobody.error().message;
+    EXPECT_NE(nobody.error().message.find("without a connection"), std::string::npos) << nobody.error().message;
     auto a = connectByPlugin(*plugin.value(), text, Deadline::inMs(5000));
     ASSERT_TRUE(a) << a.error().message;
     auto b = (*listener)->accept(Deadline::inMs(5000));

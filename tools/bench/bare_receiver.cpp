@@ -91,9 +91,9 @@ int main(int count, char** words) {
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kSocketBytes, sizeof kSocketBytes) != 0)
         setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &kSocketBytes, sizeof kSocketBytes);
-    if (bind(socket, reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) return failed("can't bind");
+    if (bind(socket, reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) return failed("cannot bind");
     if (setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0)
-        return failed("can't join");
+        return failed("cannot join");
 
     Messages messages(kPlaceBytes);
     const int64_t startNs = nowNs();

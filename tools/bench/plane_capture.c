@@ -61,7 +61,7 @@ static void write_plane(const char* prefix, const char* format, int width, int h
     snprintf(path, sizeof path, "%s.%s.plane", prefix, format);
     FILE* file = fopen(path, "wb");
     if (!file) {
-        fprintf(stderr, "plane_capture: can't write %s; check PLANE_CAPTURE_OUT\n", path);
+        fprintf(stderr, "plane_capture: cannot write %s; check PLANE_CAPTURE_OUT\n", path);
         return;
     }
     fprintf(file, "plane %s %d %d\n", format, width, height);

@@ -107,7 +107,7 @@ std::vector<std::string> reportLines(const SessionReport& r) {
     double packed = 0, raw = 0;
     for (const NodeReport& n : r.nodes) packed += n.pictureBytes, raw += n.pictureRawBytes;
     if (raw > 0 && r.frames > 0)
-        lines.push_back(fmt::format("pictures: {} per frame came packed into {}",
+        lines.push_back(fmt::format("pictures: {} per frame, compressed to {}",
                                     sizeText(raw / static_cast<double>(r.frames)),
                                     sizeText(packed / static_cast<double>(r.frames))));
     for (const QueueReport& q : r.queues) {
@@ -119,7 +119,7 @@ std::vector<std::string> reportLines(const SessionReport& r) {
             q.of == "chunks" ? fmt::format("{} chunks", q.columns)
                              : fmt::format("{}x{} tiles of {}x{} pixels", q.columns, q.rows, q.tileWidth, q.tileHeight);
         lines.push_back(fmt::format(
-            "queue \"{}\": {} moved after {} of {} frame{}, {:.2f} {} per frame; in the end {}", q.name, pieces,
+            "queue \"{}\": {} moved after {} of {} frame{}, {:.2f} {} per frame; at the end {}", q.name, pieces,
             q.moves, q.frames, plural(q.frames),
             q.frames > 0 ? static_cast<double>(q.tilesMoved) / static_cast<double>(q.frames) : 0.0, q.of, nodes));
     }
@@ -143,19 +143,18 @@ std::vector<std::string> reportLines(const SessionReport& r) {
                                     r.recording, sizeText(static_cast<double>(r.recordedBytes))));
     }
     if (r.callsUnsupported > 0) {
-        lines.push_back(
-            fmt::format("{} call{} of commands that Mural does not carry yet; see mural list-commands --unsupported",
-                        r.callsUnsupported, plural(r.callsUnsupported)));
+        lines.push_back(fmt::format("{} call{} of unsupported commands; see mural list-commands --unsupported",
+                                    r.callsUnsupported, plural(r.callsUnsupported)));
     }
     for (const NodeReport& n : r.nodes) {
         if (n.swaps.swaps > 0)
             lines.push_back(fmt::format("swap barrier: {} nodes showed {} frame{} within {:.2f} ms of each other "
-                                        "(median), {:.2f} ms (99 %), {:.2f} ms at most; clocks known to {:.3f} ms",
+                                        "(median), {:.2f} ms (99 %), {:.2f} ms (maximum); clock error {:.3f} ms",
                                         n.swaps.members, n.swaps.swaps, plural(n.swaps.swaps), n.swaps.medianNs / 1e6,
-                                        n.swaps.p99Ns / 1e6, n.swaps.mostNs / 1e6, n.swaps.clockErrorNs / 1e6));
+                                        n.swaps.p99Ns / 1e6, n.swaps.maxNs / 1e6, n.swaps.clockErrorNs / 1e6));
         if (n.joins > 0)
-            lines.push_back(fmt::format("node {} came back {} time{}, the last time in {:.1f} s, given {}", n.node,
-                                        n.joins, plural(n.joins), n.secondsToBack, sizeText(n.snapshotBytes)));
+            lines.push_back(fmt::format("node {} rejoined {} time{}, the last time in {:.1f} s, with {}", n.node,
+                                        n.joins, plural(n.joins), n.secondsToRejoin, sizeText(n.snapshotBytes)));
         if (n.lost)
             lines.push_back(fmt::format("node {} was lost after {} frame{}", n.node, n.frames, plural(n.frames)));
     }

@@ -21,7 +21,7 @@ Result<std::unique_ptr<HeadControl>> HeadControl::start(const std::vector<std::s
                                                         const launch::Environment& environment) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        return Error{"no socket for the head: " + std::string(std::strerror(errno))};
+        return Error{"cannot create a socket for the head: " + std::string(std::strerror(errno))};
     }
     launch::SpawnRequest request;
     request.file = command.front();

@@ -80,7 +80,7 @@ std::vector<QueueReport> queuesFrom(const Json& list) {
 SwapReport swapsFrom(const Json& j) {
     if (!j.is_object()) return {};
     return {whole(j, "members"), whole(j, "swaps"), real(j, "medianNs"),
-            real(j, "p99Ns"),    real(j, "mostNs"), real(j, "clockErrorNs")};
+            real(j, "p99Ns"),    real(j, "maxNs"),  real(j, "clockErrorNs")};
 }
 
 std::map<std::string, int64_t> countsFrom(const Json& j, const char* name) {
@@ -121,7 +121,7 @@ SessionReport reportFrom(const Json& j) {
             const auto swaps = n.find("swapBarrier");
             r.nodes.push_back({whole(n, "node"), whole(n, "frames"), real(n, "cpuSeconds"), truth(n, "lost"),
                                swapsFrom(swaps != n.end() ? *swaps : Json()), whole(n, "joins"),
-                               real(n, "secondsToBack"), real(n, "snapshotBytes"), real(n, "pictureBytes"),
+                               real(n, "secondsToRejoin"), real(n, "snapshotBytes"), real(n, "pictureBytes"),
                                real(n, "pictureRawBytes")});
         }
     }
@@ -133,7 +133,7 @@ SessionReport reportFrom(const Json& j) {
 Result<HeadEvent> parseHeadEvent(const std::string& line) {
     const Json j = Json::parse(line, nullptr, false);
     if (!j.is_object() || !j.contains("event")) {
-        return Error{"the head said something that is no event: " + line.substr(0, 80)};
+        return Error{"the head sent an invalid event: " + line.substr(0, 80)};
     }
     HeadEvent event;
     event.kind = kindOf(text(j, "event"));

@@ -14,7 +14,7 @@ namespace mural::cli {
 struct SwapReport {
     int64_t members = 0; // 0: the node leads none
     int64_t swaps = 0;
-    double medianNs = 0, p99Ns = 0, mostNs = 0, clockErrorNs = 0;
+    double medianNs = 0, p99Ns = 0, maxNs = 0, clockErrorNs = 0;
 };
 
 struct NodeReport {
@@ -24,7 +24,7 @@ struct NodeReport {
     bool lost = false;
     SwapReport swaps;
     int64_t joins = 0; // number of returns; the next two describe the last one
-    double secondsToBack = 0, snapshotBytes = 0;
+    double secondsToRejoin = 0, snapshotBytes = 0;
     double pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
 };
 

@@ -8,17 +8,17 @@
 namespace mural::cli {
 
 int listCommandsCommand(bool onlyUnsupported) {
-    int64_t carried = 0;
-    int64_t left = 0;
+    int64_t supported = 0;
+    int64_t unsupported = 0;
     for (const CommandInfo& command : commandTable()) {
-        (command.carried ? carried : left) += 1;
-        if (onlyUnsupported && command.carried) continue;
+        (command.supported ? supported : unsupported) += 1;
+        if (onlyUnsupported && command.supported) continue;
         fmt::print("{}\t{}{}{}\n", command.name, command.commandClass, *command.reason != '\0' ? "\t" : "",
                    command.reason);
     }
     if (onlyUnsupported)
         for (const LocalExtension& e : kLocalWindowExtensions) fmt::print("{}\textension\t{}\n", e.name, e.why);
-    fmt::print(stderr, "mural: {} commands are carried, {} are not\n", carried, left);
+    fmt::print(stderr, "mural: {} commands supported, {} unsupported\n", supported, unsupported);
     return 0;
 }
 

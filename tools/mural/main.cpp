@@ -96,7 +96,7 @@ public:
     CommandLine() {
         app_.formatter(std::make_shared<HelpFormatter>());
         app_.set_version_flag("--version", mural::cli::versionText(), "Print the version and exit");
-        app_.footer("mural COMMAND --help says more about each.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  "
+        app_.footer("mural COMMAND --help describes a command.\n\nExamples:\n  mural run --tiles 2x2 -- glxgears\n  "
                     "mural stat\n  mural doctor");
         addRun();
         addRecordings();
@@ -107,7 +107,7 @@ public:
     int perform(int count, char** arguments) {
         line_ = split(count, arguments);
         if (!line_.ours.empty() && !line_.ours.front().starts_with("-") && !isCommand(line_.ours.front())) {
-            return usageError("mural", "there is no command " + line_.ours.front());
+            return usageError("mural", "unknown command " + line_.ours.front());
         }
         std::vector<std::string> reversed(line_.ours.rbegin(), line_.ours.rend()); // in the order that CLI11 expects
         try {
@@ -119,12 +119,12 @@ public:
             return mural::cli::versionCommand();
         } catch (const CLI::ArgumentMismatch& error) {
             const std::string text = error.what(); // "--tiles: 1 required CxR missing"
-            return usageError("mural " + current().get_name(), text.substr(0, text.find(':')) + " needs a value");
+            return usageError("mural " + current().get_name(), text.substr(0, text.find(':')) + " requires a value");
         } catch (const CLI::ParseError& error) {
             return usageError(current().get_parent() == nullptr ? "mural" : "mural " + current().get_name(),
                               error.what());
         }
-        if (!action_) return usageError("mural", "a command is needed, such as run");
+        if (!action_) return usageError("mural", "a command is required, such as run");
         return action_();
     }
 
@@ -157,7 +157,7 @@ private:
     int runProgram() {
         const auto rest = run_->remaining();
         if (!rest.empty() && rest.front().starts_with("-"))
-            return usageError("mural run", "there is no option " + rest.front());
+            return usageError("mural run", "unknown option " + rest.front());
         runArguments_.program = programOf(*run_, line_);
         const auto options = mural::cli::runOptionsFrom(runArguments_);
         if (!options.ok()) return usageError("mural run", options.error().message);
@@ -166,14 +166,14 @@ private:
 
     void addRecordings() {
         CLI::App& replay = add(
-            "replay", "play a recording of mural run --record on a wall of render nodes",
-            [this] { return runReplay(); }, "");
+            "replay", "replay a trace of mural run --record on a wall of render nodes", [this] { return runReplay(); },
+            "");
         mural::cli::describeReplay(replay, replay_);
         CLI::App& dump = add(
-            "dump", "print the calls of a recording", [this] { return mural::cli::dumpCommand(dump_); }, "");
+            "dump", "print the calls of a trace", [this] { return mural::cli::dumpCommand(dump_); }, "");
         mural::cli::describeDump(dump, dump_);
         CLI::App& trim = add(
-            "trim", "keep some frames of a recording, with what they need",
+            "trim", "copy some frames of a trace, with the state that they need",
             [this] { return mural::cli::trimCommand(trim_); }, "");
         mural::cli::describeTrim(trim, trim_);
         CLI::App& play = add(
@@ -193,7 +193,8 @@ private:
     // The program of a replay: MURAL_SESSION names its head.
     int runPlay() {
         const char* session = std::getenv("MURAL_SESSION");
-        if (session == nullptr) return usageError("mural play", "there is no session; it is started by mural replay");
+        if (session == nullptr)
+            return usageError("mural play", "MURAL_SESSION is not set; start the player with mural replay");
         play_.session = session;
         return mural::playRecording(play_);
     }
@@ -201,34 +202,34 @@ private:
     void addProcesses() {
         CLI::App& head = add(
             "head", "head process of a session (started by mural run)", [this] { return mural::runHead(controlFd_); },
-            "Example:\n  mural head --control-fd 3     speaks docs/reference/control-protocol.md on descriptor "
-            "3\n\nExit status: 0, or 1 when the session could not start.");
-        head.add_option("--control-fd", controlFd_, "descriptor of the conversation with mural run")
+            "Example:\n  mural head --control-fd 3     uses the protocol of docs/reference/control-protocol.md on "
+            "descriptor 3\n\nExit status: 0, or 1 if the session could not start.");
+        head.add_option("--control-fd", controlFd_, "descriptor of the control connection to mural run")
             ->required()
             ->check(CLI::NonNegativeNumber);
         CLI::App& node = add(
-            "node", "render node process (started by the head, here or on another host), or one that waits for heads",
+            "node", "render node (started by the head, on this or another host), or a daemon that waits for heads",
             [this] { return runNode(); },
             "Examples:\n  mural node --connect-fd 3           shared memory with a head on this machine\n  mural node "
-            "--connect wall0:4711     a head on another machine\n"
-            "  mural node --wait --secret key      waits for heads that know what stands in the file\n\nExit status: "
-            "0, 1 when the node could not draw or wait, 2 for a bad argument.");
+            "--connect wall0:4711     a head on another machine\n  mural node --wait --secret key      a daemon that "
+            "accepts heads with the secret of this file\n\nExit status: 0, 1 if the node could not draw or wait, 2 for "
+            "a bad argument.");
         mural::cli::describeWait(node, wait_);
         call_ = &add(
-            "call", "start a node where mural node --wait runs: a launch command for mural run and mural doctor",
+            "call",
+            "start a node through a daemon (mural node --wait): a launch command for mural run and mural doctor",
             [this] { return runCall(); },
-            "Examples:\n  mural run --nodes wall1,wall2 --launch \"mural call --secret key\" -- glxgears\n"
-            "  mural doctor --network @wall1 --launch \"mural call --secret key\"\n\nThe host: a name or address, with "
-            ":PORT where it is not 4279, or @NAME, as mural discover lists it.\n"
-            "Exit status: the node's; 1 when it can't be had, 2 for a bad argument.");
+            "Examples:\n  mural run --nodes wall1,wall2 --launch \"mural call --secret key\" -- glxgears\n  mural "
+            "doctor --network @wall1 --launch \"mural call --secret key\"\n\nHOST: a name or address, with :PORT "
+            "unless it is 4279, or @NAME from mural discover.\nExit status: the node's; 1 if there is no connection to "
+            "it, 2 for a bad argument.");
         mural::cli::describeCall(*call_, callArguments_);
-        node.add_option("--connect-fd", node_.connectFd, "descriptor of shared memory with the head")
+        node.add_option("--connect-fd", node_.connectFd, "descriptor of the shared memory with the head")
             ->check(CLI::NonNegativeNumber);
         node.add_option("--connect", node_.connect,
-                        "HOST:PORT of the head; the session's secret comes on standard input")
+                        "HOST:PORT of the head; the session's secret is read from standard input")
             ->type_name("HOST:PORT");
-        node.add_option("--as", node_.name, "with --connect: by which the head knows this node's secret")
-            ->type_name("NAME");
+        node.add_option("--as", node_.name, "with --connect: identifier of this node's secret")->type_name("NAME");
     }
 
     int runCall() {
@@ -238,51 +239,47 @@ private:
 
     int runNode() {
         if (wait_.wait && (node_.connectFd >= 0 || !node_.connect.empty()))
-            return usageError("mural node", "--wait goes with neither --connect nor --connect-fd");
+            return usageError("mural node", "--wait excludes --connect and --connect-fd");
         if (wait_.wait) return mural::cli::waitCommand(wait_);
         if ((node_.connectFd >= 0) == !node_.connect.empty())
-            return usageError("mural node", "exactly one of --connect-fd, --connect and --wait is needed");
+            return usageError("mural node", "exactly one of --connect-fd, --connect and --wait is required");
         return mural::runNode(node_);
     }
 
     void addTools() {
         addDoctor();
         CLI::App& stat = add(
-            "stat", "look at the sessions that run: programs, frames, round trips, nodes",
+            "stat", "show the running sessions: programs, frames, round trips, nodes",
             [this] { return mural::cli::statCommand(stat_); },
-            "Examples:\n  mural stat                 one look, over a second\n  mural stat --watch 5       again every "
-            "5 seconds, until Ctrl-C\n  mural stat --json          for programs\n\n"
-            "A round trip is a question that only the render nodes can answer (glReadPixels, results of queries): the "
-            "program\nstands still for it.\n"
-            "Exit status: 0, or 1 when no session of yours runs on this machine.");
-        stat.add_flag("--json", stat_.asJson, "one line of JSON for each look");
-        stat.add_option("--watch", stat_.watchSeconds, "look again and again, so many seconds apart")
+            "Examples:\n  mural stat                 once, over one second\n  mural stat --watch 5       every 5 "
+            "seconds, until Ctrl-C\n  mural stat --json          for scripts\n\nA round trip is a request that only "
+            "the render nodes can answer (glReadPixels, query results). The program waits\nfor its reply.\nExit "
+            "status: 0, or 1 if no session of this user runs on this machine.");
+        stat.add_flag("--json", stat_.asJson, "print one line of JSON per report");
+        stat.add_option("--watch", stat_.watchSeconds, "repeat every SECONDS")
             ->type_name("SECONDS")
             ->check(CLI::Range(0.1, 3600.0));
         CLI::App& list = add(
-            "list-commands", "list the GL, GLX and EGL commands and what becomes of them",
+            "list-commands", "list the GL, GLX and EGL commands and their support",
             [this] { return mural::cli::listCommandsCommand(onlyUnsupported_); },
             "Examples:\n  mural list-commands\n  mural list-commands --unsupported\n\nOne command per line: name, "
-            "class, and the reason when it is not carried.\nExit status: 0.");
-        list.add_flag("--unsupported", onlyUnsupported_, "only those that are not carried");
+            "class, and the reason if it is unsupported.\nExit status: 0.");
+        list.add_flag("--unsupported", onlyUnsupported_, "only unsupported commands");
         CLI::App& netperf = add(
             "netperf", "measure reliable multicast between machines, or on this one",
             [this] { return mural::cli::netperfCommand(netperf_); },
-            "Examples:\n  mural netperf                                             two receivers on this machine\n"
-            "  mural netperf --members 4 --message 64                    how long a word takes to be everywhere\n"
-            "  mural netperf send --members 3 --rate 900mbit --secret-file key\n"
-            "  mural netperf receive --control wall0:4278 --secret-file key\n"
-            "  mural netperf send --stream 'rsp://239.255.77.85:4277?interface=eth1&silent-ms=20000&secret=key'\n\n"
-            "Receivers check each byte. Exit status: 0, or 1 when not everything arrived as it was sent.");
+            "Examples:\n  mural netperf                                             two receivers on this machine\n  "
+            "mural netperf --members 4 --message 64                    latency of short messages to all receivers\n  "
+            "mural netperf send --members 3 --rate 900mbit --secret-file key\n  mural netperf receive --control "
+            "wall0:4278 --secret-file key\n  mural netperf send --stream "
+            "'rsp://239.255.77.85:4277?interface=eth1&silent-ms=20000&secret=key'\n\nReceivers check each byte. Exit "
+            "status: 0, or 1 if a byte was lost or changed.");
         mural::cli::describeNetperf(netperf, netperf_);
         CLI::App& discover = add(
-            "discover", "find the nodes that wait for heads on this network",
-            [this] { return mural::cli::discoverCommand(discover_); },
+            "discover", "find the daemons of this network", [this] { return mural::cli::discoverCommand(discover_); },
             "Examples:\n  mural discover\n  mural discover --seconds 5 --json\n  mural discover --interface eth1 "
-            "--no-avahi\n\n"
-            "Found are machines on which `mural node --wait` runs; who they are is shown by the secret alone, when a "
-            "session begins.\n"
-            "Exit status: 0, 1 when none was found, 2 for a bad argument.");
+            "--no-avahi\n\nLists machines that run `mural node --wait`. Announcements are not authenticated; sessions "
+            "check the secret.\nExit status: 0, 1 if no daemon was found, 2 for a bad argument.");
         mural::cli::describeDiscover(discover, discover_);
         addBench();
         addConfig();
@@ -299,25 +296,22 @@ private:
 
     void addBench() {
         CLI::App& bench = add(
-            "bench", "measure how far pictures are from those of one machine", [this] { return runBench(); },
+            "bench", "measure the difference between Mural's pictures and native ones", [this] { return runBench(); },
             "Examples:\n  mural bench accuracy                              every decomposition, composition and "
-            "codec, on Mural's own scenes\n"
-            "  mural bench accuracy --quick                      one of each kind, on small pictures\n"
-            "  mural bench accuracy --json a.json --svg a.svg    the same for programs, and as a picture\n"
-            "  mural bench accuracy --recording app.mural        with a recording of a program: errors beside CPU time "
-            "and bytes\n"
-            "  mural bench accuracy --frames 60 -- glxgears      a program of yours, each frame against what its own "
-            "context draws\n\n"
-            "Everything runs on this machine and a private display. docs/measurements/accuracy.md says what the bounds "
-            "are, and why.\n"
-            "Exit status: 0, 1 when a bound is broken, something failed or a result can't be written, 2 when nothing "
-            "could be measured.");
+            "codec, on Mural's own scenes\n  mural bench accuracy --quick                      one of each kind, on "
+            "small pictures\n  mural bench accuracy --json a.json --svg a.svg    the results as JSON and as a plot\n  "
+            "mural bench accuracy --recording app.mural        on a trace: errors with CPU time and bytes\n  mural "
+            "bench accuracy --frames 60 -- glxgears      each frame of a program against its own context\n\nEverything "
+            "runs on this machine on a private display. docs/measurements/accuracy.md justifies the bounds.\nExit "
+            "status: 0, 1 if a bound is exceeded, a run failed or a result cannot be written, 2 if nothing was "
+            "measured.");
         mural::cli::describeBench(bench, bench_);
     }
 
     int runBench() {
         bench_.program = line_.program;
-        if (line_.separated && bench_.program.empty()) return usageError("mural bench", "no program stands after --");
+        if (line_.separated && bench_.program.empty())
+            return usageError("mural bench", "the program after -- is missing");
         return mural::cli::benchCommand(bench_);
     }
 
@@ -325,25 +319,23 @@ private:
         CLI::App& config = add(
             "config", "check, print or draw a configuration file",
             [this] { return mural::cli::configCommand(config_); },
-            "Examples:\n  mural config check wall.eqc                       what is in it, and what is wrong with it\n"
-            "  mural config print wall.eqc                       the same in today's words\n"
-            "  mural config print wall.eqc --resolved --frame 2  what every channel does in frame 2\n"
-            "  mural config draw wall.eqc --out wall.svg         displays, machines and compounds as a picture\n\n"
-            "docs/reference/configuration.md describes the format. Exit status: 0, 1 when the output can't be written, "
-            "2 for errors in the file.");
+            "Examples:\n  mural config check wall.eqc                       contents and errors\n  mural config print "
+            "wall.eqc                       the file in current syntax\n  mural config print wall.eqc --resolved "
+            "--frame 2  the tasks of every channel in frame 2\n  mural config draw wall.eqc --out wall.svg         "
+            "displays, machines and compounds as a picture\n\ndocs/reference/configuration.md describes the format. "
+            "Exit status: 0, 1 if the output cannot be written, 2 for errors in the file.");
         mural::cli::describeConfig(config, config_);
     }
 
     void addDoctor() {
         CLI::App& doctor = add(
-            "doctor", "look at what Mural needs on this machine, or at the network", [this] { return runDoctor(); },
-            "Examples:\n  mural doctor\n  mural doctor --json\n  mural doctor --network                      this "
-            "machine's own sockets and limits\n"
-            "  mural doctor --network wall1,wall2          multicast, datagram size, rate and losses to these hosts\n\n"
-            "Each line is ok, warn or bad, with what to do.\nExit status: 0 when Mural can be used, 1 when something "
-            "must be mended, 2 for a bad argument.");
+            "doctor", "check this machine, or the network, for Mural", [this] { return runDoctor(); },
+            "Examples:\n  mural doctor\n  mural doctor --json\n  mural doctor --network                      sockets "
+            "and limits of this machine\n  mural doctor --network wall1,wall2          multicast, datagram size, rate "
+            "and losses to these hosts\n\nEach line is ok, warn or bad, with a remedy.\nExit status: 0 if Mural can be "
+            "used, 1 if a problem must be fixed, 2 for a bad argument.");
         doctor.option_defaults()->take_last();
-        doctor.add_flag("--json", asJson_, "for programs");
+        doctor.add_flag("--json", asJson_, "print JSON");
         network_ = mural::cli::describeNetworkDoctor(doctor, networkArguments_);
     }
 
@@ -384,7 +376,7 @@ int afterOutput(int status, std::string why) {
     std::cout.flush();
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return status;
     if (why.empty() && errno != 0) why = std::strerror(errno); // otherwise an earlier write failed
-    fmt::print(stderr, "mural: the output can't be written{}{}; give it more room, or another place\n",
+    fmt::print(stderr, "mural: the output cannot be written{}{}; free space, or choose another destination\n",
                why.empty() ? "" : ": ", why);
     return status != 0 ? status : kExitOutput;
 }

@@ -22,7 +22,7 @@ Deadline until(int64_t atNs) {
 
 Result<std::unique_ptr<Announcing>> Announcing::start(const Announcement& self, const DiscoveryOptions& options) {
     FileDescriptor stop(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-    if (!stop.valid()) return Error{"no eventfd for announcing: " + errnoText(errno)};
+    if (!stop.valid()) return Error{"cannot create an eventfd for announcements: " + errnoText(errno)};
     return std::unique_ptr<Announcing>(new Announcing(self, options, std::move(stop)));
 }
 

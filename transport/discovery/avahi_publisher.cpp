@@ -41,7 +41,7 @@ void AvahiPublisher::Service::changed(AvahiEntryGroup* g, AvahiEntryGroupState s
         s.avahi->entryGroupReset(g);
         s.add();
     } else if (state == AVAHI_ENTRY_GROUP_FAILURE) {
-        s.shared->setTrouble("Avahi: the service could not be announced");
+        s.shared->setTrouble("Avahi: cannot announce the service");
     }
 }
 

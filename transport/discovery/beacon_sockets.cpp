@@ -46,9 +46,8 @@ Result<BeaconSockets> BeaconSockets::open(const std::string& wanted) {
     }
     if (!sockets.links_.empty()) return sockets;
     if (!sockets.trouble_.empty()) return Error{sockets.trouble_};
-    if (!wanted.empty())
-        return Error{"there is no network interface \"" + wanted + "\" that is up; there are: " + known};
-    return Error{"no network interface is up that could do multicast; there are: " + known};
+    if (!wanted.empty()) return Error{"no active network interface \"" + wanted + "\"; available: " + known};
+    return Error{"no active network interface with multicast; available: " + known};
 }
 
 void BeaconSockets::say(std::span<const std::byte> bytes) {

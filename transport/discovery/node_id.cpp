@@ -58,11 +58,11 @@ std::string stateFolder() {
 Result<Uuid> kept(const std::string& folder) {
     const std::string path = folder + "/node-id";
     if (const auto uuid = uuidFromText(firstLine(path))) return *uuid;
-    const std::string advice = "; set XDG_STATE_HOME to a folder that can be written";
+    const std::string advice = "; set XDG_STATE_HOME to a writable folder";
     std::error_code failed;
     if (!folder.empty()) std::filesystem::create_directories(folder, failed);
     if (folder.empty() || failed)
-        return Error{"no place to keep this machine's id: " +
+        return Error{"cannot store this machine's id: " +
                      (folder.empty() ? "HOME is not set" : folder + ": " + failed.message()) + advice};
     Uuid fresh{};
     randombytes_buf(fresh.data(), fresh.size());
@@ -72,7 +72,7 @@ Result<Uuid> kept(const std::string& folder) {
         const FileDescriptor file(open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
         const std::string line = uuidText(fresh) + "\n";
         if (!file.valid() || write(file.get(), line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-            return Error{"can't write " + beside + ": " + errnoText(errno) + advice};
+            return Error{"cannot write " + beside + ": " + errnoText(errno) + advice};
     }
     if (link(beside.c_str(), path.c_str()) != 0 && errno == EEXIST && !uuidFromText(firstLine(path))) {
         // The existing file is invalid.
@@ -80,13 +80,13 @@ Result<Uuid> kept(const std::string& folder) {
     }
     (void)unlink(beside.c_str());
     if (const auto uuid = uuidFromText(firstLine(path))) return *uuid;
-    return Error{"can't keep this machine's id in " + path + advice};
+    return Error{"cannot store this machine's id in " + path + advice};
 }
 
 } // namespace
 
 Result<Uuid> nodeId(const NodeIdPlaces& places) {
-    if (sodium_init() < 0) return Error{"libsodium can't find random numbers"};
+    if (sodium_init() < 0) return Error{"libsodium cannot generate random numbers"};
     if (const auto uuid = fromMachineId(places.machineId)) return *uuid;
     return kept(places.state.empty() ? stateFolder() : places.state);
 }

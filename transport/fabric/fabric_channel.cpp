@@ -78,14 +78,14 @@ unsigned Channel::onReceived(const Endpoint::Completion& completion) {
         receiveInto(slot);
         return kWriting;
     case MessageKind::Bye: end(0); break;
-    default: end("the other end sent what no Mural sends; check what listens there");
+    default: end("the peer sent an invalid message; check that Mural listens there");
     }
     return kReading | kWriting;
 }
 
 void Channel::onCredits(uint16_t credits) {
     if (credits > window_ - credits_)
-        end("the other end gave more credits than it has buffers; check what listens there");
+        end("the peer granted more credits than it has buffers; check that Mural listens there");
     else
         credits_ = static_cast<uint16_t>(credits_ + credits);
 }

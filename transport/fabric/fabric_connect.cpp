@@ -24,7 +24,7 @@ Result<std::unique_ptr<Connection>> connectBy(fi_info& info, const ConnectionDes
 // Divides the remaining time among providers and addresses. Reports the first error, which belongs to the best
 // provider.
 Result<std::unique_ptr<Connection>> connectFabric(const ConnectionDescription& to, Deadline deadline) {
-    if (to.host.empty() || to.port == 0) return Error{toText(to) + ": connecting needs a host and a port"};
+    if (to.host.empty() || to.port == 0) return Error{toText(to) + ": a connection needs a host and a port"};
     auto providers = findProviders(to, Role::Connect, deadline);
     if (!providers) return providers.error();
     Error first;

@@ -15,8 +15,8 @@ constexpr size_t kPageBytes = 4096;
 constexpr int64_t kSliceMs = 1000; // bounds the damage of a provider that misses a wake-up
 
 Error cannot(const std::string& provider, const char* what, long code) {
-    return Error{"fabric (" + provider + "): can't " + what + ": " + codeText(code) +
-                 "; try another provider by provider=NAME"};
+    return Error{"fabric (" + provider + "): cannot " + what + ": " + codeText(code) +
+                 "; try another provider with provider=NAME"};
 }
 
 } // namespace
@@ -31,7 +31,7 @@ Result<std::unique_ptr<Endpoint>> Endpoint::open(const SharedFabric& fabric, fi_
     if (!events) return events.error();
     made->events_ = std::move(*events);
     made->wake_ = FileDescriptor(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
-    if (!made->wake_.valid()) return Error{"fabric: no descriptor is left; raise the limit of open files (ulimit -n)"};
+    if (!made->wake_.valid()) return Error{"fabric: too many open files; raise the limit (ulimit -n)"};
     fid_domain* domain = nullptr;
     if (const int code = fi_domain(fabric.get(), &info, &domain, nullptr); code != 0)
         return cannot(made->provider_, "open the card", code);
@@ -55,18 +55,18 @@ Result<void> Endpoint::openQueue(fid_domain* domain) {
         return cannot(provider_, "open a completion queue", code);
     queue_.reset(queue);
     if (const int code = fi_control(&queue->fid, FI_GETWAIT, &queueDescriptor_); code != 0)
-        return cannot(provider_, "wait for completions by a descriptor", code);
+        return cannot(provider_, "wait for completions with a descriptor", code);
     return {};
 }
 
 Result<void> Endpoint::openMemory(fid_domain* domain) {
     const size_t sizeBytes = (kReceives + kSends) * kMessageBytes;
     memory_.reset(static_cast<std::byte*>(std::aligned_alloc(kPageBytes, sizeBytes)));
-    if (!memory_) return cannot(provider_, "have memory for messages", FI_ENOMEM);
+    if (!memory_) return cannot(provider_, "allocate memory for messages", FI_ENOMEM);
     fid_mr* registered = nullptr;
     if (const int code = fi_mr_reg(domain, memory_.get(), sizeBytes, FI_SEND | FI_RECV, 0, 1, 0, &registered, nullptr);
         code != 0)
-        return cannot(provider_, "register memory (is the limit of locked memory, ulimit -l, too low?)", code);
+        return cannot(provider_, "register memory (the limit of locked memory, ulimit -l, may be too low)", code);
     registered_.reset(registered);
     return {};
 }
@@ -89,17 +89,17 @@ Result<void> Endpoint::openEndpoint(fid_domain* domain, fi_info& info) {
 Result<Greeting> Endpoint::connect(Deadline deadline) {
     const auto own = makeGreeting();
     if (const int code = fi_connect(endpoint_.get(), address_.data(), own.data(), own.size()); code != 0)
-        return Error{"can't connect: " + codeText(code) + "; check the address and the provider"};
+        return Error{"cannot connect: " + codeText(code) + "; check the address and the provider"};
     const auto answer = awaitConnected(deadline);
     if (!answer) return answer.error();
     if (const auto greeting = readGreeting(answer.value())) return *greeting;
-    return Error{"who listens there is no Mural of this version; check the address and both versions"};
+    return Error{"the peer is not a Mural of this version; check the address and both versions"};
 }
 
 Result<void> Endpoint::accept(Deadline deadline) {
     const auto own = makeGreeting();
     if (const int code = fi_accept(endpoint_.get(), own.data(), own.size()); code != 0)
-        return Error{"can't accept: " + codeText(code)};
+        return Error{"cannot accept: " + codeText(code)};
     const auto connected = awaitConnected(deadline);
     if (!connected) return connected.error();
     return {};
@@ -110,10 +110,10 @@ Result<std::vector<std::byte>> Endpoint::awaitConnected(Deadline deadline) {
     switch (event.kind) {
     case Event::Kind::Connected: return std::move(event.greeting);
     case Event::Kind::Failed:
-        return Error{"can't connect: " + codeText(event.code) + "; check that the other side listens there"};
+        return Error{"cannot connect: " + codeText(event.code) + "; check that the peer listens there"};
     case Event::Kind::None:
-        return Error{"deadline passed without an answer; check the address, and that the other side accepts"};
-    default: return Error{"the other end went while it was connected; its own messages say why"};
+        return Error{"deadline passed without a reply; check the address, and that the peer accepts connections"};
+    default: return Error{"the peer disconnected during the connection setup; see its messages"};
     }
 }
 

@@ -40,7 +40,7 @@ Result<EventQueue> EventQueue::open(const SharedFabric& fabric) {
         code = fi_control(&made->fid, FI_GETWAIT, &queue.descriptor_);
     }
     if (code != 0)
-        return Error{"fabric: can't open an event queue with a descriptor: " + codeText(code) +
+        return Error{"fabric: cannot open an event queue with a descriptor: " + codeText(code) +
                      "; try another provider"};
     return queue;
 }

@@ -68,7 +68,7 @@ Result<std::unique_ptr<Listener>> FabricListener::open(fi_info& info, const Conn
     }
     if (code == 0) code = fi_listen(passive);
     if (code != 0) {
-        return Error{fabricText(at.host, at.port, made->provider_) + ": can't listen: " + codeText(code) +
+        return Error{fabricText(at.host, at.port, made->provider_) + ": cannot listen: " + codeText(code) +
                      "; choose another port, address or provider"};
     }
     made->description_ = listenerText(at, *passive, made->provider_);
@@ -85,7 +85,7 @@ Result<std::unique_ptr<Connection>> FabricListener::accept(Deadline deadline) {
         } else if (event.kind == Event::Kind::None) {
             return Error{
                 description_ +
-                ": deadline passed, nobody connected; check that the other side was started and may reach this port"};
+                ": deadline passed without a connection; check that the peer was started and can connect to this port"};
         } else if (event.kind == Event::Kind::Failed && !event.passing()) {
             return Error{description_ + ": accept: " + codeText(event.code) + "; listen again"};
         }
@@ -96,7 +96,7 @@ Result<std::unique_ptr<Connection>> FabricListener::accept(Event request, Deadli
     const auto greeting = readGreeting(request.greeting);
     if (!greeting) {
         fi_reject(passive_.get(), request.info->handle, nullptr, 0);
-        return Error{description_ + ": who asked to connect is no Mural of this version; check both versions"};
+        return Error{description_ + ": the peer is not a Mural of this version; check both versions"};
     }
     auto endpoint = Endpoint::open(fabric_, *request.info);
     if (!endpoint) {

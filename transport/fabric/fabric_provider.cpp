@@ -17,8 +17,7 @@ constexpr const char* kProvider = "provider";
 Result<std::string> providerWanted(const ConnectionDescription& description) {
     std::string wanted;
     for (const auto& [name, value] : description.parameters) {
-        if (name != kProvider)
-            return Error{toText(description) + ": there is no parameter \"" + name + "\"; there is provider"};
+        if (name != kProvider) return Error{toText(description) + ": unknown parameter \"" + name + "\"; use provider"};
         wanted = value;
     }
     return wanted;
@@ -80,14 +79,14 @@ Result<std::vector<Info>> findProviders(const ConnectionDescription& description
     }
     if (!all.empty()) return all;
     return Error{toText(description) + ": libfabric has no provider for it" +
-                 (code == 0 ? "" : " (" + codeText(code) + ")") + "; fi_info -t FI_EP_MSG lists what there is"};
+                 (code == 0 ? "" : " (" + codeText(code) + ")") + "; fi_info -t FI_EP_MSG lists the providers"};
 }
 
 Result<SharedFabric> openFabric(const fi_info& info) {
     fid_fabric* fabric = nullptr;
     if (const int code = fi_fabric(info.fabric_attr, &fabric, nullptr); code != 0)
-        return Error{"fabric: can't open the provider " + providerOf(info) + ": " + codeText(code) +
-                     "; try another by provider=NAME"};
+        return Error{"fabric: cannot open the provider " + providerOf(info) + ": " + codeText(code) +
+                     "; try another one with provider=NAME"};
     return SharedFabric(fabric, CloseFid());
 }
 

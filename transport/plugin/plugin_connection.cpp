@@ -8,7 +8,7 @@ using Plugin = mural_transport_plugin;
 
 Error said(mural_transport_error& error) {
     error.text[sizeof error.text - 1] = 0;
-    return Error{error.text[0] ? error.text : "the transport plug-in failed without a word"};
+    return Error{error.text[0] ? error.text : "the transport plug-in failed without a message"};
 }
 
 class PluginConnection final : public Connection {

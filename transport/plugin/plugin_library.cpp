@@ -13,13 +13,14 @@ namespace fs = std::filesystem;
 
 // Requires equal versions: newer tables only grow, but the meaning of a function may have changed.
 std::string whyUnfit(const mural_transport_plugin* plugin, const std::string& scheme) {
-    if (!plugin) return "its " MURAL_TRANSPORT_PLUGIN_ENTRY "() gives nothing";
+    if (!plugin) return "its " MURAL_TRANSPORT_PLUGIN_ENTRY "() returns no table";
     if (plugin->version != MURAL_TRANSPORT_PLUGIN_VERSION)
-        return "it is made for version " + std::to_string(plugin->version) +
-               " of the plug-in interface, this Mural has version " + std::to_string(MURAL_TRANSPORT_PLUGIN_VERSION);
-    if (plugin->size_bytes < sizeof *plugin) return "its table is cut short";
+        return "it implements version " + std::to_string(plugin->version) +
+               " of the plug-in interface, but this Mural has version " +
+               std::to_string(MURAL_TRANSPORT_PLUGIN_VERSION);
+    if (plugin->size_bytes < sizeof *plugin) return "its table is truncated";
     if (!plugin->scheme || scheme != plugin->scheme)
-        return std::string("it carries the scheme \"") + (plugin->scheme ? plugin->scheme : "") + "\"";
+        return std::string("it implements the scheme \"") + (plugin->scheme ? plugin->scheme : "") + "\"";
     return {};
 }
 
@@ -38,16 +39,16 @@ Result<const mural_transport_plugin*> openPlugin(const std::string& scheme, cons
     const std::string what = "transport " + scheme + ": ";
     std::error_code failed;
     if (!fs::exists(file, failed))
-        return Error{what + "there is no plug-in " + file + "; check the scheme, or build or install the plug-in"};
+        return Error{what + "the plug-in is missing: " + file + "; check the scheme, or build or install the plug-in"};
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library) {
         const char* said = dlerror(); // contains the file name
-        return Error{what + "can't load the plug-in: " + (said ? said : file) + "; install what it needs"};
+        return Error{what + "cannot load the plug-in: " + (said ? said : file) + "; install its dependencies"};
     }
     const auto entry = reinterpret_cast<mural_transport_plugin_entry>(dlsym(library, MURAL_TRANSPORT_PLUGIN_ENTRY));
     const std::string unfit = entry ? whyUnfit(entry(), scheme) : "it has no function " MURAL_TRANSPORT_PLUGIN_ENTRY;
     if (!unfit.empty())
-        return Error{what + file + " is no plug-in for this: " + unfit +
+        return Error{what + file + " is not a suitable plug-in: " + unfit +
                      "; build it with this Mural's transport_plugin.h"};
     return entry();
 }

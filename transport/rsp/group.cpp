@@ -30,7 +30,8 @@ Result<std::unique_ptr<Group>> Group::join(const GroupOptions& options, Deadline
     std::unique_lock lock(state->mutex);
     while (!state->core->live() || !state->core->receiver(kHost)) {
         if (!state->failure.empty()) return Error{state->failure};
-        if (deadline.passed()) return tooLate("the host to take this member in; does " + options.control + " answer?");
+        if (deadline.passed())
+            return tooLate("the host to accept this member; check that " + options.control + " replies");
         state->changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
     }
     return group;
@@ -61,7 +62,7 @@ Result<void> Group::waitForMembers(size_t count, Deadline deadline) {
         if (!state_->failure.empty()) return Error{state_->failure};
         if (deadline.passed())
             return tooLate(std::to_string(count) + " members; " + std::to_string(state_->core->members().size()) +
-                           " are there");
+                           " have joined");
         state_->changed.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs(kSliceNs)));
     }
     return {};
@@ -103,7 +104,7 @@ Result<size_t> Group::writeSome(std::span<const std::byte> bytes, Deadline deadl
             if (state_->core->sender()->canSend()) state_->pump();
             return took;
         }
-        if (!state_->wait(lock, state_->room, deadline)) return tooLate("room in the stream; a member is slow");
+        if (!state_->wait(lock, state_->room, deadline)) return tooLate("free space in the stream; a member is slow");
     }
 }
 
@@ -126,7 +127,7 @@ Result<void> Group::waitArrived(Deadline deadline) {
     std::unique_lock lock(state_->mutex);
     while (!state_->core->sender()->allArrived()) {
         if (!state_->failure.empty()) return Error{state_->failure};
-        if (!state_->wait(lock, state_->arrived, deadline)) return tooLate("all members to have everything");
+        if (!state_->wait(lock, state_->arrived, deadline)) return tooLate("all members to acknowledge all data");
     }
     return {};
 }
@@ -146,7 +147,7 @@ Result<size_t> Group::State::readable(std::unique_lock<std::mutex>& lock, Member
         waitingForData.push_back(from);
         const bool inTime = wait(lock, data, deadline);
         waitingForData.erase(std::ranges::find(waitingForData, from)); // equal entries are interchangeable
-        if (!inTime) return tooLate("bytes of member " + std::to_string(from));
+        if (!inTime) return tooLate("data of member " + std::to_string(from));
     }
 }
 

@@ -84,11 +84,10 @@ Result<GroupOptions> groupOptionsOf(const ConnectionDescription& description) {
     auto group = numericEndpoint(options.group);
     if (!group) return wrong(group.error().message);
     if (!group->isMulticast())
-        return wrong(description.host +
-                     " is no multicast address; those are 224.0.0.0 to 239.255.255.255, and ff00:: and up");
+        return wrong(description.host + " is not a multicast address (224.0.0.0 to 239.255.255.255, or ff00:: and up)");
     for (const auto& [name, value] : description.parameters) {
         const auto found = std::ranges::find(kParameters, name, [](const auto& p) { return std::string(p.first); });
-        if (found == kParameters.end()) return wrong("there is no parameter \"" + name + "\"; there are " + allNames());
+        if (found == kParameters.end()) return wrong("unknown parameter \"" + name + "\"; use " + allNames());
         if (auto set = found->second(options, value); !set) return wrong(name + ": " + set.error().message);
     }
     if (options.windowDatagrams < 64 || (options.windowDatagrams & (options.windowDatagrams - 1)) != 0)

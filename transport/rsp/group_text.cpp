@@ -31,7 +31,7 @@ Result<double> numberWithUnit(const std::string& text, const std::array<Unit, N>
     std::ranges::transform(unit, unit.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto found = std::ranges::find(units, unit, [](const Unit& u) { return std::string(u.first); });
     if (code != std::errc() || !std::isfinite(value) || value < 0 || found == units.end())
-        return Error{"\"" + text + "\" is not understood; write it as " + example};
+        return Error{"\"" + text + "\" is not valid; write it as " + example};
     return value * found->second;
 }
 
@@ -48,7 +48,7 @@ Result<uint64_t> parseSize(const std::string& text) {
     static constexpr std::array<Unit, 4> units{Unit{"k", 1024}, Unit{"m", 1048576}, Unit{"g", 1073741824}, Unit{"", 1}};
     auto value = numberWithUnit(text, units, "1000000, 64k or 256M");
     if (!value) return value.error();
-    if (*value >= 0x1p63) return Error{"\"" + text + "\" is more than there can be"};
+    if (*value >= 0x1p63) return Error{"\"" + text + "\" is too large"};
     return static_cast<uint64_t>(*value);
 }
 
@@ -56,10 +56,10 @@ Result<Seal> parseSeal(const std::string& text) {
     if (text == "auto") return bestEncryption();
     for (const Seal seal : {Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha}) {
         if (text != nameOf(seal)) continue;
-        if (!available(seal)) return Error{"this machine can't do " + text + "; use auto"};
+        if (!available(seal)) return Error{"this machine does not support " + text + "; use auto"};
         return seal;
     }
-    return Error{"there is no seal \"" + text + "\"; there are auto, siphash, aes-256-gcm, chacha20-poly1305 and none"};
+    return Error{"unknown seal \"" + text + "\"; use auto, siphash, aes-256-gcm, chacha20-poly1305 or none"};
 }
 
 Result<ChannelSecret> readSecret(const std::string& path) {
@@ -70,7 +70,7 @@ Result<ChannelSecret> readSecret(const std::string& path) {
         std::ifstream file(path, std::ios::binary);
         if (!file)
             return Error{path +
-                         ": can't read the secret; make one with: (umask 077; head -c 32 /dev/urandom | base64 > " +
+                         ": cannot read the secret; create one with: (umask 077; head -c 32 /dev/urandom | base64 > " +
                          path + ")"};
         using std::filesystem::perms;
         std::error_code unknown;
@@ -78,16 +78,16 @@ Result<ChannelSecret> readSecret(const std::string& path) {
                 perms::none &&
             !unknown)
             return Error{path +
-                         ": every user of this machine can read or change this secret; make a new one, or if nobody "
-                         "has: chmod 600 " +
+                         ": every user of this machine can read or change this secret; create a new one, or if it is "
+                         "still secret: chmod 600 " +
                          path};
         bytes.assign(std::istreambuf_iterator<char>(file), {});
     }
     while (!bytes.empty() && (bytes.back() == '\n' || bytes.back() == '\r')) bytes.pop_back();
     if (bytes.size() < kMinSecretBytes)
-        return Error{path + ": a secret has 16 bytes at least; make one with: head -c 32 /dev/urandom | base64"};
+        return Error{path + ": a secret needs at least 16 bytes; create one with: head -c 32 /dev/urandom | base64"};
     ChannelSecret secret;
-    if (sodium_init() < 0) return Error{"libsodium can't be used here"};
+    if (sodium_init() < 0) return Error{"libsodium cannot be initialized"};
     crypto_generichash(reinterpret_cast<unsigned char*>(secret.data()), secret.size(),
                        reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), nullptr, 0);
     return secret;

@@ -109,7 +109,8 @@ void SecureChannel::State::startSending(const std::array<std::byte, crypto_kx_SE
 Result<size_t> SecureChannel::State::takeHello(std::vector<Bytes>&) {
     const size_t known = std::min(in.size(), kMagic.size());
     if (std::memcmp(in.data(), kMagic.data(), known) != 0)
-        return Error{"the peer does not speak Mural's secure channel, version 1; do both ends run the same version?"};
+        return Error{
+            "the peer does not use Mural's secure channel, version 1; check that both ends run the same version"};
     if (in.size() < kMagic.size() + 1) return size_t{0};
     const auto nameBytes = std::to_integer<size_t>(in[kMagic.size()]);
     if (nameBytes > kMaxNameBytes) return Error{"the peer's name is too long; it is not a member of this session"};
@@ -117,7 +118,7 @@ Result<size_t> SecureChannel::State::takeHello(std::vector<Bytes>&) {
     if (in.size() < bytes) return size_t{0};
     name.assign(reinterpret_cast<const char*>(in.data()) + kMagic.size() + 1, nameBytes);
     const auto found = find(name);
-    if (!found) return Error{"a stranger wants to join; nobody of its name is expected"};
+    if (!found) return Error{"unknown peer name"};
     secret = *found;
     makeKeys();
     transcript.assign(in.begin(), in.begin() + static_cast<std::ptrdiff_t>(bytes));
@@ -134,9 +135,9 @@ Result<size_t> SecureChannel::State::takeHostKey() {
     append(transcript, std::span(in).first(kPublicBytes));
     const Hash expected = keyedHash(secret, "host", transcript);
     if (sodium_memcmp(expected.data(), in.data() + kPublicBytes, kProofBytes) != 0)
-        return Error{"the host does not know this session's secret; give both ends the same one"};
+        return Error{"the host's secret differs; use the same secret at both ends"};
     if (!agree(std::span(in).first(kPublicBytes)))
-        return Error{"the host's key is not valid; its connection is not trusted"};
+        return Error{"the host's key is invalid; the connection is rejected"};
     step = Step::Header;
     return bytes;
 }
@@ -145,9 +146,9 @@ Result<size_t> SecureChannel::State::takeMemberProof() {
     if (in.size() < kProofBytes) return size_t{0};
     const Hash expected = keyedHash(secret, "member", transcript);
     if (sodium_memcmp(expected.data(), in.data(), kProofBytes) != 0)
-        return Error{"\"" + name + "\" does not know this session's secret; give both ends the same one"};
+        return Error{"\"" + name + "\" has another secret; use the same secret at both ends"};
     const auto peerKey = std::span(transcript).subspan(transcript.size() - 2 * kPublicBytes, kPublicBytes);
-    if (!agree(peerKey)) return Error{"the key of \"" + name + "\" is not valid; its connection is not trusted"};
+    if (!agree(peerKey)) return Error{"the key of \"" + name + "\" is invalid; the connection is rejected"};
     step = Step::Header;
     return kProofBytes;
 }
@@ -155,7 +156,7 @@ Result<size_t> SecureChannel::State::takeMemberProof() {
 Result<size_t> SecureChannel::State::takeHeader() {
     if (in.size() < kHeaderBytes) return size_t{0};
     if (crypto_secretstream_xchacha20poly1305_init_pull(&receiving, raw(in.data()), raw(receiveKey.data())) != 0)
-        return Error{"the peer's stream does not begin as it must"};
+        return Error{"the peer's stream begins with an invalid header"};
     step = Step::Records;
     return kHeaderBytes;
 }
@@ -164,13 +165,13 @@ Result<size_t> SecureChannel::State::takeRecord(std::vector<Bytes>& messages) {
     if (in.size() < kLengthBytes) return size_t{0};
     const size_t bytes = loadLittle<uint32_t>(in.data());
     if (bytes < kOverheadBytes || bytes > kMaxMessageBytes + kOverheadBytes || finished)
-        return Error{"what the peer sends is no record of this channel; it was changed on the way"};
+        return Error{"the peer sent an invalid record; it was changed in transit"};
     if (in.size() < kLengthBytes + bytes) return size_t{0};
     Bytes message(bytes - kOverheadBytes);
     unsigned char tag = 0;
     if (crypto_secretstream_xchacha20poly1305_pull(&receiving, raw(message.data()), nullptr, &tag,
                                                    raw(in.data()) + kLengthBytes, bytes, nullptr, 0) != 0)
-        return Error{"a record was changed on the way"};
+        return Error{"a record was changed in transit"};
     if (tag == crypto_secretstream_xchacha20poly1305_TAG_FINAL)
         finished = true;
     else
@@ -187,7 +188,7 @@ Result<size_t> SecureChannel::State::takeNext(std::vector<Bytes>& messages) {
     case Step::Records: return takeRecord(messages);
     case Step::Dead: break;
     }
-    return Error{"the channel has failed before"};
+    return Error{"the channel failed earlier"};
 }
 
 // Returns the size of the next protocol step, as far as the received data determines it.
@@ -254,7 +255,7 @@ Result<void> SecureChannel::input(std::span<const std::byte> bytes, std::vector<
 Result<void> SecureChannel::send(std::span<const std::byte> message) {
     State& s = *state_;
     if (!s.canSend || s.ended) return Error{"the channel is not open"};
-    if (message.size() > kMaxMessageBytes) return Error{"a message may have 1 MiB at most"};
+    if (message.size() > kMaxMessageBytes) return Error{"a message exceeds the maximum of 1 MiB"};
     std::array<std::byte, kLengthBytes> length;
     storeLittle(length.data(), static_cast<uint32_t>(message.size() + kOverheadBytes));
     append(s.out, length);

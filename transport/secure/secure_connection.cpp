@@ -52,9 +52,9 @@ Result<std::unique_ptr<SecureConnection>> SecureConnection::shakeHands(std::uniq
         c.arrived_.resize(c.channel_.wantsBytes());
         const auto got = c.over_->read(c.arrived_, sooner(deadline, Deadline::inMs(kSliceMs)));
         if (!got && !c.over_->timedOut()) return got.error();
-        if (!got && deadline.passed())
-            return Error{c.over_->describe() + ": the peer did not show in time that it knows the secret"};
-        if (!got && cancelled && cancelled()) return Error{c.over_->describe() + ": nobody waits for it any longer"};
+        if (!got && deadline.passed()) return Error{c.over_->describe() + ": the peer did not authenticate in time"};
+        if (!got && cancelled && cancelled())
+            return Error{c.over_->describe() + ": the connection is not needed any more"};
         if (!got) continue;
         if (auto good = c.channel_.input(c.arrived_, c.messages_); !good)
             return Error{c.over_->describe() + ": " + good.error().message};

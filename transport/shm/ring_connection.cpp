@@ -144,7 +144,7 @@ Error RingConnection::failed(const char* verb, WaitEnd why, size_t doneBytes, si
     if (!usable) close();
     const char* reason = ending::kPeerGone;
     if (why == WaitEnd::ClosedHere) reason = ending::kClosedHere;
-    if (why == WaitEnd::Damaged) reason = "the other process has damaged the shared memory; end it";
+    if (why == WaitEnd::Damaged) reason = "the peer process has damaged the shared memory; end it";
     if (why == WaitEnd::DeadlinePassed) reason = usable ? ending::kIdle : ending::kCutInHalf;
     return connectionError(description_, verb, doneBytes, wantedBytes, reason);
 }

@@ -32,7 +32,7 @@ bool validCapacity(size_t bytes) {
 }
 
 Error badCapacity(size_t bytes) {
-    return Error{"shared memory: capacity " + std::to_string(bytes) + " bytes: use a power of two from " +
+    return Error{"shared memory: capacity " + std::to_string(bytes) + " bytes: must be a power of two from " +
                  std::to_string(kMinRingBytes) + " to " + std::to_string(kMaxRingBytes)};
 }
 
@@ -43,7 +43,7 @@ Result<std::shared_ptr<RingMemory>> RingMemory::map(int fd, size_t capacityBytes
     const int flags = fd < 0 ? MAP_PRIVATE | MAP_ANONYMOUS : MAP_SHARED;
     void* base = mmap(nullptr, sizeBytes, PROT_READ | PROT_WRITE, flags, fd, 0);
     if (base == MAP_FAILED) {
-        return Error{"shared memory: can't map " + std::to_string(sizeBytes) + " bytes: " + errnoText(errno) +
+        return Error{"shared memory: cannot map " + std::to_string(sizeBytes) + " bytes: " + errnoText(errno) +
                      "; use a smaller capacity"};
     }
     return std::shared_ptr<RingMemory>(new RingMemory(base, sizeBytes, capacityBytes));
@@ -63,7 +63,7 @@ Result<std::shared_ptr<RingMemory>> RingMemory::makeShared(size_t capacityBytes,
     }
     if (ftruncate(fd.get(), static_cast<off_t>(mappingBytes(capacityBytes))) != 0 ||
         fcntl(fd.get(), F_ADD_SEALS, kSeals) != 0) {
-        return Error{"shared memory: can't size a memfd: " + errnoText(errno)};
+        return Error{"shared memory: cannot set the size of a memfd: " + errnoText(errno)};
     }
     auto memory = map(fd.get(), capacityBytes);
     if (!memory) return memory.error();
@@ -76,21 +76,21 @@ Result<std::shared_ptr<RingMemory>> RingMemory::openShared(int memfd) {
     const int seals = fcntl(memfd, F_GET_SEALS);
     if (seals < 0 || (seals & F_SEAL_SHRINK) == 0) {
         return Error{"shared memory: descriptor " + std::to_string(memfd) +
-                     " is no memory of a Mural connection; both ends must be of one build"};
+                     " is not the memory of a Mural connection; use one build at both ends"};
     }
     struct stat status {};
     Header header{};
     if (fstat(memfd, &status) != 0 || pread(memfd, &header, sizeof header, 0) != sizeof header) {
-        return Error{"shared memory: can't read its header: " + errnoText(errno)};
+        return Error{"shared memory: cannot read its header: " + errnoText(errno)};
     }
     if (header.magic != kMagic || header.version != kVersion) {
         return Error{"shared memory: unknown layout (version " + std::to_string(header.version) + ", this build has " +
-                     std::to_string(kVersion) + "); both ends must be of one build"};
+                     std::to_string(kVersion) + "); use one build at both ends"};
     }
     if (!validCapacity(header.capacityBytes)) return badCapacity(header.capacityBytes);
     if (static_cast<uint64_t>(status.st_size) < mappingBytes(header.capacityBytes)) {
         return Error{"shared memory: " + std::to_string(status.st_size) +
-                     " bytes are too few for its capacity; both ends must be of one build"};
+                     " bytes are too few for its capacity; use one build at both ends"};
     }
     return map(memfd, header.capacityBytes);
 }

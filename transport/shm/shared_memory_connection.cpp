@@ -38,7 +38,7 @@ Result<void> sendDescriptor(int socket, int fd) {
     do {
         sent = sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
     } while (sent < 0 && errno == EINTR);
-    if (sent != 1) return Error{"shm: can't pass the memory's descriptor: " + errnoText(errno)};
+    if (sent != 1) return Error{"shm: cannot pass the memory's descriptor: " + errnoText(errno)};
     return {};
 }
 
@@ -58,7 +58,7 @@ Result<FileDescriptor> receiveDescriptor(int socket) {
     } while (got < 0 && errno == EINTR);
     const std::string where = "shm: descriptor " + std::to_string(socket);
     if (got < 0) {
-        return Error{where + ": " + errnoText(errno) + "; pass the one that offerSharedMemory gave"};
+        return Error{where + ": " + errnoText(errno) + "; pass the descriptor from offerSharedMemory"};
     }
     const cmsghdr* header = CMSG_FIRSTHDR(&message);
     int fd = -1;
@@ -68,7 +68,7 @@ Result<FileDescriptor> receiveDescriptor(int socket) {
     }
     FileDescriptor memfd(fd);
     if (got != 1 || greeting != kGreeting || !memfd.valid()) {
-        return Error{where + " carries no shared memory; was it opened before, or is the other end gone?"};
+        return Error{where + " carries no shared memory: it was opened before, or the peer has ended"};
     }
     return memfd;
 }
@@ -88,7 +88,7 @@ Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes) {
     const auto sent = sendDescriptor(mine.get(), memfd.get());
     if (!sent) return sent.error();
     if (fcntl(theirs.get(), F_SETFD, 0) != 0) { // inherited on purpose
-        return Error{"shm: can't make descriptor inheritable: " + errnoText(errno)};
+        return Error{"shm: cannot make a descriptor inheritable: " + errnoText(errno)};
     }
     SharedMemoryOffer offer;
     offer.connection = std::make_unique<RingConnection>(*memory, 0, std::move(mine), "shm:");

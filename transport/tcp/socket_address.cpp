@@ -15,7 +15,7 @@ Result<SocketAddress> numericAddress(const std::string& host, uint16_t port) {
     hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
     addrinfo* list = nullptr;
     if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list) != 0)
-        return Error{"\"" + host + "\" is no network address; give numbers, as 10.0.0.1 or ff12::4"};
+        return Error{"\"" + host + "\" is not a network address; use a numeric one, such as 10.0.0.1 or ff12::4"};
     SocketAddress address;
     std::memcpy(&address.storage, list->ai_addr, list->ai_addrlen);
     address.sizeBytes = list->ai_addrlen;
@@ -41,7 +41,7 @@ std::string numericText(const SocketAddress& address) {
 
 Result<HostPort> splitHostPort(std::string_view text) {
     const size_t colon = text.rfind(':');
-    const Error wrong{"\"" + std::string(text) + "\" is not host:port; IPv6 numbers stand in brackets, as [::1]:80"};
+    const Error wrong{"\"" + std::string(text) + "\" is not host:port; IPv6 addresses need brackets, such as [::1]:80"};
     if (colon == std::string_view::npos) return wrong;
     std::string_view host = text.substr(0, colon);
     const std::string_view digits = text.substr(colon + 1);

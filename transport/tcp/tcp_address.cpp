@@ -45,7 +45,7 @@ Lookup lookUp(const std::string& host, uint16_t port, int flags) {
 
 Error lookupError(const std::string& text, const Lookup& lookup) {
     const std::string reason = lookup.code == EAI_SYSTEM ? errnoText(lookup.systemCode) : gai_strerror(lookup.code);
-    return Error{text + ": can't find the host: " + reason + "; check its name or give its address"};
+    return Error{text + ": cannot resolve the host: " + reason + "; check its name or use its address"};
 }
 
 // Shared by the waiting caller and the lookup thread; the last one frees it.
@@ -88,7 +88,7 @@ Result<std::vector<TcpAddress>> resolveTcp(const std::string& host, uint16_t por
     const int flags = role == TcpRole::Listen ? AI_PASSIVE : 0;
     Lookup lookup = lookUp(host, port, flags | AI_NUMERICHOST);
     if (lookup.code == EAI_NONAME && !lookUpOnThread(host, port, flags, deadline, lookup)) {
-        return Error{text + ": deadline passed while looking up the host; give its address"};
+        return Error{text + ": deadline passed while resolving the host; use its address"};
     }
     if (lookup.code != 0) return lookupError(text, lookup);
     return std::move(lookup.addresses);

@@ -47,8 +47,9 @@ Result<std::unique_ptr<Connection>> TcpListener::accept(Deadline deadline) {
             return Error{description_ + ": accept: " + errnoText(errno) + "; close connections or listen again"};
         }
         if (waitForSocket(socket_.get(), POLLIN, deadline) == 0) {
-            return Error{description_ + ": deadline passed, nobody connected; check that the other side "
-                                        "was started and may reach this port"};
+            return Error{
+                description_ +
+                ": deadline passed without a connection; check that the peer was started and can connect to this port"};
         }
     }
 }
@@ -64,7 +65,7 @@ Result<FileDescriptor> listenOn(const TcpAddress& address) {
         setsockopt(socket.get(), IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
     }
     if (bind(socket.get(), address.get(), address.sizeBytes) != 0 || ::listen(socket.get(), kBacklog) != 0) {
-        return Error{text + ": can't listen: " + errnoText(errno) + "; choose another port or address"};
+        return Error{text + ": cannot listen: " + errnoText(errno) + "; choose another port or address"};
     }
     return socket;
 }
@@ -88,7 +89,7 @@ Result<FileDescriptor> connectTo(const TcpAddress& address, Deadline deadline) {
         if (errno != EINPROGRESS && errno != EINTR) {
             code = errno;
         } else if (waitForSocket(socket.get(), POLLOUT, deadline) == 0) {
-            return Error{text + ": deadline passed without an answer; check the address and the firewall"};
+            return Error{text + ": deadline passed without a reply; check the address and the firewall"};
         } else {
             socklen_t sizeBytes = sizeof code;
             getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &code, &sizeBytes);
@@ -97,7 +98,7 @@ Result<FileDescriptor> connectTo(const TcpAddress& address, Deadline deadline) {
     if (code == 0 && connectedToItself(socket.get())) code = ECONNREFUSED;
     if (code == 0 && !prepareTcpSocket(socket.get())) code = errno;
     if (code != 0) {
-        return Error{text + ": can't connect: " + errnoText(code) + "; check that the other side listens there"};
+        return Error{text + ": cannot connect: " + errnoText(code) + "; check that the peer listens there"};
     }
     return socket;
 }

@@ -83,9 +83,8 @@ Result<FileDescriptor> connectRacing(std::span<const TcpAddress> addresses, Dead
         FileDescriptor socket = race.answered(
             deadline.leftNs(std::max<int64_t>(0, std::min(kBetweenAttemptsNs, race.nextNs() - monotonicNowNs()))));
         if (socket.valid()) return socket;
-        if (race.lost()) return Error{errnoText(race.lastCode()) + "; check that the other side listens there"};
-        if (deadline.passed())
-            return Error{"the deadline passed without an answer; check the address and the firewall"};
+        if (race.lost()) return Error{errnoText(race.lastCode()) + "; check that the peer listens there"};
+        if (deadline.passed()) return Error{"the deadline passed without a reply; check the address and the firewall"};
     }
 }
 

@@ -89,11 +89,11 @@ private:
         const bool whole =
             error == std::errc{} && version >= 0 && version < 100 && text_.substr(i).starts_with("ascii");
         if (!whole) {
-            diagnostics_.warn(at, "this header is not understood and read as a comment", "write: #Equalizer 1.2 ascii");
+            diagnostics_.warn(at, "unknown header, it is read as a comment", "write: #Equalizer 1.2 ascii");
             return false;
         }
         if (!list_.tokens.empty() || list_.version != 0) {
-            diagnostics_.warn(at, "a header stands before everything else, this one is read as a comment", "remove it");
+            diagnostics_.warn(at, "the header must be the first line, this one is read as a comment", "remove it");
             return false;
         }
         list_.version = version;
@@ -106,7 +106,7 @@ private:
         const size_t from = at_ + 1;
         const size_t end = text_.find_first_of("\"\n", from);
         if (end == std::string_view::npos || text_[end] == '\n') {
-            diagnostics_.error(at, "this text has no end", "close it with \" on the same line");
+            diagnostics_.error(at, "this string is not terminated", "close it with \" on the same line");
             list_.failed = true;
             return;
         }
@@ -148,7 +148,7 @@ private:
         if (peek() == '.') ++at_;
         while (isDigit(peek())) ++at_;
         if (exponentFollows()) {
-            diagnostics_.warn(at, "the format has no exponents", "write the number in full");
+            diagnostics_.warn(at, "numbers have no exponents", "write all digits");
             at_ += 2;
             while (isDigit(peek())) ++at_;
         }
@@ -172,7 +172,7 @@ private:
         while (at_ < text_.size() && !known());
         std::string shown;
         for (const char c : text_.substr(from, std::min<size_t>(at_ - from, 8))) shown += c >= ' ' && c < 127 ? c : '?';
-        diagnostics_.warn(at, "\"" + shown + "\" means nothing here and is left out", "remove it");
+        diagnostics_.warn(at, "\"" + shown + "\" is not part of the syntax and is ignored", "remove it");
     }
 
     void trimHeading() {

@@ -44,9 +44,9 @@ void SectionReader::skipUnknown(std::string_view name, const Token& token) {
     const std::string word(token.text);
     const bool gone = std::find(kGone.begin(), kGone.end(), token.text) != kGone.end();
     if (gone)
-        tokens_.warn(token.at, word + " has no effect any more", "remove it");
+        tokens_.warn(token.at, word + " has no effect since a newer version of the format", "remove it");
     else
-        tokens_.warn(token.at, "section " + std::string(name) + " has no field " + word + ", it is left out",
+        tokens_.warn(token.at, "section " + std::string(name) + " has no field " + word + ", it is ignored",
                      "check its spelling, or remove it");
     if (tokens_.peek().kind == TokenKind::Word && isAttributeWord(tokens_.peek().text)) {
         int32_t ignored = 0;
@@ -58,14 +58,14 @@ void SectionReader::skipUnknown(std::string_view name, const Token& token) {
 
 // hints { stereo ON } of 2005 is hint_stereo ON.
 void SectionReader::readPrefixed(std::string_view name, std::string_view prefix, WindowAttributes& attributes) {
-    tokens_.warn(tokens_.peek().at, "section " + std::string(name) + " is part of attributes today",
+    tokens_.warn(tokens_.peek().at, "section " + std::string(name) + " is now part of attributes",
                  "write " + std::string(prefix) + "... there");
     if (!tokens_.expect('{', name)) return;
     while (!tokens_.ended() && !tokens_.peek().is('}')) {
         const Token& token = tokens_.take();
         const std::string word = (token.text.starts_with(prefix) ? "" : std::string(prefix)) + std::string(token.text);
         if (token.kind != TokenKind::Word)
-            return tokens_.fail(token.at, shown(token) + " belongs to no field of section " + std::string(name),
+            return tokens_.fail(token.at, shown(token) + " is not a field of section " + std::string(name),
                                 "remove it");
         if (!readNamed(word, attributes)) skipUnknown(name, token);
     }
@@ -95,7 +95,7 @@ bool SectionReader::readOldField(const Token& token, Connection&) {
         today = "launch_timeout";
     else
         return false;
-    tokens_.warn(token.at, std::string(token.text) + " is an attribute of the node today",
+    tokens_.warn(token.at, std::string(token.text) + " is now an attribute of the node",
                  "write attributes { " + std::string(today) + " ... } in the node");
     return readNamed(today, oldLaunch_);
 }
@@ -120,18 +120,18 @@ void SectionReader::finish(Config& config) {
 
 bool SectionReader::readOldField(const Token& token, ConfigAttributes& attributes) {
     if (token.text == "eyeBase") {
-        tokens_.warn(token.at, "eyeBase is called eye_base today", "rename it");
+        tokens_.warn(token.at, "eyeBase was renamed to eye_base", "rename it");
         return readNamed("eye_base", attributes);
     }
     if (token.text != "focus_distance" && token.text != "focus_mode") return false;
-    tokens_.warn(token.at, std::string(token.text) + " is a field of observers today", "write it in each observer");
+    tokens_.warn(token.at, std::string(token.text) + " is now a field of observers", "write it in each observer");
     return readNamed(token.text, oldFocus_);
 }
 
 bool SectionReader::readOldField(const Token& token, Config& config) {
     ConfigAttributes& a = config.attributes;
     if (token.text != "eyeBase" && token.text != "eye_base") return false;
-    tokens_.warn(token.at, std::string(token.text) + " is an attribute of the configuration today",
+    tokens_.warn(token.at, std::string(token.text) + " is now an attribute of the configuration",
                  "write attributes { eye_base ... }");
     return readNamed("eye_base", a);
 }
@@ -178,7 +178,7 @@ void SectionReader::readLoadBalancer(SourcePosition at, std::vector<Equalizer>& 
     while (!tokens_.ended() && !tokens_.peek().is('}')) {
         const Token& token = tokens_.take();
         if (token.kind != TokenKind::Word)
-            return tokens_.fail(token.at, shown(token) + " belongs to no field of section loadBalancer", "remove it");
+            return tokens_.fail(token.at, shown(token) + " is not a field of section loadBalancer", "remove it");
         if (token.text == "mode")
             balancer.mode = tokens_.take().text;
         else if (!readNamed(token.text, balancer))
@@ -188,9 +188,9 @@ void SectionReader::readLoadBalancer(SourcePosition at, std::vector<Equalizer>& 
     auto equalizer = todaysEqualizer(balancer, at);
     if (!equalizer)
         return tokens_.fail(at, "loadBalancer has no mode " + balancer.mode,
-                            "it is one of 2D, DB, HORIZONTAL, VERTICAL, DPLEX, DFR, MONITOR");
+                            "use 2D, DB, HORIZONTAL, VERTICAL, DPLEX, DFR or MONITOR");
     const std::string today(std::visit([](const auto& e) { return sectionName(e); }, *equalizer));
-    tokens_.warn(at, "loadBalancer is called " + today + " today", "write " + today);
+    tokens_.warn(at, "loadBalancer was renamed to " + today, "write " + today);
     targets.push_back(std::move(*equalizer));
 }
 

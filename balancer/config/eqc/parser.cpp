@@ -21,14 +21,13 @@ public:
         file_.heading = list.heading;
         if (list.version > kCurrentVersion)
             diagnostics.warn({1, 1}, "the file has a later version of the format than 1.2",
-                             "look at what is said to be unknown");
+                             "check the fields that are reported as unknown");
     }
 
     ConfigFile run() {
         while (!tokens_.ended()) readTop();
         if (!haveConfig_ && !tokens_.failed())
-            tokens_.fail(tokens_.peek().at, "there is no configuration in this file",
-                         "it begins with: server { config {");
+            tokens_.fail(tokens_.peek().at, "the file contains no configuration", "it begins with: server { config {");
         return std::move(file_);
     }
 
@@ -38,10 +37,10 @@ private:
         const Token& token = tokens_.take();
         if (token.kind != TokenKind::Word) {
             if (!haveConfig_)
-                return tokens_.fail(token.at, shown(token) + " stands before any section",
+                return tokens_.fail(token.at, shown(token) + " is outside of any section",
                                     "a file begins with global { or server {");
-            return tokens_.warn(token.at, shown(token) + " behind the configuration is left out",
-                                "look for a bracket that is missing before, or remove it");
+            return tokens_.warn(token.at, shown(token) + " after the configuration is ignored",
+                                "check for a missing bracket before it, or remove it");
         }
         if (token.text == "global")
             readGlobals();
@@ -67,9 +66,9 @@ private:
             else if (token.kind == TokenKind::Word && token.text != "global")
                 readGlobal(token);
             else if (token.kind == TokenKind::End)
-                return tokens_.fail(token.at, "section global ends with }, here is the end of the file", "add it");
+                return tokens_.fail(token.at, "section global ends with }, but the file ends here", "add it");
             else if (token.kind != TokenKind::Word)
-                return tokens_.fail(token.at, shown(token) + " is no global attribute", "remove it");
+                return tokens_.fail(token.at, shown(token) + " is not a global attribute", "remove it");
         }
     }
 
@@ -77,7 +76,7 @@ private:
         const GlobalAttribute* attribute = findGlobalAttribute(token.text);
         if (attribute == nullptr) return skip(token, "global");
         if (attribute->name != token.text)
-            tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(attribute->name) + " today",
+            tokens_.warn(token.at, std::string(token.text) + " was renamed to " + std::string(attribute->name),
                          "rename it");
         if (const auto value = readGlobalValue(tokens_, *attribute))
             file_.globals[std::string(attribute->name)] = *value;
@@ -94,8 +93,8 @@ private:
             } else if (token.kind == TokenKind::Word) {
                 skip(token, "server");
             } else {
-                return tokens_.fail(token.at, shown(token) + " belongs to no field of section server",
-                                    "remove it, or look for a bracket that is missing before");
+                return tokens_.fail(token.at, shown(token) + " is not a field of section server",
+                                    "remove it, or check for a missing bracket before it");
             }
         }
         tokens_.expect('}', "section server");
@@ -106,13 +105,13 @@ private:
             haveConfig_ = true;
             return sections_.readSection("config", token.at, file_.config);
         }
-        tokens_.warn(token.at, "there is a second configuration, it is left out", "write it into a file of its own");
+        tokens_.warn(token.at, "a second configuration is ignored", "move it to its own file");
         Config unused;
         sections_.readSection("config", token.at, unused);
     }
 
     void skip(const Token& token, const std::string& where) {
-        tokens_.warn(token.at, "nothing in " + where + " is called " + std::string(token.text) + ", it is left out",
+        tokens_.warn(token.at, "unknown field in " + where + ": " + std::string(token.text) + ", it is ignored",
                      "check its spelling, or remove it");
         tokens_.skipValue();
         // Skips a value that is a word, such as ON. Every word that begins a field is followed by a bracket or a value.
@@ -143,12 +142,12 @@ ConfigFile readConfigFile(const std::string& path, Diagnostics& diagnostics) {
         text.resize(static_cast<size_t>(in.gcount()));
     }
     if (!in.eof() && text.size() <= kMaxBytes) {
-        diagnostics.error({}, std::string("can't be read: ") + std::strerror(errno != 0 ? errno : EIO),
+        diagnostics.error({}, std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EIO),
                           "check the name and its permissions");
         return {};
     }
     if (text.size() > kMaxBytes) {
-        diagnostics.error({}, "has more than 16 MiB", "name a configuration file");
+        diagnostics.error({}, "is larger than 16 MiB", "choose a configuration file");
         return {};
     }
     return parseConfig(text, diagnostics);

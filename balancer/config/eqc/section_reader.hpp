@@ -14,8 +14,7 @@ public:
     template <class Section> void readSection(std::string_view name, SourcePosition at, Section& section) {
         if constexpr (requires { section.at; }) section.at = at;
         if (depth_ >= kDeepest)
-            return tokens_.fail(tokens_.peek().at,
-                                "more than " + std::to_string(kDeepest) + " sections stand in each other",
+            return tokens_.fail(tokens_.peek().at, "more than " + std::to_string(kDeepest) + " sections are nested",
                                 "check the brackets");
         ++depth_;
         const std::string_view outer = section_;
@@ -134,16 +133,15 @@ private:
     template <class Section> void readField(std::string_view name, Section& section) {
         const Token& token = tokens_.peek();
         if (token.kind != TokenKind::Word) {
-            return tokens_.fail(token.at, shown(token) + " belongs to no field of section " + std::string(name),
-                                "remove it, or look for a bracket that is missing before");
+            return tokens_.fail(token.at, shown(token) + " is not a field of section " + std::string(name),
+                                "remove it, or check for a missing bracket before it");
         }
         tokens_.take();
         wordAt_ = token.at;
         if (readNamed(token.text, section) || readOldField(token, section)) return;
         if constexpr (requires { section.at; }) {
             if (const std::string_view today = todaysWord(name, token.text); !today.empty()) {
-                tokens_.warn(token.at, std::string(token.text) + " is called " + std::string(today) + " today",
-                             "rename it");
+                tokens_.warn(token.at, std::string(token.text) + " was renamed to " + std::string(today), "rename it");
                 if (readNamed(today, section)) return;
             }
         }

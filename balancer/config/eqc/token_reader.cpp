@@ -18,8 +18,8 @@ bool TokenReader::expect(char bracket, std::string_view after) {
     if (accept(bracket)) return true;
     const bool opens = bracket == '{' || bracket == '[' || bracket == '(';
     fail(peek().at,
-         std::string(after) + (opens ? " begins with " : " ends with ") + bracket + ", here is " + shown(peek()),
-         opens ? "add it" : "add it, or look for a bracket that is missing before");
+         std::string(after) + (opens ? " begins with " : " ends with ") + bracket + ", found " + shown(peek()),
+         opens ? "add it" : "add it, or check for a missing bracket before it");
     return false;
 }
 

@@ -48,7 +48,7 @@ void ValueReader::read(std::string& value) {
     if (token.kind == TokenKind::String)
         value = token.text;
     else
-        tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a text in double quotes");
+        tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token), "use text in double quotes");
 }
 
 void ValueReader::read(char& value) {
@@ -56,26 +56,25 @@ void ValueReader::read(char& value) {
     if (token.kind == TokenKind::Character)
         value = token.text.front();
     else
-        tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token),
-                     "it is one character in single quotes");
+        tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token),
+                     "use one character in single quotes");
 }
 
 void ValueReader::read(double& value) {
     const Token& token = tokens_.take();
     if (token.kind != TokenKind::Number)
-        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number");
+        return tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token), "use a number");
     const std::string_view text = withoutPlus(token.text);
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc::invalid_argument)
-        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is a number");
+        return tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token), "use a number");
     if (error == std::errc::result_out_of_range) {
         // Numbers too small for a double are 0.
         const size_t point = text.find('.');
         const bool tiny = text.find("e-") != std::string_view::npos ||
                           (point != std::string_view::npos && text.find_first_of("123456789") > point);
-        if (!tiny)
-            return tokens_.fail(token.at, std::string(field_) + " is too large a number", "give one that can be meant");
+        if (!tiny) return tokens_.fail(token.at, std::string(field_) + " is too large", "use a smaller number");
         number = 0;
     }
     value = number;
@@ -83,22 +82,22 @@ void ValueReader::read(double& value) {
 
 void ValueReader::read(int32_t& value) {
     const Token& token = tokens_.take();
-    const std::string remedy = "it is a whole number";
+    const std::string remedy = "use a whole number";
     if (token.kind != TokenKind::Number)
-        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), remedy);
+        return tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token), remedy);
     std::string_view text = withoutPlus(token.text);
     if (const size_t point = text.find('.'); point != std::string_view::npos &&
                                              text.find_first_not_of('0', point + 1) == std::string_view::npos &&
                                              point > 0) {
-        tokens_.warn(token.at, std::string(field_) + " is a whole number", "write it without a point");
+        tokens_.warn(token.at, std::string(field_) + " is a whole number", "omit the decimal point");
         text = text.substr(0, point);
     }
     int32_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc::result_out_of_range)
-        return tokens_.fail(token.at, std::string(field_) + " is too large a number", "give one below 2147483648");
+        return tokens_.fail(token.at, std::string(field_) + " is too large", "use a number below 2147483648");
     if (error != std::errc{} || end != text.data() + text.size())
-        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), remedy);
+        return tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token), remedy);
     value = number;
 }
 
@@ -106,7 +105,7 @@ void ValueReader::read(uint32_t& value) {
     const Token& token = tokens_.peek();
     int32_t number = 0;
     read(number);
-    if (number < 0) return tokens_.fail(token.at, std::string(field_) + " can't be negative", "give 0 or more");
+    if (number < 0) return tokens_.fail(token.at, std::string(field_) + " cannot be negative", "use 0 or more");
     value = static_cast<uint32_t>(number);
 }
 
@@ -152,8 +151,8 @@ void ValueReader::read(Reference& value) {
     const Token& token = tokens_.peek();
     if (token.kind == TokenKind::String) return read(value.emplace<std::string>());
     if (token.kind == TokenKind::Number) return read(value.emplace<uint32_t>());
-    tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token),
-                 "it is a name in double quotes, or a number that counts from 0");
+    tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token),
+                 "use a name in double quotes, or an index from 0");
 }
 
 void ValueReader::read(LayoutReference& value) {
@@ -174,14 +173,14 @@ void ValueReader::read(LayoutReference& value) {
 void ValueReader::read(ChannelReference& value) {
     if (tokens_.peek().kind == TokenKind::String) return read(value.emplace<std::string>());
     auto& path = value.emplace<ChannelPath>();
-    if (!tokens_.expect('(', "a way to a channel that is not a name")) return;
+    if (!tokens_.expect('(', "a channel path")) return;
     while (!tokens_.ended() && !tokens_.peek().is(')')) {
         std::pair<PathStep, Reference> step;
         read(step.first);
         read(step.second);
         path.steps.push_back(std::move(step));
     }
-    tokens_.expect(')', "the way to a channel");
+    tokens_.expect(')', "the channel path");
 }
 
 void ValueReader::readAttribute(int32_t& value) {
@@ -189,19 +188,19 @@ void ValueReader::readAttribute(int32_t& value) {
     if (token.kind == TokenKind::Number) return read(value);
     const AttributeWord* word = token.kind == TokenKind::Word ? findAttributeWord(token.text) : nullptr;
     if (word == nullptr)
-        return tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token),
-                            "it is a number or a word such as ON, OFF, AUTO");
+        return tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token),
+                            "use a number or a word such as ON, OFF, AUTO");
     tokens_.take();
     value = word->value;
     if (word->old)
-        tokens_.warn(token.at, std::string(token.text) + " is read as its capital word",
+        tokens_.warn(token.at, std::string(token.text) + " is read in capitals",
                      "write " + attributeText(value, AttributeKind::Switch));
     if (word->takesNumber) {
         uint32_t number = 0;
         read(number);
         if (number > static_cast<uint32_t>(kMaxCores))
-            return tokens_.fail(token.at, std::string(field_) + " names core or socket " + std::to_string(number),
-                                "count them from 0, up to " + std::to_string(kMaxCores));
+            return tokens_.fail(token.at, std::string(field_) + " selects core or socket " + std::to_string(number),
+                                "count from 0, up to " + std::to_string(kMaxCores));
         value += static_cast<int32_t>(number);
     }
 }

@@ -46,7 +46,7 @@ public:
         for (const auto& s : spellings(E{})) {
             if (wordOf(s.value) == s.word) choices += (choices.empty() ? "" : ", ") + std::string(s.word);
         }
-        tokens_.fail(token.at, std::string(field_) + " can't be " + shown(token), "it is one of " + choices);
+        tokens_.fail(token.at, std::string(field_) + " cannot be " + shown(token), "use one of " + choices);
     }
 
     // [ A B ]

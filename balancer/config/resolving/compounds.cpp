@@ -102,12 +102,13 @@ Index channelOf(Resolver& r, const ChannelReference& reference, SourcePosition a
     if (const auto* name = std::get_if<std::string>(&reference)) {
         const Index channel = Resolver::named(r.out.channels, *name);
         if (channel == kNone)
-            r.diagnostics.error(at, "there is no channel \"" + *name + "\"", "define it in a window, or name another");
+            r.diagnostics.error(at, "unknown channel \"" + *name + "\"",
+                                "define it in a window, or choose another one");
         return channel;
     }
     PathFollower way(r);
     if (const std::string missing = way.follow(std::get<ChannelPath>(reference)); !missing.empty()) {
-        r.diagnostics.error(at, missing, "check the way to the compound's channel");
+        r.diagnostics.error(at, missing, "check the path of the compound's channel");
         return kNone;
     }
     const Index channel = destinationChannel(r.out, way.segment(), way.view());
@@ -115,9 +116,9 @@ Index channelOf(Resolver& r, const ChannelReference& reference, SourcePosition a
         const ResolvedSegment& s = r.out.segments[Resolver::at(way.segment())];
         const ResolvedView& v = r.out.views[Resolver::at(way.view())];
         const std::string& layout = r.out.layouts[Resolver::at(v.layout)].name;
-        r.diagnostics.error(
-            at, "no view of layout \"" + layout + "\" that is meant here is seen on segment \"" + s.name + "\"",
-            "show the layout on that canvas, or name another segment or view");
+        r.diagnostics.error(at,
+                            "segment \"" + s.name + "\" shows none of the selected views of layout \"" + layout + "\"",
+                            "add the layout to that canvas, or choose another segment or view");
     }
     return channel;
 }
@@ -133,12 +134,12 @@ ResolvedFrame frameOf(Resolver& r, const Frame& f) {
     frame.exact = f.exact.value_or(value::kOn) != value::kOff;
     frame.at = f.at;
     if (frame.zoom && !frame.zoom->valid()) {
-        r.diagnostics.warn(f.at, "a zoom must be above 0, this one is left out", "give two numbers above 0");
+        r.diagnostics.warn(f.at, "a zoom must be above 0, this one is ignored", "use two numbers above 0");
         frame.zoom.reset();
     }
     if (frame.viewport.empty()) {
-        r.diagnostics.warn(f.at, "the viewport of this frame has no size, it is the whole",
-                           "give x, y, width and height as parts of 1");
+        r.diagnostics.warn(f.at, "the viewport of this frame is empty, the whole frame is used",
+                           "set x, y, width and height as fractions of 1");
         frame.viewport = {};
     }
     return frame;
@@ -152,29 +153,28 @@ void take(Resolver& r, const std::optional<T>& given, T& target, SourcePosition 
     if (good(*given))
         target = *given;
     else
-        r.diagnostics.warn(at, std::string(what) + ", it is left out", remedy);
+        r.diagnostics.warn(at, std::string(what) + ", it is ignored", remedy);
 }
 
 void takeParameters(Resolver& r, const Compound& c, ResolvedCompound& to) {
-    take(r, c.viewport, to.viewport, c.at, "the viewport of this compound has no size or lies outside of 0 to 1",
-         "give x, y, width and height as parts of 1", [](const Viewport& v) {
+    take(r, c.viewport, to.viewport, c.at, "the viewport of this compound is empty or outside of 0 to 1",
+         "set x, y, width and height as fractions of 1", [](const Viewport& v) {
              return v.w >= 0 && v.h >= 0 && v.x >= 0 && v.y >= 0 && v.x + v.w <= 1.001 && v.y + v.h <= 1.001;
          });
-    take(r, c.range, to.range, c.at, "the range of this compound ends before it begins or lies outside of 0 to 1",
-         "give two numbers from 0 to 1",
+    take(r, c.range, to.range, c.at, "the range of this compound is reversed or outside of 0 to 1",
+         "set two numbers from 0 to 1",
          [](const Range& v) { return v.start >= 0 && v.end >= v.start && v.end <= 1.001; });
-    take(r, c.zoom, to.zoom, c.at, "this zoom is not above 0, or above 1000", "give two numbers above 0",
+    take(r, c.zoom, to.zoom, c.at, "this zoom is not above 0, or above 1000", "use two numbers above 0",
          [](const Zoom& z) { return z.valid() && z.x <= 1000 && z.y <= 1000; });
-    take(r, c.pixel, to.pixel, c.at, "this pixel kernel has no pixel",
-         "give x, y, width and height: 0 <= x < width, 0 <= y < height",
+    take(r, c.pixel, to.pixel, c.at, "this pixel kernel is invalid",
+         "set x, y, width and height with 0 <= x < width, 0 <= y < height",
          [](const PixelKernel& k) { return k.valid() && k.w <= 4096 && k.h <= 4096; });
-    take(r, c.subPixel, to.subPixel, c.at, "there is no such subpixel",
-         "give its number and how many there are: 0 <= number < count",
+    take(r, c.subPixel, to.subPixel, c.at, "this subpixel is invalid", "set index and count with 0 <= index < count",
          [](const SubPixel& s) { return s.valid() && s.size <= 65536; });
     if (c.period && *c.period > 0)
         to.period = c.period;
     else if (c.period)
-        r.diagnostics.warn(c.at, "a period of 0 frames is none, it is left out", "give 1 or more");
+        r.diagnostics.warn(c.at, "a period of 0 frames is invalid, it is ignored", "use 1 or more");
     to.phase = c.phase;
 }
 
@@ -194,7 +194,7 @@ Index addCompound(Resolver& r, const Compound& c, Index parent) {
     takeParameters(r, c, compound);
     if (c.surface && !screenOf(*c.surface).usable())
         r.diagnostics.error(c.at, "the wall or projection of this compound has no area",
-                            "give a rectangle, or distance and angles above 0");
+                            "set a rectangle, or distance and angles above 0");
     if (c.channel) compound.channel = channelOf(r, *c.channel, c.at);
     for (const Frame& f : c.outputFrames) compound.outputFrames.push_back(frameOf(r, f));
     for (const Frame& f : c.inputFrames) compound.inputFrames.push_back(frameOf(r, f));

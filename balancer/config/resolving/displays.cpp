@@ -24,19 +24,18 @@ template <class T> Index find(const std::vector<T>& all, const Reference& refere
 Viewport areaOf(Resolver& r, const std::optional<Viewport>& given, SourcePosition at, const char* of) {
     if (!given) return {};
     if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6) return *given;
-    r.diagnostics.warn(at, std::string("the viewport of this ") + of + " has no size, it is the whole",
-                       "give x, y, width and height as parts of 1");
+    r.diagnostics.warn(at, std::string("the viewport of this ") + of + " is empty, the whole area is used",
+                       "set x, y, width and height as fractions of 1");
     return {};
 }
 
 void checkSurface(Resolver& r, const ProjectionSurface& surface) {
     if (screenOf(surface).usable()) return;
     if (const auto* wall = std::get_if<Wall>(&surface))
-        r.diagnostics.error(wall->at, "this wall is no rectangle",
-                            "give three corners of one, with right angles and an area");
+        r.diagnostics.error(wall->at, "this wall is not a rectangle", "set three corners of a rectangle with an area");
     else
-        r.diagnostics.error(std::get<Projection>(surface).at, "this projection shows nothing",
-                            "give a distance above 0 and angles between 0 and 180 degrees");
+        r.diagnostics.error(std::get<Projection>(surface).at, "this projection has no area",
+                            "set a distance above 0 and angles between 0 and 180 degrees");
 }
 
 void addObservers(Resolver& r) {
@@ -53,8 +52,8 @@ void addObservers(Resolver& r) {
         observer.vrpnTracker = o.vrpnTracker.value_or("");
         observer.at = o.at;
         if (!(observer.focusDistance > 0))
-            r.diagnostics.error(o.at, "a focus distance of " + std::to_string(observer.focusDistance) + " m is none",
-                                "give one above 0");
+            r.diagnostics.error(o.at, "invalid focus distance: " + std::to_string(observer.focusDistance) + " m",
+                                "set a distance above 0");
         r.out.observers.push_back(observer);
     }
 }
@@ -75,8 +74,8 @@ void addViews(Resolver& r, Index layout, const std::vector<View>& views) {
         if (v.observer) {
             view.observer = find(r.out.observers, *v.observer);
             if (view.observer == kNone)
-                r.diagnostics.error(v.at, "there is no observer " + shownReference(*v.observer),
-                                    "define one, or name another");
+                r.diagnostics.error(v.at, "unknown observer " + shownReference(*v.observer),
+                                    "define it, or choose another one");
         }
         r.out.layouts[Resolver::at(layout)].views.push_back(Resolver::add(r.out.views, view));
     }
@@ -94,8 +93,8 @@ void cutBezel(Resolver& r, ResolvedSegment& s, const Bezel& bezel, bool ownSurfa
     const Viewport seen{bezel.left / widthMm, bezel.bottom / heightMm, 1 - (bezel.left + bezel.right) / widthMm,
                         1 - (bezel.bottom + bezel.top) / heightMm};
     if (std::min({bezel.left, bezel.right, bezel.bottom, bezel.top}) < 0 || seen.empty()) {
-        return r.diagnostics.error(s.at, "bezels leave nothing of this segment, or are negative",
-                                   "they are millimetres of left, right, bottom and top");
+        return r.diagnostics.error(s.at, "bezels cover the whole segment, or are negative",
+                                   "set millimetres of left, right, bottom and top");
     }
     s.viewport = compose(s.outer, seen);
     s.surfacePart = ownSurface ? seen : s.viewport;
@@ -104,7 +103,7 @@ void cutBezel(Resolver& r, ResolvedSegment& s, const Bezel& bezel, bool ownSurfa
 Index namedChannel(Resolver& r, const std::string& name, SourcePosition at) {
     const Index channel = Resolver::named(r.out.channels, name);
     if (channel == kNone)
-        r.diagnostics.error(at, "there is no channel \"" + name + "\"", "define it in a window, or name another");
+        r.diagnostics.error(at, "unknown channel \"" + name + "\"", "define it in a window, or choose another one");
     return channel;
 }
 
@@ -123,7 +122,7 @@ void addSegment(Resolver& r, Index canvas, const Canvas& c, const Segment& s) {
     if (s.channel)
         segment.channel = namedChannel(r, *s.channel, s.at);
     else
-        r.diagnostics.warn(s.at, "this segment has no channel and shows nothing", "give it the name of a channel");
+        r.diagnostics.warn(s.at, "this segment has no channel and shows nothing", "set the name of a channel");
     for (const std::string& copy : s.copies) segment.copies.push_back(namedChannel(r, copy, s.at));
     const std::string own =
         segment.name.empty() ? std::to_string(r.out.canvases[Resolver::at(canvas)].segments.size()) : segment.name;
@@ -148,15 +147,15 @@ void addCanvas(Resolver& r, const Canvas& c) {
                                                                                : Reference(std::get<uint32_t>(l));
             layout = find(r.out.layouts, reference);
             if (layout == kNone) {
-                r.diagnostics.error(c.at, "there is no layout " + shownReference(reference),
-                                    "define it, or name another");
+                r.diagnostics.error(c.at, "unknown layout " + shownReference(reference),
+                                    "define it, or choose another one");
                 continue;
             }
         }
         canvas.layouts.push_back(layout);
     }
     if (c.layouts.empty())
-        r.diagnostics.warn(c.at, "this canvas has no layout and shows nothing", "give it the name of a layout");
+        r.diagnostics.warn(c.at, "this canvas has no layout and shows nothing", "set the name of a layout");
     const Index index = Resolver::add(r.out.canvases, canvas);
     for (const Segment& s : c.segments) addSegment(r, index, c, s);
     addDestinationChannels(r, index);

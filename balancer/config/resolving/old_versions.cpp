@@ -71,16 +71,15 @@ void mendVersion11(Resolver& r) {
         if (node.isApplication || listens.empty()) continue;
         if (!node.host.empty()) {
             if (old && node.host != listens)
-                r.diagnostics.warn(
-                    node.at,
-                    "this node has a host and its connection has one, before version 1.2 the connection's counts",
-                    "say #Equalizer 1.2 ascii, or give one of them");
+                r.diagnostics.warn(node.at,
+                                   "this node and its connection have different hosts; before version 1.2 the "
+                                   "connection's host is used",
+                                   "write #Equalizer 1.2 ascii, or remove one of them");
             if (old) node.host = listens;
             continue;
         }
         if (!old)
-            r.diagnostics.warn(node.at,
-                               "this node has no host, it is started on that of its first connection, " + listens,
+            r.diagnostics.warn(node.at, "this node has no host, the one of its first connection is used: " + listens,
                                "write host \"" + listens + "\"");
         node.host = listens;
     }

@@ -14,9 +14,9 @@ Viewport screenAreaOf(Resolver& r, const std::optional<Viewport>& given, SourceP
     if (given->w > 0 && given->h > 0 && given->w <= 1e6 && given->h <= 1e6 && std::abs(given->x) <= 1e6 &&
         std::abs(given->y) <= 1e6)
         return *given;
-    r.diagnostics.warn(
-        at, std::string("the viewport of this ") + of + " has no size, or one that no screen has, it is the whole",
-        "give x, y, width and height in pixels, or as parts of 1");
+    r.diagnostics.warn(at,
+                       std::string("the viewport of this ") + of + " is empty or too large, the whole screen is used",
+                       "set x, y, width and height in pixels, or as fractions of 1");
     return {};
 }
 
@@ -25,8 +25,8 @@ std::vector<Connection> connectionsOf(Resolver& r, const std::vector<Connection>
     for (Connection& c : all) {
         fillAttributes(c, "CONNECTION", r.defaults);
         if (c.port && *c.port > 65535)
-            r.diagnostics.error(c.at, "port " + std::to_string(*c.port) + " does not exist",
-                                "give one up to 65535, or 0 for any");
+            r.diagnostics.error(c.at, "port " + std::to_string(*c.port) + " is invalid",
+                                "use a port up to 65535, or 0 for any");
     }
     return all;
 }

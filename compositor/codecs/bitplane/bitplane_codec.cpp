@@ -71,16 +71,16 @@ public:
         if (whole_) table_ = bytes.data(), left_ = bytes.subspan(4 * grid.count());
     }
     // Returns null, or the error.
-    [[nodiscard]] const char* wrong() const { return whole_ ? nullptr : "its table of tiles is cut short"; }
+    [[nodiscard]] const char* wrong() const { return whole_ ? nullptr : "its table of tiles is truncated"; }
     const char* next(std::span<const std::byte>& tile) {
         const size_t size = loadLittle<uint32_t>(table_);
-        if (size > left_.size()) return "a tile is cut short";
+        if (size > left_.size()) return "a tile is truncated";
         tile = left_.first(size);
         left_ = left_.subspan(size);
         table_ += 4;
         return nullptr;
     }
-    [[nodiscard]] const char* ends() const { return left_.empty() ? nullptr : "there are bytes behind the last tile"; }
+    [[nodiscard]] const char* ends() const { return left_.empty() ? nullptr : "there are bytes after the last tile"; }
 
 private:
     bool whole_;

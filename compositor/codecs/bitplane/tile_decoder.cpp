@@ -15,18 +15,18 @@ const char* TileDecoder::begin(const TileShape& shape, std::span<const std::byte
     left_ = bytes.subspan(1);
     const auto kind = std::to_integer<unsigned>(bytes[0]);
     if (kind > static_cast<unsigned>(TileKind::Strips) + static_cast<unsigned>(Predictor::Slope))
-        return "a tile is of an unknown kind";
+        return "a tile has an unknown kind";
     kind_ = kind < static_cast<unsigned>(TileKind::Strips) ? static_cast<TileKind>(kind) : TileKind::Strips;
     if (kind_ == TileKind::Raw)
-        return left_.size() == shape.rowBytes() * shape.rows ? nullptr : "a raw tile has another size";
+        return left_.size() == shape.rowBytes() * shape.rows ? nullptr : "a raw tile has a wrong size";
     if (kind_ == TileKind::Uniform) {
         const size_t pixel = shape.pixelBytes();
-        if (left_.size() != pixel) return "a uniform tile has another size than its pixel";
+        if (left_.size() != pixel) return "a uniform tile has a wrong size";
         for (size_t at = 0; at < shape.rowBytes(); at += 4) std::memcpy(row_.data() + at, left_.data() + at % pixel, 4);
         return nullptr;
     }
     predictor_ = static_cast<Predictor>(kind - static_cast<unsigned>(TileKind::Strips));
-    if (left_.size() > kTileBoundBytes) return "a tile is larger than any";
+    if (left_.size() > kTileBoundBytes) return "a tile exceeds the maximum size";
     row_.fill(std::byte{0});
     moved_ = false;
     if (shape.hasWholeBlocks()) return nullptr;
@@ -70,7 +70,7 @@ const char* TileDecoder::packedStrip(unsigned y) {
         moved_ = true;
     }
     const size_t size = parseStrip(left_, shape_.wholeBlocks(), strip_);
-    if (size == 0) return "a strip is cut short or holds an impossible width";
+    if (size == 0) return "a strip is truncated or has an invalid width";
     left_ = left_.subspan(size);
     std::byte* row = pixels_ + y * pixelStrideBytes_;
     const StripKind kind{shape_.arithmetic, predictor_, y == 0};
@@ -82,7 +82,7 @@ const char* TileDecoder::packedStrip(unsigned y) {
 }
 
 const char* TileDecoder::finish() const {
-    return kind_ != TileKind::Strips || left_.empty() ? nullptr : "a tile has bytes behind its end";
+    return kind_ != TileKind::Strips || left_.empty() ? nullptr : "a tile has bytes after its end";
 }
 
 } // namespace mural::compositor::bitplane

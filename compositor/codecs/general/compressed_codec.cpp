@@ -35,7 +35,7 @@ Result<size_t> CompressedCodec::encode(const PlaneView& plane, std::span<std::by
     const size_t size = compressor_->compress(bytes, into.subspan(head));
     if (size == 0)
         return Error{"codec " + name_ + ": " + std::to_string(bytes.size()) +
-                     " bytes can't be compressed: they are too many, or there is no memory; use smaller pictures or "
+                     " bytes cannot be compressed: they are too many, or memory is short; use smaller pictures or "
                      "another codec"};
     return head + size;
 }
@@ -46,16 +46,16 @@ Result<void> CompressedCodec::decode(std::span<const std::byte> bytes, const Mut
     if (inner_) {
         if (bytes.size() < 4) return damaged("its size is missing");
         const size_t size = loadLittle<uint32_t>(bytes.data());
-        if (size > inner_->boundBytes(shapeOf(into))) return damaged("it says to be larger than any");
+        if (size > inner_->boundBytes(shapeOf(into))) return damaged("its size exceeds the maximum");
         scratch_.resize(size);
-        if (!compressor_->decompress(bytes.subspan(4), scratch_)) return damaged("it can't be decompressed");
+        if (!compressor_->decompress(bytes.subspan(4), scratch_)) return damaged("it cannot be decompressed");
         return inner_->decode(scratch_, into);
     }
     if (isTight(into))
         return compressor_->decompress(bytes, {into.pixels, into.sizeBytes()}) ? Result<void>()
-                                                                               : damaged("it can't be decompressed");
+                                                                               : damaged("it cannot be decompressed");
     scratch_.resize(into.sizeBytes());
-    if (!compressor_->decompress(bytes, scratch_)) return damaged("it can't be decompressed");
+    if (!compressor_->decompress(bytes, scratch_)) return damaged("it cannot be decompressed");
     copyPlane(into, {into.format, into.width, into.height, static_cast<ptrdiff_t>(into.rowBytes()), scratch_.data()});
     return {};
 }

@@ -18,7 +18,7 @@ public:
     }
     [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes, const MutablePlaneView& into) override {
         if (bytes.size() != (into.empty() ? 0 : into.sizeBytes()))
-            return damagedPlane("raw", into, bytes.size(), "raw planes have the size of their rows");
+            return damagedPlane("raw", into, bytes.size(), "a raw plane has the size of its rows");
         if (!into.empty())
             copyPlane(into,
                       {into.format, into.width, into.height, static_cast<ptrdiff_t>(into.rowBytes()), bytes.data()});

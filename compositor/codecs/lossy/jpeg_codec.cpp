@@ -28,7 +28,7 @@ Result<size_t> JpegCodec::encode(const PlaneView& plane, std::span<std::byte> in
     if (plane.empty()) return size_t{0};
     const auto failed = [&](const char* why) {
         return Error{"codec jpeg: a plane of " + std::to_string(plane.width) + "x" + std::to_string(plane.height) +
-                     " can't be encoded: " + why + "; use another codec"};
+                     " cannot be encoded: " + why + "; use another codec"};
     };
     if (!compressor_) return failed("no memory");
     auto* to = reinterpret_cast<unsigned char*>(into.data() + 4);
@@ -46,21 +46,21 @@ Result<size_t> JpegCodec::encode(const PlaneView& plane, std::span<std::byte> in
 Result<void> JpegCodec::decode(std::span<const std::byte> bytes, const MutablePlaneView& into) {
     const auto damaged = [&](const char* what) { return damagedPlane("jpeg", into, bytes.size(), what); };
     if (into.empty()) return bytes.empty() ? Result<void>() : damaged("an empty plane has no bytes");
-    if (into.format != PlaneFormat::Rgba8) return damaged("only RGBA8 is");
+    if (into.format != PlaneFormat::Rgba8) return damaged("only RGBA8 is supported");
     if (bytes.size() < 4) return damaged("its size is missing");
     const size_t size = loadLittle<uint32_t>(bytes.data());
-    if (size > bytes.size() - 4) return damaged("it is cut short");
+    if (size > bytes.size() - 4) return damaged("it is truncated");
     const auto* jpeg = reinterpret_cast<const unsigned char*>(bytes.data() + 4);
     int width = 0, height = 0, subsampling = 0, colours = 0;
     if (!decompressor_ || tjDecompressHeader3(decompressor_, jpeg, size, &width, &height, &subsampling, &colours) != 0)
-        return damaged("it is no JPEG");
-    if (width != into.width || height != into.height) return damaged("it is of another size");
+        return damaged("it is not a JPEG picture");
+    if (width != into.width || height != into.height) return damaged("it has another size");
     // Damaged data decodes with a warning, which counts as an error.
     if (tjDecompress2(decompressor_, jpeg, size, reinterpret_cast<unsigned char*>(into.pixels), into.width,
                       static_cast<int>(into.strideBytes), into.height, TJPF_RGBA, TJFLAG_LIMITSCANS) != 0)
         return damaged(tjGetErrorStr2(decompressor_));
     const size_t alpha = alpha_.decode(bytes.subspan(4 + size), into);
-    return alpha != 0 && 4 + size + alpha == bytes.size() ? Result<void>() : damaged("its alpha is damaged");
+    return alpha != 0 && 4 + size + alpha == bytes.size() ? Result<void>() : damaged("its alpha is invalid");
 }
 
 } // namespace mural::compositor

@@ -69,9 +69,9 @@ Result<size_t> Yuv420Codec::encode(const PlaneView& plane, std::span<std::byte> 
 Result<void> Yuv420Codec::decode(std::span<const std::byte> bytes, const MutablePlaneView& into) {
     const auto damaged = [&](const char* what) { return damagedPlane("yuv420", into, bytes.size(), what); };
     if (into.empty()) return bytes.empty() ? Result<void>() : damaged("an empty plane has no bytes");
-    if (into.format != PlaneFormat::Rgba8) return damaged("only RGBA8 is");
+    if (into.format != PlaneFormat::Rgba8) return damaged("only RGBA8 is supported");
     const Layout l(shapeOf(into));
-    if (bytes.size() < l.sizeBytes()) return damaged("it is cut short");
+    if (bytes.size() < l.sizeBytes()) return damaged("it is truncated");
     const std::byte* y = bytes.data();
     const std::byte* u = y + l.width * l.height;
     const std::byte* v = u + l.halfWidth * l.halfHeight;
@@ -87,7 +87,7 @@ Result<void> Yuv420Codec::decode(std::span<const std::byte> bytes, const Mutable
         }
     }
     const size_t alpha = alpha_.decode(bytes.subspan(l.sizeBytes()), into);
-    return alpha != 0 && l.sizeBytes() + alpha == bytes.size() ? Result<void>() : damaged("its alpha is damaged");
+    return alpha != 0 && l.sizeBytes() + alpha == bytes.size() ? Result<void>() : damaged("its alpha is invalid");
 }
 
 } // namespace mural::compositor

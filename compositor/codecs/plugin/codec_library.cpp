@@ -10,13 +10,13 @@ namespace {
 
 // Requires equal versions: newer tables only grow, but the meaning of a function may have changed.
 std::string whyUnfit(const mural_codec_plugin* plugin, const std::string& name) {
-    if (!plugin) return "its " MURAL_CODEC_PLUGIN_ENTRY "() gives nothing";
+    if (!plugin) return "its " MURAL_CODEC_PLUGIN_ENTRY "() returns no table";
     if (plugin->version != MURAL_CODEC_PLUGIN_VERSION)
-        return "it is made for version " + std::to_string(plugin->version) +
-               " of the plug-in interface, this Mural has version " + std::to_string(MURAL_CODEC_PLUGIN_VERSION);
-    if (plugin->size_bytes < sizeof *plugin) return "its table is cut short";
+        return "it implements version " + std::to_string(plugin->version) +
+               " of the plug-in interface, but this Mural has version " + std::to_string(MURAL_CODEC_PLUGIN_VERSION);
+    if (plugin->size_bytes < sizeof *plugin) return "its table is truncated";
     if (!plugin->name || name != plugin->name)
-        return std::string("it carries the codec \"") + (plugin->name ? plugin->name : "") + "\"";
+        return std::string("it implements the codec \"") + (plugin->name ? plugin->name : "") + "\"";
     if (!plugin->create || !plugin->destroy || !plugin->bound_bytes || !plugin->encode || !plugin->decode)
         return "a function of its table is missing";
     return {};
@@ -48,7 +48,7 @@ public:
         if (!plugin_.encode(codec_, &p, into.data(), into.size(), &written, &error)) return Error{textOf(error)};
         if (written > into.size())
             return Error{std::string("codec ") + plugin_.name +
-                         ": it wrote more bytes than it said; the plug-in is faulty, use another codec"};
+                         ": it wrote more bytes than its bound; the plug-in is faulty, use another codec"};
         return static_cast<size_t>(written);
     }
     [[nodiscard]] Result<void> decode(std::span<const std::byte> bytes, const MutablePlaneView& into) override {
@@ -70,17 +70,18 @@ Result<const mural_codec_plugin*> openCodecPlugin(const std::string& name, const
     const std::string what = "codec " + name + ": ";
     std::error_code failed;
     if (!std::filesystem::exists(file, failed))
-        return Error{what + "there is no plug-in " + file + "; check the name, or build or install the plug-in"};
+        return Error{what + "the plug-in is missing: " + file + "; check the name, or build or install the plug-in"};
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library) {
         const char* said = dlerror(); // contains the file name
-        return Error{what + "can't load the plug-in: " + (said ? said : file) + "; install what it needs"};
+        return Error{what + "cannot load the plug-in: " + (said ? said : file) + "; install its dependencies"};
     }
     const auto entry = reinterpret_cast<mural_codec_plugin_entry>(dlsym(library, MURAL_CODEC_PLUGIN_ENTRY));
     const mural_codec_plugin* plugin = entry ? entry() : nullptr;
     const std::string unfit = entry ? whyUnfit(plugin, name) : "it has no function " MURAL_CODEC_PLUGIN_ENTRY;
     if (!unfit.empty())
-        return Error{what + file + " is no plug-in for this: " + unfit + "; build it with this Mural's codec_plugin.h"};
+        return Error{what + file + " is not a suitable plug-in: " + unfit +
+                     "; build it with this Mural's codec_plugin.h"};
     return plugin;
 }
 

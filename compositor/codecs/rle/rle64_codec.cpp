@@ -69,19 +69,19 @@ Result<void> Rle64Codec::decode(std::span<const std::byte> bytes, const MutableP
     for (int32_t y = 0; y < into.height && into.width > 0; ++y) {
         std::byte* row = into.row(y);
         for (size_t at = 0; at < words;) {
-            if (left.size() < 12) return damaged("it is cut short");
+            if (left.size() < 12) return damaged("it is truncated");
             const uint32_t head = loadLittle<uint32_t>(left.data());
             const size_t count = head & ~kRun;
             if (count == 0 || count > words - at) return damaged("a run is longer than its row");
             left = left.subspan(4);
-            if ((head & kRun) == 0 && left.size() < 8 * count) return damaged("it is cut short");
+            if ((head & kRun) == 0 && left.size() < 8 * count) return damaged("it is truncated");
             const size_t step = head & kRun ? 0 : 8;
             for (size_t i = 0; i < count; ++i, ++at)
                 std::memcpy(row + 8 * at, left.data() + step * i, std::min<size_t>(8, rowBytes - 8 * at));
             left = left.subspan(step ? 8 * count : 8);
         }
     }
-    return left.empty() ? Result<void>() : damaged("there are bytes behind its end");
+    return left.empty() ? Result<void>() : damaged("there are bytes after its end");
 }
 
 } // namespace mural::compositor

@@ -117,11 +117,11 @@ Result<void> RleComponentsCodec::decode(std::span<const std::byte> bytes, const 
         if (left.size() < 4) return damaged("a stream's size is missing");
         const size_t size = loadLittle<uint32_t>(left.data());
         left = left.subspan(4);
-        if (size > left.size()) return damaged("a stream is cut short");
+        if (size > left.size()) return damaged("a stream is truncated");
         stream = left.first(size);
         left = left.subspan(size);
     }
-    if (!left.empty()) return damaged("there are bytes behind its end");
+    if (!left.empty()) return damaged("there are bytes after its end");
     StreamReader readers[kStreams] = {StreamReader(streams[0]), StreamReader(streams[1]), StreamReader(streams[2]),
                                       StreamReader(streams[3])};
     for (int32_t y = 0; y < into.height; ++y) {
@@ -138,7 +138,7 @@ Result<void> RleComponentsCodec::decode(std::span<const std::byte> bytes, const 
         }
     }
     for (const StreamReader& r : readers)
-        if (!r.ended()) return damaged("a stream goes on behind its plane");
+        if (!r.ended()) return damaged("a stream continues after its plane");
     return {};
 }
 

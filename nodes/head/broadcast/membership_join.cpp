@@ -30,7 +30,7 @@ void StreamBroadcaster::keepLocked(uint32_t stream, std::span<const std::byte> p
 void StreamBroadcaster::replace(int node, std::unique_ptr<NodeConnection> link) {
     NodeConnection& before = this->link(node);
     before.end();
-    if (before.byMulticast() || before.joinsGroup()) multicast_->remove(node, "the head has lost it");
+    if (before.byMulticast() || before.joinsGroup()) multicast_->remove(node, "the head has lost its connection to it");
     std::erase_if(comers_, [node](const NodeMulticast::Change& came) { return came.node == node; });
     link->setFeed(NodeConnection::Feed::Nothing);
     link->setMember(false);

@@ -65,7 +65,7 @@ void NodeConnection::send(std::span<const std::byte> header, std::span<const std
         queueBytes_ += packet.size();
         if (queueBytes_ <= kMaxQueuedBytes) return queue_.push_back(std::move(packet));
     }
-    lose("it does not catch up: " + std::to_string(kMaxQueuedBytes >> 20) + " MiB of what programs send wait for it");
+    lose("it does not catch up: its queue exceeds " + std::to_string(kMaxQueuedBytes >> 20) + " MiB");
 }
 
 std::vector<std::vector<std::byte>> NodeConnection::takeQueue() {
@@ -108,7 +108,7 @@ void NodeConnection::watch(int64_t nowNs, int64_t patienceNs) {
     if (nowNs - std::exchange(watchedNs_, nowNs) > kWatchGapNs) excusedNs_ = nowNs;
     if (!alive() || saidBye() || inMessage_) return;
     if (nowNs - std::max(excusedNs_, heardNs_.load()) <= patienceNs) return;
-    lose("it said nothing for " + std::to_string(patienceNs / kNsPerS) + " s (stopped, or hung in its driver?)");
+    lose("no message for " + std::to_string(patienceNs / kNsPerS) + " s (stopped, or its driver hangs)");
 }
 
 void NodeConnection::end() {
@@ -183,8 +183,8 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         return handle([&] { return events_.nodeSynchronized(place_.node, message); });
     }
     }
-    return Error{"it sent a message that makes no sense (type " + std::to_string(header.type) + ", " +
-                 std::to_string(header.sizeBytes) + " bytes); is it of another build?"};
+    return Error{"it sent an invalid message (type " + std::to_string(header.type) + ", " +
+                 std::to_string(header.sizeBytes) + " bytes); install the same version of mural on all machines"};
 }
 
 Result<void> NodeConnection::readText(const wire::MessageHeader& header) {
@@ -204,14 +204,14 @@ Result<void> NodeConnection::readText(const wire::MessageHeader& header) {
 Result<void> NodeConnection::readInView(uint32_t sizeBytes) {
     uint32_t view = 0;
     std::vector<wire::ClientFrame> frames;
-    if (auto got = readList(sizeBytes, view, frames, "how far programs are"); !got) return got;
+    if (auto got = readList(sizeBytes, view, frames, "frame positions"); !got) return got;
     return handle([&] { return events_.nodeInView(place_.node, view, frames); });
 }
 
 Result<void> NodeConnection::readTurns(uint32_t sizeBytes) {
     uint32_t number = 0;
     std::vector<std::byte> turns;
-    if (auto got = readList(sizeBytes, number, turns, "whose turn it is"); !got) return got;
+    if (auto got = readList(sizeBytes, number, turns, "its phase"); !got) return got;
     return handle([&] { return events_.nodeTurns(place_.node, number, turns); });
 }
 
@@ -220,7 +220,7 @@ Result<void> NodeConnection::readList(uint32_t sizeBytes, uint32_t& first, std::
                                       const char* what) {
     const size_t entriesBytes = sizeBytes - std::min<size_t>(sizeBytes, sizeof(first));
     if (sizeBytes < sizeof(first) || entriesBytes > kMaxTextBytes || entriesBytes % sizeof(Entry) != 0)
-        return Error{std::string("it said ") + what + " in an impossible size"};
+        return Error{std::string("it sent ") + what + " with an invalid size"};
     if (auto got = readStruct(first); !got) return got;
     entries.resize(entriesBytes / sizeof(Entry));
     if (entries.empty()) return {};
@@ -230,9 +230,10 @@ Result<void> NodeConnection::readList(uint32_t sizeBytes, uint32_t& first, std::
 Result<void> NodeConnection::readNews(uint32_t sizeBytes) {
     wire::DriverEvent news{};
     if (sizeBytes < sizeof(news) || sizeBytes > sizeof(news) + kMaxTextBytes)
-        return Error{"it sent news of an impossible size"};
+        return Error{"it sent a driver event of invalid size"};
     if (auto got = readStruct(news); !got) return got;
-    if (news.textBytes != sizeBytes - sizeof(news)) return Error{"it sent news whose size and text do not fit"};
+    if (news.textBytes != sizeBytes - sizeof(news))
+        return Error{"it sent a driver event whose size contradicts its text"};
     auto bytes = readBytes(news.textBytes);
     if (!bytes) return bytes.error();
     const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
@@ -241,14 +242,13 @@ Result<void> NodeConnection::readNews(uint32_t sizeBytes) {
 
 Result<void> NodeConnection::readAnswer(uint32_t sizeBytes) {
     wire::ReplyPartHeader header{};
-    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes)
-        return Error{"it sent an answer of an impossible size"};
+    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes) return Error{"it sent a reply of invalid size"};
     if (auto got = readStruct(header); !got) return got;
     const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
     const bool rectangle = header.kind == static_cast<uint32_t>(wire::ReplyKind::Rectangle);
     const bool fits = !rectangle || (header.groupBytes <= 64 && rectangleFits(header.x, header.y, header.w, header.h,
                                                                               header.groupBytes, dataBytes));
-    if (!fits) return Error{"it sent an answer whose rectangle and bytes do not fit"};
+    if (!fits) return Error{"it sent a reply whose rectangle contradicts its size"};
     auto bytes = readBytes(dataBytes);
     if (!bytes) return bytes.error();
     return handle([&] { return events_.nodeAnswer(place_.node, header, std::move(*bytes)); });
@@ -256,13 +256,12 @@ Result<void> NodeConnection::readAnswer(uint32_t sizeBytes) {
 
 Result<void> NodeConnection::readPicture(uint32_t sizeBytes) {
     wire::PictureHeader header{};
-    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes)
-        return Error{"it sent a picture of an impossible size"};
+    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes) return Error{"it sent a picture of invalid size"};
     if (auto got = readStruct(header); !got) return got;
     const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
     const ScaledSize size = sizeOnWay(header.w, header.h, way_);
     if (!rectangleFits(header.x, header.y, size.w, size.h, 4, dataBytes))
-        return Error{"it sent a picture whose rectangle and bytes do not fit"};
+        return Error{"it sent a picture whose rectangle contradicts its size"};
     auto rows = readBytes(dataBytes);
     if (!rows) return rows.error();
     return handle([&] { return events_.nodePicture(place_.node, header, std::move(*rows)); });
@@ -270,21 +269,20 @@ Result<void> NodeConnection::readPicture(uint32_t sizeBytes) {
 
 Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
     wire::PictureHeader header{};
-    if (!pictures_) return Error{"it sent a packed picture, which nobody has asked for"};
-    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes)
-        return Error{"it sent a picture of an impossible size"};
+    if (!pictures_) return Error{"it sent an encoded picture that was not requested"};
+    if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes) return Error{"it sent a picture of invalid size"};
     if (auto got = readStruct(header); !got) return got;
     auto packed = readBytes(sizeBytes - static_cast<uint32_t>(sizeof(header)));
     if (!packed) return packed.error();
     const ScaledSize size = sizeOnWay(header.w, header.h, way_);
     const uint64_t pixels = size.w > 0 && size.h > 0 ? uint64_t(size.w) * uint64_t(size.h) : 0;
-    if (pixels == 0 || pixels > kMaxDataBytes / 4) return Error{"it sent a packed picture of an impossible size"};
+    if (pixels == 0 || pixels > kMaxDataBytes / 4) return Error{"it sent an encoded picture of invalid size"};
     return handle([&]() -> Result<void> {
         ByteBuffer rows = ByteBuffer::ofSize(pixels * 4);
         if (rows.size() != pixels * 4) return Error{"no memory for a picture of " + std::to_string(pixels) + " pixels"};
         if (auto done = pictures_->unpack(header.client, header.window, size.w, size.h, packed->span(), rows.span());
             !done)
-            return Error{"it sent a picture that can't be unpacked: " + done.error().message};
+            return Error{"it sent a picture that cannot be decoded: " + done.error().message};
         pictureBytes_ += static_cast<int64_t>(packed->size());
         pictureRawBytes_ += static_cast<int64_t>(rows.size());
         return events_.nodePicture(place_.node, header, std::move(rows));

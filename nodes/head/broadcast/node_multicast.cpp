@@ -27,13 +27,13 @@ std::string freshGroup(const std::string& ownAddress) {
 const char* textOf(rsp::GoneReason reason) {
     switch (reason) {
     case rsp::GoneReason::Silent:
-        return "nothing came from it, neither by multicast nor by its connection (stopped, or its network cut?)";
-    case rsp::GoneReason::Stalled: return "it took nothing of the stream for too long";
+        return "no datagram and no message over TCP from it (stopped, or its network is disconnected)";
+    case rsp::GoneReason::Stalled: return "it did not receive the stream for too long";
     case rsp::GoneReason::Left:
     case rsp::GoneReason::Cut:
     case rsp::GoneReason::Removed: break;
     }
-    return "it was given up";
+    return "it left the multicast group";
 }
 
 } // namespace

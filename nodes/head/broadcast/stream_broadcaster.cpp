@@ -202,7 +202,7 @@ void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::func
     // A writer may be waiting for space in a lost node's connection.
     for (NodeConnection* link : links_)
         if ((link->byMulticast() || link->joinsGroup()) && !link->alive())
-            multicast_->remove(link->place().node, "the head has lost it");
+            multicast_->remove(link->place().node, "the head has lost its connection to it");
 }
 
 void StreamBroadcaster::loseAll(const std::string& why) {

@@ -46,7 +46,7 @@ Result<void> CaptureClient::start(FileDescriptor socket) {
         stop();
         memory_->setHeadGone();
         pumpEnded_ = true;
-        return Error{std::string("no threads for it: ") + e.what() + "; raise ulimit -u"};
+        return Error{std::string("cannot create threads for it: ") + e.what() + "; raise ulimit -u"};
     }
     return {};
 }
@@ -121,7 +121,7 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
     const CaptureMemory::Next next = memory_->next(range);
     if (next == CaptureMemory::Next::Empty) return false;
     if (next == CaptureMemory::Next::Bad) {
-        drop("its shared memory holds an impossible index; was it overwritten?");
+        drop("its shared memory contains an invalid index; the program may have overwritten it");
         return false;
     }
     if (!range.bytes.empty()) {
@@ -130,7 +130,7 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
         bytesSent_.fetch_add(range.bytes.size(), std::memory_order_relaxed);
     }
     if (!memory_->take(range)) {
-        drop("it gave back more chunks than it took; was its shared memory overwritten?");
+        drop("it returned more chunks than it received; the program may have overwritten its shared memory");
         return false;
     }
     if (unflushedBytes_ >= kFlushBytes) flushNodes(false);
@@ -159,7 +159,7 @@ void CaptureClient::reply(Reply reply) {
     const std::lock_guard lock(mutex_);
     replyQueueBytes_ += reply.bytes.size();
     if (replyQueueBytes_ > kMaxQueuedBytes) {
-        if (problem_.empty()) problem_ = "it asks for more than it reads; more than 2 GiB wait for it";
+        if (problem_.empty()) problem_ = "it requests data that it does not read; more than 2 GiB are queued";
         stop_ = true;
         return;
     }

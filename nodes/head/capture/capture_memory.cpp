@@ -22,7 +22,7 @@ constexpr uint64_t kPageBytes = 4096;
 uint64_t roundUp(uint64_t value) { return (value + kPageBytes - 1) / kPageBytes * kPageBytes; }
 
 Error systemError(const char* what) {
-    return Error{std::string("no shared memory for a program: ") + what + ": " + std::strerror(errno) +
+    return Error{std::string("cannot allocate shared memory for a program: ") + what + ": " + std::strerror(errno) +
                  "; check the limits of memory, open files and file sizes (ulimit -a)"};
 }
 

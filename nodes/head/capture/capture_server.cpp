@@ -25,7 +25,7 @@ constexpr size_t kListeners = 2; // one with an abstract name, one with a path
 
 Error socketError(const std::string& session, const char* what) {
     std::string text = "session socket " + session + ": " + what + ": " + std::strerror(errno);
-    if (errno == EADDRINUSE) text += "; another session has this name, choose another";
+    if (errno == EADDRINUSE) text += "; another session has this name; choose another one";
     return Error{text};
 }
 
@@ -206,12 +206,11 @@ void CaptureServer::tellStatus(int socket) {
 
 Result<Admission> CaptureServer::judge(int socket, const Hello& hello) {
     ucred peer{};
-    if (!peerOf(socket, peer)) return Error{"the head can't tell who this program is"};
+    if (!peerOf(socket, peer)) return Error{"the head cannot identify this program"};
     if (peer.uid != geteuid())
         return Error{"the session belongs to another user; start the program as the user of `mural run`"};
     if (hello.magic != capture::kMagic || hello.version != capture::kVersion || hello.registryDigest != digest_) {
-        return Error{"the preloaded library and `mural head` are of different builds; "
-                     "install both from one build"};
+        return Error{"the capture library and `mural head` are of different builds; install both from one build"};
     }
     return host_.admitProgram(peer.pid);
 }

@@ -26,7 +26,7 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
     const std::lock_guard lock(mutex_);
     if (!refusal_.empty()) return Error{refusal_};
     if (!memory) return memory.error();
-    if (nextId_ > kMaxIds) return Error{"this session has had 65535 programs; start a new one"};
+    if (nextId_ > kMaxIds) return Error{"this session has started 65535 programs, the maximum; start a new session"};
     const uint32_t id = nextId_++;
     Admission admission;
     admission.welcome = terms_.welcome;
@@ -64,7 +64,8 @@ void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
         const std::lock_guard lock(mutex_);
         const auto found = clients_.find(id);
         if (found == clients_.end()) return;
-        if (!problem.empty()) line = found->second->describe() + " was dropped: " + problem + "; it goes on alone";
+        if (!problem.empty())
+            line = found->second->describe() + " was disconnected: " + problem + "; it continues alone";
         addCounts(goneCounts_, found->second->memory().counts());
         if (auto names = found->second->memory().displayNames(); !names.empty()) goneDisplays_[id] = std::move(names);
         gone_.push_back(found->second);

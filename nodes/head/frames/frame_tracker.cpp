@@ -29,8 +29,8 @@ Result<void> FrameTracker::frameDone(int node, const wire::FrameDoneMessage& m, 
     NodeProgress& progress = c.nodes[static_cast<size_t>(node)];
     if (progress.joined > 0 && m.frame <= progress.joined) return {}; // a late swap of another thread
     const bool repeated = m.frame <= progress.done || progress.early.contains(m.frame);
-    if (repeated) return Error{"it finished frame " + std::to_string(m.frame) + " twice"};
-    if (c.windows.size() >= kMaxOpenFrames) return Error{"it is a million frames ahead"};
+    if (repeated) return Error{"it reported frame " + std::to_string(m.frame) + " twice"};
+    if (c.windows.size() >= kMaxOpenFrames) return Error{"it reported a frame number that is a million ahead"};
     ++framesOf_[static_cast<size_t>(node)];
     c.calls = std::max(c.calls, m.calls);
     if (m.frame > c.finished) c.windows.try_emplace(m.frame, Window{m.window, m.width, m.height});

@@ -46,15 +46,14 @@ PictureAssembler::PictureAssembler(std::vector<int> passOf, Compose compose, Del
 
 Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteBuffer rows) {
     const auto index = static_cast<size_t>(node);
-    if (!sensible(header))
-        return Error{"it sent a part that lies outside of its picture, or of an unknown pixel format"};
+    if (!sensible(header)) return Error{"it sent a part outside of its picture, or with an unknown pixel format"};
     const std::lock_guard lock(mutex_);
     if (!views_.lives(node)) return {};
-    if (open_.size() >= kMaxOpenPictures) return Error{"it is thousands of pictures ahead"};
+    if (open_.size() >= kMaxOpenPictures) return Error{"it sent a picture number that is thousands ahead"};
     const auto at = opened(node, header.client, header.window, header.frame);
     Open& open = at->second;
     if (!open.awaited[index]) return {};
-    if (open.done[index]) return Error{"it sent two parts of one picture"};
+    if (open.done[index]) return Error{"it sent a part of a picture twice"};
     open.done[index] = true;
     open.parts.push_back({passOf_[index], header, std::move(rows)});
     settle(at);

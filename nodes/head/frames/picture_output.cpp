@@ -144,7 +144,7 @@ Result<void> PictureOutput::give(PictureSink& sink, int64_t frame, const Picture
 
 void PictureOutput::save(int64_t frame, const Picture& picture) {
     if (picture.format != PictureFormat::Bgra8 && !std::exchange(saidEightBits_, true))
-        config_.say("the program's window has 10 bits per channel; --out saves its pictures with 8");
+        config_.say("the program's window has 10 bits per channel; --out saves 8 of them");
     const auto saved = give(*file_, frame, picture, config_.pairs);
     if (!saved) {
         config_.say(saved.error().message + "; no further pictures are saved");
@@ -166,7 +166,7 @@ void PictureOutput::showOnWall(int64_t frame, const Picture& picture) {
             config_.say(opened.error().message);
     }
     const auto shown = wall_ ? give(*wall_, frame, picture, config_.pairs) : Result<void>();
-    if (!shown) config_.say(shown.error().message + "; the wall's windows show no further pictures");
+    if (!shown) config_.say(shown.error().message + "; the wall windows show no further pictures");
     wallFailed_ = !wall_ || !shown;
 }
 

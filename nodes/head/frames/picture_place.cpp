@@ -13,7 +13,7 @@ Result<PlacedPicture> placeOnWall(const NodePlan& node, const wire::PictureHeade
                           header.windowWidth <= kMaxSide && header.windowHeight <= kMaxSide && header.w >= 0 &&
                           header.h >= 0 && static_cast<uint32_t>(header.w) <= header.windowWidth &&
                           static_cast<uint32_t>(header.h) <= header.windowHeight && size.bytes() == rows.size();
-    if (!sensible) return Error{"it sent a picture of an impossible size"};
+    if (!sensible) return Error{"it sent a picture of invalid size"};
     PlacedPicture placed;
     placed.header = header;
     if (node.shown && size.bytes() > 0) {

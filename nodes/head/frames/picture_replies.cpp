@@ -22,7 +22,7 @@ Reply ownPictureReply(uint32_t frame, uint32_t window, const PixelFormat& format
     reply.header.x = static_cast<int32_t>(window);
     reply.header.failed = 1;
     auto converter =
-        isValid(format) ? PixelConverter::make(format) : Result<PixelConverter>(Error{"an impossible format"});
+        isValid(format) ? PixelConverter::make(format) : Result<PixelConverter>(Error{"an invalid format"});
     const int width = std::min(picture.width, kLargestSide);
     const int height = std::min(picture.height, kLargestSide);
     if (!converter || width <= 0 || height <= 0) return reply;

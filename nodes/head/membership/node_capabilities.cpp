@@ -50,7 +50,8 @@ std::vector<std::string> extensionsOf(const Json& json) {
 
 Result<NodeCapabilities> nodeFactsFromJson(const std::string& text) {
     const Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object()) return Error{"it said that it is ready, but not in JSON; is it of another build?"};
+    if (!json.is_object())
+        return Error{"its ready message is not JSON; install the same version of mural on all machines"};
     NodeCapabilities facts;
     facts.host = textOf(json, "host");
     facts.renderer = textOf(json, "renderer");

@@ -101,9 +101,9 @@ Result<bool> lookForConnection(LaunchedNode& node, NodeAcceptor& gate, Deadline 
     // A launch command may delegate to a batch system and exit with status 0.
     const auto how = node.process->ended();
     const bool handedOver = node.plan.reach == NodeReach::LaunchCommand && how == "exit status 0";
-    if (how && !handedOver) return Error{"did not start: " + *how + "; its own messages say why"};
+    if (how && !handedOver) return Error{"did not start: " + *how + "; see its messages"};
     if (deadline.passed()) {
-        return Error{"did not connect within 30 s; check that it can reach port " + std::to_string(gate.port()) +
+        return Error{"did not connect within 30 s; check that it can connect to port " + std::to_string(gate.port()) +
                      " of this machine"};
     }
     return false;
@@ -129,19 +129,19 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
                 return Error{nameOf(node.plan) + " " + node.absence +
                              (enough < all ? "; fewer than --min-nodes " + std::to_string(enough) + " are left" : "")};
             if (!node.absence.empty() && node.plan.pass.ranges > 1)
-                return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
+                return Error{nameOf(node.plan) + " " + node.absence + "; sort-last nodes (--db) begin together"};
         }
         if (come + gone == all) return {};
         if (come >= enough && !late) late = Deadline::inMs(options.lateMs);
         if (late && late->passed()) break;
-        if (cancelled()) return Error{"the session was ended before it began"};
+        if (cancelled()) return Error{"the session was stopped before it began"};
         poll(nullptr, 0, 20);
     }
     for (LaunchedNode& node : nodes) {
         if (node.connection || !node.absence.empty()) continue;
-        node.absence = "did not connect within " + std::to_string(options.lateMs / 1000) + " s of the others";
+        node.absence = "did not connect within " + std::to_string(options.lateMs / 1000) + " s after the others";
         if (node.plan.pass.ranges > 1)
-            return Error{nameOf(node.plan) + " " + node.absence + "; nodes that share draws (--db) begin together"};
+            return Error{nameOf(node.plan) + " " + node.absence + "; sort-last nodes (--db) begin together"};
         node.process.reset();
     }
     return {};

@@ -36,10 +36,10 @@ std::string NodeRestarter::memberLost(int node) {
     if (!never.empty()) return tiles + ": " + never;
     if (nowNs - n.memberNs > terms_.steadyMs * kNsPerMs) n.tries = 0;
     if (n.tries >= terms_.tries)
-        return tiles + ": it was started again " + std::to_string(n.tries) + " times, and each time was lost soon";
+        return tiles + ": it was restarted " + std::to_string(n.tries) + " times, and lost again soon each time";
     n.phase = Phase::Waiting;
     n.nextNs = nowNs + terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)] * kNsPerMs;
-    return tiles + " until it is back";
+    return tiles + " until it rejoins";
 }
 
 // The attempt at the start of the session counts as the first one.
@@ -197,7 +197,7 @@ void NodeRestarter::look(int node, int64_t nowNs) {
 }
 
 void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
-    std::string line = set_.link(node).describe() + " did not come back: " + why + "; ";
+    std::string line = set_.link(node).describe() + " did not rejoin: " + why + "; ";
     bool again = false;
     {
         const std::lock_guard lock(mutex_);
@@ -210,7 +210,7 @@ void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
         const int64_t pauseMs = terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)];
         n.nextNs = nowNs + pauseMs * kNsPerMs;
         if (again)
-            line += "it is tried again in " + std::to_string(pauseMs / 1000) + " s (" + std::to_string(n.tries + 1) +
+            line += "next attempt in " + std::to_string(pauseMs / 1000) + " s (" + std::to_string(n.tries + 1) +
                     " of " + std::to_string(terms_.tries) + ")";
         else
             line +=

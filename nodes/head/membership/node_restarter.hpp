@@ -62,7 +62,7 @@ public:
     [[nodiscard]] bool onItsWay(int node) const;
 
     struct Numbers {
-        double secondsToBack = 0; // time from the loss to membership
+        double secondsToRejoin = 0; // time from the loss to membership
         uint64_t snapshotBytes = 0, queuedBytes = 0;
         std::vector<wire::ClientFrame> framesGiven;
     };

@@ -132,7 +132,7 @@ bool NodeResync::drawsAgain() {
         // without draws into the window there is no frame; the node detects a later draw
         if (deadline.passed() && !invalid_) return true;
         if (invalid_) {
-            link_.lose("its frames build on earlier ones that it did not draw; next time it draws them");
+            link_.lose("its frames depend on earlier frames that it skipped; the next restart draws all frames");
             return false;
         }
         poll(nullptr, 0, 5);
@@ -148,7 +148,7 @@ bool NodeResync::synchronize(bool draws) {
     sendCommand(wire::HeadCommand::Synchronize, bytesOf(arguments));
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::milliseconds(kSyncLimitMs), [&] { return lost_ || reached_ >= number; });
-    if (!lost_ && reached_ < number) link_.lose("it does not come to the end of what it is given");
+    if (!lost_ && reached_ < number) link_.lose("it did not execute its snapshot in time");
     return !lost_ && reached_ >= number;
 }
 

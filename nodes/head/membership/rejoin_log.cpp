@@ -109,10 +109,9 @@ Result<RejoinLog::Snapshot> RejoinLog::snapshot(uint64_t place, Deadline deadlin
     while (!stop_ && (taken_ < place || inHand_) && !deadline.passed())
         changed_.wait_for(lock, std::chrono::milliseconds(kSliceMs));
     const bool there = complete_ && taken_ == place && !inHand_;
-    Result<Snapshot> result =
-        Error{complete_ ? "what it has to be given was not found out in time"
-                        : "programs have sent more than the " + std::to_string(mostBytes_ >> 20) +
-                              " MiB that are kept for nodes that come back; --cache-size gives more"};
+    Result<Snapshot> result = Error{complete_ ? "its snapshot was not ready in time"
+                                              : "programs have sent more than the " + std::to_string(mostBytes_ >> 20) +
+                                                    " MiB of the rejoin log; a larger --cache-size holds more"};
     if (there) {
         lock.unlock(); // the thread is paused, and no other thread touches the log
         {

@@ -9,12 +9,9 @@ namespace mural {
 namespace {
 
 std::string described(const std::string& codec) {
-    if (codec == kQuickestCodec)
-        return "packed by what gets them there soonest and loses nothing, without tiles that have not changed";
-    if (codec == kLossyCodec)
-        return "packed by what gets them there soonest, and may lose something, without tiles that have not changed";
-    return "packed by " + codec + (mayLose(codec) ? ", which loses something" : "") +
-           ", without tiles that have not changed";
+    if (codec == kQuickestCodec) return "encoded losslessly with the fastest codec, changed tiles only";
+    if (codec == kLossyCodec) return "encoded with the fastest codec, which may be lossy, changed tiles only";
+    return "encoded with " + codec + (mayLose(codec) ? " (lossy)" : "") + ", changed tiles only";
 }
 
 } // namespace

@@ -20,8 +20,8 @@ void chooseComposition(SessionPlan& plan, const std::string& wish) {
         else if (!node.composition)
             node.composition = compositor::chooseStrategy(ranges);
         plan.explain.push_back("nodes " + std::to_string(node.node) + " to " + std::to_string(node.node + ranges - 1) +
-                               " put their picture together by " + nameOf(*node.composition) +
-                               (chosen ? ", as asked" : std::string(": ") + compositor::whyStrategy(ranges)));
+                               " composite their picture with " + nameOf(*node.composition) +
+                               (chosen ? ", as requested" : std::string(": ") + compositor::whyStrategy(ranges)));
     }
 }
 

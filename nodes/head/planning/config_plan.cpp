@@ -62,8 +62,8 @@ public:
         if (auto chosen = chooseCanvas(); !chosen) return chosen.error();
         followFrames();
         if (draws_.empty())
-            return Error{file_ + ": nothing of it draws: it has no canvas with segments, or no compound with channels; "
-                                 "mural config print --resolved shows what it has"};
+            return Error{file_ + ": no channel draws: it has no canvas with segments, or no compound with channels; "
+                                 "see mural config print --resolved"};
         if (auto done = placeParts(); !done) return done.error();
         lookIntoRoom();
         if (auto placed = placeNodes(); !placed) return placed.error();
@@ -118,7 +118,7 @@ private:
             }
             if (!found)
                 return Error{"--layout \"" + wanted + "\": no canvas of " + file_ +
-                             " has such a layout; mural config print shows them"};
+                             " has this layout; mural config print shows the layouts"};
         }
         return {};
     }
@@ -174,7 +174,7 @@ private:
             });
             if (named == canvases.end())
                 return Error{"--canvas \"" + wishes_.canvas + "\": " + file_ +
-                             " shows nothing on a canvas of this name; mural config print shows them"};
+                             " has no channel on a canvas of this name; mural config print shows the canvases"};
             chosen = *named;
             canvases = {chosen};
         }
@@ -232,7 +232,7 @@ private:
         for (const Draw* d : draws) {
             if (d->flow.parts.empty())
                 plan_.explain.push_back(placeOf(d->context.compound) +
-                                        ": no frame takes what is drawn here to the wall");
+                                        ": the pixels drawn here are not transferred to the wall");
             for (const compound::ShownPart& p : d->flow.parts) {
                 const Zoom scale{p.to.w / p.from.w, p.to.h / p.from.h};
                 const Arrival a{d, scale, p.to.x - p.from.x * scale.x, p.to.y - p.from.y * scale.y, p.way};
@@ -264,10 +264,9 @@ private:
                 std::none_of(there.begin(), there.end(),
                              [&](const Arrival* a) { return a->moved() || !a->way.none(); });
             if (!together && unlike_.insert(there.front()->draw->context.destination).second)
-                plan_.warnings.push_back(
-                    placeOf(there.front()->draw->context.compound) +
-                    ": ranges of one picture are put together by depth as large as they are drawn; zoom of their "
-                    "frames has no effect where it is not the same for all of them");
+                plan_.warnings.push_back(placeOf(there.front()->draw->context.compound) +
+                                         ": ranges of one picture are composited by depth at their drawn size; the "
+                                         "zoom of their frames must be equal and is ignored");
             for (const Arrival* a : there) {
                 Draw d = *a->draw;
                 d.area = cell.area;
@@ -300,10 +299,10 @@ private:
         }
         if (queue.tiles.empty()) return;
         if (draws_[draws.front()].flow.ignored)
-            plan_.warnings.push_back(placeOf(draws_[draws.front()].context.compound) + ": what is taken from queue \"" +
+            plan_.warnings.push_back(placeOf(draws_[draws.front()].context.compound) + ": pixels of queue \"" +
                                      queue.name +
-                                     "\" is shown where it is drawn, as large as it is drawn; viewport and zoom of "
-                                     "frames have no effect there; remove them, or divide the picture without a queue");
+                                     "\" are shown at their drawn position and size; viewport and zoom of its frames "
+                                     "are ignored; remove them, or divide the picture without a queue");
         if (chunks) {
             for (const size_t d : draws) draws_[d].chunkQueue = static_cast<int>(plan_.chunkQueues.size());
             plan_.chunkQueues.push_back(
@@ -345,19 +344,18 @@ private:
                 const RenderContext& c = draws_[i].context;
                 const PassCounts& n = part.counts;
                 if (c.pixel.w != n.kernelWidth || c.pixel.h != n.kernelHeight || c.subPixel.size != n.samples)
-                    return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) +
-                                 ": channel \"" + part.name +
-                                 "\" is put together of parts with different pixel or subpixel kernels; give all of "
-                                 "them the same"};
+                    return Error{
+                        file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) + ": channel \"" +
+                        part.name +
+                        "\" combines parts with different pixel or subpixel kernels; give all of them the same kernel"};
                 const int picture = next + pictureOf(n, passOf(config_, c));
                 pictures_.resize(draws_.size(), 0);
                 pictures_[i] = picture;
                 made.insert(picture);
             }
             if (static_cast<int>(made.size()) < picturesOf(part.counts))
-                plan_.warnings.push_back(
-                    file_ + ": channel \"" + part.name +
-                    "\": some pixels or samples of its kernel are drawn by no compound, they stay black");
+                plan_.warnings.push_back(file_ + ": channel \"" + part.name +
+                                         "\": no compound draws some pixels or samples of its kernel; they stay black");
             next += picturesOf(part.counts);
             if (first.stereoMode == compound::StereoMode::Anaglyph) anaglyph_ = true;
             if (first.stereoMode == compound::StereoMode::Quad && first.eye == Eye::Left) quad_ = true;
@@ -402,8 +400,8 @@ private:
                 tellTooLarge(c.compound);
                 if (node.pass.zoom != passOf(config_, draws_[draws.front()].context).zoom)
                     return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) +
-                                 ": ranges of one picture are zoomed differently and can't be put together by depth; "
-                                 "give all of them the same zoom"};
+                                 ": ranges of one picture have different zooms and cannot be composited by depth; give "
+                                 "all of them the same zoom"};
                 node.pass.range = rank++;
                 node.pass.ranges = static_cast<int>(draws.size());
                 node.picture = pictures_[i];
@@ -436,8 +434,7 @@ private:
         const Zoom zoom = zoomOf(config_, compound);
         if ((zoom.x <= kMaxZoom && zoom.y <= kMaxZoom) || !tooLarge_.insert(compound).second) return;
         plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most " +
-                                 std::to_string(static_cast<int>(kMaxZoom)) +
-                                 " times as large as they show; give a smaller zoom");
+                                 std::to_string(static_cast<int>(kMaxZoom)) + " times the shown size; reduce the zoom");
     }
 
     // Without a value in the file, the number of nodes determines the strategy later.
@@ -472,7 +469,7 @@ private:
             auto wanted = wantedCodec(said->codec);
             if (!wanted) return Error{place + ": " + wanted.error().message};
             if (!wanted->lossless && exact)
-                return Error{place + " loses something; say mural_exact OFF in the same frame, or take another codec"};
+                return Error{place + " is lossy; set mural_exact OFF in the same frame, or choose another codec"};
             node.codec = said->codec == kQuickestCodec && !exact ? kLossyCodec : said->codec;
         }
         return {};
@@ -579,11 +576,10 @@ private:
         if (inRoom_)
             plan_.explain.push_back(
                 std::string(atAngles ? "its screens stand at angles to each other: " : "") +
-                "each screen shows the scene from the observer's eyes (--projection program: all of "
-                "them one flat picture)");
+                "each screen shows the scene from the observer's eyes (--projection program: one flat picture)");
         else if (atAngles)
-            plan_.explain.push_back("its screens stand at angles to each other; the program's picture is laid over "
-                                    "them as over a flat wall (--projection program)");
+            plan_.explain.push_back("its screens stand at angles to each other, but show the program's picture as one "
+                                    "flat wall (--projection program)");
         if (!inRoom_) return;
         std::set<Index> behind;
         for (const Draw& d : draws_)
@@ -618,7 +614,7 @@ private:
     static std::string onItsWay(const NodePlan& n) {
         if (n.way.none()) return {};
         char text[64];
-        std::snprintf(text, sizeof text, "sent %.4g by %.4g times as large, ", n.way.x, n.way.y);
+        std::snprintf(text, sizeof text, "transferred at %.4g by %.4g times the size, ", n.way.x, n.way.y);
         return text;
     }
     static std::string shownElsewhere(const NodePlan& n) {
@@ -700,7 +696,7 @@ void addCanvases(const LoadedConfig& loaded, const PlanOptions& wishes, const Pl
         if (!planned || size.w <= 0 || own.w <= 0) {
             plan.warnings.push_back(
                 name + " is not shown: " +
-                (planned ? "its size is not known; give its channels a viewport in pixels" : planned.error().message));
+                (planned ? "its size is unknown; give its channels a viewport in pixels" : planned.error().message));
             continue;
         }
         CanvasPlan canvas;
@@ -708,15 +704,15 @@ void addCanvases(const LoadedConfig& loaded, const PlanOptions& wishes, const Pl
             loaded.resolved.canvases[at(c)].name.empty() ? std::to_string(c) : loaded.resolved.canvases[at(c)].name;
         canvas.shown = {static_cast<double>(size.w) / own.w, static_cast<double>(size.h) / own.h};
         if (canvas.shown.x > kMaxZoom || canvas.shown.y > kMaxZoom) {
-            plan.warnings.push_back(
-                name + " has more than " + std::to_string(static_cast<int>(kMaxZoom)) +
-                " times the pixels of the first one in a direction; it is shown with so many; --canvas shows it alone");
+            plan.warnings.push_back(name + " has more than " + std::to_string(static_cast<int>(kMaxZoom)) +
+                                    " times the pixels of the first canvas in one direction; it is shown with this "
+                                    "limit; --canvas shows it alone");
             canvas.shown = {std::min(canvas.shown.x, kMaxZoom), std::min(canvas.shown.y, kMaxZoom)};
         }
         canvas.offsetX = offsetX;
         offsetX += static_cast<int>(std::lround(canvas.shown.x * (wishes.width > 0 ? wishes.width : own.w)));
-        plan.explain.push_back(name + " shows the program's picture, too, in " + std::to_string(size.w) + "x" +
-                               std::to_string(size.h) + " pixels where the first has " + std::to_string(own.w) + "x" +
+        plan.explain.push_back(name + " shows the program's picture with " + std::to_string(size.w) + "x" +
+                               std::to_string(size.h) + " pixels; the first canvas has " + std::to_string(own.w) + "x" +
                                std::to_string(own.h));
         add(plan, std::move(*planned), std::move(canvas));
     }

@@ -58,10 +58,10 @@ std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, i
     for (const NodePlan& node : plan.nodes) {
         if (node.queue != queue) continue;
         const RenderPass& p = node.pass;
-        if (showsWall(config, plan, node)) return "nodes show them in windows of their own (--display windows)";
-        if (p.ranges > 1) return "their nodes share what they draw by ranges";
-        if (p.period > 1) return "their nodes take turns";
-        if (p.kernelWidth * p.kernelHeight > 1 || !p.zoom.none()) return "their nodes draw other pixels than there are";
+        if (showsWall(config, plan, node)) return "nodes show their tiles in their own windows (--display windows)";
+        if (p.ranges > 1) return "its nodes draw ranges (--db)";
+        if (p.period > 1) return "its nodes draw whole frames in turn (--dplex)";
+        if (p.kernelWidth * p.kernelHeight > 1 || !p.zoom.none()) return "its nodes draw kernels or zoomed parts";
     }
     return {};
 }
@@ -136,9 +136,9 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
     settleQueues(plan, config);
     const auto started = static_cast<int>(plan.nodes.size());
     if (wanted > started) {
-        plan.warnings.push_back(countOf(wanted, "render node") + " asked for, but there " +
+        plan.warnings.push_back(countOf(wanted, "render node") + " requested, but there " +
                                 (tiles == 1 ? "is " : "are ") + countOf(tiles, "tile") + ": only " +
-                                countOf(started, "node") + " started; --tiles makes more tiles");
+                                countOf(started, "node") + " started; choose more --tiles");
     }
     return plan;
 }
@@ -155,15 +155,15 @@ void settleChunkQueues(SessionPlan& plan) {
         char part[32];
         std::snprintf(part, sizeof part, "%.3g", plan.chunkQueues[q].part);
         const std::string chunks =
-            "queue \"" + plan.chunkQueues[q].name + "\": its chunks, of " + part + " of the draws, ";
+            "queue \"" + plan.chunkQueues[q].name + "\": its chunks, each " + part + " of the draws, ";
         if (nodes > 1 && !turns) {
-            plan.explain.push_back(chunks + "are taken by whoever of " + std::to_string(nodes) +
-                                   " nodes is free: by the times that the last frames took each");
+            plan.explain.push_back(chunks + "are distributed over " + std::to_string(nodes) +
+                                   " nodes by their times for the last frames");
             continue;
         }
         (nodes < 2 ? plan.explain : plan.warnings)
-            .push_back(chunks + "are dealt out evenly, and stay: " +
-                       (nodes < 2 ? "one node draws all of them" : "their nodes take turns"));
+            .push_back(chunks + "are distributed evenly and fixed: " +
+                       (nodes < 2 ? "one node draws all of them" : "its nodes draw whole frames in turn (--dplex)"));
         for (NodePlan& node : plan.nodes)
             if (takes(node)) node.chunkQueue = -1;
     }
@@ -181,11 +181,11 @@ void settleQueues(SessionPlan& plan, const SessionConfig& config) {
                                   "x" + std::to_string(planned.height) + " pixels ";
         const std::string why = nodes < 2 ? "one node draws all of them" : whyTilesStay(plan, config, queue);
         if (why.empty()) {
-            plan.explain.push_back(tiles + "are taken by whoever of " + std::to_string(nodes) +
-                                   " nodes is free: by the times that the last frames took each");
+            plan.explain.push_back(tiles + "are distributed over " + std::to_string(nodes) +
+                                   " nodes by their times for the last frames");
             continue;
         }
-        (nodes < 2 ? plan.explain : plan.warnings).push_back(tiles + "are dealt out evenly, and stay: " + why);
+        (nodes < 2 ? plan.explain : plan.warnings).push_back(tiles + "are distributed evenly and fixed: " + why);
         for (NodePlan& node : plan.nodes)
             if (node.queue == queue) node.queue = -1;
     }

@@ -14,8 +14,8 @@ constexpr int64_t kMaxReplyBytes = int64_t{1} << 30;
 constexpr size_t kMaxParts = 65536; // per request
 
 Error contradiction(const ReplyPartHeader& header) {
-    return Error{"its answer to request " + std::to_string(header.requestId) +
-                 " contradicts the other nodes'; are they of one build?"};
+    return Error{"its reply to request " + std::to_string(header.requestId) +
+                 " contradicts the other nodes' replies; install the same version of mural on all machines"};
 }
 
 } // namespace
@@ -28,7 +28,7 @@ Result<void> ReplyAssembler::answer(int node, const ReplyPartHeader& header, Byt
     {
         const std::lock_guard lock(mutex_);
         if (!views_.lives(node)) return {};
-        if (requests_.size() >= kMaxOpenRequests) return Error{"it answers what nobody asked"};
+        if (requests_.size() >= kMaxOpenRequests) return Error{"it sent too many replies without a request"};
         const Key key{header.client, header.requestId};
         Request& request = requests_[key];
         if (auto added = add(node, header, std::move(bytes), request); !added) return added;
@@ -48,7 +48,7 @@ Result<void> ReplyAssembler::answer(int node, const ReplyPartHeader& header, Byt
 }
 
 Result<void> ReplyAssembler::add(int node, const ReplyPartHeader& header, ByteBuffer bytes, Request& r) {
-    if (header.kind < 1 || header.kind > 3) return Error{"it answered in an unknown kind"};
+    if (header.kind < 1 || header.kind > 3) return Error{"it sent a reply of unknown kind"};
     if (r.last.empty()) {
         r.awaited = views_.awaited(node);
         r.last.resize(r.awaited.size(), false);
@@ -71,7 +71,7 @@ Result<void> ReplyAssembler::add(int node, const ReplyPartHeader& header, ByteBu
             return contradiction(header);
     }
     if (header.first != 0 && (r.firstNode < 0 || node < r.firstNode)) r.firstNode = node;
-    if (r.parts.size() >= kMaxParts) return Error{"its answer comes in too many parts"};
+    if (r.parts.size() >= kMaxParts) return Error{"its reply has too many parts"};
     r.parts.push_back({node, where, std::move(bytes)});
     return {};
 }

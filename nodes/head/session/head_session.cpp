@@ -186,7 +186,7 @@ bool HeadSession::askedToFinish(Deadline deadline) {
     if (!line) return false;
     const Json command = Json::parse(*line, nullptr, false);
     const bool known = command.is_object() && command.value("command", Json()) == "finish";
-    if (!known) control_.say("the head does not know this command: " + line->substr(0, 60));
+    if (!known) control_.say("unknown command to the head: " + line->substr(0, 60));
     return known;
 }
 
@@ -197,9 +197,8 @@ void HeadSession::watchNodes(int64_t nowNs) {
             multicast ? rerouted_.erase(node) : static_cast<size_t>(rerouted_.insert(node).second);
         }
         control_.say(nodes_.link(node).describe() +
-                     (multicast ? ": multicast reaches it again"
-                                : ": it does not answer to multicast; its stream goes through its own connection "
-                                  "(TCP); mural doctor --network may say why"));
+                     (multicast ? ": multicast works again"
+                                : ": no reply to multicast; its stream uses TCP; see mural doctor --network"));
     });
 }
 
@@ -237,11 +236,10 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
     if (returns_->onItsWay(node)) return takeAgain(node, std::move(*facts));
     const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
-    if (ready_[index]) return Error{"it said twice that it is ready"};
+    if (ready_[index]) return Error{"it sent two ready messages"};
     if (!facts->ownStream.empty()) {
         nodes_.link(node).setByMulticast(false);
-        control_.say(nodes_.link(node).describe() +
-                     ": its stream goes through its own connection (TCP), not by multicast: " + facts->ownStream);
+        control_.say(nodes_.link(node).describe() + ": its stream uses TCP instead of multicast: " + facts->ownStream);
     }
     facts_[index] = std::move(*facts);
     ready_[index] = true;
@@ -272,7 +270,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
-    if (!sendsPictures_) return Error{"it sent a picture that nobody asked for"};
+    if (!sendsPictures_) return Error{"it sent a picture that was not requested"};
     auto placed = placeOnWall(plan_.nodes[static_cast<size_t>(node)], header, std::move(rows));
     auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
     output_->waitForRoom();
@@ -329,7 +327,7 @@ Result<void> HeadSession::nodeLog(int node, const std::string& text) {
 }
 
 Result<void> HeadSession::nodeBye(int node, const std::string& json) {
-    if (!finishing_) return Error{"it ended though nobody had asked it to"};
+    if (!finishing_) return Error{"it ended without a request from the head"};
     const std::lock_guard lock(mutex_);
     readBye(json, totals_[static_cast<size_t>(node)]);
     return {};
@@ -349,8 +347,8 @@ void HeadSession::nodeLost(int node, const std::string& why) {
 }
 
 void HeadSession::noNodeIsLeft() {
-    control_.say("no render node is left: programs go on alone, without the wall; start the session again");
-    programs_->refuseFrom("this session has lost all its render nodes; start it again");
+    control_.say("all render nodes are lost: programs continue alone, without the wall; restart the session");
+    programs_->refuseFrom("all render nodes of this session are lost; restart it");
     programs_->tellHeadGone();
     control_.send({{"event", "wall-lost"}});
 }
@@ -424,8 +422,8 @@ bool HeadSession::allReadersEnded() {
 std::vector<int> HeadSession::waitsFor(const ProgramStatus& program) {
     switch (program.counts.waitingFor) {
     case capture::Wait::Frames: return frames_.behind(program.id);
-    case capture::Wait::Answer: return answers_.missing(program.id);
-    case capture::Wait::Room: return nodes_.full();
+    case capture::Wait::Reply: return answers_.missing(program.id);
+    case capture::Wait::Space: return nodes_.full();
     default: return {};
     }
 }

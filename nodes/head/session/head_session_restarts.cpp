@@ -35,7 +35,7 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
     hooks.whyNever = [this](int) -> std::string {
         if (!nodes_.canJoin())
             return "programs have sent more than the " + std::to_string(config_.cacheBytes >> 20) +
-                   " MiB that are kept to start a node again; --cache-size gives more";
+                   " MiB of the rejoin log; a larger --cache-size holds more";
         return "";
     };
     // Only members know the state of time-multiplexed nodes and of moving areas.
@@ -47,9 +47,8 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
     };
     hooks.tilesOfLost = [this](int node) -> std::string {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
-        if (plan.pass.range > 0)
-            return plan.chunkQueue >= 0 ? "the others take its chunks" : "what it draws is missing";
-        return plan.queue >= 0 ? "the others take its tiles" : "its tiles stay as they were";
+        if (plan.pass.range > 0) return plan.chunkQueue >= 0 ? "other nodes take its chunks" : "its draws are missing";
+        return plan.queue >= 0 ? "other nodes take its tiles" : "its tiles keep their last picture";
     };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
     hooks.gaveUp = [this](int, const std::string& line) {
@@ -112,13 +111,13 @@ Result<void> HeadSession::takeAgain(int node, NodeCapabilities facts) {
     {
         const std::lock_guard lock(mutex_);
         const auto index = static_cast<size_t>(node);
-        if (ready_[index]) return Error{"it said twice that it is ready"};
+        if (ready_[index]) return Error{"it sent two ready messages"};
         if (!facts_[index].renderer.empty() && facts.renderer != facts_[index].renderer)
-            return Error{"it draws by another GL now (" + facts.renderer + ") than before (" + facts_[index].renderer +
-                         "); its pictures would not fit the others'"};
+            return Error{"its GL is now \"" + facts.renderer + "\" instead of \"" + facts_[index].renderer +
+                         "\"; their pictures differ"};
         const std::string missing = firstMissing(promisedExtensions_, facts.extensions);
         if (facts.glVersion < promisedGlVersion_ || !missing.empty())
-            return Error{"its GL has less than programs were promised: " +
+            return Error{"its GL lacks features that programs already use: " +
                          (missing.empty() ? "an older version" : "no " + missing)};
         facts_[index] = std::move(facts);
         ready_[index] = true;
@@ -181,13 +180,13 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
         NodeTotals& totals = totals_[static_cast<size_t>(node)];
         joins = ++totals.joins;
         totals.snapshotBytes = static_cast<int64_t>(numbers.snapshotBytes);
-        totals.secondsToBack = numbers.secondsToBack;
+        totals.secondsToRejoin = numbers.secondsToRejoin;
     }
     const bool first = absences_.contains(node) && joins == 1;
-    control_.say(nodes_.link(node).describe() + (first ? " came into the picture " : " is back in the picture ") +
-                 seconds(numbers.secondsToBack) +
-                 (first ? " after the session began; it was given " : " after it was lost; it was given ") +
-                 std::to_string((numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20) + " MiB");
+    control_.say(
+        nodes_.link(node).describe() + (first ? " joined " : " rejoined ") + seconds(numbers.secondsToRejoin) +
+        (first ? " after the start of the session, with a snapshot of " : " after its loss, with a snapshot of ") +
+        std::to_string((numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20) + " MiB");
     return {};
 }
 
@@ -208,8 +207,8 @@ void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
         const bool taken = plan_.nodes[static_cast<size_t>(node)].queue >= 0;
-        control_.say(nodes_.link(node).describe() + " is not there yet: it " + why +
-                     (taken ? "; the others take its tiles until it comes" : "; its tiles stay empty until it comes"));
+        control_.say(nodes_.link(node).describe() + " is not connected yet: it " + why +
+                     (taken ? "; other nodes take its tiles until it joins" : "; its tiles stay empty until it joins"));
         returns_->notThere(node);
         goOnWithout(node);
     }

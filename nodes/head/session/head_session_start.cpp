@@ -19,18 +19,18 @@ using Json = nlohmann::json;
 const char* explainTiling(Tiling tiling) {
     switch (tiling) {
     case Tiling::Culled:
-        return "tiling culled: as exact, and shaders drop what lies outside of a node's tiles; exact where windows and "
-               "framebuffer objects have depth buffers";
+        return "tiling culled: like exact, but shaders also discard geometry outside of a node's tiles; exact where "
+               "windows and framebuffer objects have depth buffers";
     case Tiling::Lean:
-        return "tiling lean: frame buffers of the tiles' size; up to 0.25 % of the pixels may differ, mostly by 1";
+        return "tiling lean: framebuffers of the tiles' size; up to 0.25 % of the pixels may differ, mostly by 1";
     case Tiling::Exact: break;
     }
-    return "tiling exact: every node has a frame buffer of the whole picture and draws its tiles only; no pixel "
-           "differs from a single machine's";
+    return "tiling exact: every node has a framebuffer of the whole picture and draws only its tiles; all pixels equal "
+           "those of a single machine";
 }
 
 const char* whyOwnStreams(const std::string& stream) {
-    return stream == "tcp" ? "--stream tcp" : "there are no two other machines";
+    return stream == "tcp" ? "--stream tcp" : "fewer than two other machines";
 }
 
 } // namespace
@@ -83,7 +83,7 @@ void HeadSession::openMulticast() {
     if (nodes.empty()) {
         multicastNodes_.clear(); // no group is created
         streamLine_ = config_.hosts.empty() ? ""
-                                            : std::string("the stream goes to each node by its own connection: ") +
+                                            : std::string("the stream is sent to each node over its own connection: ") +
                                                   whyOwnStreams(config_.stream);
         return;
     }
@@ -93,13 +93,14 @@ void HeadSession::openMulticast() {
     auto multicast = NodeMulticast::open(config_.stream, path);
     if (!multicast) {
         multicastNodes_.clear();
-        streamLine_ = "the stream goes to each node by its own connection: no multicast: " + multicast.error().message +
-                      "; mural doctor --network says what to mend";
+        streamLine_ =
+            "the stream is sent to each node over its own connection: no multicast: " + multicast.error().message +
+            "; see mural doctor --network";
         if (!config_.explain) control_.say(streamLine_);
         return;
     }
-    streamLine_ = "the stream goes to " + std::to_string(nodes.size()) +
-                  " nodes at once, by reliable multicast: " + (*multicast)->describe();
+    streamLine_ = "the stream is sent to " + std::to_string(nodes.size()) +
+                  " nodes at once, with reliable multicast: " + (*multicast)->describe();
     nodes_.multicastBy(std::move(*multicast));
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
 }
@@ -151,7 +152,7 @@ Result<void> HeadSession::awaitReady() {
                              std::to_string(options_.readyPatienceMs / 1000) + " s; try --gl osmesa, or fewer nodes"};
             }
         }
-        if (askedToFinish(Deadline::inMs(10))) return Error{"the session was ended before its nodes were ready"};
+        if (askedToFinish(Deadline::inMs(10))) return Error{"the session was stopped before its nodes were ready"};
     }
 }
 
@@ -161,9 +162,9 @@ Result<void> HeadSession::checkSize() {
     for (size_t i = 0; config_.tiling != Tiling::Lean && i < facts_.size(); ++i) {
         const int64_t most = facts_[i].mostPixels;
         if (most == 0 || side <= most) continue;
-        return Error{nodes_.link(static_cast<int>(i)).describe() + " draws pictures of at most " +
-                     std::to_string(most) + " pixels a side, and the wall has " + std::to_string(config_.width) + "x" +
-                     std::to_string(config_.height) + "; give a smaller --size"};
+        return Error{nodes_.link(static_cast<int>(i)).describe() + " draws pictures with at most " +
+                     std::to_string(most) + " pixels per side, but the wall has " + std::to_string(config_.width) +
+                     "x" + std::to_string(config_.height) + "; choose a smaller --size"};
     }
     return {};
 }
@@ -234,8 +235,8 @@ std::vector<std::string> HeadSession::explainLines() {
         if (const auto members = swapMembersOf(config_, plan_, node);
             !members.empty() && members.front()->node == node.node)
             lines.push_back("windows of " + std::to_string(members.size()) +
-                            " nodes show each frame together: swap barrier \"" + node.swapBarrier + "\", led by node " +
-                            std::to_string(node.node));
+                            " nodes show each frame together: swap barrier \"" + node.swapBarrier +
+                            "\", leader: node " + std::to_string(node.node));
     lines.push_back(explainTiling(config_.tiling));
     if (!streamLine_.empty()) lines.push_back(streamLine_);
     lines.push_back(deltaLine_);
@@ -260,7 +261,7 @@ void HeadSession::announceReady() {
     }
     for (const std::string& warning : plan_.warnings) control_.say(warning);
     if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
-        control_.say("both eyes are shown side by side: windows of the wall alone have a buffer for each; add "
+        control_.say("both eyes are shown side by side, because only wall windows have a buffer for each eye; add "
                      "--display windows");
     control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
 }
@@ -268,8 +269,8 @@ void HeadSession::announceReady() {
 Result<std::unique_ptr<PictureSink>> HeadSession::openNativeWindow(const WindowPicture& picture) {
     const auto number = static_cast<uint32_t>(picture.nativeWindow >> 32);
     if (number == capture::kNoDisplay)
-        return Error{fmt::format("a program has windows on more than {} X displays, or on one whose name is longer "
-                                 "than {} bytes; its window there shows nothing",
+        return Error{fmt::format("a program has windows on more than {} X displays, or on one with a name longer than "
+                                 "{} bytes; its window there shows nothing",
                                  capture::kDisplays, capture::kDisplayNameBytes - 1)};
     NativeWindow window{picture.client, picture.window, static_cast<uint32_t>(picture.nativeWindow), {}};
     if (serving_) window.display = programs_->displayName(picture.client, number);

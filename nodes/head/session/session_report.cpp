@@ -18,8 +18,8 @@ int64_t wholeOf(const Json& json, const char* name) {
 
 Json swapJson(const SwapTotals& s) {
     if (s.members == 0) return nullptr;
-    return {{"members", s.members}, {"swaps", s.swaps},   {"medianNs", s.medianNs},
-            {"p99Ns", s.p99Ns},     {"mostNs", s.mostNs}, {"clockErrorNs", s.clockErrorNs}};
+    return {{"members", s.members}, {"swaps", s.swaps}, {"medianNs", s.medianNs},
+            {"p99Ns", s.p99Ns},     {"maxNs", s.maxNs}, {"clockErrorNs", s.clockErrorNs}};
 }
 
 double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<double>(kNsPerS); }
@@ -34,17 +34,17 @@ void readBye(const std::string& text, NodeTotals& totals) {
     totals.pictureBytes = wholeOf(json, "pictureBytes");
     totals.pictureRawBytes = wholeOf(json, "pictureRawBytes");
     if (const auto swaps = json.find("swapBarrier"); swaps != json.end() && swaps->is_object())
-        totals.swaps = {wholeOf(*swaps, "members"), wholeOf(*swaps, "swaps"),  wholeOf(*swaps, "medianNs"),
-                        wholeOf(*swaps, "p99Ns"),   wholeOf(*swaps, "mostNs"), wholeOf(*swaps, "clockErrorNs")};
+        totals.swaps = {wholeOf(*swaps, "members"), wholeOf(*swaps, "swaps"), wholeOf(*swaps, "medianNs"),
+                        wholeOf(*swaps, "p99Ns"),   wholeOf(*swaps, "maxNs"), wholeOf(*swaps, "clockErrorNs")};
     const auto seconds = json.find("cpuSeconds");
     if (seconds != json.end() && seconds->is_number()) totals.cpuSeconds = seconds->get<double>();
 }
 
 std::string waitName(capture::Wait wait) {
     switch (wait) {
-    case capture::Wait::Room: return "room";
+    case capture::Wait::Space: return "space";
     case capture::Wait::Frames: return "frames";
-    case capture::Wait::Answer: return "answer";
+    case capture::Wait::Reply: return "reply";
     case capture::Wait::Window: return "window";
     case capture::Wait::Nothing: break;
     }
@@ -68,7 +68,7 @@ std::string reasonText(capture::Uncompared reason) {
     case capture::Uncompared::NotReadable: return "own picture not readable";
     case capture::Uncompared::NoAnswer: break;
     }
-    return "no answer from the nodes";
+    return "no reply from the nodes";
 }
 
 Json uncomparedJson(const CaptureCounts& counts) {
@@ -137,7 +137,7 @@ Json reportOf(const SessionNumbers& n) {
                          {"lost", node.lost},
                          {"joins", node.joins},
                          {"snapshotBytes", node.snapshotBytes},
-                         {"secondsToBack", node.secondsToBack}});
+                         {"secondsToRejoin", node.secondsToRejoin}});
     }
     return {
         {"event", "report"},

@@ -17,9 +17,9 @@ namespace mural {
 
 // Numbers of a swap barrier, from its leader.
 struct SwapTotals {
-    int64_t members = 0;                         // 0: the node leads none
-    int64_t swaps = 0;                           // swaps shown by more than one member
-    int64_t medianNs = 0, p99Ns = 0, mostNs = 0; // time between the first and the last member of a swap
+    int64_t members = 0;                        // 0: the node leads none
+    int64_t swaps = 0;                          // swaps shown by more than one member
+    int64_t medianNs = 0, p99Ns = 0, maxNs = 0; // time between the first and the last member of a swap
     int64_t clockErrorNs = 0;
 };
 
@@ -34,9 +34,9 @@ struct NodeTotals {
     int64_t pictureBytes = 0, pictureRawBytes = 0; // encoded pictures sent to the head: encoded and raw size
     SwapTotals swaps;
     bool lost = false;
-    int64_t joins = 0;         // number of returns
-    int64_t snapshotBytes = 0; // at the last return: size of the snapshot…
-    double secondsToBack = 0;  // …and time from the loss to the first frame
+    int64_t joins = 0;          // number of returns
+    int64_t snapshotBytes = 0;  // at the last return: size of the snapshot…
+    double secondsToRejoin = 0; // …and time from the loss to the first frame
 };
 
 // Reads a node's Bye. Missing or invalid values stay 0.
@@ -64,11 +64,11 @@ nlohmann::json deltaJson(const DeltaCounts& counts);
 
 nlohmann::json reportOf(const SessionNumbers& numbers);
 
-// Returns "room", "frames", "answer", "window" or "nothing".
+// Returns "space", "frames", "reply", "window" or "nothing".
 std::string waitName(capture::Wait wait);
 // Returns why `--verify` could not compare a frame, such as "front buffer".
 std::string reasonText(capture::Uncompared reason);
-nlohmann::json waitSecondsOf(const CaptureCounts& counts); // {"room": 0.5, …}
+nlohmann::json waitSecondsOf(const CaptureCounts& counts); // {"space": 0.5, …}
 
 // Frames per second and bytes per frame over about the last second. Used by one thread.
 class ProgressMeter {

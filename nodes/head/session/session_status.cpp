@@ -35,7 +35,7 @@ Json nodeJson(const NodeStatus& node) {
         {"where", node.where},
         {"pid", node.pid},
         {"gl", node.gl},
-        {"state", node.returning     ? "coming back"
+        {"state", node.returning     ? "rejoining"
                   : node.totals.lost ? "lost"
                                      : "alive"},
         {"silentSeconds", node.silentSeconds},
@@ -47,7 +47,7 @@ Json nodeJson(const NodeStatus& node) {
         {"pictureRawBytes", node.totals.pictureRawBytes},
         {"joins", node.totals.joins},
         {"snapshotBytes", node.totals.snapshotBytes},
-        {"secondsToBack", node.totals.secondsToBack},
+        {"secondsToRejoin", node.totals.secondsToRejoin},
     };
 }
 

@@ -6,18 +6,19 @@ namespace mural {
 
 void SlowdownAdvice::frameDone(uint32_t flags, bool sharesDraws) {
     if (flags & wire::kDrawnWhole && !drawnWhole_.exchange(true))
-        control_.say(tiling_ == Tiling::Lean
-                         ? "fragment shaders write to memory, SPIR-V modules read gl_FragCoord, display lists read the "
-                           "picture, or samples of it are copied: every node draws all of it, into framebuffers of the "
-                           "window's size; tiling lean saves nothing there"
-                         : "fragment shaders write to memory, display lists read the picture, or samples of it are "
-                           "copied: every node draws all of it; more nodes do not make that faster");
+        control_.say(
+            tiling_ == Tiling::Lean
+                ? "every node draws the whole picture, into framebuffers of the window's size, because fragment "
+                  "shaders write to memory, SPIR-V modules read gl_FragCoord, display lists read the picture, or its "
+                  "samples are copied; --tiling lean saves nothing for this program"
+                : "every node draws the whole picture, because fragment shaders write to memory, display lists read "
+                  "the picture, or its samples are copied; more nodes do not make this program faster");
     if (flags & wire::kKeepsAreas && !keepsAreas_.exchange(true))
-        control_.say("frames of a window are drawn without a clear of all that its buffers hold (or into its front, or "
-                     "accumulated): its tiles stay with the nodes that have them; a queue does not make that faster");
+        control_.say("tiles of a window stay with their nodes, because frames do not clear all of its buffers, draw "
+                     "into its front buffer, or accumulate; a tile queue does not make this program faster");
     if (flags & wire::kKeepsPicture && !keepsPicture_.exchange(true))
-        control_.say("frames are drawn over the picture before them (no clear, accumulation, or the front buffer): one "
-                     "node goes on drawing them; --dplex does not make that faster");
+        control_.say("one node draws all frames, because they build on the previous picture (no clear, accumulation, "
+                     "or front buffer); --dplex does not make this program faster");
     if (sharesDraws) countUnshared(flags);
 }
 
@@ -28,8 +29,8 @@ void SlowdownAdvice::countUnshared(uint32_t flags) {
         unsharedFrames_ = INT64_MIN / 2;
     else if (++unsharedFrames_ == kFrames * nodeCount_)
         control_.say(
-            "none of the program's first frames has draws that nodes can share (opaque, with a depth test, into its "
-            "window, behind a clear of colour and depth): one node draws all; --db does not make that faster");
+            "one node draws everything, because the first frames have no draws that nodes can share (opaque, with "
+            "depth test, into the window, after a clear of colour and depth); --db does not make this program faster");
 }
 
 } // namespace mural

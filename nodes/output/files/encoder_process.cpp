@@ -159,7 +159,7 @@ Result<void> EncoderProcess::write(std::span<const std::byte> bytes, Deadline de
             (void)ended(deadline.leftNs(kNsPerS));
             return howItEnded();
         }
-        if (deadline.passed()) return Error{fmt::format("{} takes no more data", program_)};
+        if (deadline.passed()) return Error{fmt::format("{} does not read more data", program_)};
         pollfd ready{inputFd_, POLLOUT, 0};
         ::poll(&ready, 1, pollMs(deadline.leftNs(kNsPerS)));
     }

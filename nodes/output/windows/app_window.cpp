@@ -49,9 +49,9 @@ Result<void> AppWindow::connect(Deadline deadline) {
     x_ = std::move(connected.value());
     if (config_.owner) owner_.emplace(*config_.owner);
     if (x_->setup().image_byte_order != XCB_IMAGE_ORDER_LSB_FIRST) {
-        return Error{fmt::format("the X display '{}' is of a big-endian machine, which is not "
-                                 "supported; show the pictures elsewhere",
-                                 x_->displayName())};
+        return Error{fmt::format(
+            "the X display '{}' belongs to a big-endian machine, which is not supported; use another display",
+            x_->displayName())};
     }
     return {};
 }
@@ -82,9 +82,9 @@ Result<void> AppWindow::showBefore(Deadline deadline, const Picture& picture) {
         if (!outcome) return outcome.error();
         if (outcome.value() == Outcome::Done) return {};
     }
-    return Error{fmt::format("the window {:#x} of the X display '{}' takes no pictures (it changes "
-                             "all the time)",
-                             config_.window, x_->displayName())};
+    return Error{
+        fmt::format("the window {:#x} of the X display '{}' accepts no pictures, because it changes all the time",
+                    config_.window, x_->displayName())};
 }
 
 // Returns the error of a missed deadline. A server that answers, but slowly, is not blocked: another attempt would take
@@ -112,8 +112,8 @@ Result<void> AppWindow::confirmOwner(Deadline deadline) {
     windowGone_ = *owned != WindowOwnerCheck::Owned::Yes;
     const bool first = !std::exchange(ownerChecked_, true);
     if (*owned != WindowOwnerCheck::Owned::No || !first) return {};
-    return Error{fmt::format("the window {:#x} of the X display '{}' is not the program's, which may "
-                             "have ended: its pictures are not painted there",
+    return Error{fmt::format("the window {:#x} of the X display '{}' does not belong to the program, which may have "
+                             "ended; its pictures are not drawn",
                              config_.window, x_->displayName())};
 }
 

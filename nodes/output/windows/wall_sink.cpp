@@ -46,8 +46,8 @@ Result<void> WallSink::showPair(int64_t frame, const EyePair& eyes) {
     if (windows_->stereo()) return showTiles(eyes.left, eyes.right);
     if (whyNot_.empty()) {
         whyNot_ = windows_->whyNotStereo();
-        say_("both eyes are shown side by side: no window with a buffer for each eye opens (" + whyNot_ +
-             "); a graphics card and a display that take quad-buffered stereo do, and --stereo anaglyph needs none");
+        say_("both eyes are shown side by side, because no window with a buffer for each eye can be opened (" +
+             whyNot_ + "); use a graphics card and display with quad-buffered stereo, or --stereo anaglyph");
     }
     return PictureSink::showPair(frame, eyes);
 }

@@ -146,7 +146,7 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
         if (!blit) return blit.error();
         blit_ = std::move(blit.value());
         if (stereo_ && !blit_->stereo())
-            return Error{fmt::format("{}: {} gives it no buffer for each eye", where(), blit_->renderer())};
+            return Error{fmt::format("{}: {} has no buffer for each eye", where(), blit_->renderer())};
     } else {
         AppWindowConfig config;
         config.displayName = session_.displayName();

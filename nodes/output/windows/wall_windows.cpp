@@ -179,7 +179,7 @@ void WallWindows::Shared::giveBuffers(std::vector<WallScreen::TileBuffer>& used)
 Result<std::unique_ptr<WallWindows>> WallWindows::open(const WallWindowsConfig& config) {
     if (config.tiles.empty()) return Error{"a wall of windows needs at least one tile"};
     auto shared = std::make_shared<Shared>(config);
-    if (shared->wakeFd < 0) return Error{"no event descriptor: too many open files; raise ulimit -n"};
+    if (shared->wakeFd < 0) return Error{"cannot create an event descriptor: too many open files; raise ulimit -n"};
     shared->thread = std::thread([shared] { shared->serve(); });
     Result<void> opened;
     {
@@ -247,8 +247,7 @@ Result<void> WallWindows::take(std::span<const TilePicture> pictures, bool prese
 
 Result<void> WallWindows::arrange(const std::vector<TileWindow>& tiles) {
     if (tiles.size() != shared_->config.tiles.size()) {
-        return Error{fmt::format("{} places for {} wall windows; open the wall again for another "
-                                 "number of tiles",
+        return Error{fmt::format("{} places for {} wall windows; open the wall again for another number of tiles",
                                  tiles.size(), shared_->config.tiles.size())};
     }
     return shared_->run([tiles](WallScreen& screen) { return screen.arrange(tiles); }, Deadline::inMs(showTimeoutMs_));

@@ -24,9 +24,9 @@ void Replay::dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours) {
     if (!c_->shared || c_->shared->handles.set(of, theirs, ours)) return;
     char text[512];
     snprintf(text, sizeof text,
-             "this node's driver deals other handles of textures than the program's (0x%" PRIx64 " for 0x%" PRIx64
-             "): what shaders take out of buffers, vertex arrays or "
-             "whole numbers may be wrong on this node's tiles; let the program and its nodes use the same driver",
+             "texture handles of this node's driver differ from the program's (0x%" PRIx64 " for 0x%" PRIx64
+             "): handles that shaders read from buffers, vertex arrays or integers may be wrong on this node's tiles; "
+             "use the same driver for program and nodes",
              ours, theirs);
     out_.log(text);
 }

@@ -75,7 +75,7 @@ bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     const bool ok = function(*this, in);
     if (takeErrors()) {
         tell(wire::DriverEventKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
-        out_.log("no memory for an object of the program's: it is told GL_OUT_OF_MEMORY");
+        out_.log("no memory for a GL object of the program; it receives GL_OUT_OF_MEMORY");
     }
     return ok;
 }
@@ -143,8 +143,8 @@ void Replay::tellTroubles() {
         c_->lost = status != GL_NO_ERROR;
         if (c_->lost) {
             tell(wire::DriverEventKind::ContextLost, {0, status, 0, 0, {}});
-            out_.log("the graphics driver has lost a context (GPU reset): what the program draws with it is missing on "
-                     "this node's tiles; start the program again");
+            out_.log("the graphics driver lost a context (GPU reset): its drawings are missing on this node's tiles; "
+                     "restart the program");
         }
     }
     tellMessages();

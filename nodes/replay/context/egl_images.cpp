@@ -22,7 +22,7 @@ bool Replay::onCreateImage(Args& in) {
     if (made)
         client.images[image] = std::move(*made);
     else
-        out_.log("an image of the program's is missing on this node's tiles: " + made.error().message);
+        out_.log("an EGL image of the program is missing on this node's tiles: " + made.error().message);
     return true;
 }
 

@@ -30,7 +30,8 @@ gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
     if (!w->front) {
         auto made = platform_->createSurface(surfaceConfig(w->config, w->surface->width(), w->surface->height()));
         if (!made) {
-            out_.log("no second framebuffer for the front of a window can be made, it shows with the back: " +
+            out_.log("cannot create a second framebuffer for the front buffer of a window; it is shown with the back "
+                     "buffer: " +
                      made.error().message);
             return w->surface.get();
         }
@@ -54,7 +55,7 @@ bool Replay::bindSurfaces(gl::HeldBack heldBack) {
         made = bind();
     }
     if (!made) {
-        out_.log("a context can't be made current: " + made.error().message);
+        out_.log("cannot make a context current: " + made.error().message);
         unbindPlatform(); // the current surfaces are undefined after a failure
         return false;
     }

@@ -16,9 +16,9 @@ void Replay::widenToWindow(Window& w) {
     const PixelViewport size = surfaceOf(w, false);
     auto made = platform_->createSurface(surfaceConfig(w.config, size.w, size.h));
     if (!made) {
-        out_.log("fragment shaders write to memory, which needs a framebuffer of the whole window (" +
+        out_.log("fragment shaders that write to memory need a framebuffer of the whole window (" +
                  std::to_string(w.whole.w) + "x" + std::to_string(w.whole.h) +
-                 "), and none can be made: their memory holds this node's part only: " + made.error().message);
+                 "), which cannot be created; their memory contains only this node's part: " + made.error().message);
         return;
     }
     const std::unique_ptr<gl::Surface> tile = std::exchange(w.surface, std::move(*made));

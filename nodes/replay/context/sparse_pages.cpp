@@ -76,9 +76,8 @@ void Replay::commitPages(GLenum target, GLuint texture, const PageBox& box, bool
     if (known) call(ours);
     if ((!isError() && known) || saidPages_) return;
     saidPages_ = true;
-    out_.log("pages of a sparse texture of the program's can't be had from this node's driver: what lies there is "
-             "missing on this node's tiles; "
-             "let the program and its nodes use the same driver");
+    out_.log("this node's driver cannot commit pages of a sparse texture; their contents are missing on this node's "
+             "tiles; use the same driver for program and nodes");
 }
 
 void Replay::glTexPageCommitmentARB(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei w, GLsizei h,

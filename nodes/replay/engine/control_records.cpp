@@ -127,7 +127,7 @@ bool Replay::onCreateContext(Args& in) {
     wish.surface = surfaceConfig(*config, 1, 1);
     auto made = platform_->createContext(wish, with ? with->context.get() : nullptr);
     if (!made) {
-        out_.log("no context like the program's can be made here: " + made.error().message);
+        out_.log("cannot create a context like the program's: " + made.error().message);
         return true;
     }
     c->client = wire::clientOf(stream_);
@@ -191,8 +191,8 @@ bool Replay::onWindow(Args& in) {
     // An equal size means that the program's driver has destroyed the drawable and created it again.
     const bool renewed = w.surface && config->width == w.config.width && config->height == w.config.height;
     if (config->stereo && !w.config.stereo && config_.pass.eye == Eye::Cyclop && config_.answers && config_.node == 0)
-        out_.log("the program draws into a buffer for each eye: the left one's is shown; --stereo quad, side-by-side "
-                 "or anaglyph shows both");
+        out_.log("the program draws into a buffer for each eye, but only the left one is shown; --stereo quad, "
+                 "side-by-side or anaglyph shows both");
     w.config = *config;
     w.isFlat = config->depth == 0 && config->stencil == 0;
     w.wishedRed = config->red;
@@ -210,9 +210,9 @@ bool Replay::onWindow(Args& in) {
     }
     auto made = platform_->createSurface(surfaceConfig(*config, size.w, size.h));
     if (!made) {
-        out_.log("no framebuffer like the program's window (" + std::to_string(width) + "x" + std::to_string(height) +
-                 ") can be made: " + made.error().message +
-                 (config_.pass.zoom.x > 1 || config_.pass.zoom.y > 1 ? "; or give the compound a smaller zoom" : ""));
+        out_.log("cannot create a framebuffer like the program's window (" + std::to_string(width) + "x" +
+                 std::to_string(height) + "): " + made.error().message +
+                 (config_.pass.zoom.x > 1 || config_.pass.zoom.y > 1 ? "; or reduce the compound's zoom" : ""));
         return true;
     }
     alphaHides_ = alphaHides_ || (*made)->hiddenAlpha();
@@ -248,8 +248,8 @@ void Replay::takeBitsOfSurface(Window& w) {
     w.config.stencil = static_cast<uint8_t>(there.stencil);
     w.config.samples = static_cast<uint8_t>(there.samples);
     if (differs == std::exchange(toldBits_, differs)) return;
-    out_.log("its GL has no framebuffer like the program's window, which is drawn with " + differs +
-             ": pixels may differ from the native picture's");
+    out_.log("its GL has no framebuffer like the program's window and draws it with " + differs +
+             "; pixels may differ from the native picture");
 }
 
 bool Replay::onClientArrays(Args& in) {

@@ -19,8 +19,8 @@ bool Replay::accumulatesHere() {
     if (!has || gl.glIsEnabled(GL_RASTERIZER_DISCARD)) return false;
     if (c_->draw->config.red == 8 && c_->draw->config.samples == 0) return true;
     if (!std::exchange(saidAccumulation_, true))
-        out_.log("accumulation buffers of windows that are multisampled or have other than 8 bits per colour are not "
-                 "drawn here; run with --gl glx");
+        out_.log("accumulation buffers of multisampled windows, and those with other than 8 bits per colour, are not "
+                 "supported here; use --gl glx");
     return false;
 }
 

@@ -38,12 +38,12 @@ public:
         do state = of_->gl_.clientWaitSync(drawn_, 0, static_cast<GLuint64>(deadline.leftNs(kSliceNs)));
         while (state == GL_TIMEOUT_EXPIRED && !deadline.passed());
         if (state == GL_TIMEOUT_EXPIRED)
-            return Error{"GL has not drawn it in time; the driver may hang: look at the system's log"};
-        if (state == GL_WAIT_FAILED) return Error{"GL can't tell when it is drawn; use --readback direct"};
+            return Error{"the GL did not draw it in time, so the driver may hang; check the system log"};
+        if (state == GL_WAIT_FAILED) return Error{"the GL cannot report its completion; use --readback direct"};
         of_->gl_.bindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.name);
         mapped_ =
             of_->gl_.mapBufferRange(GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(buffer_.bytes), GL_MAP_READ_BIT);
-        if (!mapped_) return Error{"GL does not show the buffer that it was read into; use --readback direct"};
+        if (!mapped_) return Error{"the GL cannot map the buffer of the readback; use --readback direct"};
         const auto* pixels = static_cast<const std::byte*>(mapped_);
         if (!redFirst_) return std::span(pixels, buffer_.bytes);
         swapped_.resize(buffer_.bytes);

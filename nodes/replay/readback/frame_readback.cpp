@@ -26,7 +26,7 @@ std::shared_ptr<AsyncReadback> Replay::laterReads() {
         if (reader)
             shared.later = std::make_shared<AsyncReadback>(std::move(*reader), gl);
         else if (config_.readback == Readback::Buffer)
-            out_.log("pictures are read at once: " + reader.error().message);
+            out_.log("asynchronous readback is off: " + reader.error().message);
     }
     return shared.later;
 }

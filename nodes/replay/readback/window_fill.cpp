@@ -28,7 +28,7 @@ gl::Context* Replay::fillerOf(Window& w) {
     wish.surface = surfaceConfig(w.config, 1, 1);
     auto made = platform_->createContext(wish, nullptr);
     if (!made) {
-        out_.log("depth of other tiles can't be put together here, copies of it across tiles are incomplete: " +
+        out_.log("cannot combine the depth of other tiles; copies of depth across tiles are incomplete: " +
                  made.error().message);
         return nullptr;
     }

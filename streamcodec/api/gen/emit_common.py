@@ -18,7 +18,7 @@ class Model:
         return self.all[command.alias] if command.alias else command
 
 
-# Foreign handle types, declared as pointers. Commands with them have a name but are never carried.
+# Foreign handle types, declared as pointers. Commands with them have a name but are never supported.
 OPAQUE = {'GLeglImageOES': 'void*', 'GLeglClientBufferEXT': 'void*', 'GLVULKANPROCNV': 'void*', 'GLvdpauSurfaceNV': 'GLintptr',
           'GLDEBUGPROC': 'void*', 'GLDEBUGPROCARB': 'void*', 'GLDEBUGPROCAMD': 'void*', 'GLDEBUGPROCKHR': 'void*',
           'GLhandleARB': 'GLuint', 'GLclampx': 'GLint', 'GLfixed': 'GLint'}

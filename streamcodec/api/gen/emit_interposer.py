@@ -231,12 +231,12 @@ using namespace mural;
     for c, row in zip(m.canonical, rows):
         front = 'outside' if row == 'outside' else 'mural'
         wrappers += '    %s,\n' % ('nullptr' if row == 'direct' else 'reinterpret_cast<Entry>(%s_%s)' % (front, c.name))
-    wrappers += '};\nconst bool kCarried[] = {\n'
+    wrappers += '};\nconst bool kSupported[] = {\n'
     wrappers += ''.join('    %s,\n' % ('false' if row == 'unsupported' else 'true') for row in rows)
     wrappers += '''};
 } // namespace
 void (*wrapperAt(int index))() { return kWrappers[index]; }
-bool carriedAt(int index) { return kCarried[index]; }
+bool isSupportedAt(int index) { return kSupported[index]; }
 } // namespace mural
 '''
     return {'encoders.hpp': encoders, 'custom_wrappers.hpp': declarations, 'wrappers.cpp': wrappers}

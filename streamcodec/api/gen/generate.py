@@ -70,7 +70,7 @@ def main():
     opcode = {n: FIRST_OPCODE + i for i, n in enumerate(names)}
     missing = [c.name for c in commands.values() if not c.alias and c.name not in opcode]
     if missing:
-        # The registry is newer than the lock. Its new commands are not carried until the lock is updated.
+        # The registry is newer than the lock. Its new commands are unsupported until the lock is updated.
         for n in missing:
             commands[n].command_class = 'unsupported'
             commands[n].reason = 'newer than opcodes.lock'

@@ -14,7 +14,7 @@ TYPE_BYTES = {
     'GLdouble': 8, 'GLclampd': 8, 'GLint64': 8, 'GLuint64': 8, 'GLint64EXT': 8, 'GLuint64EXT': 8,
     'GLintptr': 8, 'GLsizeiptr': 8, 'GLintptrARB': 8, 'GLsizeiptrARB': 8, 'GLsync': 8, 'GLeglImageOES': 8,
 }
-# Types that are meaningful only within one process, or that no carried command uses.
+# Types that are meaningful only within one process, or that no supported command uses.
 HANDLE_TYPES = ('GLsync', 'GLeglImageOES') # pointers of the program that serve as names
 FOREIGN_TYPES = ('GLeglClientBufferEXT', 'GLVULKANPROCNV', 'GLvdpauSurfaceNV',
                  'GLDEBUGPROC', 'GLDEBUGPROCARB', 'GLDEBUGPROCAMD', 'GLDEBUGPROCKHR', '_cl_context', '_cl_event')
@@ -108,11 +108,11 @@ class Command:
                 return
         if self.returns != 'void' and self.command_class != 'object' and self.option('app') != 'custom':
             self.command_class = 'unsupported'
-            self.reason = 'returns a value that no rule explains'
+            self.reason = 'its return value is not described'
 
     def _how(self, p):
         if p.base in FOREIGN_TYPES or (p.pointers == 0 and p.base not in TYPE_BYTES):
-            return 'parameter %s of type %s means something inside one process only' % (p.name, p.base)
+            return 'parameter %s of type %s is a handle of one process' % (p.name, p.base)
         if p.pointers == 0:
             p.how = 'handle' if p.base in HANDLE_TYPES else 'scalar'
             if p.object_class is None and self.option('kind.' + p.name):
@@ -141,7 +141,7 @@ class Command:
             if p.kind and not p.length:  # names are translated one by one
                 counted = re.match(r'n4\((\w+),', p.expr)
                 if not counted:
-                    return 'how many names stand in %s is not described' % p.name
+                    return 'the number of names in %s is not described' % p.name
                 p.length = counted.group(1)
             return None
         if not p.const:

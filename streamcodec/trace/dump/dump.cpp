@@ -61,9 +61,9 @@ private:
         if (!parseEvent(e.payload, event)) return true;
         if (event.kind == Event::ClientGone) frames_.clientGone(event.client);
         if (!inRange() || options_.summary || !options_.calls.empty()) return true;
-        return line_(event.kind == Event::ClientCame ? fmt::format("{:6} {}    program came: {}, pid {}", frame_,
+        return line_(event.kind == Event::ClientCame ? fmt::format("{:6} {}    program started: {}, pid {}", frame_,
                                                                    event.client, event.name, event.pid)
-                                                     : fmt::format("{:6} {}    program gone", frame_, event.client));
+                                                     : fmt::format("{:6} {}    program ended", frame_, event.client));
     }
 
     bool packet(const Entry& e) {

@@ -39,14 +39,14 @@ def check_end(run, wanted_status, frames=None):
     """Checks the status, the drawn frames, and that nothing remains: common to all cases."""
     status = run.status()
     if status != wanted_status:
-        return "status %s instead of %s; it said: %s" % (
+        return "status %s instead of %s; output: %s" % (
             "none in time" if status is None else status, wanted_status, " | ".join(run.standard_error[-3:]))
     if frames is not None:
         drawn = sum(line.startswith("frame ") for line in run.standard_output)
         if drawn != frames:
             return "the program drew %d frames instead of %d" % (drawn, frames)
     left = run.left_behind()
-    return "left behind: " + ", ".join(left) if left else None
+    return "left over: " + ", ".join(left) if left else None
 
 
 def kill_all(pids):

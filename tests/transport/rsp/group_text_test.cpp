@@ -68,9 +68,9 @@ TEST(GroupText, usesAllBytesOfASecretExceptATrailingNewline) {
 TEST(GroupText, rejectsInvalidSecrets) {
     const mural::test::TemporaryFolder folder;
     const std::pair<std::string, const char*> all[] = {
-        {folder.at("none"), "can't read"},
-        {folder.file("short", "fifteen bytes..\n", 0600), "16 bytes at least"},
-        {folder.file("empty", "", 0600), "16 bytes at least"},
+        {folder.at("none"), "cannot read"},
+        {folder.file("short", "fifteen bytes..\n", 0600), "at least 16 bytes"},
+        {folder.file("empty", "", 0600), "at least 16 bytes"},
         {folder.file("read", kSecret, 0644), "every user of this machine"},
         {folder.file("written", kSecret, 0602), "every user of this machine"},
     };

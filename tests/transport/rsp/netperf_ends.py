@@ -27,9 +27,9 @@ def start_pair(mural, secret, size, sender_options=(), receiver_options=(), rate
               "--within", str(WAIT_SECONDS)]
     sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", rate, "--control", "127.0.0.1:0"] + common + list(sender_options))
     said = sender.stderr.readline()
-    found = re.search(r"listens at (\S+)", said)
+    found = re.search(r"listens on (\S+)", said)
     if not found:
-        sys.exit("netperf_ends: the sender does not say where it listens: %r" % said)
+        sys.exit("netperf_ends: the sender does not print its address: %r" % said)
     return sender, start([mural, "netperf", "receive", "--json", "--control", found.group(1)] + common + list(receiver_options))
 
 
@@ -60,13 +60,13 @@ def main():
         unchecked = ["--unchecked"]
         sender, receiver = start_pair(mural, secret.name, "2M", unchecked, unchecked)
         told = receiver.communicate(timeout=WAIT_SECONDS)
-        expect("what nobody checks is no success", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
+        expect("unchecked data fails", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
         sender.communicate(timeout=WAIT_SECONDS)
 
         # A checking receiver detects that these bytes are not the pattern.
         sender, receiver = start_pair(mural, secret.name, "2M", unchecked)
         told = receiver.communicate(timeout=WAIT_SECONDS)
-        expect("other bytes are no failure", receiver.returncode == 1 and "what came is not what was sent" in told[1], told)
+        expect("changed bytes pass", receiver.returncode == 1 and "received data differs from sent data" in told[1], told)
         sender.communicate(timeout=WAIT_SECONDS)
 
         # The receiver is stopped until it is evicted: the end of its data is not the end of the stream. Its socket
@@ -79,7 +79,7 @@ def main():
         told = receiver.communicate(timeout=WAIT_SECONDS)
         sender.kill()
         sender.communicate()
-        expect("to be removed is no failure", receiver.returncode == 1 and "has removed this member" in told[1], told)
+        expect("to be removed is no failure", receiver.returncode == 1 and "has evicted this member" in told[1], told)
 
         sender, receiver = start_pair(mural, secret.name, "1G")
         go_on(receiver)
@@ -87,8 +87,8 @@ def main():
         told = receiver.communicate(timeout=WAIT_SECONDS)
         sender.communicate()
         expect("a killed sender is no failure", receiver.returncode == 1, told)
-        expect("a killed sender is not told in one line", re.fullmatch(r"mural netperf: the stream ended after \d+ bytes.*cut off.*\n", told[1]), told)
-        expect("what was measured before is not told", '"cut":' in told[0], told)
+        expect("a killed sender is not reported in one line", re.fullmatch(r"mural netperf: the stream was cut off after \d+ bytes.*connection to the group's host was lost.*\n", told[1]), told)
+        expect("earlier measurements are missing", '"cut":' in told[0], told)
 
 
 if __name__ == "__main__":

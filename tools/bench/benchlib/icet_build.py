@@ -48,5 +48,5 @@ def build(folder, bench_folder, into):
                os.path.join(bench_folder, "icet_kernels.c"), os.path.join(bench_folder, "icet_ranks.c")] + sources + ["-lm"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     if done.returncode != 0:
-        raise BuildFailed("IceT in %s can't be built: %s" % (icet, next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip()[:300])))
+        raise BuildFailed("IceT in %s cannot be built: %s" % (icet, next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip()[:300])))
     return library

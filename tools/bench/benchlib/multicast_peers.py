@@ -38,7 +38,7 @@ class Harness:
         built = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
         if built.returncode != 0:
             errors = [line for line in built.stderr.decode(errors="replace").split("\n") if "error" in line]
-            self.missing = errors[0] if errors else "it can't be built"
+            self.missing = errors[0] if errors else "it cannot be built"
 
 
 class Raw(Harness):

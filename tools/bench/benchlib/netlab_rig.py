@@ -106,7 +106,7 @@ def go_inside(tool):
     tried = subprocess.run(unshare + ["sh", "-c", script, "sh", "true"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
     if tried.returncode != 0:
         said = tried.stderr.decode(errors="replace").strip()
-        _skip(tool, "namespaces can't be made here: %s; run it as root, or allow user namespaces (sysctl kernel.unprivileged_userns_clone)" % said)
+        _skip(tool, "namespaces cannot be made here: %s; run it as root, or allow user namespaces (sysctl kernel.unprivileged_userns_clone)" % said)
     os.environ[INSIDE] = "1"
     words = unshare + ["sh", "-c", script, "sh", sys.executable] + sys.argv
     os.execvp(words[0], words)

@@ -31,7 +31,7 @@ class RspGroup:
 
     def _wait_until_it_listens(self):
         until = time.monotonic() + START_SECONDS
-        while not re.search(r"listens at", self.sender.said_so_far() if self.sender.poll() is None else "listens at"):
+        while not re.search(r"listens on", self.sender.said_so_far() if self.sender.poll() is None else "listens on"):
             if time.monotonic() > until:
                 raise StreamFailed("rsp: the sender does not listen")
             time.sleep(0.005)

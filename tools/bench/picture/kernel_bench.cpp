@@ -301,7 +301,7 @@ void benchIcet(const BenchOptions& options, Faults& faults) {
         library ? reinterpret_cast<void (*)()>(dlsym(library, "icet_bench_blend_compressed")) : nullptr;
     if (!open || !load || !blend || !blendCompressed || !open(kColumns, kRows)) {
         const char* said = library ? "it lacks a function" : dlerror();
-        faults.push_back("IceT: " + options.icetLibrary + " can't be used: " + (said ? said : "") +
+        faults.push_back("IceT: " + options.icetLibrary + " cannot be used: " + (said ? said : "") +
                          "; let tools/bench/compositing --icet build it");
         return;
     }

@@ -217,7 +217,7 @@ Told icet(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int
                            }};
     const PixelViewport& box = drawn[0].part.id.box;
     if (!open || !composed || !open(&given, box.w, box.h, static_cast<icet_way>(way.icet))) {
-        fmt::print(stderr, "compositing_bench: IceT: {} can't be used; let tools/bench/compositing --icet build it\n",
+        fmt::print(stderr, "compositing_bench: IceT: {} cannot be used; let tools/bench/compositing --icet build it\n",
                    path);
         std::_Exit(1);
     }

@@ -37,8 +37,7 @@ int complain(const Error& error) {
 // Reports errors common to all runs once, before the first run.
 Result<void> checkSubject(const BenchArguments& a) {
     if (!a.program.empty() && !a.recordings.empty())
-        return Error{
-            "--recording is measured beside Mural's own scenes, not beside a program; leave out one of the two"};
+        return Error{"--recording measures a trace, not a program; omit --recording or the program"};
     for (const std::string& recording : a.recordings)
         if (auto r = checkRecording(recording, say); !r) return r;
     if (a.program.empty()) return {};
@@ -81,7 +80,7 @@ Result<AccuracyReport> measureSubject(const BenchArguments& a) {
 // Removes all its folders and ends all its processes before it returns.
 Result<AccuracyReport> measure(const BenchArguments& a) {
     auto report = measureSubject(a);
-    if (Interruption::signal() != 0) return Error{"stopped before all was measured; nothing is written"};
+    if (Interruption::signal() != 0) return Error{"the measurement was interrupted; nothing is written"};
     return report;
 }
 
@@ -95,14 +94,12 @@ bool write(ResultFile& file, const std::string& text) {
 
 void describeBench(CLI::App& command, BenchArguments& a) {
     command.add_option("WHAT", a.what, "accuracy")->required()->check(CLI::IsMember({"accuracy"}));
-    command.add_option("--json", a.json, "write what was measured into this file, too")->type_name("FILE");
-    command.add_option("--svg", a.svg, "draw what was measured into this file")->type_name("FILE");
+    command.add_option("--json", a.json, "also write the results to this file, as JSON")->type_name("FILE");
+    command.add_option("--svg", a.svg, "draw the results into this file")->type_name("FILE");
     command.add_flag("--quick", a.quick, "small pictures, and one decomposition of each kind");
-    command
-        .add_option("--recording", a.recordings,
-                    "measure on this recording of a program, too (mural run --record); may be given again")
+    command.add_option("--recording", a.recordings, "also measure this trace (mural run --record); repeatable")
         ->type_name("FILE");
-    command.add_option("--frames", a.frames, "of a program after --: at least so many frames are compared")
+    command.add_option("--frames", a.frames, "with a program after --: minimum number of compared frames")
         ->type_name("N")
         ->check(CLI::Range(int64_t{1}, int64_t{1'000'000}))
         ->capture_default_str();

@@ -62,7 +62,7 @@ void drawDot(Svg& svg, Point at, const char* colour, const std::string& tip) {
 void drawRing(Svg& svg, Point at, const char* colour) { svg.rect(around(at, 4), ringed(colour)); }
 
 void drawHead(Svg& svg, const AccuracyReport& report, double bottom) {
-    svg.text({16, 28}, "How far Mural's pictures are from the reference", {.size = 18, .color = kText, .bold = true});
+    svg.text({16, 28}, "Error of Mural's pictures against the reference", {.size = 18, .color = kText, .bold = true});
     svg.text({16, 47}, report.subject + (report.gl.empty() ? "" : "; " + report.gl), {.size = 11, .color = kSoft},
              kWidth - 32);
     drawDot(svg, {22, 66}, kGood, "");
@@ -70,9 +70,9 @@ void drawHead(Svg& svg, const AccuracyReport& report, double bottom) {
     drawRing(svg, {240, 66}, kGood);
     svg.text({250, 70}, "root mean square error", {.size = 11, .color = kText});
     drawPromise(svg, 404, 66, false);
-    svg.text({412, 70}, "promised for the largest", {.size = 11, .color = kText});
+    svg.text({412, 70}, "bound of the largest error", {.size = 11, .color = kText});
     drawPromise(svg, 578, 66, true);
-    svg.text({586, 70}, "promised for the root mean square (as PSNR)", {.size = 11, .color = kText});
+    svg.text({586, 70}, "bound of the root mean square error (as PSNR)", {.size = 11, .color = kText});
     svg.text({(kLeft + kRight) / 2, 92}, "error, in steps of 1/255 of full brightness (logarithmic)",
              {.size = 11, .color = kSoft, .align = Align::Middle});
     svg.rect({kLabels, 98, kNone, bottom - 98}, filled("#eef6ee", 0));
@@ -81,7 +81,7 @@ void drawHead(Svg& svg, const AccuracyReport& report, double bottom) {
         svg.line({placeOf(tick), 114}, {placeOf(tick), bottom}, stroked(kFaint, 1, tick == 1 ? "" : "2 3"));
         svg.text({placeOf(tick), 110}, fmt::format("{:g}", tick), {.size = 10, .color = kText, .align = Align::Middle});
     }
-    svg.text({kRight + 18, 110}, "pixels that differ", {.size = 10, .color = kText});
+    svg.text({kRight + 18, 110}, "differing pixels", {.size = 10, .color = kText});
 }
 
 std::string shareText(const MeasuredError& e) {
@@ -96,8 +96,8 @@ void drawRow(Svg& svg, const AccuracyRow& row, double y) {
         return svg.text({kLeft, y + 4}, "failed: " + row.failure, {.size = 11, .color = kBad}, kWidth - kLeft - 10);
     const auto at = [&](double value) { return Point{value > 0 ? placeOf(value) : kLabels + kNone / 2, y}; };
     const double usual = row.error.rootMeanSquare();
-    const std::string tip = fmt::format("{}, against {}: largest {:.3g}, root mean square {:.3g}; promised: {}",
-                                        row.what, row.reference, row.error.largest, usual, row.bound.text());
+    const std::string tip = fmt::format("{}, against {}: largest {:.3g}, root mean square {:.3g}; bound: {}", row.what,
+                                        row.reference, row.error.largest, usual, row.bound.text());
     if (row.bound.largest) drawPromise(svg, placeOf(*row.bound.largest), y, false);
     if (row.bound.psnr) drawPromise(svg, placeOf(255 / std::pow(10, *row.bound.psnr / 20)), y, true);
     if (usual > 0) {

@@ -74,12 +74,12 @@ Result<OwnedPicture> readPpm(const std::string& path) {
     file.get();
     constexpr int kLargest = 1 << 16;
     if (!file || magic != "P6" || most != 255 || width <= 0 || height <= 0 || width > kLargest || height > kLargest)
-        return Error{path + " is no PPM picture of 8 bits; was the disk full?"};
+        return Error{path + " is not a PPM picture with 8 bits; check for a full disk"};
     OwnedPicture picture(width, height);
     std::vector<char> row(static_cast<size_t>(width) * 3);
     for (int y = height; y-- > 0;) { // files begin with the top row
         if (!file.read(row.data(), static_cast<std::streamsize>(row.size())))
-            return Error{path + " ends too early; was the disk full?"};
+            return Error{path + " ends too early; check for a full disk"};
         for (size_t x = 0; x < static_cast<size_t>(width); ++x)
             for (size_t c = 0; c < 4; ++c)
                 picture.row(y)[4 * x + c] = c < 3 ? static_cast<std::byte>(row[3 * x + 2 - c]) : std::byte{255};
@@ -94,8 +94,8 @@ Result<ScratchFolder> ScratchFolder::make() {
     const std::filesystem::path all = std::filesystem::temp_directory_path(error);
     std::string path = (error ? std::filesystem::path("/tmp") : all) / "mural-accuracy.XXXXXX";
     if (mkdtemp(path.data()) == nullptr)
-        return Error{"no folder for pictures: " + path + ": " + std::strerror(errno) +
-                     "; set TMPDIR to one that can be written"};
+        return Error{"cannot create a folder for pictures: " + path + ": " + std::strerror(errno) +
+                     "; set TMPDIR to a writable folder"};
     return ScratchFolder(path);
 }
 
@@ -137,7 +137,7 @@ Result<std::string> AccuracyRuns::replay(const Words& options, const std::string
 }
 
 Result<std::string> AccuracyRuns::perform(const Words& command, const std::string& name, int64_t limitMs) const {
-    if (Interruption::signal() != 0) return Error{name + " was not started: all is being ended"};
+    if (Interruption::signal() != 0) return Error{name + " was not started: the measurement was interrupted"};
     const std::string said = scratch_.path() + "/said", complained = scratch_.path() + "/complained";
     launch::SpawnRequest request;
     request.file = command.front();
@@ -152,13 +152,13 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
     auto child =
         request.outputFd >= 0 && request.errorFd >= 0
             ? launch::ChildProcess::start(request)
-            : Result<launch::ChildProcess>(Error{scratch_.path() + " can't be written: " + std::strerror(errno)});
+            : Result<launch::ChildProcess>(Error{scratch_.path() + " cannot be written: " + std::strerror(errno)});
     if (request.outputFd >= 0) close(request.outputFd);
     if (request.errorFd >= 0) close(request.errorFd);
     if (!child) return child.error();
     if (!awaitEnd(*child, Deadline::inMs(limitMs))) {
         endWithAll(*child, display_->pid());
-        return Error{name + " did not end within " + std::to_string(limitMs / 1000) + " s and was ended"};
+        return Error{name + " did not end within " + std::to_string(limitMs / 1000) + " s and was stopped"};
     }
     if (child->exitStatus() == 0) return textOf(said);
     const std::string why = lastLine(textOf(complained));
@@ -168,14 +168,14 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
 Result<std::string> AccuracyRuns::scenesProgram() {
     const std::string path = std::filesystem::path(launch::ownBinary()).parent_path() / "mural-scenes";
     if (access(path.c_str(), X_OK) == 0) return path;
-    return Error{path + " is not there: build the target mural-scenes, or give a program after --"};
+    return Error{path + " is missing: build the target mural-scenes, or add a program after --"};
 }
 
 Result<std::vector<OwnedPicture>> readPictures(const std::string& folder) {
     std::vector<std::filesystem::path> paths;
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) paths.push_back(entry.path());
-    if (error) return Error{folder + " can't be read: " + error.message()};
+    if (error) return Error{folder + " cannot be read: " + error.message()};
     std::ranges::sort(paths);
     std::vector<OwnedPicture> pictures;
     for (const auto& path : paths) {

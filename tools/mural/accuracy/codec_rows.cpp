@@ -43,7 +43,7 @@ AccuracyRow codecRow(CodecRegistry& registry, const std::string& group, const st
     auto codec = registry.make(name);
     if (!codec) row.failure = codec.error().message;
     for (const Plane& plane : planes) {
-        if (Interruption::signal() != 0) row.failure = "all is being ended";
+        if (Interruption::signal() != 0) row.failure = "the measurement was interrupted";
         if (!row.failure.empty()) return row;
         std::vector<std::byte> bytes((*codec)->boundBytes(shapeOf(plane.view())));
         Plane back(PlaneFormat::Rgba8, plane.width(), plane.height());
@@ -62,7 +62,7 @@ AccuracyRow codecRow(CodecRegistry& registry, const std::string& group, const st
     }
     const double pixels = static_cast<double>(std::max<size_t>(before, 4)) / 4;
     row.cost = Cost{static_cast<double>(tookNs) / pixels, static_cast<double>(packed) / pixels};
-    row.what = fmt::format("{}, {:.3g} times smaller", name,
+    row.what = fmt::format("{}, compressed by a factor of {:.3g}", name,
                            static_cast<double>(before) / static_cast<double>(std::max<size_t>(packed, 1)));
     return row;
 }

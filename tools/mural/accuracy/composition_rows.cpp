@@ -19,7 +19,7 @@ namespace {
 
 constexpr int32_t kWidth = 509, kHeight = 383; // primes
 constexpr size_t kPixels = size_t{kWidth} * kHeight;
-const char* const kGroup = "Composition of made-up pictures";
+const char* const kGroup = "Composition of synthetic pictures";
 
 Image blank(PlaneFormat colour, uint32_t part) {
     Image image;
@@ -96,7 +96,7 @@ AccuracyRow blendRow(PlaneFormat format, int layers, double bound, const char* w
     std::mt19937 random(2);
     Image sum = blank(format, 0);
     std::vector<double> truth(4 * kPixels, 0.0);
-    AccuracyRow row{kGroup, what, "the same in doubles", {}, {{}, bound, {}}, {}};
+    AccuracyRow row{kGroup, what, "the same in double precision", {}, {{}, bound, {}}, {}};
     int64_t tookNs = 0;
     for (int layer = 0; layer < layers; ++layer) {
         Image front = blank(format, static_cast<uint32_t>(layer));
@@ -140,7 +140,7 @@ AccuracyRow averageRow(unsigned samples, const char* what) {
     std::mt19937 random(3);
     Average average(PlaneFormat::Rgba8, kWidth, kHeight);
     std::vector<unsigned> sums(4 * kPixels, 0);
-    AccuracyRow row{kGroup, what, "the mean, not rounded", {}, {{}, 0.5, {}}, {}};
+    AccuracyRow row{kGroup, what, "the mean, unrounded", {}, {{}, 0.5, {}}, {}};
     Plane picture(PlaneFormat::Rgba8, kWidth, kHeight);
     int64_t tookNs = 0;
     for (unsigned s = 0; s < samples; ++s) {
@@ -179,8 +179,7 @@ Plane noise(unsigned seed) {
 AccuracyRow kernelRow() {
     const Plane wanted = noise(4);
     Plane got(PlaneFormat::Rgba8, kWidth, kHeight);
-    AccuracyRow row{kGroup, "pixel: kernels of 3x2 interleaved", "the picture they were cut from", {}, Bound::exact(),
-                    {}};
+    AccuracyRow row{kGroup, "pixel: kernels of 3x2 interleaved", "the undivided picture", {}, Bound::exact(), {}};
     for (int32_t k = 0; k < 6; ++k) {
         const PixelKernel kernel{k % 3, k / 3, 3, 2};
         Plane part(PlaneFormat::Rgba8, (kWidth - kernel.x + 2) / 3, (kHeight - kernel.y + 1) / 2);
@@ -209,8 +208,7 @@ AccuracyRow anaglyphRow() {
 AccuracyRow tileRow() {
     const Plane wanted = noise(7);
     Image whole = blank(PlaneFormat::Rgba8, 0);
-    AccuracyRow row{kGroup, "2D: 35 tiles that do not divide", "the picture they were cut from", {}, Bound::exact(),
-                    {}};
+    AccuracyRow row{kGroup, "2D: 35 tiles of unequal size", "the undivided picture", {}, Bound::exact(), {}};
     for (int32_t t = 0; t < 35; ++t) {
         const int32_t x0 = kWidth * (t % 7) / 7, x1 = kWidth * (t % 7 + 1) / 7, y0 = kHeight * (t / 7) / 5,
                       y1 = kHeight * (t / 7 + 1) / 5;

@@ -103,7 +103,7 @@ double drawCosts(Svg& svg, const AccuracyReport& report, const Box& area) {
     for (const AccuracyRow& row : report.rows)
         if (row.cost && groups.emplace(row.group, groups.size()).second) inOrder.push_back(row.group);
     if (groups.empty()) return area.y;
-    svg.text({area.x, area.y}, "What the errors cost", {.size = 15, .color = kText, .bold = true});
+    svg.text({area.x, area.y}, "Cost of the errors", {.size = 15, .color = kText, .bold = true});
     double y = area.y + 20;
     for (const std::string& group : inOrder) {
         Style dot;

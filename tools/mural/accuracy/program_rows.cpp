@@ -20,7 +20,7 @@ std::vector<Way> ways() {
     const Bound exact = Bound::exact(), notPromised{}; // the error of tiling lean depends on the program's drawing
     return {
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, true},
-        {"2D, 7x5 tiles on 4 nodes, unevenly", {"--tiles", "7x5", "--local-nodes", "4"}, exact, false},
+        {"2D, 7x5 unequal tiles on 4 nodes", {"--tiles", "7x5", "--local-nodes", "4"}, exact, false},
         {"2D, tiling culled, 3x2", {"--tiles", "3x2", "--tiling", "culled"}, exact, false},
         {"DB, 3 ranges", {"--db", "3"}, exact, true},
         {"mixed: 2x1 tiles of 2 ranges", {"--tiles", "2x1", "--db", "2", "--local-nodes", "4"}, exact, false},
@@ -42,7 +42,8 @@ Result<MeasuredError> errorOfReport(const std::string& path) {
     e.largest = static_cast<double>(number("largestDifference"));
     e.squares = static_cast<double>(number("squaredDifference"));
     e.components = 4 * e.pixels;
-    if (e.pixels == 0) return Error{"no frame was compared; does the program draw by OpenGL, for long enough?"};
+    if (e.pixels == 0)
+        return Error{"no frame was compared; the program must draw with OpenGL for the requested number of frames"};
     return e;
 }
 

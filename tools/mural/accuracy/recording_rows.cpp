@@ -31,13 +31,8 @@ std::vector<Way> ways() {
     std::vector<Way> all{
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, false, 1, true},
         {"DB, 3 ranges", {"--db", "3"}, exact, false, 1, true},
-        {"DPlex, 3 turns", {"--dplex", "3"}, exact, false, 1, false},
-        {"shift by the viewport: tiling lean, 2x2",
-         {"--tiles", "2x2", "--tiling", "lean"},
-         notPromised,
-         false,
-         1,
-         true},
+        {"DPlex, 3 phases", {"--dplex", "3"}, exact, false, 1, false},
+        {"shifted viewport: tiling lean, 2x2", {"--tiles", "2x2", "--tiling", "lean"}, notPromised, false, 1, true},
         {"pixel, kernel of 2x1", {"--pixel", "2x1"}, notPromised, false, 1, true, true},
         {"pixel, kernel of 2x2", {"--pixel", "2x2"}, notPromised, false, 1, false, true},
         {"zoom of 0.75", {"--zoom", "0.75"}, notPromised, false, 1, false, true},
@@ -70,12 +65,12 @@ Result<Replayed> replayed(const AccuracyRuns& runs, const std::string& recording
     if (auto said = runs.replay(all, recording); !said) return said.error();
     auto pictures = readPictures(out);
     if (!pictures) return pictures.error();
-    if (pictures->empty()) return Error{recording + " shows no picture; record a program that draws"};
+    if (pictures->empty()) return Error{recording + " contains no picture; record a program that draws"};
     Replayed r{std::move(*pictures), 0, 0, 0};
     std::ifstream file(report);
     const auto told = nlohmann::json::parse(file, nullptr, false);
     if (!told.is_object() || !told.contains("nodes") || !told["nodes"].is_array())
-        return Error{report + " says nothing of the nodes"};
+        return Error{report + " contains no data about the nodes"};
     r.frames = told.value("frames", int64_t{0});
     for (const auto& node : told["nodes"]) {
         r.cpuSeconds += node.value("replaySeconds", 0.0) + node.value("readbackSeconds", 0.0);
@@ -91,8 +86,8 @@ Result<void> checkRecording(const std::string& recording, const SayProgress& say
     if (!reader) return reader.error();
     if (auto whole = reader.value()->verify(); !whole) return whole.error();
     if (reader.value()->frames() == 0)
-        return Error{"recording " + recording +
-                     " has no frame: its program showed no picture; mural dump prints its calls"};
+        return Error{"trace " + recording +
+                     " has no frame, because the program showed no picture; mural dump prints its calls"};
     if (!reader.value()->notice().empty()) say(reader.value()->notice());
     return {};
 }
@@ -117,11 +112,11 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         if (!got)
             row.failure = got.error().message;
         else if (got.value().pictures.size() != wanted.value().pictures.size())
-            row.failure = fmt::format("{} pictures came instead of {}", got.value().pictures.size(),
+            row.failure = fmt::format("{} pictures received, {} expected", got.value().pictures.size(),
                                       wanted.value().pictures.size());
         else if (way.otherPixels && got.value().pictures.size() <= kWholeFrames)
-            row.failure =
-                fmt::format("the first {} frames do not count, and there are no others; record more", kWholeFrames);
+            row.failure = fmt::format("the first {} frames do not count, and there are no others; record more frames",
+                                      kWholeFrames);
         if (row.failure.empty()) {
             const Replayed &a = wanted.value(), &b = got.value();
             for (size_t p = way.otherPixels ? kWholeFrames : 0; p < a.pictures.size(); ++p)
@@ -133,7 +128,7 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         }
         rows.push_back(row);
     }
-    measureCodecs(one.value().pictures, "Codecs, on the recording " + name, quick, rows);
+    measureCodecs(one.value().pictures, "Codecs, on the trace " + name, quick, rows);
 }
 
 } // namespace mural::cli

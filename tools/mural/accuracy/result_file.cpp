@@ -24,7 +24,7 @@ ResultFile::~ResultFile() {
 }
 
 Error ResultFile::failed() const {
-    return Error{name_ + " can't be written: " + std::strerror(errno) + "; name another file"};
+    return Error{name_ + " cannot be written: " + std::strerror(errno) + "; choose another file"};
 }
 
 Result<void> ResultFile::write(const std::string& text) {

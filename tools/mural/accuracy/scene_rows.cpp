@@ -57,19 +57,19 @@ std::vector<SceneRows::Way> SceneRows::ways() {
     const Bound lean{0.0025, {}, 50.0};
     return {
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, R::Native, 1, true},
-        {"2D, 3x1 tiles that do not divide", {"--tiles", "3x1"}, exact},
-        {"2D, 7x5 tiles on 4 nodes, unevenly", {"--tiles", "7x5", "--local-nodes", "4"}, exact},
+        {"2D, 3x1 tiles of unequal size", {"--tiles", "3x1"}, exact},
+        {"2D, 7x5 unequal tiles on 4 nodes", {"--tiles", "7x5", "--local-nodes", "4"}, exact},
         {"2D, tiling culled, 3x2", {"--tiles", "3x2", "--tiling", "culled"}, exact, R::Native, 1, true},
         {"DB, 2 ranges", {"--db", "2"}, exact},
         {"DB, 3 ranges", {"--db", "3"}, exact, R::Native, 1, true},
-        {"DPlex, 3 turns", {"--dplex", "3"}, exact, R::Native, 1, true},
+        {"DPlex, 3 phases", {"--dplex", "3"}, exact, R::Native, 1, true},
         {"mixed: 2x1 tiles of 2 ranges",
          {"--tiles", "2x1", "--db", "2", "--local-nodes", "4"},
          exact,
          R::Native,
          1,
          true},
-        {"mixed: 2 turns of 1x2 tiles", {"--dplex", "2", "--tiles", "1x2", "--local-nodes", "4"}, exact},
+        {"mixed: 2 phases of 1x2 tiles", {"--dplex", "2", "--tiles", "1x2", "--local-nodes", "4"}, exact},
         {"2D, tiling lean, 2x2",
          {"--tiles", "2x2", "--tiling", "lean"},
          {lean, lean, {{}, {}, 45.0}, lean, lean, kNotPromised},
@@ -136,7 +136,7 @@ Result<void> SceneRows::prepare() {
     if (!drawn) return drawn.error();
     native_ = std::move(*drawn);
     if (native_.size() != kRounds * scenes::kSceneNames.size())
-        return Error{"the scenes were not all drawn; run mural-scenes by itself to see why"};
+        return Error{"mural-scenes did not draw all scenes; run it alone to see the error"};
     return {};
 }
 
@@ -151,7 +151,7 @@ Result<std::vector<OwnedPicture>> SceneRows::meanOf(int samples) {
         if (mean.empty())
             mean = std::move(*drawn);
         else if (drawn->size() != mean.size())
-            return Error{"the scenes were not all drawn"};
+            return Error{"mural-scenes did not draw all scenes"};
         sums.resize(mean.size());
         for (size_t p = 0; p < mean.size(); ++p) {
             const Picture from = i == 0 ? mean[p].view() : (*drawn)[p].view();
@@ -193,7 +193,7 @@ Result<std::vector<OwnedPicture>> SceneRows::anaglyph() {
          right = drawNatively({"--eye", fmt::format("{},{}", kEye, kFocus)});
     if (!left) return left.error();
     if (!right) return right.error();
-    if (left->size() != right->size()) return Error{"the scenes were not all drawn"};
+    if (left->size() != right->size()) return Error{"mural-scenes did not draw all scenes"};
     for (size_t p = 0; p < right->size(); ++p)
         // red
         for (size_t b = 2; b < (*right)[p].view().sizeBytes(); b += 4) (*right)[p].data()[b] = (*left)[p].data()[b];
@@ -230,11 +230,11 @@ AccuracyRow SceneRows::rowOf(const Way& way, size_t scene) {
     using R = Way::Reference;
     const bool exact = way.bounds.size() == 1;
     AccuracyRow row;
-    row.group = exact ? "Decompositions that are exact" : "Decompositions that round otherwise, or approximate";
+    row.group = exact ? "Exact decompositions" : "Decompositions with other rounding, and approximate ones";
     row.reference = way.reference == R::Native         ? "native"
                     : way.reference == R::Mean         ? fmt::format("mean of {} native", way.samples)
                     : way.reference == R::BothEyes     ? "two native eyes"
-                    : way.reference == R::TwiceAsLarge ? "native, twice as large, reduced"
+                    : way.reference == R::TwiceAsLarge ? "native at twice the size, reduced"
                                                        : "native eye";
     row.what = exact ? way.name : way.name + ": " + scenes::kSceneNames[scene];
     row.bound = way.bounds[scene];
@@ -250,7 +250,7 @@ void SceneRows::measureAllScenes(const Way& way, std::vector<AccuracyRow>& rows)
         AccuracyRow row = rowOf(way, 0);
         row.what = way.name;
         row.failure =
-            got ? fmt::format("{} pictures came instead of {}", got->size(), wanted->size()) : got.error().message;
+            got ? fmt::format("{} pictures received, {} expected", got->size(), wanted->size()) : got.error().message;
         rows.push_back(row);
         return;
     }
@@ -271,7 +271,7 @@ void SceneRows::measureEachScene(const Way& way, std::vector<AccuracyRow>& rows)
         if (!got)
             row.failure = got.error().message;
         else if (got->size() != wanted->size())
-            row.failure = fmt::format("{} pictures came instead of {}", got->size(), wanted->size());
+            row.failure = fmt::format("{} pictures received, {} expected", got->size(), wanted->size());
         for (size_t p = kWholeFrames; row.failure.empty() && p < got->size(); ++p)
             row.error.add(errorOf((*wanted)[p].view(), (*got)[p].view()));
         rows.push_back(row);

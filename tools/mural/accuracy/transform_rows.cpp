@@ -28,7 +28,7 @@ template <class Real> Real placeOf(double first, double last, int i, int pixels)
 }
 
 template <class Real> AccuracyRow transformRow(const char* what, const Bound& bound) {
-    AccuracyRow row{"Where pixels are looked up, in parts", what, "the whole, 64 bits of mantissa", {}, bound, {}, {}};
+    AccuracyRow row{"Positions of pixel lookups", what, "undivided, 64-bit mantissa", {}, bound, {}, {}};
     int64_t tookNs = 0;
     std::vector<Real> xs, ys;
     for (int t = 0; t < kColumns * kRows; ++t) {
@@ -66,8 +66,8 @@ template <class Real> AccuracyRow transformRow(const char* what, const Bound& bo
 void measureTransforms(std::vector<AccuracyRow>& rows) {
     // An edge at a pixel's centre may fall on either side. The error then is its full brightness, in a few of 783 107
     // pixels.
-    rows.push_back(transformRow<float>("35 tiles, by floats", {0.001, {}, 60.0}));
-    rows.push_back(transformRow<double>("35 tiles, by doubles", {0.00001, {}, 80.0}));
+    rows.push_back(transformRow<float>("35 tiles, single precision", {0.001, {}, 60.0}));
+    rows.push_back(transformRow<double>("35 tiles, double precision", {0.00001, {}, 80.0}));
 }
 
 } // namespace mural::cli

@@ -35,15 +35,15 @@ void printDiagnostics(const LoadedConfig& loaded, std::FILE* where) {
                    d.severity == config::Severity::Error ? "error: " : "warning: ", loaded.diagnostics.text(d));
     }
     if (wrong && warnings > kMaxWarnings)
-        fmt::print(where, "note: {} more warnings are left out; mend what is wrong first\n", warnings - kMaxWarnings);
+        fmt::print(where, "note: {} more warnings are not shown; fix these first\n", warnings - kMaxWarnings);
 }
 
 // Returns an option that does not apply to the requested output; empty: none.
 std::string unusedOption(const ConfigArguments& a) {
-    if (a.resolved && a.verb != "print") return "--resolved is for print";
+    if (a.resolved && a.verb != "print") return "--resolved requires print";
     if (!a.resolved && (a.frame >= 0 || !a.layout.empty() || !a.stereo.empty()))
-        return "--frame, --layout and --stereo are for print --resolved";
-    if (a.verb == "check" && !a.out.empty()) return "--out is for print and draw";
+        return "--frame, --layout and --stereo require print --resolved";
+    if (a.verb == "check" && !a.out.empty()) return "--out requires print or draw";
     return {};
 }
 
@@ -81,7 +81,8 @@ Result<std::string> resolvedText(const LoadedConfig& loaded, const ConfigArgumen
     compound::FrameInput input = compound::firstFrame(loaded.resolved);
     input.frameNumber = static_cast<uint64_t>(std::max<int64_t>(a.frame, 0));
     if (!a.layout.empty() && !showLayout(loaded.resolved, a.layout, input)) {
-        return Error{"no canvas has a layout " + a.layout + "; name one that mural config draw shows, or its number"};
+        return Error{"no canvas has a layout " + a.layout +
+                     "; choose a name that mural config draw shows, or its number"};
     }
     if (!a.stereo.empty())
         input.views.assign(loaded.resolved.views.size(),
@@ -108,7 +109,7 @@ int write(const std::string& text, const std::string& path) {
     out << text;
     out.close();
     if (out) return 0;
-    fmt::print(stderr, "mural config: {} can't be written: {}; name another file with --out\n", path,
+    fmt::print(stderr, "mural config: {} cannot be written: {}; choose another file with --out\n", path,
                std::strerror(errno));
     return 1;
 }
@@ -120,16 +121,16 @@ void describeConfig(CLI::App& command, ConfigArguments& a) {
         ->required()
         ->check(CLI::IsMember({"check", "print", "draw"}));
     command.add_option("FILE", a.file, "the configuration, in Equalizer's format (.eqc)")->required();
-    command.add_flag("--strict", a.strict, "warnings are errors");
-    command.add_option("--out", a.out, "print, draw: into this file, not to standard output")->type_name("FILE");
+    command.add_flag("--strict", a.strict, "treat warnings as errors");
+    command.add_option("--out", a.out, "print, draw: write to this file instead of standard output")->type_name("FILE");
     command.add_flag("--resolved", a.resolved,
-                     "print: what every channel does in a frame, with its contexts, instead of the configuration");
-    command.add_option("--frame", a.frame, "with --resolved: the frame's number (0)")
+                     "print: the tasks and contexts of every channel in a frame, instead of the configuration");
+    command.add_option("--frame", a.frame, "with --resolved: frame number (0)")
         ->type_name("NUMBER")
-        ->check(CLI::Range(int64_t{0}, INT64_MAX, "NUMBER from 0 on"));
-    command.add_option("--layout", a.layout, "with --resolved: the layout that is shown, by name or number")
+        ->check(CLI::Range(int64_t{0}, INT64_MAX, "NUMBER, at least 0"));
+    command.add_option("--layout", a.layout, "with --resolved: the layout to show, by name or number")
         ->type_name("NAME");
-    command.add_option("--stereo", a.stereo, "with --resolved: on or off (as each view says)")
+    command.add_option("--stereo", a.stereo, "with --resolved: on or off (as each view defines)")
         ->check(CLI::IsMember({"on", "off"}));
 }
 

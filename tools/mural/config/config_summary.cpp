@@ -41,7 +41,7 @@ std::vector<std::string> summaryOf(const compound::LoadedConfig& loaded) {
         for (const config::Equalizer& e : one.equalizers)
             ++equalizers[std::string(std::visit([](const auto& which) { return config::sectionName(which); }, e))];
     }
-    const std::string unwritten = generated > 0 ? fmt::format(" ({} of them not in the file)", generated) : "";
+    const std::string unwritten = generated > 0 ? fmt::format(" ({} of them created by default)", generated) : "";
     lines.push_back(fmt::format("compounds   {}{} in {}, {}", counted(c.compounds.size(), "compound"), unwritten,
                                 counted(c.roots.size(), "tree"), counted(outputs, "frame")));
     if (!equalizers.empty()) {

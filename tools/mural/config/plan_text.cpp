@@ -106,7 +106,7 @@ std::string planText(const config::ResolvedConfig& config, const FramePlan& plan
     for (const PlannedQueue& q : plan.queues) text += fmt::format("queue {}: {} tiles\n", q.name, q.tiles.size());
     for (const PlannedBarrier& b : plan.barriers)
         text += fmt::format("barrier \"{}\": {} windows\n", b.name, b.windows.size());
-    if (plan.interleaved) text += "channels that share a window wait for each other: each needs a buffer of its own\n";
+    if (plan.interleaved) text += "channels of one window wait for each other: each needs its own buffer\n";
     return text;
 }
 

@@ -49,21 +49,21 @@ void printTable(const Discovered& d) {
 } // namespace
 
 void describeDiscover(CLI::App& command, DiscoverArguments& a) {
-    command.add_option("--seconds", a.seconds, "how long to look (2)")
+    command.add_option("--seconds", a.seconds, "search time in seconds (2)")
         ->type_name("SECONDS")
         ->check(CLI::Range(0.1, 600.0));
     command
         .add_option("--interface", a.interface,
-                    "network interface of the beacon, name or address (all that do multicast)")
+                    "network interface of the beacon, name or address (all multicast interfaces)")
         ->type_name("NAME");
-    command.add_flag("--no-beacon", a.noBeacon, "by Avahi alone");
-    command.add_flag("--no-avahi", a.noAvahi, "by the beacon alone");
-    command.add_flag("--json", a.asJson, "one line, for programs");
+    command.add_flag("--no-beacon", a.noBeacon, "search with Avahi only");
+    command.add_flag("--no-avahi", a.noAvahi, "search with the beacon only");
+    command.add_flag("--json", a.asJson, "print one line of JSON");
 }
 
 int discoverCommand(const DiscoverArguments& a) {
     if (a.noBeacon && a.noAvahi) {
-        fmt::print(stderr, "mural discover: --no-beacon and --no-avahi leave nothing to look by; give one of them\n");
+        fmt::print(stderr, "mural discover: --no-beacon and --no-avahi exclude both methods; omit one of them\n");
         return launch::kExitUsage;
     }
     const Discovered d =
@@ -78,7 +78,7 @@ int discoverCommand(const DiscoverArguments& a) {
         if (!trouble.empty() && !a.asJson) fmt::print(stderr, "mural discover: {}\n", trouble);
     if (!a.asJson)
         fmt::print(stderr,
-                   "mural discover: no node waits on this network; start one with: mural node --wait --secret FILE\n");
+                   "mural discover: no daemon in this network; start one with: mural node --wait --secret FILE\n");
     return 1;
 }
 

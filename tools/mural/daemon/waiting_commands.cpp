@@ -51,9 +51,9 @@ Result<FileDescriptor> endSignals() {
     sigemptyset(&signals);
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);
     launch::rememberSignals();
-    if (pthread_sigmask(SIG_BLOCK, &signals, nullptr) != 0) return Error{"can't wait for signals"};
+    if (pthread_sigmask(SIG_BLOCK, &signals, nullptr) != 0) return Error{"cannot wait for signals"};
     FileDescriptor fd(signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK));
-    if (!fd.valid()) return Error{"no signalfd: " + errnoText(errno)};
+    if (!fd.valid()) return Error{"cannot create a signalfd: " + errnoText(errno)};
     return fd;
 }
 
@@ -62,28 +62,28 @@ void log(const std::string& line) { fmt::print(stderr, "mural node: {}\n", line)
 } // namespace
 
 void describeWait(CLI::App& node, WaitArguments& a) {
-    CLI::Option* wait =
-        node.add_flag("--wait", a.wait, "wait for heads that know the secret, and draw for one after the other");
+    CLI::Option* wait = node.add_flag("--wait", a.wait,
+                                      "daemon: wait for heads that have the secret, and draw for one after the other");
     node.add_option("--secret", a.secretFile, "with --wait: file with the secret, at least 16 bytes; -: standard input")
         ->type_name("FILE")
         ->needs(wait);
-    node.add_option("--listen", a.listen, "with --wait: where, all addresses and port 4279 by default")
+    node.add_option("--listen", a.listen, "with --wait: address and port to listen on (all addresses, port 4279)")
         ->type_name("[ADDRESS]:PORT")
         ->needs(wait);
-    node.add_option("--name", a.name, "with --wait: by which it is found (the machine's name)")->needs(wait);
-    node.add_option("--discovery", a.discovery, "with --wait: announce it by beacon, avahi, auto (both) or off")
+    node.add_option("--name", a.name, "with --wait: name in announcements (the host name)")->needs(wait);
+    node.add_option("--discovery", a.discovery, "with --wait: announce this node by beacon, avahi, auto (both) or off")
         ->check(CLI::IsMember({"auto", "beacon", "avahi", "off"}))
         ->needs(wait);
 }
 
 int waitCommand(const WaitArguments& a) {
     if (a.secretFile.empty())
-        return failed("node", "--wait needs --secret FILE: heads show that they know it", launch::kExitUsage);
+        return failed("node", "--wait requires --secret FILE, which authenticates heads", launch::kExitUsage);
     const std::string name = a.name.empty() ? machineName() : a.name;
     if (!announceable(name))
         return failed(
             "node",
-            fmt::format("--name \"{}\": must be 1 to {} printable ASCII characters without blank, comma and @", name,
+            fmt::format("--name \"{}\": must be 1 to {} printable ASCII characters without space, comma and @", name,
                         kMaxAnnouncedText),
             launch::kExitUsage);
     auto secret = rsp::readSecret(a.secretFile);
@@ -96,13 +96,13 @@ int waitCommand(const WaitArguments& a) {
     std::unique_ptr<Announcing> announcing;
     if (a.discovery != "off") {
         auto id = nodeId();
-        if (!id) return failed("node", id.error().message + ", or give --discovery off");
+        if (!id) return failed("node", id.error().message + ", or add --discovery off");
         auto started = Announcing::start({AnnouncementKind::Here, (*node)->port(), *id, name, muralVersion()},
                                          discoveryOf(a.discovery));
         if (!started) return failed("node", started.error().message);
         announcing = std::move(*started);
     }
-    log(fmt::format("{} waits for heads at port {}{}", name, (*node)->port(),
+    log(fmt::format("{} waits for heads on port {}{}", name, (*node)->port(),
                     announcing ? "; mural discover finds it" : ""));
     const auto r = (*node)->serve(signals->get());
     announcing.reset();
@@ -111,9 +111,9 @@ int waitCommand(const WaitArguments& a) {
 
 void describeCall(CLI::App& call, CallArguments& a) {
     call.add_option("--secret", a.secretFile, "file with the secret of the nodes")->type_name("FILE");
-    call.add_option("--discovery", a.discovery, "how @NAME is found: beacon, avahi, auto (both)")
+    call.add_option("--discovery", a.discovery, "method to find @NAME: beacon, avahi, auto (both)")
         ->check(CLI::IsMember({"auto", "beacon", "avahi"}));
-    call.add_option("--seconds", a.seconds, "how long @NAME is looked for (5)")
+    call.add_option("--seconds", a.seconds, "time limit to find @NAME (5)")
         ->type_name("SECONDS")
         ->check(CLI::Range(0.1, 600.0));
     call.prefix_command();
@@ -143,9 +143,9 @@ Result<DaemonClient> placeOf(const std::string& host, const CallArguments& a) {
                       [&](const std::vector<FoundNode>& nodes) { return std::ranges::any_of(nodes, isIt); });
     const auto found = std::ranges::find_if(d.nodes, isIt);
     if (found == d.nodes.end())
-        return Error{"no node is found by the name " + name + "; mural discover lists those that are"};
+        return Error{"no node has the name " + name + "; mural discover lists the nodes of this network"};
     if (std::ranges::count_if(d.nodes, isIt) > 1)
-        return Error{"several nodes have the name " + name + "; take the UUID that mural discover tells: @UUID"};
+        return Error{"several nodes have the name " + name + "; use @UUID with the UUID that mural discover prints"};
     call.addresses = found->addresses;
     call.port = found->port;
     return call;
@@ -157,10 +157,11 @@ int callCommand(const CallArguments& a) {
     std::signal(SIGPIPE, SIG_IGN);
     if (a.command.size() < 3)
         return failed(
-            "call", "a host, the path of mural there and its arguments are needed, as mural run gives them to --launch",
+            "call",
+            "HOST, the path of mural on it, and arguments are required; mural run adds these to its --launch command",
             launch::kExitUsage);
     if (a.secretFile.empty())
-        return failed("call", "--secret FILE is needed: the nodes take orders only of who knows it",
+        return failed("call", "--secret FILE is required, because nodes accept only authenticated heads",
                       launch::kExitUsage);
     // Standard input belongs to the node.
     if (a.secretFile == "-")

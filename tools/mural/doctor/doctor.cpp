@@ -16,7 +16,7 @@ std::vector<Check> allChecks() {
     const auto gl = checkGl(draws);
     checks.insert(checks.end(), gl.begin(), gl.end());
     if (!draws)
-        checks.push_back({Health::Bad, "GL", "no GL of this machine draws",
+        checks.push_back({Health::Bad, "GL", "no GL of this machine can draw",
                           "install Debian's package libegl-mesa0 or the graphics driver's"});
     for (const auto check : {checkDisplay, checkPrivateDisplay, checkSharedMemory, checkMemoryFolder, checkOpenFiles,
                              checkVideo, checkRemote}) {
@@ -36,7 +36,7 @@ int doctorCommand(bool asJson) {
     } else {
         printChecks(checks);
         fmt::print("{}\n", good ? "Mural can be used on this machine."
-                                : "Mural cannot be used on this machine yet: mend the lines that begin with \"bad\".");
+                                : "Mural cannot be used on this machine yet: fix the lines that begin with \"bad\".");
     }
     return good ? 0 : 1;
 }

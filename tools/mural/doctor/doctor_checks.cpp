@@ -48,7 +48,7 @@ Isolated inChild(const std::function<Isolated()>& work, int64_t limitMs) {
         _exit(0);
     }
     close(ends[1]);
-    Isolated result{false, "no new process"};
+    Isolated result{false, "cannot create a process"};
     if (pid > 0) {
         launch::ChildProcess child = launch::ChildProcess::adopt(pid);
         const bool ended = child.waitUntil(Deadline::inMs(limitMs));
@@ -80,7 +80,7 @@ Check checkCaptureLibrary() {
     if (!library) return {Health::Bad, "library", library.error().message, "build or install all of Mural"};
     if (access(library->eglVendorFile.c_str(), R_OK) != 0) {
         return {Health::Warn, "library", library->path + ", without " + library->eglVendorFile,
-                "programs that use EGL are not captured; build or install all of Mural"};
+                "EGL programs are not captured; build or install all of Mural"};
     }
     return {Health::Ok, "library", library->path, {}};
 }
@@ -88,7 +88,7 @@ Check checkCaptureLibrary() {
 Check checkPreload() {
     auto library = launch::findCaptureLibrary(launch::ownBinary());
     launch::Environment environment = launch::Environment::current();
-    if (!library) return {Health::Bad, "preload", "there is no library to load", "build or install all of Mural"};
+    if (!library) return {Health::Bad, "preload", "the capture library is missing", "build or install all of Mural"};
     const auto added = launch::addCapture(environment, *library, "");
     if (!added) return {Health::Bad, "preload", added.error().message, "move Mural to another folder"};
     environment.unset("MURAL_SESSION");
@@ -100,14 +100,14 @@ Check checkPreload() {
     if (!child) return {Health::Bad, "preload", child.error().message, "check the installation"};
     if (!child->waitUntil(Deadline::inMs(kPreloadMs))) {
         child->end(Deadline::inMs(0));
-        return {Health::Bad, "preload", "a program with the library does not come to its end",
+        return {Health::Bad, "preload", "a program with the capture library does not end",
                 "run: LD_DEBUG=libs LD_PRELOAD=" + library->path + " true"};
     }
     if (child->exitStatus() != 0) {
-        return {Health::Bad, "preload", "the loader does not take the library (" + child->describeEnd() + ")",
-                "run: LD_PRELOAD=" + library->path + " true, and read what the loader says"};
+        return {Health::Bad, "preload", "the loader rejects the capture library (" + child->describeEnd() + ")",
+                "run: LD_PRELOAD=" + library->path + " true, and read the loader's message"};
     }
-    return {Health::Ok, "preload", "the loader takes the library into programs", {}};
+    return {Health::Ok, "preload", "the loader accepts the capture library", {}};
 }
 
 Check checkDisplay() {
@@ -116,7 +116,7 @@ Check checkDisplay() {
         return {Health::Ok, "display", "none (DISPLAY is not set): programs run on a private display", {}};
     if (launch::displayUsable(name)) return {Health::Ok, "display", name, {}};
     return {Health::Warn, "display", name + " cannot be opened",
-            "check that it runs, or unset DISPLAY to run without one"};
+            "start its server, or unset DISPLAY to use a private display"};
 }
 
 Check checkPrivateDisplay() {
@@ -124,11 +124,11 @@ Check checkPrivateDisplay() {
     const bool needed = !launch::displayUsable(launch::Environment::current().get("DISPLAY").value_or(""));
     if (!there)
         return {needed ? Health::Bad : Health::Warn, "private display", "Xvfb was not found",
-                "install Debian's package xvfb: it is needed without a display and for --size"};
+                "install Debian's package xvfb; it is required without a display and for --size"};
     auto display = launch::PrivateDisplay::start(64, 64);
     if (!display)
         return {needed ? Health::Bad : Health::Warn, "private display", display.error().message,
-                "run Xvfb :99 by hand and read what it says"};
+                "run Xvfb :99 manually and read its messages"};
     return {Health::Ok, "private display", "Xvfb starts", {}};
 }
 
@@ -137,14 +137,15 @@ Check checkSharedMemory() {
     const int fd = memfd_create("mural-doctor", MFD_CLOEXEC);
     if (fd < 0)
         return {Health::Bad, "shared memory", "memfd_create: " + std::string(std::strerror(errno)),
-                "a kernel of 3.17 or later is needed, and no sandbox that forbids it"};
+                "use kernel 3.17 or later, and a sandbox that permits memfd_create"};
     const bool sized = ftruncate(fd, static_cast<off_t>(wanted)) == 0;
     void* at = sized ? mmap(nullptr, wanted, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0) : MAP_FAILED;
     const int reason = errno;
     if (at != MAP_FAILED) munmap(at, wanted);
     close(fd);
     if (at == MAP_FAILED)
-        return {Health::Bad, "shared memory", fmt::format("no {} MiB: {}", wanted / kMiB, std::strerror(reason)),
+        return {Health::Bad, "shared memory",
+                fmt::format("cannot allocate {} MiB: {}", wanted / kMiB, std::strerror(reason)),
                 "raise the memory limit (ulimit -v, container)"};
     return {Health::Ok, "shared memory", fmt::format("{} MiB for each captured program", wanted / kMiB), {}};
 }
@@ -153,7 +154,7 @@ Check checkMemoryFolder() {
     struct statvfs facts {};
     if (statvfs("/dev/shm", &facts) != 0)
         return {Health::Warn, "/dev/shm", std::strerror(errno),
-                "mount a tmpfs there: programs and X servers exchange pictures by it"};
+                "mount a tmpfs there; programs and X servers transfer pictures through it"};
     const uint64_t sizeMiB = facts.f_blocks * facts.f_frsize / kMiB;
     if (sizeMiB < 64)
         return {Health::Warn, "/dev/shm", fmt::format("{} MiB", sizeMiB),

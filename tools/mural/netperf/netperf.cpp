@@ -49,7 +49,8 @@ Result<rsp::GroupOptions> optionsOfStream(const NetperfArguments& a, bool& needs
     auto description = parseConnectionDescription(a.stream);
     if (!description) return description.error();
     if (description->kind != ConnectionDescription::Kind::Rsp)
-        return Error{"--stream \"" + a.stream + "\" is no group; give rsp://239.255.77.85:4277?parameter=value&…"};
+        return Error{"--stream \"" + a.stream +
+                     "\" is not a multicast group; use rsp://239.255.77.85:4277?parameter=value&…"};
     auto options = rsp::groupOptionsOf(*description);
     if (!options) return options.error();
     if (!description->parameters.contains("control")) options->control = a.control;
@@ -74,7 +75,7 @@ Result<rsp::GroupOptions> optionsOf(const NetperfArguments& a) {
     auto window = rsp::parseSize(a.window);
     if (!window) return window.error();
     if (*window < 64 || *window > 65'536 || (*window & (*window - 1)) != 0)
-        return Error{"a window has 64 to 65536 datagrams, a power of two"};
+        return Error{"--window must be a power of two from 64 to 65536"};
     o.windowDatagrams = static_cast<uint32_t>(*window);
     return o;
 }
@@ -96,8 +97,8 @@ Result<Plan> planOf(const NetperfArguments& a) {
     }
     if (!needsSecret) return plan;
     if (a.secretFile.empty())
-        return Error{"--secret-file is needed (or secret=FILE in --stream): sender and receivers show each other that "
-                     "they know it"};
+        return Error{
+            "--secret-file (or secret=FILE in --stream) is required; sender and receivers authenticate with it"};
     auto secret = rsp::readSecret(a.secretFile);
     if (!secret) return secret.error();
     o.secret = *secret;
@@ -195,8 +196,8 @@ int failed(const std::string& why) {
 }
 
 std::string faultOf(const Measured& m) {
-    return "what came is not what was sent: " + m.wrong +
-           "; with any seal but none this is a fault of mural, please report it";
+    return "received data differs from sent data: " + m.wrong +
+           "; unless --seal is none, please report this as a fault of mural";
 }
 
 int sendRole(const Plan& plan, const NetperfArguments& a) {
@@ -204,8 +205,8 @@ int sendRole(const Plan& plan, const NetperfArguments& a) {
     if (!group) return failed(group.error().message);
     // Not part of the results.
     fmt::print(stderr,
-               "waiting for {} receivers; start each with: mural netperf receive --control HOST:PORT --secret-file …, "
-               "the host listens at {}\n",
+               "waiting for {} receivers; start each with: mural netperf receive --control HOST:PORT --secret-file …; "
+               "the host listens on {}\n",
                a.members, (*group)->controlAddress());
     auto m = send(**group, plan, a);
     if (!m) return failed(m.error().message);
@@ -224,9 +225,8 @@ int receiveRole(const Plan& plan, const NetperfArguments& a) {
     m->joinedNs = joinedNs;
     print(*m, a.asJson);
     if (!m->wrong.empty()) return failed(faultOf(*m));
-    return m->cut.empty()
-               ? 0
-               : failed("the stream ended after " + std::to_string(m->bytes) + " bytes, before its end: " + m->cut);
+    return m->cut.empty() ? 0
+                          : failed("the stream was cut off after " + std::to_string(m->bytes) + " bytes: " + m->cut);
 }
 
 // Runs all roles in one process over the loopback.
@@ -264,41 +264,44 @@ int localRole(const Plan& plan, const NetperfArguments& a) {
 } // namespace
 
 void describeNetperf(CLI::App& command, NetperfArguments& a) {
-    command.add_option("ROLE", a.role, "send, receive, or local: all on this machine")
+    command.add_option("ROLE", a.role, "send, receive, or local: all roles on this machine")
         ->check(CLI::IsMember({"send", "receive", "local"}));
-    command.add_option("--members", a.members, "receivers to wait for")->check(CLI::Range(1, 1000));
-    command.add_option("--bytes", a.bytes, "how much is sent: 64M")->type_name("SIZE");
-    command.add_option("--message", a.message, "send messages of this size instead, each when all have the one before")
+    command.add_option("--members", a.members, "number of receivers to wait for")->check(CLI::Range(1, 1000));
+    command.add_option("--bytes", a.bytes, "amount to send (64M)")->type_name("SIZE");
+    command
+        .add_option("--message", a.message,
+                    "send messages of this size instead; each waits for the arrival of the previous one")
         ->type_name("SIZE");
-    command.add_option("--count", a.count, "so many messages")->check(CLI::Range(1, 10'000'000));
+    command.add_option("--count", a.count, "number of messages")->check(CLI::Range(1, 10'000'000));
     auto* stream = command.add_option("--stream", a.stream,
-                                      "the group as a description, rsp://GROUP:PORT?parameter=value&…, instead of the "
-                                      "options for one of them (docs/reference/connections.md lists them)");
-    command.add_option("--rate", a.rate, "at most: 200mbit, 1gbit; 0: nine tenths of what the card tells")
+                                      "the group as a description, rsp://GROUP:PORT?parameter=value&…, instead of "
+                                      "separate options (docs/reference/connections.md lists them)");
+    command.add_option("--rate", a.rate, "maximum rate: 200mbit, 1gbit; 0: nine tenths of the card's rate")
         ->type_name("RATE");
     command.add_option("--group", a.group, "multicast address and port")->type_name("ADDRESS:PORT");
-    command.add_option("--interface", a.interface, "network interface, by name or address");
-    command.add_option("--control", a.control, "send: where to listen; receive: where the sender listens")
+    command.add_option("--interface", a.interface, "network interface, name or address");
+    command.add_option("--control", a.control, "send: address to listen on; receive: address of the sender")
         ->type_name("HOST:PORT");
-    command.add_option("--secret-file", a.secretFile, "file with the secret that both ends know; -: standard input");
+    command.add_option("--secret-file", a.secretFile, "file with the shared secret; -: standard input");
     command.add_option("--seal", a.seal, "auto (encrypted), siphash, aes-256-gcm, chacha20-poly1305, none");
-    command.add_option("--datagram", a.datagramBytes, "bytes of a datagram; 0: what the interface carries whole")
+    command.add_option("--datagram", a.datagramBytes, "bytes per datagram; 0: the largest without fragmentation")
         ->check(CLI::Range(0, 65'000));
-    command.add_option("--window", a.window, "datagrams under way at most, a power of two");
-    command.add_option("--within", a.withinSeconds, "give up after so many seconds")
+    command.add_option("--window", a.window, "maximum number of unacknowledged datagrams, a power of two");
+    command.add_option("--within", a.withinSeconds, "time limit")
         ->type_name("SECONDS")
         ->check(CLI::Range(0.1, 86'400.0));
-    command.add_option("--leave-after", a.leaveAfterSeconds, "receive: leave the group so many seconds after joining")
+    command.add_option("--leave-after", a.leaveAfterSeconds, "receive: leave the group this long after joining")
         ->type_name("SECONDS")
         ->check(CLI::Range(0.0, 86'400.0));
-    command.add_option("--timeline", a.timelineMs, "with --json: tell the bytes of every so many milliseconds, too")
+    command
+        .add_option("--timeline", a.timelineMs, "with --json: also report the bytes of every interval of this length")
         ->type_name("MS")
         ->check(CLI::Range(0, 10'000));
     command.add_flag("--unchecked", a.unchecked,
-                     "neither fill nor compare the bytes, at both ends: what the transport alone costs");
-    command.add_flag("--no-parity", a.noParity, "mend losses by sending again, to compare");
-    command.add_flag("--no-multicast", a.noMulticast, "receive: through the host's connection");
-    command.add_flag("--json", a.asJson, "one line of JSON for each end");
+                     "do not generate or compare data, at both ends; measures the transport alone");
+    command.add_flag("--no-parity", a.noParity, "repair losses by retransmission only, for comparison");
+    command.add_flag("--no-multicast", a.noMulticast, "receive: use the host's TCP connection");
+    command.add_flag("--json", a.asJson, "print one line of JSON per end");
     for (const char* single :
          {"--rate", "--group", "--interface", "--seal", "--datagram", "--window", "--no-parity", "--no-multicast"})
         stream->excludes(command.get_option(single));

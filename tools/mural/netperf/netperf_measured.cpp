@@ -91,14 +91,14 @@ void printTable(const Measured& m) {
                m.cpuPerGB());
     if (m.joinedNs != 0) fmt::print("  joined within {:.1f} ms\n", m.joinS() * 1e3);
     if (!m.latenciesUs.empty()) {
-        fmt::print("  until all have a message: p50 {:.0f} us, p90 {:.0f}, p99 {:.0f}, longest {:.0f} ({} messages)\n",
+        fmt::print("  latency to all receivers: p50 {:.0f} us, p90 {:.0f}, p99 {:.0f}, maximum {:.0f} ({} messages)\n",
                    m.latencyUs(0.5), m.latencyUs(0.9), m.latencyUs(0.99), m.latenciesUs.back(), m.latenciesUs.size());
     }
     if (s.datagrams > 0) {
-        fmt::print("  {} datagrams in {} sendings by {}; {} of parity, {} sent again, {} polls, {} answers\n",
+        fmt::print("  {} datagrams in {} sends by {}; {} parity, {} retransmitted, {} polls, {} feedbacks\n",
                    s.datagrams, m.report.sendings, m.report.sendingBy, s.rows, s.resent, s.polls, s.feedback);
     }
-    if (m.membersLost > 0) fmt::print("  {} of the receivers did not stay to the end\n", m.membersLost);
+    if (m.membersLost > 0) fmt::print("  {} receivers left before the end\n", m.membersLost);
     for (const auto& member : m.report.members) {
         fmt::print("  member {} at {}: {}, round trip {:.0f} us, lost {}, dropped by its socket {}\n", member.id,
                    member.info.address, member.info.multicast ? "multicast" : "through the host's connection",
@@ -106,8 +106,8 @@ void printTable(const Measured& m) {
     }
     for (const auto& stream : m.report.streams) {
         if (stream.received.datagrams == 0) continue;
-        fmt::print("  {} datagrams, {} put back from parity, {} twice, {} lost on the way\n", stream.received.datagrams,
-                   stream.received.recovered, stream.received.duplicates, stream.lost);
+        fmt::print("  {} datagrams, {} recovered from parity, {} duplicates, {} lost in the network\n",
+                   stream.received.datagrams, stream.received.recovered, stream.received.duplicates, stream.lost);
     }
 }
 

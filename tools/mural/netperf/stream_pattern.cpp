@@ -80,7 +80,7 @@ void PatternCheck::take(std::span<const std::byte> bytes) {
     if (first_.size() < kFindBytes) return;
     const auto place = findPattern(first_);
     if (!place) {
-        fault_ = "the first bytes that came are of no place in the stream";
+        fault_ = "the first received bytes do not occur in the stream";
         return;
     }
     found_ = true;
@@ -99,7 +99,7 @@ void PatternCheck::compare(std::span<const std::byte> bytes) {
             const auto wrongAt = static_cast<size_t>(std::ranges::mismatch(piece, expected).in1 - piece.begin());
             const uint64_t place = place_ + wrongAt;
             const auto came = findPattern(bytes.subspan(wrongAt));
-            fault_ = came && *came != place ? fmt::format("at byte {} came what belongs at byte {}", place, *came)
+            fault_ = came && *came != place ? fmt::format("byte {} has the contents of byte {}", place, *came)
                                             : fmt::format("byte {} was changed", place);
             return;
         }

@@ -56,7 +56,7 @@ Result<void> HostSurvey::greet(Deadline deadline) {
     takeTroubles(*hello, m_);
     if (m_.reached.empty()) return {};
     auto single = numericAddress(m_.own, static_cast<uint16_t>(numberOf(*hello, "port")));
-    if (!single) return Error{"it tells no address of its own"};
+    if (!single) return Error{"the host sent no address"};
     single_ = *single;
     return {};
 }
@@ -91,7 +91,7 @@ Result<void> HostSurvey::probeThere(const std::vector<size_t>& sizes, const std:
     if (!answer) return answer.error();
     seenBytes_ = 0;
     const auto seen = answer->find("seen");
-    if (seen == answer->end() || !seen->is_array()) return Error{"it does not tell what it has seen"};
+    if (seen == answer->end() || !seen->is_array()) return Error{"the host sent no list of received datagrams"};
     for (const json& each : *seen) {
         const uint64_t number = each.is_object() ? numberOf(each, "way") : ~uint64_t{0};
         if (number >= m_.ways.size()) continue;
@@ -156,7 +156,7 @@ Result<void> HostSurvey::stream() {
     auto joined = process_.ask({{"do", "join"}, {"control", control}}, Deadline::inMs(kJoinMs));
     if (!joined) return joined.error();
     if (!joined->contains("joined") || (*joined)["joined"] != true)
-        return Error{"it could not join the group: " + textOf(*joined, "why")};
+        return Error{"the host could not join the group: " + textOf(*joined, "why")};
     auto r = streamTo(**group);
     group->reset();
     auto left = process_.ask({{"do", "leave"}}, Deadline::inMs(kAnswerMs));
@@ -182,7 +182,8 @@ Result<void> HostSurvey::streamTo(rsp::Group& group) {
     const rsp::GroupReport report = group.report();
     // A group without members discards its stream at any rate, so the measured rate would be meaningless.
     if (report.members.size() != 1)
-        return Error{"the host's member was lost during the stream: it said nothing, or did not take it"};
+        return Error{
+            "the host was evicted from the group during the stream: it sent no feedback or did not receive the data"};
     const auto& member = report.members.front();
     m_.multicast = member.info.multicast;
     m_.datagrams = report.sender.datagrams;

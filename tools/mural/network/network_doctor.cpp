@@ -30,7 +30,7 @@ size_t largestOf(const HostMeasured& h) {
 }
 
 void printTable(const std::vector<HostMeasured>& hosts) {
-    fmt::print("{:<20} {:<12} {:>10} {:>12} {:>8} {:>10}\n", "host", "reached by", "datagram", "rate", "lost",
+    fmt::print("{:<20} {:<12} {:>10} {:>12} {:>8} {:>10}\n", "host", "reached from", "datagram", "rate", "lost",
                "buffer");
     for (const HostMeasured& h : hosts) {
         const bool streamed = h.failure.empty() && h.streamFailure.empty() && !h.reached.empty();
@@ -70,30 +70,30 @@ json hostJson(const HostMeasured& h, const std::vector<Check>& checks) {
 } // namespace
 
 CLI::Option* describeNetworkDoctor(CLI::App& doctor, NetworkArguments& a) {
-    CLI::Option* network =
-        doctor.add_option("--network", a.hosts,
-                          "look at the network between this machine and hosts, by a member that is started on each");
+    CLI::Option* network = doctor.add_option(
+        "--network", a.hosts, "test the network between this machine and these hosts with a test process on each");
     network->type_name("[H1,H2]")->expected(0, 1);
     doctor
         .add_option("--launch", a.launchCommand,
-                    "network: command that runs a command on a host (ssh -o BatchMode=yes)")
+                    "with --network: command that runs a command on a host (ssh -o BatchMode=yes)")
         ->type_name("CMD")
         ->needs(network);
-    doctor.add_option("--remote-mural", a.remoteMural, "network: path of mural on the hosts (this one's)")
+    doctor.add_option("--remote-mural", a.remoteMural, "with --network: path of mural on the hosts (the local path)")
         ->type_name("PATH")
         ->needs(network);
-    doctor.add_option("--group", a.group, "network: multicast address and port (239.255.77.85:4277)")
+    doctor.add_option("--group", a.group, "with --network: multicast address and port (239.255.77.85:4277)")
         ->type_name("ADDRESS:PORT")
         ->needs(network);
     doctor
         .add_option("--interface", a.interface,
-                    "network: interface to send by, name or address (the one that leads to the first host)")
+                    "with --network: interface to send on, name or address (the one towards the first host)")
         ->type_name("NAME")
         ->needs(network);
-    doctor.add_option("--rate", a.rate, "network: at most, such as 900mbit (nine tenths of what the card tells)")
+    doctor
+        .add_option("--rate", a.rate, "with --network: maximum rate, such as 900mbit (nine tenths of the card's rate)")
         ->type_name("RATE")
         ->needs(network);
-    doctor.add_option("--seconds", a.seconds, "network: length of the stream to each host (1)")
+    doctor.add_option("--seconds", a.seconds, "with --network: seconds of streaming to each host (1)")
         ->type_name("SECONDS")
         ->check(CLI::Range(0.1, 60.0))
         ->needs(network);
@@ -105,7 +105,7 @@ int networkDoctorCommand(const NetworkArguments& arguments, bool asJson) {
     std::signal(SIGPIPE, SIG_IGN); // a host's process may end at any time
     const bool terminal = !asJson && isatty(STDERR_FILENO) == 1;
     const auto survey = surveyNetwork(arguments, [&](const std::string& host) {
-        if (terminal) fmt::print(stderr, "looking at {} ...\n", host);
+        if (terminal) fmt::print(stderr, "testing {} ...\n", host);
     });
     if (!survey) {
         fmt::print(stderr, "mural doctor --network: {}\n", survey.error().message);
@@ -125,8 +125,8 @@ int networkDoctorCommand(const NetworkArguments& arguments, bool asJson) {
     } else {
         printTable(survey.value().hosts);
         printChecks(all);
-        fmt::print("{}\n", good ? "The network carries Mural."
-                                : "The network needs mending: see the lines that begin with \"bad\".");
+        fmt::print("{}\n", good ? "The network is ready for Mural."
+                                : "The network needs changes: fix the lines that begin with \"bad\".");
     }
     return good ? 0 : 1;
 }

@@ -17,26 +17,27 @@ std::string percent(double share) { return fmt::format("{:.2g} %", share * 100);
 
 // Returns "eth0 at 1000 Mbit/s, packets of 1500 bytes".
 Check card(const std::string& name, const MachineFacts& f) {
-    std::string found = fmt::format("{}, packets of {} bytes", f.interface, f.mtuBytes);
+    std::string found = fmt::format("{}, MTU {} bytes", f.interface, f.mtuBytes);
     if (f.linkBytesPerS > 0) found += fmt::format(", {:.0f} Mbit/s", f.linkBytesPerS * 8e-6);
     if (!f.multicast && !f.loopback)
-        return {Health::Bad, name, found + ", does no multicast",
+        return {Health::Bad, name, found + ", without multicast",
                 fmt::format("`ip link set dev {} multicast on`, or give --interface", f.interface)};
     if (f.linkBytesPerS > 0 && f.linkBytesPerS < kSlowLinkBytesPerS)
-        return {
-            Health::Warn, name, found,
-            fmt::format("slow for pictures and geometry: look at cable and switch port (`ethtool {}`)", f.interface)};
+        return {Health::Warn, name, found,
+                fmt::format("slow for pictures and geometry: check the cable and the switch port (`ethtool {}`)",
+                            f.interface)};
     return {Health::Ok, name, found, {}};
 }
 
 Check buffers(const std::string& name, const std::string& where, const MachineFacts& f) {
     const auto mib = [](size_t bytes) { return static_cast<double>(bytes) / (1 << 20); };
     const std::string found =
-        fmt::format("{:.3g} of {:.0f} MiB for receiving", mib(f.bufferBytes), mib(kWantedBufferBytes));
+        fmt::format("{:.3g} of {:.0f} MiB receive buffer", mib(f.bufferBytes), mib(kWantedBufferBytes));
     if (f.bufferBytes >= kWantedBufferBytes) return {Health::Ok, name, found, {}};
-    return {Health::Warn, name, found,
-            fmt::format("`sysctl -w net.core.rmem_max={0} net.core.wmem_max={0}`{1}; a file in /etc/sysctl.d keeps it",
-                        kWantedBufferBytes, where)};
+    return {
+        Health::Warn, name, found,
+        fmt::format("`sysctl -w net.core.rmem_max={0} net.core.wmem_max={0}`{1}; make it permanent in /etc/sysctl.d",
+                    kWantedBufferBytes, where)};
 }
 
 // Returns true if the sending interface is not the one towards the host, and no multicast arrives.
@@ -49,80 +50,80 @@ Check noMulticast(const HereMeasured& here, const HostMeasured& h, const std::st
     const WayMeasured& group = h.way(ProbeWay::Group);
     if (!group.trouble.empty())
         return {Health::Bad, name, group.trouble,
-                fmt::format("a firewall's rule for sending, or a missing route: `nft list ruleset`, `ip route add "
-                            "224.0.0.0/4 dev {}`",
+                fmt::format("check for a firewall rule that blocks sending, and for a missing route: `nft list "
+                            "ruleset`, `ip route add 224.0.0.0/4 dev {}`",
                             here.facts.interface)};
     if (h.way(ProbeWay::LinkLocal).to) {
-        std::string querier = "turn the switch's IGMP querier on, or its IGMP snooping off";
+        std::string querier = "enable the switch's IGMP querier, or disable its IGMP snooping";
         const auto& bridges = h.facts.silentBridges.empty() ? here.facts.silentBridges : h.facts.silentBridges;
         if (!bridges.empty())
             querier =
-                fmt::format("`ip link set dev {} type bridge mcast_querier 1`, or turn the switch's IGMP querier on",
+                fmt::format("`ip link set dev {} type bridge mcast_querier 1`, or enable the switch's IGMP querier",
                             bridges.front());
         return {Health::Bad, name,
-                fmt::format("link-local multicast arrives, {} does not: a switch that snoops IGMP and hears no "
-                            "querier, or a firewall's rule for the group",
+                fmt::format("link-local multicast arrives, {} does not: the switch snoops IGMP without a querier, or a "
+                            "firewall blocks the group",
                             here.group),
-                querier + fmt::format("; let UDP to {} in (`nft list ruleset`)", here.group)};
+                querier + fmt::format("; allow incoming UDP to {} (`nft list ruleset`)", here.group)};
     }
-    std::string advice = fmt::format("let UDP to {} through firewalls here and there; networks of clouds and VPNs "
-                                     "often carry none: then nodes are sent everything by TCP",
+    std::string advice = fmt::format("allow UDP to {} in the firewalls of both machines; many cloud networks and VPNs "
+                                     "have no multicast, and nodes then receive the stream over TCP",
                                      here.group);
     if (h.facts.strictReturnPath)
-        advice += fmt::format("; or the way back is by another card: `sysctl -w net.ipv4.conf.all.rp_filter=2 "
-                              "net.ipv4.conf.{}.rp_filter=2` there",
+        advice += fmt::format("; or replies use another interface: `sysctl -w net.ipv4.conf.all.rp_filter=2 "
+                              "net.ipv4.conf.{}.rp_filter=2` on the host",
                               h.facts.interface);
-    return {Health::Bad, name, "no multicast arrives, datagrams to its own address do", advice};
+    return {Health::Bad, name, "no multicast arrives, but unicast datagrams do", advice};
 }
 
 Check multicast(const HereMeasured& here, const HostMeasured& h, const std::string& name) {
     const WayMeasured& group = h.way(ProbeWay::Group);
     if (!group.to) return noMulticast(here, h, name);
     if (!group.toLater)
-        return {Health::Bad, name,
-                "it arrived at first, and does no longer: a switch that snoops IGMP has heard no querier",
-                "turn the switch's IGMP querier on, or its IGMP snooping off"};
+        return {Health::Bad, name, "multicast arrived at first, then stopped: the switch snoops IGMP without a querier",
+                "enable the switch's IGMP querier, or disable its IGMP snooping"};
     if (!group.from)
-        return {Health::Warn, name, "it arrives there, but what is sent there does not arrive here",
-                fmt::format("let UDP to {} in here and out there; the switch's IGMP querier", here.group)};
+        return {Health::Warn, name, "multicast arrives at the host, but multicast from the host does not arrive here",
+                fmt::format("allow UDP to {} in the firewalls of both machines; enable the switch's IGMP querier",
+                            here.group)};
     if (h.streamFailure.empty() && !h.multicast)
-        return {Health::Bad, name, "single datagrams arrive, but the session's probes did not in time",
-                "see loss and datagram size; run it again"};
-    return {Health::Ok, name, "arrives, both ways", {}};
+        return {Health::Bad, name, "single datagrams arrive, but the group's probes did not arrive in time",
+                "see loss and datagram size, and repeat the test"};
+    return {Health::Ok, name, "arrives in both directions", {}};
 }
 
 Check datagramSize(const HereMeasured& here, const HostMeasured& h, const std::string& name) {
     const WayMeasured& way = h.way(ProbeWay::Group).to ? h.way(ProbeWay::Group) : h.way(ProbeWay::Single);
-    const std::string found = fmt::format("{} bytes arrive whole", way.largestBytes);
+    const std::string found = fmt::format("datagrams up to {} bytes arrive", way.largestBytes);
     if (way.largestBytes >= here.cardBytes) return {Health::Ok, name, found, {}};
     const size_t packet = way.largestBytes + here.headerBytes;
     if (h.facts.mtuBytes < here.facts.mtuBytes && h.facts.mtuBytes <= packet)
         return {Health::Bad, name,
-                fmt::format("{}; {} there takes packets of {}, {} here sends {}", found, h.facts.interface,
-                            h.facts.mtuBytes, here.facts.interface, here.facts.mtuBytes),
+                fmt::format("{}; the MTU of {} there is {}, of {} here {}", found, h.facts.interface, h.facts.mtuBytes,
+                            here.facts.interface, here.facts.mtuBytes),
                 fmt::format("`ip link set dev {} mtu {}` there, or `ip link set dev {} mtu {}` here", h.facts.interface,
                             here.facts.mtuBytes, here.facts.interface, h.facts.mtuBytes)};
     return {Health::Bad, name,
-            fmt::format("{}; both cards take {}, something between them does not", found, here.cardBytes),
-            fmt::format("let the switches carry packets of {}, or `ip link set dev {} mtu {}` here",
+            fmt::format("{}; both cards support {}, something between them does not", found, here.cardBytes),
+            fmt::format("allow packets of {} bytes in the switches, or `ip link set dev {} mtu {}` here",
                         here.facts.mtuBytes, here.facts.interface, packet)};
 }
 
 Check stream(const HostMeasured& h, const std::string& name) {
     if (!h.streamFailure.empty())
-        return {Health::Bad, name, h.streamFailure, "mend the lines above first; `mural netperf` shows more"};
-    const std::string found = fmt::format("{:.0f} Mbit/s, lost {}, {}", h.bytesPerS * 8e-6, percent(h.lostShare),
+        return {Health::Bad, name, h.streamFailure, "fix the lines above first; `mural netperf` shows more"};
+    const std::string found = fmt::format("{:.0f} Mbit/s, loss {}, {}", h.bytesPerS * 8e-6, percent(h.lostShare),
                                           h.multicast ? "by multicast" : "by its TCP connection");
     if (h.droppedShare >= kSomeLoss)
-        return {Health::Warn, name, fmt::format("{}, and {} by its own socket", found, percent(h.droppedShare)),
-                "it reads too slowly: more memory for sockets (see buffers), or less work on its processors"};
+        return {Health::Warn, name, fmt::format("{}, and {} dropped by its socket", found, percent(h.droppedShare)),
+                "it reads too slowly: enlarge the socket buffers (see buffers), or reduce the load of its processors"};
     if (h.lostShare < kSomeLoss) return {Health::Ok, name, found, {}};
     if (h.queueDropped > 0)
-        return {Health::Warn, name, fmt::format("{}, {} packets by its kernel's queue", found, h.queueDropped),
+        return {Health::Warn, name, fmt::format("{}, {} packets dropped by its kernel's queue", found, h.queueDropped),
                 "`sysctl -w net.core.netdev_max_backlog=10000` there, or a lower --rate"};
     return {h.lostShare >= kBadLoss ? Health::Bad : Health::Warn, name, found,
-            fmt::format("losses cost speed, not pictures: `ethtool -S {}` there shows errors of cable and card; a "
-                        "crowded port loses less with a lower --rate",
+            fmt::format("losses cost speed, not pictures: check `ethtool -S {}` there for errors of cable and card; on "
+                        "a congested port, use a lower --rate",
                         h.facts.interface)};
 }
 
@@ -132,7 +133,7 @@ std::vector<Check> judgeHere(const HereMeasured& here) {
     std::vector<Check> checks{card("card", here.facts), buffers("buffers", "", here.facts)};
     for (const std::string& bridge : here.facts.silentBridges) {
         checks.push_back({Health::Warn, "bridge " + bridge,
-                          "snoops IGMP and is no querier: groups end after minutes where no router asks",
+                          "snoops IGMP without a querier: group memberships expire after minutes if no router queries",
                           fmt::format("`ip link set dev {} type bridge mcast_querier 1`", bridge)});
     }
     return checks;
@@ -141,17 +142,18 @@ std::vector<Check> judgeHere(const HereMeasured& here) {
 std::vector<Check> judgeHost(const HereMeasured& here, const HostMeasured& h) {
     const auto about = [&](const char* what) { return h.host + ": " + what; };
     if (!h.failure.empty())
-        return {{Health::Bad, about("start"), h.failure,
-                 "does its launch command run `mural version` there, without a password? (--launch, --remote-mural)"}};
+        return {
+            {Health::Bad, about("start"), h.failure,
+             "check that its launch command runs `mural version` there without a password (--launch, --remote-mural)"}};
     std::vector<Check> checks;
     if (h.version != here.version)
         checks.push_back({Health::Bad, about("version"), fmt::format("{} there, {} here", h.version, here.version),
                           "install the same build on all machines"});
     if (h.reached.empty()) {
-        checks.push_back(
-            {Health::Bad, about("connection"),
-             "it can't connect to this machine: " + (h.unreachedWhy.empty() ? "no address to try" : h.unreachedWhy),
-             "let TCP from there in here (a session's port is any free one), or mend the route"});
+        checks.push_back({Health::Bad, about("connection"),
+                          "the host cannot connect to this machine: " +
+                              (h.unreachedWhy.empty() ? "no address to try" : h.unreachedWhy),
+                          "allow TCP from the host to any port of this machine, or fix the route"});
         return checks;
     }
     checks.push_back({Health::Ok, about("connection"), fmt::format("{} connects to {}", h.own, h.reached), {}});
@@ -159,21 +161,21 @@ std::vector<Check> judgeHost(const HereMeasured& here, const HostMeasured& h) {
     checks.push_back(buffers(about("buffers"), " there", h.facts));
     const WayMeasured& single = h.way(ProbeWay::Single);
     if (byWrongCard(here, h)) {
-        checks.push_back(
-            {Health::Bad, about("interface"),
-             fmt::format("{} is used here, but {} is reached by {}", here.facts.interface, h.host, h.interfaceTowards),
-             "give --interface " + h.interfaceTowards});
+        checks.push_back({Health::Bad, about("interface"),
+                          fmt::format("{} is used here, but {} is reached through {}", here.facts.interface, h.host,
+                                      h.interfaceTowards),
+                          "add --interface " + h.interfaceTowards});
         return checks;
     }
     if (!single.to || !single.from) {
-        const std::string found = !single.trouble.empty()
-                                      ? single.trouble
-                                      : fmt::format("no UDP arrives {}", !single.to && !single.from ? "either way"
-                                                                         : single.to                ? "here"
-                                                                                                    : "there");
+        const std::string found = !single.trouble.empty() ? single.trouble
+                                                          : fmt::format("no UDP arrives {}", !single.to && !single.from
+                                                                                                 ? "in either direction"
+                                                                                             : single.to ? "here"
+                                                                                                         : "there");
         checks.push_back(
             {Health::Bad, about("datagrams"), found,
-             fmt::format("a firewall: let UDP between {} and {} through, any port, both ways (`nft list ruleset`)",
+             fmt::format("a firewall: allow UDP between {} and {}, all ports, both directions (`nft list ruleset`)",
                          h.own, h.reached)});
     }
     if (single.to || h.way(ProbeWay::Group).to || h.way(ProbeWay::LinkLocal).to) {

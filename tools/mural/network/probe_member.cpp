@@ -96,14 +96,14 @@ public:
     int run() {
         auto first = lines_.read(Deadline::inMs(kSilenceMs));
         if (!first)
-            return failed("no word from mural doctor on standard input: " + first.error().message +
-                          "; it is started by mural doctor --network");
+            return failed("no command from mural doctor on standard input: " + first.error().message +
+                          "; mural doctor --network starts this process");
         try {
             if (auto r = begin(json::parse(*first)); !r) return failed(r.error().message);
             return converse();
         } catch (const json::exception& e) {
-            return failed(std::string("what mural doctor says makes no sense here: ") + e.what() +
-                          "; do both run the same version?");
+            return failed(std::string("invalid command from mural doctor: ") + e.what() +
+                          "; check that both run the same version");
         }
     }
 
@@ -151,7 +151,7 @@ private:
             if (auto r = lines_.write(answer(json::parse(*line)).dump(), Deadline::inMs(kSpeakMs)); !r) return 0;
             deadline = Deadline::inMs(kSilenceMs);
         }
-        return failed("mural doctor has said nothing for ten minutes; start it again");
+        return failed("no command from mural doctor for ten minutes; start it again");
     }
 
     json answer(const json& order) {
@@ -164,7 +164,7 @@ private:
             reading_.reset();
             return report;
         }
-        return {{"failed", "there is no \"" + what + "\" here; do both run the same version?"}};
+        return {{"failed", "unknown command \"" + what + "\"; check that both machines run the same version"}};
     }
 
     json seen() {

@@ -17,10 +17,10 @@ constexpr int64_t kEndMs = 2'000;
 Result<std::unique_ptr<ProbeProcess>> ProbeProcess::start(const std::vector<std::string>& command) {
     int toIt[2];
     int fromIt[2];
-    if (pipe2(toIt, O_CLOEXEC) != 0) return Error{"no pipe: " + errnoText(errno)};
+    if (pipe2(toIt, O_CLOEXEC) != 0) return Error{"cannot create a pipe: " + errnoText(errno)};
     const FileDescriptor itsInput(toIt[0]);
     FileDescriptor ours(toIt[1]);
-    if (pipe2(fromIt, O_CLOEXEC) != 0) return Error{"no pipe: " + errnoText(errno)};
+    if (pipe2(fromIt, O_CLOEXEC) != 0) return Error{"cannot create a pipe: " + errnoText(errno)};
     FileDescriptor heard(fromIt[0]);
     const FileDescriptor itsOutput(fromIt[1]);
     launch::Environment environment = launch::Environment::current();
@@ -53,10 +53,11 @@ Result<nlohmann::json> ProbeProcess::hear(Deadline deadline) {
     auto line = lines_.read(deadline);
     if (!line) {
         const bool ended = process_.waitUntil(Deadline::inMs(200));
-        return Error{ended ? "it ended: " + process_.describeEnd() : line.error().message};
+        return Error{ended ? "the test process ended: " + process_.describeEnd() : line.error().message};
     }
     auto answer = nlohmann::json::parse(*line, nullptr, false);
-    if (!answer.is_object()) return Error{"it says \"" + line->substr(0, 80) + "\", which is no answer"};
+    if (!answer.is_object())
+        return Error{"invalid reply \"" + line->substr(0, 80) + "\"; check the host's shell for startup output"};
     if (answer.contains("failed") && answer["failed"].is_string()) return Error{answer["failed"].get<std::string>()};
     return answer;
 }

@@ -67,7 +67,7 @@ private:
 void tell(const std::optional<NativeReport::Count>& count, const PreparedRun& run, Console& console) {
     if (!count || count->frames == 0) {
         console.error("no frame was counted: " + run.program.front() +
-                      " never showed a picture by GL; is it an OpenGL program?");
+                      " showed no picture through GL; check that it is an OpenGL program");
         return;
     }
     // n pictures have n - 1 intervals.
@@ -107,7 +107,7 @@ int runNative(PreparedRun& run, Console& console) {
     auto supervisor = launch::ProgramSupervisor::create();
     const NativeReport report;
     if (!supervisor || !report.ok()) {
-        console.error(supervisor ? "no memory for the count of frames: " + std::string(std::strerror(errno))
+        console.error(supervisor ? "no memory for the frame counter: " + std::string(std::strerror(errno))
                                  : supervisor.error().message);
         return launch::kExitUsage;
     }

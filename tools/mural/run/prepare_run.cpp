@@ -37,9 +37,10 @@ Result<void> checkOutput(const std::string& out) {
     std::error_code failed;
     fs::create_directories(folder, failed);
     if (failed)
-        return Error{fmt::format("--out {}: the folder cannot be made: {}; give another place", out, failed.message())};
+        return Error{
+            fmt::format("--out {}: cannot create the folder: {}; choose another place", out, failed.message())};
     if (access(folder.c_str(), W_OK) != 0)
-        return Error{fmt::format("--out {}: may not be written: {}; give another place", out, std::strerror(errno))};
+        return Error{fmt::format("--out {}: not writable: {}; choose another place", out, std::strerror(errno))};
     return {};
 }
 
@@ -54,8 +55,9 @@ std::string earlierPictures(const std::string& out) {
         count += name.starts_with("frame-") && name.ends_with(".png");
     }
     if (count == 0) return {};
-    return fmt::format("--out {}: {} picture{} of an earlier run {} there; only those of the same frames are replaced",
-                       out, count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
+    return fmt::format(
+        "--out {}: the folder has {} picture{} of an earlier run; only frames with the same number are replaced", out,
+        count, count == 1 ? "" : "s");
 }
 
 Result<void> checkReport(const std::string& file) {
@@ -63,10 +65,10 @@ Result<void> checkReport(const std::string& file) {
     if (file.empty()) return {};
     std::error_code failed;
     const fs::path folder = fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
-    if (fs::is_directory(file, failed)) return Error{"--report " + file + ": is a folder; give the name of a file"};
+    if (fs::is_directory(file, failed)) return Error{"--report " + file + ": is a folder; give a file name"};
     const bool there = fs::exists(file, failed);
     if (access(there ? file.c_str() : folder.c_str(), W_OK) == 0) return {};
-    return Error{fmt::format("--report {}: cannot be written: {}; give another place", file, std::strerror(errno))};
+    return Error{fmt::format("--report {}: cannot be written: {}; choose another place", file, std::strerror(errno))};
 }
 
 Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, PreparedRun& run) {
@@ -76,7 +78,7 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
     const bool usable = launch::displayUsable(own);
     const Error unusable{
         own.empty()
-            ? "--display app and windows need an X display, and DISPLAY is not set; set it, or use --display none"
+            ? "--display app and windows need an X display, but DISPLAY is not set; set it, or use --display none"
             : "the X display \"" + own +
                   "\" (DISPLAY) cannot be opened; check that it runs, or unset DISPLAY to run without one"};
     if (c.display == Display::Windows && !usable) return unusable;
@@ -106,7 +108,7 @@ Result<void> chooseDisplay(const RunOptions& options, bool programNeedsOne, Prep
 std::string unseenPictures(const RunOptions& options, const PreparedRun& run) {
     if (!options.displayChosen || run.config.display != Display::App || !run.display) return {};
     return "--display app: the program's window is on a private display of the wall's size (" + run.display->name() +
-           "), where nobody sees the picture in it; --display windows shows the wall, --out keeps its pictures";
+           "), which no screen shows; --display windows shows the wall, --out saves its pictures";
 }
 
 } // namespace mural::cli

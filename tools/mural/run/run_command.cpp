@@ -19,7 +19,7 @@ launch::Fronts chooseFronts(const RunOptions& options, const launch::ProgramChec
     const auto own = launch::ownGlLibraries(program.binary, environment);
     if (own.empty()) return launch::Fronts::Vendor;
     if (options.config.explain)
-        Console(true).error("front: preloaded, for " + own.front() + ", which GLVND does not lead to");
+        Console(true).error("capture: preloaded library, for " + own.front() + ", which GLVND does not load");
     return launch::Fronts::VendorAndPreload;
 }
 

@@ -38,14 +38,14 @@ constexpr const char* kRunFooter = R"(Examples:
                                                          90 frames on 4 local nodes, as PNG files
   mural run --tiles 4x2 --nodes wall1,wall2 --display windows --fullscreen -- app
   mural run --size 7680x4320 --out wall.mp4 -- app       the program sees a screen of that size
-  mural run --subpixel 4 -- glxgears                     each pixel is the mean of 4 samples, one node for each
+  mural run --subpixel 4 -- glxgears                     each pixel is the mean of 4 samples, one per node
   mural run --stereo anaglyph --eye-base 1 --focus 40 -- glxgears
-  mural run --record app.mural -- app                    its GL stream as a file, for mural replay, dump and trim
-  mural run --config wall.eqc -- app                     wall, nodes and compounds by a file
+  mural run --record app.mural -- app                    GL stream to a file, for mural replay, dump and trim
+  mural run --config wall.eqc -- app                     wall, nodes and compounds from a file
   mural run --native --frames 500 -- glxgears            without Mural, for comparison
 
-Exit status: the program's own; 128 + n when signal n ended it; 0 when --frames ended it.
-  2    Mural could not start the session: a bad argument, no display, no GL, a program that
+Exit status: the program's own; 128 + n after signal n; 0 if --frames ended it.
+  2    the session could not start: a bad argument, no display, no GL, or a program that
        cannot be captured (setuid, static, other word size)
   126  the program cannot be executed
   127  the program was not found)";
@@ -106,7 +106,7 @@ Result<void> readNumber(std::string_view option, const RunArguments::Text& text,
     if (!text) return {};
     const auto value = wholeNumber(*text, lowest, highest);
     if (!value && highest >= INT32_MAX)
-        return badValue(option, *text, fmt::format("must be a whole number from {} on", lowest));
+        return badValue(option, *text, fmt::format("must be a whole number, at least {}", lowest));
     if (!value) return badValue(option, *text, fmt::format("must be a whole number from {} to {}", lowest, highest));
     into = *value;
     return {};
@@ -145,7 +145,7 @@ Result<void> readSizes(const RunArguments& a, SessionConfig& c) {
             return badValue("--tile-queue", *a.tileQueue,
                             fmt::format("must be WIDTHxHEIGHT of a tile in pixels, each from 1 to {}, such as 64x64",
                                         launch::kMaxScreenSize));
-        if (a.tiles) return Error{"--tiles and --tile-queue both say which tiles nodes draw; leave one of them out"};
+        if (a.tiles) return Error{"--tiles and --tile-queue both set the tiles; omit one of them"};
         std::tie(c.tileWidth, c.tileHeight) = *tile;
     }
     if (a.size) {
@@ -201,7 +201,7 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
         if (counts)
             return badValue(
                 "--nodes", *a.nodes,
-                "must be host names, such as wall1,wall2; how many nodes run on this machine says --local-nodes");
+                "must be host names, such as wall1,wall2; --local-nodes sets the number of nodes on this machine");
     }
     const int asked = c.localNodes + static_cast<int>(c.hosts.size());
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
@@ -230,10 +230,9 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     if (auto r = readNumber("--min-nodes", a.minNodes, 1, kMaxRestarts, minNodes); !r) return r;
     c.minNodes = static_cast<int>(minNodes);
     if (asked > 0 && c.minNodes > asked)
-        return badValue("--min-nodes", *a.minNodes, fmt::format("must be at most {}: there are no more nodes", asked));
+        return badValue("--min-nodes", *a.minNodes, fmt::format("must be at most {}, the number of nodes", asked));
     if (c.minNodes > 0 && c.restartNodes == 0)
-        return Error{"--min-nodes has the others started again until they come, which --restart-nodes 0 forbids; "
-                     "leave one of them out"};
+        return Error{"--min-nodes needs restarts of late nodes, but --restart-nodes 0 disables them; omit one of them"};
     return {};
 }
 
@@ -249,7 +248,7 @@ Result<void> readReal(std::string_view option, const RunArguments::Text& text, d
     const auto value = realNumber(*text, lowest, 1e9);
     if (!value)
         return badValue(option, *text,
-                        fmt::format("must be a number from {} on, in the program's units, such as 0.5", lowest));
+                        fmt::format("must be a number, at least {}, in the program's units, such as 0.5", lowest));
     into = *value;
     return {};
 }
@@ -293,7 +292,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     if (auto r = readReal("--focus", a.focus, 1e-9, c.focusDistance); !r) return r;
     if ((a.eyeBase || a.focus) && p.stereo == StereoMode::Off && !a.config)
         return Error{std::string(a.eyeBase ? "--eye-base" : "--focus") +
-                     " is for stereo; add --stereo, such as --stereo anaglyph"};
+                     " requires stereo; add --stereo, such as --stereo anaglyph"};
     if (a.pixel) {
         const auto columns = wholeNumber(*a.pixel, 1, kMaxKernel);
         const auto kernel =
@@ -314,7 +313,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
             return badValue("--chunk-queue", *a.chunkQueue,
                             fmt::format("must be a number of chunks from 2 to {}, such as 64", kMaxChunks));
         if (p.ranges == 1 && !a.config)
-            return Error{"--chunk-queue is for nodes that share draws; add --db N, such as --db 4"};
+            return Error{"--chunk-queue requires sort-last nodes; add --db N, such as --db 4"};
         c.chunks = static_cast<int>(*chunks);
     }
     if (a.codec) {
@@ -329,18 +328,18 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
         if (*a.composition != "auto" && !compositor::strategyNamed(*a.composition))
             return badValue("--composition", *a.composition, "must be one of " + names);
         if (p.ranges == 1 && !a.config)
-            return Error{"--composition is for nodes that share draws; add --db N, such as --db 4"};
+            return Error{"--composition requires sort-last nodes; add --db N, such as --db 4"};
         c.composition = *a.composition;
     }
     const size_t passes = passesOf(p).size() * static_cast<size_t>(p.ranges);
     if (passes > kMaxPasses)
-        return Error{fmt::format(
-            "--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; at most {} can be drawn", passes,
-            kMaxPasses)};
+        return Error{
+            fmt::format("--stereo, --pixel, --subpixel, --dplex and --db make {} passes together; the maximum is {}",
+                        passes, kMaxPasses)};
     if (passes > 1 && c.tiling == Tiling::Lean)
-        return Error{"--tiling lean does not go with --stereo, --pixel, --subpixel, --dplex or --db; leave it out"};
+        return Error{"--tiling lean does not support --stereo, --pixel, --subpixel, --dplex and --db; omit it"};
     if (!p.zoom.none() && c.tiling == Tiling::Lean)
-        return Error{"--tiling lean does not go with --zoom; leave one of them out"};
+        return Error{"--tiling lean does not support --zoom; omit one of them"};
     if (p.period > 1 && !a.latency) c.latency = p.period; // required for overlapping turns
     return {};
 }
@@ -362,7 +361,7 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
                                                         {"--projection", a.projection.has_value()},
                                                         {"--model-unit", a.modelUnit.has_value()}};
         for (const auto& [option, given] : ofFiles)
-            if (given) return Error{fmt::format("{} is for a configuration file; add --config FILE", option)};
+            if (given) return Error{fmt::format("{} requires a configuration file; add --config FILE", option)};
         return {};
     }
     const std::pair<const char*, bool> contradicting[] = {{"--tiles", a.tiles.has_value()},
@@ -377,8 +376,8 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
                                                           {"--db", a.db.has_value()},
                                                           {"--zoom", a.zoom.has_value()}};
     for (const auto& [option, given] : contradicting)
-        if (given) return Error{fmt::format("{} and --config both say who draws what; leave one of them out", option)};
-    if (c.tiling == Tiling::Lean) return Error{"--tiling lean does not go with --config; leave it out"};
+        if (given) return Error{fmt::format("{} and --config both divide the work; omit one of them", option)};
+    if (c.tiling == Tiling::Lean) return Error{"--tiling lean does not support --config; omit it"};
     const auto loaded = compound::loadConfig(*a.config, compound::processEnvironment);
     for (const config::Diagnostic& d : loaded.diagnostics.all())
         if (d.severity == config::Severity::Warning) options.notices.push_back(loaded.diagnostics.text(d));
@@ -400,7 +399,7 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     if (!a.focus) c.focusDistance = plan->focusDistance.value_or(c.focusDistance);
     const int processes = static_cast<int>(plan->nodes.size());
     if (processes > kMaxNodes)
-        return Error{fmt::format("{}: {} render nodes; at most {} can run", *a.config, processes, kMaxNodes)};
+        return Error{fmt::format("{}: {} render nodes; the maximum is {}", *a.config, processes, kMaxNodes)};
     for (const NodePlan& node : plan->nodes)
         if (node.reach == NodeReach::LaunchCommand) c.hosts.push_back(node.where);
     int turns = 1;
@@ -409,9 +408,9 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     if (a.size || a.tiles) return {};
     const compound::PixelSize wall = wallSizeOf(loaded, wishes);
     if (wall.w > launch::kMaxScreenSize || wall.h > launch::kMaxScreenSize || wall.w < 1 || wall.h < 1)
-        return Error{fmt::format("{}: its wall has {}x{} pixels, a screen has at most {} in each direction; give a "
-                                 "smaller one by --size WxH",
-                                 *a.config, wall.w, wall.h, launch::kMaxScreenSize)};
+        return Error{fmt::format(
+            "{}: its wall has {}x{} pixels, but a screen has at most {} in each direction; set a smaller --size WxH",
+            *a.config, wall.w, wall.h, launch::kMaxScreenSize)};
     c.width = wall.w;
     c.height = wall.h;
     return {};
@@ -435,8 +434,8 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     form.frames = c.passes.period;
     form.zoom = c.passes.zoom;
     if (c.passes.kernelHeight > 1)
-        return Error{"--print-config: a pixel kernel of several rows has no short form; write it as pixel [ x y width "
-                     "height ] into a file"};
+        return Error{"--print-config: no preset has a pixel kernel with several rows; write it into a file as pixel [ "
+                     "x y width height ]"};
     if (c.tileWidth > 0) {
         constexpr int kTakers = 4; // default number of nodes, as in planSession()
         const int nodes = c.localNodes + static_cast<int>(c.hosts.size());
@@ -452,7 +451,7 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
     case StereoMode::SideBySide: form.stereo = config::StereoPreset::SideBySide; break;
     case StereoMode::Quad: form.stereo = config::StereoPreset::Quad; break;
     default:
-        return Error{"--print-config: a configuration has no such stereo mode; anaglyph, side-by-side and quad it has"};
+        return Error{"--print-config: configurations have no such stereo mode; use anaglyph, side-by-side or quad"};
     }
     if (c.width > 0) form.width = c.width;
     if (c.height > 0) form.height = c.height;
@@ -467,31 +466,32 @@ Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
     if (a.record && a.record->empty()) return badValue("--record", "", "must be a file, such as --record app.mural");
     c.record = a.record.value_or("");
     if (!a.save) return {};
-    if (!a.out) return Error{"--save needs --out: say where the pictures go, such as --out shots"};
+    if (!a.out) return Error{"--save requires --out; add a destination, such as --out shots"};
     for (const std::string& part : listOf(*a.save)) {
         const auto frame = wholeNumber(part, 1, INT64_MAX);
         if (!frame)
-            return badValue("--save", *a.save, "must be frame numbers from 1 on, separated by commas, such as 1,30,90");
+            return badValue("--save", *a.save,
+                            "must be frame numbers, at least 1, separated by commas, such as 1,30,90");
         c.saveFrames.push_back(*frame);
     }
     std::sort(c.saveFrames.begin(), c.saveFrames.end());
     c.saveFrames.erase(std::unique(c.saveFrames.begin(), c.saveFrames.end()), c.saveFrames.end());
     if (c.frames > 0 && c.saveFrames.back() > c.frames)
         return badValue("--save", *a.save,
-                        fmt::format("must have no frame behind the last one, {} by --frames", c.frames));
+                        fmt::format("must have no frame after the last one, {} (--frames)", c.frames));
     return {};
 }
 
 Result<void> checkTogether(const RunArguments& a, const SessionConfig& c) {
     if ((a.fullScreen || a.position.has_value()) && c.display != Display::Windows) {
         return Error{std::string(a.fullScreen ? "--fullscreen" : "--position") +
-                     " is for wall windows; add --display windows"};
+                     " requires wall windows; add --display windows"};
     }
     if (a.native && (a.out.has_value() || a.record.has_value() || c.verifyEvery > 0)) {
         return Error{std::string(c.verifyEvery > 0 ? "--verify"
                                  : a.out           ? "--out"
                                                    : "--record") +
-                     " needs captured frames; leave --native out"};
+                     " requires captured frames; omit --native"};
     }
     if (c.width > 0 && (c.columns > c.width || c.rows > c.height)) {
         return Error{fmt::format("{}x{} tiles do not fit in {}x{} pixels; give fewer tiles", c.columns, c.rows, c.width,
@@ -508,88 +508,87 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("CxR");
     command
         .add_option("--tile-queue", a.tileQueue,
-                    "tiles of so many pixels, taken from frame to frame by whichever node is free earlier (each node "
-                    "keeps its tiles)")
+                    "tiles of W x H pixels; nodes with less work take more of them (none: each node keeps its tiles)")
         ->type_name("WxH");
     command
-        .add_option("--chunk-queue", a.chunkQueue,
-                    "with --db: draws in so many chunks, taken from frame to frame by whichever node is free earlier "
-                    "(each node has an equal share)")
+        .add_option(
+            "--chunk-queue", a.chunkQueue,
+            "with --db: draws in N chunks; nodes with less work take more of them (none: nodes have equal ranges)")
         ->type_name("N");
     command.add_option("--nodes", a.nodes, "render nodes on these hosts, separated by commas")->type_name("H1,H2");
-    command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (as many as tiles, at most 4)")
+    command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (one per tile, at most 4)")
         ->type_name("N");
-    command.add_option("--size", a.size, "size of the wall: the program runs on a private display of this size")
+    command.add_option("--size", a.size, "size of the wall; the program runs on a private display of this size")
         ->type_name("WxH");
-    command.add_option("--frames", a.frames, "end the program after this many frames; no later one is saved")
+    command.add_option("--frames", a.frames, "end the program after N frames; later frames are not saved")
         ->type_name("N");
-    command.add_option("--out", a.out, "write pictures into this folder (PNG), or a video (.mp4, .mkv, .webm, …)")
+    command.add_option("--out", a.out, "write pictures into a folder (PNG), or a video (.mp4, .mkv, .webm, …)")
         ->type_name("DIR|VIDEO");
-    command.add_option("--save", a.save, "write only these frames, counted from 1")->type_name("1,30,90");
-    command.add_option("--record", a.record, "record the program's GL stream into this file, for mural replay")
+    command.add_option("--save", a.save, "with --out: write only these frames, counted from 1")->type_name("1,30,90");
+    command.add_option("--record", a.record, "record the program's GL stream to this file, for mural replay")
         ->type_name("FILE");
-    command.add_option("--config", a.config, "wall, nodes and compounds by a configuration file (.eqc)")
+    command.add_option("--config", a.config, "wall, nodes and compounds from a configuration file (.eqc)")
         ->type_name("FILE");
-    command.add_option("--canvas", a.canvas, "show this canvas of the file alone (all)")->type_name("NAME");
+    command.add_option("--canvas", a.canvas, "show only this canvas of the file (all)")->type_name("NAME");
     command
         .add_option("--projection", a.projection,
-                    "screens of the file show one flat picture, the program's, or each the scene as it is seen from "
-                    "the room: auto, program, room (auto: the room's where screens stand at angles)")
+                    "view of the file's screens: program (all screens form one flat picture), room (each screen as "
+                    "seen by the observer), or auto: room if screens stand at angles (auto)")
         ->type_name("WHOSE");
-    command.add_option("--model-unit", a.modelUnit, "length of a metre of the room in the program's units (1)")
+    command.add_option("--model-unit", a.modelUnit, "length of the room's metre in the program's units (1)")
         ->type_name("N");
-    command.add_option("--layout", a.layouts, "show this layout of the file's canvases; may be given for each")
+    command.add_option("--layout", a.layouts, "show this layout of the file's canvases; repeatable, once per canvas")
         ->type_name("NAME")
         ->take_all();
     command.add_flag("--all-local", a.allLocal, "run all nodes of the file on this machine");
     command.add_flag("--print-config", a.printConfig,
-                     "print the configuration file that the other options stand for, and run nothing");
+                     "print the configuration file that is equivalent to the other options, and run nothing");
     command
         .add_option("--stereo", a.stereo,
-                    "two eyes from a program that knows one: anaglyph, side-by-side, top-bottom, quad (windows of the "
-                    "wall with a buffer for each eye), or left, right alone (off)")
+                    "render two eyes for a monoscopic program: anaglyph, side-by-side, top-bottom, quad (wall windows "
+                    "with a buffer for each eye), or one eye: left, right (off)")
         ->type_name("MODE");
-    command.add_option("--eye-base", a.eyeBase, "distance of the eyes, in the program's units (0.05)")->type_name("D");
-    command.add_option("--focus", a.focus, "distance at which both eyes see the same, in the program's units (1)")
+    command.add_option("--eye-base", a.eyeBase, "distance between the eyes, in the program's units (0.05)")
+        ->type_name("D");
+    command.add_option("--focus", a.focus, "distance at which both eyes converge, in the program's units (1)")
         ->type_name("D");
     command
-        .add_option("--subpixel", a.subpixel,
-                    "antialiasing: every pixel is the mean of N jittered pictures, each drawn by nodes of its own (1)")
+        .add_option(
+            "--subpixel", a.subpixel,
+            "antialiasing: each pixel is the mean of N jittered samples; each sample is drawn by its own nodes (1)")
         ->type_name("N");
     command
-        .add_option("--zoom", a.zoom,
-                    "every node draws its part smaller, or larger, by this, and it is shown as large as ever: below 1 "
-                    "quicker and coarser, above 1 with smooth edges (1)")
+        .add_option(
+            "--zoom", a.zoom,
+            "resolution of drawn parts relative to shown parts: below 1 faster and coarser, above 1 smooth edges (1)")
         ->type_name("Z|XxY");
     command
         .add_option("--pixel", a.pixel,
-                    "interleaved pixels: each node draws every Nth column (or one pixel of each CxR), with little "
+                    "interleaved pixels: each node draws every Nth column (or one pixel of each CxR) with little "
                     "memory; approximate (1)")
         ->type_name("N|CxR");
-    command.add_option("--dplex", a.dplex, "time-multiplex: N nodes take turns at whole frames (1)")->type_name("N");
-    command
-        .add_option("--db", a.db,
-                    "sort-last: N nodes share what is drawn, by ranges of each frame's draws, and compose by depth (1)")
+    command.add_option("--dplex", a.dplex, "time-multiplex: N nodes draw whole frames in turn (1)")->type_name("N");
+    command.add_option("--db", a.db, "sort-last: N nodes draw ranges of each frame's draws, composited by depth (1)")
         ->type_name("N");
     command
         .add_option("--composition", a.composition,
-                    "how they put their picture together: serial, direct-send, binary-swap, 2-3-swap, radix-k, "
-                    "streaming, or auto, by their number (auto)")
+                    "sort-last algorithm: serial, direct-send, binary-swap, 2-3-swap, radix-k, streaming, or auto: by "
+                    "the number of nodes (auto)")
         ->type_name("HOW");
     command
-        .add_option("--codec", a.codec,
-                    "how pictures travel from nodes: auto (from other machines packed by the quickest that loses "
-                    "nothing), lossy (the quickest of all), or a name: raw, bitplane, bitplane-zstd, lz4, zstd, "
-                    "yuv420, jpeg-1 to jpeg-100 (auto)")
+        .add_option(
+            "--codec", a.codec,
+            "codec of transferred pictures: auto (the fastest lossless one, for nodes of other machines), lossy (the "
+            "fastest of all), or a name: raw, bitplane, bitplane-zstd, lz4, zstd, yuv420, jpeg-1 to jpeg-100 (auto)")
         ->type_name("HOW");
     command
         .add_option("--display", a.display,
-                    "where the wall is shown: app (the program's own window), windows (one per tile), none")
+                    "output of the wall: app (the program's own window), windows (one per tile), none")
         ->type_name("WHERE");
     command
         .add_option("--tiling", a.tiling,
-                    "exact: every pixel as on one machine; culled: less work for much geometry, exact in windows with "
-                    "a depth buffer; lean: less memory (exact)")
+                    "exact: the pixels of one machine; culled: less work for much geometry, exact in windows with a "
+                    "depth buffer; lean: less memory (exact)")
         ->type_name("HOW");
     command
         .add_option("--local-rendering", a.localRendering,
@@ -598,47 +597,48 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
     command.add_option("--gl", a.gl, "GL of the render nodes: auto, egl, osmesa, glx (auto)")->type_name("GL");
     command
         .add_option("--capture-via", a.captureVia,
-                    "how the program's GL is caught: glvnd, preload (also a GL library of its own), auto: as its "
-                    "libraries want")
+                    "capture of the program's GL: glvnd, preload (also the program's own GL library), auto: by the "
+                    "program's libraries (auto)")
         ->type_name("WAY");
-    command.add_option("--latency", a.latency, "frames that the program may be ahead of the wall (1)")->type_name("N");
-    command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with this machine's own picture");
+    command.add_option("--latency", a.latency, "number of frames that the program may be ahead of the wall (1)")
+        ->type_name("N");
+    command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with the program's own picture");
     command.add_flag("--fullscreen", a.fullScreen, "wall windows without borders, one per monitor");
     command.add_option("--position", a.position, "upper left corner of the wall windows on the screen")
         ->type_name("X,Y");
-    command.add_flag("--no-placement", a.noPlacement, "leave threads where the kernel puts them");
-    command.add_flag("--explain", a.explain, "say which decomposition and rewriting were chosen, and why");
-    command.add_flag("--native", a.native, "run without Mural, and only count frames and time");
+    command.add_flag("--no-placement", a.noPlacement, "leave thread placement to the kernel");
+    command.add_flag("--explain", a.explain, "print the selected decomposition and rewriting, with reasons");
+    command.add_flag("--native", a.native, "run without Mural; count frames and time");
     command.add_option("--launch", a.launch, "command that runs a command on a host (ssh -o BatchMode=yes)")
         ->type_name("CMD");
     command
         .add_option("--stream", a.stream,
-                    "how the stream travels to other machines: auto (by multicast when there are two or more), tcp (to "
-                    "each), or rsp://GROUP:PORT?interface=…&rate=… (auto)")
+                    "transport of the stream to other machines: auto (multicast for two or more), tcp, or "
+                    "rsp://GROUP:PORT?interface=…&rate=… (auto)")
         ->type_name("HOW");
     command
         .add_option("--readback", a.readback,
-                    "how pictures leave the nodes' GL: direct (read before the next frame is drawn), buffer (waited "
-                    "for by another thread), auto (by which of both the drawing thread loses less) (auto)")
+                    "readback of pictures: direct (before the next frame), buffer (asynchronous, in another thread), "
+                    "auto: the one that costs the drawing thread less (auto)")
         ->type_name("HOW");
     command
         .add_option("--delta", a.delta,
-                    "send nothing to nodes that they have had: auto (nodes of other machines), on (all), off (auto)")
+                    "delta coding, which sends data to a node only once: auto (nodes of other machines), on (all "
+                    "nodes), off (auto)")
         ->type_name("WHICH");
-    command.add_option("--cache-size", a.cacheSize, "memory for that in the head and in each of those nodes (1GiB)")
+    command
+        .add_option("--cache-size", a.cacheSize,
+                    "memory of the delta cache, in the head and in each of those nodes (1GiB)")
         ->type_name("SIZE");
-    command
-        .add_option("--restart-nodes", a.restartNodes,
-                    "start a node that is lost again, up to N times in a row; 0: its tiles stay as they were (3)")
+    command.add_option("--restart-nodes", a.restartNodes, "restart a lost node up to N times in a row; 0: never (3)")
         ->type_name("N");
-    command
-        .add_option("--min-nodes", a.minNodes,
-                    "begin when N nodes are there; those that are late or fail come later, as lost ones do (all)")
+    command.add_option("--min-nodes", a.minNodes, "begin with N nodes; late or failed ones join later (all)")
         ->type_name("N");
-    command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (this one's)")->type_name("PATH");
-    command.add_option("--report", a.report, "write the final report into this file, as one line of JSON")
+    command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (the local path)")
+        ->type_name("PATH");
+    command.add_option("--report", a.report, "write the final report to this file, as one line of JSON")
         ->type_name("FILE");
-    command.add_flag("--quiet", a.quiet, "say nothing but errors");
+    command.add_flag("--quiet", a.quiet, "print only errors");
     command.footer(kRunFooter);
 }
 
@@ -660,7 +660,7 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
     c.verifyEvery = static_cast<int>(verify);
     if (verify > 0 && (c.passes.stereo != StereoMode::Off || c.passes.samples > 1 || !c.passes.zoom.none()))
         return Error{"--verify compares with the program's own picture, which --stereo, --subpixel and --zoom change; "
-                     "leave one of them out"};
+                     "omit one of them"};
     if (auto r = readOutput(a, c); !r) return r.error();
     if (auto r = checkTogether(a, c); !r) return r.error();
     c.fullScreen = a.fullScreen;
@@ -682,7 +682,7 @@ Result<RunOptions> runOptionsFrom(const RunArguments& a) {
         return options;
     }
     if (options.program.empty())
-        return Error{"no program was given; put it after --, such as: mural run --tiles 2x2 -- glxgears"};
+        return Error{"no program given; add it after --, such as: mural run --tiles 2x2 -- glxgears"};
     return options;
 }
 

@@ -97,7 +97,7 @@ private:
             drawing = clients_ > 0;
             if (!drawing && until.passed()) return;
             if (!noticed && noticeAt.passed()) {
-                console_.say("the program has left processes behind; waiting for them (Ctrl-C ends this)");
+                console_.say("processes of the program are still running; waiting for them (Ctrl-C ends this)");
                 noticed = true;
             }
             turn();
@@ -120,7 +120,7 @@ private:
             turn();
             if (program_.stopSignal() != signalBefore) break; // the user has requested the end
             if (silenceUntil_.passed()) {
-                console_.error("the head does not finish; it is ended");
+                console_.error("the head does not finish; it is stopped");
                 break;
             }
         }
@@ -139,21 +139,20 @@ private:
         const auto& wanted = run_.config.saveFrames; // in ascending order
         if (wanted.empty() || report_->frames == 0 || wanted.back() <= report_->frames) return;
         const auto first = std::upper_bound(wanted.begin(), wanted.end(), report_->frames);
-        console_.error(fmt::format("--save: frame {} was not saved{}, as the program showed {}", *first,
-                                   std::next(first) == wanted.end() ? "" : ", nor those behind it", report_->frames));
+        console_.error(fmt::format("--save: frame {} was not saved{}, because the program showed only {}", *first,
+                                   std::next(first) == wanted.end() ? "" : ", nor the later ones", report_->frames));
     }
 
     std::string whyNoFrame() {
         const std::string& name = run_.program.front();
-        if (everClients_) return name + " made a GL context but never showed a picture (no buffer swap)";
+        if (everClients_) return name + " created a GL context but showed no picture (no buffer swap)";
         const bool failed = program_.exitStatus() != 0 && !program_.askedToStop();
         if (std::string bypass = bypass_.aboutEnded(failed); !bypass.empty()) return bypass;
         if (failed)
-            return name + " ended before it made a GL context (" + program_.describeEnd() +
-                   "); what it said is above. Try it without Mural, or by mural run --native; mural doctor looks at "
-                   "display and GL";
-        return name + " never reached GL through Mural; is it an OpenGL program, and does it keep LD_PRELOAD for its "
-                      "children?";
+            return name + " ended before it created a GL context (" + program_.describeEnd() +
+                   "); its messages are above. Try it with mural run --native; mural doctor checks display and GL";
+        return name + " made no GL calls through Mural; check that it is an OpenGL program, and that it keeps "
+                      "LD_PRELOAD for its children";
     }
 
     // Reports programs that draw without the capture library: their own notes, and at most one line from an
@@ -196,7 +195,7 @@ private:
         clients_ = 0;
         head_->process().waitUntil(Deadline::inMs(500));
         console_.error("the head process was lost (" + head_->process().describeEnd() + "); " +
-                       (!finishing_ ? "the program goes on alone, without the wall" : "there is no report"));
+                       (!finishing_ ? "the program continues alone, without the wall" : "there is no report"));
         endUncounted();
     }
 
@@ -204,7 +203,7 @@ private:
     void endUncounted() {
         if (finishing_ || wallLost_ || run_.config.frames == 0) return;
         wallLost_ = true;
-        console_.error("nobody counts its frames any more, which --frames asked for: the program is ended");
+        console_.error("the head does not count frames any more (--frames); the program is stopped");
         program_.end(kEndGraceMs);
     }
 

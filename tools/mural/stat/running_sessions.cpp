@@ -91,7 +91,8 @@ std::vector<std::string> sessionNamesIn(const std::string& unixSockets) {
 Result<std::vector<nlohmann::json>> askRunningSessions() {
     std::ifstream file("/proc/net/unix", std::ios::binary);
     if (!file)
-        return Error{std::string("/proc/net/unix can't be read: ") + std::strerror(errno) + "; is /proc mounted?"};
+        return Error{std::string("/proc/net/unix cannot be read: ") + std::strerror(errno) +
+                     "; check that /proc is mounted"};
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     std::vector<nlohmann::json> sessions;
     for (const std::string& name : sessionNamesIn(text))

@@ -88,10 +88,11 @@ void addRates(const Json& before, Json& now, const char* list, const char* key, 
 
 // Describes a program's waits, longest first: "waits 61 % for the nodes' frames".
 std::string waitText(const Json& program) {
-    static constexpr std::pair<const char*, const char*> kWords[] = {{"frames", "for the nodes to finish frames"},
-                                                                     {"room", "for room: nodes take no more"},
-                                                                     {"answer", "for answers to round trips"},
-                                                                     {"window", "for its window to show the picture"}};
+    static constexpr std::pair<const char*, const char*> kWords[] = {
+        {"frames", "for the nodes to finish frames"},
+        {"space", "for buffer space: the nodes are behind"},
+        {"reply", "for replies to round trips"},
+        {"window", "for its window to show the picture"}};
     const Json& shares = part(part(program, "recent"), "waitShares");
     const char* what = nullptr;
     double most = 0.005;
@@ -177,15 +178,15 @@ void addNode(const Json& node, std::vector<std::string>& lines) {
         if (node.contains("recent"))
             state += fmt::format(", busy {:.0f} %", 100 * number(part(node, "recent"), "busyShare"));
         if (const double frames = number(node, "frames"); frames > 0 && number(node, "pictureRawBytes") > 0)
-            state +=
-                fmt::format(", pictures of {} came in {} per frame", sizeText(number(node, "pictureRawBytes") / frames),
-                            sizeText(number(node, "pictureBytes") / frames));
+            state += fmt::format(", pictures of {} compressed to {} per frame",
+                                 sizeText(number(node, "pictureRawBytes") / frames),
+                                 sizeText(number(node, "pictureBytes") / frames));
         if (number(node, "joins") > 0)
-            state += fmt::format(", came back {:.0f} time{}, the last time in {:.1f} s with {}", number(node, "joins"),
-                                 number(node, "joins") == 1 ? "" : "s", number(node, "secondsToBack"),
+            state += fmt::format(", rejoined {:.0f} time{}, the last time in {:.1f} s with {}", number(node, "joins"),
+                                 number(node, "joins") == 1 ? "" : "s", number(node, "secondsToRejoin"),
                                  sizeText(number(node, "snapshotBytes")));
         if (number(node, "silentSeconds") > 5)
-            state += fmt::format(", silent for {:.0f} s", number(node, "silentSeconds"));
+            state += fmt::format(", no message for {:.0f} s", number(node, "silentSeconds"));
     }
     const std::string stream = memberText(node, "stream");
     const std::string by = stream.empty() || stream == "memory" ? "" : ", by " + stream;
@@ -217,7 +218,7 @@ std::vector<std::string> statLines(const Json& session) {
                                 number(session, "frames"), number(session, "headPid")));
     const std::vector<Json> programs = entries(session, "programs");
     for (const Json& program : programs) addProgram(program, lines);
-    if (programs.empty()) lines.emplace_back("  no program draws yet, or any more");
+    if (programs.empty()) lines.emplace_back("  no program draws at the moment");
     addDelta(part(session, "delta"), lines);
     for (const Json& queue : entries(session, "queues")) addQueue(queue, lines);
     for (const Json& node : entries(session, "nodes")) addNode(node, lines);

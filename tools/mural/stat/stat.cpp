@@ -39,7 +39,8 @@ int statCommand(const StatOptions& options) {
     auto before = askRunningSessions();
     if (!before) return fail(before.error().message, launch::kExitUsage);
     if (before->empty() && options.watchSeconds == 0)
-        return fail("no session of yours runs on this machine; start one: mural run --tiles 2x2 -- PROGRAM", kExitNone);
+        return fail("no session of this user runs on this machine; start one: mural run --tiles 2x2 -- PROGRAM",
+                    kExitNone);
     while (true) {
         const double seconds = options.watchSeconds > 0 ? options.watchSeconds : kOnceSeconds;
         std::this_thread::sleep_for(std::chrono::duration<double>(seconds));

@@ -16,13 +16,13 @@ namespace {
 
 constexpr const char* kDumpFooter = R"(Examples:
   mural dump app.mural                                     all calls, one per line: frame, program.thread, call
-  mural dump app.mural --frames 30-32                      those of three frames
-  mural dump app.mural --calls 'glTexImage*,Mural.Swap'    some of them
-  mural dump app.mural --summary                           how many of each in each frame, and their bytes
+  mural dump app.mural --frames 30-32                      the calls of three frames
+  mural dump app.mural --calls 'glTexImage*,Mural.Swap'    selected calls
+  mural dump app.mural --summary                           counts and bytes per frame
 
-Frames are counted as --out counts them; what stands behind the last one is of one more, which did not end. Records of Mural
-itself are called Mural.…; docs/reference/wire-format.md describes them.
-Exit status: 0, 2 for a bad argument or a recording that can't be read.)";
+Frame numbers are those of --out. Calls after the last frame belong to one more, unfinished frame. The names of control
+records begin with Mural.; docs/reference/wire-format.md describes them.
+Exit status: 0, 2 for a bad argument or an unreadable trace.)";
 
 std::vector<std::string> patternsIn(const std::string& text) {
     std::vector<std::string> parts;
@@ -41,12 +41,12 @@ Result<trace::DumpOptions> dumpOptionsFrom(const DumpArguments& a) {
         options.calls = patternsIn(*a.calls);
         if (options.calls.empty())
             return Error{"--calls \"" + *a.calls +
-                         "\": must name calls, such as glTexImage*,Mural.Swap (see mural dump --help)"};
+                         "\": must be call names, such as glTexImage*,Mural.Swap (see mural dump --help)"};
         const auto unknown = std::ranges::find_if_not(options.calls, trace::fitsSomeCall);
         if (unknown != options.calls.end())
             return Error{"--calls \"" + *unknown +
-                         "\": no command has such a name; mural list-commands has all names of GL, "
-                         "docs/reference/wire-format.md those of Mural.…"};
+                         "\": no command matches; mural list-commands lists the GL names, "
+                         "docs/reference/wire-format.md the Mural.… names"};
     }
     if (!a.frames) return options;
     const auto range = frameRangeOf(*a.frames);
@@ -61,18 +61,17 @@ Result<trace::DumpOptions> dumpOptionsFrom(const DumpArguments& a) {
 std::string absentCalls(const DumpArguments& a, const std::vector<std::string>& absent) {
     std::string names;
     for (const std::string& name : absent) names += (names.empty() ? "" : ",") + name;
-    return "--calls \"" + names + "\": there is no such call in " + (a.frames ? "frames " + *a.frames + " of " : "") +
-           a.file;
+    return "--calls \"" + names + "\": no such call in " + (a.frames ? "frames " + *a.frames + " of " : "") + a.file;
 }
 
 } // namespace
 
 void describeDump(CLI::App& command, DumpArguments& a) {
-    command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
-    command.add_option("--frames", a.frames, "these frames, counted from 1 (all)")->type_name("N-M");
-    command.add_option("--calls", a.calls, "these calls, separated by commas; * stands for anything (all)")
+    command.add_option("FILE", a.file, "trace file of mural run --record")->required();
+    command.add_option("--frames", a.frames, "only these frames, counted from 1 (all)")->type_name("N-M");
+    command.add_option("--calls", a.calls, "only these calls, separated by commas; * matches any text (all)")
         ->type_name("glA,glB*");
-    command.add_flag("--summary", a.summary, "counts and bytes by call, for each frame and for all");
+    command.add_flag("--summary", a.summary, "counts and bytes by call, per frame and in total");
     command.footer(kDumpFooter);
 }
 

@@ -12,25 +12,25 @@ namespace mural::cli {
 namespace {
 
 constexpr const char* kReplayFooter = R"(Examples:
-  mural run --record gears.mural --frames 300 -- glxgears      makes a recording
+  mural run --record gears.mural --frames 300 -- glxgears      records a trace
   mural replay gears.mural                                     shows it in a window
   mural replay gears.mural --tiles 2x2 --out shots             on 4 local nodes, as PNG files
   mural replay gears.mural --nodes wall1,wall2 --display windows --fullscreen --pace --loop
   mural replay gears.mural --db 3 --frames 100 --report report.json
 
-Frames come as fast as the nodes draw them; --pace: when they came as it was recorded.
-Exit status: 0, 1 when the session does not go on, 2 for a bad argument or a recording that can't be read.)";
+Frames are shown as fast as the nodes draw them, or with --pace at the recorded times.
+Exit status: 0, 1 if the session failed, 2 for a bad argument or an unreadable trace.)";
 
 } // namespace
 
 void describeReplay(CLI::App& command, ReplayArguments& a) {
-    command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
+    command.add_option("FILE", a.file, "trace file of mural run --record")->required();
     describeRunOptions(command, a.run);
     // Options about the program itself do not apply to a trace.
     for (const char* name : {"--size", "--native", "--verify", "--local-rendering", "--capture-via", "--print-config"})
         command.remove_option(command.get_option(name));
-    command.add_flag("--pace", a.pace, "at the times at which it was recorded");
-    command.add_flag("--loop", a.loop, "again and again, until --frames or Ctrl-C");
+    command.add_flag("--pace", a.pace, "replay at the recorded times");
+    command.add_flag("--loop", a.loop, "repeat until --frames or Ctrl-C");
     command.footer(kReplayFooter);
 }
 
@@ -43,7 +43,7 @@ Result<RunOptions> replayOptionsFrom(const ReplayArguments& a) {
     if (!options) return options;
     std::error_code none;
     if (!options->config.record.empty() && std::filesystem::equivalent(options->config.record, a.file, none))
-        return Error{"--record " + a.file + " is what is being replayed; give another file"};
+        return Error{"--record " + a.file + " is the file being replayed; choose another file"};
     return options;
 }
 

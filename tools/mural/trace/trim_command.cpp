@@ -18,16 +18,16 @@ constexpr const char* kTrimFooter = R"(Examples:
   mural trim app.mural 47 -o frame.mural         one frame
   mural replay frame.mural --out shots
 
-Kept of the frames before is what the first frame needs: objects as they are then, the state, and draws into what is neither
-cleared nor drawn anew. Where that is not certain, more is kept.
-Exit status: 0, 2 for a bad argument, a recording that can't be read, or a file that can't be written.)";
+From earlier frames, the output contains what the first frame needs: objects, state, and draws whose pixels are not
+overwritten. Uncertain cases are included.
+Exit status: 0, 2 for a bad argument, an unreadable trace, or an output file that cannot be written.)";
 
 } // namespace
 
 void describeTrim(CLI::App& command, TrimArguments& a) {
-    command.add_option("FILE", a.file, "recording, made by mural run --record")->required();
+    command.add_option("FILE", a.file, "trace file of mural run --record")->required();
     command.add_option("FRAMES", a.frames, "N-M, or N alone, counted from 1")->required();
-    command.add_option("-o,--out", a.out, "the file that is made")->type_name("FILE")->required();
+    command.add_option("-o,--out", a.out, "output file")->type_name("FILE")->required();
     command.footer(kTrimFooter);
 }
 
@@ -47,15 +47,15 @@ int trimCommand(const TrimArguments& a) {
     if (reader.frames() < range->second) return complain(reader.noSuchFrames(reader.frames()).message);
     std::error_code none;
     if (std::filesystem::equivalent(a.file, a.out, none))
-        return complain("-o " + a.out + " is what is being trimmed; give another file");
+        return complain("-o " + a.out + " is the file being trimmed; choose another file");
     if (!reader.notice().empty()) console.error(reader.notice());
     const auto trimmed = trace::trim(reader, range->first, range->second, a.out);
     if (!trimmed) return complain(trimmed.error().message);
     const trace::TrimReport& r = trimmed.value();
-    console.say(
-        fmt::format("{} of {} frames in {}, {}; of the frames before, {} of {} records were left out, {} of {} draws",
-                    r.frames, reader.frames(), a.out, sizeText(static_cast<double>(r.fileBytes)),
-                    r.recordsBefore - r.recordsKept, r.recordsBefore, r.drawsBefore - r.drawsKept, r.drawsBefore));
+    console.say(fmt::format("{} of {} frames in {}, {}; from earlier frames {} of {} records dropped, {} of {} draws",
+                            r.frames, reader.frames(), a.out, sizeText(static_cast<double>(r.fileBytes)),
+                            r.recordsBefore - r.recordsKept, r.recordsBefore, r.drawsBefore - r.drawsKept,
+                            r.drawsBefore));
     return 0;
 }
 

@@ -75,7 +75,7 @@ void ControlLink::flush() {
     writing_.swap(waiting_);
     asio::async_write(socket_, asio::buffer(writing_), [self = shared_from_this()](const error_code& failed, size_t) {
         self->writing_.clear();
-        if (failed) return self->close("the connection broke: " + failed.message());
+        if (failed) return self->close("the connection failed: " + failed.message());
         self->flush();
     });
 }
@@ -96,7 +96,8 @@ void ControlLink::read() {
     socket_.async_read_some(asio::buffer(in_), [self = shared_from_this()](const error_code& failed, size_t bytes) {
         if (self->ended_) return;
         if (failed)
-            return self->close(failed == asio::error::eof ? "the peer broke off without a goodbye" : failed.message());
+            return self->close(failed == asio::error::eof ? "the peer closed the connection without a goodbye"
+                                                          : failed.message());
         self->took(bytes);
         if (!self->ended_) self->read();
     });
@@ -110,7 +111,7 @@ void ControlLink::took(size_t bytes) {
     }
     for (const auto& m : messages) {
         const auto decoded = decode(m);
-        if (!decoded) return close("it sent what is no message of this version");
+        if (!decoded) return close("it sent an invalid message, or one of another version");
         if (const auto events = events_) events->message(*decoded);
         if (ended_) return;
     }

@@ -75,7 +75,7 @@ Result<void> Group::State::joinMulticast() {
 }
 
 Result<void> Group::State::openCore(bool isHost) {
-    if (sodium_init() < 0) return Error{"libsodium can't find random numbers"};
+    if (sodium_init() < 0) return Error{"libsodium cannot generate random numbers"};
     GroupSettings s;
     s.host = isHost;
     randombytes_buf(s.uuid.data(), s.uuid.size());
@@ -121,12 +121,12 @@ Result<void> Group::State::openHost() {
     error_code failed;
     const auto address = where->host.empty() ? asio::ip::address(asio::ip::address_v6::any())
                                              : asio::ip::make_address(where->host, failed);
-    if (failed) return Error{"\"" + where->host + "\" is no address to listen at; give numbers"};
+    if (failed) return Error{"\"" + where->host + "\" is not an address to listen on; use a numeric address"};
     try {
         acceptor_.emplace(context_, Tcp::endpoint(address, where->port));
         controlAddress = tcpText(localTcpAddress(acceptor_->native_handle())).substr(std::strlen("tcp://"));
     } catch (const boost::system::system_error& e) {
-        return Error{"can't listen at " + options_.control + ": " + e.code().message()};
+        return Error{"cannot listen at " + options_.control + ": " + e.code().message()};
     }
     acceptLinks();
     startThread();
@@ -142,7 +142,7 @@ Result<void> Group::State::openMember(Deadline deadline) {
     if (!addresses) return addresses.error();
     auto connected = connectRacing(*addresses, deadline);
     if (!connected)
-        return Error{"can't reach the group's host at " + options_.control + ": " + connected.error().message};
+        return Error{"cannot connect to the group's host at " + options_.control + ": " + connected.error().message};
     const bool isIpv4 = localTcpAddress(connected->get()).family() == AF_INET;
     Tcp::socket socket(context_, isIpv4 ? Tcp::v4() : Tcp::v6(), connected->release());
     auto link =
@@ -197,7 +197,7 @@ void Group::State::endWhenSaid(Deadline deadline) {
 }
 
 void Group::State::fail(const std::string& why) {
-    if (failure.empty()) failure = why.empty() ? "the group's host has ended it" : why;
+    if (failure.empty()) failure = why.empty() ? "the group's host has ended the group" : why;
     wakeAll();
 }
 
@@ -252,7 +252,7 @@ void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& li
     events.message = [this](const ControlMessage& m) {
         const std::lock_guard lock(mutex);
         core->inputControl(kHost, m, steadyNs());
-        if (core->over()) fail("the group's host has removed this member; join again");
+        if (core->over()) fail("the group's host has evicted this member; join again");
         pump();
         changed.notify_all();
     };
@@ -261,7 +261,7 @@ void Group::State::startLink(MemberId id, const std::shared_ptr<ControlLink>& li
         links_.clear();
         core->disconnected(kHost, steadyNs());
         hostLeft = why.empty() && failure.empty();
-        fail(why.empty() || !failure.empty() ? why : "the group's host was cut off: " + why);
+        fail(why.empty() || !failure.empty() ? why : "the connection to the group's host was lost: " + why);
     };
     link->start(std::move(events));
 }

@@ -13,7 +13,7 @@ Result<HandoverTimer> HandoverTimer::open() {
     HandoverTimer t;
     t.timer_ = FileDescriptor(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
     if (!t.timer_.valid())
-        return Error{"can't make a multicast group's timer: " + errnoText(errno) +
+        return Error{"cannot create a multicast group's timer: " + errnoText(errno) +
                      "; raise the limit of open files (ulimit -n)"};
     return t;
 }

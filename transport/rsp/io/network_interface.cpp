@@ -63,7 +63,7 @@ const SocketAddress* NetworkInterface::address(int family) const {
 
 Result<std::vector<NetworkInterface>> networkInterfaces() {
     ifaddrs* first = nullptr;
-    if (getifaddrs(&first) != 0) return Error{"can't list the network interfaces: " + errnoText(errno)};
+    if (getifaddrs(&first) != 0) return Error{"cannot list the network interfaces: " + errnoText(errno)};
     const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owner(first, freeifaddrs);
     std::vector<NetworkInterface> all;
     for (const ifaddrs* each = first; each; each = each->ifa_next) {
@@ -91,7 +91,7 @@ Result<NetworkInterface> findInterface(std::string_view nameOrAddress, int famil
         if (i.name == nameOrAddress || std::ranges::any_of(i.addresses, isIt)) {
             if (i.address(family)) return i;
             return Error{"network interface " + i.name + " has no " + (family == AF_INET ? "IPv4" : "IPv6") +
-                         " address; give it one, or use a group of the other kind"};
+                         " address; add one, or use a group of the other address family"};
         }
         if (!i.address(family)) continue;
         if (i.loopback)
@@ -100,9 +100,8 @@ Result<NetworkInterface> findInterface(std::string_view nameOrAddress, int famil
             return i;
     }
     if (nameOrAddress.empty() && loopback) return *loopback;
-    if (nameOrAddress.empty()) return Error{"no network interface is up that could do multicast; there are: " + known};
-    return Error{"there is no network interface \"" + std::string(nameOrAddress) +
-                 "\" that is up; there are: " + known};
+    if (nameOrAddress.empty()) return Error{"no active network interface with multicast; available: " + known};
+    return Error{"no active network interface \"" + std::string(nameOrAddress) + "\"; available: " + known};
 }
 
 } // namespace mural::rsp

@@ -15,7 +15,7 @@ namespace mural::rsp {
 namespace {
 
 Error noDescriptor(const std::string& what) {
-    return Error{"can't " + what + ": " + errnoText(errno) + "; raise the limit of open files (ulimit -n)"};
+    return Error{"cannot " + what + ": " + errnoText(errno) + "; raise the limit of open files (ulimit -n)"};
 }
 
 bool control(int epoll, int operation, int fd) {
@@ -31,7 +31,7 @@ Result<SocketPoller> SocketPoller::open() {
     SocketPoller a;
     a.watched_ = FileDescriptor(epoll_create1(EPOLL_CLOEXEC));
     a.timer_ = FileDescriptor(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-    if (!a.watched_.valid() || !a.timer_.valid()) return noDescriptor("make a multicast group's timer");
+    if (!a.watched_.valid() || !a.timer_.valid()) return noDescriptor("create a multicast group's timer");
     if (!control(a.watched_.get(), EPOLL_CTL_ADD, a.timer_.get()))
         return noDescriptor("watch a multicast group's timer");
     a.all_[a.count_++] = {a.timer_.get(), POLLIN, 0};

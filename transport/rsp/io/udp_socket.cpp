@@ -40,7 +40,7 @@ template <class T> bool set(int fd, int level, int option, T value) {
     return setsockopt(fd, level, option, &value, sizeof value) == 0;
 }
 
-Error failed(const std::string& what) { return Error{"can't " + what + ": " + errnoText(errno)}; }
+Error failed(const std::string& what) { return Error{"cannot " + what + ": " + errnoText(errno)}; }
 
 Result<void> chooseInterface(int fd, const NetworkInterface& interface, int family) {
     bool good = false;
@@ -132,7 +132,7 @@ Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const Network
         place.family() == AF_INET6 && IN6_IS_ADDR_MC_LINKLOCAL(&six->sin6_addr))
         six->sin6_scope_id = interface.index;
     if (bind(socket.descriptor(), place.get(), place.sizeBytes) != 0)
-        return failed("listen to the multicast group's port " + std::to_string(tcpPort(group)));
+        return failed("bind to the multicast group's port " + std::to_string(tcpPort(group)));
     if (auto r = joinGroup(socket.descriptor(), group, interface); !r) return r.error();
     // Receive from this interface only.
     set(socket.descriptor(), IPPROTO_IP, IP_MULTICAST_ALL, 0);
@@ -147,7 +147,7 @@ Result<UdpSocket> UdpSocket::openOwn(const NetworkInterface& interface, int fami
     if (auto r = chooseInterface(socket.descriptor(), interface, family); !r) return r.error();
     const SocketAddress* own = interface.address(family);
     if (!own || bind(socket.descriptor(), own->get(), own->sizeBytes) != 0)
-        return failed("take a UDP port on network interface " + interface.name);
+        return failed("bind a UDP port on network interface " + interface.name);
     return socket;
 }
 
@@ -275,7 +275,7 @@ Result<void> UdpSocket::send(const SocketAddress& to, std::span<std::byte> datag
             break;
         default: break;
         }
-        return Error{"can't send datagrams of " + std::to_string(segmentBytes) + " bytes: " + errnoText(code)};
+        return Error{"cannot send datagrams of " + std::to_string(segmentBytes) + " bytes: " + errnoText(code)};
     }
 }
 

@@ -25,8 +25,8 @@ void GroupCore::take(MemberId from, const Join& m, int64_t nowNs) {
     std::string why;
     if (members_.size() >= kMaxMembers) why = "the group is full: " + std::to_string(kMaxMembers) + " members";
     if ((m.seals >> static_cast<int>(settings_.keys.seal) & 1) == 0)
-        why = std::string("this member can't do the session's encryption, ") + nameOf(settings_.keys.seal) +
-              "; choose another for the session";
+        why = std::string("this member does not support the session's encryption, ") + nameOf(settings_.keys.seal) +
+              "; choose another --seal for the session";
     if (!why.empty()) {
         out_.control(from, Refused{why});
         candidates_.erase(found);
@@ -55,7 +55,7 @@ void GroupCore::take(MemberId, const Welcome& m, int64_t) {
     if (m.datagramBytes < kMinDatagramBytes || m.windowDatagrams < 64 || m.windowDatagrams > kMaxWindow ||
         (m.windowDatagrams & (m.windowDatagrams - 1)) != 0) {
         over_ = true;
-        return out_.hangUp(kHost, "the host's settings make no sense; do both run the same version?");
+        return out_.hangUp(kHost, "the host sent invalid settings; check that both run the same version");
     }
     self_ = m.self;
     settings_.keys = m.keys;
@@ -70,7 +70,7 @@ void GroupCore::probe(int64_t nowNs) {
     std::vector<MemberId> late;
     for (auto& [id, c] : candidates_) {
         if (!c.joined) {
-            if (nowNs - c.untilNs > kJoinNs) out_.hangUp(id, "it connected and did not say what it wants");
+            if (nowNs - c.untilNs > kJoinNs) out_.hangUp(id, "it connected but sent no join request");
             continue;
         }
         if (!c.join.multicast || nowNs >= c.untilNs) {
@@ -279,8 +279,7 @@ void GroupCore::watchMembers(int64_t nowNs) {
     }
     for (const auto& [id, reason] : hopeless)
         expel(id, reason,
-              reason == GoneReason::Silent ? "it has said nothing for too long"
-                                           : "everyone waited for it for too long");
+              reason == GoneReason::Silent ? "it sent nothing for too long" : "it stalled the group for too long");
     for (const auto& [id, silent] : unreached) toConnection(id, silent, nowNs);
 }
 

@@ -48,11 +48,11 @@ void save(const Options& o, int frame) {
     char name[32];
     std::snprintf(name, sizeof name, "/frame-%06d.ppm", frame + 1);
     FILE* file = std::fopen((o.save + name).c_str(), "wb");
-    if (file == nullptr) throw std::runtime_error("can't write " + o.save + name);
+    if (file == nullptr) throw std::runtime_error("cannot write " + o.save + name);
     std::fprintf(file, "P6\n%d %d\n255\n", o.width, o.height);
     const size_t row = static_cast<size_t>(o.width) * 3;
     for (int y = o.height; y-- > 0;) std::fwrite(pixels.data() + static_cast<size_t>(y) * row, 1, row, file);
-    if (std::fclose(file) != 0) throw std::runtime_error("can't write " + o.save + name + ": no space?");
+    if (std::fclose(file) != 0) throw std::runtime_error("cannot write " + o.save + name + ": check the free space");
 }
 
 int drawAll(const Options& o) {
@@ -78,7 +78,7 @@ int main(int count, char** arguments) {
     Options options;
     for (int i = 1; i < count; i += 2)
         if (i + 1 >= count || !take(arguments[i], arguments[i + 1], options)) {
-            std::fprintf(stderr, "mural-scenes: %s is no option, or its value is none\n%s", arguments[i], kUsage);
+            std::fprintf(stderr, "mural-scenes: unknown option %s, or its value is missing\n%s", arguments[i], kUsage);
             return 2;
         }
     try {

@@ -20,7 +20,7 @@ std::unique_ptr<SceneWindow> SceneWindow::open(int width, int height, std::strin
     Handles& x = *opened->x_;
     x.display = XOpenDisplay(nullptr);
     if (x.display == nullptr) {
-        why = "no X display; set DISPLAY, or run it under xvfb-run";
+        why = "no X display; set DISPLAY, or use xvfb-run";
         return nullptr;
     }
     // 24 bits of depth and no stencil, as most programs request.
@@ -45,7 +45,7 @@ std::unique_ptr<SceneWindow> SceneWindow::open(int width, int height, std::strin
     x.context = glXCreateContext(x.display, visual, nullptr, True);
     XFree(visual);
     if (x.context == nullptr || glXMakeCurrent(x.display, x.window, x.context) != True) {
-        why = "no OpenGL context can be made; see mural doctor";
+        why = "cannot create an OpenGL context; see mural doctor";
         return nullptr;
     }
     return opened;

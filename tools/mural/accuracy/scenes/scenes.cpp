@@ -61,8 +61,7 @@ unsigned programOf(const char* vertex, const char* fragment) {
     glLinkProgram(program);
     int linked = 0;
     glGetProgramiv(program, GL_LINK_STATUS, &linked);
-    if (linked == GL_FALSE)
-        throw std::runtime_error("a GLSL 1.20 program does not link here; the scenes need OpenGL 2.1");
+    if (linked == GL_FALSE) throw std::runtime_error("a GLSL 1.20 program does not link; the scenes need OpenGL 2.1");
     return program;
 }
 
@@ -111,7 +110,7 @@ Scenes::Scenes(int width, int height, const Look& look)
     int major = 0;
     if (const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION))) major = version[0] - '0';
     if (major < 4 && (look.moveX != 0 || look.moveY != 0))
-        throw std::runtime_error("viewports in fractions of a pixel need OpenGL 4.1");
+        throw std::runtime_error("fractional viewports need OpenGL 4.1");
     program_ =
         programOf("#version 120\nattribute vec3 place; attribute vec3 tone; uniform mat4 whole; varying vec3 tint;\n"
                   "void main() { tint = tone; gl_Position = whole * vec4(place, 1.0); }\n",
