@@ -18,11 +18,11 @@ std::string nameOr(const std::string& name, size_t number) {
 
 // Returns the number of frames after which the plan repeats, limited to the number that can be checked.
 uint64_t repeatsAfter(const ResolvedConfig& config) {
-    constexpr uint64_t kMost = 64;
+    constexpr uint64_t kMax = 64;
     uint64_t all = 1;
     for (const config::ResolvedCompound& c : config.compounds) {
-        const uint64_t period = std::clamp<uint64_t>(c.period.value_or(1), 1, kMost);
-        all = std::min(kMost, std::lcm(all, period));
+        const uint64_t period = std::clamp<uint64_t>(c.period.value_or(1), 1, kMax);
+        all = std::min(kMax, std::lcm(all, period));
     }
     return all;
 }
@@ -33,7 +33,7 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
     for (const config::ResolvedCanvas& c : config.canvases) layouts = std::max(layouts, c.layouts.size());
     constexpr size_t kMaxCompounds = 20'000'000; // bounds the check to a few seconds
     FrameInput input = firstFrame(config);
-    std::set<std::string> said;
+    std::set<std::string> reported;
     size_t tried = 0;
     for (size_t layout = 0; layout < layouts; ++layout) {
         input.activeLayouts.assign(config.canvases.size(), static_cast<Index>(layout));
@@ -53,11 +53,11 @@ void checkDeadlocks(const ResolvedConfig& config, config::Diagnostics& diagnosti
                 std::set<std::string> names; // order independent of the entry into the cycle
                 for (const Index f : plan.deadlock) names.insert(plan.frames[at(f)].name);
                 for (const std::string& name : names) circle += (circle.empty() ? "\"" : ", \"") + name + "\"";
-                if (!said.insert(circle).second) continue;
+                if (!reported.insert(circle).second) continue;
                 const PlannedFrame& first = plan.frames[at(plan.deadlock.front())];
-                const std::string who = names.size() == 1 ? "frame " + circle + " waits for itself"
-                                                          : "frames " + circle + " wait for each other";
-                diagnostics.error(config.compounds[at(first.compound)].at, who + ": no picture is ever drawn",
+                const std::string cycle = names.size() == 1 ? "frame " + circle + " waits for itself"
+                                                            : "frames " + circle + " wait for each other";
+                diagnostics.error(config.compounds[at(first.compound)].at, cycle + ": no picture is ever drawn",
                                   "read one of them back before it is needed");
             }
         }

@@ -16,8 +16,8 @@ struct Layer {
     Index context = kNone;
     Viewport from; // in pixels of the draw, relative to its corner
     Viewport to;
-    Zoom size;  // scale of its pixels here, relative to the drawn pixels
-    Zoom least; // smallest scale so far
+    Zoom size;    // scale of its pixels here, relative to the drawn pixels
+    Zoom minimum; // smallest scale so far
 };
 
 Viewport rectangle(const PixelViewport& v) { return {double(v.x), double(v.y), double(v.w), double(v.h)}; }
@@ -171,7 +171,7 @@ private:
     static void scale(Layer& l, const Viewport& to, const Zoom& by) {
         l.to = to;
         l.size = compose(l.size, by);
-        l.least = {std::min(l.least.x, l.size.x), std::min(l.least.y, l.size.y)};
+        l.minimum = {std::min(l.minimum.x, l.size.x), std::min(l.minimum.y, l.size.y)};
     }
 
     // Returns the area that a frame of this size occupies. With a pixel stride: from the first pixel to one past the
@@ -272,12 +272,14 @@ private:
                    l.to.h / y.width()};
         settle(part.from.x, part.from.w, part.to.x, part.to.w, x);
         settle(part.from.y, part.from.h, part.to.y, part.to.h, y);
-        part.way = {wayOf(l.size.x, l.least.x), wayOf(l.size.y, l.least.y)};
+        part.transferScale = {transferScaleOf(l.size.x, l.minimum.x), transferScaleOf(l.size.y, l.minimum.y)};
         return part;
     }
 
     // A picture drawn larger or smaller than shown loses no resolution by that alone.
-    static double wayOf(double size, double least) { return least < std::min(1., size) - 1e-9 ? least / size : 1; }
+    static double transferScaleOf(double size, double minimum) {
+        return minimum < std::min(1., size) - 1e-9 ? minimum / size : 1;
+    }
 
     const ResolvedConfig& config_;
     const FrameInput& input_;

@@ -10,9 +10,9 @@ namespace mural::compound {
 
 // Parts are relative to the area that the draw represents: 0 0 1 1 is all of it, unmoved.
 struct ShownPart {
-    Viewport from; // shown part of the draw
-    Viewport to;   // its place; equal to `from` unless a frame's zoom scales it
-    Zoom way;      // smallest scale on the path relative to the final scale; at most 1
+    Viewport from;      // shown part of the draw
+    Viewport to;        // its place; equal to `from` unless a frame's zoom scales it
+    Zoom transferScale; // smallest scale on the path relative to the final scale; at most 1
 };
 
 struct Flow {

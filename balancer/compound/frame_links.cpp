@@ -59,14 +59,14 @@ void Planner::linkFrames(Eye eye) {
 // Removes frames without a consumer and renumbers the references to later frames.
 void Planner::dropUnused(size_t first) {
     std::vector<Index> now(plan_.frames.size() - first, kNone);
-    size_t kept = first;
+    size_t retained = first;
     for (size_t f = first; f < plan_.frames.size(); ++f) {
         if (plan_.frames[f].consumers.empty()) continue;
-        now[f - first] = static_cast<Index>(kept);
-        if (kept != f) plan_.frames[kept] = std::move(plan_.frames[f]);
-        ++kept;
+        now[f - first] = static_cast<Index>(retained);
+        if (retained != f) plan_.frames[retained] = std::move(plan_.frames[f]);
+        ++retained;
     }
-    plan_.frames.resize(kept);
+    plan_.frames.resize(retained);
     for (auto& outputs : outputs_) {
         for (Index& f : outputs) f = now[at(f) - first];
     }

@@ -6,7 +6,7 @@ namespace mural::compound {
 
 namespace {
 
-std::vector<double> edgesOf(const std::vector<Rect>& pieces, bool columns, double near) {
+std::vector<double> edgesOf(const std::vector<Rect>& pieces, bool columns, double epsilon) {
     std::vector<double> all, edges;
     for (const Rect& p : pieces) {
         all.push_back(columns ? p.area.x : p.area.y);
@@ -14,24 +14,24 @@ std::vector<double> edgesOf(const std::vector<Rect>& pieces, bool columns, doubl
     }
     std::sort(all.begin(), all.end());
     for (const double e : all)
-        if (edges.empty() || e - edges.back() > near) edges.push_back(e);
+        if (edges.empty() || e - edges.back() > epsilon) edges.push_back(e);
     return edges;
 }
 
-size_t indexOf(const std::vector<double>& edges, double edge, double near) {
-    return static_cast<size_t>(std::lower_bound(edges.begin(), edges.end(), edge - 2 * near) - edges.begin());
+size_t indexOf(const std::vector<double>& edges, double edge, double epsilon) {
+    return static_cast<size_t>(std::lower_bound(edges.begin(), edges.end(), edge - 2 * epsilon) - edges.begin());
 }
 
 } // namespace
 
-std::vector<Cell> cellsOf(const std::vector<Rect>& pieces, double near) {
-    const std::vector<double> xs = edgesOf(pieces, true, near), ys = edgesOf(pieces, false, near);
+std::vector<Cell> cellsOf(const std::vector<Rect>& pieces, double epsilon) {
+    const std::vector<double> xs = edgesOf(pieces, true, epsilon), ys = edgesOf(pieces, false, epsilon);
     if (xs.size() < 2 || ys.size() < 2) return {};
     const size_t columns = xs.size() - 1, rows = ys.size() - 1;
     std::vector<std::vector<int>> grid(columns * rows);
     for (const Rect& p : pieces) {
-        const size_t x0 = indexOf(xs, p.area.x, near), x1 = indexOf(xs, p.area.x + p.area.w, near);
-        const size_t y0 = indexOf(ys, p.area.y, near), y1 = indexOf(ys, p.area.y + p.area.h, near);
+        const size_t x0 = indexOf(xs, p.area.x, epsilon), x1 = indexOf(xs, p.area.x + p.area.w, epsilon);
+        const size_t y0 = indexOf(ys, p.area.y, epsilon), y1 = indexOf(ys, p.area.y + p.area.h, epsilon);
         for (size_t y = y0; y < y1; ++y)
             for (size_t x = x0; x < x1; ++x) {
                 std::vector<int>& there = grid[y * columns + x];

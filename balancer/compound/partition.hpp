@@ -18,7 +18,7 @@ struct Cell {
 };
 
 // Returns a disjoint partition of the union of all pieces. Adjacent cells with equal owners are merged where the result
-// is a rectangle, columns first, then rows. Edges closer than `near` are equal.
-std::vector<Cell> cellsOf(const std::vector<Rect>& pieces, double near = 1e-7);
+// is a rectangle, columns first, then rows. Edges closer than `epsilon` are equal.
+std::vector<Cell> cellsOf(const std::vector<Rect>& pieces, double epsilon = 1e-7);
 
 } // namespace mural::compound

@@ -17,8 +17,8 @@ void cutAtRandom(TileRegion r, std::vector<size_t> nodes, std::mt19937& random, 
     const int length = columns ? r.columns : r.rows, across = columns ? r.rows : r.columns;
     const int at = 1 + below(length - 1);
     const int total = static_cast<int>(nodes.size());
-    const int fewest = std::max(1, total - (length - at) * across), most = std::min(total - 1, at * across);
-    const int count = fewest + below(most - fewest + 1);
+    const int fewest = std::max(1, total - (length - at) * across), maximum = std::min(total - 1, at * across);
+    const int count = fewest + below(maximum - fewest + 1);
     TileRegion a = r, b = r;
     (columns ? a.columns : a.rows) = at;
     (columns ? b.column : b.row) += at;

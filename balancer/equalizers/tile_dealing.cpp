@@ -34,14 +34,14 @@ void TileCosts::sum() {
     }
 }
 
-void TileCosts::learn(const TileRegion& region, double time) {
-    constexpr double kLeast = 1e-9; // least cost of a tile: zero costs have no proportions
+void TileCosts::update(const TileRegion& region, double time) {
+    constexpr double kMin = 1e-9; // least cost of a tile: zero costs have no proportions
     const double before = of(region);
     const double each = time / (static_cast<double>(region.columns) * region.rows);
     for (int row = region.row; row < region.row + region.rows; ++row)
         for (int column = region.column; column < region.column + region.columns; ++column) {
             double& tile = tiles_[at(column, row)];
-            tile = std::max(kLeast, before > 0 && std::isfinite(before) ? tile * (time / before) : each);
+            tile = std::max(kMin, before > 0 && std::isfinite(before) ? tile * (time / before) : each);
         }
     sum();
 }
@@ -101,10 +101,10 @@ private:
     }
 
     // Returns the least number of columns and rows that these nodes need.
-    [[nodiscard]] Size leastOf(const Nodes& nodes) const {
+    [[nodiscard]] Size minOf(const Nodes& nodes) const {
         if (nodes.size() < 2) return {};
         const Cut cut = cutOf(nodes);
-        const Size a = leastOf(cut.before), b = leastOf(cut.behind);
+        const Size a = minOf(cut.before), b = minOf(cut.behind);
         return cut.columns ? Size{a.columns + b.columns, std::max(a.rows, b.rows)}
                            : Size{std::max(a.columns, b.columns), a.rows + b.rows};
     }
@@ -129,9 +129,9 @@ private:
             return;
         }
         const Cut cut = cutOf(nodes);
-        const Size least = leastOf(cut.before), rest = leastOf(cut.behind);
+        const Size minimum = minOf(cut.before), rest = minOf(cut.behind);
         const int length = cut.columns ? r.columns : r.rows;
-        const int first = cut.columns ? least.columns : least.rows,
+        const int first = cut.columns ? minimum.columns : minimum.rows,
                   last = length - (cut.columns ? rest.columns : rest.rows);
         const int now = cut.at - (cut.columns ? r.column : r.row);
         int best = first;

@@ -19,7 +19,7 @@ public:
     [[nodiscard]] int rows() const { return rows_; }
     [[nodiscard]] double of(const TileRegion& region) const;
     // Scales the costs of this region's tiles to the total `time`. Their proportions stay.
-    void learn(const TileRegion& region, double time);
+    void update(const TileRegion& region, double time);
 
 private:
     [[nodiscard]] size_t at(int column, int row) const {

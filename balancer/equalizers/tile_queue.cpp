@@ -17,13 +17,13 @@ bool TileQueue::drawn(const std::vector<double>& times) {
     for (size_t i = 0; i < times.size(); ++i) times_[i] = (times_[i] + times[i]) / 2;
     if (frames_ < rules_.frames) return false;
     const double longest = *std::ranges::max_element(times_);
-    return longest > 0 && look(longest);
+    return longest > 0 && rebalance(longest);
 }
 
-bool TileQueue::look(double longest) {
-    if (kept_) {
+bool TileQueue::rebalance(double longest) {
+    if (settled_) {
         if (std::abs(longest - bestLongest_) <= rules_.changed * bestLongest_) return false;
-        kept_ = false;
+        settled_ = false;
         failures_ = 0;
         bestLongest_ = 0;
     }
@@ -36,17 +36,17 @@ bool TileQueue::look(double longest) {
         bestLongest_ = longest;
         failures_ = 0;
     } else if (moved_ && ++failures_ >= rules_.failures) {
-        kept_ = true;
+        settled_ = true;
         return takeAreas(best_);
     }
     moved_ = false;
-    for (size_t i = 0; i < areas_.size(); ++i) costs_.learn(areas_[i], times_[i]);
+    for (size_t i = 0; i < areas_.size(); ++i) costs_.update(areas_[i], times_[i]);
     auto other = dealTiles(costs_, areas_);
     double promised = 0;
     for (const TileRegion& area : other) promised = std::max(promised, costs_.of(area));
     if (promised <= (1 - rules_.gain) * longest) return takeAreas(std::move(other));
-    kept_ = longest > (1 + rules_.brought) * bestLongest_; // no better areas are reachable from here
-    return kept_ && takeAreas(best_);
+    settled_ = longest > (1 + rules_.brought) * bestLongest_; // no better areas are reachable from here
+    return settled_ && takeAreas(best_);
 }
 
 bool TileQueue::takeAreas(std::vector<TileRegion> areas) {

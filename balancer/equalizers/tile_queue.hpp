@@ -37,7 +37,7 @@ public:
     bool drawn(const std::vector<double>& times);
 
 private:
-    bool look(double longest);
+    bool rebalance(double longest);
     bool takeAreas(std::vector<TileRegion> areas);
 
     const QueueRules rules_;
@@ -49,7 +49,7 @@ private:
     int failures_ = 0;
     std::vector<TileRegion> best_; // best areas for the current load
     double bestLongest_ = 0;       // their longest time; 0: none yet
-    bool kept_ = false;            // areas are kept until the load changes
+    bool settled_ = false;         // areas are kept until the load changes
 };
 
 // Returns the number of tiles that belong to different nodes in `a` and `b`.

@@ -72,22 +72,22 @@ std::string nodeName(const ResolvedConfig& config, Index node) {
 std::string drawConfig(const ResolvedConfig& config, const std::string& title,
                        const std::vector<std::string>& heading) {
     Svg svg;
-    constexpr double kMost = kWidth - 2 * kMargin;
+    constexpr double kMax = kWidth - 2 * kMargin;
     double y = kMargin + 14, width = 640;
-    const auto say = [&](const std::string& text, const Font& font) {
-        svg.text({kMargin, y}, text, font, kMost);
-        width = std::max(width, std::min(kMost, Svg::widthOf(text, font.size) * 1.1));
+    const auto drawText = [&](const std::string& text, const Font& font) {
+        svg.text({kMargin, y}, text, font, kMax);
+        width = std::max(width, std::min(kMax, Svg::widthOf(text, font.size) * 1.1));
     };
-    say(title, {20, "#111820", true, Align::Left});
+    drawText(title, {20, "#111820", true, Align::Left});
     for (const std::string& line : heading) {
         y += 17;
-        say(line, {12, "#52606d", false, Align::Left});
+        drawText(line, {12, "#52606d", false, Align::Left});
     }
     const auto section = [&](const char* name, Box (*draw)(Svg&, const ResolvedConfig&, Point, double)) {
         y += 38;
         svg.text({kMargin, y}, name, {14, "#111820", true, Align::Left});
         svg.line({kMargin, y + 7}, {kMargin + 240, y + 7}, {.stroke = "#cbd2d9", .dash = {}});
-        const Box box = draw(svg, config, {kMargin, y + 20}, kMost);
+        const Box box = draw(svg, config, {kMargin, y + 20}, kMax);
         y = std::max(y + 20, box.bottom());
         width = std::max(width, box.w);
     };

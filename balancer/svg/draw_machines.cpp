@@ -88,8 +88,8 @@ Box drawMachines(Svg& svg, const ResolvedConfig& config, Point corner, double wi
         const config::ResolvedNode& node = config.nodes[n];
         // the node only runs the program
         if (node.pipes.empty() && node.isApplication && config.nodes.size() > 1) continue;
-        const auto most = static_cast<size_t>(std::max(1., (width - kGap) / (kPipeWidth + kPad)));
-        const size_t columns = std::clamp<size_t>(node.pipes.size(), 1, most);
+        const auto maximum = static_cast<size_t>(std::max(1., (width - kGap) / (kPipeWidth + kPad)));
+        const size_t columns = std::clamp<size_t>(node.pipes.size(), 1, maximum);
         double h = kNodeHead;
         std::vector<double> rows;
         for (size_t p = 0; p < node.pipes.size(); ++p) {

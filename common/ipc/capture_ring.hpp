@@ -5,7 +5,7 @@
 //   head       → freed chunk index     → app;
 //   head       → reply ring (bytes)    → the app thread that sent the request;
 //   head       → table of answers      → results of queries, requested when the query ends;
-//   head       → news slots (a ring)   → the first app thread that checks; a full ring drops news;
+//   head       → event slots (a ring)   → the first app thread that checks; a full ring drops events;
 //   head       → reply ring (pictures) → the app, which puts them into its own windows during a server grab.
 //
 // One lock in the app process guards the producer side of publications and the consumer side of freed chunks. Both
@@ -13,7 +13,7 @@
 //
 // Initially the freed ring contains the index of every chunk. The app takes chunks only from that ring.
 //
-// Layout of the mapping: CaptureHeader | publications | freed | reply bytes | news | chunks.
+// Layout of the mapping: CaptureHeader | publications | freed | reply bytes | driver events | chunks.
 #pragma once
 
 #include <atomic>
@@ -37,11 +37,11 @@ constexpr uint32_t kNoDisplay = 0xffffffff; // the table is full, or the name is
 
 // Bit in the ids of prefetch requests, whose answers no thread waits for yet. Each answer lies in a table at its id
 // modulo the table's size until a later answer replaces it.
-constexpr uint32_t kAskedAhead = 0x80000000;
+constexpr uint32_t kPrefetched = 0x80000000;
 constexpr uint32_t kAheadAnswers = 1024;
 // Bit in the ids of deferred requests. Their answers come as replies, which are read when the program needs them, if
 // ever.
-constexpr uint32_t kOwed = 0x40000000;
+constexpr uint32_t kDeferred = 0x40000000;
 struct AheadAnswer {
     std::atomic<uint32_t> request; // id of the answered request; 0: none yet. Stored last; futex
     std::atomic<uint64_t> value;
@@ -60,9 +60,9 @@ static_assert(sizeof(Publication) == 16);
 // The reason why a thread of the program waits.
 enum class Wait : uint32_t {
     Nothing = 0,
-    Room = 1,   // space in the ring; the head reads no further, because the nodes accept no more
+    Space = 1,  // space in the ring; the head reads no further, because the nodes accept no more
     Frames = 2, // credit; the nodes still draw earlier frames
-    Answer = 3, // the nodes' answer to a request (a round trip)
+    Reply = 3,  // the reply of the nodes to a request (a round trip)
     Window = 4, // the picture's arrival in the program's own window
 };
 constexpr uint32_t kWaits = 5;
@@ -108,7 +108,7 @@ constexpr uint64_t kFramesWanted = uint64_t{1} << 32;
 
 // An event that a node's GL reports about a context: wire::DriverEvent and its text.
 struct DriverEventSlot {
-    std::byte news[32];
+    std::byte event[32];
     char text[kDriverEventTextBytes];
 };
 static_assert(sizeof(DriverEventSlot) == 512);
@@ -133,7 +133,7 @@ struct alignas(64) CaptureHeader {
     uint64_t publicationsAt; // offsets in bytes from the start of the mapping
     uint64_t freedAt;
     uint64_t repliesAt;
-    uint64_t newsAt;
+    uint64_t driverEventsAt;
     uint64_t chunksAt;
     uint64_t totalBytes;
 
@@ -145,8 +145,8 @@ struct alignas(64) CaptureHeader {
     alignas(64) std::atomic<uint32_t> replyTail;     // head writes, bytes; futex
     alignas(64) std::atomic<uint32_t> replyHead;     // app writes, bytes; futex: head may wait for room
 
-    alignas(64) std::atomic<uint32_t> newsTail; // head writes
-    alignas(64) std::atomic<uint32_t> newsHead; // app writes
+    alignas(64) std::atomic<uint32_t> driverEventTail; // head writes
+    alignas(64) std::atomic<uint32_t> driverEventHead; // app writes
 
     // Frames that the nodes have finished, over all windows: the credit of the frame latency. futex.
     alignas(64) std::atomic<uint32_t> framesDone;
@@ -166,7 +166,7 @@ struct alignas(64) CaptureHeader {
     alignas(64) std::atomic<uint32_t> headGone;
     // A robust futex that a thread of the head holds while it serves the program. If the head ends in any other way,
     // the kernel sets FUTEX_OWNER_DIED, and the app continues alone.
-    std::atomic<uint32_t> headLife;
+    std::atomic<uint32_t> headLiveness;
 
     // Results of `--verify`: written by the app, read by the head for the report.
     alignas(64) std::atomic<uint64_t> verifiedFrames;
@@ -200,8 +200,8 @@ inline uint32_t* freed(CaptureHeader* h) {
     return reinterpret_cast<uint32_t*>(reinterpret_cast<std::byte*>(h) + h->freedAt);
 }
 inline std::byte* replies(CaptureHeader* h) { return reinterpret_cast<std::byte*>(h) + h->repliesAt; }
-inline DriverEventSlot* news(CaptureHeader* h) {
-    return reinterpret_cast<DriverEventSlot*>(reinterpret_cast<std::byte*>(h) + h->newsAt);
+inline DriverEventSlot* driverEvents(CaptureHeader* h) {
+    return reinterpret_cast<DriverEventSlot*>(reinterpret_cast<std::byte*>(h) + h->driverEventsAt);
 }
 inline std::byte* chunk(CaptureHeader* h, uint32_t index) {
     return reinterpret_cast<std::byte*>(h) + h->chunksAt + size_t{index} * kChunkBytes;

@@ -114,7 +114,7 @@ bool MapChanges::compare(const Pass& pass, const std::byte* with, size_t fromByt
         return sameBytes(known_ + from, with + from, end - from);
     };
     size_t runFrom = 0, runEnd = 0;
-    const auto tell = [&] {
+    const auto report = [&] {
         if (runEnd == runFrom) return;
         std::memcpy(known_ + runFrom, with + runFrom, runEnd - runFrom);
         pass.changed(pass.self, runFrom, known_ + runFrom, runEnd - runFrom);
@@ -127,13 +127,13 @@ bool MapChanges::compare(const Pass& pass, const std::byte* with, size_t fromByt
             end = endOf(unit, pass.unit, next);
             if (same(unit, end)) continue;
             if (runEnd == runFrom || unit - runEnd > pass.gap) {
-                tell();
+                report();
                 runFrom = unit;
             }
             runEnd = end;
         }
     }
-    tell();
+    report();
     return any;
 }
 

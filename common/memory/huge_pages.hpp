@@ -12,7 +12,7 @@ constexpr size_t kHugePageBytes = size_t{2} << 20;
 
 // Requests huge pages for the aligned part of `memory` and returns that part; empty if too small. Systems without huge
 // pages ignore the request.
-inline std::span<std::byte> askForHugePages(std::span<std::byte> memory) {
+inline std::span<std::byte> requestHugePages(std::span<std::byte> memory) {
     const size_t before =
         (kHugePageBytes - reinterpret_cast<uintptr_t>(memory.data()) % kHugePageBytes) % kHugePageBytes;
     if (memory.size() < before + kHugePageBytes) return {};

@@ -10,24 +10,24 @@
 
 namespace mural {
 
-constexpr int kKeptBytes = 64 << 20;
-constexpr int kLargestKeptBlockBytes = 32 << 20; // largest value that glibc accepts
+constexpr int kTopPadBytes = 64 << 20;
+constexpr int kMaxHeapBlockBytes = 32 << 20; // largest value that glibc accepts
 
 // Keeps freed blocks in the heap. By default every block from 128 KiB on is newly mapped, and its page faults take as
-// long as compressing its contents. At most kKeptBytes stay in each malloc arena. Call before other threads start.
+// long as compressing its contents. At most kTopPadBytes stay in each malloc arena. Call before other threads start.
 inline void keepFreedMemory() {
-    mallopt(M_MMAP_THRESHOLD, kLargestKeptBlockBytes);
-    mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+    mallopt(M_MMAP_THRESHOLD, kMaxHeapBlockBytes);
+    mallopt(M_TRIM_THRESHOLD, kTopPadBytes);
 }
 
 // Touches memory in advance, in the calling thread's arena, so that the first user has no page faults. The memory then
-// counts as freed. Uses huge pages where available. Requires keepFreedMemory() and a size below kLargestKeptBlockBytes;
+// counts as freed. Uses huge pages where available. Requires keepFreedMemory() and a size below kMaxHeapBlockBytes;
 // otherwise it has no effect.
-inline void haveKeptMemory(size_t sizeBytes) {
+inline void reserveMallocMemory(size_t sizeBytes) {
     constexpr size_t kPageBytes = 4096;
     void* const block = std::malloc(sizeBytes);
     if (!block) return;
-    askForHugePages({static_cast<std::byte*>(block), sizeBytes});
+    requestHugePages({static_cast<std::byte*>(block), sizeBytes});
     for (size_t at = 0; at < sizeBytes; at += kPageBytes) static_cast<volatile std::byte*>(block)[at] = std::byte{0};
     std::free(block);
 }

@@ -163,9 +163,9 @@ Result<PixelViewport> withinPicture(const PlaneView& picture, const PlaneView& p
                      " is outside of a kernel of " + std::to_string(k.w) + "x" + std::to_string(k.h) +
                      "; check the compound"};
     const PixelViewport within{0, 0, countOf(picture.width, k.x, k.w), countOf(picture.height, k.y, k.h)};
-    const PixelViewport most = apply({0, 0, picture.width, picture.height}, k);
-    if (part.format != picture.format || part.width < within.w || part.height < within.h || part.width > most.w ||
-        part.height > most.h)
+    const PixelViewport maximum = apply({0, 0, picture.width, picture.height}, k);
+    if (part.format != picture.format || part.width < within.w || part.height < within.h || part.width > maximum.w ||
+        part.height > maximum.h)
         return Error{std::string(what) + ": the part has " + sizeText(part) + " instead of " +
                      std::to_string(within.w) + "x" + std::to_string(within.h) + " " + nameOf(picture.format) +
                      "; draw it with its kernel's size"};

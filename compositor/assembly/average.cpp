@@ -26,7 +26,7 @@ Average::Average(PlaneFormat format, int32_t width, int32_t height)
     if (format == PlaneFormat::Rgba32F) doubles_.resize(components);
 }
 
-uint32_t Average::most() const {
+uint32_t Average::maximum() const {
     if (shape_.format == PlaneFormat::Rgba8) return kMaxAveraged8;
     return shape_.format == PlaneFormat::Rgb10A2 ? kMaxAveraged10 : kMaxFloats;
 }
@@ -53,7 +53,7 @@ Result<void> Average::add(const PlaneView& picture) {
                      " " + nameOf(picture.format) + " among " + std::to_string(shape_.width) + "x" +
                      std::to_string(shape_.height) + " " + nameOf(shape_.format) +
                      "; draw all of them with one size and format"};
-    if (count_ >= most())
+    if (count_ >= maximum())
         return Error{"averaging: " + std::to_string(count_) +
                      " pictures are the maximum of a sum; write the average and restart"};
     if (in16Bits_ == kMaxIn16Bits) widen();

@@ -26,7 +26,7 @@ public:
 
 private:
     void widen();
-    [[nodiscard]] uint32_t most() const;
+    [[nodiscard]] uint32_t maximum() const;
 
     PlaneView shape_;
     size_t rowComponents_;

@@ -18,7 +18,7 @@ std::align_val_t alignmentOf(size_t sizeBytes) {
 
 void* allocatePixels(size_t sizeBytes) {
     void* const at = ::operator new(sizeBytes, alignmentOf(sizeBytes));
-    if (sizeBytes >= kMaxOfSmallPages) askForHugePages({static_cast<std::byte*>(at), sizeBytes});
+    if (sizeBytes >= kMaxOfSmallPages) requestHugePages({static_cast<std::byte*>(at), sizeBytes});
     return at;
 }
 

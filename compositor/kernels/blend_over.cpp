@@ -47,16 +47,17 @@ template <class D> hn::Vec<D> thirds(D d, hn::Vec<D> x) {
 }
 
 template <class D> hn::Vec<D> over10(D d, hn::Vec<D> front, hn::Vec<D> back) {
-    const auto most = hn::Set(d, 1023);
+    const auto maximum = hn::Set(d, 1023);
     const auto alpha = hn::ShiftRight<30>(front);
     const auto left = hn::Sub(hn::Set(d, 3), alpha);
-    const auto red = hn::Min(hn::Add(hn::And(front, most), thirds(d, hn::Mul(hn::And(back, most), left))), most);
-    const auto green = hn::Min(hn::Add(hn::And(hn::ShiftRight<10>(front), most),
-                                       thirds(d, hn::Mul(hn::And(hn::ShiftRight<10>(back), most), left))),
-                               most);
-    const auto blue = hn::Min(hn::Add(hn::And(hn::ShiftRight<20>(front), most),
-                                      thirds(d, hn::Mul(hn::And(hn::ShiftRight<20>(back), most), left))),
-                              most);
+    const auto red =
+        hn::Min(hn::Add(hn::And(front, maximum), thirds(d, hn::Mul(hn::And(back, maximum), left))), maximum);
+    const auto green = hn::Min(hn::Add(hn::And(hn::ShiftRight<10>(front), maximum),
+                                       thirds(d, hn::Mul(hn::And(hn::ShiftRight<10>(back), maximum), left))),
+                               maximum);
+    const auto blue = hn::Min(hn::Add(hn::And(hn::ShiftRight<20>(front), maximum),
+                                      thirds(d, hn::Mul(hn::And(hn::ShiftRight<20>(back), maximum), left))),
+                              maximum);
     const auto cover = hn::Min(hn::Add(alpha, thirds(d, hn::Mul(hn::ShiftRight<30>(back), left))), hn::Set(d, 3));
     return hn::Or(hn::Or(red, hn::ShiftLeft<10>(green)), hn::Or(hn::ShiftLeft<20>(blue), hn::ShiftLeft<30>(cover)));
 }

@@ -16,9 +16,9 @@ template <class T> T load(const std::byte* at) {
 }
 template <class T> void store(std::byte* at, T value) { std::memcpy(at, &value, sizeof value); }
 
-// `whole`: alpha value for 1; `most`: maximum of the component.
-uint32_t over(uint32_t front, uint32_t back, uint32_t alpha, uint32_t whole, uint32_t most) {
-    return std::min(front + (2 * back * (whole - alpha) + whole) / (2 * whole), most);
+// `whole`: alpha value for 1; `maximum`: maximum of the component.
+uint32_t over(uint32_t front, uint32_t back, uint32_t alpha, uint32_t whole, uint32_t maximum) {
+    return std::min(front + (2 * back * (whole - alpha) + whole) / (2 * whole), maximum);
 }
 
 void over8(std::byte* into, const std::byte* front, const std::byte* back) {

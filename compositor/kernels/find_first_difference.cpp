@@ -24,9 +24,9 @@ size_t findVector(const uint32_t* words, size_t count, const uint32_t* pattern, 
     const hn::ScalableTag<uint32_t> d;
     const size_t step = hn::Lanes(d);
     const auto wanted = hn::LoadDup128(d, pattern);
-    const auto looked = hn::LoadDup128(d, mask);
+    const auto mask128 = hn::LoadDup128(d, mask);
     for (; i + step <= count; i += step) {
-        const auto unlike = hn::And(hn::Xor(hn::LoadU(d, words + i), wanted), looked);
+        const auto unlike = hn::And(hn::Xor(hn::LoadU(d, words + i), wanted), mask128);
         if (!hn::AllTrue(d, hn::Eq(unlike, hn::Zero(d)))) break;
     }
     return i;

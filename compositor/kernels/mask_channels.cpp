@@ -24,8 +24,8 @@ size_t maskVectors(uint8_t* into, const uint8_t* source, size_t sizeBytes, const
     const size_t step = hn::Lanes(d);
     const auto taken = hn::LoadDup128(d, mask);
     for (; i + step <= sizeBytes; i += step) {
-        const auto kept = hn::AndNot(taken, hn::LoadU(d, into + i));
-        hn::StoreU(hn::Or(kept, hn::And(taken, hn::LoadU(d, source + i))), d, into + i);
+        const auto retained = hn::AndNot(taken, hn::LoadU(d, into + i));
+        hn::StoreU(hn::Or(retained, hn::And(taken, hn::LoadU(d, source + i))), d, into + i);
     }
     return i;
 }

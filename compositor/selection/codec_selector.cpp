@@ -130,12 +130,12 @@ std::optional<size_t> CodecSelector::toMeasure(PlaneFormat format, const ClassSt
     // no reference for the first piece
     if (s.codecs[best].reports == 0 || s.pieces % kMeasureEvery != 0) return std::nullopt;
     std::optional<size_t> found;
-    double most = 0;
+    double maximum = 0;
     for (size_t i = 0; i < s.codecs.size(); ++i) {
         const double worth = i == best || isHopeless(format, s, i, best) ? 0 : worthMeasuring(format, s, i, best);
-        if (worth <= most) continue;
+        if (worth <= maximum) continue;
         found = i;
-        most = worth;
+        maximum = worth;
     }
     if (!found) return found;
     const Estimate& e = s.codecs[*found];

@@ -19,7 +19,7 @@ uint32_t wordAt(const std::byte* at) {
 }
 
 // Returns true if the residual against the word above is small, as in the bit-plane codecs.
-bool isNear(bitplane::Arithmetic a, uint32_t word, uint32_t above) {
+bool isClose(bitplane::Arithmetic a, uint32_t word, uint32_t above) {
     const uint32_t residual =
         bitplane::residualOf(a, bitplane::subtract(a, bitplane::turned(a, word), bitplane::turned(a, above)));
     if (a == bitplane::Arithmetic::Bytes) return (residual & 0xf0f0f0f0u) == 0;
@@ -45,7 +45,7 @@ TileClass classify(const PlaneView& plane) {
             const uint32_t word = wordAt(plane.row(y) + at), above = wordAt(plane.row(y - 1) + at);
             if (word == above) continue;
             ++differ;
-            near += isNear(arithmetic, word, above);
+            near += isClose(arithmetic, word, above);
             repeated += word == wordAt(plane.row(y) + at - pixelBytes);
         }
     if (differ == 0) return {plane.format, Activity::Empty, Change::Smooth};

@@ -38,7 +38,7 @@ void leaveContext(ThreadState& t) {
     if (!old) return;
     Guard guard(old->group->lock);
     group_order::leave(t, Session::current());
-    if (old->destroyed) known::hold(*old, nullptr, nullptr);
+    if (old->destroyed) known::retain(*old, nullptr, nullptr);
 }
 
 void announce(ThreadState& t, Context& c) {
@@ -60,7 +60,7 @@ void announce(ThreadState& t, Context& c) {
 
 // EGL's configurations do not report how many buffers a drawable has, and drivers differ. A bound framebuffer object
 // would hide the drawable's own buffers.
-void learnBuffers(const Context& c, Window& w) {
+void readBufferFormats(const Context& c, Window& w) {
     if (w.announced || c.api != wire::Api::Desktop) return;
     GLint framebuffer = 0;
     GLboolean two = w.config.doubleBuffer;
@@ -71,7 +71,7 @@ void learnBuffers(const Context& c, Window& w) {
 
 // Mesa stores the read buffer per drawable. Other drivers and the nodes store it per context. The nodes therefore
 // receive it when the context reads from another drawable.
-void tellReadBuffer(ThreadState& t, const Context& c, const Window& read, uint32_t before) {
+void sendReadBuffer(ThreadState& t, const Context& c, const Window& read, uint32_t before) {
     if (!read.config.doubleBuffer || c.api != wire::Api::Desktop || c.compilingList) return;
     GLint framebuffer = 0, buffer = 0;
     if (gReal.glBindFramebuffer)
@@ -110,7 +110,7 @@ bool feedbackCounts(const Context& c) {
 bool swapsNeedContext = false;
 
 // Queries the actual version and profile from the driver. Requires that the context is current.
-void learnVersion(Context& c) {
+void readVersion(Context& c) {
     const auto* text = reinterpret_cast<const char*>(gReal.glGetString(GL_VERSION));
     if (!text) return;
     c.isMesa = std::strstr(text, "Mesa");
@@ -177,7 +177,7 @@ uint32_t announcedSharer(const Context& c) {
 namespace {
 
 void end(Context& c) {
-    if (!known::isCurrent(c)) known::hold(c, nullptr, nullptr);
+    if (!known::isCurrent(c)) known::retain(c, nullptr, nullptr);
     c.destroyed = true;
     c.freeDue = c.announced;
 }
@@ -257,7 +257,7 @@ bool hasOwnFront() {
     return renderer && (std::strncmp(renderer, "llvmpipe", 8) == 0 || std::strncmp(renderer, "softpipe", 8) == 0);
 }
 
-void learnFront(Window& w) {
+void readFrontBuffer(Window& w) {
     if (!w.announced && w.config.doubleBuffer && hasOwnFront()) w.config.doubleBuffer = wire::kOwnFront;
 }
 
@@ -291,7 +291,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     if (context->firstCurrent) {
         context->firstCurrent = false;
         loadOwnNeeds();
-        learnVersion(*context);
+        readVersion(*context);
     }
     context->drawsPixmap = draw && draw->isPixmap;
     if (draw) draw->inherited = false;
@@ -299,15 +299,15 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     const bool bound = entered || context->drawWindow != drawWindow || context->readWindow != readWindow;
     refreshDrawLocally(t);
     announce(t, *context);
-    known::hold(*context, draw, read);
+    known::retain(*context, draw, read);
     const bool readIsNew = read && !read->announced;
     for (Window* w : {draw, read}) {
         if (!w) continue;
-        if (w->nativeGone) lookForGone(*w);
+        if (w->nativeGone) checkForDestroyed(*w);
         introduceWindow(*w);
         if (!w->sizeKnown) updateWindowSize(t, *w);
-        if (w == draw) learnBuffers(*context, *w);
-        learnFront(*w);
+        if (w == draw) readBufferFormats(*context, *w);
+        readFrontBuffer(*w);
         announce(t, *w);
     }
     t.drawingAwaited = context->hasDefaultSamples;
@@ -316,7 +316,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
     context->drawWindow = drawWindow;
     context->readWindow = readWindow;
     records::makeCurrent(t, context->id, context->drawWindow, context->readWindow);
-    if (readsOther) tellReadBuffer(t, *context, *read, readBefore);
+    if (readsOther) sendReadBuffer(t, *context, *read, readBefore);
     freeDestroyed(t);
     refreshBoundTextures(t);
     s->publish(t, false);
@@ -328,7 +328,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
 void updateWindowSize(ThreadState& t, Window& w) {
     uint32_t width = 0, height = 0;
     w.sizeKnown = true;
-    if (!askWindowSize(w, width, height) || (width == w.config.width && height == w.config.height)) return;
+    if (!queryWindowSize(w, width, height) || (width == w.config.width && height == w.config.height)) return;
     w.config.width = width;
     w.config.height = height;
     w.pixels.known = false;
@@ -457,7 +457,7 @@ void endFrame(Window* w) {
     ThreadState& t = *tThread;
     Session* s = Session::current();
     if (w && w->inherited) inheritedUsed(w);
-    if (s && windowsAsked()) takeGoneWindows();
+    if (s && hasWindowRequests()) takeGoneWindows();
     // A single-buffered window is shown by flushes of a context that has the window current.
     const bool shows = w && !w->inherited && !w->nativeGone && hasBuffers(*w) &&
                        (w->config.doubleBuffer || (t.context && t.context->drawWindow == w->id));

@@ -48,12 +48,12 @@ struct ShareGroup {
     MappedBuffer* maps = nullptr;       // active mappings of buffers
     std::atomic<int> persistentMaps{0}; // number of persistent mappings
     Lock mapsLock;                      // guards the list; records are written under it
-    std::atomic<ThreadState*> mapsHolder{nullptr};
-    bool listsMoveRaster = false;    // a display list moves the raster position by glBitmap
-    NameBits listMovesRaster;        // this list does, or calls lists that may
-    NameBits listCompiled, listAsks; // contains conditional rendering, or calls a list that may
-    NameBits listOpens, listCloses;  // ends with an unmatched glBegin; contains an unmatched glEnd
-    bool listsChange = false;        // a list was recompiled: its callers may now contain conditional rendering
+    std::atomic<ThreadState*> mapsOwner{nullptr};
+    bool listsMoveRaster = false;           // a display list moves the raster position by glBitmap
+    NameBits listMovesRaster;               // this list does, or calls lists that may
+    NameBits listCompiled, listConditional; // contains conditional rendering, or calls a list that may
+    NameBits listOpens, listCloses;         // ends with an unmatched glBegin; contains an unmatched glEnd
+    bool listsChange = false;               // a list was recompiled: its callers may now contain conditional rendering
     static constexpr int kConditions = 64;
     GLuint listConditions[kConditions] = {}; // query conditions of conditional rendering in display lists
     int listConditionCount = 0;
@@ -61,7 +61,7 @@ struct ShareGroup {
     bool allDrawn = false;          // every node draws the whole window (copies::drawAll)
     bool nodesWriteBuffers = false; // transform feedback or shaders have written into buffers
     NameBits nodesWrite;            // this buffer was bound for such writes
-    PendingReads owedReads;
+    PendingReads pendingReads;
 };
 
 // Value of Context::openPrimitive outside of glBegin and glEnd.
@@ -99,7 +99,7 @@ struct Context {
     GLenum stashedError = 0;        // an error raised by our own queries, for the program's next glGetError
     DebugListener* debug = nullptr; // the program's debug callback and the messages that it has received
     // number of errors that the program has received; the nodes keep the same count (wire::kOpErrorReported)
-    uint32_t errorsTold = 0;
+    uint32_t errorsReported = 0;
     bool outOfMemoryDue = false; // reported by a node, not yet by glGetError
     bool keepsUnflushed = false; // KHR_context_flush_control: releasing it flushes nothing
     bool losesOnReset = false;   // the program has requested reset notification
@@ -117,7 +117,7 @@ struct Context {
     int64_t restartElement = kNoRestart;   // glArrayElement of this index restarts the primitive; queried at glBegin
     bool firstCurrent = true;
     uint32_t drawWindow = 0, readWindow = 0; // 0: none; both persist when the context is released
-    Window* held[2] = {};                    // the last bound drawables, which a driver keeps alive
+    Window* retained[2] = {};                // the last bound drawables, which a driver keeps alive
     bool hasDefaultSamples = false; // a framebuffer object has its own number (interposer/context/default_samples.hpp)
     bool drawsPixmap = false;       // its drawable is an X pixmap
     bool isMesa = false;
@@ -201,17 +201,18 @@ bool swapLocally();
 bool swapsItself(Window* w);
 
 // Sends the nodes the query results for conditional rendering in display lists (commands/queries.cpp).
-void tellListConditions(ThreadState& t, const char* by);
-inline bool listAsks(const ShareGroup& group, GLuint list) {
-    return group.listsChange || !NameBits::known(list) || !group.listCompiled.get(list) || group.listAsks.get(list);
+void sendListConditions(ThreadState& t, const char* by);
+inline bool listConditional(const ShareGroup& group, GLuint list) {
+    return group.listsChange || !NameBits::known(list) || !group.listCompiled.get(list) ||
+           group.listConditional.get(list);
 }
 inline void beforeList(ThreadState& t, GLuint list, const char* by = __builtin_FUNCTION()) {
-    if (t.context && t.context->group->listConditionCount > 0 && listAsks(*t.context->group, list)) [[unlikely]]
-        tellListConditions(t, by);
+    if (t.context && t.context->group->listConditionCount > 0 && listConditional(*t.context->group, list)) [[unlikely]]
+        sendListConditions(t, by);
 }
 inline void beforeLists(ThreadState& t, const char* by = __builtin_FUNCTION()) {
     if (t.context && t.context->group->listConditionCount > 0) [[unlikely]]
-        tellListConditions(t, by);
+        sendListConditions(t, by);
 }
 
 // Ends the local primitive for a moment, because the driver accepts few calls between glBegin and glEnd. The primitive
@@ -239,18 +240,18 @@ inline void buffersRead(ThreadState& t) {
 
 // Call before the program accesses the buffer's bytes. Completes deferred reads into the buffer first.
 inline void settleReads(ThreadState& t, GLuint buffer, const char* by = __builtin_FUNCTION()) {
-    if (t.context && t.context->group->owedReads.count.load(std::memory_order_relaxed) > 0) [[unlikely]]
+    if (t.context && t.context->group->pendingReads.count.load(std::memory_order_relaxed) > 0) [[unlikely]]
         settle(t, buffer, by);
 }
 // The same for the bound buffer. Deferred reads go into the pack buffer only.
 inline void settleBound(ThreadState& t, GLenum target, const char* by = __builtin_FUNCTION()) {
     if (target == GL_PIXEL_PACK_BUFFER && t.context &&
-        t.context->group->owedReads.count.load(std::memory_order_relaxed) > 0) [[unlikely]]
+        t.context->group->pendingReads.count.load(std::memory_order_relaxed) > 0) [[unlikely]]
         settle(t, boundPackBuffer(), by);
 }
 // Call before a use of the buffer other than reads into it and the program's own access. The nodes then need its bytes.
 inline void bufferUsed(ThreadState& t, GLuint buffer, const char* by = __builtin_FUNCTION()) {
-    if (buffer && t.context && t.context->group->owedReads.onlyReadInto(buffer)) [[unlikely]]
+    if (buffer && t.context && t.context->group->pendingReads.onlyReadInto(buffer)) [[unlikely]]
         firstUse(t, buffer, by);
 }
 inline void boundUsed(ThreadState& t, GLenum target, const char* by = __builtin_FUNCTION()) {

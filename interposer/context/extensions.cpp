@@ -56,10 +56,10 @@ bool advertised(const char* name, size_t length) {
 
 // Copies a driver's text without the names that keep() rejects, in the driver's order. Old programs read only the first
 // kilobytes, where drivers list old extensions.
-template <typename Keep> void copyKept(const char* text, char* out, Keep keep) {
+template <typename Keep> void copyFiltered(const char* text, char* out, Keep storedName) {
     for (const char* p = text; *p;) {
         const size_t length = std::strcspn(p, " ");
-        if (keep(p, length)) {
+        if (storedName(p, length)) {
             std::memcpy(out, p, length);
             out += length;
             *out++ = ' ';
@@ -75,31 +75,31 @@ void makeText(Context& c) {
     const auto* whole = reinterpret_cast<const char*>(gReal.glGetString(GL_EXTENSIONS));
     if (!whole) return;
     c.extensionText = static_cast<char*>(std::malloc(std::strlen(whole) + 2));
-    if (c.extensionText) copyKept(whole, c.extensionText, advertised);
+    if (c.extensionText) copyFiltered(whole, c.extensionText, advertised);
 }
 
 // Programs keep these pointers after Mesa has unloaded the driver that contains the text, with its last EGL display.
 // The pointers therefore refer to the registry's copies or to permanent copies.
-struct KeptName {
-    KeptName* next;
+struct StoredName {
+    StoredName* next;
     char name[1];
 };
-KeptName* keptNames = nullptr;
-Lock keptLock;
+StoredName* storedNames = nullptr;
+Lock namesLock;
 
-const char* keep(const char* name) {
+const char* storedName(const char* name) {
     const size_t length = std::strlen(name);
     if (const char* registered = registeredExtension({name, length})) return registered;
-    Guard guard(keptLock);
-    for (const KeptName* k = keptNames; k; k = k->next) {
+    Guard guard(namesLock);
+    for (const StoredName* k = storedNames; k; k = k->next) {
         if (!std::strcmp(k->name, name)) return k->name;
     }
-    auto* kept = static_cast<KeptName*>(std::malloc(sizeof(KeptName) + length));
-    if (!kept) return name;
-    std::memcpy(kept->name, name, length + 1);
-    kept->next = keptNames;
-    keptNames = kept;
-    return kept->name;
+    auto* filtered = static_cast<StoredName*>(std::malloc(sizeof(StoredName) + length));
+    if (!filtered) return name;
+    std::memcpy(filtered->name, name, length + 1);
+    filtered->next = storedNames;
+    storedNames = filtered;
+    return filtered->name;
 }
 
 // Indexed names follow the driver's indexed order, which differs from the string's.
@@ -112,20 +112,20 @@ void makeNames(Context& c) {
     c.extensionCount = 0;
     for (GLint i = 0; i < count; ++i) {
         const auto* name = reinterpret_cast<const char*>(gReal.glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-        if (name && advertised(name, std::strlen(name))) c.extensionNames[c.extensionCount++] = keep(name);
+        if (name && advertised(name, std::strlen(name))) c.extensionNames[c.extensionCount++] = storedName(name);
     }
 }
 
 // A queried window-system string and its filtered version.
 struct Filtered {
     const char* text;
-    const char* kept;
+    const char* filtered;
     Filtered* next;
 };
 Filtered* filteredTexts = nullptr;
 Lock filterLock;
 
-bool toldOf(const char* name, size_t length) {
+bool isVisible(const char* name, size_t length) {
     if (length == 0 || oneOf(kLocalWindowExtensions, name, length)) return false;
     if (!oneOf(kWindowSystemOfNodes, name, length)) return true;
     char text[64];
@@ -157,18 +157,18 @@ const char* filterWindowSystemExtensions(const char* text) {
     if (!text) return nullptr;
     Guard guard(filterLock);
     for (const Filtered* f = filteredTexts; f; f = f->next) {
-        if (!std::strcmp(f->text, text)) return f->kept;
+        if (!std::strcmp(f->text, text)) return f->filtered;
     }
     const size_t length = std::strlen(text);
     auto* made = static_cast<Filtered*>(std::malloc(sizeof(Filtered)));
     auto* copy = static_cast<char*>(std::malloc(2 * length + 3));
     if (!made || !copy) return text;
     std::memcpy(copy, text, length + 1);
-    char* kept = copy + length + 1;
-    copyKept(text, kept, toldOf);
-    *made = {copy, kept, filteredTexts};
+    char* filtered = copy + length + 1;
+    copyFiltered(text, filtered, isVisible);
+    *made = {copy, filtered, filteredTexts};
     filteredTexts = made;
-    return kept;
+    return filtered;
 }
 
 } // namespace mural

@@ -33,7 +33,7 @@ bool isCurrentAnywhere(const Context& c) {
 
 // Returns whether the program and the nodes have both released it, so its memory can be reused.
 bool mayBecomeAnother(const Context& c) {
-    return c.destroyed && !c.freeDue && !c.held[0] && !c.held[1] && !isCurrentAnywhere(c);
+    return c.destroyed && !c.freeDue && !c.retained[0] && !c.retained[1] && !isCurrentAnywhere(c);
 }
 bool mayBecomeAnother(const Window& w) { return w.drawable == 0 && !w.freeDue && w.holders <= 0 && !w.boundGroup; }
 
@@ -164,21 +164,22 @@ Context* contextOf(void* display) {
     return nullptr;
 }
 
-void hold(Context& c, Window* draw, Window* read) {
+void retain(Context& c, Window* draw, Window* read) {
     Guard guard(tableLock);
-    Window* const before[2] = {c.held[0], c.held[1]};
-    c.held[0] = draw;
-    c.held[1] = read;
+    Window* const before[2] = {c.retained[0], c.retained[1]};
+    c.retained[0] = draw;
+    c.retained[1] = read;
     for (Window* w : {draw, read})
         if (w) ++w->holders;
     for (Window* w : before) release(w);
 }
 
-Context* idleHolderOf(const Window& w) {
+Context* idleContextOf(const Window& w) {
     Guard guard(tableLock);
     for (uint32_t i = 0; i < contextCount; ++i) {
         Context* const c = contexts[i];
-        if (!c->destroyed && c->announced && c->held[0] == &w && (c->held[1] == &w || !c->held[1]) && !isCurrent(*c))
+        if (!c->destroyed && c->announced && c->retained[0] == &w && (c->retained[1] == &w || !c->retained[1]) &&
+            !isCurrent(*c))
             return c;
     }
     return nullptr;
@@ -244,7 +245,7 @@ void inherit() {
         c.announced = c.freeDue = false;
         c.group->threads = c.group->unsettledThreads = 0;
         c.group->lastWriter = nullptr;
-        c.group->mapsHolder.store(nullptr, std::memory_order_relaxed);
+        c.group->mapsOwner.store(nullptr, std::memory_order_relaxed);
     }
     for (Window* w = windows; w; w = w->next) {
         w->inherited = w->inherited || w->announced;
@@ -269,10 +270,10 @@ bool nativeEnds(uint64_t server, uint64_t native) {
     return any;
 }
 
-uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t most) {
+uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t maximum) {
     uint32_t count = 0;
     Guard guard(tableLock);
-    for (const Window* w = windows; w && count < most; w = w->next) {
+    for (const Window* w = windows; w && count < maximum; w = w->next) {
         if (w->drawable && w->native == native && w->server == server) ids[count++] = w->id;
     }
     return count;

@@ -14,10 +14,10 @@ namespace mural::known {
 // Returns another context of the group that the nodes have; null: none.
 const Context* sharerOf(const Context& c);
 // Binds the context to these drawables (null: none) and releases the previous ones.
-void hold(Context& c, Window* draw, Window* read);
+void retain(Context& c, Window* draw, Window* read);
 
 // Returns a context that is current in no thread and was last bound to this window alone; null: none.
-Context* idleHolderOf(const Window& w);
+Context* idleContextOf(const Window& w);
 // Returns whether the context is current in any thread.
 bool isCurrent(const Context& c);
 // Returns a context of the display that is not destroyed; null: none.
@@ -32,8 +32,8 @@ Lock& tables();
 void inherit();
 // Handles the destruction of an X window. Returns true if it has known drawables.
 bool nativeEnds(uint64_t server, uint64_t native);
-// Stores the ids of the drawables on an X window, up to `most`. Returns their number.
-uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t most);
+// Stores the ids of the drawables on an X window, up to `maximum`. Returns their number.
+uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t maximum);
 // Returns the plain X window of this number, for which the program has created no GLX drawable. Null: no memory.
 //
 // Mesa creates a drawable at the first binding, with the configuration of that context. It destroys the drawable when

@@ -6,9 +6,9 @@
 
 namespace mural {
 
-bool askWindowSize(const Window& w, uint32_t& width, uint32_t& height) {
-    if (askSizeDuringGrab(w, width, height)) return true;
-    return w.isEgl ? askEglSize(w, width, height) : askGlxSize(w, width, height);
+bool queryWindowSize(const Window& w, uint32_t& width, uint32_t& height) {
+    if (querySizeDuringGrab(w, width, height)) return true;
+    return w.isEgl ? queryEglSize(w, width, height) : queryGlxSize(w, width, height);
 }
 
 void beforeAwaitedReading(ThreadState& t) {

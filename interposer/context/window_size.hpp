@@ -9,7 +9,7 @@ struct ThreadState;
 struct Window;
 
 // Returns false if the drawable no longer exists.
-bool askWindowSize(const Window& w, uint32_t& width, uint32_t& height);
+bool queryWindowSize(const Window& w, uint32_t& width, uint32_t& height);
 
 // Call before pixels of the window are read, because Mesa sizes its buffers then, too.
 void beforeAwaitedReading(ThreadState& t);

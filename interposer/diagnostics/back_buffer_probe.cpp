@@ -22,7 +22,7 @@ std::atomic<uint64_t> drawingsBegun{0}, drawingsEnded{0};
 
 bool isDue(uint32_t frame) { return (frame & (frame - 1)) == 0; }
 
-bool canLook(const ThreadState& t, const Window& w) {
+bool canProbe(const ThreadState& t, const Window& w) {
     const Context* c = t.context;
     if (!c || !c->isMesa || swapLocally() || c->compilingList || c->renderMode != GL_RENDER) return false;
     return c->drawWindow == w.id && c->readWindow == w.id && w.config.doubleBuffer && !w.config.isPbuffer &&
@@ -75,13 +75,13 @@ uint64_t printOfRow(const uint32_t* pixels, uint32_t count) {
 // Samples evenly spaced bands of rows; every row of a small window. Uses a sum, because MESA_pack_invert reverses
 // bands.
 bool sample(ThreadState& t, const BackBufferRead& read, uint32_t width, uint32_t height, uint64_t& print) {
-    const uint32_t most = kSampledPixels / kBands > width ? kSampledPixels / kBands / width : 1;
-    auto* band = static_cast<uint32_t*>(scratchMemory(t, size_t{most} * width * 4));
+    const uint32_t maximum = kSampledPixels / kBands > width ? kSampledPixels / kBands / width : 1;
+    auto* band = static_cast<uint32_t*>(scratchMemory(t, size_t{maximum} * width * 4));
     if (!band) return false;
     print = 0;
     for (uint32_t i = 0; i < kBands; ++i) {
         const uint32_t y = i * height / kBands, end = (i + 1) * height / kBands;
-        const uint32_t rows = end - y < most ? end - y : most;
+        const uint32_t rows = end - y < maximum ? end - y : maximum;
         if (rows == 0) continue;
         read.pixels(0, static_cast<GLint>(y), static_cast<GLsizei>(width), static_cast<GLsizei>(rows), band);
         for (uint32_t row = 0; row < rows; ++row) print += printOfRow(band + size_t{row} * width, width);
@@ -89,19 +89,19 @@ bool sample(ThreadState& t, const BackBufferRead& read, uint32_t width, uint32_t
     return true;
 }
 
-struct Look {
+struct Sample {
     uint32_t width = 0, height = 0;
     uint64_t print = 0, drawings = 0;
 };
 
 // Returns false if the sample is not comparable.
-bool look(ThreadState& t, Window& w, Look& seen) {
-    if (!canLook(t, w)) return false;
+bool takeSample(ThreadState& t, Window& w, Sample& seen) {
+    if (!canProbe(t, w)) return false;
     seen.drawings = drawingsBegun.load();
     if (seen.drawings != drawingsEnded.load()) return false;
     // Draws of another context may still be in progress.
     if (seen.drawings > 0 && w.holders > 1) return false;
-    if (!askWindowSize(w, seen.width, seen.height) || seen.width != w.config.width || seen.height != w.config.height)
+    if (!queryWindowSize(w, seen.width, seen.height) || seen.width != w.config.width || seen.height != w.config.height)
         return false;
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::Here);
     if (!read.ready() || !plainTransfer(*t.context)) return false;
@@ -109,7 +109,7 @@ bool look(ThreadState& t, Window& w, Look& seen) {
     return sample(t, read, seen.width, seen.height, seen.print) && seen.drawings == drawingsBegun.load();
 }
 
-void keep(BackBufferProbe& pixels, const Look& seen) {
+void keep(BackBufferProbe& pixels, const Sample& seen) {
     pixels.width = seen.width;
     pixels.height = seen.height;
     pixels.print = seen.print;
@@ -117,15 +117,15 @@ void keep(BackBufferProbe& pixels, const Look& seen) {
     pixels.known = true;
 }
 
-bool lookAtEndOfFrame(ThreadState& t, Window& w) {
+bool probeAtEndOfFrame(ThreadState& t, Window& w) {
     BackBufferProbe& before = w.pixels;
     const uint32_t frame = ++before.frames;
     before.binds = 0;
     const bool comparable = before.known && before.drawings == drawingsBegun.load();
     if (!isDue(frame) && (comparable || !isDue(frame + 1))) return false;
-    Look now;
+    Sample now;
     before.known = false;
-    if (!look(t, w, now)) return false;
+    if (!takeSample(t, w, now)) return false;
     const bool changed = comparable && isDue(frame) && now.width == before.width && now.height == before.height &&
                          now.drawings == before.drawings && now.print != before.print;
     keep(before, now);
@@ -137,14 +137,14 @@ bool lookAtEndOfFrame(ThreadState& t, Window& w) {
 void backBufferBound(ThreadState& t, Window& w) {
     w.pixels.known = false;
     if (w.pixels.busy.exchange(true)) return;
-    Look now;
-    if (isDue(w.pixels.frames + 1) && ++w.pixels.binds <= kBindsPerFrame && look(t, w, now)) keep(w.pixels, now);
+    Sample now;
+    if (isDue(w.pixels.frames + 1) && ++w.pixels.binds <= kBindsPerFrame && takeSample(t, w, now)) keep(w.pixels, now);
     w.pixels.busy = false;
 }
 
 bool backBufferChanged(ThreadState& t, Window& w) {
     if (w.pixels.busy.exchange(true)) return false;
-    const bool changed = lookAtEndOfFrame(t, w);
+    const bool changed = probeAtEndOfFrame(t, w);
     w.pixels.busy = false;
     return changed;
 }

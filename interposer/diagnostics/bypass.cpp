@@ -55,7 +55,7 @@ int addLibrary(dl_phdr_info* info, size_t, void* into) {
     const char* slash = info->dlpi_name ? std::strrchr(info->dlpi_name, '/') : nullptr;
     if (!slash) return 0;
     for (const char* beginning :
-         {"libGL", "libEGL", "libOSMesa", "libvulkan", "libX11.", "libxcb.", "libmural_front"}) {
+         {"libGL", "libEGL", "libOSMesa", "libvulkan", "libX11.", "libxcb.", "libmural_preload"}) {
         if (!std::strncmp(slash + 1, beginning, std::strlen(beginning)) && !std::strstr(slash, "libGLX_mural") &&
             libraries->add(info->dlpi_name))
             libraries->any = true;
@@ -65,7 +65,7 @@ int addLibrary(dl_phdr_info* info, size_t, void* into) {
 
 // A process that was never captured reports its loaded libraries at its end. `mural run` shows the report to the user
 // if it captured no process at all.
-__attribute__((destructor)) void tellLibraries() {
+__attribute__((destructor)) void reportLibraries() {
     if (!launchSettings().notes || process::everCaptured()) return;
     static Libraries libraries;
     libraries.add("ended");
@@ -81,7 +81,7 @@ __attribute__((destructor)) void tellLibraries() {
 
 } // namespace
 
-void sayBypass(const char* format, ...) {
+void reportBypass(const char* format, ...) {
     constexpr char kPrefix[] = "say\t";
     char line[1024];
     va_list arguments;

@@ -5,6 +5,6 @@
 namespace mural {
 
 // Prints one line for the user.
-void sayBypass(const char* format, ...) __attribute__((format(printf, 1, 2)));
+void reportBypass(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 } // namespace mural

@@ -55,12 +55,13 @@ bool hasPicture(Context& c, const Window& w) {
     return several;
 }
 
-void sayInPart() {
+void reportPartialBypass() {
     char libraries[700];
     const bool any = librariesPastUs(libraries, sizeof libraries);
-    sayBypass("some GL calls of the program bypass Mural (through names of %s): its own window shows the picture from "
-              "now on. Try LD_PRELOAD=libGL.so.1, which resolves GLVND's names before those of a linked library",
-              any ? libraries : "its driver");
+    reportBypass(
+        "some GL calls of the program bypass Mural (through names of %s): its own window shows the picture from "
+        "now on. Try LD_PRELOAD=libGL.so.1, which resolves GLVND's names before those of a linked library",
+        any ? libraries : "its driver");
 }
 
 } // namespace
@@ -79,16 +80,16 @@ bool bypassesCapture(ThreadState& t, Window& w) {
     const bool changed = backBufferChanged(t, w);
     if (c.called) {
         w.drawnInPart = changed;
-        if (changed) sayInPart();
+        if (changed) reportPartialBypass();
         return changed;
     }
     if (c.drawWindow != w.id || !w.config.width) return false;
     const bool proof = changed || stateChanged(c) || (++c.emptyFrames >= kEmptyFrames && hasPicture(c, w));
     if (!proof) return false;
     const char* library = loadedOwnGl();
-    sayBypass("the GL calls of the program bypass Mural%s%s: its own window shows the picture from now on. Try "
-              "--capture-via preload",
-              library ? ", by " : "", library ? library : "");
+    reportBypass("the GL calls of the program bypass Mural%s%s: its own window shows the picture from now on. Try "
+                 "--capture-via preload",
+                 library ? ", by " : "", library ? library : "");
     return true;
 }
 

@@ -18,22 +18,22 @@ namespace mural {
 // and report the same messages. The n-th message from the nodes is new only if the local driver has reported fewer than
 // n.
 struct DebugListener {
-    struct Told {
+    struct Delivered {
         uint64_t hash;
-        uint32_t here, nodes;
+        uint32_t local, nodes;
     };
     static constexpr uint32_t kMessages = 256; // limit of remembered messages; replaces the oldest
     Lock lock;                                 // drivers call back from their own threads
     GLDEBUGPROC callback = nullptr;
     const void* user = nullptr;
-    Told told[kMessages] = {};
+    Delivered delivered[kMessages] = {};
     uint32_t next = 0;
 
-    Told& find(uint64_t hash) {
-        for (Told& t : told) {
+    Delivered& find(uint64_t hash) {
+        for (Delivered& t : delivered) {
             if (t.hash == hash) return t;
         }
-        Told& t = told[next++ % kMessages];
+        Delivered& t = delivered[next++ % kMessages];
         t = {hash, 0, 0};
         return t;
     }
@@ -42,12 +42,12 @@ struct DebugListener {
 namespace {
 
 struct Waiting {
-    wire::DriverEvent news;
+    wire::DriverEvent event;
     Waiting* next;
     char text[capture::kDriverEventTextBytes + 1];
 };
-constexpr int kMaxWaiting = 64; // limit for threads that take no news; drops the oldest
-Lock newsLock;
+constexpr int kMaxWaiting = 64; // limit for threads that take no events; drops the oldest
+Lock driverEventLock;
 Waiting* waiting = nullptr; // oldest first
 int waitingCount = 0;
 
@@ -62,8 +62,8 @@ uint64_t hashOf(GLenum source, GLenum type, GLenum severity, const char* text, s
     return hash | 1; // 0 marks an empty entry
 }
 
-void APIENTRY heardHere(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text,
-                        const void* user) {
+void APIENTRY onLocalMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* text,
+                             const void* user) {
     auto& listener = *static_cast<DebugListener*>(const_cast<void*>(user));
     GLDEBUGPROC callback = nullptr;
     const void* with = nullptr;
@@ -73,20 +73,20 @@ void APIENTRY heardHere(GLenum source, GLenum type, GLuint id, GLenum severity, 
         ++listener
               .find(hashOf(source, type, severity, text,
                            bytes < capture::kDriverEventTextBytes ? bytes : capture::kDriverEventTextBytes))
-              .here;
+              .local;
         callback = listener.callback;
         with = listener.user;
     }
     if (callback) callback(source, type, id, severity, length, text, with);
 }
 
-void tellMessage(Context& c, const wire::DriverEvent& n, const char* text) {
+void deliverMessage(Context& c, const wire::DriverEvent& n, const char* text) {
     GLDEBUGPROC callback = nullptr;
     const void* user = nullptr;
     if (c.debug) {
         Guard guard(c.debug->lock);
-        DebugListener::Told& told = c.debug->find(hashOf(n.source, n.type, n.severity, text, n.textBytes));
-        if (++told.nodes <= told.here) return;
+        DebugListener::Delivered& delivered = c.debug->find(hashOf(n.source, n.type, n.severity, text, n.textBytes));
+        if (++delivered.nodes <= delivered.local) return;
         callback = c.debug->callback;
         user = c.debug->user;
     }
@@ -100,13 +100,13 @@ void tellMessage(Context& c, const wire::DriverEvent& n, const char* text) {
 
 // GL keeps the first error until a query. The local driver executed the same call, and may have run out of memory or
 // raised an error before. An error that the program has received since, or that is still pending, stands for both.
-void tellOutOfMemory(Context& c, const wire::DriverEvent& n) {
-    if (n.type != c.errorsTold) return;
+void deliverOutOfMemory(Context& c, const wire::DriverEvent& n) {
+    if (n.type != c.errorsReported) return;
     stashError(c, driverError());
     if (!c.stashedError) c.outOfMemoryDue = true;
 }
 
-void tellLost(Context& c, const wire::DriverEvent& n) {
+void reportLost(Context& c, const wire::DriverEvent& n) {
     if (c.losesOnReset) {
         c.resetStatus = n.type;
         stashError(c, GL_CONTEXT_LOST);
@@ -118,11 +118,11 @@ void tellLost(Context& c, const wire::DriverEvent& n) {
             "incomplete from now on; restart it");
 }
 
-void tell(Context& c, const Waiting& w) {
-    switch (static_cast<wire::DriverEventKind>(w.news.kind)) {
-    case wire::DriverEventKind::DebugMessage: return tellMessage(c, w.news, w.text);
-    case wire::DriverEventKind::OutOfMemory: return tellOutOfMemory(c, w.news);
-    case wire::DriverEventKind::ContextLost: return tellLost(c, w.news);
+void deliver(Context& c, const Waiting& w) {
+    switch (static_cast<wire::DriverEventKind>(w.event.kind)) {
+    case wire::DriverEventKind::DebugMessage: return deliverMessage(c, w.event, w.text);
+    case wire::DriverEventKind::OutOfMemory: return deliverOutOfMemory(c, w.event);
+    case wire::DriverEventKind::ContextLost: return reportLost(c, w.event);
     }
 }
 
@@ -140,7 +140,7 @@ void collect(Session& s) {
         auto* w = static_cast<Waiting*>(std::malloc(sizeof(Waiting)));
         if (!w) return;
         w->next = nullptr;
-        if (!s.takeDriverEvents(w->news, w->text)) return std::free(w);
+        if (!s.takeDriverEvents(w->event, w->text)) return std::free(w);
         *end = w;
         end = &w->next;
         if (++waitingCount > kMaxWaiting) {
@@ -153,7 +153,7 @@ void collect(Session& s) {
 Waiting* takeFor(uint32_t context) {
     for (Waiting** at = &waiting; *at; at = &(*at)->next) {
         Waiting* w = *at;
-        if (w->news.context != context) continue;
+        if (w->event.context != context) continue;
         *at = w->next;
         --waitingCount;
         return w;
@@ -163,28 +163,28 @@ Waiting* takeFor(uint32_t context) {
 
 } // namespace
 
-void takeWaitingNews(ThreadState& t) {
+void deliverDriverEvents(ThreadState& t) {
     Session* s = Session::current();
     Context* c = t.context;
     if (!c) return;
     {
-        Guard guard(newsLock);
+        Guard guard(driverEventLock);
         collect(*s);
     }
     for (;;) {
         Waiting* w = nullptr;
         {
-            Guard guard(newsLock);
+            Guard guard(driverEventLock);
             w = takeFor(c->id);
         }
         if (!w) return;
-        tell(*c, *w);
+        deliver(*c, *w);
         std::free(w);
     }
 }
 
-void forgetNews() {
-    Guard guard(newsLock);
+void forgetDriverEvents() {
+    Guard guard(driverEventLock);
     waiting = nullptr; // not freed, because a thread of the parent may have been changing the list
     waitingCount = 0;
 }
@@ -200,7 +200,7 @@ void listen(Context& c, GLDEBUGPROC callback, const void* user) {
         c.debug->callback = callback;
         c.debug->user = user;
     }
-    gReal.glDebugMessageCallback(callback ? reinterpret_cast<void*>(&heardHere) : nullptr,
+    gReal.glDebugMessageCallback(callback ? reinterpret_cast<void*>(&onLocalMessage) : nullptr,
                                  callback ? c.debug : nullptr);
 }
 
@@ -208,7 +208,7 @@ void forget(DebugListener& listener) {
     Guard guard(listener.lock);
     listener.callback = nullptr;
     listener.user = nullptr;
-    for (DebugListener::Told& told : listener.told) told = {};
+    for (DebugListener::Delivered& delivered : listener.delivered) delivered = {};
 }
 
 GLDEBUGPROC listener(const Context& c) { return c.debug ? c.debug->callback : nullptr; }

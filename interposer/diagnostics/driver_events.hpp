@@ -13,16 +13,16 @@ struct Context;
 struct DebugListener;
 struct ThreadState;
 
-// Passes the news of the thread's context to the program.
-void takeWaitingNews(ThreadState& t);
+// Passes the driver events of the thread's context to the program.
+void deliverDriverEvents(ThreadState& t);
 inline void takeDriverEvents(ThreadState& t) {
     const Session* s = Session::current();
     if (s && s->hasDriverEvents()) [[unlikely]]
-        takeWaitingNews(t);
+        deliverDriverEvents(t);
 }
 
 // For a forked child: drops pending events, which concern the parent's contexts.
-void forgetNews();
+void forgetDriverEvents();
 
 // The callback of glDebugMessageCallback; null: messages go to the driver's log.
 void listen(Context& c, GLDEBUGPROC callback, const void* user);

@@ -19,8 +19,8 @@ void say(const char* format, ...) __attribute__((format(printf, 1, 2)));
 // Writes only once per call site.
 #define MURAL_SAY_ONCE(...)                                                                                            \
     do {                                                                                                               \
-        static bool said = false;                                                                                      \
-        if (!__atomic_exchange_n(&said, true, __ATOMIC_RELAXED)) ::mural::say(__VA_ARGS__);                            \
+        static bool once = false;                                                                                      \
+        if (!__atomic_exchange_n(&once, true, __ATOMIC_RELAXED)) ::mural::say(__VA_ARGS__);                            \
     } while (0)
 
 } // namespace mural

@@ -32,21 +32,21 @@ void dump(const Window& w, uint32_t frame, const char* which, const uint8_t* rgb
     fclose(f);
 }
 
-// Precondition: the window is current; `mine` has room for its pixels.
-void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels, const ColourReads& reads) {
+// Precondition: the window is current; `ownPixels` has room for its pixels.
+void compare(ThreadState& t, Window& w, uint8_t* ownPixels, size_t pixels, const ColourReads& reads) {
     using capture::Uncompared;
     const BackBufferRead read(*t.context, w, BackBufferRead::Where::NodesToo);
     if (!read.ready()) return countUncompared(Uncompared::NotReadable);
     const auto width = static_cast<GLsizei>(w.config.width), height = static_cast<GLsizei>(w.config.height);
-    read.pixels(0, 0, 1, 1, mine, reads.type); // Mesa adopts a new buffer size only after it has clipped a read
-    read.pixels(0, 0, width, height, mine, reads.type);
+    read.pixels(0, 0, 1, 1, ownPixels, reads.type); // Mesa adopts a new buffer size only after it has clipped a read
+    read.pixels(0, 0, width, height, ownPixels, reads.type);
     if (driverError() != GL_NO_ERROR) return countUncompared(Uncompared::NotReadable);
     const GLenum errorBefore = t.context->stashedError;
     // points to memory of this thread
-    auto* theirs = const_cast<void*>(requestPixels(t, 0, 0, width, height, GL_RGBA, reads.type, 0, "--verify"));
+    auto* nodePixels = const_cast<void*>(requestPixels(t, 0, 0, width, height, GL_RGBA, reads.type, 0, "--verify"));
     t.context->stashedError = errorBefore; // a lost answer is not an error of the program
-    if (!theirs) return countUncompared(Uncompared::NoAnswer);
-    const ColourDifference difference = compareColours(mine, theirs, pixels, reads.type);
+    if (!nodePixels) return countUncompared(Uncompared::NoAnswer);
+    const ColourDifference difference = compareColours(ownPixels, nodePixels, pixels, reads.type);
     auto* h = Session::current()->header();
     const uint64_t frame = h->verifiedFrames.fetch_add(1) + 1;
     h->verifiedPixels.fetch_add(pixels);
@@ -54,16 +54,16 @@ void compare(ThreadState& t, Window& w, uint8_t* mine, size_t pixels, const Colo
     h->squaredDifference.fetch_add(difference.squared);
     if (difference.largest > h->largestDifference.load()) h->largestDifference.store(difference.largest);
     if (difference.differingPixels == 0) return;
-    reduceToBytes(mine, pixels, reads.type);
-    reduceToBytes(theirs, pixels, reads.type);
-    dump(w, static_cast<uint32_t>(frame), "native", mine);
-    dump(w, static_cast<uint32_t>(frame), "wall", static_cast<const uint8_t*>(theirs));
+    reduceToBytes(ownPixels, pixels, reads.type);
+    reduceToBytes(nodePixels, pixels, reads.type);
+    dump(w, static_cast<uint32_t>(frame), "native", ownPixels);
+    dump(w, static_cast<uint32_t>(frame), "wall", static_cast<const uint8_t*>(nodePixels));
 }
 
 // Returns whether a read would resize the driver's buffers. The new buffers are empty, and the swap would show them.
 bool wouldChangeSize(const Window& w) {
     uint32_t width = 0, height = 0;
-    if (!askWindowSize(w, width, height)) return true;
+    if (!queryWindowSize(w, width, height)) return true;
     return !w.sizeKnown && (width != w.config.width || height != w.config.height);
 }
 
@@ -83,14 +83,14 @@ void verifyFrame(ThreadState& t, Window& w) {
         MURAL_SAY_ONCE(
             "a window has %d bits per channel; --verify compares 8 of them, because OpenGL ES before 3 reads no more",
             w.config.red);
-    auto* mine = static_cast<uint8_t*>(std::calloc(pixels, reads.pixelBytes));
-    if (!mine) return countUncompared(Uncompared::NoMemory);
+    auto* ownPixels = static_cast<uint8_t*>(std::calloc(pixels, reads.pixelBytes));
+    if (!ownPixels) return countUncompared(Uncompared::NoMemory);
     const WindowBinding binding(t, w);
     if (binding.ready())
-        compare(t, w, mine, pixels, reads);
+        compare(t, w, ownPixels, pixels, reads);
     else
         countUncompared(Uncompared::NotBindable);
-    std::free(mine);
+    std::free(ownPixels);
 }
 
 } // namespace mural

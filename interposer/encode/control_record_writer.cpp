@@ -96,7 +96,7 @@ void requestProgram(ThreadState& t, uint32_t request, GLuint program) {
     fixed(t, wire::kOpRequestProgram, request, program);
 }
 void drawAll(ThreadState& t) { fixed(t, wire::kOpDrawAll); }
-bool errorTold(ThreadState& t) { return fixed(t, wire::kOpErrorReported); }
+bool errorReported(ThreadState& t) { return fixed(t, wire::kOpErrorReported); }
 void queryKnown(ThreadState& t, GLuint query, bool passed) { fixed(t, wire::kOpQueryKnown, query, uint32_t{passed}); }
 void requestBuffer(ThreadState& t, uint32_t request, GLuint buffer, uint64_t offset, uint64_t sizeBytes) {
     fixed(t, wire::kOpRequestBuffer, request, buffer, offset, sizeBytes);

@@ -29,7 +29,7 @@ void requestQuery(ThreadState& t, uint32_t request, GLuint query, GLenum pname);
 void requestFinish(ThreadState& t, uint32_t request);
 void beginConditional(ThreadState& t, bool draws);
 void drawAll(ThreadState& t);
-bool errorTold(ThreadState& t); // false: no session
+bool errorReported(ThreadState& t); // false: no session
 void requestProgram(ThreadState& t, uint32_t request, GLuint program);
 void programRecipe(ThreadState& t, GLuint program, const DataArg& recipe);
 void queryKnown(ThreadState& t, GLuint query, bool passed);

@@ -81,11 +81,11 @@ Session* Session::get() {
     if (process::page.connectTried) return process::page.session;
     process::page.connectTried = true;
     if (!launchSettings().session) return nullptr;
-    void* const place = std::calloc(1, sizeof(Session)); // never freed, because it outlives the program's destructors
-    if (!place) return nullptr;
-    auto* const session = new (place) Session;
+    void* const memory = std::calloc(1, sizeof(Session)); // never freed, because it outlives the program's destructors
+    if (!memory) return nullptr;
+    auto* const session = new (memory) Session;
     if (!session->connect()) {
-        std::free(place);
+        std::free(memory);
         return nullptr;
     }
     expectForks();
@@ -123,12 +123,12 @@ void Session::die(const char* why) {
     if (why) say("%s; the program continues alone", why);
 }
 
-// Returns whether the head lives. The kernel marks headLife if the head ends without setting headGone
-// (nodes/head/capture/life_mark.hpp).
+// Returns whether the head lives. The kernel marks headLiveness if the head ends without setting headGone
+// (nodes/head/capture/liveness_mark.hpp).
 bool Session::headAlive() {
     if (!alive()) return false;
     const bool gone = header_->headGone.load(std::memory_order_acquire) ||
-                      header_->headLife.load(std::memory_order_acquire) & FUTEX_OWNER_DIED;
+                      header_->headLiveness.load(std::memory_order_acquire) & FUTEX_OWNER_DIED;
     if (gone) die(nullptr); // the head or `mural run` has reported the reason
     return !gone;
 }
@@ -270,7 +270,7 @@ void Session::waitShown() {
 uint32_t Session::beginRequest(const char* by) {
     requestLock.lock();
     if (alive()) countTrip(*header_, by);
-    lastRequest_ = (lastRequest_ + 1) & ~(capture::kAskedAhead | capture::kOwed);
+    lastRequest_ = (lastRequest_ + 1) & ~(capture::kPrefetched | capture::kDeferred);
     return lastRequest_;
 }
 
@@ -330,15 +330,16 @@ bool Session::answerBytes(void* into, uint64_t sizeBytes) {
     return true;
 }
 
-bool Session::takeDriverEvents(wire::DriverEvent& news, char* text) {
-    if (header_->newsTail.load(std::memory_order_acquire) == newsTaken_) return false;
-    const capture::DriverEventSlot& slot = capture::news(header_)[newsTaken_ % capture::kDriverEventSlots];
-    std::memcpy(&news, slot.news, sizeof news);
-    if (news.textBytes > capture::kDriverEventTextBytes) news.textBytes = capture::kDriverEventTextBytes;
-    std::memcpy(text, slot.text, news.textBytes);
-    text[news.textBytes] = 0;
-    __atomic_store_n(&newsTaken_, newsTaken_ + 1, __ATOMIC_RELAXED);
-    header_->newsHead.store(newsTaken_, std::memory_order_release);
+bool Session::takeDriverEvents(wire::DriverEvent& event, char* text) {
+    if (header_->driverEventTail.load(std::memory_order_acquire) == driverEventsTaken_) return false;
+    const capture::DriverEventSlot& slot =
+        capture::driverEvents(header_)[driverEventsTaken_ % capture::kDriverEventSlots];
+    std::memcpy(&event, slot.event, sizeof event);
+    if (event.textBytes > capture::kDriverEventTextBytes) event.textBytes = capture::kDriverEventTextBytes;
+    std::memcpy(text, slot.text, event.textBytes);
+    text[event.textBytes] = 0;
+    __atomic_store_n(&driverEventsTaken_, driverEventsTaken_ + 1, __ATOMIC_RELAXED);
+    header_->driverEventHead.store(driverEventsTaken_, std::memory_order_release);
     return true;
 }
 
@@ -346,7 +347,7 @@ bool Session::answerHeader(uint32_t request, wire::ReplyHeader& header) {
     while (alive()) {
         if (!answerBytes(&header, sizeof header)) return false;
         if (header.kind != capture::kPictureReply && header.requestId == request) return true;
-        if (!takeOwed(header)) return false;
+        if (!takeDeferred(header)) return false;
     }
     return false;
 }
@@ -373,7 +374,7 @@ void Session::takePictures(uint32_t frame) {
         const uint32_t tail = header_->replyTail.load(std::memory_order_acquire);
         if (replyWaits()) {
             wire::ReplyHeader header{};
-            if (!answerBytes(&header, sizeof header) || !takeOwed(header)) return;
+            if (!answerBytes(&header, sizeof header) || !takeDeferred(header)) return;
             continue;
         }
         if (shown || waiting.forNs() > kStuckNs) return;
@@ -383,11 +384,11 @@ void Session::takePictures(uint32_t frame) {
 }
 
 // Takes a reply that no thread waits for: a deferred one, a late one for an abandoned request, or a picture.
-bool Session::takeOwed(const wire::ReplyHeader& header) {
+bool Session::takeDeferred(const wire::ReplyHeader& header) {
     if (header.kind == capture::kPictureReply) return takePicture(header);
-    void* const into = owed::placeOf(header.requestId, header.sizeBytes, header.failed != 0);
+    void* const into = deferred::placeOf(header.requestId, header.sizeBytes, header.failed != 0);
     const bool read = answerBytes(into, header.sizeBytes);
-    owed::arrived(header.requestId, read && into);
+    deferred::arrived(header.requestId, read && into);
     return read;
 }
 
@@ -396,20 +397,20 @@ bool Session::replyWaits() const {
            sizeof(wire::ReplyHeader);
 }
 
-bool Session::waitOwed(uint32_t request, const char* by) {
-    if (!owed::isAwaited(request)) return true;
+bool Session::waitDeferred(uint32_t request, const char* by) {
+    if (!deferred::isAwaited(request)) return true;
     if (!alive()) return false;
     Guard guard(requestLock);
     wakeReader(true);
     bool counted = false;
-    while (owed::isAwaited(request)) {
+    while (deferred::isAwaited(request)) {
         if (!alive()) return false;
         if (!counted && !replyWaits()) {
             countTrip(*header_, by);
             counted = true;
         }
         wire::ReplyHeader header{};
-        if (!answerBytes(&header, sizeof header) || !takeOwed(header)) return false;
+        if (!answerBytes(&header, sizeof header) || !takeDeferred(header)) return false;
     }
     return true;
 }
@@ -417,7 +418,7 @@ bool Session::waitOwed(uint32_t request, const char* by) {
 void Session::takeArrived() {
     if (!alive() || !requestLock.tryLock()) return; // the holder of the lock reads them
     wire::ReplyHeader header{};
-    while (alive() && replyWaits() && answerBytes(&header, sizeof header) && takeOwed(header)) {}
+    while (alive() && replyWaits() && answerBytes(&header, sizeof header) && takeDeferred(header)) {}
     requestLock.unlock();
 }
 

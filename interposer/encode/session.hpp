@@ -52,35 +52,36 @@ public:
     bool answerBytes(void* into, uint64_t sizeBytes);
     void endRequest();
     // Returns the id of a request with a deferred reply (interposer/readback/deferred_replies.hpp).
-    uint32_t nextOwed() {
-        return capture::kOwed | (__atomic_add_fetch(&lastOwed_, 1, __ATOMIC_RELAXED) & (capture::kOwed - 1));
+    uint32_t nextDeferred() {
+        return capture::kDeferred |
+               (__atomic_add_fetch(&lastDeferred_, 1, __ATOMIC_RELAXED) & (capture::kDeferred - 1));
     }
     // Blocks until the reply has arrived, or the nodes had none. Counts a round trip if the head is not sending it
     // already. Returns false if the head has ended.
-    bool waitOwed(uint32_t request, const char* by);
+    bool waitDeferred(uint32_t request, const char* by);
     // Reads deferred replies that have arrived, so that the head need not store them.
     void takeArrived();
     // Returns the id of a prefetch request, which causes no round trip. aheadAnswer() blocks until its answer has
     // arrived. It returns false if the head has ended or a later answer has replaced this one.
-    uint32_t nextAhead() { return capture::kAskedAhead | __atomic_add_fetch(&lastAhead_, 1, __ATOMIC_RELAXED); }
+    uint32_t nextAhead() { return capture::kPrefetched | __atomic_add_fetch(&lastAhead_, 1, __ATOMIC_RELAXED); }
     bool aheadAnswer(uint32_t request, uint64_t& value);
 
     // Call after each frame of the thread. Adds up the thread's CPU time.
     void countFrameCpu(ThreadState& t);
     uint32_t nextFrame() { return __atomic_add_fetch(&framesSubmitted_, 1, __ATOMIC_RELAXED); }
-    // Returns whether the nodes have sent news that no thread has taken yet.
+    // Returns whether the nodes have sent driver events that no thread has taken yet.
     [[nodiscard]] bool hasDriverEvents() const {
-        return header_ &&
-               header_->newsTail.load(std::memory_order_relaxed) != __atomic_load_n(&newsTaken_, __ATOMIC_RELAXED);
+        return header_ && header_->driverEventTail.load(std::memory_order_relaxed) !=
+                              __atomic_load_n(&driverEventsTaken_, __ATOMIC_RELAXED);
     }
-    // Takes the oldest news; false: none. `text` needs room for capture::kDriverEventTextBytes and a terminator. One
-    // thread at a time.
-    bool takeDriverEvents(wire::DriverEvent& news, char* text);
+    // Takes the oldest driver event; false: none. `text` needs room for capture::kDriverEventTextBytes and a
+    // terminator. One thread at a time.
+    bool takeDriverEvents(wire::DriverEvent& event, char* text);
     void die(const char* why);
 
 private:
     bool connect();
-    bool takeOwed(const wire::ReplyHeader& header);
+    bool takeDeferred(const wire::ReplyHeader& header);
     bool takePicture(const wire::ReplyHeader& header);
     [[nodiscard]] bool replyWaits() const;
     bool headAlive();
@@ -98,8 +99,8 @@ private:
     int64_t submittedNs_[capture::kAheadFrames] = {}; // submission time of frame n at index n modulo kAheadFrames
     uint32_t lastRequest_ = 0;
     uint32_t lastAhead_ = 0;
-    uint32_t lastOwed_ = 0;
-    uint32_t newsTaken_ = 0;
+    uint32_t lastDeferred_ = 0;
+    uint32_t driverEventsTaken_ = 0;
     uint32_t picturesTaken_ = 0; // latest frame whose picture was taken; guarded by the request lock
 };
 

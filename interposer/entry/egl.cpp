@@ -12,7 +12,7 @@
 #include "interposer/entry/egl_displays.hpp"
 #include "interposer/entry/egl_images.hpp"
 #include "interposer/entry/egl_syncs.hpp"
-#include "interposer/entry/front.hpp"
+#include "interposer/entry/wrapped_library.hpp"
 #include "interposer/entry/glvnd_environment.hpp"
 #include "interposer/entry/own_functions.hpp"
 #include "interposer/loader/libc_loader.hpp"
@@ -32,22 +32,22 @@ void* (*vendorGetProcAddress)(const char*) = nullptr;
 EGLDisplay (*vendorGetPlatformDisplay)(EGLenum, void*, const EGLAttrib*) = nullptr;
 
 Entry vendorEntry(const char* name) { return reinterpret_cast<Entry>(vendorGetProcAddress(name)); }
-template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFront().behind(name)); }
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglLibrary().behind(name)); }
 
 wire::WindowConfig configOf(EGLDisplay dpy, EGLConfig config) {
     static auto* get = real<EGLBoolean(EGLDisplay, EGLConfig, EGLint, EGLint*)>("eglGetConfigAttrib");
-    const auto ask = [&](EGLint name) {
+    const auto attribute = [&](EGLint name) {
         EGLint value = 0;
         return config && get && get(dpy, config, name, &value) ? value : 0;
     };
     wire::WindowConfig c{};
-    c.red = clampByte(config ? ask(EGL_RED_SIZE) : 8);
-    c.green = clampByte(config ? ask(EGL_GREEN_SIZE) : 8);
-    c.blue = clampByte(config ? ask(EGL_BLUE_SIZE) : 8);
-    c.alpha = clampByte(ask(EGL_ALPHA_SIZE));
-    c.depth = clampByte(config ? ask(EGL_DEPTH_SIZE) : 24);
-    c.stencil = clampByte(config ? ask(EGL_STENCIL_SIZE) : 8);
-    c.samples = clampByte(ask(EGL_SAMPLES));
+    c.red = clampByte(config ? attribute(EGL_RED_SIZE) : 8);
+    c.green = clampByte(config ? attribute(EGL_GREEN_SIZE) : 8);
+    c.blue = clampByte(config ? attribute(EGL_BLUE_SIZE) : 8);
+    c.alpha = clampByte(attribute(EGL_ALPHA_SIZE));
+    c.depth = clampByte(config ? attribute(EGL_DEPTH_SIZE) : 24);
+    c.stencil = clampByte(config ? attribute(EGL_STENCIL_SIZE) : 8);
+    c.samples = clampByte(attribute(EGL_SAMPLES));
     c.doubleBuffer = 1;
     return c;
 }
@@ -269,7 +269,7 @@ EGLDisplay getPlatformDisplay(EGLenum platform, void* native, const EGLAttrib* a
     return made;
 }
 
-void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglFront().entryFor(name)); }
+void* getProcAddress(const char* name) { return reinterpret_cast<void*>(eglLibrary().entryFor(name)); }
 
 const OwnEntry kOwn[] = {
     ownEntry("eglCreateContext", createContext),
@@ -305,7 +305,7 @@ const OwnEntry kOwn[] = {
     ownEntry("eglQueryString", queryString),
     ownEntry("eglGetProcAddress", getProcAddress),
 };
-constinit Front front("egl", kOwn);
+constinit WrappedLibrary library("egl", kOwn);
 
 // Opens the library that a vendor file (JSON) names; null if there is none.
 void* openNamedBy(const char* vendorFile) {
@@ -344,7 +344,7 @@ void* openVendor() {
 
 } // namespace
 
-Front& eglFront() { return front; }
+WrappedLibrary& eglLibrary() { return library; }
 
 bool makeEglCurrent(const Window& draw, const Window& read, const Context& context) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLSurface, EGLSurface, EGLContext)>("eglMakeCurrent");
@@ -352,10 +352,10 @@ bool makeEglCurrent(const Window& draw, const Window& read, const Context& conte
                         reinterpret_cast<EGLSurface>(read.drawable), context.native);
 }
 
-bool askEglSize(const Window& w, uint32_t& width, uint32_t& height) {
+bool queryEglSize(const Window& w, uint32_t& width, uint32_t& height) {
     static auto* query = real<EGLBoolean(EGLDisplay, EGLSurface, EGLint, EGLint*)>("eglQuerySurface");
     if (w.nativeGone) return false;
-    if (w.native && askXSize(w.display, w.native, width, height)) return width > 0 && height > 0;
+    if (w.native && queryXSize(w.display, w.native, width, height)) return width > 0 && height > 0;
     EGLint a = 0, b = 0;
     auto* surface = reinterpret_cast<EGLSurface>(w.drawable);
     if (!query || !query(w.display, surface, EGL_WIDTH, &a) || !query(w.display, surface, EGL_HEIGHT, &b)) return false;
@@ -375,12 +375,12 @@ extern "C" __attribute__((visibility("default"))) EGLBoolean __egl_Main(uint32_t
     auto* main = handle ? reinterpret_cast<Main*>(mural::loader::symbolIn(handle, "__egl_Main")) : nullptr;
     if (!main || !main(version, exports, vendor, imports)) return EGL_FALSE;
     mural::loader::keepLoaded(exports); // as in glx.cpp
-    if (!mural::claimProgram(mural::Way::Vendor)) return EGL_TRUE;
+    if (!mural::claimProgram(mural::EntryKind::Vendor)) return EGL_TRUE;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;
     mural::vendorGetPlatformDisplay = imports->getPlatformDisplay;
     imports->getPlatformDisplay = mural::getPlatformDisplay;
     mural::forbidPatching(*imports);
-    mural::front.attach(mural::vendorEntry);
+    mural::library.attach(mural::vendorEntry);
     return EGL_TRUE;
 }

@@ -14,8 +14,8 @@ struct Known {
     EGLDisplay display = nullptr;
     xcb_connection_t* connection = nullptr; // null: a platform other than X
 };
-constexpr int kMost = 16; // further displays are queried through EGL
-Known known[kMost];
+constexpr int kMax = 16; // further displays are queried through EGL
+Known known[kMax];
 int count = 0;
 Lock lock;
 
@@ -61,7 +61,7 @@ void rememberDisplay(EGLDisplay made, EGLenum platform, void* native) {
         known[i].connection = connection;
         return;
     }
-    if (count < kMost) known[count++] = {made, connection};
+    if (count < kMax) known[count++] = {made, connection};
 }
 
 void forgetConnection(xcb_connection_t* connection) {
@@ -70,17 +70,18 @@ void forgetConnection(xcb_connection_t* connection) {
         if (connection && known[i].connection == connection) known[i] = known[--count];
 }
 
-bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height) {
-    static Loaded<xcb_get_geometry_cookie_t(xcb_connection_t*, xcb_drawable_t)> asking{"libxcb.so.1",
-                                                                                       "xcb_get_geometry"};
+bool queryXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height) {
+    static Loaded<xcb_get_geometry_cookie_t(xcb_connection_t*, xcb_drawable_t)> request{"libxcb.so.1",
+                                                                                        "xcb_get_geometry"};
     static Loaded<xcb_get_geometry_reply_t*(xcb_connection_t*, xcb_get_geometry_cookie_t, xcb_generic_error_t**)>
         answering{"libxcb.so.1", "xcb_get_geometry_reply"};
-    auto* ask = asking.get();
+    auto* getGeometry = request.get();
     auto* answer = answering.get();
-    xcb_connection_t* connection = ask && answer ? xConnectionOf(display) : nullptr;
+    xcb_connection_t* connection = getGeometry && answer ? xConnectionOf(display) : nullptr;
     if (!connection) return false;
     xcb_generic_error_t* error = nullptr;
-    xcb_get_geometry_reply_t* reply = answer(connection, ask(connection, static_cast<xcb_drawable_t>(window)), &error);
+    xcb_get_geometry_reply_t* reply =
+        answer(connection, getGeometry(connection, static_cast<xcb_drawable_t>(window)), &error);
     std::free(error);
     if (!reply) return false;
     width = reply->width;

@@ -23,6 +23,6 @@ void forgetConnection(xcb_connection_t* connection);
 xcb_connection_t* xConnectionOf(EGLDisplay display);
 
 // Returns false if the connection is unknown, or the server has no such window.
-bool askXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height);
+bool queryXSize(EGLDisplay display, uint64_t window, uint32_t& width, uint32_t& height);
 
 } // namespace mural

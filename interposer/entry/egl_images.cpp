@@ -1,7 +1,7 @@
 #include "interposer/entry/egl_images.hpp"
 
 #include "interposer/context/context.hpp"
-#include "interposer/entry/front.hpp"
+#include "interposer/entry/wrapped_library.hpp"
 #include "interposer/diagnostics/log.hpp"
 #include "interposer/diagnostics/native_count.hpp"
 #include "interposer/encode/control_record_writer.hpp"
@@ -11,7 +11,7 @@ namespace mural {
 
 namespace {
 
-template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFront().behind(name)); }
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglLibrary().behind(name)); }
 
 bool ofGlObject(EGLenum target) {
     return target == EGL_GL_RENDERBUFFER ||
@@ -27,7 +27,7 @@ template <class Attribute> int32_t valueOf(const Attribute* attributes, EGLint n
 
 // Writes records with the thread's own state, which works without a current context, too. Publishes them at once,
 // because another thread may use the image next.
-template <class Write> void tellNodes(Write&& write) {
+template <class Write> void sendToNodes(Write&& write) {
     Session* s = Session::current();
     if (nativeRun() || !s || !s->alive()) return;
     ThreadState& t = ownThreadState();
@@ -36,7 +36,7 @@ template <class Write> void tellNodes(Write&& write) {
 }
 
 template <class Attribute>
-void tellCreated(EGLImage image, EGLContext native, EGLenum target, EGLClientBuffer buffer,
+void sendCreated(EGLImage image, EGLContext native, EGLenum target, EGLClientBuffer buffer,
                  const Attribute* attributes) {
     if (!image || nativeRun()) return;
     const Context* context = native ? findContext(native) : nullptr;
@@ -52,11 +52,11 @@ void tellCreated(EGLImage image, EGLContext native, EGLenum target, EGLClientBuf
     const records::ImageInfo info{
         reinterpret_cast<uint64_t>(image),          sharer, target, name, valueOf(attributes, EGL_GL_TEXTURE_LEVEL),
         valueOf(attributes, EGL_GL_TEXTURE_ZOFFSET)};
-    tellNodes([&](ThreadState& t) { records::createImage(t, info); });
+    sendToNodes([&](ThreadState& t) { records::createImage(t, info); });
 }
 
-void tellDestroyed(EGLImage image) {
-    tellNodes([&](ThreadState& t) { records::destroyImage(t, reinterpret_cast<uint64_t>(image)); });
+void sendDestroyed(EGLImage image) {
+    sendToNodes([&](ThreadState& t) { records::destroyImage(t, reinterpret_cast<uint64_t>(image)); });
 }
 
 } // namespace
@@ -66,7 +66,7 @@ EGLImage createImage(EGLDisplay dpy, EGLContext context, EGLenum target, EGLClie
     static auto* call =
         real<EGLImage(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer, const EGLAttrib*)>("eglCreateImage");
     const EGLImage made = call(dpy, context, target, buffer, attributes);
-    tellCreated(made, context, target, buffer, attributes);
+    sendCreated(made, context, target, buffer, attributes);
     return made;
 }
 
@@ -75,19 +75,19 @@ EGLImageKHR createImageKhr(EGLDisplay dpy, EGLContext context, EGLenum target, E
     static auto* call =
         real<EGLImageKHR(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer, const EGLint*)>("eglCreateImageKHR");
     const EGLImageKHR made = call(dpy, context, target, buffer, attributes);
-    tellCreated(made, context, target, buffer, attributes);
+    sendCreated(made, context, target, buffer, attributes);
     return made;
 }
 
 // Sends the destruction first, because the driver may reuse the image's number as soon as it is freed.
 EGLBoolean destroyImage(EGLDisplay dpy, EGLImage image) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLImage)>("eglDestroyImage");
-    tellDestroyed(image);
+    sendDestroyed(image);
     return call(dpy, image);
 }
 EGLBoolean destroyImageKhr(EGLDisplay dpy, EGLImageKHR image) {
     static auto* call = real<EGLBoolean(EGLDisplay, EGLImageKHR)>("eglDestroyImageKHR");
-    tellDestroyed(image);
+    sendDestroyed(image);
     return call(dpy, image);
 }
 

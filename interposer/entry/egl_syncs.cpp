@@ -1,14 +1,14 @@
 #include "interposer/entry/egl_syncs.hpp"
 
 #include "encoders.hpp"
-#include "interposer/entry/front.hpp"
+#include "interposer/entry/wrapped_library.hpp"
 #include "interposer/encode/session.hpp"
 #include "interposer/context/thread_state.hpp"
 
 namespace mural {
 
 namespace {
-template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglFront().behind(name)); }
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(eglLibrary().behind(name)); }
 
 void publishOwn() {
     if (Session* s = Session::current(); s && tThread->context) s->publish(*tThread, false);

@@ -8,7 +8,7 @@
 
 #include "interposer/context/context.hpp"
 #include "interposer/context/extensions.hpp"
-#include "interposer/entry/front.hpp"
+#include "interposer/entry/wrapped_library.hpp"
 #include "interposer/entry/glx_fonts.hpp"
 #include "interposer/entry/glvnd_environment.hpp"
 #include "interposer/entry/glx_types.hpp"
@@ -37,22 +37,22 @@ Entry vendorEntry(const char* name) {
 }
 
 // Returns the real library's own GLX function.
-template <class F> F* real(const char* name) { return reinterpret_cast<F*>(glxFront().behind(name)); }
+template <class F> F* real(const char* name) { return reinterpret_cast<F*>(glxLibrary().behind(name)); }
 
-// Returns the bits of a visual or framebuffer configuration. `ask` queries one attribute.
-template <class Ask> wire::WindowConfig configFrom(Ask ask) {
+// Returns the bits of a visual or framebuffer configuration. `attribute` queries one attribute.
+template <class Query> wire::WindowConfig configFrom(Query attribute) {
     wire::WindowConfig c{};
-    c.red = clampByte(ask(glx::kRed));
-    c.green = clampByte(ask(glx::kGreen));
-    c.blue = clampByte(ask(glx::kBlue));
-    c.alpha = clampByte(ask(glx::kAlpha));
-    c.depth = clampByte(ask(glx::kDepth));
-    c.stencil = clampByte(ask(glx::kStencil));
-    c.samples = clampByte(ask(glx::kSamples));
-    c.doubleBuffer = ask(glx::kDoubleBuffer) != 0;
-    c.accum = clampByte(ask(glx::kAccumRed));
-    c.stereo = ask(glx::kStereo) != 0;
-    c.srgb = ask(glx::kSrgbCapable) != 0;
+    c.red = clampByte(attribute(glx::kRed));
+    c.green = clampByte(attribute(glx::kGreen));
+    c.blue = clampByte(attribute(glx::kBlue));
+    c.alpha = clampByte(attribute(glx::kAlpha));
+    c.depth = clampByte(attribute(glx::kDepth));
+    c.stencil = clampByte(attribute(glx::kStencil));
+    c.samples = clampByte(attribute(glx::kSamples));
+    c.doubleBuffer = attribute(glx::kDoubleBuffer) != 0;
+    c.accum = clampByte(attribute(glx::kAccumRed));
+    c.stereo = attribute(glx::kStereo) != 0;
+    c.srgb = attribute(glx::kSrgbCapable) != 0;
     return c;
 }
 
@@ -193,8 +193,8 @@ void useXFont(Font font, int first, int count, int listBase) {
     static auto* call = real<void(Font, int, int, int)>("glXUseXFont");
     const Context* c = tThread->context;
     const Window* w = c ? findWindowById(c->drawWindow) : nullptr;
-    const bool ours = w && !w->isEgl && !nativeRun();
-    if (!ours || !listsFromXFont(static_cast<Display*>(w->display), font, first, count, listBase))
+    const bool isCaptured = w && !w->isEgl && !nativeRun();
+    if (!isCaptured || !listsFromXFont(static_cast<Display*>(w->display), font, first, count, listBase))
         call(font, first, count, listBase);
 }
 
@@ -292,27 +292,27 @@ void bindTexImage(Display* dpy, XID drawable, int buffer, const int* attributes)
 }
 
 // Filters the result of the three extension queries: only extensions that work across machines are reported.
-const char* told(const char* text) { return nativeRun() ? text : filterWindowSystemExtensions(text); }
+const char* advertised(const char* text) { return nativeRun() ? text : filterWindowSystemExtensions(text); }
 
 const char* queryExtensionsString(Display* dpy, int screen) {
     static auto* call = real<const char*(Display*, int)>("glXQueryExtensionsString");
-    return told(call(dpy, screen));
+    return advertised(call(dpy, screen));
 }
 
 const char* getClientString(Display* dpy, int name) {
     static auto* call = real<const char*(Display*, int)>("glXGetClientString");
     const char* text = call(dpy, name);
-    return name == glx::kExtensions ? told(text) : text;
+    return name == glx::kExtensions ? advertised(text) : text;
 }
 
 const char* queryServerString(Display* dpy, int screen, int name) {
     static auto* call = real<const char*(Display*, int, int)>("glXQueryServerString");
     const char* text = call(dpy, screen, name);
-    return name == glx::kExtensions ? told(text) : text;
+    return name == glx::kExtensions ? advertised(text) : text;
 }
 
 void* getProcAddress(const GLubyte* name) {
-    return reinterpret_cast<void*>(glxFront().entryFor(reinterpret_cast<const char*>(name)));
+    return reinterpret_cast<void*>(glxLibrary().entryFor(reinterpret_cast<const char*>(name)));
 }
 
 const OwnEntry kOwn[] = {
@@ -348,12 +348,12 @@ const OwnEntry kOwn[] = {
     ownEntry("glXGetProcAddress", getProcAddress),
     ownEntry("glXGetProcAddressARB", getProcAddress),
 };
-constinit Front front("glX", kOwn);
+constinit WrappedLibrary library("glX", kOwn);
 
 // Opens the library of the vendor that draws: the user's setting, otherwise Mesa's, otherwise NVIDIA's.
 void* openVendor() {
-    const char* wish = wantedGlxVendor();
-    const char* const candidates[] = {wish && *wish ? wish : "mesa", "mesa", "nvidia"};
+    const char* requested = wantedGlxVendor();
+    const char* const candidates[] = {requested && *requested ? requested : "mesa", "mesa", "nvidia"};
     for (const char* vendor : candidates) {
         char name[128];
         snprintf(name, sizeof name, "libGLX_%s.so.0", vendor);
@@ -365,7 +365,7 @@ void* openVendor() {
 
 } // namespace
 
-Front& glxFront() { return front; }
+WrappedLibrary& glxLibrary() { return library; }
 
 bool makeGlxCurrent(const Window& draw, const Window& read, const Context& context) {
     static auto* call = real<Bool(Display*, XID, XID, GLXContext)>("glXMakeContextCurrent");
@@ -373,7 +373,7 @@ bool makeGlxCurrent(const Window& draw, const Window& read, const Context& conte
                         static_cast<GLXContext>(context.native));
 }
 
-bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
+bool queryGlxSize(const Window& w, uint32_t& width, uint32_t& height) {
     auto* dpy = static_cast<Display*>(w.display);
     unsigned int a = 0, b = 0;
     if (w.nativeGone) return false; // an X error would end the program
@@ -405,10 +405,10 @@ extern "C" __attribute__((visibility("default"))) Bool __glx_Main(uint32_t versi
     auto* main = handle ? reinterpret_cast<Main*>(mural::loader::symbolIn(handle, "__glx_Main")) : nullptr;
     if (!main || !main(version, exports, vendor, imports)) return False;
     mural::loader::keepLoaded(exports); // a program that restarts GLX finds it and the vendor unchanged
-    if (!mural::claimProgram(mural::Way::Vendor)) return True;
+    if (!mural::claimProgram(mural::EntryKind::Vendor)) return True;
     mural::vendorGetProcAddress = imports->getProcAddress;
     imports->getProcAddress = mural::getProcAddress;
     mural::forbidPatching(*imports);
-    mural::front.attach(mural::vendorEntry);
+    mural::library.attach(mural::vendorEntry);
     return True;
 }

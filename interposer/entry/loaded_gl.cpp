@@ -23,7 +23,7 @@ bool isOwnGl(const LoadedObject& object) {
 // object's dependencies.
 bool isPastUs(const LoadedObject& object) {
     const char* path = object.path();
-    return path[0] && !std::strstr(path, "/libGLX_mural.") && !std::strstr(path, "/libmural_front.") &&
+    return path[0] && !std::strstr(path, "/libGLX_mural.") && !std::strstr(path, "/libmural_preload.") &&
            object.function("glClear") && !leadsToGlvnd(object);
 }
 

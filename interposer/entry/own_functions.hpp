@@ -10,7 +10,7 @@ struct Window;
 // Call the driver's own function, past the fronts: make the context current with these windows in the calling thread.
 bool makeGlxCurrent(const Window& draw, const Window& read, const Context& context);
 bool makeEglCurrent(const Window& draw, const Window& read, const Context& context);
-bool askGlxSize(const Window& w, uint32_t& width, uint32_t& height);
-bool askEglSize(const Window& w, uint32_t& width, uint32_t& height);
+bool queryGlxSize(const Window& w, uint32_t& width, uint32_t& height);
+bool queryEglSize(const Window& w, uint32_t& width, uint32_t& height);
 
 } // namespace mural

@@ -13,7 +13,7 @@ constexpr char kPreload[] = "LD_PRELOAD=";
 constexpr size_t kPreloadBytes = sizeof kPreload - 1;
 constexpr size_t kMaxEntries = 8192; // limit for changed environments; their pointers take 64 KiB of the stack
 constexpr char kLibrary[] = "libGLX_mural.so.0";
-constexpr char kFront[] = "libmural_front.so";
+constexpr char kPreloadLibrary[] = "libmural_preload.so";
 
 // The capture's variables at the start of this process, as complete entries.
 struct Started {
@@ -51,7 +51,7 @@ const char* nextWord(const char*& at, size_t& length) {
 void keepPreload(const char* list) {
     size_t length = 0, used = 0;
     while (const char* word = nextWord(list, length)) {
-        if (word[0] != '/' || !(endsWith(word, length, kLibrary) || endsWith(word, length, kFront))) continue;
+        if (word[0] != '/' || !(endsWith(word, length, kLibrary) || endsWith(word, length, kPreloadLibrary))) continue;
         if (used + length + 2 > sizeof started.preload) return;
         if (used) started.preload[used++] = ' ';
         std::memcpy(started.preload + used, word, length);

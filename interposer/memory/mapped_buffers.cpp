@@ -33,7 +33,7 @@ struct MappedBuffer {
 
 namespace {
 
-constexpr uint64_t kAskedBytes = uint64_t{16} << 20; // per request
+constexpr uint64_t kRequestBytes = uint64_t{16} << 20; // per request
 
 // Returns whether the nodes draw and the program's own context does not. Only the nodes then know the content of
 // buffers that shaders write. Also true for contexts that currently select or compile a list.
@@ -42,21 +42,21 @@ bool nodesDraw(const ThreadState& t) {
 }
 
 // Locks the list of mappings. A request to the nodes ships mappings; the same thread may do so while it holds the lock.
-class MapsHeld {
+class MapsLocked {
 public:
-    explicit MapsHeld(ThreadState& t)
-        : group_(*t.context->group), outer_(group_.mapsHolder.load(std::memory_order_relaxed) == &t) {
+    explicit MapsLocked(ThreadState& t)
+        : group_(*t.context->group), outer_(group_.mapsOwner.load(std::memory_order_relaxed) == &t) {
         if (outer_) return;
         group_.mapsLock.lock();
-        group_.mapsHolder.store(&t, std::memory_order_relaxed);
+        group_.mapsOwner.store(&t, std::memory_order_relaxed);
     }
-    ~MapsHeld() {
+    ~MapsLocked() {
         if (outer_) return;
-        group_.mapsHolder.store(nullptr, std::memory_order_relaxed);
+        group_.mapsOwner.store(nullptr, std::memory_order_relaxed);
         group_.mapsLock.unlock();
     }
-    MapsHeld(const MapsHeld&) = delete;
-    MapsHeld& operator=(const MapsHeld&) = delete;
+    MapsLocked(const MapsLocked&) = delete;
+    MapsLocked& operator=(const MapsLocked&) = delete;
 
 private:
     ShareGroup& group_;
@@ -231,9 +231,9 @@ void refreshBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t leng
         nodesLack(t, buffer))
         return;
     if (!gReal.glIsBuffer(buffer)) return; // an unused name: binding it would create a buffer
-    for (uint64_t at = 0; at < length; at += kAskedBytes) {
-        const uint64_t count = length - at < kAskedBytes ? length - at : kAskedBytes;
-        const void* bytes = askBuffer(t, buffer, offset + at, count, by);
+    for (uint64_t at = 0; at < length; at += kRequestBytes) {
+        const uint64_t count = length - at < kRequestBytes ? length - at : kRequestBytes;
+        const void* bytes = requestBuffer(t, buffer, offset + at, count, by);
         if (!bytes) return;
         writeOwnCopy(t, buffer, offset + at, bytes, count);
     }
@@ -258,9 +258,9 @@ void showInMap(ThreadState& t, MappedBuffer& m, uint64_t from, const std::byte* 
     if (m.changes.active()) {
         m.changes.accept(
             from, bytes, count,
-            [](void* self, size_t at, const std::byte* news, size_t size) {
+            [](void* self, size_t at, const std::byte* changed, size_t size) {
                 const auto& its = *static_cast<Showing*>(self);
-                writeOwnCopy(its.t, its.m.buffer, its.m.offset + at, news, size);
+                writeOwnCopy(its.t, its.m.buffer, its.m.offset + at, changed, size);
             },
             &showing);
     } else if (std::memcmp(m.memory + from, bytes, count) != 0) {
@@ -274,14 +274,14 @@ void refreshMaps(ThreadState& t, const char* by) {
     if (!t.context || !t.context->group->persistentMaps || !t.context->group->nodesWriteBuffers || !nodesDraw(t))
         return;
     const ShareGroup& group = *t.context->group;
-    const MapsHeld held(t);
+    const MapsLocked locked(t);
     for (MappedBuffer* m = group.maps; m; m = m->next) {
         // Data written by the nodes is the baseline for change detection, even if the program does not read it.
         const bool stale = m->has(GL_MAP_READ_BIT) || mayBeWritten(group, m->buffer);
         if (!m->has(GL_MAP_PERSISTENT_BIT) || !stale) continue;
-        for (uint64_t at = 0; at < m->length; at += kAskedBytes) {
-            const uint64_t count = m->length - at < kAskedBytes ? m->length - at : kAskedBytes;
-            const void* bytes = askBuffer(t, m->buffer, m->offset + at, count, by);
+        for (uint64_t at = 0; at < m->length; at += kRequestBytes) {
+            const uint64_t count = m->length - at < kRequestBytes ? m->length - at : kRequestBytes;
+            const void* bytes = requestBuffer(t, m->buffer, m->offset + at, count, by);
             if (bytes) showInMap(t, *m, at, static_cast<const std::byte*>(bytes), count);
         }
     }
@@ -289,7 +289,7 @@ void refreshMaps(ThreadState& t, const char* by) {
 
 void copiedHere(ThreadState& t, GLuint buffer) {
     if (!t.context->group->nodesWriteBuffers || !nodesDraw(t)) return;
-    const MapsHeld held(t);
+    const MapsLocked locked(t);
     MappedBuffer* m = findMap(*t.context->group, buffer);
     if (!m || !m->changes.active()) return;
     gReal.glFinish();
@@ -312,21 +312,21 @@ namespace {
 
 void begin(ThreadState& t, GLuint buffer, void* memory, uint64_t offset, uint64_t length, GLbitfield access,
            bool pinned) {
-    void* place = std::malloc(sizeof(MappedBuffer));
-    if (!place) return;
-    auto* m =
-        new (place) MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr, pinned};
+    void* storage = std::malloc(sizeof(MappedBuffer));
+    if (!storage) return;
+    auto* m = new (storage)
+        MappedBuffer{buffer, static_cast<std::byte*>(memory), offset, length, access, {}, nullptr, pinned};
     // Pinned client memory is not write-protected: other processes may share it, and the program may remap it.
     if (m->silent()) m->changes.begin(memory, length, !pinned);
     ShareGroup& group = *t.context->group;
-    const MapsHeld held(t);
+    const MapsLocked locked(t);
     m->next = group.maps;
     group.maps = m;
     if (m->has(GL_MAP_PERSISTENT_BIT)) ++group.persistentMaps;
 }
 
 bool isPinned(ThreadState& t, GLuint buffer) {
-    const MapsHeld held(t);
+    const MapsLocked locked(t);
     const MappedBuffer* m = findMap(*t.context->group, buffer);
     return m && m->pinned;
 }
@@ -358,7 +358,7 @@ void unmaps(ThreadState& t, GLuint buffer) {
 void mapEnds(ThreadState& t, GLuint buffer, bool shipIt) {
     if (!t.context || !t.context->group->maps) return;
     ShareGroup& group = *t.context->group;
-    const MapsHeld held(t);
+    const MapsLocked locked(t);
     for (MappedBuffer** p = &group.maps; *p; p = &(*p)->next) {
         MappedBuffer* m = *p;
         if (m->buffer != buffer) continue;
@@ -376,7 +376,7 @@ void mapEnds(ThreadState& t, GLuint buffer, bool shipIt) {
 
 void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr length) {
     if (!t.context || !t.context->group->maps || offset < 0 || length <= 0) return;
-    const MapsHeld held(t);
+    const MapsLocked locked(t);
     const MappedBuffer* m = findMap(*t.context->group, buffer);
     if (!m || static_cast<uint64_t>(offset + length) > m->length) return;
     ship(t, *m, static_cast<uint64_t>(offset), m->memory + offset, static_cast<uint64_t>(length));
@@ -384,8 +384,8 @@ void mapFlushes(ThreadState& t, GLuint buffer, GLintptr offset, GLsizeiptr lengt
 
 void flushPersistentMaps(ThreadState& t) {
     const Session* s = Session::current();
-    if (!s || !s->alive() || t.context->group->mapsHolder.load(std::memory_order_relaxed) == &t) return;
-    const MapsHeld held(t);
+    if (!s || !s->alive() || t.context->group->mapsOwner.load(std::memory_order_relaxed) == &t) return;
+    const MapsLocked locked(t);
     for (MappedBuffer* m = t.context->group->maps; m; m = m->next) {
         if (m->silent()) shipChanges(t, *m);
     }

@@ -21,14 +21,14 @@ GlObject objectOf(const void* address) {
     return kind;
 }
 
-bool isOurs(const void* address) {
-    bool ours = false;
+bool isFromMural(const void* address) {
+    bool isMural = false;
     loader::findObject([&](const LoadedObject& object) {
-        if (!object.contains(reinterpret_cast<const void*>(&isOurs))) return false;
-        ours = object.contains(address);
+        if (!object.contains(reinterpret_cast<const void*>(&isFromMural))) return false;
+        isMural = object.contains(address);
         return true;
     });
-    return ours;
+    return isMural;
 }
 
 } // namespace mural

@@ -12,6 +12,6 @@ enum class GlObject {
 // The kind of the object that contains the address.
 GlObject objectOf(const void* address);
 // True if the address is in the object that contains this function.
-bool isOurs(const void* address);
+bool isFromMural(const void* address);
 
 } // namespace mural

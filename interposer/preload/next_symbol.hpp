@@ -4,7 +4,7 @@
 
 namespace mural {
 
-// Returns the function for a GL name whose lookup returned `found`. Implemented in front.cpp.
+// Returns the function for a GL name whose lookup returned `found`. Implemented in preload_entry.cpp.
 void* replaceFound(const char* name, void* found);
 
 } // namespace mural

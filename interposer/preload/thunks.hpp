@@ -1,5 +1,5 @@
-// Generated thunks (front_thunks.cpp): one function per exported name, which jumps through its slot. The client defines
-// resolveSlot, which finds the function of a name.
+// Generated thunks (preload_thunks.cpp): one function per exported name, which jumps through its slot. The client
+// defines resolveSlot, which finds the function of a name.
 #pragma once
 
 namespace mural {

@@ -20,8 +20,8 @@ thread_local constinit bool tablesHeld __attribute__((tls_model("initial-exec"))
 void childBegins() {
     forgetThreads();
     known::inherit();
-    owed::forgetAll();
-    forgetNews();
+    deferred::forgetAll();
+    forgetDriverEvents();
 }
 
 // Locks the tables, because the child copies them and no other thread may be changing them. Bounded, because a signal

@@ -70,8 +70,9 @@ private:
 
     [[nodiscard]] bool waitFor(short event) const {
         const int64_t leftNs = endNs_ - monotonicNowNs();
-        pollfd look{socket_, event, 0};
-        return leftNs > 0 && (poll(&look, 1, static_cast<int>(leftNs / kNsPerMs) + 1) > 0 || monotonicNowNs() < endNs_);
+        pollfd poller{socket_, event, 0};
+        return leftNs > 0 &&
+               (poll(&poller, 1, static_cast<int>(leftNs / kNsPerMs) + 1) > 0 || monotonicNowNs() < endNs_);
     }
 
     ssize_t receiveSome(char* at, size_t bytes, OwnedFd* passed) const {
@@ -111,7 +112,7 @@ char* receiveText(const Transfer& transfer, uint32_t bytes) {
 }
 
 // The kernel drops a descriptor on its way if the process has no free number for it.
-void sayNoDescriptor() {
+void reportMissingDescriptor() {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);
     say("no file descriptor for the memory shared with the head (limit: %llu): raise ulimit -n; this program is not "
@@ -161,7 +162,7 @@ bool shakeHands(int socket, Handshake& result) {
     if (welcome.refused)
         say("not captured: %s", result.extensions ? result.extensions + 1 : "the head rejected it");
     else if (memory.get() < 0)
-        sayNoDescriptor();
+        reportMissingDescriptor();
     else if (result.extensions)
         result.header = mapMemory(memory.get());
     if (result.header) return true;

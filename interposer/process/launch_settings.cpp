@@ -23,7 +23,7 @@ const char* valueOf(const char* name) {
 }
 
 // Returns a permanent copy; null if the variable is missing, empty or too long.
-const char* kept(const char* name) {
+const char* copyOfVariable(const char* name) {
     const char* value = valueOf(name);
     const size_t bytes = value ? std::strlen(value) + 1 : 0;
     if (bytes <= 1 || bytes > sizeof storage - used) return nullptr;
@@ -35,15 +35,15 @@ const char* kept(const char* name) {
 
 __attribute__((constructor)) void readSettings() {
     if (__atomic_exchange_n(&isRead, true, __ATOMIC_ACQ_REL)) return;
-    settings.native = kept("MURAL_NATIVE");
-    settings.nativeReport = kept("MURAL_NATIVE_REPORT");
-    settings.nativeFrames = kept("MURAL_NATIVE_FRAMES");
-    settings.realGlxVendor = kept("MURAL_REAL_GLX_VENDOR");
-    settings.realEglVendors = kept("MURAL_REAL_EGL_VENDORS");
+    settings.native = copyOfVariable("MURAL_NATIVE");
+    settings.nativeReport = copyOfVariable("MURAL_NATIVE_REPORT");
+    settings.nativeFrames = copyOfVariable("MURAL_NATIVE_FRAMES");
+    settings.realGlxVendor = copyOfVariable("MURAL_REAL_GLX_VENDOR");
+    settings.realEglVendors = copyOfVariable("MURAL_REAL_EGL_VENDORS");
     if (valueOf("MURAL_DISABLE")) return;
-    settings.session = kept("MURAL_SESSION");
-    settings.socketPath = kept("MURAL_SOCKET");
-    settings.notes = kept("MURAL_NOTES");
+    settings.session = copyOfVariable("MURAL_SESSION");
+    settings.socketPath = copyOfVariable("MURAL_SOCKET");
+    settings.notes = copyOfVariable("MURAL_NOTES");
 }
 
 } // namespace

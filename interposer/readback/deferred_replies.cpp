@@ -5,24 +5,24 @@
 
 #include "interposer/context/lock.hpp"
 
-namespace mural::owed {
+namespace mural::deferred {
 
 namespace {
 
 Lock tableLock;
-OwedAnswer* first = nullptr; // oldest first
-OwedAnswer** last = &first;
-int onTheirWay = 0;
-uint64_t onTheirWayBytes = 0;
+DeferredReply* first = nullptr; // oldest first
+DeferredReply** last = &first;
+int inFlight = 0;
+uint64_t inFlightBytes = 0;
 
-OwedAnswer* find(uint32_t request) {
-    for (OwedAnswer* a = first; a; a = a->next)
+DeferredReply* find(uint32_t request) {
+    for (DeferredReply* a = first; a; a = a->next)
         if (a->request == request) return a;
     return nullptr;
 }
 
-void unlinkAndFree(OwedAnswer* answer) {
-    for (OwedAnswer** p = &first; *p; p = &(*p)->next) {
+void unlinkAndFree(DeferredReply* answer) {
+    for (DeferredReply** p = &first; *p; p = &(*p)->next) {
         if (*p != answer) continue;
         *p = answer->next;
         if (last == &answer->next) last = p;
@@ -34,40 +34,40 @@ void unlinkAndFree(OwedAnswer* answer) {
 
 } // namespace
 
-OwedAnswer* add(uint32_t request, uint64_t sizeBytes) {
-    void* const place = std::malloc(sizeof(OwedAnswer));
-    void* const bytes = place ? std::malloc(sizeBytes) : nullptr;
+DeferredReply* add(uint32_t request, uint64_t sizeBytes) {
+    void* const memory = std::malloc(sizeof(DeferredReply));
+    void* const bytes = memory ? std::malloc(sizeBytes) : nullptr;
     if (!bytes) {
-        std::free(place);
+        std::free(memory);
         return nullptr;
     }
-    auto* const answer = new (place) OwedAnswer{request, sizeBytes, static_cast<std::byte*>(bytes)};
+    auto* const answer = new (memory) DeferredReply{request, sizeBytes, static_cast<std::byte*>(bytes)};
     Guard guard(tableLock);
     *last = answer;
     last = &answer->next;
-    ++onTheirWay;
-    onTheirWayBytes += sizeBytes;
+    ++inFlight;
+    inFlightBytes += sizeBytes;
     return answer;
 }
 
-uint32_t inTheWayOf(uint64_t sizeBytes) {
+uint32_t conflictingWith(uint64_t sizeBytes) {
     Guard guard(tableLock);
-    if (onTheirWay < kMaxOwed && onTheirWayBytes + sizeBytes <= kMaxOwedBytes) return 0;
-    for (const OwedAnswer* a = first; a; a = a->next)
-        if (a->state == OwedAnswer::State::Asked) return a->request;
+    if (inFlight < kMaxDeferred && inFlightBytes + sizeBytes <= kMaxDeferredReplyBytes) return 0;
+    for (const DeferredReply* a = first; a; a = a->next)
+        if (a->state == DeferredReply::State::Requested) return a->request;
     return 0;
 }
 
 bool isAwaited(uint32_t request) {
     Guard guard(tableLock);
-    const OwedAnswer* const answer = find(request);
-    return answer && answer->state == OwedAnswer::State::Asked;
+    const DeferredReply* const answer = find(request);
+    return answer && answer->state == DeferredReply::State::Requested;
 }
 
-void release(OwedAnswer* answer) {
+void release(DeferredReply* answer) {
     Guard guard(tableLock);
     answer->forgotten = true;
-    if (answer->state != OwedAnswer::State::Asked) return unlinkAndFree(answer);
+    if (answer->state != DeferredReply::State::Requested) return unlinkAndFree(answer);
     if (answer->coming) return; // another thread writes into its memory
     std::free(answer->bytes);
     answer->bytes = nullptr;
@@ -77,13 +77,13 @@ void forgetAll() {
     Guard guard(tableLock);
     first = nullptr; // release() frees entries that are still referenced
     last = &first;
-    onTheirWay = 0;
-    onTheirWayBytes = 0;
+    inFlight = 0;
+    inFlightBytes = 0;
 }
 
 void* placeOf(uint32_t request, uint64_t sizeBytes, bool failed) {
     Guard guard(tableLock);
-    OwedAnswer* const answer = find(request);
+    DeferredReply* const answer = find(request);
     if (!answer || failed || sizeBytes != answer->sizeBytes) return nullptr;
     answer->coming = answer->bytes != nullptr;
     return answer->bytes;
@@ -91,13 +91,13 @@ void* placeOf(uint32_t request, uint64_t sizeBytes, bool failed) {
 
 void arrived(uint32_t request, bool whole) {
     Guard guard(tableLock);
-    OwedAnswer* const answer = find(request);
+    DeferredReply* const answer = find(request);
     if (!answer) return;
     answer->coming = false;
-    answer->state = whole ? OwedAnswer::State::Here : OwedAnswer::State::None;
-    --onTheirWay;
-    onTheirWayBytes -= answer->sizeBytes;
+    answer->state = whole ? DeferredReply::State::Arrived : DeferredReply::State::None;
+    --inFlight;
+    inFlightBytes -= answer->sizeBytes;
     if (answer->forgotten) unlinkAndFree(answer);
 }
 
-} // namespace mural::owed
+} // namespace mural::deferred

@@ -8,31 +8,31 @@
 namespace mural {
 
 // Limits of the number and size of pending replies, because the head stores them until they are read.
-constexpr int kMaxOwed = 64;
-constexpr uint64_t kMaxOwedBytes = uint64_t{256} << 20;
+constexpr int kMaxDeferred = 64;
+constexpr uint64_t kMaxDeferredReplyBytes = uint64_t{256} << 20;
 
-struct OwedAnswer {
-    enum class State { Asked, Here, None }; // None: the nodes had no answer
+struct DeferredReply {
+    enum class State { Requested, Arrived, None }; // None: the nodes had no answer
     uint32_t request = 0;
     uint64_t sizeBytes = 0;
     std::byte* bytes = nullptr;
-    State state = State::Asked;
+    State state = State::Requested;
     bool coming = false;    // a thread is reading its bytes
     bool forgotten = false; // released before its arrival
-    OwedAnswer* next = nullptr;
+    DeferredReply* next = nullptr;
 };
 
-namespace owed {
+namespace deferred {
 
 // Adds a pending reply. Any thread may call it. Null: no memory.
-OwedAnswer* add(uint32_t request, uint64_t sizeBytes);
+DeferredReply* add(uint32_t request, uint64_t sizeBytes);
 // Returns 0 if there is room for another reply of this size; otherwise the oldest pending request, which must complete
 // first.
-uint32_t inTheWayOf(uint64_t sizeBytes);
+uint32_t conflictingWith(uint64_t sizeBytes);
 // Returns whether the reply is still pending. Otherwise its entry no longer changes.
 [[nodiscard]] bool isAwaited(uint32_t request);
 // Ends the caller's ownership of the entry, after its use or without one.
-void release(OwedAnswer* answer);
+void release(DeferredReply* answer);
 
 // For a forked child: drops all entries, because the replies go to its parent.
 void forgetAll();
@@ -42,6 +42,6 @@ void forgetAll();
 void* placeOf(uint32_t request, uint64_t sizeBytes, bool failed);
 void arrived(uint32_t request, bool whole);
 
-} // namespace owed
+} // namespace deferred
 
 } // namespace mural

@@ -16,7 +16,7 @@ namespace {
 
 // Sends one request and reads its answer into the memory that room(sizeBytes) returns. Null skips the answer. If the
 // session ends before the answer arrives, a GL error informs the program.
-template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&& room, Send&& send) {
+template <class Send, class Room> bool requestReply(ThreadState& t, const char* by, Room&& memoryFor, Send&& send) {
     Session* s = Session::current();
     if (!s || !t.context) return false;
     if (!s->alive()) {
@@ -30,7 +30,7 @@ template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&
     wire::ReplyHeader header{};
     bool ok = s->answerHeader(request, header);
     if (ok) {
-        void* const into = header.failed ? nullptr : room(header.sizeBytes);
+        void* const into = header.failed ? nullptr : memoryFor(header.sizeBytes);
         ok = s->answerBytes(into, header.sizeBytes) && into;
     }
     s->endRequest();
@@ -43,9 +43,9 @@ template <class Send, class Room> bool ask(ThreadState& t, const char* by, Room&
 }
 
 // The same for an answer of known size. `into` must hold sizeBytes.
-template <class Send> bool ask(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
-    return ask(
-        t, by, [=](uint64_t comes) { return comes == sizeBytes ? into : nullptr; }, send);
+template <class Send> bool requestReply(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
+    return requestReply(
+        t, by, [=](uint64_t replyBytes) { return replyBytes == sizeBytes ? into : nullptr; }, send);
 }
 
 } // namespace
@@ -57,7 +57,7 @@ GLenum takeError(ThreadState& t) {
     const GLenum error = c.stashedError ? c.stashedError : later;
     c.stashedError = 0;
     if (error) {
-        if (records::errorTold(t)) ++c.errorsTold;
+        if (records::errorReported(t)) ++c.errorsReported;
         return error;
     }
     return std::exchange(c.outOfMemoryDue, false) ? GL_OUT_OF_MEMORY : GL_NO_ERROR;
@@ -90,7 +90,7 @@ const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h
     const bool keeps = wide.w != w || wide.h != h;
     const uint64_t wideBytes = keeps ? uint64_t(wide.w) * uint64_t(wide.h) * group : bytes;
     void* const answer = keeps ? t.pixels.memory(wideBytes) : into;
-    const bool ok = answer && ask(t, by, answer, wideBytes, [&](uint32_t request) {
+    const bool ok = answer && requestReply(t, by, answer, wideBytes, [&](uint32_t request) {
                         records::requestPixels(t, request, wide.x, wide.y, wide.w, wide.h, format, type, group | how);
                     });
     if (!ok) return nullptr;
@@ -98,44 +98,47 @@ const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h
     return !keeps || t.pixels.find(t, kind, box, into) ? into : nullptr;
 }
 
-void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
-                  uint64_t sizeBytes, const char* by) {
+void* requestTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
+                      uint64_t sizeBytes, const char* by) {
     void* into = secondScratch(t, sizeBytes);
     if (!into || sizeBytes == 0) return nullptr;
-    const bool ok = ask(t, by, into, sizeBytes, [&](uint32_t request) {
+    const bool ok = requestReply(t, by, into, sizeBytes, [&](uint32_t request) {
         records::requestTexImage(t, request, byName, targetOrTexture, level, format, type, sizeBytes);
     });
     return ok ? into : nullptr;
 }
 
-bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by) {
-    return ask(t, by, &value, sizeof value, [&](uint32_t request) { records::requestQuery(t, request, query, name); });
+bool requestQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by) {
+    return requestReply(t, by, &value, sizeof value,
+                        [&](uint32_t request) { records::requestQuery(t, request, query, name); });
 }
 
-const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes, const char* by) {
+const void* requestBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes, const char* by) {
     void* into = sizeBytes ? secondScratch(t, sizeBytes) : nullptr;
     if (!into) return nullptr;
-    return ask(t, by, into, sizeBytes,
-               [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); })
+    return requestReply(t, by, into, sizeBytes,
+                        [&](uint32_t request) { records::requestBuffer(t, request, buffer, offset, sizeBytes); })
                ? into
                : nullptr;
 }
 
-const void* askProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, const char* by) {
+const void* requestProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, const char* by) {
     void* into = nullptr;
-    const auto room = [&](uint64_t comes) {
-        sizeBytes = comes;
-        return into = comes ? secondScratch(t, comes) : nullptr;
+    const auto memoryFor = [&](uint64_t replyBytes) {
+        sizeBytes = replyBytes;
+        return into = replyBytes ? secondScratch(t, replyBytes) : nullptr;
     };
-    return ask(t, by, room, [&](uint32_t request) { records::requestProgram(t, request, program); }) ? into : nullptr;
+    return requestReply(t, by, memoryFor, [&](uint32_t request) { records::requestProgram(t, request, program); })
+               ? into
+               : nullptr;
 }
 
-bool askFinish(ThreadState& t, const char* by) {
+bool requestFinish(ThreadState& t, const char* by) {
     uint64_t nothing = 0;
     if (t.context) stashError(*t.context, driverError());
     const GLenum before = t.context ? t.context->stashedError : GL_NO_ERROR;
     const bool finished =
-        ask(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
+        requestReply(t, by, &nothing, sizeof nothing, [&](uint32_t request) { records::requestFinish(t, request); });
     if (!finished && t.context) t.context->stashedError = before; // the request has no result that could be wrong
     return finished;
 }

@@ -16,16 +16,16 @@ struct Context;
 // scratch memory of the thread. Null: no answer. `how`: flags of groupBytes (streamcodec/wire/control_records.hpp).
 const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type,
                           uint32_t how = 0, const char* by = __builtin_FUNCTION());
-void* askTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
-                  uint64_t sizeBytes, const char* by = __builtin_FUNCTION());
-bool askQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by = __builtin_FUNCTION());
+void* requestTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
+                      uint64_t sizeBytes, const char* by = __builtin_FUNCTION());
+bool requestQuery(ThreadState& t, GLuint query, GLenum name, uint64_t& value, const char* by = __builtin_FUNCTION());
 // Returns bytes of a buffer from the nodes, in scratch memory.
-const void* askBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes,
-                      const char* by = __builtin_FUNCTION());
+const void* requestBuffer(ThreadState& t, GLuint buffer, uint64_t offset, uint64_t sizeBytes,
+                          const char* by = __builtin_FUNCTION());
 // Returns the recipe from which the nodes link a program (docs/reference/wire-format.md), in scratch memory. Null: the
 // nodes cannot provide it.
-const void* askProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, const char* by = __builtin_FUNCTION());
-bool askFinish(ThreadState& t, const char* by = __builtin_FUNCTION());
+const void* requestProgram(ThreadState& t, GLuint program, uint64_t& sizeBytes, const char* by = __builtin_FUNCTION());
+bool requestFinish(ThreadState& t, const char* by = __builtin_FUNCTION());
 
 // Runs `call` in the program's own context to learn its error. Returns true without an error. Otherwise the program's
 // next glGetError returns the error.

@@ -16,7 +16,7 @@ namespace mural {
 struct Context;
 struct ShareGroup;
 struct ThreadState;
-struct OwedRead; // interposer/readback/pending_reads.cpp
+struct PendingRead; // interposer/readback/pending_reads.cpp
 struct ReadArea;
 
 // One bit per object name, set by any thread. Names above the limit never have it.
@@ -42,8 +42,8 @@ private:
 
 // Per share group.
 struct PendingReads {
-    Lock lock;                 // for the list, and while waiting for replies
-    OwedRead* first = nullptr; // in call order
+    Lock lock;                    // for the list, and while waiting for replies
+    PendingRead* first = nullptr; // in call order
     std::atomic<int> count{0};
     uint64_t sizeBytes = 0;
     SharedNameBits usedElsewhere; // the buffer was used for other purposes than reads: the nodes have all of its bytes
@@ -56,17 +56,17 @@ struct PendingReads {
 };
 
 // The image's place in the bound pack buffer, and the part of the reply that goes there.
-struct PackPlace {
+struct PackTarget {
     uint64_t offset;
     sizes::ImageLayout layout;
     ImagePart part{};
 };
 
 // Both defer a read. They return false if it must complete now: the buffer has other uses, or memory is exhausted.
-bool owePixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type, const PackPlace& place,
-               const char* by);
+bool deferPixels(ThreadState& t, const ReadArea& area, GLenum format, GLenum type, const PackTarget& target,
+                 const char* by);
 bool deferTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
-                   uint64_t sizeBytes, const PackPlace& place, const char* by);
+                   uint64_t sizeBytes, const PackTarget& target, const char* by);
 
 // interposer/context/context.hpp has fast paths for the following functions.
 void settle(ThreadState& t, GLuint buffer, const char* by);

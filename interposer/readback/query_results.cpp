@@ -10,12 +10,12 @@ namespace mural {
 
 void QueryResults::begun(GLenum target, GLuint index, GLuint query) {
     if (ended_ && query < kNames) ended_[query] = {};
-    Active* place = nullptr;
+    Active* slot = nullptr;
     for (Active& a : active_) {
-        if (a.query == 0 && !place) place = &a;
+        if (a.query == 0 && !slot) slot = &a;
         if (a.query != 0 && a.target == target && a.index == index) return; // an error: a query is active already
     }
-    if (place) *place = {target, index, query};
+    if (slot) *slot = {target, index, query};
 }
 
 void QueryResults::ended(ThreadState& t, GLenum target, GLuint index, uint32_t swaps) {

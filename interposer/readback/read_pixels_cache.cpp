@@ -34,7 +34,7 @@ bool ReadPixelsCache::nothingSince(const ThreadState& t, const Kind& kind) const
 bool ReadPixelsCache::find(const ThreadState& t, const Kind& kind, const Box& box, void* into) const {
     const bool inside = box.x >= box_.x && box.y >= box_.y && int64_t{box.x} + box.w <= int64_t{box_.x} + box_.w &&
                         int64_t{box.y} + box.h <= int64_t{box_.y} + box_.h;
-    if (!holds_ || !inside || !nothingSince(t, kind)) return false;
+    if (!valid_ || !inside || !nothingSince(t, kind)) return false;
     const size_t rowBytes = size_t(box.w) * kind.groupBytes, stride = size_t(box_.w) * kind.groupBytes;
     const std::byte* from = bytes_ + size_t(box.y - box_.y) * stride + size_t(box.x - box_.x) * kind.groupBytes;
     for (GLsizei row = 0; row < box.h; ++row)
@@ -69,7 +69,7 @@ bool ReadPixelsCache::inSeries(const ThreadState& t, const Kind& kind, const Box
 }
 
 std::byte* ReadPixelsCache::memory(size_t sizeBytes) {
-    holds_ = false;
+    valid_ = false;
     if (sizeBytes > capacityBytes_) {
         std::free(bytes_);
         bytes_ = static_cast<std::byte*>(std::malloc(sizeBytes));
@@ -78,13 +78,13 @@ std::byte* ReadPixelsCache::memory(size_t sizeBytes) {
     return bytes_;
 }
 
-void ReadPixelsCache::answered(const ThreadState& t, const Kind& kind, const Box& box, bool kept) {
+void ReadPixelsCache::answered(const ThreadState& t, const Kind& kind, const Box& box, bool stored) {
     cursor_ = t.context ? t.cursor : nullptr;
     publications_ = t.publications;
     context_ = t.context ? t.context->id : 0;
     kind_ = kind;
     box_ = box;
-    holds_ = kept;
+    valid_ = stored;
 }
 
 } // namespace mural

@@ -33,8 +33,8 @@ public:
     bool inSeries(const ThreadState& t, const Kind& kind, const Box& box);
     // Memory for the answer to a larger request; null if the allocation fails.
     std::byte* memory(size_t sizeBytes);
-    // Records an answered request. `kept`: its pixels are in memory().
-    void answered(const ThreadState& t, const Kind& kind, const Box& box, bool kept);
+    // Records an answered request. `stored`: its pixels are in memory().
+    void answered(const ThreadState& t, const Kind& kind, const Box& box, bool stored);
 
 private:
     [[nodiscard]] bool nothingSince(const ThreadState& t, const Kind& kind) const;
@@ -44,7 +44,7 @@ private:
     uint32_t context_ = 0;
     Kind kind_{};
     Box box_{};
-    bool holds_ = false;
+    bool valid_ = false;
     uint32_t series_ = 0;
     std::byte* bytes_ = nullptr;
     size_t capacityBytes_ = 0;

@@ -22,7 +22,7 @@ bool goTogether(const Context& c, const Window& w) {
 // plain X window with the last context that was bound to it.
 bool keepsBuffers(const Window* w, const Context& c) {
     if (!w || w->isEgl || w->drawable != w->native) return true;
-    return w->holders > (c.held[0] == w) + (c.held[1] == w);
+    return w->holders > (c.retained[0] == w) + (c.retained[1] == w);
 }
 
 } // namespace
@@ -40,7 +40,7 @@ Context* WindowBinding::contextFor(const Window& w) const {
     const bool leaves = keepsBuffers(findWindowById(before_.drawWindow), before_) &&
                         keepsBuffers(findWindowById(before_.readWindow), before_);
     if (before_.drawWindow == w.id) return leaves ? &before_ : nullptr;
-    if (Context* const idle = known::idleHolderOf(w)) return idle;
+    if (Context* const idle = known::idleContextOf(w)) return idle;
     return leaves && !w.isEgl && goTogether(before_, w) ? &before_ : nullptr;
 }
 

@@ -48,10 +48,10 @@ struct Floats {
         return value;
     }
     static uint32_t apart(Component a, Component b, size_t) {
-        constexpr float kMost = 1 << 16; // largest half float
+        constexpr float kMax = 1 << 16; // largest half float
         if (std::memcmp(&a, &b, sizeof a) == 0 || a == b) return 0;
         const float distance = a < b ? b - a : a - b;
-        const float parts = (distance < kMost ? distance : kMost) * 255; // NaN gives kMost
+        const float parts = (distance < kMax ? distance : kMax) * 255; // NaN gives kMost
         const auto whole = static_cast<uint32_t>(parts);
         return parts > static_cast<float>(whole) ? whole + 1 : whole;
     }

@@ -20,13 +20,13 @@ template <class Local, class Send> void divide(GLuint array, GLuint index, GLuin
     ThreadState& t = *tThread;
     if (!t.context) return local();
     VertexArrayMirror& mirror = t.context->arrays;
-    const bool isNews =
+    const bool isChanged =
         index >= kGenerics || !mirror.knows(array) || mirror.divisor(array, genericSlot(index)) != divisor;
-    if (!isNews)
+    if (!isChanged)
         local();
     else if (!raisesNothing(*t.context, local))
         return;
-    if (isNews && index < kGenerics) mirror.divide(array, genericSlot(index), divisor);
+    if (isChanged && index < kGenerics) mirror.divide(array, genericSlot(index), divisor);
     send(t);
 }
 template <class Encode, class Real>

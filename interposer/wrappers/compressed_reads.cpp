@@ -23,10 +23,10 @@ struct Image {
     }
 };
 
-template <class Ask> Image imageOf(GLenum target, Ask&& ask) {
+template <class Query> Image imageOf(GLenum target, Query&& query) {
     GLint format = 0;
-    ask(GL_TEXTURE_INTERNAL_FORMAT, &format);
-    return {static_cast<GLenum>(format), levelOf(ask), imageDimensions(target)};
+    query(GL_TEXTURE_INTERNAL_FORMAT, &format);
+    return {static_cast<GLenum>(format), levelOf(query), imageDimensions(target)};
 }
 
 Image imageByName(ThreadState& t, GLuint texture, GLint level) {
@@ -44,8 +44,8 @@ sizes::ImageLayout layoutOf(ThreadState& t, GLenum format, const Level& size, in
 
 void read(ThreadState& t, bool byName, GLuint which, GLint level, const Image& image, void* pixels,
           const char* by = __builtin_FUNCTION()) {
-    askAndDeliver(t, {byName, which, level, 0, 0, image.bytes()}, pixels,
-                  layoutOf(t, image.format, image.size, image.dimensions), by);
+    requestAndDeliver(t, {byName, which, level, 0, 0, image.bytes()}, pixels,
+                      layoutOf(t, image.format, image.size, image.dimensions), by);
 }
 
 Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
@@ -102,8 +102,8 @@ void mural_glGetCompressedTextureSubImage(GLuint texture, GLint level, GLint xof
     const Level size{width, height, depth};
     const ImagePart part{inBlocks(image.size, block), inBlocks({xoffset, yoffset, zoffset}, block),
                          inBlocks(size, block), block.bytes};
-    askAndDeliver(t, {true, texture, level, 0, 0, image.bytes(), part}, pixels,
-                  layoutOf(t, image.format, size, image.dimensions), __func__);
+    requestAndDeliver(t, {true, texture, level, 0, 0, image.bytes(), part}, pixels,
+                      layoutOf(t, image.format, size, image.dimensions), __func__);
 }
 
 void mural_glGetCompressedTextureImageEXT(GLuint texture, GLenum target, GLint lod, void* img) {

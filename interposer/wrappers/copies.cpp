@@ -17,14 +17,14 @@ using namespace mural;
 
 namespace {
 
-// Returns the planes that a copy into a texture level reads. `ask` queries the level's internal format. The copy itself
-// raises the errors.
-template <class Ask> GLbitfield planesInto(ThreadState& t, Ask&& ask) {
+// Returns the planes that a copy into a texture level reads. `query` queries the level's internal format. The copy
+// itself raises the errors.
+template <class Query> GLbitfield planesInto(ThreadState& t, Query&& query) {
     Session* s = Session::current();
     if (!t.context || !s || s->welcome().nodeCount < 2) return GL_COLOR_BUFFER_BIT;
     GLint format = 0;
     stashError(*t.context, driverError());
-    ask(&format);
+    query(&format);
     (void)driverError();
     return copies::planesOf(static_cast<GLenum>(format));
 }

@@ -8,9 +8,9 @@
 using namespace mural;
 
 namespace {
-template <class Ask> GLenum resetStatus(Ask&& ask) {
+template <class Query> GLenum resetStatus(Query&& query) {
     ThreadState& t = *tThread;
-    const GLenum here = ask();
+    const GLenum here = query();
     if (!t.context) return here;
     takeDriverEvents(t);
     const GLenum there = t.context->resetStatus;

@@ -23,9 +23,9 @@ constexpr Target kTargets[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
 
 // The target of a texture. Mesa's query exists in core contexts only; elsewhere trial bindings find the target.
 GLenum targetOf(Context& c, GLuint texture) {
-    GLint told = 0;
-    if (c.core && gReal.glGetTextureParameteriv) gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &told);
-    if (told) return static_cast<GLenum>(told);
+    GLint named = 0;
+    if (c.core && gReal.glGetTextureParameteriv) gReal.glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &named);
+    if (named) return static_cast<GLenum>(named);
     stashError(c, driverError());
     for (const Target& t : kTargets) {
         const GLint before = boundTo(t);
@@ -60,21 +60,21 @@ void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::Image
     records::bufferBytes(t, buffer, offset, DataArg::of(whole, span));
 }
 
-void askAndDeliver(ThreadState& t, const ImageQuestion& q, void* pixels, const sizes::ImageLayout& layout,
-                   const char* by) {
+void requestAndDeliver(ThreadState& t, const ImageQuestion& q, void* pixels, const sizes::ImageLayout& layout,
+                       const char* by) {
     if (q.sizeBytes == 0) return;
-    const bool owes = layout.known && packBufferBound(*t.context) &&
-                      deferTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes,
-                                    {reinterpret_cast<uint64_t>(pixels), layout, q.part}, by);
-    if (owes) return;
+    const bool defers = layout.known && packBufferBound(*t.context) &&
+                        deferTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes,
+                                      {reinterpret_cast<uint64_t>(pixels), layout, q.part}, by);
+    if (defers) return;
     settleBound(t, GL_PIXEL_PACK_BUFFER, by);
-    void* const image = askTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, by);
+    void* const image = requestTexImage(t, q.byName, q.targetOrTexture, q.level, q.format, q.type, q.sizeBytes, by);
     if (!image || !layout.known) return;
     keepPart(static_cast<std::byte*>(image), q.part);
     deliver(t, image, pixels, layout);
 }
 
-void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes) {
+void sendPackBuffer(ThreadState& t, const void* offset, size_t bytes) {
     void* const written = bytes ? scratchMemory(t, bytes) : nullptr;
     const GLuint buffer = boundPackBuffer();
     const auto at = reinterpret_cast<uint64_t>(offset);

@@ -25,8 +25,8 @@ struct ImageQuestion {
     ImagePart part{};    // the requested part
 };
 // Requests a texture image from the nodes and delivers it, or a part. Delivery into a pack buffer is deferred.
-void askAndDeliver(ThreadState& t, const ImageQuestion& question, void* pixels, const sizes::ImageLayout& layout,
-                   const char* by);
+void requestAndDeliver(ThreadState& t, const ImageQuestion& question, void* pixels, const sizes::ImageLayout& layout,
+                       const char* by);
 
 // Runs `local`, which packs data in the program's own context, and saves its errors; returns true without errors.
 // Deferred replies for the bound pack buffer are delivered first.
@@ -36,11 +36,11 @@ template <class Local> bool packsHere(ThreadState& t, Local&& local, const char*
 }
 
 // The same before a request for the same place. Earlier deferred replies may stay deferred, because replies are
-// delivered in order; askAndDeliver waits for them if this one is not deferred.
+// delivered in order; requestAndDeliver waits for them if this one is not deferred.
 template <class Local> bool packsAhead(ThreadState& t, Local&& local) { return raisesNothing(*t.context, local); }
 
 // Sends `bytes` bytes of the bound pack buffer to the nodes, after the program's own context has written them.
-void tellPackBuffer(ThreadState& t, const void* offset, size_t bytes);
+void sendPackBuffer(ThreadState& t, const void* offset, size_t bytes);
 
 // The dimensions of an image of that target, as the pack state counts them.
 int imageDimensions(GLenum target);
@@ -48,11 +48,11 @@ int imageDimensions(GLenum target);
 int dimensionsByName(GLenum target);
 
 // ask(pname, &value) queries the driver.
-template <class Ask> Level levelOf(Ask&& ask) {
+template <class Query> Level levelOf(Query&& query) {
     Level size;
-    ask(GL_TEXTURE_WIDTH, &size.width);
-    ask(GL_TEXTURE_HEIGHT, &size.height);
-    ask(GL_TEXTURE_DEPTH, &size.depth);
+    query(GL_TEXTURE_WIDTH, &size.width);
+    query(GL_TEXTURE_HEIGHT, &size.height);
+    query(GL_TEXTURE_DEPTH, &size.depth);
     return size;
 }
 // A level of a cube map consists of its six faces.

@@ -128,16 +128,16 @@ void mural_glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr si
 GLboolean mural_glUnmapBuffer(GLenum target) {
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) unmaps(t, boundBuffer(target));
-    const GLboolean kept = gReal.glUnmapBuffer(target);
-    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]]
+    const GLboolean intact = gReal.glUnmapBuffer(target);
+    if (t.context && t.context->group->pendingReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]]
         unmappedHere(t, boundBuffer(target));
-    return kept;
+    return intact;
 }
 GLboolean mural_glUnmapNamedBuffer(GLuint buffer) {
     unmaps(*tThread, buffer);
-    const GLboolean kept = gReal.glUnmapNamedBuffer(buffer);
+    const GLboolean intact = gReal.glUnmapNamedBuffer(buffer);
     unmappedHere(*tThread, buffer);
-    return kept;
+    return intact;
 }
 void mural_glFlushMappedBufferRange(GLenum target, GLintptr offset, GLsizeiptr length) {
     ThreadState& t = *tThread;
@@ -155,7 +155,7 @@ void mural_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum
     ThreadState& t = *tThread;
     if (t.context && t.context->group->maps) mapEnds(t, boundBuffer(target), false);
     settleBound(t, target);
-    if (t.context && t.context->group->owedReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]]
+    if (t.context && t.context->group->pendingReads.dueAtUnmap.load(std::memory_order_relaxed)) [[unlikely]]
         newStorage(t, boundBuffer(target));
     if (t.context && target == GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD) return pin(t, size, data, usage);
     encode_glBufferData(t, target, size, DataArg::of(data, size > 0 ? uint64_t(size) : 0), usage);
@@ -270,9 +270,9 @@ void* mural_glMapNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr 
 }
 GLboolean mural_glUnmapNamedBufferEXT(GLuint buffer) {
     unmaps(*tThread, buffer);
-    const GLboolean kept = gReal.glUnmapNamedBufferEXT(buffer);
+    const GLboolean intact = gReal.glUnmapNamedBufferEXT(buffer);
     unmappedHere(*tThread, buffer);
-    return kept;
+    return intact;
 }
 void mural_glFlushMappedNamedBufferRangeEXT(GLuint buffer, GLintptr offset, GLsizeiptr length) {
     mapFlushes(*tThread, buffer, offset, length);

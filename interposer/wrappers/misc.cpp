@@ -101,11 +101,11 @@ void drawFeedback(ThreadState& t, bool now) {
 }
 
 // A list that calls other lists may move the raster position, depending on their content at the call.
-void noteListCall(const ThreadState& t, bool asks) {
+void noteListCall(const ThreadState& t, bool conditional) {
     if (!t.context || !t.context->compilingList) return;
     ShareGroup& group = *t.context->group;
     group.listMovesRaster.set(t.context->compiledList, true);
-    if (asks) group.listAsks.set(t.context->compiledList, true);
+    if (conditional) group.listConditional.set(t.context->compiledList, true);
 }
 void notePrimitives(Context& c, GLuint called) {
     if (!c.compilingList) return;
@@ -143,7 +143,7 @@ void mural_glNewList(GLuint list, GLenum mode) {
     setDrawing(t.context->drawsList, mode == GL_COMPILE_AND_EXECUTE);
     ShareGroup& group = *t.context->group;
     group.listMovesRaster.set(list, false);
-    group.listAsks.set(list, false);
+    group.listConditional.set(list, false);
     group.listOpens.set(list, false);
     group.listCloses.set(list, false);
     group.listsChange = group.listsChange || group.listCompiled.get(list);
@@ -165,7 +165,7 @@ void mural_glCallList(GLuint list) {
     beforeList(t, list);
     buffersRead(t);
     encode_glCallList(t, list);
-    noteListCall(t, t.context && listAsks(*t.context->group, list));
+    noteListCall(t, t.context && listConditional(*t.context->group, list));
     const ShareGroup* group = t.context ? t.context->group : nullptr;
     const bool moves = group && group->listsMoveRaster && (group->listMovesRaster.get(list) || !NameBits::known(list));
     if (t.context) notePrimitives(*t.context, list);

@@ -14,7 +14,7 @@ namespace {
 template <class Local, class Span> void packed(const void* values, Local&& local, Span&& span, const char* by) {
     ThreadState& t = *tThread;
     if (!capturing(t) || !packBufferBound(*t.context)) return local();
-    if (packsHere(t, local, by)) tellPackBuffer(t, values, span());
+    if (packsHere(t, local, by)) sendPackBuffer(t, values, span());
 }
 
 template <class Value, class Local>

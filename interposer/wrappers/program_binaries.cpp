@@ -36,7 +36,7 @@ uint32_t checksumOf(const std::byte* bytes, size_t count) {
 }
 
 // Reads the footer of a binary with a recipe. Returns false for others.
-bool isOurs(const void* binary, GLsizei length, Footer& footer) {
+bool readFooter(const void* binary, GLsizei length, Footer& footer) {
     if (!binary || length < static_cast<GLsizei>(sizeof(Footer))) return false;
     const auto* bytes = static_cast<const std::byte*>(binary);
     std::memcpy(&footer, bytes + length - sizeof(Footer), sizeof(Footer));
@@ -71,7 +71,7 @@ void mural_glGetProgramiv(GLuint program, GLenum pname, GLint* params) {
     if (pname != GL_PROGRAM_BINARY_LENGTH || !capturing(t)) return local();
     if (!raisesNothing(*t.context, local) || *params <= 0) return;
     uint64_t recipeBytes = 0;
-    (void)askProgram(t, program, recipeBytes);
+    (void)requestProgram(t, program, recipeBytes);
     *params += static_cast<GLint>(recipeBytes + sizeof(Footer));
 }
 
@@ -82,7 +82,7 @@ void mural_glGetProgramBinary(GLuint program, GLsizei bufSize, GLsizei* length, 
     };
     if (!capturing(t) || bufSize < 0) return local(bufSize, length);
     uint64_t recipeBytes = 0;
-    const void* recipe = askProgram(t, program, recipeBytes);
+    const void* recipe = requestProgram(t, program, recipeBytes);
     if (!recipe) recipeBytes = 0;
     const auto more = static_cast<GLsizei>(recipeBytes + sizeof(Footer));
     GLsizei own = 0;
@@ -100,11 +100,11 @@ void mural_glGetProgramBinary(GLuint program, GLsizei bufSize, GLsizei* length, 
 void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* binary, GLsizei length) {
     ThreadState& t = *tThread;
     Footer footer;
-    const bool ours = isOurs(binary, length, footer);
+    const bool isMuralBinary = readFooter(binary, length, footer);
     if (!capturing(t))
         return gReal.glProgramBinary(program, binaryFormat, binary,
-                                     ours ? static_cast<GLsizei>(footer.driverBytes) : length);
-    const bool loads = ours && footer.recipeBytes > 0;
+                                     isMuralBinary ? static_cast<GLsizei>(footer.driverBytes) : length);
+    const bool loads = isMuralBinary && footer.recipeBytes > 0;
     const GLsizei driverBytes = length < 0 ? length : loads ? static_cast<GLsizei>(footer.driverBytes) : 0;
     if (!raisesNothing(*t.context, [&] { gReal.glProgramBinary(program, binaryFormat, binary, driverBytes); })) return;
     if (!loads || !linked(program)) return records::programRecipe(t, program, {});

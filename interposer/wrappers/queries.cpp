@@ -57,14 +57,14 @@ bool result(ThreadState& t, const char* by, GLuint id, uint64_t& value) {
     if (t.context->queryIsTimestamp.get(id) || neverBegun(t, id)) return false;
     const bool keeps = !t.context->group->listCounts.get(id); // a list begins it at every call
     if (!keeps || !t.context->answers.find(id, t.context->swaps, value)) {
-        if (!askQuery(t, id, GL_QUERY_RESULT, value, by)) return false;
+        if (!requestQuery(t, id, GL_QUERY_RESULT, value, by)) return false;
         if (keeps) t.context->answers.keep(id, value);
     }
     if (value > 1 && t.context->queryIsAny.get(id)) value = 1; // a boolean result was summed over several tiles
     return true;
 }
 
-template <class T> T held(uint64_t value) {
+template <class T> T clampTo(uint64_t value) {
     const uint64_t largest =
         static_cast<uint64_t>(sizeof(T) == 4 ? (static_cast<T>(-1) < 0 ? INT32_MAX : UINT32_MAX) : UINT64_MAX);
     return static_cast<T>(value < largest ? value : largest);
@@ -79,7 +79,7 @@ template <class T, class Local>
 void intoMemory(ThreadState& t, const char* by, GLuint id, GLenum pname, T* params, Local local) {
     if (drawsAllItself(t) || !params || !isResult(pname)) return local();
     uint64_t value = 0;
-    if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = held<T>(value);
+    if (raisesNothing(*t.context, local) && result(t, by, id, value)) *params = clampTo<T>(value);
 }
 
 // The same into a buffer, in the program's own context and on the nodes.
@@ -93,7 +93,7 @@ void intoBuffer(ThreadState& t, const char* by, GLuint id, GLenum pname, GLuint 
     gReal.glGetBufferSubData(GL_QUERY_BUFFER, offset, sizeof written, &written);
     uint64_t value = 0;
     if (isResult(pname) && result(t, by, id, value)) {
-        written = held<T>(value);
+        written = clampTo<T>(value);
         writeOwnCopy(t, buffer, static_cast<uint64_t>(offset), &written, sizeof written);
     }
     gReal.glBindBuffer(GL_QUERY_BUFFER, static_cast<GLuint>(before));
@@ -166,7 +166,7 @@ void mural_glQueryCounter(GLuint id, GLenum target) {
 
 namespace {
 
-void tellCondition(ThreadState& t, const char* by, GLuint id) {
+void sendCondition(ThreadState& t, const char* by, GLuint id) {
     uint64_t value = 0;
     if (t.context->queryBegun.get(id) && result(t, by, id, value)) records::queryKnown(t, id, value != 0);
 }
@@ -174,7 +174,7 @@ void tellCondition(ThreadState& t, const char* by, GLuint id) {
 // Records the conditions that a compiled list evaluates at each call.
 void noteListCondition(ThreadState& t, GLuint id) {
     ShareGroup& group = *t.context->group;
-    group.listAsks.set(t.context->compiledList, true);
+    group.listConditional.set(t.context->compiledList, true);
     if (group.listCounts.get(id) || !NameBits::known(id)) copies::drawAll(t, "glBeginConditionalRender");
     for (int i = 0; i < group.listConditionCount; ++i)
         if (group.listConditions[i] == id) return;
@@ -184,11 +184,11 @@ void noteListCondition(ThreadState& t, GLuint id) {
 } // namespace
 
 namespace mural {
-void tellListConditions(ThreadState& t, const char* by) {
+void sendListConditions(ThreadState& t, const char* by) {
     // each node has the result itself
     if (!capturing(t) || t.context->compilingList || t.context->group->allDrawn) return;
     const ShareGroup& group = *t.context->group;
-    for (int i = 0; i < group.listConditionCount; ++i) tellCondition(t, by, group.listConditions[i]);
+    for (int i = 0; i < group.listConditionCount; ++i) sendCondition(t, by, group.listConditions[i]);
 }
 } // namespace mural
 
@@ -201,7 +201,7 @@ void mural_glBeginConditionalRender(GLuint id, GLenum mode) {
     if (!capturing(t) || t.context->compilingList) {
         if (capturing(t) && !t.context->listPrimitive) {
             noteListCondition(t, id);
-            tellCondition(t, __func__, id); // the list may be executed during compilation
+            sendCondition(t, __func__, id); // the list may be executed during compilation
         }
         encode_glBeginConditionalRender(t, id, mode);
         return gReal.glBeginConditionalRender(id, mode);

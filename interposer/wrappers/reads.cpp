@@ -49,7 +49,8 @@ void readPixels(ThreadState& t, GLint x, GLint y, GLsizei width, GLsizei height,
     store.skipRows += clip.y - y;
     const sizes::ImageLayout layout = sizes::layoutOf(store, format, type, clip.w, clip.h, 1, 2);
     if (packBufferBound(c)) {
-        if (layout.known && owePixels(t, clip, format, type, {reinterpret_cast<uint64_t>(pixels), layout}, by)) return;
+        if (layout.known && deferPixels(t, clip, format, type, {reinterpret_cast<uint64_t>(pixels), layout}, by))
+            return;
         settleBound(t, GL_PIXEL_PACK_BUFFER, by);
     }
     const void* tight = requestPixels(t, clip.x, clip.y, clip.w, clip.h, format, type, 0, by);
@@ -66,7 +67,7 @@ void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum 
     const size_t bytes = sizes::tightBytes(format, type, size.width, size.height, size.depth);
     const sizes::ImageLayout layout =
         sizes::layoutOf(packStore(*t.context), format, type, size.width, size.height, size.depth, dimensions);
-    askAndDeliver(t, {byName, which, level, format, type, bytes}, pixels, layout, by);
+    requestAndDeliver(t, {byName, which, level, format, type, bytes}, pixels, layout, by);
 }
 
 // Executes the driver's own call first. It raises errors, and returns data in case the nodes have no answer.
@@ -170,7 +171,7 @@ void mural_glGetTextureSubImage(GLuint texture, GLint level, GLint xoffset, GLin
     const sizes::ImageLayout layout =
         sizes::layoutOf(packStore(*t.context), format, type, width, height, depth, dimensionsByName(target));
     const ImagePart part{size, {xoffset, yoffset, zoffset}, {width, height, depth}, sizes::groupBytes(format, type)};
-    askAndDeliver(t, {true, texture, level, format, type, whole, part}, pixels, layout, __func__);
+    requestAndDeliver(t, {true, texture, level, format, type, whole, part}, pixels, layout, __func__);
 }
 
 } // extern "C"

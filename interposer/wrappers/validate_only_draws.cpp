@@ -93,10 +93,10 @@ void meshTasks(GLuint first, GLuint count) {
 void dispatch(GLuint x, GLuint y, GLuint z) {
     const GLuint count[3] = {x, y, z};
     for (GLuint i = 0; i < 3; ++i) {
-        GLint most = static_cast<GLint>(kSureGroups);
+        GLint maximum = static_cast<GLint>(kSureGroups);
         if (count[i] > kSureGroups && gReal.glGetIntegeri_v)
-            gReal.glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, i, &most);
-        if (count[i] > static_cast<GLuint>(most)) return gReal.glDispatchCompute(x, y, z);
+            gReal.glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, i, &maximum);
+        if (count[i] > static_cast<GLuint>(maximum)) return gReal.glDispatchCompute(x, y, z);
     }
     gReal.glDispatchCompute(0, 0, 0);
 }

@@ -13,7 +13,7 @@
 namespace mural {
 
 namespace gone_windows {
-std::atomic<int> asked{0};
+std::atomic<int> pending{0};
 }
 
 namespace {
@@ -30,11 +30,12 @@ Lock lock; // guards all questions
 struct Xcb {
     template <class F> static F* get(const char* name) { return loadedFunction<F>(kXcb, name); }
     decltype(&xcb_get_file_descriptor) socket = get<decltype(xcb_get_file_descriptor)>("xcb_get_file_descriptor");
-    decltype(&xcb_get_window_attributes) ask = get<decltype(xcb_get_window_attributes)>("xcb_get_window_attributes");
+    decltype(&xcb_get_window_attributes) request =
+        get<decltype(xcb_get_window_attributes)>("xcb_get_window_attributes");
     decltype(&xcb_wait_for_reply) wait = get<decltype(xcb_wait_for_reply)>("xcb_wait_for_reply");
     decltype(&xcb_poll_for_reply) poll = get<decltype(xcb_poll_for_reply)>("xcb_poll_for_reply");
     decltype(&xcb_get_setup) setup = get<decltype(xcb_get_setup)>("xcb_get_setup");
-    [[nodiscard]] bool complete() const { return socket && ask && wait && poll && setup; }
+    [[nodiscard]] bool complete() const { return socket && request && wait && poll && setup; }
 };
 
 // Returns null if the process has not loaded libxcb.
@@ -48,7 +49,7 @@ xcb_connection_t* connectionOf(_XDisplay* display) {
     return get ? get(display) : nullptr;
 }
 
-bool isAsked(uint64_t server, uint64_t native) {
+bool isRequested(uint64_t server, uint64_t native) {
     for (const Question& q : questions)
         if (q.connection && q.server == server && q.native == native) return true;
     return false;
@@ -62,36 +63,36 @@ Question* freePlace() {
 
 void forget(Question& q) {
     q = {};
-    --gone_windows::asked;
+    --gone_windows::pending;
 }
 
 } // namespace
 
-void askForWindows(xcb_connection_t* connection) {
+void requestWindowAttributes(xcb_connection_t* connection) {
     if (!connection || !nextWindow(nullptr)) return;
     const Xcb* xcb = loadedXcb();
     const uint64_t server = xcb ? serverOf(xcb->socket(connection)) : 0;
     if (server == 0) return;
     Guard guard(lock);
     for (const Window* w = nextWindow(nullptr); w; w = nextWindow(w)) {
-        if (!w->announced || !w->native || w->server != server || isAsked(server, w->native)) continue;
+        if (!w->announced || !w->native || w->server != server || isRequested(server, w->native)) continue;
         Question* q = freePlace();
         if (!q) return;
-        *q = {connection, xcb->ask(connection, static_cast<xcb_window_t>(w->native)).sequence, server, w->native};
-        ++gone_windows::asked;
+        *q = {connection, xcb->request(connection, static_cast<xcb_window_t>(w->native)).sequence, server, w->native};
+        ++gone_windows::pending;
     }
 }
 
-void askForWindows(_XDisplay* display) {
-    if (nextWindow(nullptr)) askForWindows(connectionOf(display));
+void requestWindowAttributes(_XDisplay* display) {
+    if (nextWindow(nullptr)) requestWindowAttributes(connectionOf(display));
 }
 
-void lookForGone(Window& w) {
+void checkForDestroyed(Window& w) {
     const Xcb* xcb = loadedXcb();
     xcb_connection_t* c = w.isEgl ? xConnectionOf(w.display) : connectionOf(static_cast<_XDisplay*>(w.display));
     if (!xcb || !c) return;
     xcb_generic_error_t* error = nullptr;
-    void* reply = xcb->wait(c, xcb->ask(c, static_cast<xcb_window_t>(w.native)).sequence, &error);
+    void* reply = xcb->wait(c, xcb->request(c, static_cast<xcb_window_t>(w.native)).sequence, &error);
     if (reply) w.nativeGone = w.introduced = w.sizeKnown = false;
     std::free(reply);
     std::free(error);

@@ -15,17 +15,17 @@ namespace mural {
 struct Window;
 
 namespace gone_windows {
-extern std::atomic<int> asked;
+extern std::atomic<int> pending;
 }
-[[nodiscard]] inline bool windowsAsked() { return gone_windows::asked.load(std::memory_order_relaxed) > 0; }
+[[nodiscard]] inline bool hasWindowRequests() { return gone_windows::pending.load(std::memory_order_relaxed) > 0; }
 
 // Call it after a request of this connection that may have destroyed windows.
-void askForWindows(xcb_connection_t* connection);
-void askForWindows(_XDisplay* display);
+void requestWindowAttributes(xcb_connection_t* connection);
+void requestWindowAttributes(_XDisplay* display);
 // Takes the replies that have arrived and ends the windows that the server does not have.
 void takeGoneWindows();
 // Call it when the program binds a destroyed window again: the number may belong to a new window. Waits for the reply.
-void lookForGone(Window& w);
+void checkForDestroyed(Window& w);
 // Drops the questions of a closing connection and ends the windows that it has created.
 void connectionCloses(xcb_connection_t* connection);
 

@@ -45,11 +45,11 @@ const xcb_format_t* formatOf(const xcb_setup_t* setup, uint8_t depth) {
 }
 
 // Queries the server, which answers the grabbing connection. Returns false for an unknown window or format.
-bool ask(xcb_connection_t* c, xcb_window_t window, Target& target, capture::OwnWindow& slot) {
-    const auto attributesAsked = XCB(xcb_get_window_attributes_unchecked, c, window);
-    const auto geometryAsked = XCB(xcb_get_geometry_unchecked, c, window);
-    auto* const attributes = XCB(xcb_get_window_attributes_reply, c, attributesAsked, nullptr);
-    auto* const geometry = XCB(xcb_get_geometry_reply, c, geometryAsked, nullptr);
+bool readGeometry(xcb_connection_t* c, xcb_window_t window, Target& target, capture::OwnWindow& slot) {
+    const auto attributesCookie = XCB(xcb_get_window_attributes_unchecked, c, window);
+    const auto geometryCookie = XCB(xcb_get_geometry_unchecked, c, window);
+    auto* const attributes = XCB(xcb_get_window_attributes_reply, c, attributesCookie, nullptr);
+    auto* const geometry = XCB(xcb_get_geometry_reply, c, geometryCookie, nullptr);
     const xcb_setup_t* const setup = XCB(xcb_get_setup, c);
     const xcb_visualtype_t* const visual = setup && attributes ? visualOf(setup, attributes->visual) : nullptr;
     const xcb_format_t* const format = setup && geometry ? formatOf(setup, geometry->depth) : nullptr;
@@ -90,7 +90,7 @@ bool announceOwnPut(capture::CaptureHeader& header, const Window& w, uint32_t fr
         capture::OwnWindow& slot = header.ownWindows[target - targets];
         slot.window.store(0, std::memory_order_release);
         *target = {};
-        if (!ask(c, window, *target, slot)) return false;
+        if (!readGeometry(c, window, *target, slot)) return false;
     }
     capture::OwnWindow& slot = header.ownWindows[target - targets];
     slot.frame.store(frame, std::memory_order_relaxed);

@@ -133,12 +133,12 @@ xcb_connection_t* grabbingConnection(const Window& w) {
     return nullptr;
 }
 
-bool askSizeDuringGrab(const Window& w, uint32_t& width, uint32_t& height) {
-    static NextFunction ask{"xcb_get_geometry_unchecked", kXcb}, answer{"xcb_get_geometry_reply", kXcb};
+bool querySizeDuringGrab(const Window& w, uint32_t& width, uint32_t& height) {
+    static NextFunction request{"xcb_get_geometry_unchecked", kXcb}, reply{"xcb_get_geometry_reply", kXcb};
     xcb_connection_t* const c = grabbingConnection(w);
     if (!c) return false;
-    const auto asked = MURAL_CALL_OF(ask, xcb_get_geometry_unchecked, c, static_cast<xcb_drawable_t>(w.native));
-    auto* const geometry = MURAL_CALL_OF(answer, xcb_get_geometry_reply, c, asked, nullptr);
+    const auto cookie = MURAL_CALL_OF(request, xcb_get_geometry_unchecked, c, static_cast<xcb_drawable_t>(w.native));
+    auto* const geometry = MURAL_CALL_OF(reply, xcb_get_geometry_reply, c, cookie, nullptr);
     if (!geometry) return false;
     width = geometry->width;
     height = geometry->height;

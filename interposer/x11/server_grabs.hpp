@@ -14,6 +14,6 @@ xcb_connection_t* grabbingConnection(const Window& w);
 
 // Queries the window's size through the grabbing connection, because the server answers no other one. Returns false if
 // there is no grab or no such window.
-bool askSizeDuringGrab(const Window& w, uint32_t& width, uint32_t& height);
+bool querySizeDuringGrab(const Window& w, uint32_t& width, uint32_t& height);
 
 } // namespace mural

@@ -36,21 +36,21 @@ void windowEnds(auto* connection, uint64_t window) {
 
 } // namespace
 
-#define PASS_ON_AND_ASK(library, function, connection, resource)                                                       \
+#define PASS_ON_AND_CHECK(library, function, connection, resource)                                                     \
     static NextFunction next{#function, library};                                                                      \
     const auto result = callNext(next, function, connection, resource);                                                \
-    askForWindows(connection);                                                                                         \
+    requestWindowAttributes(connection);                                                                               \
     return result
 
 #define END_AND_PASS_ON(library, function, connection, window)                                                         \
     windowEnds(connection, window);                                                                                    \
-    PASS_ON_AND_ASK(library, function, connection, window)
+    PASS_ON_AND_CHECK(library, function, connection, window)
 
 MURAL_SHOWN int XDestroyWindow(Display* dpy, ::Window window) { END_AND_PASS_ON(kXlib, XDestroyWindow, dpy, window); }
 MURAL_SHOWN int XDestroySubwindows(Display* dpy, ::Window window) {
-    PASS_ON_AND_ASK(kXlib, XDestroySubwindows, dpy, window);
+    PASS_ON_AND_CHECK(kXlib, XDestroySubwindows, dpy, window);
 }
-MURAL_SHOWN int XKillClient(Display* dpy, XID resource) { PASS_ON_AND_ASK(kXlib, XKillClient, dpy, resource); }
+MURAL_SHOWN int XKillClient(Display* dpy, XID resource) { PASS_ON_AND_CHECK(kXlib, XKillClient, dpy, resource); }
 MURAL_SHOWN int XCloseDisplay(Display* dpy) {
     static NextFunction next{"XCloseDisplay", kXlib};
     displayCloses(dpy);
@@ -64,16 +64,16 @@ MURAL_SHOWN xcb_void_cookie_t xcb_destroy_window_checked(xcb_connection_t* c, xc
     END_AND_PASS_ON(kXcb, xcb_destroy_window_checked, c, window);
 }
 MURAL_SHOWN xcb_void_cookie_t xcb_destroy_subwindows(xcb_connection_t* c, xcb_window_t window) {
-    PASS_ON_AND_ASK(kXcb, xcb_destroy_subwindows, c, window);
+    PASS_ON_AND_CHECK(kXcb, xcb_destroy_subwindows, c, window);
 }
 MURAL_SHOWN xcb_void_cookie_t xcb_destroy_subwindows_checked(xcb_connection_t* c, xcb_window_t window) {
-    PASS_ON_AND_ASK(kXcb, xcb_destroy_subwindows_checked, c, window);
+    PASS_ON_AND_CHECK(kXcb, xcb_destroy_subwindows_checked, c, window);
 }
 MURAL_SHOWN xcb_void_cookie_t xcb_kill_client(xcb_connection_t* c, uint32_t resource) {
-    PASS_ON_AND_ASK(kXcb, xcb_kill_client, c, resource);
+    PASS_ON_AND_CHECK(kXcb, xcb_kill_client, c, resource);
 }
 MURAL_SHOWN xcb_void_cookie_t xcb_kill_client_checked(xcb_connection_t* c, uint32_t resource) {
-    PASS_ON_AND_ASK(kXcb, xcb_kill_client_checked, c, resource);
+    PASS_ON_AND_CHECK(kXcb, xcb_kill_client_checked, c, resource);
 }
 MURAL_SHOWN void xcb_disconnect(xcb_connection_t* c) {
     static NextFunction next{"xcb_disconnect", kXcb};

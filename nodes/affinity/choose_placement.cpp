@@ -36,12 +36,12 @@ PlacementChoice choosePlacement(const MachineView& machine, DeviceKind kind) {
         if (best == nullptr || device.rank > best->rank) best = &device;
     }
     if (best == nullptr) return stay(std::string("no ") + kindName(kind) + " found");
-    std::set<unsigned> near;
-    std::ranges::set_intersection(best->cpus, machine.allowedCpus, std::inserter(near, near.end()));
+    std::set<unsigned> close;
+    std::ranges::set_intersection(best->cpus, machine.allowedCpus, std::inserter(close, close.end()));
     const std::string device = best->name + (count > 1 ? " (of " + std::to_string(count) + ")" : "");
-    if (near.empty()) return stay("no core close to " + device + " may be used");
-    if (near == machine.allowedCpus) return stay("all cores that may be used are close to " + device);
-    return {near, "on cores " + rangesOf(near) + ", near " + device};
+    if (close.empty()) return stay("no core close to " + device + " may be used");
+    if (close == machine.allowedCpus) return stay("all cores that may be used are close to " + device);
+    return {close, "on cores " + rangesOf(close) + ", near " + device};
 }
 
 } // namespace mural

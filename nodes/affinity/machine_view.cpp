@@ -25,9 +25,9 @@ std::string busIdOf(const hwloc_obj_attr_u::hwloc_pcidev_attr_s& pci) {
     return text.data();
 }
 
-std::set<unsigned> cpusNear(hwloc_topology_t topology, hwloc_obj_t device) {
-    const hwloc_obj_t holder = hwloc_get_non_io_ancestor_obj(topology, device);
-    return holder == nullptr ? std::set<unsigned>() : toSet(holder->cpuset);
+std::set<unsigned> cpusCloseTo(hwloc_topology_t topology, hwloc_obj_t device) {
+    const hwloc_obj_t object = hwloc_get_non_io_ancestor_obj(topology, device);
+    return object == nullptr ? std::set<unsigned>() : toSet(object->cpuset);
 }
 
 int linkMbitPerSec(const std::string& interface) {
@@ -58,12 +58,12 @@ MachineView viewOf(hwloc_topology_t topology, const DeviceFacts& facts) {
         if (o->attr->pcidev.class_id >> 8 != kPciDisplayClass) continue;
         const std::string busId = busIdOf(o->attr->pcidev);
         machine.devices.push_back(
-            {DeviceKind::Gpu, "PCI " + busId, facts.canRender(busId) ? 1 : 0, true, cpusNear(topology, o)});
+            {DeviceKind::Gpu, "PCI " + busId, facts.canRender(busId) ? 1 : 0, true, cpusCloseTo(topology, o)});
     }
     for (hwloc_obj_t o = nullptr; (o = hwloc_get_next_osdev(topology, o)) != nullptr;) {
         if (o->attr->osdev.type != HWLOC_OBJ_OSDEV_NETWORK || o->name == nullptr) continue;
         const int speed = facts.linkMbitPerSec(o->name);
-        machine.devices.push_back({DeviceKind::Network, o->name, speed, speed > 0, cpusNear(topology, o)});
+        machine.devices.push_back({DeviceKind::Network, o->name, speed, speed > 0, cpusCloseTo(topology, o)});
     }
     return machine;
 }

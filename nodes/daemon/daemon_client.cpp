@@ -68,10 +68,10 @@ Result<int> callNode(const DaemonClient& call) {
                 return r.error();
         }
         // A session has no time limit. TCP keepalive detects a lost head within 14 s.
-        std::array<pollfd, 2> look{{{channel.descriptor(), POLLIN, 0}, {input ? STDIN_FILENO : -1, POLLIN, 0}}};
-        if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR)
+        std::array<pollfd, 2> polled{{{channel.descriptor(), POLLIN, 0}, {input ? STDIN_FILENO : -1, POLLIN, 0}}};
+        if (poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR)
             return Error{"cannot wait for the node: " + errnoText(errno)};
-        if (look[0].revents != 0) {
+        if (polled[0].revents != 0) {
             if (auto r = channel.fetch(); !r) {
                 // Reads the queued messages first, because the process may have ended normally.
                 for (auto m = channel.next(); m; m = channel.next())
@@ -80,7 +80,7 @@ Result<int> callNode(const DaemonClient& call) {
                 return Error{"the connection to the daemon is lost: " + r.error().message};
             }
         }
-        if (look[1].revents != 0) {
+        if (polled[1].revents != 0) {
             std::array<std::byte, 4096> piece;
             const ssize_t n = ::read(STDIN_FILENO, piece.data(), piece.size());
             if (n < 0 && errno == EINTR) continue;

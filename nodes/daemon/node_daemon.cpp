@@ -105,12 +105,12 @@ void NodeDaemon::take(FileDescriptor socket, const std::string& peer) {
 Result<void> NodeDaemon::serve(int stopFd) {
     Result<void> result;
     while (true) {
-        std::array<pollfd, 2> look{{{socket_.get(), POLLIN, 0}, {stopFd, POLLIN, 0}}};
-        if (poll(look.data(), look.size(), -1) < 0 && errno != EINTR) {
+        std::array<pollfd, 2> polled{{{socket_.get(), POLLIN, 0}, {stopFd, POLLIN, 0}}};
+        if (poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) {
             result = Error{"cannot wait for heads: " + errnoText(errno)};
             break;
         }
-        if (look[1].revents != 0) break;
+        if (polled[1].revents != 0) break;
         SocketAddress from;
         from.sizeBytes = sizeof from.storage;
         FileDescriptor socket(accept4(socket_.get(), from.get(), &from.sizeBytes, SOCK_NONBLOCK | SOCK_CLOEXEC));

@@ -29,13 +29,13 @@ struct Streams {
 
     static Result<Streams> make() {
         Streams s;
-        for (const auto& [ours, its] : {std::pair(&s.input, &s.itsInput), std::pair(&s.output, &s.itsOutput),
-                                        std::pair(&s.errors, &s.itsErrors)}) {
+        for (const auto& [ownEnd, childEnd] : {std::pair(&s.input, &s.itsInput), std::pair(&s.output, &s.itsOutput),
+                                               std::pair(&s.errors, &s.itsErrors)}) {
             int ends[2];
             if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
                 return Error{"cannot create a socket for a process: " + errnoText(errno)};
-            *ours = FileDescriptor(ends[0]);
-            *its = FileDescriptor(ends[1]);
+            *ownEnd = FileDescriptor(ends[0]);
+            *childEnd = FileDescriptor(ends[1]);
             (void)fcntl(ends[0], F_SETFL, O_NONBLOCK);
         }
         return s;
@@ -54,20 +54,20 @@ public:
 
     Result<std::string> run(const std::atomic<bool>& stop) {
         while (!stop) {
-            std::array<pollfd, 4> look{{{channel_.descriptor(), POLLIN, 0},
-                                        {s_.output.get(), POLLIN, 0},
-                                        {s_.errors.get(), POLLIN, 0},
-                                        {waiting_.empty() ? -1 : s_.input.get(), POLLOUT, 0}}};
-            (void)poll(look.data(), look.size(), kSliceMs);
-            auto came = look[0].revents != 0 ? channel_.fetch() : Result<void>();
+            std::array<pollfd, 4> polled{{{channel_.descriptor(), POLLIN, 0},
+                                          {s_.output.get(), POLLIN, 0},
+                                          {s_.errors.get(), POLLIN, 0},
+                                          {waiting_.empty() ? -1 : s_.input.get(), POLLOUT, 0}}};
+            (void)poll(polled.data(), polled.size(), kSliceMs);
+            auto came = polled[0].revents != 0 ? channel_.fetch() : Result<void>();
             // Input may have arrived with the order.
             if (auto r = takeInput(); !r) return r.error();
             if (!came) return came.error();
             feed();
             // Reads the state before the output, so that the last output is sent.
             const bool ended = !process_.running();
-            if (auto r = tell(s_.output, NodeMessageKind::Output); !r) return r.error();
-            if (auto r = tell(s_.errors, NodeMessageKind::Errors); !r) return r.error();
+            if (auto r = sendOutput(s_.output, NodeMessageKind::Output); !r) return r.error();
+            if (auto r = sendOutput(s_.errors, NodeMessageKind::Errors); !r) return r.error();
             if (ended) return end();
         }
         return Error{"this daemon is stopping"};
@@ -94,7 +94,7 @@ private:
         }
         if (inputEnded_ && waiting_.empty()) s_.input = FileDescriptor();
     }
-    Result<void> tell(FileDescriptor& from, NodeMessageKind kind) {
+    Result<void> sendOutput(FileDescriptor& from, NodeMessageKind kind) {
         std::array<std::byte, 16'384> piece;
         while (from.valid()) {
             const ssize_t n = ::recv(from.get(), piece.data(), piece.size(), 0);
@@ -155,7 +155,8 @@ Result<std::string> runOrdered(const std::string& executable, const std::vector<
     request.signalWhenWeDie = SIGKILL;
     auto process = launch::ChildProcess::start(request);
     if (!process) return process.error();
-    for (FileDescriptor* its : {&streams->itsInput, &streams->itsOutput, &streams->itsErrors}) *its = FileDescriptor();
+    for (FileDescriptor* childEnd : {&streams->itsInput, &streams->itsOutput, &streams->itsErrors})
+        *childEnd = FileDescriptor();
     return Relay(*process, std::move(*streams), channel).run(stop);
 }
 

@@ -19,13 +19,13 @@ public:
     // After an error the peer counts as lost, and later calls fail at once.
     virtual Result<void> send(int rank, std::vector<std::byte> message, Deadline deadline) = 0;
     // Returns the next message of the rank. A message above mostBytes is an error.
-    virtual Result<std::vector<std::byte>> receive(int rank, size_t mostBytes, Deadline deadline) = 0;
+    virtual Result<std::vector<std::byte>> receive(int rank, size_t maxBytes, Deadline deadline) = 0;
     // The transfer to that rank since the last call.
     virtual LinkTransfer takeTransfer(int rank) = 0;
     // Drops a peer that has sent an invalid message.
     virtual void giveUp(int rank) = 0;
-    // Replaces the node of that rank by its incarnation `life`. Without a connection the rank counts as lost.
-    virtual void renew(int rank, uint32_t life) = 0;
+    // Replaces the node of that rank by its incarnation `incarnation`. Without a connection the rank counts as lost.
+    virtual void renew(int rank, uint32_t incarnation) = 0;
 };
 
 } // namespace mural

@@ -12,9 +12,9 @@ namespace {
 // In one composition a node sends at most two parts to another. Room for two compositions prevents a deadlock: the
 // slowest node always has room.
 constexpr size_t kMaxWaiting = 4;
-constexpr int64_t kWriteMs = 60'000;        // the reader gives up the whole picture earlier
-constexpr int64_t kLingerMs = 5'000;        // limit for the destructor
-constexpr uint64_t kTellingBytes = 1 << 16; // smaller transfers only measure socket buffers
+constexpr int64_t kWriteMs = 60'000;            // the reader gives up the whole picture earlier
+constexpr int64_t kLingerMs = 5'000;            // limit for the destructor
+constexpr uint64_t kMinMeasuredBytes = 1 << 16; // smaller transfers only measure socket buffers
 
 } // namespace
 
@@ -63,7 +63,7 @@ void PartSender::run() {
         if (done) over_.flush();
         const int64_t tookNs = monotonicNowNs() - beganNs;
         lock.lock();
-        if (done && message.size() >= kTellingBytes) {
+        if (done && message.size() >= kMinMeasuredBytes) {
             transfer_.bytes += message.size();
             transfer_.ns += tookNs;
         }

@@ -21,7 +21,7 @@ void PictureComposer::agree() {
 }
 
 // After a loss, the remaining nodes send directly to the collector from the next picture on.
-void PictureComposer::tellNext() {
+void PictureComposer::sendNext() {
     if (strategy_ == Strategy::Serial || config_.rank != 0) return;
     for (int rank = 1; rank < config_.ranks; ++rank)
         if (!lost_.contains(rank)) (void)routes_.send(rank, {std::byte{incomplete_}}, Deadline::inMs(config_.partMs));
@@ -33,10 +33,10 @@ void PictureComposer::serially() {
     rows_ = -1;
 }
 
-void PictureComposer::returned(int rank, uint32_t life, const std::set<int>& absent) {
+void PictureComposer::returned(int rank, uint32_t incarnation, const std::set<int>& absent) {
     // discards a stale decision of the collector for the previous picture
     if (rank != 0 && rank != config_.rank) agree();
-    if (rank != config_.rank) routes_.renew(rank, life);
+    if (rank != config_.rank) routes_.renew(rank, incarnation);
     encoders_.erase(rank); // codec choice depends on the bandwidth of the old link
     lost_ = absent;
     incomplete_ = false;
@@ -64,7 +64,7 @@ PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& r
         else
             send(part, step, used);
     }
-    tellNext();
+    sendNext();
     return changed_;
 }
 

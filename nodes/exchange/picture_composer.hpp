@@ -37,13 +37,13 @@ public:
     // Called by each node with its part. Afterwards the collector's part is the whole picture; other nodes' parts are
     // undefined. Returns the area that may have changed. Reports each lost node once; its range is missing.
     PixelViewport compose(PicturePart& part, const CompositeRule& rule);
-    // From the next picture on, the rank takes part with its incarnation `life`, and so do all ranks except `absent`.
-    // All participants must call this between the same two pictures.
-    void returned(int rank, uint32_t life, const std::set<int>& absent);
+    // From the next picture on, the rank takes part with its incarnation `incarnation`, and so do all ranks except
+    // `absent`. All participants must call this between the same two pictures.
+    void returned(int rank, uint32_t incarnation, const std::set<int>& absent);
 
 private:
     void agree();
-    void tellNext();
+    void sendNext();
     void serially();
     void send(const PicturePart& part, const compositor::Step& step, const CompositeRule& rule);
     void take(PicturePart& part, const compositor::Step& step, const CompositeRule& rule, int64_t beganNs);

@@ -20,16 +20,16 @@ constexpr size_t kWelcomeBytes = 4; // first message to a connecting node: the i
 
 std::string rangeText(int rank) { return "range " + std::to_string(rank + 1); }
 
-std::vector<std::byte> welcomeOf(uint32_t life) {
+std::vector<std::byte> welcomeOf(uint32_t incarnation) {
     std::vector<std::byte> message(kWelcomeBytes);
-    storeLittle(message.data(), life);
+    storeLittle(message.data(), incarnation);
     return message;
 }
 
 } // namespace
 
 std::string PictureExchange::textOf(const Name& name) {
-    return kName + std::to_string(name.rank) + "." + std::to_string(name.life);
+    return kName + std::to_string(name.rank) + "." + std::to_string(name.incarnation);
 }
 
 std::optional<PictureExchange::Name> PictureExchange::nameOf(const std::string& text) {
@@ -38,8 +38,8 @@ std::optional<PictureExchange::Name> PictureExchange::nameOf(const std::string& 
     const char* const end = text.data() + text.size();
     const auto rank = std::from_chars(text.data() + kName.size(), end, name.rank);
     if (rank.ec != std::errc() || rank.ptr == end || *rank.ptr != '.' || name.rank < 0) return std::nullopt;
-    const auto life = std::from_chars(rank.ptr + 1, end, name.life);
-    return life.ec == std::errc() && life.ptr == end ? std::optional(name) : std::nullopt;
+    const auto incarnation = std::from_chars(rank.ptr + 1, end, name.incarnation);
+    return incarnation.ec == std::errc() && incarnation.ptr == end ? std::optional(name) : std::nullopt;
 }
 
 Result<void> PictureExchange::listen(bool loopbackOnly) {
@@ -82,28 +82,28 @@ void PictureExchange::Link::end() {
 void PictureExchange::add(const Name& name, std::unique_ptr<Connection> connection, Side side) {
     const std::lock_guard lock(mutex_);
     Peer& peer = peers_[name.rank];
-    Link& link = !peer.link.connection && !peer.gone ? peer.link : peer.next[name.life];
+    Link& link = !peer.link.connection && !peer.gone ? peer.link : peer.next[name.incarnation];
     if (link.connection) return; // the first connection wins
     link.connection = std::move(connection);
     link.sender = std::make_unique<PartSender>(*link.connection);
-    link.life = name.life;
+    link.incarnation = name.incarnation;
     // the queue is empty: cannot block
-    if (side == Side::Accepted) (void)link.sender->send(welcomeOf(own_.life), Deadline::inMs(kProofPatienceMs));
+    if (side == Side::Accepted) (void)link.sender->send(welcomeOf(own_.incarnation), Deadline::inMs(kProofPatienceMs));
     arrived_.notify_all();
 }
 
-void PictureExchange::renew(int rank, uint32_t life) {
+void PictureExchange::renew(int rank, uint32_t incarnation) {
     std::vector<Link> before;
     {
         const std::lock_guard lock(mutex_);
         Peer& peer = peers_[rank];
-        if (!peer.link.connection || peer.link.life != life) {
+        if (!peer.link.connection || peer.link.incarnation != incarnation) {
             before.push_back(std::exchange(peer.link, {}));
-            if (const auto found = peer.next.find(life); found != peer.next.end())
+            if (const auto found = peer.next.find(incarnation); found != peer.next.end())
                 peer.link = std::exchange(found->second, {});
         }
         peer.gone = !peer.link.connection;
-        while (!peer.next.empty() && peer.next.begin()->first <= life)
+        while (!peer.next.empty() && peer.next.begin()->first <= incarnation)
             before.push_back(std::move(peer.next.extract(peer.next.begin()).mapped()));
     }
     for (Link& link : before) link.end();
@@ -132,7 +132,7 @@ Result<PictureExchange::Peer*> PictureExchange::peerOf(int rank, Deadline deadli
     std::unique_lock lock(mutex_);
     Peer& peer = peers_[rank];
     while (!peer.link.connection && !peer.gone) {
-        if (rank < own_.rank || own_.life > 0)
+        if (rank < own_.rank || own_.incarnation > 0)
             peer.gone = true; // the peer should have connected before
         else if (deadline.passed())
             peer.gone = true;
@@ -163,16 +163,16 @@ Result<void> PictureExchange::send(int rank, std::vector<std::byte> message, Dea
     return Error{rangeText(rank) + ": " + sent.error().message};
 }
 
-Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t mostBytes, Deadline deadline) {
+Result<std::vector<std::byte>> PictureExchange::receive(int rank, size_t maxBytes, Deadline deadline) {
     auto peer = peerOf(rank, deadline);
     if (!peer) return peer.error();
     const auto take = [&](Connection& c) -> Result<std::vector<std::byte>> {
         std::array<std::byte, 4> size;
         if (auto r = c.read(size, deadline); !r) return r.error();
         const size_t bytes = loadLittle<uint32_t>(size.data());
-        if (bytes > mostBytes)
+        if (bytes > maxBytes)
             return Error{"the size of a picture, " + std::to_string(bytes) + " bytes, exceeds the limit of " +
-                         std::to_string(mostBytes)};
+                         std::to_string(maxBytes)};
         std::vector<std::byte> message(bytes);
         if (auto r = c.read(message, deadline); !r) return r.error();
         return message;

@@ -1,6 +1,6 @@
 // Direct picture exchange between nodes. Of two nodes that start together, the one with the higher rank connects; a
 // restarted node connects to all peers. The accepting node confirms each connection, so that no node waits for one that
-// will not come. A node that lags in the stream still reads the messages of a lost node; the incarnation `life`
+// will not come. A node that lags in the stream still reads the messages of a lost node; the incarnation `incarnation`
 // separates them from its successor's. Connections are encrypted with a secret that the head gives to the nodes of one
 // picture.
 #pragma once
@@ -22,8 +22,8 @@ namespace mural {
 class PictureExchange final : public PartRoutes {
 public:
     struct Name {
-        int rank = 0;      // from 0
-        uint32_t life = 0; // incarnation: number of restarts
+        int rank = 0;             // from 0
+        uint32_t incarnation = 0; // incarnation: number of restarts
         friend bool operator==(const Name&, const Name&) = default;
     };
     PictureExchange(Name own, const ChannelSecret& secret) : own_(own), secret_(secret) {}
@@ -37,10 +37,10 @@ public:
 
     // Call from the replay thread.
     Result<void> send(int rank, std::vector<std::byte> message, Deadline deadline) override;
-    Result<std::vector<std::byte>> receive(int rank, size_t mostBytes, Deadline deadline) override;
+    Result<std::vector<std::byte>> receive(int rank, size_t maxBytes, Deadline deadline) override;
     LinkTransfer takeTransfer(int rank) override;
     void giveUp(int rank) override;
-    void renew(int rank, uint32_t life) override;
+    void renew(int rank, uint32_t incarnation) override;
 
     // Total size of messages to all peers.
     [[nodiscard]] uint64_t bytesSent() const { return bytesSent_; }
@@ -53,7 +53,7 @@ private:
     struct Link {
         std::unique_ptr<Connection> connection;
         std::unique_ptr<PartSender> sender; // destroyed before its connection
-        uint32_t life = 0;                  // incarnation of the peer
+        uint32_t incarnation = 0;           // incarnation of the peer
         void end();
     };
     struct Peer {

@@ -17,8 +17,8 @@ Result<std::span<const std::byte>> PicturePacker::pack(uint32_t client, uint32_t
         pixels = rgba_.data();
     }
     compositor::TileDeltaEncoder& tiles = windows_[{client, window}];
-    const size_t most = tiles.boundBytes(shape, codec_);
-    if (packed_.size() < most) packed_.resize(most);
+    const size_t maximum = tiles.boundBytes(shape, codec_);
+    if (packed_.size() < maximum) packed_.resize(maximum);
     auto size =
         tiles.encode({shape.format, width, height, static_cast<ptrdiff_t>(shape.rowBytes()), pixels}, codec_, packed_);
     if (!size) return size.error();

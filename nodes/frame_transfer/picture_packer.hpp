@@ -18,13 +18,13 @@ namespace mural {
 
 // Alpha in lossy codecs, which store it separately and take Bgra8 only. Lossless codecs keep all bits of any
 // PictureFormat.
-enum class PictureAlpha { Kept, Dropped };
+enum class PictureAlpha { Preserved, Dropped };
 
 // Used by one thread. The receiver must decode all packed pictures in the same order.
 class PicturePacker {
 public:
     // codec: a name for PlaneEncoder.
-    explicit PicturePacker(const std::string& codec, PictureAlpha alpha = PictureAlpha::Kept);
+    explicit PicturePacker(const std::string& codec, PictureAlpha alpha = PictureAlpha::Preserved);
 
     // Encodes rows bottom first, 4 bytes per pixel, B G R A. Requires width and height above 0. The bytes are valid
     // until the next call. Errors: out of memory.

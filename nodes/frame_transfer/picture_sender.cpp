@@ -11,8 +11,8 @@ namespace mural {
 
 namespace {
 
-constexpr size_t kMaxFrames = 2;          // one in encoding and one waiting
-constexpr size_t kTellingBytes = 1 << 16; // smaller transfers measure socket buffers instead of the link
+constexpr size_t kMaxFrames = 2;              // one in encoding and one waiting
+constexpr size_t kMinMeasuredBytes = 1 << 16; // smaller transfers measure socket buffers instead of the link
 
 std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
     return config.codec == kRawCodec ? nullptr : std::make_unique<PicturePacker>(config.codec, config.alpha);
@@ -61,7 +61,7 @@ template <class Condition> bool PictureSender::await(std::unique_lock<std::mutex
 bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
     std::unique_lock lock(mutex_);
     const auto room = [&] {
-        return isFrame ? frames_ < kMaxFrames : waitingBytes_ == 0 || waitingBytes_ + bytes <= config_.mostBytes;
+        return isFrame ? frames_ < kMaxFrames : waitingBytes_ == 0 || waitingBytes_ + bytes <= config_.maxBytes;
     };
     if (stuck_ || !await(lock, room)) {
         if (!std::exchange(stuck_, true))
@@ -82,7 +82,7 @@ bool PictureSender::send(Frame frame) {
     return give(std::move(job), 0, true);
 }
 
-bool PictureSender::tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+bool PictureSender::enqueue(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
     bool alone = false;
     {
         const std::lock_guard lock(mutex_);
@@ -163,17 +163,17 @@ void PictureSender::sendFrame(Frame& frame) {
     const wire::PictureHeader& h = frame.header;
     const int64_t beganCpuNs = threadCpuNowNs();
     auto read = frame.picture->bytes(Deadline::inMs(config_.readMs));
-    if (!read && !std::exchange(saidLost_, true))
+    if (!read && !std::exchange(lossReported_, true))
         log_("readback failed; this picture, and later ones after the same failure, are black: " +
              read.error().message);
     if (!read) black_.assign(static_cast<size_t>(h.w) * static_cast<size_t>(h.h) * 4, std::byte{0});
     std::span<const std::byte> pixels = read ? *read : black_;
     const int64_t beganNs = monotonicNowNs();
-    const ScaledSize size = sizeOnWay(h.w, h.h, config_.way);
-    if (!config_.way.none()) {
-        onWay_.resize(size.bytes());
-        resizePicture(pixels.data(), h.w, h.h, onWay_.data(), size.w, size.h);
-        pixels = onWay_;
+    const ScaledSize size = scaledSizeOf(h.w, h.h, config_.transferScale);
+    if (!config_.transferScale.none()) {
+        inTransfer_.resize(size.bytes());
+        resizePicture(pixels.data(), h.w, h.h, inTransfer_.data(), size.w, size.h);
+        pixels = inTransfer_;
     }
     int64_t packedNs = beganNs;
     if (packer_) {
@@ -181,7 +181,7 @@ void PictureSender::sendFrame(Frame& frame) {
         packedNs = monotonicNowNs();
         if (packed) {
             send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
-            if (packed->size() >= kTellingBytes) packer_->transferred(packed->size(), monotonicNowNs() - packedNs);
+            if (packed->size() >= kMinMeasuredBytes) packer_->transferred(packed->size(), monotonicNowNs() - packedNs);
         } else { // out of memory
             send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
         }

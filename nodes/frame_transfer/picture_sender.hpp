@@ -25,14 +25,14 @@ namespace mural {
 
 struct PictureSenderConfig {
     std::string codec = "raw"; // a name for PlaneEncoder; raw: no encoding
-    PictureAlpha alpha = PictureAlpha::Kept;
-    Zoom way; // reduction for the transfer (picture_way.hpp)
+    PictureAlpha alpha = PictureAlpha::Preserved;
+    Zoom transferScale; // reduction for the transfer (picture_way.hpp)
     // nodes share cores: adds this thread's CPU time to the frame's work. Otherwise the longer of the two counts,
     // because both run in parallel
     bool addsCpu = false;
-    size_t mostBytes = size_t{64} << 20; // limit of messages queued after pictures
-    int64_t readMs = 60'000;             // limit for GL to complete a picture
-    int64_t roomMs = 120'000;            // limit of the wait for queue space, without sending time; must exceed readMs
+    size_t maxBytes = size_t{64} << 20; // limit of messages queued after pictures
+    int64_t readMs = 60'000;            // limit for GL to complete a picture
+    int64_t roomMs = 120'000;           // limit of the wait for queue space, without sending time; must exceed readMs
 };
 
 // Thread safety: all calls must come from one thread.
@@ -57,7 +57,7 @@ public:
     // Queues a frame. Waits while two others are queued or in work. Returns false if sending has failed.
     bool send(Frame frame);
     // Sends a message after all queued jobs. The calling thread sends it if the sender is idle.
-    bool tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {});
+    bool enqueue(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {});
     // Forgets the last pictures of the window, or of all windows of the client. Later pictures do not refer to them.
     void windowGone(uint32_t client, uint32_t window);
     void clientGone(uint32_t client);
@@ -99,8 +99,8 @@ private:
     const Send send_;
     const Log log_;
     const std::unique_ptr<PicturePacker> packer_; // null: no encoding; used by thread_
-    std::vector<std::byte> black_, onWay_;
-    bool saidLost_ = false;
+    std::vector<std::byte> black_, inTransfer_;
+    bool lossReported_ = false;
     std::atomic<bool> sending_{false}; // thread_ is in send_
 
     std::mutex mutex_; // guards the members below

@@ -8,11 +8,11 @@
 
 namespace mural {
 
-ScaledSize sizeOnWay(int32_t w, int32_t h, const Zoom& way) {
+ScaledSize scaledSizeOf(int32_t w, int32_t h, const Zoom& transferScale) {
     const auto smaller = [](int32_t size, double by) {
         return size <= 0 ? 0 : std::clamp(static_cast<int32_t>(std::lround(size * by)), 1, size);
     };
-    return {smaller(w, way.x), smaller(h, way.y)};
+    return {smaller(w, transferScale.x), smaller(h, transferScale.y)};
 }
 
 void resizePicture(const std::byte* from, int32_t w, int32_t h, std::byte* into, int32_t toW, int32_t toH) {

@@ -16,7 +16,7 @@ struct ScaledSize {
 };
 
 // The transferred size of a picture of w x h pixels; each factor is at most 1. Both ends compute it.
-[[nodiscard]] ScaledSize sizeOnWay(int32_t w, int32_t h, const Zoom& way);
+[[nodiscard]] ScaledSize scaledSizeOf(int32_t w, int32_t h, const Zoom& transferScale);
 
 // Resamples rows of 4-byte pixels: averages to shrink, interpolates linearly between pixel centres to enlarge. Edge
 // pixels are extended. `into` has toW x toH pixels. The result is identical on all machines.

@@ -30,17 +30,17 @@ const std::array<Attribute, 10> kAttributes{{
     {"stereo", [](const SurfaceConfig& c) { return c.stereo ? 1 : 0; }},
 }};
 
-// Returns whether a surface with `offered` can replace one with `wish`. An absent alpha channel reads as 1 in blending,
-// so zero and non-zero alpha never replace each other.
-bool isAcceptable(const Attribute& attribute, int wish, int offered) {
-    if (offered == wish || attribute.other == Other::Any) return true;
-    return attribute.other == Other::AnyButZero && wish != 0 && offered != 0;
+// Returns whether a surface with `offered` can replace one with `requested`. An absent alpha channel reads as 1 in
+// blending, so zero and non-zero alpha never replace each other.
+bool isAcceptable(const Attribute& attribute, int requested, int offered) {
+    if (offered == requested || attribute.other == Other::Any) return true;
+    return attribute.other == Other::AnyButZero && requested != 0 && offered != 0;
 }
 
 // Substitutes the smallest offered value above the wish, or the largest offered one if none is above. Returns the wish
 // itself if it is offered.
-int nearestTo(int wish, const std::set<int>& offered) {
-    const auto above = offered.lower_bound(wish);
+int nearestTo(int requested, const std::set<int>& offered) {
+    const auto above = offered.lower_bound(requested);
     return above != offered.end() ? *above : *offered.rbegin();
 }
 
@@ -50,32 +50,32 @@ std::string join(const std::set<int>& values) {
     return text;
 }
 
-Error noMatch(const std::string& backend, size_t failed, const SurfaceConfig& wish, const std::set<int>& offered) {
+Error noMatch(const std::string& backend, size_t failed, const SurfaceConfig& requested, const std::set<int>& offered) {
     std::string met;
     for (size_t i = 0; i < failed; i++)
         met += std::string(met.empty() ? " with " : ", ") + kAttributes[i].name + " " +
-               std::to_string(kAttributes[i].value(wish));
+               std::to_string(kAttributes[i].value(requested));
     return Error{backend + " has no framebuffer" + met + " that has " + kAttributes[failed].name + " " +
-                 std::to_string(kAttributes[failed].value(wish)) + " (it has " + join(offered) +
+                 std::to_string(kAttributes[failed].value(requested)) + " (it has " + join(offered) +
                  "): try another backend with --gl"};
 }
 
 } // namespace
 
 Result<size_t> matchConfig(const std::string& backend, const std::vector<ConfigCandidate>& candidates,
-                           const SurfaceConfig& wish) {
+                           const SurfaceConfig& requested) {
     if (candidates.empty()) return Error{backend + " offers no framebuffer to draw into: see mural doctor"};
     std::vector<size_t> left(candidates.size());
     for (size_t i = 0; i < left.size(); i++) left[i] = i;
     for (size_t a = 0; a < kAttributes.size(); a++) {
         std::set<int> offered;
         for (size_t i : left) offered.insert(kAttributes[a].value(candidates[i].bits));
-        const int wished = kAttributes[a].value(wish);
+        const int wanted = kAttributes[a].value(requested);
         std::set<int> acceptable;
         for (const int value : offered)
-            if (isAcceptable(kAttributes[a], wished, value)) acceptable.insert(value);
-        if (acceptable.empty()) return noMatch(backend, a, wish, offered);
-        const int taken = nearestTo(wished, acceptable);
+            if (isAcceptable(kAttributes[a], wanted, value)) acceptable.insert(value);
+        if (acceptable.empty()) return noMatch(backend, a, requested, offered);
+        const int taken = nearestTo(wanted, acceptable);
         std::erase_if(left, [&](size_t i) { return kAttributes[a].value(candidates[i].bits) != taken; });
     }
     return *std::min_element(left.begin(), left.end(), [&](size_t one, size_t other) {
@@ -84,29 +84,30 @@ Result<size_t> matchConfig(const std::string& backend, const std::vector<ConfigC
     });
 }
 
-SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& wish) {
+SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& requested) {
     SurfaceConfig bits = taken.bits;
-    bits.width = wish.width;
-    bits.height = wish.height;
+    bits.width = requested.width;
+    bits.height = requested.height;
     return bits;
 }
 
-std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish) {
+std::string describeDifference(const SurfaceConfig& there, const SurfaceConfig& requested) {
     std::string text;
     for (const Attribute& a : kAttributes) {
-        if (a.value(there) == a.value(wish)) continue;
+        if (a.value(there) == a.value(requested)) continue;
         text += (text.empty() ? "" : ", ") + std::string(a.name) + " " + std::to_string(a.value(there)) +
-                " instead of " + std::to_string(a.value(wish));
+                " instead of " + std::to_string(a.value(requested));
     }
     return text;
 }
 
-bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other) { return whatDiffers(one, other).empty(); }
+bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other) { return describeDifference(one, other).empty(); }
 
-Result<void> checkSize(const std::string& backend, const SurfaceConfig& wish, int maxSize) {
-    if (wish.width >= 1 && wish.height >= 1 && wish.width <= maxSize && wish.height <= maxSize) return {};
-    return Error{backend + " cannot make a surface of " + std::to_string(wish.width) + "x" +
-                 std::to_string(wish.height) + " pixels (1x1 to " + std::to_string(maxSize) + "x" +
+Result<void> checkSize(const std::string& backend, const SurfaceConfig& requested, int maxSize) {
+    if (requested.width >= 1 && requested.height >= 1 && requested.width <= maxSize && requested.height <= maxSize)
+        return {};
+    return Error{backend + " cannot make a surface of " + std::to_string(requested.width) + "x" +
+                 std::to_string(requested.height) + " pixels (1x1 to " + std::to_string(maxSize) + "x" +
                  std::to_string(maxSize) + "): draw a smaller picture"};
 }
 

@@ -27,20 +27,20 @@ struct ConfigCandidate {
 // one if none is larger. Errors: no candidate is acceptable; the text names the first attribute that fails and the
 // values on offer.
 Result<size_t> matchConfig(const std::string& backend, const std::vector<ConfigCandidate>& candidates,
-                           const SurfaceConfig& wish);
+                           const SurfaceConfig& requested);
 
 // Returns the bits of a candidate with the size of the wish.
-SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& wish);
+SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& requested);
 
 // Returns a text such as "depth 24 instead of 32, samples 0 instead of 4". Empty: no difference.
-std::string whatDiffers(const SurfaceConfig& there, const SurfaceConfig& wish);
+std::string describeDifference(const SurfaceConfig& there, const SurfaceConfig& requested);
 
 // Returns whether one context can draw to surfaces of both configurations, on backends that bind contexts to
 // configurations.
 bool sameBits(const SurfaceConfig& one, const SurfaceConfig& other);
 
 // maxSize: the largest viewport of the driver, at most kMaxSurfaceSize.
-Result<void> checkSize(const std::string& backend, const SurfaceConfig& wish, int maxSize);
+Result<void> checkSize(const std::string& backend, const SurfaceConfig& requested, int maxSize);
 
 // The context version that is requested from the driver. Up to 3.0 there are no profiles: the driver returns its latest
 // compatible version, as glXCreateContext does. Drivers disagree whether a request for 3.1 without a profile is

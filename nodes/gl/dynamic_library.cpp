@@ -9,8 +9,8 @@ Result<DynamicLibrary> DynamicLibrary::open(const std::vector<std::string>& name
     for (const std::string& name : names) {
         if (void* handle = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE))
             return DynamicLibrary(handle, name);
-        const char* said = dlerror();
-        if (reason.empty()) reason = said ? said : "the loader gave no reason";
+        const char* message = dlerror();
+        if (reason.empty()) reason = message ? message : "the loader gave no reason";
     }
     return Error{"cannot load " + names.front() + " (" + reason + "): install the package " + package};
 }

@@ -120,17 +120,17 @@ std::shared_ptr<EglDisplayState> openDevice(const EglFunctions& egl, bool softwa
 
 } // namespace
 
-void EglLeftOvers::addSurface(EGLSurface surface) {
+void EglDeferredObjects::addSurface(EGLSurface surface) {
     const std::lock_guard lock(mutex_);
     surfaces_.push_back(surface);
 }
 
-void EglLeftOvers::addContext(EGLContext context) {
+void EglDeferredObjects::addContext(EGLContext context) {
     const std::lock_guard lock(mutex_);
     contexts_.push_back(context);
 }
 
-void EglLeftOvers::destroy(const EglFunctions& egl, EGLDisplay display) {
+void EglDeferredObjects::destroy(const EglFunctions& egl, EGLDisplay display) {
     const std::lock_guard lock(mutex_);
     for (const EGLContext context : std::exchange(contexts_, {})) egl.destroyContext(display, context);
     for (const EGLSurface surface : std::exchange(surfaces_, {})) egl.destroySurface(display, surface);

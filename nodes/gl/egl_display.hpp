@@ -45,7 +45,7 @@ struct EglFunctions {
 // and contexts in the next eglMakeCurrent. After their release and destruction, their memory held another object's
 // data, and half of all starting nodes crashed. For the same reason Mural releases nothing on that driver before others
 // are current.
-class EglLeftOvers {
+class EglDeferredObjects {
 public:
     void addSurface(EGLSurface surface);
     void addContext(EGLContext context);
@@ -75,13 +75,13 @@ struct EglDisplayState {
     // Measured when the platform opens.
     int maxSurfaceSize = kMaxSurfaceSize;
     ColorBuffers colorBuffers = ColorBuffers::OneNamedFront;
-    bool tellsResets = true; // false after the driver has refused once
-    EglLeftOvers left;
+    bool reportsResets = true; // false after the driver has refused once
+    EglDeferredObjects deferredObjects;
 
     EglDisplayState() = default;
     EglDisplayState(const EglDisplayState&) = delete;
     EglDisplayState& operator=(const EglDisplayState&) = delete;
-    ~EglDisplayState() { left.destroy(egl, display); }
+    ~EglDisplayState() { deferredObjects.destroy(egl, display); }
 
     [[nodiscard]] bool has(const char* extension) const;
 };

@@ -29,7 +29,7 @@ public:
         : display_(std::move(display)), handle_(handle), config_(config) {}
     EglSurface(const EglSurface&) = delete;
     EglSurface& operator=(const EglSurface&) = delete;
-    ~EglSurface() override { display_->left.addSurface(handle_); }
+    ~EglSurface() override { display_->deferredObjects.addSurface(handle_); }
 
     [[nodiscard]] const SurfaceConfig& config() const override { return config_; }
     [[nodiscard]] ColorBuffers colorBuffers() const override { return display_->colorBuffers; }
@@ -43,14 +43,18 @@ private:
 
 class EglContext final : public Context {
 public:
-    EglContext(SharedDisplay display, EGLContext handle, EGLenum api, bool tellsReset, std::unique_ptr<Surface> dummy)
-        : display_(std::move(display)), handle_(handle), api_(api), tellsReset_(tellsReset), dummy_(std::move(dummy)) {}
+    EglContext(SharedDisplay display, EGLContext handle, EGLenum api, bool reportsReset, std::unique_ptr<Surface> dummy)
+        : display_(std::move(display)),
+          handle_(handle),
+          api_(api),
+          reportsReset_(reportsReset),
+          dummy_(std::move(dummy)) {}
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
-    ~EglContext() override { display_->left.addContext(handle_); }
+    ~EglContext() override { display_->deferredObjects.addContext(handle_); }
 
     [[nodiscard]] EGLContext handle() const { return handle_; }
-    [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
+    [[nodiscard]] bool reportsReset() const override { return reportsReset_; }
     [[nodiscard]] EGLenum api() const { return api_; }
     // Surface that is bound when the caller names none.
     [[nodiscard]] EGLSurface dummy() const {
@@ -61,7 +65,7 @@ private:
     SharedDisplay display_;
     EGLContext handle_;
     EGLenum api_;
-    bool tellsReset_;
+    bool reportsReset_;
     std::unique_ptr<Surface> dummy_;
 };
 
@@ -113,7 +117,7 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
         if (config.forwardCompatible) list.insert(list.end(), {EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE, EGL_TRUE});
         if (config.debug) list.insert(list.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
         if (config.robust) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE});
-        if (config.tellsReset)
+        if (config.reportsReset)
             list.insert(list.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     } else {
         EGLint flags = 0;
@@ -122,7 +126,7 @@ std::vector<EGLint> contextAttributes(const ContextConfig& config, const EglDisp
         if (config.robust && desktop) flags |= EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
         if (flags) list.insert(list.end(), {EGL_CONTEXT_FLAGS_KHR, flags});
         if (config.robust && !desktop) list.insert(list.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS_EXT, EGL_TRUE});
-        if (config.tellsReset)
+        if (config.reportsReset)
             list.insert(list.end(), {desktop ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR
                                              : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT,
                                      EGL_LOSE_CONTEXT_ON_RESET_KHR});
@@ -143,10 +147,10 @@ public:
         display_->egl.makeCurrent(display_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
 
-    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
-    Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
-    Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& wish, Context& shareWith) override;
-    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
+    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& requested) override;
+    Result<std::unique_ptr<Context>> createContext(const ContextConfig& requested, Context* shareWith) override;
+    Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& requested, Context& shareWith) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, PendingCommands pendingCommands) override;
     [[nodiscard]] std::vector<std::string> imageExtensions() const override;
     Result<std::unique_ptr<Image>> createImage(const ImageSource& source) override;
     Proc getProcAddress(const char* name) override { return throughEpoxy(name, display_->egl.getProcAddress(name)); }
@@ -171,9 +175,9 @@ private:
         EGLConfig handle;
         SurfaceConfig bits;
     };
-    Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
+    Result<Chosen> chooseConfig(const SurfaceConfig& requested) const;
     // Creates a surface with undefined contents.
-    Result<std::unique_ptr<EglSurface>> createPbuffer(const SurfaceConfig& wish) const;
+    Result<std::unique_ptr<EglSurface>> createPbuffer(const SurfaceConfig& requested) const;
     // Keeps the current context and surfaces.
     Result<void> clear(const EglSurface& surface);
 
@@ -183,23 +187,23 @@ private:
     ClearingContexts clearing_;
 };
 
-Result<EglPlatform::Chosen> EglPlatform::chooseConfig(const SurfaceConfig& wish) const {
-    const EglConfigs all = listEglConfigs(*display_, wish.srgb);
-    auto index = matchConfig("EGL", all.candidates, wish);
+Result<EglPlatform::Chosen> EglPlatform::chooseConfig(const SurfaceConfig& requested) const {
+    const EglConfigs all = listEglConfigs(*display_, requested.srgb);
+    auto index = matchConfig("EGL", all.candidates, requested);
     if (!index) return index.error();
-    return Chosen{all.handles[*index], bitsOf(all.candidates[*index], wish)};
+    return Chosen{all.handles[*index], bitsOf(all.candidates[*index], requested)};
 }
 
-Result<std::unique_ptr<EglSurface>> EglPlatform::createPbuffer(const SurfaceConfig& wish) const {
-    if (auto size = checkSize("EGL", wish, display_->maxSurfaceSize); !size) return size.error();
-    auto config = chooseConfig(wish);
+Result<std::unique_ptr<EglSurface>> EglPlatform::createPbuffer(const SurfaceConfig& requested) const {
+    if (auto size = checkSize("EGL", requested, display_->maxSurfaceSize); !size) return size.error();
+    auto config = chooseConfig(requested);
     if (!config) return config.error();
-    std::vector<EGLint> list{EGL_WIDTH, wish.width, EGL_HEIGHT, wish.height};
-    if (wish.srgb) list.insert(list.end(), {EGL_GL_COLORSPACE_KHR, EGL_GL_COLORSPACE_SRGB_KHR});
+    std::vector<EGLint> list{EGL_WIDTH, requested.width, EGL_HEIGHT, requested.height};
+    if (requested.srgb) list.insert(list.end(), {EGL_GL_COLORSPACE_KHR, EGL_GL_COLORSPACE_SRGB_KHR});
     list.push_back(EGL_NONE);
     const EglFunctions& egl = display_->egl;
-    const std::string what =
-        std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels" + (wish.srgb ? " in sRGB" : "");
+    const std::string what = std::to_string(requested.width) + "x" + std::to_string(requested.height) + " pixels" +
+                             (requested.srgb ? " in sRGB" : "");
     EGLSurface handle = egl.createPbufferSurface(display_->display, config->handle, list.data());
     if (handle == EGL_NO_SURFACE)
         return Error{"EGL cannot make a pbuffer of " + what + ": " + takeEglError(egl) +
@@ -208,7 +212,7 @@ Result<std::unique_ptr<EglSurface>> EglPlatform::createPbuffer(const SurfaceConf
     EGLint width = 0, height = 0;
     egl.querySurface(display_->display, handle, EGL_WIDTH, &width);
     egl.querySurface(display_->display, handle, EGL_HEIGHT, &height);
-    if (width != wish.width || height != wish.height)
+    if (width != requested.width || height != requested.height)
         return Error{"EGL made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) + " instead of " +
                      what + ": draw a smaller picture"};
     return surface;
@@ -220,7 +224,7 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
     if (!context) return context.error();
     const EglFunctions& egl = display_->egl;
     auto* clearing = static_cast<EglContext*>(*context);
-    // The code keeps handles, because the objects of the current context and surfaces may be gone (EglLeftOvers).
+    // The code keeps handles, because the objects of the current context and surfaces may be gone (EglDeferredObjects).
     const EGLContext before = egl.getCurrentContext();
     const EGLSurface draw = egl.getCurrentSurface(EGL_DRAW), read = egl.getCurrentSurface(EGL_READ);
     egl.bindApi(clearing->api());
@@ -230,7 +234,7 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
         return Error{"EGL cannot clear a new pbuffer: " + why + "; see mural doctor"};
     }
     clearCurrentSurface(*this, surface.config(), surface.colorBuffers());
-    if (before == EGL_NO_CONTEXT && !display_->mesa) { // stays current until others are (EglLeftOvers)
+    if (before == EGL_NO_CONTEXT && !display_->mesa) { // stays current until others are (EglDeferredObjects)
         currentApi_ = clearing->api();
         return {};
     }
@@ -243,32 +247,32 @@ Result<void> EglPlatform::clear(const EglSurface& surface) {
     return {};
 }
 
-Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig& wish) {
-    auto surface = createPbuffer(wish);
+Result<std::unique_ptr<Surface>> EglPlatform::createSurface(const SurfaceConfig& requested) {
+    auto surface = createPbuffer(requested);
     if (!surface) return surface.error();
     if (auto cleared = clear(**surface); !cleared) return cleared.error();
     return std::unique_ptr<Surface>(std::move(*surface));
 }
 
-Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
+Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig& requested, Context* shareWith) {
     const EglFunctions& egl = display_->egl;
-    auto config = chooseConfig(wish.surface);
+    auto config = chooseConfig(requested.surface);
     if (!config) return config.error();
     std::unique_ptr<Surface> dummy;
     if (!display_->surfaceless) {
-        SurfaceConfig small = wish.surface;
+        SurfaceConfig small = requested.surface;
         small.width = small.height = 1;
         auto made = createPbuffer(small);
         if (!made) return made.error();
         dummy = std::move(made.value());
     }
-    const EGLenum api = wish.api == Api::Desktop ? EGL_OPENGL_API : EGL_OPENGL_ES_API;
+    const EGLenum api = requested.api == Api::Desktop ? EGL_OPENGL_API : EGL_OPENGL_ES_API;
     if (!egl.bindApi(api))
-        return Error{"this EGL driver has no " + describeContext(wish) + ": try another --gl backend"};
+        return Error{"this EGL driver has no " + describeContext(requested) + ": try another --gl backend"};
     EGLContext share = shareWith ? static_cast<EglContext*>(shareWith)->handle() : EGL_NO_CONTEXT;
-    const auto create = [&](bool tellsReset) {
-        ContextConfig with = wish;
-        with.tellsReset = tellsReset;
+    const auto create = [&](bool reportsReset) {
+        ContextConfig with = requested;
+        with.reportsReset = reportsReset;
         const std::vector<EGLint> attributes = contextAttributes(with, *display_);
         EGLContext made = EGL_NO_CONTEXT;
         if (display_->noConfigContext)
@@ -277,38 +281,39 @@ Result<std::unique_ptr<Context>> EglPlatform::createContext(const ContextConfig&
         if (display_->noConfigContext) (void)egl.getError(); // NVIDIA requires a configuration for ES 1 contexts
         return egl.createContext(display_->display, config->handle, share, attributes.data());
     };
-    bool tellsReset = wish.tellsReset && display_->tellsResets;
-    EGLContext handle = create(tellsReset);
-    if (handle == EGL_NO_CONTEXT && tellsReset) { // contexts of a share group must all have this attribute, or none
+    bool reportsReset = requested.reportsReset && display_->reportsResets;
+    EGLContext handle = create(reportsReset);
+    if (handle == EGL_NO_CONTEXT && reportsReset) { // contexts of a share group must all have this attribute, or none
         (void)egl.getError();
-        tellsReset = false;
-        handle = create(tellsReset);
-        if (handle != EGL_NO_CONTEXT) display_->tellsResets = false;
+        reportsReset = false;
+        handle = create(reportsReset);
+        if (handle != EGL_NO_CONTEXT) display_->reportsResets = false;
     }
     const std::string why = handle == EGL_NO_CONTEXT ? takeEglError(egl) : "";
     egl.bindApi(currentApi_);
     if (handle == EGL_NO_CONTEXT)
-        return Error{"EGL cannot make an " + describeContext(wish) + " context" +
+        return Error{"EGL cannot make an " + describeContext(requested) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " + why + "; see mural doctor"};
-    return std::unique_ptr<Context>(std::make_unique<EglContext>(display_, handle, api, tellsReset, std::move(dummy)));
+    return std::unique_ptr<Context>(
+        std::make_unique<EglContext>(display_, handle, api, reportsReset, std::move(dummy)));
 }
 
-Result<std::unique_ptr<SharedReader>> EglPlatform::createReader(const ContextConfig& wish, Context& shareWith) {
-    auto context = createContext(wish, &shareWith);
+Result<std::unique_ptr<SharedReader>> EglPlatform::createReader(const ContextConfig& requested, Context& shareWith) {
+    auto context = createContext(requested, &shareWith);
     if (!context) return context.error();
     return std::unique_ptr<SharedReader>(std::make_unique<EglReader>(display_, std::move(*context)));
 }
 
-Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) {
+Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, PendingCommands pendingCommands) {
     const EglFunctions& egl = display_->egl;
     auto* wanted = static_cast<EglContext*>(context);
     if (egl.getCurrentContext() != EGL_NO_CONTEXT) {
         if (wanted && draw && read && draw != read)
             finishDrawing(*this);
-        else if (display_->flushControl && heldBack == HeldBack::Flushed)
+        else if (display_->flushControl && pendingCommands == PendingCommands::Flushed)
             flushDrawing(*this);
     }
-    // the context stays current until others are (EglLeftOvers); no draw of the caller is deferred
+    // the context stays current until others are (EglDeferredObjects); no draw of the caller is deferred
     if (!wanted && !display_->mesa) {
         if (egl.getCurrentContext() != EGL_NO_CONTEXT) flushDrawing(*this);
         return {};
@@ -322,7 +327,7 @@ Result<void> EglPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
     EGLSurface drawHandle = draw && wanted ? static_cast<EglSurface*>(draw)->handle() : none;
     EGLSurface readHandle = read && wanted ? static_cast<EglSurface*>(read)->handle() : drawHandle;
     if (egl.makeCurrent(display_->display, drawHandle, readHandle, wanted ? wanted->handle() : EGL_NO_CONTEXT)) {
-        if (wanted) display_->left.destroy(egl, display_->display);
+        if (wanted) display_->deferredObjects.destroy(egl, display_->display);
         return {};
     }
     return Error{"EGL cannot make the context current: " + takeEglError(egl) +

@@ -24,8 +24,8 @@ template <class Function> void load(Platform& platform, Function& function, cons
 }
 
 std::string text(const Queries& gl, GLenum name) {
-    const GLubyte* said = gl.getString(name);
-    return said ? reinterpret_cast<const char*>(said) : "";
+    const GLubyte* value = gl.getString(name);
+    return value ? reinterpret_cast<const char*>(value) : "";
 }
 
 // Core contexts have only the indexed query, versions before 3.0 only the string.

@@ -35,8 +35,8 @@ struct ContextConfig {
     bool forwardCompatible = false;
     bool debug = false;
     bool robust = false;
-    bool tellsReset = false; // glGetGraphicsResetStatus reports a lost context, if the driver can
-    SurfaceConfig surface;   // kind of surface that the context draws to
+    bool reportsReset = false; // glGetGraphicsResetStatus reports a lost context, if the driver can
+    SurfaceConfig surface;     // kind of surface that the context draws to
 };
 
 // Colour buffers of a default framebuffer, and the GL name of a single one. EGL pbuffers have one buffer. Mesa names it
@@ -65,7 +65,7 @@ class Context {
 public:
     virtual ~Context() = default;
     // Returns whether glGetGraphicsResetStatus reports a lost context.
-    [[nodiscard]] virtual bool tellsReset() const { return false; }
+    [[nodiscard]] virtual bool reportsReset() const { return false; }
 };
 
 // A picture that several share groups can use: an EGLImage.
@@ -85,7 +85,7 @@ struct ImageSource {
 };
 
 // Treatment of commands that the previously current context still holds back.
-enum class HeldBack { Flushed, Kept };
+enum class PendingCommands { Flushed, Pending };
 
 // Lets one thread besides the replay use the objects of a share group. It waits for fences and reads buffers.
 class SharedReader {
@@ -105,10 +105,10 @@ public:
     virtual Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& config) = 0;
     virtual Result<std::unique_ptr<Context>> createContext(const ContextConfig& config, Context* shareWith) = 0;
     // Null context: release. Null surfaces: none, or a dummy of 1×1 if the driver requires one. A surface that is bound
-    // for reading only contains everything that contexts of this thread have drawn there. HeldBack::Kept has no effect
-    // with drivers that flush at each change: OSMesa, and those without KHR_context_flush_control.
+    // for reading only contains everything that contexts of this thread have drawn there. PendingCommands::Kept has no
+    // effect with drivers that flush at each change: OSMesa, and those without KHR_context_flush_control.
     virtual Result<void> makeCurrent(Context* context, Surface* draw, Surface* read,
-                                     HeldBack heldBack = HeldBack::Flushed) = 0;
+                                     PendingCommands pendingCommands = PendingCommands::Flushed) = 0;
     // Returns whether a context can draw to one surface and read from another.
     [[nodiscard]] virtual bool readsOtherSurfaces() const { return true; }
     // Returns whether surfaces can have an accumulation buffer.
@@ -118,7 +118,7 @@ public:
     virtual Result<std::unique_ptr<Image>> createImage(const ImageSource& source);
     // wish: the configuration that `shareWith` was created with. Errors: this platform supports contexts in one thread
     // only.
-    virtual Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& wish, Context& shareWith);
+    virtual Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& requested, Context& shareWith);
     // Returns an entry point for all contexts, or null for an unknown name. Requires a current context.
     virtual Proc getProcAddress(const char* name) = 0;
     [[nodiscard]] virtual std::string describe() const = 0; // e.g. "EGL surfaceless, Mesa 22.3.6"

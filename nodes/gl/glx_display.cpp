@@ -130,9 +130,9 @@ int XErrorTrap::handle(::Display* display, XErrorEvent* event) {
     XErrorTrap* trap = innermostTrap;
     if (!trap) return 0;
     if (display != trap->state_.display) return trap->previous_ ? trap->previous_(display, event) : 0;
-    char said[128] = "";
-    trap->state_.glx.getErrorText(display, event->error_code, said, sizeof said);
-    if (trap->text_.empty()) trap->text_ = std::string("X error ") + said;
+    char message[128] = "";
+    trap->state_.glx.getErrorText(display, event->error_code, message, sizeof message);
+    if (trap->text_.empty()) trap->text_ = std::string("X error ") + message;
     return 0;
 }
 

@@ -54,7 +54,7 @@ struct GlxDisplayState {
     bool esProfile = false;
     bool robust = false;
     bool flushControl = false;               // contexts can be created without a flush when another becomes current
-    bool tellsResets = true;                 // false after the driver has refused once
+    bool reportsResets = true;               // false after the driver has refused once
     std::vector<GLXFBConfig> configs;        // configurations for double-buffered pbuffers
     std::vector<ConfigCandidate> candidates; // same order
     int maxSurfaceSize = kMaxSurfaceSize;    // measured when the platform opens

@@ -49,8 +49,8 @@ private:
 
 class GlxContext final : public Context {
 public:
-    GlxContext(SharedDisplay display, GLXContext handle, bool tellsReset, std::unique_ptr<GlxSurface> dummy)
-        : display_(std::move(display)), handle_(handle), tellsReset_(tellsReset), dummy_(std::move(dummy)) {}
+    GlxContext(SharedDisplay display, GLXContext handle, bool reportsReset, std::unique_ptr<GlxSurface> dummy)
+        : display_(std::move(display)), handle_(handle), reportsReset_(reportsReset), dummy_(std::move(dummy)) {}
     GlxContext(const GlxContext&) = delete;
     GlxContext& operator=(const GlxContext&) = delete;
     ~GlxContext() override {
@@ -59,14 +59,14 @@ public:
     }
 
     [[nodiscard]] GLXContext handle() const { return handle_; }
-    [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
+    [[nodiscard]] bool reportsReset() const override { return reportsReset_; }
     // Surface that is bound when the caller names none. GLX allows none only for some versions.
     [[nodiscard]] GLXPbuffer dummy() const { return dummy_->handle(); }
 
 private:
     SharedDisplay display_;
     GLXContext handle_;
-    bool tellsReset_;
+    bool reportsReset_;
     std::unique_ptr<GlxSurface> dummy_;
 };
 
@@ -74,9 +74,9 @@ class GlxPlatform final : public Platform {
 public:
     explicit GlxPlatform(SharedDisplay display) : display_(std::move(display)) {}
 
-    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
-    Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
-    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
+    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& requested) override;
+    Result<std::unique_ptr<Context>> createContext(const ContextConfig& requested, Context* shareWith) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, PendingCommands pendingCommands) override;
     Proc getProcAddress(const char* name) override {
         return throughEpoxy(name, display_->glx.getProcAddress(reinterpret_cast<const GLubyte*>(name)));
     }
@@ -92,40 +92,40 @@ private:
         GLXFBConfig handle;
         SurfaceConfig bits;
     };
-    Result<Chosen> chooseConfig(const SurfaceConfig& wish) const;
+    Result<Chosen> chooseConfig(const SurfaceConfig& requested) const;
     // Creates a surface with undefined contents.
-    Result<std::unique_ptr<GlxSurface>> createPbuffer(const SurfaceConfig& wish);
+    Result<std::unique_ptr<GlxSurface>> createPbuffer(const SurfaceConfig& requested);
     // Keeps the current context and surfaces.
     Result<void> clear(const GlxSurface& surface);
-    Result<void> checkSupport(const ContextConfig& wish) const;
-    std::vector<int> contextAttributes(const ContextConfig& wish) const;
+    Result<void> checkSupport(const ContextConfig& requested) const;
+    std::vector<int> contextAttributes(const ContextConfig& requested) const;
 
     SharedDisplay display_;
     std::string renderer_, version_;
     ClearingContexts clearing_;
 };
 
-Result<GlxPlatform::Chosen> GlxPlatform::chooseConfig(const SurfaceConfig& wish) const {
-    auto index = matchConfig("GLX", display_->candidates, wish);
+Result<GlxPlatform::Chosen> GlxPlatform::chooseConfig(const SurfaceConfig& requested) const {
+    auto index = matchConfig("GLX", display_->candidates, requested);
     if (!index) return index.error();
-    return Chosen{display_->configs[*index], bitsOf(display_->candidates[*index], wish)};
+    return Chosen{display_->configs[*index], bitsOf(display_->candidates[*index], requested)};
 }
 
-Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConfig& wish) {
-    if (auto size = checkSize("GLX", wish, display_->maxSurfaceSize); !size) return size.error();
-    auto config = chooseConfig(wish);
+Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConfig& requested) {
+    if (auto size = checkSize("GLX", requested, display_->maxSurfaceSize); !size) return size.error();
+    auto config = chooseConfig(requested);
     if (!config) return config.error();
     const int list[] = {GLX_PBUFFER_WIDTH,
-                        wish.width,
+                        requested.width,
                         GLX_PBUFFER_HEIGHT,
-                        wish.height,
+                        requested.height,
                         GLX_PRESERVED_CONTENTS,
                         1,
                         GLX_LARGEST_PBUFFER,
                         0,
                         0};
     const GlxFunctions& glx = display_->glx;
-    const std::string what = std::to_string(wish.width) + "x" + std::to_string(wish.height) + " pixels";
+    const std::string what = std::to_string(requested.width) + "x" + std::to_string(requested.height) + " pixels";
     XErrorTrap trap(*display_);
     GLXPbuffer handle = glx.createPbuffer(display_->display, config->handle, list);
     if (const std::string why = trap.take(); !why.empty() || !handle)
@@ -135,14 +135,14 @@ Result<std::unique_ptr<GlxSurface>> GlxPlatform::createPbuffer(const SurfaceConf
     unsigned width = 0, height = 0;
     glx.queryDrawable(display_->display, handle, GLX_WIDTH, &width);
     glx.queryDrawable(display_->display, handle, GLX_HEIGHT, &height);
-    if (static_cast<int>(width) != wish.width || static_cast<int>(height) != wish.height)
+    if (static_cast<int>(width) != requested.width || static_cast<int>(height) != requested.height)
         return Error{"GLX made a pbuffer of " + std::to_string(width) + "x" + std::to_string(height) + " instead of " +
                      what + ": draw a smaller picture"};
     return surface;
 }
 
-Result<std::unique_ptr<Surface>> GlxPlatform::createSurface(const SurfaceConfig& wish) {
-    auto surface = createPbuffer(wish);
+Result<std::unique_ptr<Surface>> GlxPlatform::createSurface(const SurfaceConfig& requested) {
+    auto surface = createPbuffer(requested);
     if (!surface) return surface.error();
     if (auto cleared = clear(**surface); !cleared) return cleared.error();
     return std::unique_ptr<Surface>(std::move(surface.value()));
@@ -170,31 +170,32 @@ Result<void> GlxPlatform::clear(const GlxSurface& surface) {
     return {};
 }
 
-Result<void> GlxPlatform::checkSupport(const ContextConfig& wish) const {
+Result<void> GlxPlatform::checkSupport(const ContextConfig& requested) const {
     const char* missing = nullptr;
-    if (wish.api != Api::Desktop && !display_->esProfile)
+    if (requested.api != Api::Desktop && !display_->esProfile)
         missing = "GLX_EXT_create_context_es_profile";
-    else if (wish.robust && !display_->robust)
+    else if (requested.robust && !display_->robust)
         missing = "GLX_ARB_create_context_robustness";
     if (!missing) return {};
-    return Error{"GLX on '" + display_->name + "' has no " + describeContext(wish) + " contexts (" + missing +
+    return Error{"GLX on '" + display_->name + "' has no " + describeContext(requested) + " contexts (" + missing +
                  " is missing): use --gl egl"};
 }
 
-std::vector<int> GlxPlatform::contextAttributes(const ContextConfig& wish) const {
-    const VersionRequest request = versionRequest(wish);
+std::vector<int> GlxPlatform::contextAttributes(const ContextConfig& requested) const {
+    const VersionRequest request = versionRequest(requested);
     std::vector<int> list{GLX_CONTEXT_MAJOR_VERSION_ARB, request.major, GLX_CONTEXT_MINOR_VERSION_ARB, request.minor};
-    if (wish.api != Api::Desktop)
+    if (requested.api != Api::Desktop)
         list.insert(list.end(), {GLX_CONTEXT_PROFILE_MASK_ARB, GLX_CONTEXT_ES_PROFILE_BIT_EXT});
     else if (request.profile)
-        list.insert(list.end(), {GLX_CONTEXT_PROFILE_MASK_ARB, wish.core ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB
-                                                                         : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB});
+        list.insert(list.end(),
+                    {GLX_CONTEXT_PROFILE_MASK_ARB,
+                     requested.core ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB});
     int flags = 0;
-    if (wish.forwardCompatible) flags |= GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
-    if (wish.debug) flags |= GLX_CONTEXT_DEBUG_BIT_ARB;
-    if (wish.robust) flags |= GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
+    if (requested.forwardCompatible) flags |= GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
+    if (requested.debug) flags |= GLX_CONTEXT_DEBUG_BIT_ARB;
+    if (requested.robust) flags |= GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
     if (flags) list.insert(list.end(), {GLX_CONTEXT_FLAGS_ARB, flags});
-    if (wish.tellsReset)
+    if (requested.reportsReset)
         list.insert(list.end(), {GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB, GLX_LOSE_CONTEXT_ON_RESET_ARB});
     if (display_->flushControl)
         list.insert(list.end(), {GLX_CONTEXT_RELEASE_BEHAVIOR_ARB, GLX_CONTEXT_RELEASE_BEHAVIOR_NONE_ARB});
@@ -203,19 +204,19 @@ std::vector<int> GlxPlatform::contextAttributes(const ContextConfig& wish) const
     return list;
 }
 
-Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
-    if (auto supported = checkSupport(wish); !supported) return supported.error();
-    auto config = chooseConfig(wish.surface);
+Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig& requested, Context* shareWith) {
+    if (auto supported = checkSupport(requested); !supported) return supported.error();
+    auto config = chooseConfig(requested.surface);
     if (!config) return config.error();
-    SurfaceConfig small = wish.surface;
+    SurfaceConfig small = requested.surface;
     small.width = small.height = 1;
     auto dummy = createPbuffer(small);
     if (!dummy) return dummy.error();
     GLXContext share = shareWith ? static_cast<GlxContext*>(shareWith)->handle() : nullptr;
     std::string why;
-    const auto create = [&](bool tellsReset) {
-        ContextConfig with = wish;
-        with.tellsReset = tellsReset;
+    const auto create = [&](bool reportsReset) {
+        ContextConfig with = requested;
+        with.reportsReset = reportsReset;
         XErrorTrap trap(*display_);
         GLXContext made =
             display_->glx.createContextAttribs(display_->display, display_->noConfigContext ? nullptr : config->handle,
@@ -225,22 +226,22 @@ Result<std::unique_ptr<Context>> GlxPlatform::createContext(const ContextConfig&
         display_->glx.destroyContext(display_->display, made);
         return GLXContext{};
     };
-    bool tellsReset = wish.tellsReset && display_->robust && display_->tellsResets;
-    GLXContext handle = create(tellsReset);
-    if (!handle && tellsReset) { // contexts of a share group must all have this attribute, or none
-        tellsReset = false;
-        handle = create(tellsReset);
-        if (handle) display_->tellsResets = false;
+    bool reportsReset = requested.reportsReset && display_->robust && display_->reportsResets;
+    GLXContext handle = create(reportsReset);
+    if (!handle && reportsReset) { // contexts of a share group must all have this attribute, or none
+        reportsReset = false;
+        handle = create(reportsReset);
+        if (handle) display_->reportsResets = false;
     }
     if (!handle || !why.empty())
-        return Error{"GLX cannot make an " + describeContext(wish) + " context" +
+        return Error{"GLX cannot make an " + describeContext(requested) + " context" +
                      (shareWith ? " that shares objects" : "") + ": " +
                      (why.empty() ? "the driver does not have it" : why) + "; see mural doctor"};
     return std::unique_ptr<Context>(
-        std::make_unique<GlxContext>(display_, handle, tellsReset, std::move(dummy.value())));
+        std::make_unique<GlxContext>(display_, handle, reportsReset, std::move(dummy.value())));
 }
 
-Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) {
+Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, PendingCommands pendingCommands) {
     auto* wanted = static_cast<GlxContext*>(context);
     GLXDrawable none = wanted ? wanted->dummy() : 0;
     GLXDrawable drawHandle = draw && wanted ? static_cast<GlxSurface*>(draw)->handle() : none;
@@ -248,7 +249,7 @@ Result<void> GlxPlatform::makeCurrent(Context* context, Surface* draw, Surface* 
     if (display_->glx.getCurrentContext()) {
         if (wanted && draw && read && draw != read)
             finishDrawing(*this);
-        else if (display_->flushControl && heldBack == HeldBack::Flushed)
+        else if (display_->flushControl && pendingCommands == PendingCommands::Flushed)
             flushDrawing(*this);
     }
     XErrorTrap trap(*display_);

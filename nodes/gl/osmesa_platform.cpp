@@ -71,11 +71,11 @@ struct Chosen {
     SurfaceConfig bits;
 };
 
-Result<Chosen> chooseFormat(const SurfaceConfig& wish) {
+Result<Chosen> chooseFormat(const SurfaceConfig& requested) {
     const Candidates all = listCandidates();
-    auto index = matchConfig("OSMesa", all.list, wish);
+    auto index = matchConfig("OSMesa", all.list, requested);
     if (!index) return index.error();
-    return Chosen{all.formats[*index], bitsOf(all.list[*index], wish)};
+    return Chosen{all.formats[*index], bitsOf(all.list[*index], requested)};
 }
 
 class OsmesaContext;
@@ -211,9 +211,9 @@ class OsmesaPlatform final : public Platform {
 public:
     explicit OsmesaPlatform(SharedState state) : state_(std::move(state)) {}
 
-    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& wish) override;
-    Result<std::unique_ptr<Context>> createContext(const ContextConfig& wish, Context* shareWith) override;
-    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack heldBack) override;
+    Result<std::unique_ptr<Surface>> createSurface(const SurfaceConfig& requested) override;
+    Result<std::unique_ptr<Context>> createContext(const ContextConfig& requested, Context* shareWith) override;
+    Result<void> makeCurrent(Context* context, Surface* draw, Surface* read, PendingCommands pendingCommands) override;
     [[nodiscard]] bool readsOtherSurfaces() const override { return false; }
     Proc getProcAddress(const char* name) override {
         return reinterpret_cast<Proc>(state_->osmesa.getProcAddress(name));
@@ -227,22 +227,22 @@ private:
     std::string renderer_, version_;
 };
 
-Result<std::unique_ptr<Surface>> OsmesaPlatform::createSurface(const SurfaceConfig& wish) {
-    if (auto size = checkSize("OSMesa", wish, state_->maxSurfaceSize); !size) return size.error();
-    auto chosen = chooseFormat(wish);
+Result<std::unique_ptr<Surface>> OsmesaPlatform::createSurface(const SurfaceConfig& requested) {
+    if (auto size = checkSize("OSMesa", requested, state_->maxSurfaceSize); !size) return size.error();
+    auto chosen = chooseFormat(requested);
     if (!chosen) return chosen.error();
     return std::unique_ptr<Surface>(std::make_unique<OsmesaSurface>(chosen->bits, chosen->format));
 }
 
-Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConfig& wish, Context* shareWith) {
-    if (wish.api != Api::Desktop || wish.forwardCompatible)
-        return Error{"OSMesa cannot make an " + describeContext(wish) + " context: use --gl egl"};
-    auto chosen = chooseFormat(wish.surface);
+Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConfig& requested, Context* shareWith) {
+    if (requested.api != Api::Desktop || requested.forwardCompatible)
+        return Error{"OSMesa cannot make an " + describeContext(requested) + " context: use --gl egl"};
+    auto chosen = chooseFormat(requested.surface);
     if (!chosen) return chosen.error();
-    ContextConfig config = wish;
+    ContextConfig config = requested;
     config.surface = chosen->bits;
-    const VersionRequest request = versionRequest(wish);
-    const bool core = request.profile && wish.core;
+    const VersionRequest request = versionRequest(requested);
+    const bool core = request.profile && requested.core;
     const int list[] = {OSMESA_FORMAT,
                         static_cast<int>(chosen->format.format),
                         OSMESA_DEPTH_BITS,
@@ -260,12 +260,12 @@ Result<std::unique_ptr<Context>> OsmesaPlatform::createContext(const ContextConf
     OSMesaContext share = shareWith ? static_cast<OsmesaContext*>(shareWith)->handle() : nullptr;
     OSMesaContext handle = state_->osmesa.createContextAttribs(list, share);
     if (!handle)
-        return Error{"OSMesa cannot make an " + describeContext(wish) + " context" +
+        return Error{"OSMesa cannot make an " + describeContext(requested) + " context" +
                      (shareWith ? " that shares objects" : "") + ": the driver does not have it; see mural doctor"};
     return std::unique_ptr<Context>(std::make_unique<OsmesaContext>(state_, handle, config, chosen->format));
 }
 
-Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, HeldBack) {
+Result<void> OsmesaPlatform::makeCurrent(Context* context, Surface* draw, Surface* read, PendingCommands) {
     if (!context) {
         state_->current = nullptr;
         if (state_->osmesa.makeCurrent(nullptr, nullptr, 0, 0, 0)) return {};

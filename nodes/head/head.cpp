@@ -26,8 +26,8 @@ namespace {
 constexpr int64_t kConfigPatienceMs = 10'000;
 constexpr int64_t kLaunchPatienceMs = 30'000;
 
-volatile std::sig_atomic_t asked = 0;
-void askToFinish(int) { asked = 1; }
+volatile std::sig_atomic_t endRequested = 0;
+void requestEnd(int) { endRequested = 1; }
 
 // Ctrl-C of the terminal reaches the head and `mural run`. The head ignores it, because `mural run` decides about the
 // end.
@@ -37,7 +37,7 @@ void setUpSignals() {
     signal(SIGXFSZ, SIG_IGN); // a file size limit then is an error of the call
     signal(SIGINT, SIG_IGN);
     struct sigaction finish {};
-    finish.sa_handler = askToFinish; // no SA_RESTART: signals end waits
+    finish.sa_handler = requestEnd; // no SA_RESTART: signals end waits
     sigaction(SIGTERM, &finish, nullptr);
     sigaction(SIGHUP, &finish, nullptr);
 }
@@ -46,7 +46,7 @@ Result<SessionConfig> receiveConfig(ControlChannel& control) {
     const Deadline deadline = Deadline::inMs(kConfigPatienceMs);
     do {
         if (const auto line = control.receive(deadline)) return sessionConfigFromJson(*line);
-    } while (!control.broken() && !deadline.passed() && asked == 0);
+    } while (!control.broken() && !deadline.passed() && endRequested == 0);
     return Error{"no session configuration on the control connection; start `mural head` with `mural run`"};
 }
 
@@ -62,7 +62,7 @@ LaunchOptions launchOptionsOf(const SessionConfig& config) {
 Result<std::vector<LaunchedNode>> launch(const SessionConfig& config, const SessionPlan& plan,
                                          const ControlChannel& control) {
     return launchNodes(plan, launchOptionsOf(config), Deadline::inMs(kLaunchPatienceMs),
-                       [&] { return asked != 0 || control.broken(); });
+                       [&] { return endRequested != 0 || control.broken(); });
 }
 
 // Returns the output path of a further canvas: a folder inside --out, or a video next to the video of --out.
@@ -137,7 +137,7 @@ Result<int> runSession(ControlChannel& control) {
     SessionPlan plan = std::move(*planned);
     HeadOptions options;
     options.registryDigest = registryDigest();
-    options.interrupted = [] { return asked != 0; };
+    options.interrupted = [] { return endRequested != 0; };
     if (const auto outputs = addOutputs(*config, plan, control, options); !outputs) return outputs.error();
     if (!config->record.empty()) {
         trace::RecorderConfig recorder;

@@ -29,8 +29,8 @@ bool mayDraw(std::string_view path) {
 }
 
 // Lists the files that are mapped for execution, from /proc/PID/maps.
-UnseenProgram runningProgram(pid_t pid) {
-    UnseenProgram found;
+UncapturedProgram runningProgram(pid_t pid) {
+    UncapturedProgram found;
     char name[4096];
     const std::string folder = "/proc/" + std::to_string(pid);
     const ssize_t length = readlink((folder + "/exe").c_str(), name, sizeof name);
@@ -53,7 +53,7 @@ struct Finding {
 };
 
 // Returns the program's way of drawing outside GLVND. Of several, returns the most specific one.
-Finding findingOf(const UnseenProgram& program) {
+Finding findingOf(const UncapturedProgram& program) {
     Finding found{Drawing::None, std::string(baseName(program.program)), {}};
     const auto rank = [](Drawing d) {
         return d == Drawing::OwnGl       ? 4
@@ -63,7 +63,7 @@ Finding findingOf(const UnseenProgram& program) {
                                          : 0;
     };
     bool fronted = false;
-    for (const std::string& path : program.libraries) fronted = fronted || baseName(path) == kFrontLibraryName;
+    for (const std::string& path : program.libraries) fronted = fronted || baseName(path) == kPreloadLibraryName;
     for (const std::string& path : program.libraries) {
         const Drawing drawing = mayDraw(path) ? drawingOf(path) : Drawing::None;
         found.glvnd = found.glvnd || drawing == Drawing::Glvnd || (drawing == Drawing::OwnGl && fronted);
@@ -98,10 +98,10 @@ std::string describe(const Finding& f) {
 
 } // namespace
 
-std::string describeBypass(const std::vector<UnseenProgram>& programs, bool failed) {
+std::string describeBypass(const std::vector<UncapturedProgram>& programs, bool failed) {
     Finding best;
     std::string line;
-    for (const UnseenProgram& program : programs) {
+    for (const UncapturedProgram& program : programs) {
         const Finding found = findingOf(program);
         if (failed && found.drawing == Drawing::X11) continue;
         const std::string text = describe(found);
@@ -114,7 +114,7 @@ std::string describeBypass(const std::vector<UnseenProgram>& programs, bool fail
     return line;
 }
 
-std::string describeUncaptured(const UnseenProgram& program) {
+std::string describeUncaptured(const UncapturedProgram& program) {
     std::string gl;
     for (const std::string& path : program.libraries) {
         if (baseName(path) == kCaptureLibraryName) return {};
@@ -158,8 +158,8 @@ void BypassWatch::readNotes() {
         }
         at = end + 1;
         if (fields.size() == 2 && fields[0] == "say") {
-            if (std::find(said_.begin(), said_.end(), fields[1]) != said_.end()) continue;
-            said_.push_back(fields[1]);
+            if (std::find(reported_.begin(), reported_.end(), fields[1]) != reported_.end()) continue;
+            reported_.push_back(fields[1]);
             waiting_.push_back(fields[1]);
         } else if (fields.size() > 2 && fields[0] == "ended" && ended_.size() < kMaxEnded) {
             ended_.push_back({fields[1], {fields.begin() + 2, fields.end()}});
@@ -167,25 +167,25 @@ void BypassWatch::readNotes() {
     }
 }
 
-std::vector<std::string> BypassWatch::news() {
+std::vector<std::string> BypassWatch::newLines() {
     readNotes();
     return std::exchange(waiting_, {});
 }
 
-std::string BypassWatch::uncaptured(const std::vector<pid_t>& processes) {
+std::string BypassWatch::describeUncaptured(const std::vector<pid_t>& processes) {
     for (const pid_t pid : processes) {
-        const UnseenProgram program = runningProgram(pid);
-        if (saidUncaptured_.contains(program.program)) continue;
+        const UncapturedProgram program = runningProgram(pid);
+        if (uncapturedReported_.contains(program.program)) continue;
         if (std::string line = describeUncaptured(program); !line.empty()) {
-            saidUncaptured_.insert(program.program);
+            uncapturedReported_.insert(program.program);
             return line;
         }
     }
     return {};
 }
 
-std::string BypassWatch::lookAt(const std::vector<pid_t>& processes) const {
-    std::vector<UnseenProgram> programs;
+std::string BypassWatch::describeRunning(const std::vector<pid_t>& processes) const {
+    std::vector<UncapturedProgram> programs;
     for (const pid_t pid : processes) programs.push_back(runningProgram(pid));
     return describeBypass(programs);
 }

@@ -14,18 +14,18 @@
 namespace mural::launch {
 
 // A program without a captured context, and its libraries.
-struct UnseenProgram {
+struct UncapturedProgram {
     std::string program;
     std::vector<std::string> libraries; // paths
 };
 
 // Returns one line: the program that draws without the capture library, its method, and the remedy. Empty: the
 // libraries show nothing. failed: the program ended with an error, so a missing GL library proves nothing.
-std::string describeBypass(const std::vector<UnseenProgram>& programs, bool failed = false);
+std::string describeBypass(const std::vector<UncapturedProgram>& programs, bool failed = false);
 
 // Returns a line about a program that uses GL without the capture library. Empty: the program has the library, or no
 // GL.
-std::string describeUncaptured(const UnseenProgram& program);
+std::string describeUncaptured(const UncapturedProgram& program);
 
 class BypassWatch {
 public:
@@ -37,13 +37,13 @@ public:
     // The file for the captured programs' notes (MURAL_NOTES).
     [[nodiscard]] std::string notesPath() const;
     // Returns new lines from the notes of captured programs, each once.
-    std::vector<std::string> news();
+    std::vector<std::string> newLines();
     // Examines running processes. Returns a line as describeBypass().
-    [[nodiscard]] std::string lookAt(const std::vector<pid_t>& processes) const;
+    [[nodiscard]] std::string describeRunning(const std::vector<pid_t>& processes) const;
     // Returns one line for each program that uses GL without the capture library, at its first detection. Empty: none.
-    std::string uncaptured(const std::vector<pid_t>& processes);
+    std::string describeUncaptured(const std::vector<pid_t>& processes);
     // Returns a line about programs that have ended. failed: the started program ended with an error.
-    [[nodiscard]] std::string aboutEnded(bool failed) const { return describeBypass(ended_, failed); }
+    [[nodiscard]] std::string describeEnded(bool failed) const { return describeBypass(ended_, failed); }
 
 private:
     explicit BypassWatch(int fd) : fd_(fd) {}
@@ -51,9 +51,9 @@ private:
 
     int fd_;
     size_t read_ = 0; // bytes of the notes
-    std::vector<std::string> said_, waiting_;
-    std::vector<UnseenProgram> ended_;
-    std::set<std::string> saidUncaptured_; // their names
+    std::vector<std::string> reported_, waiting_;
+    std::vector<UncapturedProgram> ended_;
+    std::set<std::string> uncapturedReported_; // their names
 };
 
 } // namespace mural::launch

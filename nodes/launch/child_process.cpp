@@ -45,10 +45,10 @@ bool redirect(int from, int to) { return from < 0 || dup2(from, to) >= 0; }
         sigaction(SIGXFSZ, &remembered.fileSize, nullptr);
     }
     bool ready = redirect(request.inputFd, 0) && redirect(request.outputFd, 1) && redirect(request.errorFd, 2);
-    for (const int fd : request.keptFds) ready = ready && fcntl(fd, F_SETFD, 0) == 0;
+    for (const int fd : request.inheritedFds) ready = ready && fcntl(fd, F_SETFD, 0) == 0;
     if (ready) execvpe(request.file.c_str(), arguments, environment);
     const int reason = errno;
-    [[maybe_unused]] const ssize_t told = write(reportFd, &reason, sizeof reason);
+    [[maybe_unused]] const ssize_t written = write(reportFd, &reason, sizeof reason);
     _exit(127);
 }
 

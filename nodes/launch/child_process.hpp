@@ -16,7 +16,7 @@ struct SpawnRequest {
     std::string file;                     // path to execute
     std::vector<std::string> arguments;   // including argv[0]
     std::vector<std::string> environment; // NAME=value
-    std::vector<int> keptFds;             // descriptors inherited under the same number
+    std::vector<int> inheritedFds;        // descriptors inherited under the same number
     int inputFd = -1;                     // becomes standard input; -1: inherited
     int outputFd = -1;                    // becomes standard output; -1: inherited
     int errorFd = -1;                     // becomes standard error; -1: inherited

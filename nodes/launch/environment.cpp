@@ -38,28 +38,28 @@ bool isOurEglList(std::string_view list) {
 }
 
 // Replaces a vendor variable and saves the user's value for the interposer.
-void replaceVendor(Environment& environment, std::string_view name, std::string_view keptName, std::string_view ours,
-                   bool alreadyOurs) {
+void replaceVendor(Environment& environment, std::string_view name, std::string_view savedName,
+                   std::string_view muralValue, bool isMuralValue) {
     const auto before = environment.get(name);
-    if (!alreadyOurs) {
+    if (!isMuralValue) {
         if (before && !before->empty()) {
-            environment.set(keptName, *before);
+            environment.set(savedName, *before);
         } else {
-            environment.unset(keptName);
+            environment.unset(savedName);
         }
     }
-    environment.set(name, ours);
+    environment.set(name, muralValue);
 }
 
-void restoreVendor(Environment& environment, std::string_view name, std::string_view keptName, bool isOurs) {
-    if (isOurs) {
-        if (const auto kept = environment.get(keptName)) {
-            environment.set(name, *kept);
+void restoreVendor(Environment& environment, std::string_view name, std::string_view savedName, bool isMuralValue) {
+    if (isMuralValue) {
+        if (const auto saved = environment.get(savedName)) {
+            environment.set(name, *saved);
         } else {
             environment.unset(name);
         }
     }
-    environment.unset(keptName);
+    environment.unset(savedName);
 }
 
 } // namespace
@@ -111,13 +111,13 @@ Result<CaptureLibrary> findCaptureLibrary(const std::string& muralBinary) {
 }
 
 std::string withoutCapture(std::string_view preload) {
-    std::string kept;
+    std::string saved;
     for (const auto entry : split(preload, " :")) {
-        if (baseName(entry) == kCaptureLibraryName || baseName(entry) == kFrontLibraryName) continue;
-        if (!kept.empty()) kept += ' ';
-        kept += entry;
+        if (baseName(entry) == kCaptureLibraryName || baseName(entry) == kPreloadLibraryName) continue;
+        if (!saved.empty()) saved += ' ';
+        saved += entry;
     }
-    return kept;
+    return saved;
 }
 
 std::string withCapture(std::string_view preload, std::string_view entries) {
@@ -127,7 +127,7 @@ std::string withCapture(std::string_view preload, std::string_view entries) {
 }
 
 Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session,
-                        Fronts fronts) {
+                        CaptureEntries entries) {
     const std::string folder = library.path.substr(0, library.path.rfind('/'));
     if (folder.find_first_of(":;") != std::string::npos) {
         return Error{"the folder " + folder +
@@ -143,7 +143,7 @@ Result<void> addCapture(Environment& environment, const CaptureLibrary& library,
         }
     }
     std::string entries = place + std::string(kCaptureLibraryName);
-    if (fronts == Fronts::VendorAndPreload) entries += " " + place + std::string(kFrontLibraryName);
+    if (entries == CaptureEntries::VendorAndPreload) entries += " " + place + std::string(kPreloadLibraryName);
     environment.set(kPreload, withCapture(environment.get(kPreload).value_or(""), entries));
     replaceVendor(environment, kGlxVendor, kRealGlxVendor, kOurVendor, environment.get(kGlxVendor) == kOurVendor);
     replaceVendor(environment, kEglVendors, kRealEglVendors, library.eglVendorFile,

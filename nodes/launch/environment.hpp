@@ -33,7 +33,7 @@ struct CaptureLibrary {
 };
 constexpr std::string_view kCaptureLibraryName = "libGLX_mural.so.0";
 // In the same folder; for programs whose GL library does not use GLVND.
-constexpr std::string_view kFrontLibraryName = "libmural_front.so";
+constexpr std::string_view kPreloadLibraryName = "libmural_preload.so";
 constexpr std::string_view kEglVendorFileName = "mural_egl_vendor.json";
 
 // Searches relative to the binary, in the build tree (../lib) and in an installation (../lib/mural).
@@ -48,11 +48,11 @@ std::string withoutCapture(std::string_view preload);
 std::string withCapture(std::string_view preload, std::string_view entries);
 
 // The preloaded libraries: the capture library alone, or with the preload library for GL libraries outside GLVND.
-enum class Fronts { Vendor, VendorAndPreload };
+enum class CaptureEntries { Vendor, VendorAndPreload };
 
 // Adds the preload and vendor variables. Their previous values are saved in MURAL_REAL_*. Idempotent.
 Result<void> addCapture(Environment& environment, const CaptureLibrary& library, const std::string& session,
-                        Fronts fronts = Fronts::Vendor);
+                        CaptureEntries entries = CaptureEntries::Vendor);
 
 // For head and nodes: removes the capture and all preloaded libraries. Clock fakers and frame grabbers are meant for
 // the program.

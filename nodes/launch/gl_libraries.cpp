@@ -32,8 +32,8 @@ std::string readAll(int fd, Deadline deadline) {
 }
 
 // Returns the loader's list of libraries, one per line: "\tNAME => PATH (ADDRESS)". Does not run the program.
-std::string askLoader(const std::string& loader, const std::string& executable, const Environment& environment,
-                      bool openedToo) {
+std::string resolveWithLoader(const std::string& loader, const std::string& executable, const Environment& environment,
+                              bool openedToo) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return {};
     const int silent = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -99,9 +99,9 @@ std::vector<std::string> ownGlLibraries(const std::string& executable, const Env
     if (!facts || facts.value().interpreter.empty()) return {};
     const std::string& loader = facts.value().interpreter;
     // Two separate runs: a library opened by name could hide one that a dependency finds elsewhere.
-    const auto linked = glLibrariesIn(askLoader(loader, executable, environment, false));
+    const auto linked = glLibrariesIn(resolveWithLoader(loader, executable, environment, false));
     if (!linked.empty()) return onlyOwn(linked);
-    return onlyOwn(glLibrariesIn(askLoader(loader, executable, environment, true)));
+    return onlyOwn(glLibrariesIn(resolveWithLoader(loader, executable, environment, true)));
 }
 
 } // namespace mural::launch

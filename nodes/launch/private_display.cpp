@@ -79,7 +79,7 @@ SpawnRequest serverRequest(const std::string& binary, int width, int height, con
     Environment environment = Environment::current();
     removeCapture(environment);
     request.environment = environment.entries();
-    request.keptFds = {numberFd};
+    request.inheritedFds = {numberFd};
     request.outputFd = logFd;
     request.errorFd = logFd;
     request.ownSession = true; // Ctrl-C is for the program

@@ -50,7 +50,7 @@ Result<void> ProgramSupervisor::start(SpawnRequest request) {
 void ProgramSupervisor::tick() {
     readSignals();
     if (killAt_ && killAt_->passed()) signalAll(SIGKILL);
-    if (killAt_ && !killAt_->passed()) askNewcomers();
+    if (killAt_ && !killAt_->passed()) stopNewProcesses();
 }
 
 void ProgramSupervisor::readSignals() {
@@ -59,13 +59,13 @@ void ProgramSupervisor::readSignals() {
         const int number = static_cast<int>(info.ssi_signo);
         if (number == SIGCHLD) {
             program_.running(); // collects the status of program_
-            std::set<pid_t> known = ours_;
+            std::set<pid_t> known = ownSessions_;
             known.insert(program_.pid());
             reapAdopted(known);
         } else if (number == SIGTERM || number == SIGHUP) {
             stopSignal_ = number;
             program_.signal(number);
-            if (number == SIGTERM) asked_.insert(program_.pid());
+            if (number == SIGTERM) terminated_.insert(program_.pid());
             end(kStopGraceMs);
         } else if (!programRunning()) {
             stopSignal_ = number; // no program is left that could receive the signal
@@ -77,8 +77,8 @@ void ProgramSupervisor::readSignals() {
 
 std::vector<pid_t> ProgramSupervisor::processes() const {
     std::vector<pid_t> found;
-    for (const ProcessFacts& p : descendantsOf(getpid(), ours_)) {
-        if (p.state != 'Z' && !isOurs(p.session)) found.push_back(p.pid);
+    for (const ProcessFacts& p : descendantsOf(getpid(), ownSessions_)) {
+        if (p.state != 'Z' && !isOwnSession(p.session)) found.push_back(p.pid);
     }
     return found;
 }
@@ -86,22 +86,22 @@ std::vector<pid_t> ProgramSupervisor::processes() const {
 bool ProgramSupervisor::anyoneLeft() const { return !processes().empty(); }
 
 void ProgramSupervisor::end(int64_t graceMs) {
-    askNewcomers();
+    stopNewProcesses();
     const Deadline wanted = Deadline::inMs(graceMs);
     if (!killAt_ || wanted.leftNs() < killAt_->leftNs()) killAt_ = wanted;
 }
 
 // Sends SIGTERM to processes that have not received it. A process may fork before it handles the signal, and its child
 // receives none.
-void ProgramSupervisor::askNewcomers() {
-    for (const ProcessFacts& p : descendantsOf(getpid(), ours_)) {
-        if (p.state != 'Z' && !isOurs(p.session) && asked_.insert(p.pid).second) kill(p.pid, SIGTERM);
+void ProgramSupervisor::stopNewProcesses() {
+    for (const ProcessFacts& p : descendantsOf(getpid(), ownSessions_)) {
+        if (p.state != 'Z' && !isOwnSession(p.session) && terminated_.insert(p.pid).second) kill(p.pid, SIGTERM);
     }
 }
 
 void ProgramSupervisor::signalAll(int number) {
-    for (const ProcessFacts& p : descendantsOf(getpid(), ours_)) {
-        if (p.state != 'Z' && !isOurs(p.session)) kill(p.pid, number);
+    for (const ProcessFacts& p : descendantsOf(getpid(), ownSessions_)) {
+        if (p.state != 'Z' && !isOwnSession(p.session)) kill(p.pid, number);
     }
 }
 

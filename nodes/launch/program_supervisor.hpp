@@ -29,7 +29,7 @@ public:
     ~ProgramSupervisor();
 
     // Excludes a process of Mural (head, private display) and its descendants: they have other owners.
-    void leaveAlone(pid_t pid) { ours_.insert(pid); }
+    void leaveAlone(pid_t pid) { ownSessions_.insert(pid); }
 
     Result<void> start(SpawnRequest request);
     [[nodiscard]] int signalFd() const { return signalFd_; }
@@ -49,21 +49,21 @@ public:
     void end(int64_t graceMs);
     [[nodiscard]] bool ending() const { return killAt_.has_value(); }
     // True after SIGTERM or SIGHUP, or after Ctrl-C without a running program.
-    [[nodiscard]] bool askedToStop() const { return stopSignal_ != 0; }
+    [[nodiscard]] bool stopRequested() const { return stopSignal_ != 0; }
     [[nodiscard]] int stopSignal() const { return stopSignal_; }
 
 private:
     explicit ProgramSupervisor(int signalFd) : signalFd_(signalFd) {}
     void readSignals();
     void signalAll(int number);
-    void askNewcomers();
-    [[nodiscard]] bool isOurs(pid_t session) const { return ours_.count(session) != 0; }
+    void stopNewProcesses();
+    [[nodiscard]] bool isOwnSession(pid_t session) const { return ownSessions_.count(session) != 0; }
 
     int signalFd_;
     ChildProcess program_;
-    std::set<pid_t> ours_;
+    std::set<pid_t> ownSessions_;
     std::optional<Deadline> killAt_;
-    std::set<pid_t> asked_; // processes that have received SIGTERM, once each
+    std::set<pid_t> terminated_; // processes that have received SIGTERM, once each
     int stopSignal_ = 0;
 };
 

@@ -54,13 +54,13 @@ bool WallWindowManager::takeRoot() {
     windowType_ = atom("_NET_WM_WINDOW_TYPE");
     mainKinds_ = {atom("_NET_WM_WINDOW_TYPE_NORMAL"), atom("_NET_WM_WINDOW_TYPE_DESKTOP")};
     const uint32_t events = XCB_EVENT_MASK_SUBSTRUCTURE_REDIRECT | XCB_EVENT_MASK_SUBSTRUCTURE_NOTIFY;
-    const auto asked = xcb_change_window_attributes_checked(connection_, root_, XCB_CW_EVENT_MASK, &events);
-    return Reply<xcb_generic_error_t>(xcb_request_check(connection_, asked)) == nullptr;
+    const auto cookie = xcb_change_window_attributes_checked(connection_, root_, XCB_CW_EVENT_MASK, &events);
+    return Reply<xcb_generic_error_t>(xcb_request_check(connection_, cookie)) == nullptr;
 }
 
 xcb_atom_t WallWindowManager::atom(const char* name) {
-    const auto asked = xcb_intern_atom(connection_, 0, static_cast<uint16_t>(std::strlen(name)), name);
-    const Reply<xcb_intern_atom_reply_t> reply(xcb_intern_atom_reply(connection_, asked, nullptr));
+    const auto cookie = xcb_intern_atom(connection_, 0, static_cast<uint16_t>(std::strlen(name)), name);
+    const Reply<xcb_intern_atom_reply_t> reply(xcb_intern_atom_reply(connection_, cookie, nullptr));
     return reply ? reply->atom : XCB_NONE;
 }
 
@@ -142,20 +142,20 @@ void WallWindowManager::fillScreen(xcb_window_t window) {
     constexpr uint16_t kMask = XCB_CONFIG_WINDOW_X | XCB_CONFIG_WINDOW_Y | XCB_CONFIG_WINDOW_WIDTH |
                                XCB_CONFIG_WINDOW_HEIGHT | XCB_CONFIG_WINDOW_BORDER_WIDTH;
     xcb_configure_window(connection_, window, kMask, values);
-    tellGeometry(window);
+    sendGeometry(window);
 }
 
 // A program that requested another size waits for a reply. The server only sends one after a change.
-void WallWindowManager::tellGeometry(xcb_window_t window) {
-    xcb_configure_notify_event_t told{};
-    told.response_type = XCB_CONFIGURE_NOTIFY;
-    told.event = window;
-    told.window = window;
-    told.width = static_cast<uint16_t>(width_);
-    told.height = static_cast<uint16_t>(height_);
+void WallWindowManager::sendGeometry(xcb_window_t window) {
+    xcb_configure_notify_event_t notify{};
+    notify.response_type = XCB_CONFIGURE_NOTIFY;
+    notify.event = window;
+    notify.window = window;
+    notify.width = static_cast<uint16_t>(width_);
+    notify.height = static_cast<uint16_t>(height_);
     char bytes[32] = {}; // SendEvent needs 32 bytes, even for shorter events
-    static_assert(sizeof told <= sizeof bytes);
-    std::memcpy(bytes, &told, sizeof told);
+    static_assert(sizeof notify <= sizeof bytes);
+    std::memcpy(bytes, &notify, sizeof notify);
     xcb_send_event(connection_, 0, window, XCB_EVENT_MASK_STRUCTURE_NOTIFY, bytes);
 }
 
@@ -165,15 +165,15 @@ void WallWindowManager::setState(xcb_window_t window, uint32_t state) {
 }
 
 bool WallWindowManager::canBeMain(xcb_window_t window) {
-    const auto asked = xcb_get_property(connection_, 0, window, XCB_ATOM_WM_TRANSIENT_FOR, XCB_ATOM_WINDOW, 0, 1);
-    const Reply<xcb_get_property_reply_t> transient(xcb_get_property_reply(connection_, asked, nullptr));
+    const auto cookie = xcb_get_property(connection_, 0, window, XCB_ATOM_WM_TRANSIENT_FOR, XCB_ATOM_WINDOW, 0, 1);
+    const Reply<xcb_get_property_reply_t> transient(xcb_get_property_reply(connection_, cookie, nullptr));
     if (transient && transient->type == XCB_ATOM_WINDOW && transient->value_len > 0) return false;
     return !isHelperKind(window);
 }
 
 bool WallWindowManager::isHelperKind(xcb_window_t window) {
-    const auto asked = xcb_get_property(connection_, 0, window, windowType_, XCB_ATOM_ATOM, 0, 32);
-    const Reply<xcb_get_property_reply_t> kinds(xcb_get_property_reply(connection_, asked, nullptr));
+    const auto cookie = xcb_get_property(connection_, 0, window, windowType_, XCB_ATOM_ATOM, 0, 32);
+    const Reply<xcb_get_property_reply_t> kinds(xcb_get_property_reply(connection_, cookie, nullptr));
     if (!kinds || kinds->type != XCB_ATOM_ATOM || kinds->value_len == 0) return false;
     const auto* first = static_cast<const xcb_atom_t*>(xcb_get_property_value(kinds.get()));
     const auto* last = first + kinds->value_len;

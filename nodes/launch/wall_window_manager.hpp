@@ -40,7 +40,7 @@ private:
     void configureRequested(const xcb_configure_request_event_t& event);
     void windowGone(xcb_window_t window);
     void fillScreen(xcb_window_t window);
-    void tellGeometry(xcb_window_t window);
+    void sendGeometry(xcb_window_t window);
     void setState(xcb_window_t window, uint32_t state);
     [[nodiscard]] bool canBeMain(xcb_window_t window);
     [[nodiscard]] bool isHelperKind(xcb_window_t window);

@@ -180,8 +180,8 @@ Result<delta::BatchHead> HeadConnection::readBatch() {
     return head.head();
 }
 
-Result<void> HeadConnection::readPayload(uint32_t sizeBytes, uint32_t mostBytes) {
-    if (sizeBytes > mostBytes)
+Result<void> HeadConnection::readPayload(uint32_t sizeBytes, uint32_t maxBytes) {
+    if (sizeBytes > maxBytes)
         return Error{"the head sent an invalid packet of " + std::to_string(sizeBytes) +
                      " bytes; install the same version of mural on all machines"};
     payload_.resize(sizeBytes);

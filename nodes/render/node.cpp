@@ -75,7 +75,7 @@ int64_t processCpuNowNs() {
     return int64_t{now.tv_sec} * kNsPerS + now.tv_nsec;
 }
 
-constexpr int64_t kMeetMs = 10'000;
+constexpr int64_t kConnectNodesMs = 10'000;
 constexpr int64_t kSlower = 2;  // planted fault: additional time, as a multiple of the work's time
 constexpr int kLostPacket = 10; // planted fault: index of the packet that a node in resync drops
 
@@ -121,9 +121,9 @@ private:
     }
 
     // Sends a message to the head, in order with pictures.
-    void tell(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {}) {
+    void sendMessage(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b = {}) {
         if (!sender_) return line_->send(type, a, b);
-        stuck_ = !sender_->tell(type, a, b) || stuck_;
+        stuck_ = !sender_->enqueue(type, a, b) || stuck_;
     }
 
     bool takePacket(const wire::PacketHeader& header, std::span<const std::byte> payload) {
@@ -156,13 +156,13 @@ private:
             if (replay_) replay_->clientGone(client);
             if (windows_) windows_->clientGone(client);
             if (sender_) sender_->clientGone(client);
-            std::erase_if(saidEightBits_, [client](const auto& window) { return window.first == client; });
-            sayWindowGone(client, wire::kAllWindows);
+            std::erase_if(eightBitsReported_, [client](const auto& window) { return window.first == client; });
+            reportWindowGone(client, wire::kAllWindows);
             return true;
         }
         case wire::HeadCommand::Activate: return newMember(rest);
         case wire::HeadCommand::ResetDictionary: return unpackBatches();
-        case wire::HeadCommand::RequestPhase: return tellTurns(rest);
+        case wire::HeadCommand::RequestPhase: return sendPhaseState(rest);
         case wire::HeadCommand::Turns: return takeTurns(rest);
         case wire::HeadCommand::JoinMulticast: return joinGroup(rest);
         case wire::HeadCommand::SwitchToMulticast: return changeOver(rest);
@@ -170,9 +170,9 @@ private:
         case wire::HeadCommand::RangeAssignment: return moveShares(rest);
         case wire::HeadCommand::Synchronize: return synchronize(rest);
         case wire::HeadCommand::Exchange:
-            return meet(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
+            return connectNodes(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::Finish:
-            sayBye();
+            sendGoodbye();
             finished_ = true;
             return true;
         }
@@ -237,14 +237,16 @@ private:
         slow_ = config.plant == "slow" && setup_.node == 1;
         ReplayOutputs outputs;
         outputs.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte> bytes) {
-            if (!catchesUp_ && !invalid_) tell(wire::NodeMessage::ReplyPart, std::as_bytes(std::span(&h, 1)), bytes);
+            if (!catchesUp_ && !invalid_)
+                sendMessage(wire::NodeMessage::ReplyPart, std::as_bytes(std::span(&h, 1)), bytes);
         };
         outputs.frameDone = [this](const ReplayOutputs::Frame& f) { frameDone(f); };
         outputs.invalid = [this] { invalid(); };
         outputs.windowGone = [this](uint32_t client, uint32_t window) { windowGone(client, window); };
-        outputs.news = [this](const wire::DriverEvent& n, const std::string& text) {
+        outputs.driverEvent = [this](const wire::DriverEvent& n, const std::string& text) {
             if (!catchesUp_)
-                tell(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)), std::as_bytes(std::span(text)));
+                sendMessage(wire::NodeMessage::DriverEvent, std::as_bytes(std::span(&n, 1)),
+                            std::as_bytes(std::span(text)));
         };
         if (composer_)
             outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule) {
@@ -289,7 +291,7 @@ private:
         composer.codec = setup_.partCodec;
         if (const char* plant = std::getenv("MURAL_PLANT")) composer.plant = plant;
         exchange_ =
-            std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.life}, secret.value());
+            std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.incarnation}, secret.value());
         composer_ = std::make_unique<PictureComposer>(
             composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
         // Every node listens, even one without initial peers: a restarted node connects to those present.
@@ -309,7 +311,7 @@ private:
         return rank != own && (setup_.isResyncing || rank < own) && (!isStar() || rank == 0 || own == 0);
     }
 
-    bool meet(const std::string& text) {
+    bool connectNodes(const std::string& text) {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
         for (int rank = 0; exchange_ && rank < setup_.pass.ranges; ++rank) {
             if (!goesTo(rank)) continue;
@@ -318,7 +320,8 @@ private:
             if (!where)
                 return fail("the head sent no addresses for the picture exchange; install the same version of mural on "
                             "all machines");
-            const auto connected = exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kMeetMs));
+            const auto connected =
+                exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kConnectNodesMs));
             if (!connected)
                 line_->sendText(wire::NodeMessage::Log,
                                 "cannot connect to the node with range " + std::to_string(rank + 1) + " at " +
@@ -356,13 +359,13 @@ private:
         ready["host"] = hostName();
         ready["pid"] = getpid();
         std::set<std::string> extensions;
-        int best = 0, mostPixels = 0;
+        int best = 0, maxPixels = 0;
         const auto add = [&](gl::Api api, bool core) {
             const auto p = gl::probe(platform, api, core);
             if (!p) return;
             extensions.insert(p.value().extensions.begin(), p.value().extensions.end());
             if (api == gl::Api::Desktop && p.value().glVersion > best) best = p.value().glVersion;
-            if (mostPixels == 0 || p.value().maxSurfaceSize < mostPixels) mostPixels = p.value().maxSurfaceSize;
+            if (maxPixels == 0 || p.value().maxSurfaceSize < maxPixels) maxPixels = p.value().maxSurfaceSize;
             const std::string &renderer = p.value().renderer, &backend = p.value().backend;
             if (!ready.contains("renderer"))
                 ready["renderer"] = backend.find(renderer) != std::string::npos ? backend : renderer + ", " + backend;
@@ -377,7 +380,7 @@ private:
             std::erase_if(extensions,
                           [](const std::string& name) { return name.find("_EGL_image") != std::string::npos; });
         ready["glVersion"] = best;
-        ready["mostPixels"] = mostPixels;
+        ready["maxPixels"] = maxPixels;
         ready["extensions"] = std::vector<std::string>(extensions.begin(), extensions.end());
         return ready;
     }
@@ -389,7 +392,7 @@ private:
         if (words[1] != 0 && replay_) replay_->drawAgain();
         const wire::SynchronizedMessage done{
             words[0], static_cast<uint32_t>(replay_ ? replay_->validity() : wire::FrameValidity::Valid)};
-        tell(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
+        sendMessage(wire::NodeMessage::Synchronized, std::as_bytes(std::span(&done, 1)));
         return true;
     }
 
@@ -405,24 +408,25 @@ private:
         uint32_t words[4] = {};
         if (arguments.size() < sizeof words) return false;
         std::memcpy(words, arguments.data(), sizeof words);
-        const uint32_t view = words[0], node = words[1], life = words[3];
+        const uint32_t view = words[0], node = words[1], incarnation = words[3];
         const bool itself = node == static_cast<uint32_t>(setup_.node);
         if (words[2] != 0 && replay_) {
             replay_->beginTurns();
             replay_->beginAreas();
         }
-        shareWith(static_cast<int>(node), life, arguments.subspan(sizeof words));
+        shareWith(static_cast<int>(node), incarnation, arguments.subspan(sizeof words));
         if (catchesUp_ && !itself) return true;
         if (std::exchange(catchesUp_, false)) busyNs_ = 0; // the resync is no frame's work
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
-        tell(wire::NodeMessage::ViewReached, std::as_bytes(std::span(&view, 1)), std::as_bytes(std::span(frames)));
+        sendMessage(wire::NodeMessage::ViewReached, std::as_bytes(std::span(&view, 1)),
+                    std::as_bytes(std::span(frames)));
         return true;
     }
 
     // Composes with `node` from now on, and without the ranks of `absent`. No effect unless it draws a range of the
     // same picture.
-    void shareWith(int node, uint32_t life, std::span<const std::byte> absent) {
+    void shareWith(int node, uint32_t incarnation, std::span<const std::byte> absent) {
         const auto rankOf = [this](int other) {
             return other >= setup_.collector && other < setup_.collector + setup_.pass.ranges ? other - setup_.collector
                                                                                               : -1;
@@ -434,19 +438,19 @@ private:
             std::memcpy(&other, absent.data(), sizeof other);
             if (const int rank = rankOf(static_cast<int>(other)); rank >= 0) absentRanks.insert(rank);
         }
-        replay_->shareAnew(node == setup_.node, [this, rank = rankOf(node), life, absentRanks] {
-            composer_->returned(rank, life, absentRanks);
+        replay_->resetShares(node == setup_.node, [this, rank = rankOf(node), incarnation, absentRanks] {
+            composer_->returned(rank, incarnation, absentRanks);
         });
     }
 
-    bool tellTurns(std::span<const std::byte> number) {
+    bool sendPhaseState(std::span<const std::byte> number) {
         if (number.size() < sizeof(uint32_t)) return false;
         if (catchesUp_ || !replay_) return true;
         if (!setup_.areas.empty()) {
-            tell(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), replay_->tellAreas());
+            sendMessage(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), replay_->memberAreas());
         } else if (setup_.pass.period > 1) {
             const std::vector<wire::WindowTurn> turns = replay_->turns();
-            tell(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
+            sendMessage(wire::NodeMessage::Turns, number.first(sizeof(uint32_t)), std::as_bytes(std::span(turns)));
         }
         return true;
     }
@@ -465,7 +469,7 @@ private:
     }
 
     bool takeTurns(std::span<const std::byte> bytes) {
-        if (!setup_.areas.empty()) return !replay_ || replay_->takeToldAreas(bytes);
+        if (!setup_.areas.empty()) return !replay_ || replay_->takeMemberAreas(bytes);
         if (bytes.size() % sizeof(wire::WindowTurn) != 0) return false;
         std::vector<wire::WindowTurn> turns(bytes.size() / sizeof(wire::WindowTurn));
         if (!bytes.empty()) std::memcpy(turns.data(), bytes.data(), bytes.size());
@@ -491,10 +495,10 @@ private:
     }
 
     // Reports a window whose picture loses bits, once, on the first node.
-    void sayEightBits(const ReplayOutputs::Frame& f) {
+    void reportEightBits(const ReplayOutputs::Frame& f) {
         const bool shows = setup_.node == 0 && (sender_ || windows_);
         if (!shows || f.config.red <= 8 || f.format != PictureFormat::Bgra8 ||
-            !saidEightBits_.insert({f.client, f.window}).second)
+            !eightBitsReported_.insert({f.client, f.window}).second)
             return;
         line_->sendText(
             wire::NodeMessage::Log,
@@ -510,7 +514,7 @@ private:
         const uint64_t replayedNs = threadCpuNs();
         std::unique_ptr<PictureRead> picture;
         if (f.pixels && !f.region.empty()) {
-            sayEightBits(f);
+            reportEightBits(f);
             if (sender_) picture = f.read();
             countWork();
             if (windows_) showTiles(f);
@@ -532,7 +536,7 @@ private:
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
         done.calls = calls_[f.client] + (f.client == clientInHand_ ? replay_->counts().commands - callsBefore_ : 0);
-        if (!picture) return tell(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
+        if (!picture) return sendMessage(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
         stuck_ = !sender_->send({headerOf(f), std::move(picture), done}) || stuck_;
         beganNs_ = workNowNs(); // excludes a wait for queue space
     }
@@ -540,14 +544,14 @@ private:
     void windowGone(uint32_t client, uint32_t window) {
         if (windows_) windows_->windowGone(client, window);
         if (sender_) sender_->windowGone(client, window);
-        saidEightBits_.erase({client, window});
-        sayWindowGone(client, window);
+        eightBitsReported_.erase({client, window});
+        reportWindowGone(client, window);
     }
 
-    void sayWindowGone(uint32_t client, uint32_t window) {
+    void reportWindowGone(uint32_t client, uint32_t window) {
         if (catchesUp_) return;
         const wire::WindowGoneMessage gone{client, window};
-        tell(wire::NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1)));
+        sendMessage(wire::NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1)));
     }
 
     static wire::PictureHeader headerOf(const ReplayOutputs::Frame& f) {
@@ -571,8 +575,8 @@ private:
         PictureSenderConfig config;
         config.codec = setup_.pictureCodec;
         config.addsCpu = countsCpu_;
-        config.way = setup_.way;
-        config.alpha = setup_.windowPixels ? PictureAlpha::Kept : PictureAlpha::Dropped;
+        config.transferScale = setup_.transferScale;
+        config.alpha = setup_.windowPixels ? PictureAlpha::Preserved : PictureAlpha::Dropped;
         const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
             line_->send(type, a, b);
         };
@@ -589,7 +593,7 @@ private:
         }
     }
 
-    void sayBye() {
+    void sendGoodbye() {
         nlohmann::json bye;
         if (sender_ && !sender_->finish()) return; // the sender has logged the reason
         const ReplayCounts counts = replay_ ? replay_->counts() : ReplayCounts{};
@@ -620,15 +624,15 @@ private:
     bool stuck_ = false;                    // the sender failed: no message leaves this node
     uint64_t lastCpuNs_ = 0;
     bool countsCpu_ = false;
-    int64_t beganNs_ = 0;                                   // workNowNs() at the start of the current work
-    int64_t busyNs_ = 0;                                    // completed work since the last frame
-    bool slow_ = false;                                     // planted fault
-    std::map<uint32_t, uint64_t> calls_;                    // commands by client, in completed packets
-    std::map<uint32_t, uint32_t> frames_;                   // latest frame by client
-    std::set<std::pair<uint32_t, uint32_t>> saidEightBits_; // client, window
-    bool invalid_ = false;                                  // this node can't draw the picture of the others
-    bool losesPackets_ = false;                             // planted fault
-    int packetsGiven_ = 0;                                  // packets received during the resync
+    int64_t beganNs_ = 0;                                       // workNowNs() at the start of the current work
+    int64_t busyNs_ = 0;                                        // completed work since the last frame
+    bool slow_ = false;                                         // planted fault
+    std::map<uint32_t, uint64_t> calls_;                        // commands by client, in completed packets
+    std::map<uint32_t, uint32_t> frames_;                       // latest frame by client
+    std::set<std::pair<uint32_t, uint32_t>> eightBitsReported_; // client, window
+    bool invalid_ = false;                                      // this node can't draw the picture of the others
+    bool losesPackets_ = false;                                 // planted fault
+    int packetsGiven_ = 0;                                      // packets received during the resync
     bool catchesUp_ = false;    // in resync: replays commands whose messages the head has from other nodes
     uint32_t clientInHand_ = 0; // client of the current or latest packet
     uint64_t callsBefore_ = 0;  // commands of all clients before that packet

@@ -154,8 +154,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("pictureCodec", s.pictureCodec);
     visit("windowPixels", s.windowPixels);
     visit("deepPictures", s.deepPictures);
-    visit("wayX", s.way.x);
-    visit("wayY", s.way.y);
+    visit("wayX", s.transferScale.x);
+    visit("wayY", s.transferScale.y);
     visit("readback", s.readback);
     visit("partCodec", s.partCodec);
     visit("wallWindows", s.wallWindows);
@@ -171,7 +171,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("delta", s.delta);
     visit("catchesUp", s.isResyncing);
     visit("skipsFrames", s.skipsFrames);
-    visit("life", s.life);
+    visit("incarnation", s.incarnation);
     visit("cacheBytes", s.cacheBytes, 1 << 20);
     visit("collector", s.collector, 0);
     visit("composition", s.composition);
@@ -226,8 +226,8 @@ std::string readValue(const Json& j, bool& into, int64_t) {
 }
 
 template <class Int>
-requires std::is_integral_v<Int> std::string readValue(const Json& j, Int& into, int64_t least) {
-    const int64_t lowest = std::max<int64_t>(least, std::numeric_limits<Int>::min());
+requires std::is_integral_v<Int> std::string readValue(const Json& j, Int& into, int64_t minimum) {
+    const int64_t lowest = std::max<int64_t>(minimum, std::numeric_limits<Int>::min());
     const int64_t highest = std::numeric_limits<Int>::max();
     const std::string wanted = "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
     if (!j.is_number_integer()) return wanted;
@@ -251,21 +251,21 @@ requires std::is_enum_v<E> std::string readValue(const Json& j, E& into, int64_t
     return wanted;
 }
 
-template <class T> std::string readValue(const Json& j, std::vector<T>& into, int64_t least) {
+template <class T> std::string readValue(const Json& j, std::vector<T>& into, int64_t minimum) {
     if (!j.is_array()) return "a list";
     into.clear();
     for (const Json& entry : j) {
         T value{};
-        const std::string wanted = readValue(entry, value, least);
+        const std::string wanted = readValue(entry, value, minimum);
         if (!wanted.empty()) return "a list, each entry " + wanted;
         into.push_back(std::move(value));
     }
     return {};
 }
 
-std::string readValue(const Json& j, std::optional<ScreenView>& into, int64_t least) {
+std::string readValue(const Json& j, std::optional<ScreenView>& into, int64_t minimum) {
     std::vector<double> n;
-    const std::string wanted = readValue(j, n, least);
+    const std::string wanted = readValue(j, n, minimum);
     if (!wanted.empty()) return wanted;
     if (n.empty()) return {};
     if (n.size() != 20) return "a list of 20 numbers";
@@ -291,10 +291,10 @@ template <class Config> Result<Config> read(const std::string& line, const std::
     }
     Config config;
     std::string error;
-    visitFields(config, [&](const char* name, auto& value, int64_t least = INT64_MIN) {
+    visitFields(config, [&](const char* name, auto& value, int64_t minimum = INT64_MIN) {
         const auto found = json.find(name);
         if (found == json.end()) return;
-        const std::string wanted = readValue(*found, value, least);
+        const std::string wanted = readValue(*found, value, minimum);
         if (!wanted.empty() && error.empty()) error = what + ": field " + name + " must be " + wanted;
         json.erase(found);
     });
@@ -345,7 +345,7 @@ Result<NodeSetup> nodeSetupFromJson(const std::string& line) {
         p.range >= p.ranges)
         return Error{"node setup: its pass does not belong to the session"};
     if (!isPossible(p.zoom) || !isPossible(p.shown)) return noSuchZoom("node setup");
-    if (!isPossible(setup->way) || setup->way.x > 1 || setup->way.y > 1)
+    if (!isPossible(setup->transferScale) || setup->transferScale.x > 1 || setup->transferScale.y > 1)
         return Error{"node setup: the transfer scale of its pictures is not above 0, or above 1"};
     return setup;
 }

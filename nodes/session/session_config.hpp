@@ -98,7 +98,7 @@ struct NodeSetup {
     std::string pictureCodec = "raw"; // …or PackedPicture messages, unless raw: a name for PlaneEncoder
     bool windowPixels = false;        // pictures go to the program's own window, so lossy codecs keep the alpha
     bool deepPictures = false;        // pictures keep 10 bits per channel; requires windowPixels
-    Zoom way;                         // reduction for the transfer, at most 1 (nodes/frame_transfer/transfer_scale.hpp)
+    Zoom transferScale;               // reduction for the transfer, at most 1 (nodes/frame_transfer/transfer_scale.hpp)
     Readback readback = Readback::Auto; // transfer from GL to memory
     std::string partCodec = "auto";     // codec for parts of pictures between nodes
     bool wallWindows = false;           // opens one window per tile
@@ -116,7 +116,7 @@ struct NodeSetup {
     // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Activate)
     bool isResyncing = false;
     bool skipsFrames = false; // with catchesUp: skips drawing until Synchronize
-    uint32_t life = 0;        // incarnation: number of restarts
+    uint32_t incarnation = 0; // incarnation: number of restarts
     int collector = 0; // node that composes this node's picture; the nodes of the ranges follow it, one per range
     std::string composition = "serial"; // name of the compositor::Strategy for that picture
     // in hex; for nodes that exchange parts of a picture or share a swap barrier; empty: none

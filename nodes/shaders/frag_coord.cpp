@@ -54,7 +54,7 @@ std::string functionsFor(const std::string& name, const GlslText& text, const st
 
 } // namespace
 
-std::optional<std::string> withWindowPlace(std::string_view source, const FragmentReads& reads, bool es) {
+std::optional<std::string> withWindowOffset(std::string_view source, const FragmentReads& reads, bool es) {
     const GlslText text = scanGlsl(source, es);
     const std::string ending = endingOf(source);
     TextEdits edits;

@@ -22,10 +22,10 @@ struct FragmentReads {
 };
 
 // Supports GLSL of any version. Returns nothing if the shader reads none of these.
-std::optional<std::string> withWindowPlace(std::string_view source, const FragmentReads& reads, bool es);
+std::optional<std::string> withWindowOffset(std::string_view source, const FragmentReads& reads, bool es);
 
 // The same for ARB_fragment_program: the vec4s are program.env[envIndex - 1] (the second) and program.env[envIndex].
 // Returns nothing if the program reads no position, or uses these parameters itself.
-std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIndex);
+std::optional<std::string> withWindowOffsetArb(std::string_view source, int envIndex);
 
 } // namespace mural::shaders

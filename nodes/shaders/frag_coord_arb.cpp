@@ -1,4 +1,4 @@
-// Rewrites coordinates in programs of ARB_fragment_program, an assembly language (withWindowPlaceArb).
+// Rewrites coordinates in programs of ARB_fragment_program, an assembly language (withWindowOffsetArb).
 #include <cctype>
 #include <charconv>
 #include <vector>
@@ -70,7 +70,7 @@ size_t firstStatement(const Arb& arb) {
 
 } // namespace
 
-std::optional<std::string> withWindowPlaceArb(std::string_view source, int envIndex) {
+std::optional<std::string> withWindowOffsetArb(std::string_view source, int envIndex) {
     const Arb arb{scanArb(source)};
     const size_t first = firstStatement(arb);
     if (first == 0 || namesEnv(arb, envIndex - 1)) return std::nullopt;

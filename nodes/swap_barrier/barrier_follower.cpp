@@ -25,7 +25,7 @@ Result<std::unique_ptr<SwapBarrier>> BarrierFollower::connect(int rank, const Ch
     return std::unique_ptr<SwapBarrier>(std::make_unique<BarrierFollower>(std::move(*secure), std::move(log)));
 }
 
-Result<BarrierGo> BarrierFollower::ask(const SwapKey& key) {
+Result<BarrierGo> BarrierFollower::request(const SwapKey& key) {
     BarrierReady ready{key, shownKey_, shownNs_, 0, clock_.errorNs()};
     shownNs_ = 0;
     ready.sentNs = monotonicNowNs();
@@ -42,7 +42,7 @@ Result<BarrierGo> BarrierFollower::ask(const SwapKey& key) {
 
 int64_t BarrierFollower::await(const SwapKey& key) {
     if (!leader_) return 0;
-    auto go = ask(key);
+    auto go = request(key);
     if (go && go->showNs == 0) return 0; // released alone: there is no common time to wait for
     if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMaxSleepNs);
     log_("the swap barrier is disconnected: its leader is lost: " + go.error().message +

@@ -23,7 +23,7 @@ public:
     void shown(const SwapKey& key, int64_t atNs) override;
 
 private:
-    Result<BarrierGo> ask(const SwapKey& key);
+    Result<BarrierGo> request(const SwapKey& key);
 
     std::unique_ptr<Connection> leader_; // null: connection lost
     const Log log_;

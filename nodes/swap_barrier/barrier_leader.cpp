@@ -97,18 +97,18 @@ void BarrierLeader::take(int rank, const BarrierReady& ready, int64_t arrivedNs)
     apply(rounds_.arrive(rank, ready.key, arrivedNs));
 }
 
-int64_t BarrierLeader::worstClockNs(Whose whose) const {
+int64_t BarrierLeader::worstClockNs(Members members) const {
     int64_t worst = 0;
     for (const auto& [rank, member] : members_)
-        if ((whose == Whose::All || !rounds_.isGone(rank)) && member.errorNs != INT64_MAX)
+        if ((members == Members::All || !rounds_.isGone(rank)) && member.errorNs != INT64_MAX)
             worst = std::max(worst, member.errorNs);
     return worst;
 }
 
 void BarrierLeader::apply(const BarrierRounds::Step& step) {
     for (const int rank : step.late) {
-        const std::string who = rank == 0 ? "the leader of the swap barrier" : memberText(rank);
-        log_(who + " did not reply for " + std::to_string(patienceMs_) +
+        const std::string member = rank == 0 ? "the leader of the swap barrier" : memberText(rank);
+        log_(member + " did not reply for " + std::to_string(patienceMs_) +
              " ms: the others swap without it until it replies");
     }
     for (const BarrierRounds::Release& release : step.releases) {
@@ -116,7 +116,7 @@ void BarrierLeader::apply(const BarrierRounds::Step& step) {
         // The estimated time at which all members have received the release.
         const int64_t showNs = release.members.size() < 2
                                    ? 0
-                                   : monotonicNowNs() + std::min(worstClockNs(Whose::Waiting) + kWakeNs, kMaxLeadNs);
+                                   : monotonicNowNs() + std::min(worstClockNs(Members::Waiting) + kWakeNs, kMaxLeadNs);
         for (const int rank : release.members) {
             if (rank == 0) {
                 waiting_ = false;
@@ -152,7 +152,7 @@ void BarrierLeader::shown(const SwapKey& key, int64_t atNs) {
 
 std::optional<SwapBarrierNumbers> BarrierLeader::numbers() const {
     const std::lock_guard lock(mutex_);
-    return SwapBarrierNumbers{skew_.numbers(), worstClockNs(Whose::All)};
+    return SwapBarrierNumbers{skew_.numbers(), worstClockNs(Members::All)};
 }
 
 } // namespace mural

@@ -43,8 +43,8 @@ private:
     void apply(const BarrierRounds::Step& step); // call with the lock held
     // Selects members for a measurement. Waiting: those that a round waits for. All: also those that have left, as all
     // have when a run ends.
-    enum class Whose : uint8_t { Waiting, All };
-    [[nodiscard]] int64_t worstClockNs(Whose whose) const;
+    enum class Members : uint8_t { Waiting, All };
+    [[nodiscard]] int64_t worstClockNs(Members members) const;
 
     const int count_;
     const ChannelSecret secret_;

@@ -27,8 +27,8 @@ private:
         int64_t offsetNs = 0;
         int64_t wayNs = INT64_MAX;
     };
-    static constexpr size_t kKept = 64; // recent samples only: clocks drift by up to 100 us per second
-    std::array<Seen, kKept> seen_;
+    static constexpr size_t kSamples = 64; // recent samples only: clocks drift by up to 100 us per second
+    std::array<Seen, kSamples> seen_;
     size_t next_ = 0;
     Seen best_;
 };

@@ -7,7 +7,7 @@ namespace mural {
 namespace {
 
 constexpr size_t kOpen = 64;
-constexpr size_t kKept = 4096;
+constexpr size_t kSamples = 4096;
 
 } // namespace
 
@@ -28,10 +28,10 @@ void SkewMeter::shown(const SwapKey& key, int64_t atNs) {
     open_.erase(found);
     ++swaps_;
     maxNs_ = std::max(maxNs_, skewNs);
-    if (last_.size() < kKept)
+    if (last_.size() < kSamples)
         last_.push_back(skewNs);
     else
-        last_[next_++ % kKept] = skewNs;
+        last_[next_++ % kSamples] = skewNs;
 }
 
 SkewNumbers SkewMeter::numbers() const {

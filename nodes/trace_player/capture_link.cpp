@@ -34,9 +34,9 @@ Result<FileDescriptor> connectAbstract(const std::string& session) {
 // Fills `into` completely before the deadline. Stores a received descriptor in `memory`.
 bool receiveWhole(int socket, std::span<std::byte> into, FileDescriptor* memory, Deadline deadline) {
     while (!into.empty()) {
-        pollfd look{socket, POLLIN, 0};
+        pollfd poller{socket, POLLIN, 0};
         if (deadline.passed()) return false;
-        if (poll(&look, 1, static_cast<int>(deadline.leftNs(kNsPerS) / kNsPerMs) + 1) <= 0) continue;
+        if (poll(&poller, 1, static_cast<int>(deadline.leftNs(kNsPerS) / kNsPerMs) + 1) <= 0) continue;
         alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
         iovec part{into.data(), into.size()};
         msghdr message{};
@@ -129,7 +129,7 @@ bool CaptureLink::mayGoOn(uint32_t submittedFrame) {
 
 uint64_t CaptureLink::unanswered() {
     takeAnswers();
-    return asked_ > answered_ ? asked_ - answered_ : 0;
+    return requested_ > answered_ ? requested_ - answered_ : 0;
 }
 
 void CaptureLink::takeAnswers() {
@@ -167,8 +167,8 @@ void CaptureLink::leave() {
 }
 
 bool CaptureLink::gone(int64_t sliceMs) {
-    pollfd look{socket_.get(), POLLIN, 0};
-    if (poll(&look, 1, static_cast<int>(sliceMs)) <= 0) return false;
+    pollfd poller{socket_.get(), POLLIN, 0};
+    if (poll(&poller, 1, static_cast<int>(sliceMs)) <= 0) return false;
     char byte = 0;
     return recv(socket_.get(), &byte, 1, MSG_DONTWAIT) <= 0;
 }

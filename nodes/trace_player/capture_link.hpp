@@ -35,7 +35,7 @@ public:
     bool mayGoOn(uint32_t submittedFrame); // applies the session's latency
     [[nodiscard]] const std::atomic<uint32_t>& framesWord() const { return header_->framesDone; }
 
-    void asked() { ++asked_; }
+    void requested() { ++requested_; }
     [[nodiscard]] uint64_t unanswered(); // drops received replies; returns the number of missing ones
     [[nodiscard]] const std::atomic<uint32_t>& answersWord() const { return header_->replyTail; }
 
@@ -53,7 +53,7 @@ private:
     const capture::Welcome welcome_;
     capture::CaptureHeader* header_; // null: the program has left
     const size_t sizeBytes_;
-    uint64_t asked_ = 0;
+    uint64_t requested_ = 0;
     uint64_t answered_ = 0;
     wire::ReplyHeader reply_{};
     size_t replyHeaderBytes_ = 0; // received bytes of reply_

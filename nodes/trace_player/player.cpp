@@ -28,7 +28,7 @@ constexpr int64_t kLeavePatienceMs = 5'000;
 constexpr int64_t kSliceNs = 10 * kNsPerMs; // interval at which replies to the other programs are dropped
 constexpr uint64_t kMaxUnanswered = 16; // maximum number of requests without a reply; the player ignores their replies
 
-bool asksForReply(uint16_t opcode) {
+bool requestsReply(uint16_t opcode) {
     switch (opcode) {
     case wire::kOpRequestPixels:
     case wire::kOpRequestTexImage:
@@ -158,8 +158,8 @@ private:
             const uint32_t first = trace::argumentWord(r, 0);
             if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
                 frame = std::max(frame, trace::argumentWord(r, 1));
-            else if (asksForReply(r.opcode) && !(first & capture::kAskedAhead))
-                link.asked();
+            else if (requestsReply(r.opcode) && !(first & capture::kPrefetched))
+                link.requested();
             else if (!link.welcome().displayApp)
                 continue;
             else if (r.opcode == wire::kOpDestroyWindow)

@@ -26,20 +26,20 @@ enum class ControlOp : uint32_t {
     Stream = 2,       // the stream of the packet follows; otherwise it is the previous packet's
     Bytes = 3,        // plain bytes; their number follows
     Done = 4,         // end of the batch
-    KeptBytes = 5,    // as Bytes, and cached in the slot that follows
+    CachedBytes = 5,  // as Bytes, and cached in the slot that follows
     ChangedBytes = 6, // the bytes of the slot that follows, with spans of changed words; their number follows
 };
 
 // Writes a span: unchanged words, then changed words (at least one). One byte holds four bits of each; 15: the rest
 // follows as a varint.
-inline void putSpan(uint32_t kept, uint32_t changed, auto&& byte) {
+inline void putSpan(uint32_t unchanged, uint32_t changed, auto&& byte) {
     const auto number = [&](uint32_t n) {
         for (; n >= 128; n >>= 7) byte((n & 127) | 128);
         byte(n);
     };
-    const uint32_t high = kept < 15 ? kept : 15, low = changed - 1 < 15 ? changed - 1 : 15;
+    const uint32_t high = unchanged < 15 ? unchanged : 15, low = changed - 1 < 15 ? changed - 1 : 15;
     byte(high << 4 | low);
-    if (high == 15) number(kept - 15);
+    if (high == 15) number(unchanged - 15);
     if (low == 15) number(changed - 1 - 15);
 }
 
@@ -58,11 +58,11 @@ public:
         for (; n >= 128; n >>= 7) byte((n & 127) | 128);
         byte(n);
     }
-    void span(uint32_t kept, uint32_t changed) {
-        mural::delta::putSpan(kept, changed, [this](uint32_t value) { byte(value); });
+    void span(uint32_t unchanged, uint32_t changed) {
+        mural::delta::putSpan(unchanged, changed, [this](uint32_t value) { byte(value); });
     }
     // upper estimate, without prediction
-    static uint32_t spanBytes(uint32_t kept, uint32_t changed) { return 1 + (kept >= 15) + (changed >= 16); }
+    static uint32_t spanBytes(uint32_t unchanged, uint32_t changed) { return 1 + (unchanged >= 15) + (changed >= 16); }
 
 private:
     void byte(uint32_t value) { predictor_.code(coder_, value); }
@@ -92,10 +92,10 @@ public:
         }
         return fail();
     }
-    void span(uint32_t& kept, uint32_t& changed) {
+    void span(uint32_t& unchanged, uint32_t& changed) {
         const uint32_t b = byte();
-        kept = b >> 4, changed = b & 15;
-        if (kept == 15) kept = plus(15, number());
+        unchanged = b >> 4, changed = b & 15;
+        if (unchanged == 15) unchanged = plus(15, number());
         if (changed == 15) changed = plus(15, number());
         changed = plus(1, changed);
     }

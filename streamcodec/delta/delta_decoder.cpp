@@ -58,7 +58,7 @@ Result<bool> DeltaDecoder::next(uint32_t& stream, std::span<const std::byte>& pa
 
 DeltaDecoder::Problem DeltaDecoder::step(DeltaOp what, uint32_t n) {
     if (what == DeltaOp::ControlOp) return other(n);
-    if (!log_) log_ = &history_.log(history_.open(stream_).place);
+    if (!log_) log_ = &history_.log(history_.open(stream_).logIndex);
     switch (what) {
     case DeltaOp::Run: return run(n);
     case DeltaOp::Patch: return patch(n);
@@ -80,7 +80,7 @@ DeltaDecoder::Problem DeltaDecoder::step(DeltaOp what, uint32_t n) {
 
 DeltaDecoder::Problem DeltaDecoder::run(uint32_t n) {
     while (n > 0) {
-        if (!log_->holds(log_->cursor)) return "a reference to an unknown entry";
+        if (!log_->contains(log_->cursor)) return "a reference to an unknown entry";
         if (const Dictionary::Stretch s = history_.stretch(*log_, n); s.items > 0) {
             if (!room(s.bytes.size())) return "the packet or batch is too large";
             put(s.bytes);
@@ -99,7 +99,7 @@ DeltaDecoder::Problem DeltaDecoder::run(uint32_t n) {
 }
 
 DeltaDecoder::Problem DeltaDecoder::patch(uint32_t spans) {
-    if (!log_->holds(log_->cursor)) return "a delta of an unknown entry";
+    if (!log_->contains(log_->cursor)) return "a delta of an unknown entry";
     DictionaryEntry item = log_->at(log_->cursor);
     if (!room(item.sizeBytes)) return "the packet or batch is too large";
     const auto bytes = put(history_.bytesOf(item));
@@ -120,10 +120,10 @@ DeltaDecoder::Problem DeltaDecoder::eachSpan(Reader& reader, std::span<std::byte
                                              Change&& change) {
     uint64_t at = 0;
     for (; spans > 0; --spans) {
-        uint32_t kept = 0, changed = 0;
-        reader.span(kept, changed);
+        uint32_t unchanged = 0, changed = 0;
+        reader.span(unchanged, changed);
         if (reader.bad()) return "fewer spans than announced";
-        at += uint64_t{kept} * 4;
+        at += uint64_t{unchanged} * 4;
         const uint64_t sizeBytes = uint64_t{changed} * 4;
         if (at + sizeBytes > bytes.size()) return "a delta beyond the end of its entry";
         if (!change(at, bytes.subspan(at, sizeBytes))) return "fewer words than announced";
@@ -193,7 +193,7 @@ DeltaDecoder::Problem DeltaDecoder::other(uint32_t n) {
         stream_ = control_.number();
         return nullptr;
     case ControlOp::Bytes: return plain({});
-    case ControlOp::KeptBytes: return plain(control_.number());
+    case ControlOp::CachedBytes: return plain(control_.number());
     case ControlOp::ChangedBytes: return changedRun(control_.number());
     }
     return "an unknown control byte";
@@ -213,13 +213,13 @@ DeltaDecoder::Problem DeltaDecoder::plain(std::optional<uint32_t> slot) {
 
 DeltaDecoder::Problem DeltaDecoder::changedRun(uint32_t slot) {
     const uint32_t spans = control_.number();
-    const auto kept = slot < RawRunCache::kSlots ? history_.runs().at(slot) : std::span<std::byte>();
-    if (kept.empty()) return "a delta of an unknown run of records";
-    if (!room(kept.size())) return "the packet or batch is too large";
+    const auto unchanged = slot < RawRunCache::kSlots ? history_.runs().at(slot) : std::span<std::byte>();
+    if (unchanged.empty()) return "a delta of an unknown run of records";
+    if (!room(unchanged.size())) return "the packet or batch is too large";
     std::vector<std::byte> old;
-    if (loseWords_) old.assign(kept.begin(), kept.end());
-    if (const Problem problem = changeSpans(kept, spans)) return problem;
-    loseChanges(old, put(kept));
+    if (loseWords_) old.assign(unchanged.begin(), unchanged.end());
+    if (const Problem problem = changeSpans(unchanged, spans)) return problem;
+    loseChanges(old, put(unchanged));
     return nullptr;
 }
 

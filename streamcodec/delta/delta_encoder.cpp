@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kCheapPatchBytes = 8, kCheapPagePatchBytes = 512;
 // Number of omitted entries that are tried before the index is searched.
 constexpr size_t kMaxSkipped = 4;
-size_t mostPatchOf(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
+size_t maxPatchOf(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
 constexpr uint32_t kIndexedOfRun = 2;
 // A run is patched if spans and changed words take at most 1/kFewOf of its bytes.
 constexpr size_t kFewOf = 4;
@@ -52,15 +52,15 @@ inline size_t equalBytes(const std::byte* a, const std::byte* b, size_t sizeByte
 } // namespace
 
 bool DeltaEncoder::next() {
-    if (!restPlain_ && news_->many() && cut_.atRecord()) {
+    if (!restPlain_ && novelty_->many() && cut_.atRecord()) {
         keepRun();
-        news_->leaveOut(log_->end());
+        novelty_->leaveOut(log_->end());
         restPlain_ = true;
     }
     if (restPlain_) {
         const size_t from = cut_.at();
         if (walked_ != nullptr && cut_.atRecord())
-            passTold();
+            passWalkedRecords();
         else
             cut_.passShort();
         if (!plain_) batchLeftOutBytes_ += cut_.at() - from;
@@ -70,7 +70,7 @@ bool DeltaEncoder::next() {
 }
 
 // Skips the following short records, using the known record offsets of the packet.
-void DeltaEncoder::passTold() {
+void DeltaEncoder::passWalkedRecords() {
     const auto& longAt = walked_->longAt;
     while (nextLong_ < longAt.size() && longAt[nextLong_] < cut_.at()) ++nextLong_;
     const bool toEnd = nextLong_ == longAt.size();
@@ -86,23 +86,24 @@ void DeltaEncoder::add(uint32_t stream, std::span<const std::byte> packet, const
         lastStream_ = stream;
     }
     const Dictionary::Opened opened = history_.open(stream);
-    if (opened.place == streams_.size()) streams_.emplace_back();
+    if (opened.logIndex == streams_.size()) streams_.emplace_back();
     if (opened.fresh)
-        streams_[opened.place] = firstIndex_ ? std::move(firstIndex_) : std::make_unique<StreamIndex>(limits_.logItems);
-    log_ = &history_.log(opened.place);
-    index_ = &streams_[opened.place]->items;
-    runs_ = &streams_[opened.place]->runs;
-    news_ = &streams_[opened.place]->news;
+        streams_[opened.logIndex] =
+            firstIndex_ ? std::move(firstIndex_) : std::make_unique<StreamIndex>(limits_.logItems);
+    log_ = &history_.log(opened.logIndex);
+    index_ = &streams_[opened.logIndex]->items;
+    runs_ = &streams_[opened.logIndex]->runs;
+    novelty_ = &streams_[opened.logIndex]->novelty;
     restPlain_ = plain_;
     packet_ = packet;
     nextAt_ = kNowhere;
     first_ = true;
     cut_ = PacketCut(packet);
     // A damaged packet may end a record that it did not begin.
-    const bool isTold = walked != nullptr && walked->lastBytes <= packet.size() &&
-                        (walked->longAt.empty() || walked->longAt.back() < packet.size());
-    walked_ = isTold ? walked : nullptr;
-    news_->packetBegins(frames_, log_->end(), packet.size() >= kLongPacketBytes);
+    const bool isWalked = walked != nullptr && walked->lastBytes <= packet.size() &&
+                          (walked->longAt.empty() || walked->longAt.back() < packet.size());
+    walked_ = isWalked ? walked : nullptr;
+    novelty_->packetBegins(frames_, log_->end(), packet.size() >= kLongPacketBytes);
     const uint64_t pagesBefore = batchPageBytes_;
     nextLong_ = 0;
     while (next()) {
@@ -110,12 +111,12 @@ void DeltaEncoder::add(uint32_t stream, std::span<const std::byte> packet, const
         if (runOn()) continue;
         keepRun();
         hashed_ = false;
-        news_->another(log_->cursor);
-        const bool isNew = !place();
+        novelty_->another(log_->cursor);
+        const bool isNew = !encodePiece();
         if (!piece_.page()) count(isNew);
     }
     keepRun();
-    news_->packetEnds((batchPageBytes_ - pagesBefore) * 2 > packet.size());
+    novelty_->packetEnds((batchPageBytes_ - pagesBefore) * 2 > packet.size());
     endsInValue_ = cut_.lastOpcode() == wire::kOpBlobBegin || cut_.lastOpcode() == wire::kOpBlobData;
     counts_.records += walked_ != nullptr ? walked_->records : cut_.records();
     if (!first_) index_->packetEnds(log_->end() - 1);
@@ -131,7 +132,7 @@ void DeltaEncoder::add(uint32_t stream, std::span<const std::byte> packet, const
 bool DeltaEncoder::runOn() {
     if (runKnown()) return true;
     EntryLog& log = *log_;
-    if (!log.holds(log.cursor)) return false;
+    if (!log.contains(log.cursor)) return false;
     const DictionaryEntry item = log.at(log.cursor);
     if (!same(item, piece_)) return false;
     const bool record = !piece_.page() && cut_.atRecord();
@@ -141,7 +142,7 @@ bool DeltaEncoder::runOn() {
         run();
     } else {
         ++run_;
-        if (!item.page) news_->found(log.cursor, 1);
+        if (!item.page) novelty_->found(log.cursor, 1);
         counts_.pageHits += item.page;
         index_->appendAgain(log.end(), log.cursor, item.sizeBytes);
         ++log.cursor;
@@ -166,8 +167,8 @@ bool DeltaEncoder::runKnown() {
     EntryLog& log = *log_;
     RunCache::Run run = runs_->fromCursor(log);
     if (run.items < RunCache::kMinItems || history_.text().oldSince(run.oldestText)) return false;
-    const size_t most = std::min<size_t>(run.sizeBytes, packet_.size() - piece_.at);
-    const size_t equal = equalBytes(runs_->bytesOf(run), packet_.data() + piece_.at, most);
+    const size_t maximum = std::min<size_t>(run.sizeBytes, packet_.size() - piece_.at);
+    const size_t equal = equalBytes(runs_->bytesOf(run), packet_.data() + piece_.at, maximum);
     if (equal < run.sizeBytes) {
         const uint64_t from = run.position;
         uint32_t items = 0, sizeBytes = 0;
@@ -186,7 +187,7 @@ bool DeltaEncoder::runKnown() {
                            [&](size_t i) { return uint32_t{log.at(from + done + i).sizeBytes}; });
     history_.againAll(log, run.items - done);
     run_ += run.items - done;
-    news_->found(from, run.items - done);
+    novelty_->found(from, run.items - done);
     cut_.passed(run.items - 1, run.sizeBytes - piece_.sizeBytes, log.at(log.end() - 1).sizeBytes);
     openIsKnown_ = open_.items == 0;
     if (openIsKnown_) {
@@ -212,7 +213,7 @@ void DeltaEncoder::keepRun() {
 
 // Tries alternatives from cheap to expensive: a small patch, an expected entry slightly later, another position with
 // this pair of entries, stored pages, a large patch. Otherwise the piece is new.
-bool DeltaEncoder::place() {
+bool DeltaEncoder::encodePiece() {
     const Piece piece = piece_;
     if (restPlain_) skipToLike(piece);
     if (skipTo(piece)) return true;
@@ -222,8 +223,8 @@ bool DeltaEncoder::place() {
     if (piece.page() && fromStore(false)) return true;
     // Words of short entries are predicted: even if all of them changed, a patch costs less than a new entry at the
     // right position.
-    const bool place = !piece.page() && piece.sizeBytes >= MatchIndex::kTellingBytes;
-    if (patch(piece, place ? size_t{piece.sizeBytes} * 2 : mostPatchOfPage(piece))) return true;
+    const bool indexed = !piece.page() && piece.sizeBytes >= MatchIndex::kMinIndexedBytes;
+    if (patch(piece, indexed ? size_t{piece.sizeBytes} * 2 : maxPatchOfPage(piece))) return true;
     send(piece);
     return false;
 }
@@ -231,22 +232,22 @@ bool DeltaEncoder::place() {
 // Counts a coded short record.
 void DeltaEncoder::count(bool isNew) {
     if (isNew)
-        news_->isNew();
+        novelty_->isNew();
     else
-        news_->found(log_->cursor - 1, 1);
+        novelty_->found(log_->cursor - 1, 1);
 }
 
 // New pixels take fewer bytes than changed pixels.
-size_t DeltaEncoder::mostPatchOfPage(const Piece& piece) const {
-    if (piece.sizeBytes != kPageBytes) return mostPatchOf(piece);
-    return std::clamp(leftOfPixels(packet_.data() + piece.at), kCheapPagePatchBytes, mostPatchOf(piece));
+size_t DeltaEncoder::maxPatchOfPage(const Piece& piece) const {
+    if (piece.sizeBytes != kPageBytes) return maxPatchOf(piece);
+    return std::clamp(leftOfPixels(packet_.data() + piece.at), kCheapPagePatchBytes, maxPatchOf(piece));
 }
 
 // A page that changes every time is not searched for.
 size_t DeltaEncoder::cheapPatchOfPage(const Piece& piece) {
-    if (!log_->holds(log_->cursor)) return 0;
+    if (!log_->contains(log_->cursor)) return 0;
     const DictionaryEntry expected = log_->at(log_->cursor);
-    return expected.page && history_.pages().changesInPlace(expected.where) ? mostPatchOf(piece) : kCheapPagePatchBytes;
+    return expected.page && history_.pages().changesInPlace(expected.where) ? maxPatchOf(piece) : kCheapPagePatchBytes;
 }
 
 bool DeltaEncoder::same(DictionaryEntry item, const Piece& piece) const {
@@ -256,7 +257,7 @@ bool DeltaEncoder::same(DictionaryEntry item, const Piece& piece) const {
 
 bool DeltaEncoder::expects(size_t ahead, const Piece& piece) const {
     const uint64_t position = log_->cursor + ahead;
-    return log_->holds(position) && same(log_->at(position), piece);
+    return log_->contains(position) && same(log_->at(position), piece);
 }
 
 bool DeltaEncoder::skipTo(const Piece& piece) {
@@ -274,7 +275,7 @@ bool DeltaEncoder::skipTo(const Piece& piece) {
 // Between long records the log may contain short ones from frames that were not plain.
 void DeltaEncoder::skipToLike(const Piece& piece) {
     const DictionaryEntry now{0, piece.sizeBytes, static_cast<uint32_t>(piece.page())};
-    for (size_t ahead = 0; ahead <= kMaxLeftOut && log_->holds(log_->cursor + ahead); ++ahead) {
+    for (size_t ahead = 0; ahead <= kMaxLeftOut && log_->contains(log_->cursor + ahead); ++ahead) {
         const DictionaryEntry there = log_->at(log_->cursor + ahead);
         if (!there.like(now) && !there.page) continue;
         if (ahead == 0 || !there.like(now)) return;
@@ -286,13 +287,13 @@ void DeltaEncoder::skipToLike(const Piece& piece) {
 }
 
 // Records of other commands are not patched: their words have other meanings, and the position is probably wrong.
-bool DeltaEncoder::patch(const Piece& piece, size_t mostBytes) {
-    if (!log_->holds(log_->cursor)) return false;
+bool DeltaEncoder::patch(const Piece& piece, size_t maxBytes) {
+    if (!log_->contains(log_->cursor)) return false;
     const DictionaryEntry expected = log_->at(log_->cursor);
     if (expected.sizeBytes != piece.sizeBytes || expected.page != static_cast<uint32_t>(piece.page())) return false;
     const auto old = history_.bytesOf(expected), now = bytesOf(piece);
     if (!piece.page() && std::memcmp(old.data(), now.data(), 4) != 0) return false;
-    if (!patch_.find(old, now, mostBytes)) return false;
+    if (!patch_.find(old, now, maxBytes)) return false;
     settle();
     control_.put(DeltaOp::Patch, static_cast<uint32_t>(patch_.spans.size()));
     DictionaryEntry changed = expected;
@@ -306,8 +307,8 @@ bool DeltaEncoder::patch(const Piece& piece, size_t mostBytes) {
     words_.begin(changed, old);
     size_t at = 0;
     for (const WordSpan& span : patch_.spans) {
-        control_.span(span.kept, span.changed);
-        at += size_t{span.kept} * 4;
+        control_.span(span.unchanged, span.changed);
+        at += size_t{span.unchanged} * 4;
         const size_t sizeBytes = size_t{span.changed} * 4;
         codeWords(at, old.subspan(at, sizeBytes), now.subspan(at, sizeBytes));
         at += sizeBytes;
@@ -331,8 +332,9 @@ void DeltaEncoder::putPatch(std::span<const std::byte> now) {
     words.resize(to + patch_.changedBytes);
     const std::byte* from = now.data();
     for (const WordSpan& span : patch_.spans) {
-        putSpan(span.kept, span.changed, [&spans](uint32_t byte) { spans.push_back(static_cast<std::byte>(byte)); });
-        from += size_t{span.kept} * 4;
+        putSpan(span.unchanged, span.changed,
+                [&spans](uint32_t byte) { spans.push_back(static_cast<std::byte>(byte)); });
+        from += size_t{span.unchanged} * 4;
         for (uint32_t i = 0; i < span.changed; ++i, to += 4, from += 4) std::memcpy(words.data() + to, from, 4);
     }
 }
@@ -367,15 +369,16 @@ bool DeltaEncoder::seek() {
     }
     if (seekAt(hash, index_->find(hash, next, log_->end()))) return true;
     // An entry that changes every time occurred before at this position only, unless a pair matches.
-    const bool changes = log_->holds(log_->cursor) && log_->at(log_->cursor).model != 0 &&
+    const bool changes = log_->contains(log_->cursor) && log_->at(log_->cursor).model != 0 &&
                          log_->at(log_->cursor).sizeBytes == piece_.sizeBytes;
-    return !changes && piece_.sizeBytes >= MatchIndex::kTellingBytes &&
+    return !changes && piece_.sizeBytes >= MatchIndex::kMinIndexedBytes &&
            seekAt(hash, index_->find(hash, MatchIndex::kAnything, log_->end()));
 }
 
 // Most candidates are other entries: comparing the contiguous hashes first avoids cache misses on their bytes.
 bool DeltaEncoder::seekAt(uint32_t hash, uint64_t position) {
-    if (!log_->holds(position) || index_->hashAt(position) != hash || !same(log_->at(position), piece_)) return false;
+    if (!log_->contains(position) || index_->hashAt(position) != hash || !same(log_->at(position), piece_))
+        return false;
     settle();
     control_.put(DeltaOp::Seek, static_cast<uint32_t>(log_->end() - position));
     log_->cursor = position;
@@ -389,8 +392,8 @@ bool DeltaEncoder::fromStore(bool inPlace) {
     if (inPlace) {
         PacketCut ahead = cut_;
         Piece behind;
-        if (!(ahead.next(behind) && log_->holds(log_->cursor) && log_->at(log_->cursor).sizeBytes == piece.sizeBytes &&
-              expects(1, behind)))
+        if (!(ahead.next(behind) && log_->contains(log_->cursor) &&
+              log_->at(log_->cursor).sizeBytes == piece.sizeBytes && expects(1, behind)))
             return false;
     }
     PageStore& pages = history_.pages();
@@ -469,13 +472,13 @@ void DeltaEncoder::asBytes(size_t from, size_t to) {
     if (from == to) return;
     settle();
     const auto bytes = packet_.subspan(from, to - from);
-    const RawRunSlots::Place place = runPlaces_.expect(lastStream_, bytes.size(), frames_);
-    if (place.advice == RawRunSlots::Advice::Compare && asChanged(place.slot, bytes)) return;
-    const bool keeps = place.advice == RawRunSlots::Advice::Keep;
-    control_.put(keeps ? ControlOp::KeptBytes : ControlOp::Bytes);
+    const RawRunSlots::SlotAdvice advised = runPlaces_.expect(lastStream_, bytes.size(), frames_);
+    if (advised.advice == RawRunSlots::Advice::Compare && asChanged(advised.slot, bytes)) return;
+    const bool keeps = advised.advice == RawRunSlots::Advice::Keep;
+    control_.put(keeps ? ControlOp::CachedBytes : ControlOp::Bytes);
     if (keeps) {
-        control_.number(place.slot);
-        history_.runs().keep(place.slot, bytes);
+        control_.number(advised.slot);
+        history_.runs().keep(advised.slot, bytes);
     }
     control_.number(static_cast<uint32_t>(bytes.size()));
     literals_[static_cast<size_t>(Section::Texts)].lend(bytes);
@@ -483,8 +486,8 @@ void DeltaEncoder::asBytes(size_t from, size_t to) {
 
 // Codes the bytes as changed words of the slot, if few have changed.
 bool DeltaEncoder::asChanged(uint32_t slot, std::span<const std::byte> bytes) {
-    const auto kept = history_.runs().at(slot);
-    const bool few = patch_.find(kept, bytes, bytes.size() / kFewOf) || patch_.spans.empty();
+    const auto unchanged = history_.runs().at(slot);
+    const bool few = patch_.find(unchanged, bytes, bytes.size() / kFewOf) || patch_.spans.empty();
     runPlaces_.changed(slot, few);
     if (!few) return false;
     ++counts_.patches;
@@ -492,7 +495,7 @@ bool DeltaEncoder::asChanged(uint32_t slot, std::span<const std::byte> bytes) {
     control_.number(slot);
     control_.number(static_cast<uint32_t>(patch_.spans.size()));
     putPatch(bytes);
-    patch_.apply(bytes, kept);
+    patch_.apply(bytes, unchanged);
     return true;
 }
 

@@ -74,17 +74,17 @@ public:
 
 private:
     bool next();
-    void passTold();
+    void passWalkedRecords();
     bool runOn();
     bool runKnown();
     void keepRun();
-    bool place();
+    bool encodePiece();
     void count(bool isNew);
     [[nodiscard]] bool same(DictionaryEntry item, const Piece& piece) const;
     [[nodiscard]] bool expects(size_t ahead, const Piece& piece) const;
     bool skipTo(const Piece& piece);
     void skipToLike(const Piece& piece);
-    bool patch(const Piece& piece, size_t mostBytes);
+    bool patch(const Piece& piece, size_t maxBytes);
     void codeWords(size_t at, std::span<const std::byte> old, std::span<const std::byte> now);
     bool seek();
     bool seekAt(uint32_t hash, uint64_t position);
@@ -93,7 +93,7 @@ private:
     void run();
     void append(DictionaryEntry item, uint32_t hash);
     void appendUnfound(DictionaryEntry item, uint32_t hash);
-    [[nodiscard]] size_t mostPatchOfPage(const Piece& piece) const;
+    [[nodiscard]] size_t maxPatchOfPage(const Piece& piece) const;
     [[nodiscard]] size_t cheapPatchOfPage(const Piece& piece);
     void putPatch(std::span<const std::byte> now);
     void appendChangedPage(uint32_t slotBefore, const Piece& piece);
@@ -117,7 +117,7 @@ private:
         explicit StreamIndex(uint32_t logItems) : items(logItems) {}
         MatchIndex items;
         RunCache runs;
-        NoveltyDetector news;
+        NoveltyDetector novelty;
     };
     std::vector<std::unique_ptr<StreamIndex>> streams_; // by index of the log
     std::unique_ptr<StreamIndex> firstIndex_;           // allocated in advance for the first stream
@@ -142,7 +142,7 @@ private:
     EntryLog* log_ = nullptr;
     MatchIndex* index_ = nullptr;
     RunCache* runs_ = nullptr;
-    NoveltyDetector* news_ = nullptr;
+    NoveltyDetector* novelty_ = nullptr;
     bool restPlain_ = false;                // short records are sent plain from here on
     const RecordOffsets* walked_ = nullptr; // record offsets of the current packet, if known
     size_t nextLong_ = 0;                   // index into walked_->longAt

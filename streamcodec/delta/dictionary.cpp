@@ -6,18 +6,18 @@ namespace mural::delta {
 
 Dictionary::Opened Dictionary::open(uint32_t stream) {
     ++opened_;
-    for (size_t place = 0; place < streams_.size(); ++place) {
-        if (streams_[place].stream != stream) continue;
-        streams_[place].usedAt = opened_;
-        return {place, false};
+    for (size_t logIndex = 0; logIndex < streams_.size(); ++logIndex) {
+        if (streams_[logIndex].stream != stream) continue;
+        streams_[logIndex].usedAt = opened_;
+        return {logIndex, false};
     }
-    size_t place = streams_.size();
-    if (place < limits_.streams)
+    size_t logIndex = streams_.size();
+    if (logIndex < limits_.streams)
         streams_.emplace_back();
     else
-        place = static_cast<size_t>(std::ranges::min_element(streams_, {}, &Stream::usedAt) - streams_.begin());
-    streams_[place] = {stream, opened_, first_ ? std::move(first_) : std::make_unique<EntryLog>(limits_.logItems)};
-    return {place, true};
+        logIndex = static_cast<size_t>(std::ranges::min_element(streams_, {}, &Stream::usedAt) - streams_.begin());
+    streams_[logIndex] = {stream, opened_, first_ ? std::move(first_) : std::make_unique<EntryLog>(limits_.logItems)};
+    return {logIndex, true};
 }
 
 } // namespace mural::delta

@@ -41,11 +41,11 @@ public:
         std::span<const std::byte> bytes;
         size_t items = 0;
     };
-    [[nodiscard]] Stretch stretch(const EntryLog& log, size_t mostItems) const {
+    [[nodiscard]] Stretch stretch(const EntryLog& log, size_t maxItems) const {
         size_t items = 0, sizeBytes = 0;
         const uint32_t where = log.at(log.cursor).where;
-        for (const auto most = static_cast<size_t>(std::min<uint64_t>(mostItems, log.end() - log.cursor)); items < most;
-             ++items) {
+        for (const auto maximum = static_cast<size_t>(std::min<uint64_t>(maxItems, log.end() - log.cursor));
+             items < maximum; ++items) {
             const DictionaryEntry item = log.at(log.cursor + items);
             if (item.page || item.where != where + sizeBytes || text_.old(item.where)) break;
             sizeBytes += item.sizeBytes;
@@ -78,11 +78,11 @@ public:
 
     // Opens the log of a stream. A new stream takes over the least recently used log.
     struct Opened {
-        size_t place = 0;
+        size_t logIndex = 0;
         bool fresh = false; // the log is empty
     };
     [[nodiscard]] Opened open(uint32_t stream);
-    [[nodiscard]] EntryLog& log(size_t place) { return *streams_[place].log; }
+    [[nodiscard]] EntryLog& log(size_t logIndex) { return *streams_[logIndex].log; }
 
 private:
     struct Stream {

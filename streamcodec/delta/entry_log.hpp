@@ -28,9 +28,9 @@ public:
     }
     // A sent entry replaces the expected one if their sizes are equal; the expected one is then no longer expected.
     void replaces(DictionaryEntry item) {
-        if (holds(cursor) && at(cursor).like(item)) ++cursor;
+        if (contains(cursor) && at(cursor).like(item)) ++cursor;
     }
-    [[nodiscard]] bool holds(uint64_t position) const {
+    [[nodiscard]] bool contains(uint64_t position) const {
         return position < end_ && end_ - position <= uint64_t{mask_} + 1;
     }
     [[nodiscard]] DictionaryEntry at(uint64_t position) const { return items_[position & mask_]; }

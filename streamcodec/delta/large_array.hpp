@@ -28,7 +28,7 @@ public:
         array.mapped_ = {static_cast<std::byte*>(mapped), Unmap{sizeBytes + spare}};
         std::byte* from = array.mapped_.get();
         if (spare != 0) {
-            from = askForHugePages({from, sizeBytes + spare}).data();
+            from = requestHugePages({from, sizeBytes + spare}).data();
             // failure is harmless
             madvise(from, std::min(readyBytes, sizeBytes / kHugePageBytes * kHugePageBytes), MADV_POPULATE_WRITE);
         }

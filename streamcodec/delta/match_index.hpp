@@ -18,7 +18,7 @@ public:
     explicit MatchIndex(uint32_t logItems)
         : mask_(logItems - 1),
           againBits_(static_cast<uint32_t>(std::bit_width((logItems + 1) / 2)) - 1),
-          mostPositions_(logItems / 8),
+          maxPositions_(logItems / 8),
           hashes_(LargeArray<uint32_t>::make(logItems)),
           positions_(kFirstPositions) {}
 
@@ -26,7 +26,7 @@ public:
     void append(uint64_t position, uint32_t hash, uint32_t sizeBytes, bool first) {
         hashes_[position & mask_] = hash;
         if (!first) put(hashes_[(position - 1) & mask_], hash, position - 1);
-        if (sizeBytes >= kTellingBytes) put(hash, kAnything, position);
+        if (sizeBytes >= kMinIndexedBytes) put(hash, kAnything, position);
     }
     // Adds a repetition of the entry at `from` after the same predecessor. The old position stays in the index until it
     // is half a log behind.
@@ -47,8 +47,8 @@ public:
             }
             const size_t source = (from + i) & mask_, target = (position + i) & mask_,
                          halfEnds = (size_t{1} << againBits_) - 1;
-            const size_t most = std::min(halfEnds + 1 - (source & halfEnds), halfEnds + 1 - (target & halfEnds)),
-                         part = std::min(count - i, most);
+            const size_t maximum = std::min(halfEnds + 1 - (source & halfEnds), halfEnds + 1 - (target & halfEnds)),
+                         part = std::min(count - i, maximum);
             std::memmove(hashes_.data() + target, hashes_.data() + source, part * sizeof(uint32_t));
             i += part;
         }
@@ -66,7 +66,7 @@ public:
 
     static constexpr uint32_t kNothing = 0;  // predecessor of a packet's first entry
     static constexpr uint32_t kAnything = 1; // any successor
-    static constexpr uint32_t kTellingBytes = 32;
+    static constexpr uint32_t kMinIndexedBytes = 32;
 
 private:
     static constexpr size_t kFirstPositions = 8192;
@@ -77,10 +77,10 @@ private:
         return static_cast<size_t>(mixed >> 32) & (positions_.size() - 1);
     }
     void put(uint32_t hash, uint32_t next, uint64_t position) {
-        uint32_t& place = positions_[key(hash, next)];
-        puts_ += place == 0;
-        place = static_cast<uint32_t>(position);
-        if (puts_ > positions_.size() / 8 && positions_.size() < mostPositions_) grow(position);
+        uint32_t& slot = positions_[key(hash, next)];
+        puts_ += slot == 0;
+        slot = static_cast<uint32_t>(position);
+        if (puts_ > positions_.size() / 8 && positions_.size() < maxPositions_) grow(position);
     }
     // Grows the table, so programs with few calls touch little memory. Reinserts the existing entries from the log.
     void grow(uint64_t end) {
@@ -97,7 +97,7 @@ private:
 
     const uint32_t mask_;
     const uint32_t againBits_; // position bits that span half the log
-    const size_t mostPositions_;
+    const size_t maxPositions_;
     LargeArray<uint32_t> hashes_;
     std::vector<uint32_t> positions_; // size is a power of two
     size_t puts_ = 0;

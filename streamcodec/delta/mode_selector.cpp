@@ -6,7 +6,7 @@
 namespace mural::delta {
 
 namespace {
-constexpr double kKept = 0.8; // weight of the previous average when a batch is added
+constexpr double kAverageWeight = 0.8; // weight of the previous average when a batch is added
 constexpr uint32_t kTryBatches = 5;
 constexpr uint32_t kUnmeasured = 2; // first batches of a trial, whose dictionary state is outdated
 constexpr uint32_t kCompared = kTryBatches - kUnmeasured;
@@ -37,7 +37,7 @@ void ModeSelector::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wire
     if (std::exchange(isFirst_, false) && rawBytes > 0)
         firstNsPerByte_ = static_cast<double>(ns) / static_cast<double>(rawBytes);
     if (trying_ && batches_ < kUnmeasured) return;
-    Cost& cost = costs_[plain_ ? Plain : Looked];
+    Cost& cost = costs_[plain_ ? Plain : Dictionary];
     const bool isAboutShort = pageBytes < rawBytes / 2; // otherwise the gain is small and page positions would be lost
     const bool isDear = isAboutShort && isDearAtOnce(rawBytes, ns);
     if (isDear) {
@@ -47,16 +47,16 @@ void ModeSelector::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wire
     }
     // compare batches just before with batches just after the switch
     if (!trying_ && batches_ + kCompared == until_) cost = {};
-    cost.ns = cost.ns * kKept + static_cast<double>(ns) * kWithUnpacking[plain_ ? Plain : Looked] +
+    cost.ns = cost.ns * kAverageWeight + static_cast<double>(ns) * kWithUnpacking[plain_ ? Plain : Dictionary] +
               static_cast<double>(wireBytes) * linkNsPerByte;
-    cost.rawBytes = cost.rawBytes * kKept + static_cast<double>(rawBytes);
-    cost.wireBytes = cost.wireBytes * kKept + static_cast<double>(wireBytes);
-    cost.encodeNs = cost.encodeNs * kKept + static_cast<double>(ns);
-    cost.leastNs = cost.batches == 0 ? static_cast<double>(ns) : std::min(cost.leastNs, static_cast<double>(ns));
-    cost.batches = cost.batches * kKept + 1;
-    cheap_ = cost.leastNs < kCheapNs;
+    cost.rawBytes = cost.rawBytes * kAverageWeight + static_cast<double>(rawBytes);
+    cost.wireBytes = cost.wireBytes * kAverageWeight + static_cast<double>(wireBytes);
+    cost.encodeNs = cost.encodeNs * kAverageWeight + static_cast<double>(ns);
+    cost.minNs = cost.batches == 0 ? static_cast<double>(ns) : std::min(cost.minNs, static_cast<double>(ns));
+    cost.batches = cost.batches * kAverageWeight + 1;
+    cheap_ = cost.minNs < kCheapNs;
     if (trying_) {
-        const bool hopeless = cost.perByte() > costs_[plain_ ? Looked : Plain].perByte() * kHopeless;
+        const bool hopeless = cost.perByte() > costs_[plain_ ? Dictionary : Plain].perByte() * kHopeless;
         if (batches_ >= kTryBatches || hopeless)
             decide();
         else if (batches_ == kUnmeasured)
@@ -76,7 +76,7 @@ void ModeSelector::measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wire
         until_ = kMinBetween * 8;
         return;
     }
-    if (plain_ || (isAboutShort && cost.leastNs >= kCheapNs))
+    if (plain_ || (isAboutShort && cost.minNs >= kCheapNs))
         tryOther();
     else
         until_ += cheap_ ? kCheapEvery * 2 : kMinBetween;
@@ -106,20 +106,21 @@ void ModeSelector::tryOther() {
     plain_ = !plain_;
     trying_ = true;
     batches_ = 0;
-    costs_[plain_ ? Plain : Looked] = {};
+    costs_[plain_ ? Plain : Dictionary] = {};
 }
 
 void ModeSelector::decide() {
-    const double tried = costs_[plain_ ? Plain : Looked].perByte(), before = costs_[plain_ ? Looked : Plain].perByte();
-    const Cost &looked = costs_[Looked], &asItIs = costs_[Plain];
-    const bool isSmall = looked.leastNs < kWorthNs;
-    const bool tooDear = looked.leastNs > asItIs.leastNs * kTooDear; // one disturbed batch does not decide
+    const double tried = costs_[plain_ ? Plain : Dictionary].perByte(),
+                 before = costs_[plain_ ? Dictionary : Plain].perByte();
+    const Cost &dictionary = costs_[Dictionary], &plain = costs_[Plain];
+    const bool isSmall = dictionary.minNs < kWorthNs;
+    const bool tooDear = dictionary.minNs > plain.minNs * kTooDear; // one disturbed batch does not decide
     const bool better = isSmall ? plain_ == tooDear : tried < before * kClearly;
     if (!better) plain_ = !plain_;
     // Schedule the next trial so that its overhead stays below 1/kTryPart of the interval.
-    const double more = (plain_ ? looked : asItIs).leastNs / std::max((plain_ ? asItIs : looked).leastNs, 1.0) - 1;
-    const double least = better ? kMinBetween * 8 : std::max(until_ * 2, kMinBetween);
-    until_ = static_cast<uint32_t>(std::min(std::max(more * kTryBatches * kTryPart, least), double{kMaxBetween}));
+    const double more = (plain_ ? dictionary : plain).minNs / std::max((plain_ ? plain : dictionary).minNs, 1.0) - 1;
+    const double minimum = better ? kMinBetween * 8 : std::max(until_ * 2, kMinBetween);
+    until_ = static_cast<uint32_t>(std::min(std::max(more * kTryBatches * kTryPart, minimum), double{kMaxBetween}));
     if (std::exchange(isByOne_, false) && plain_) until_ = kMinBetween * 8;
     decidedBy_ = std::min(tried, before);
     trying_ = false;

@@ -29,11 +29,11 @@ public:
     void measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte);
 
 private:
-    enum Way : size_t { Looked, Plain };
+    enum Mode : size_t { Dictionary, Plain };
     // Moving average over recent batches.
     struct Cost {
         double ns = 0, rawBytes = 0, wireBytes = 0, encodeNs = 0, batches = 0;
-        double leastNs = 0; // shortest encoding time
+        double minNs = 0; // shortest encoding time
         [[nodiscard]] double perByte() const { return rawBytes > 0 ? ns / rawBytes : 0; }
     };
     void tryOther();

@@ -33,7 +33,7 @@ public:
         again_ = false;
     }
     // Pages dominated this packet, and probably dominate the next one.
-    void packetEnds(bool mostIsPages) { hadPages_ = mostIsPages; }
+    void packetEnds(bool isMainlyPages) { hadPages_ = isMainlyPages; }
     // Reports records that repeat from `position` on, in this frame or an earlier one.
     void found(uint64_t position, size_t records) {
         if (position >= frameBegan_)
@@ -62,7 +62,7 @@ private:
     static constexpr uint32_t kMaxHalved = 3;          // halvings of the threshold, to four; then zero
     static constexpr uint32_t kFoundCounts = 3;        // one repeated record outweighs this number of new ones
     static constexpr uint64_t kNever = UINT64_MAX;
-    static constexpr size_t kPlaces = 16; // approximate number of packets of a frame
+    static constexpr size_t kSlots = 16; // approximate number of packets of a frame
 
     uint32_t late_ = 0;      // new records, less repeated ones
     bool isLeftOut_ = false; // the rest of the packet is sent plain
@@ -71,13 +71,13 @@ private:
     bool again_ = false;     // a record that was sent plain before has repeated in this frame
     uint64_t frame_ = kNever, frameBegan_ = kNever;
     bool isFirstFrame_ = true;
-    std::array<uint64_t, kPlaces> leftOutAt_ = nowhere();
+    std::array<uint64_t, kSlots> leftOutAt_ = nowhere();
     size_t next_ = 0;
 
-    static constexpr std::array<uint64_t, kPlaces> nowhere() {
-        std::array<uint64_t, kPlaces> places{};
-        places.fill(kNever);
-        return places;
+    static constexpr std::array<uint64_t, kSlots> nowhere() {
+        std::array<uint64_t, kSlots> slots{};
+        slots.fill(kNever);
+        return slots;
     }
 };
 

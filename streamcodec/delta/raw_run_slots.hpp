@@ -15,13 +15,13 @@ namespace mural::delta {
 class RawRunSlots {
 public:
     enum class Advice : uint8_t { Nothing, Keep, Compare };
-    struct Place {
+    struct SlotAdvice {
         uint32_t slot = 0;
         Advice advice = Advice::Nothing;
     };
 
     // Returns the slot for a run of this frame.
-    [[nodiscard]] Place expect(uint32_t stream, size_t sizeBytes, uint64_t frame) {
+    [[nodiscard]] SlotAdvice expect(uint32_t stream, size_t sizeBytes, uint64_t frame) {
         if (sizeBytes < RawRunCache::kMinBytes || sizeBytes > RawRunCache::kMaxBytes || sizeBytes % 4 != 0) return {};
         const auto found = std::ranges::find_if(
             runs_, [&](const Run& r) { return r.sizeBytes == sizeBytes && r.stream == stream && r.frame != frame; });
@@ -33,18 +33,18 @@ public:
         Run& run = *found;
         run.frame = frame;
         const auto slot = static_cast<uint32_t>(found - runs_.begin());
-        if (run.isKept) return {slot, Advice::Compare};
+        if (run.isCached) return {slot, Advice::Compare};
         if (run.wait > 0) {
             --run.wait;
             return {};
         }
-        run.isKept = true;
+        run.isCached = true;
         return {slot, Advice::Keep};
     }
     // Reports a comparison with the slot: few of its words have changed, or many.
     void changed(uint32_t slot, bool few) {
         Run& run = runs_[slot];
-        run.isKept = few;
+        run.isCached = few;
         run.patience = few ? 0 : std::min(run.patience * 2 + 1, kMaxPatience);
         run.wait = run.patience;
     }
@@ -54,7 +54,7 @@ private:
     struct Run {
         uint32_t stream = 0, sizeBytes = 0;
         uint64_t frame = 0; // last frame with this run
-        bool isKept = false;
+        bool isCached = false;
         uint32_t patience = 0, wait = 0; // repetitions to skip before it is cached again, after useless caching
     };
     std::array<Run, RawRunCache::kSlots> runs_{};

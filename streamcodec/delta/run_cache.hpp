@@ -54,7 +54,7 @@ public:
         for (; next_ < end_ && !behind(next_); ++next_) within_ = {};
         if (next_ == end_ || at(next_).position > position) return {};
         Run run = at(next_);
-        if (run.bytesAt + kMaxBytes < bytesEnd_ || !log.holds(run.position)) return {};
+        if (run.bytesAt + kMaxBytes < bytesEnd_ || !log.contains(run.position)) return {};
         for (; run.position + within_.items < position; ++within_.items)
             within_.sizeBytes += log.at(run.position + within_.items).sizeBytes;
         return {position, run.bytesAt + within_.sizeBytes, run.oldestText, run.items - within_.items,

@@ -156,7 +156,7 @@ CommandClass ownClass(uint16_t opcode) {
 }
 
 // Returns true for requests that do not depend on bindings.
-bool asksForPictures(uint16_t opcode) {
+bool requestsPictures(uint16_t opcode) {
     return opcode == wire::kOpSwap || opcode == wire::kOpFrontPicture || opcode == wire::kOpRequestPixels ||
            opcode == wire::kOpRequestQuery || opcode == wire::kOpFinish;
 }
@@ -178,14 +178,14 @@ uint8_t findValue(uint16_t opcode) {
 
 // While a list is compiled, a command that draws and sets no state only matters for the nesting of primitives.
 int8_t deeperOf(const CommandKind& kind) {
-    if (kind.state != StateRole::None && kind.state != StateRole::Use) return kLooked;
+    if (kind.state != StateRole::None && kind.state != StateRole::Use) return kExamined;
     switch (kind.about) {
     case CommandClass::Pass:
     case CommandClass::Use:
     case CommandClass::Arrays: return 0;
     case CommandClass::Begin: return 1;
     case CommandClass::End: return -1;
-    default: return kLooked;
+    default: return kExamined;
     }
 }
 
@@ -239,14 +239,14 @@ CommandKinds::CommandKinds() {
         kind.binding = bindingOf(kind.family, trace::ruleOf(opcode).type);
         kind.small = kind.family == Family::Uniform || kind.family == Family::ProgramUniform;
         kind.deeper = deeperOf(kind);
-        kind.frame = asksForPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
+        kind.frame = requestsPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
         const bool passes = kind.about == CommandClass::Pass;
-        const bool looked = kind.about == CommandClass::Bind || kind.about == CommandClass::Use ||
-                            kind.family == Family::CallList || kind.family == Family::CallLists;
+        const bool examined = kind.about == CommandClass::Bind || kind.about == CommandClass::Use ||
+                              kind.family == Family::CallList || kind.family == Family::CallLists;
         const auto of = [&](Walk walk) -> Interest& { return interests_[static_cast<size_t>(walk)][opcode]; };
         of(Walk::State) = passes && kind.state == StateRole::None ? Interest::None : Interest::Stop;
         of(Walk::Bindings) = passes || kind.small || kind.family == Family::UseProgram ? Interest::None
-                             : looked                                                  ? Interest::Look
+                             : examined                                                ? Interest::Examine
                                                                                        : Interest::Stop;
         of(Walk::Untracked) =
             kind.about == CommandClass::Own || kind.about == CommandClass::Blob ? Interest::Stop : Interest::None;

@@ -67,7 +67,7 @@ enum class FrameRole : uint8_t {
 // Special value of CommandKind::valueWord: no value of variable size.
 constexpr uint8_t kNoValue = 0xff;
 
-constexpr int8_t kLooked = INT8_MAX;
+constexpr int8_t kExamined = INT8_MAX;
 
 struct CommandKind {
     CommandClass about = CommandClass::Unknown;
@@ -77,7 +77,7 @@ struct CommandKind {
     bool small = false;           // sets uniforms, which are examined together with redundant state
     // Change of the glBegin nesting depth, for commands without another effect in a list that is compiled. kLooked: the
     // command has to be examined.
-    int8_t deeper = kLooked;
+    int8_t deeper = kExamined;
     FrameRole frame = FrameRole::Ends;
     Binding binding = Binding::Nothing;
 };

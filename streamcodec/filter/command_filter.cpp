@@ -19,8 +19,8 @@ constexpr uint64_t kMaxValueBytes = uint64_t{96} << 20; // longer blobs are not 
 
 } // namespace
 
-CommandFilter::CommandFilter(uint64_t mostBytes, Take take)
-    : mostBytes_(mostBytes),
+CommandFilter::CommandFilter(uint64_t maxBytes, Take take)
+    : maxBytes_(maxBytes),
       take_([this, take = std::move(take)](uint32_t to, std::span<const std::byte> bytes, const RecordOffsets* walked) {
           counts_.outBytes += bytes.size();
           take(to, bytes, walked);
@@ -42,18 +42,18 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
     constexpr size_t kNone = SIZE_MAX;
     size_t valueFrom = stream.values > 0 ? 0 : kNone; // start of the blob's pieces in this packet
     while (true) {
-        const bool looksAtState = leavesOutSmall_ || stream.list != 0;
+        const bool tracksState = leavesOutSmall_ || stream.list != 0;
         if (valueFrom == kNone && stream.same.now == FrameMatcher::Now::Following) passSame(stream, walk, payload);
         if (valueFrom == kNone && compilesList(stream)) {
             int depth = 0;
             walk.skip([&](uint16_t opcode, size_t times) {
                 const int8_t deeper = kinds_[opcode].deeper;
-                if (deeper != kLooked) depth += deeper * static_cast<int>(times);
-                return deeper != kLooked;
+                if (deeper != kExamined) depth += deeper * static_cast<int>(times);
+                return deeper != kExamined;
             });
             stream.depth += depth;
         }
-        if (valueFrom == kNone) passOthers(stream, output, walk, payload, looksAtState);
+        if (valueFrom == kNone) passOthers(stream, output, walk, payload, tracksState);
         if (!walk.next(r)) break;
         const CommandKind& kind = kinds_[r.opcode];
         if (stream.same.now == FrameMatcher::Now::Following) seeSame(stream, r, kind);
@@ -67,7 +67,7 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
             continue;
         }
         const size_t from = valueFrom == kNone ? r.offset : valueFrom;
-        const bool done = looksAtState && kind.state != StateRole::None && stream.context != nullptr &&
+        const bool done = tracksState && kind.state != StateRole::None && stream.context != nullptr &&
                           smallState(stream, output, r, kind.state, from, payload);
         if (!done) record(stream, output, r, kind, from, payload);
         if (stream.values > 0 && kind.about != CommandClass::Upload) stream.waiting.lost();
@@ -81,7 +81,7 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
     if (valueFrom != kNone && !stream.passing) keepPending(stream, output, valueFrom, payload);
     if (stream.same.now == FrameMatcher::Now::Recording) {
         keepRecords(stream, payload);
-        stream.same.keptBytes = 0;
+        stream.same.templateBytes = 0;
     }
     output.finish(walk.whole());
 }
@@ -89,22 +89,22 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
 // Skips records of no interest. In most programs these are nearly all records but bindings, which are followed here,
 // and draws, most of which need nothing deferred.
 void CommandFilter::passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet,
-                               bool looksAtState) {
+                               bool tracksState) {
     using Walk = CommandKinds::Walk;
     const bool isUntracked = stream.context != nullptr && stream.context->group->untracked;
-    const CommandKinds::Interests& interests = kinds_.interests(looksAtState  ? Walk::State
+    const CommandKinds::Interests& interests = kinds_.interests(tracksState   ? Walk::State
                                                                 : isUntracked ? Walk::Untracked
                                                                               : Walk::Bindings);
     const auto interestOf = [&](uint16_t opcode) { return interests[CommandKinds::placeOf(opcode)]; };
-    const bool looks = !looksAtState && stream.same.now != FrameMatcher::Now::Following && bindsHere(stream);
-    if (!looks)
+    const bool examines = !tracksState && stream.same.now != FrameMatcher::Now::Following && bindsHere(stream);
+    if (!examines)
         return walk.skip([&](uint16_t opcode, size_t) { return interestOf(opcode) == CommandKinds::Interest::None; });
     walk.pass(interestOf, [&](const RecordView& r) {
         if (stream.context->group->untracked) return false;
         const CommandKind& kind = kinds_[r.opcode];
         Group& group = *stream.context->group;
         if (kind.about != CommandClass::Bind) // a draw, or a display list that may draw
-            return (group.held.empty() || !stream.context->needs) &&
+            return (group.deferred.empty() || !stream.context->needs) &&
                    (kind.about == CommandClass::Use || !group.listsBind);
         At at{stream, *stream.context, group, output, r, kind, r.offset, packet};
         bind(at);
@@ -115,9 +115,9 @@ void CommandFilter::passOthers(Stream& stream, Output& output, trace::RecordWalk
 // The packet ends within a blob, before its record: whether it can be deferred is still unknown.
 void CommandFilter::keepPending(Stream& stream, Output& output, size_t from, const Packet& packet) {
     Context* const c = stream.context;
-    const bool holds = c != nullptr && !c->group->held.empty();
+    const bool holds = c != nullptr && !c->group->deferred.empty();
     const bool wanted = c != nullptr && !c->group->untracked && stream.list == 0 && !stream.inPrimitive &&
-                        stream.valueBytes <= std::min(kMaxValueBytes, mostBytes_ / 2) &&
+                        stream.valueBytes <= std::min(kMaxValueBytes, maxBytes_ / 2) &&
                         (holds || !stream.waiting.vain() || stream.waiting.tries());
     if (wanted && makeRoom(stream, output, from,
                            stream.valueBytes - std::min<uint64_t>(stream.valueBytes, stream.pending.size()))) {
@@ -183,7 +183,7 @@ void CommandFilter::gl(At& at) {
 
 // Nothing can be inserted between these records and their draw, so its inputs are flushed before.
 void CommandFilter::arrays(At& at) {
-    if (at.group.held.empty()) return;
+    if (at.group.deferred.empty()) return;
     trace::RecordWalk behind(at.packet.subspan(at.r.offset + at.r.sizeBytes));
     RecordView next;
     const bool draws =
@@ -292,7 +292,7 @@ void CommandFilter::clientGone(uint32_t client) {
     const auto ofClient = clients_.find(client);
     if (ofClient != clients_.end()) {
         for (auto& [id, context] : ofClient->second) {
-            while (!context->group->held.empty()) dropQueue(*context->group, *context->group->held.back());
+            while (!context->group->deferred.empty()) dropQueue(*context->group, *context->group->deferred.back());
         }
     }
     std::erase_if(streams_, [&](const auto& s) {

@@ -38,7 +38,7 @@ struct CommandFilterCounts {
 class CommandFilter {
 public:
     // mostBytes: limit of deferred data; above it the oldest is flushed.
-    CommandFilter(uint64_t mostBytes, Take take);
+    CommandFilter(uint64_t maxBytes, Take take);
     CommandFilter(const CommandFilter&) = delete;
     CommandFilter& operator=(const CommandFilter&) = delete;
 
@@ -47,7 +47,7 @@ public:
     void clientGone(uint32_t client); // drops everything of the program
     // Sets whether redundant state setters, bindings and uniforms are dropped. Initially off. Call between packets.
     void leaveOutSmall(bool leavesOut);
-    void losesWhatItHolds() { loses_ = true; } // fault injection
+    void losesDeferredUploads() { loses_ = true; } // fault injection
     [[nodiscard]] const CommandFilterCounts& counts() const { return counts_; }
 
 private:
@@ -67,7 +67,7 @@ private:
 
     void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from,
                 const Packet& packet);
-    void passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet, bool looksAtState);
+    void passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet, bool tracksState);
     void keepPending(Stream& stream, Output& output, size_t from, const Packet& packet);
     void sendPending(Stream& stream, Output& output, size_t from);
     static bool bindsHere(const Stream& stream) {
@@ -146,7 +146,7 @@ private:
     // Uploads.
     void upload(At& at);
     Object* objectOf(At& at);
-    void hold(At& at, Object& object, const Upload* upload, bool barrier);
+    void deferUpload(At& at, Object& object, const Upload* upload, bool barrier);
     void waitsFor(At& at, Object& object);
     void oneUniform(At& at, Object& program, size_t locationWord);
     void countLeftOut(size_t records, size_t sizeBytes);
@@ -173,7 +173,7 @@ private:
     void untrack(At& at);
 
     const CommandKinds& kinds_ = CommandKinds::all();
-    const uint64_t mostBytes_;
+    const uint64_t maxBytes_;
     const Take take_; // also counts the sent records
     std::unordered_map<uint32_t, Stream> streams_;
     std::map<uint32_t, std::map<uint32_t, std::unique_ptr<Context>>> clients_;
@@ -191,6 +191,6 @@ bool namesAt(const trace::RecordView& r, size_t word, std::vector<uint32_t>& nam
 // Index into TextureUnit; kTextureTargets: unknown. Faces of a cube map to the cube.
 size_t targetIndex(uint32_t target);
 // Returns true for capabilities that enable driver messages per command.
-bool hearsDriver(uint32_t cap);
+bool isDebugOutput(uint32_t cap);
 
 } // namespace mural::filter

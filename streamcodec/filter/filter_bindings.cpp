@@ -55,7 +55,7 @@ void CommandFilter::isRedundantBind(At& at) {
     at.output.leaveOut(at.r.offset, at.r.offset + at.r.sizeBytes);
 }
 
-bool hearsDriver(uint32_t cap) { return cap == GL_DEBUG_OUTPUT || cap == GL_DEBUG_OUTPUT_SYNCHRONOUS; }
+bool isDebugOutput(uint32_t cap) { return cap == GL_DEBUG_OUTPUT || cap == GL_DEBUG_OUTPUT_SYNCHRONOUS; }
 
 void CommandFilter::bind(At& at) {
     Context& c = at.context;
@@ -89,7 +89,7 @@ void CommandFilter::bind(At& at) {
     case Binding::Pointer: return arrayPointer(at);
     case Binding::Indexed: return bindIndexed(at);
     case Binding::Cap: // nodes forward driver messages as they occur
-        return hearsDriver(first) ? untrack(at) : void();
+        return isDebugOutput(first) ? untrack(at) : void();
     case Binding::ArrayBuffers: return arrayBuffers(at);
     case Binding::PushAttribs: return pushAttribs(at);
     case Binding::PopAttribs: return popAttribs(at);
@@ -192,7 +192,7 @@ void CommandFilter::useProgram(At& at, uint32_t name) {
     if (c.programSure && object == c.program && (object == nullptr || object->target != 0)) return isRedundantBind(at);
     if (object != nullptr && object->target == 0) {
         std::vector<Object*> programs;
-        std::ranges::copy_if(at.group.held, std::back_inserter(programs),
+        std::ranges::copy_if(at.group.deferred, std::back_inserter(programs),
                              [](const Object* o) { return o->kind == Kind::Program; });
         if (!programs.empty()) release(at.stream, at.output, at.from, programs);
         c.programSure = false;

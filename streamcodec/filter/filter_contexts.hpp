@@ -33,13 +33,13 @@ struct Group {
     std::array<std::unordered_map<uint32_t, std::unique_ptr<Object>>, 3> objects; // by Kind
     std::array<NameIndex<Object>, 3> named;                                       // by Kind
     std::unordered_map<uint32_t, ListNames> lists;
-    bool listsBind = false;    // some display lists change bindings
-    std::vector<Object*> held; // objects with a queue, oldest first
+    bool listsBind = false;        // some display lists change bindings
+    std::vector<Object*> deferred; // objects with a queue, oldest first
     SoonUsed soonUsed;
-    uint64_t heldChanges = 0;   // number of changes of the set of deferred objects
-    uint64_t objectChanges = 0; // number of changes of the set of objects
-    Context* holder = nullptr;
-    uint32_t holderStream = 0;
+    uint64_t deferredChanges = 0; // number of changes of the set of deferred objects
+    uint64_t objectChanges = 0;   // number of changes of the set of objects
+    Context* deferringContext = nullptr;
+    uint32_t deferringStream = 0;
     uint64_t frame = 0;
     bool untracked = false; // a command with unknown effects was executed: deferral is off
 };
@@ -112,10 +112,10 @@ struct FrameMatcher {
     };
     Now now = Now::Apart;
     FrameTemplate layout;
-    size_t keptBytes = 0;             // bytes of the packet in the template that is being built
+    size_t templateBytes = 0;         // bytes of the packet in the template that is being built
     bool inValue = false;             // the last record in the template was a piece of a blob
     const Context* context = nullptr; // context of the template
-    uint64_t heldChanges = 0, objectChanges = 0;
+    uint64_t deferredChanges = 0, objectChanges = 0;
     // Bindings at the start and the end of the template. Textures may differ: a frame binds every texture whose binding
     // it changes, and so does every matching frame.
     Bindings begins, ends;
@@ -130,7 +130,7 @@ struct FrameMatcher {
     uint32_t frames = 0;    // frames since the template was built
     uint32_t wait = kFirst; // frames until the next template
     double shares = 0;      // sum of the matched fractions
-    static constexpr uint32_t kFirst = 4, kMost = 1024;
+    static constexpr uint32_t kFirst = 4, kMax = 1024;
 };
 
 struct Stream {

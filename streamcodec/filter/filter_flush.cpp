@@ -30,15 +30,16 @@ uint32_t nameOf(const Object* object) { return object == nullptr ? 0 : object->n
 
 // Decides whether to defer the first upload of an object.
 bool CommandFilter::deferrable(Group& group, Object& object) {
-    if (!object.holding.tries()) return false;
-    const bool othersWait = !group.held.empty() && group.frame - group.held.front()->heldSince > kSoonFrames;
+    if (!object.deferral.tries()) return false;
+    const bool othersWait =
+        !group.deferred.empty() && group.frame - group.deferred.front()->deferredSince > kSoonFrames;
     return othersWait || group.soonUsed.tries();
 }
 
 // Handles a draw: flushes the deferred objects that are bound for it.
 void CommandFilter::use(At& at) {
     Context& c = at.context;
-    if (at.group.held.empty() || !c.needs) return;
+    if (at.group.deferred.empty() || !c.needs) return;
     c.needs = false;
     std::vector<Object*>& used = used_;
     used.clear();
@@ -63,41 +64,42 @@ void CommandFilter::releaseOne(At& at, Object& object) {
 // false if nothing can be flushed.
 bool CommandFilter::makeRoom(Stream& stream, Output& output, size_t from, uint64_t sizeBytes) {
     const auto wants = [&] { return counts_.deferredBytes + pendingBytes_ + sizeBytes; };
-    if (wants() <= mostBytes_) return true;
-    const uint64_t tooMuch = wants() - mostBytes_ / 8 * 7;
+    if (wants() <= maxBytes_) return true;
+    const uint64_t tooMuch = wants() - maxBytes_ / 8 * 7;
     std::vector<Object*> oldest;
     uint64_t sum = 0;
-    for (Object* const object : stream.context->group->held) {
+    for (Object* const object : stream.context->group->deferred) {
         if (sum >= tooMuch) break;
         sum += object->deferredBytes + object->uniforms.waitingBytes();
         oldest.push_back(object);
     }
     if (!oldest.empty()) release(stream, output, from, oldest, Because::NoRoom);
-    return wants() <= mostBytes_;
+    return wants() <= maxBytes_;
 }
 
 void CommandFilter::releaseGroup(Stream& stream, Output& output, size_t from) {
-    if (stream.context == nullptr || stream.context->group->held.empty()) return;
-    const std::vector<Object*> all = stream.context->group->held;
+    if (stream.context == nullptr || stream.context->group->deferred.empty()) return;
+    const std::vector<Object*> all = stream.context->group->deferred;
     release(stream, output, from, all);
 }
 
 // Flushes a group in the stream of its own context, between two of its packets.
 void CommandFilter::releaseOf(Group& group, Stream& stream, Output& output, size_t from) {
-    if (group.held.empty()) return;
-    Stream& holder = streams_[group.holderStream];
+    if (group.deferred.empty()) return;
+    Stream& deferringContext = streams_[group.deferringStream];
     // Within glBegin and glEnd of that stream nothing can be inserted: then here, if this stream shares the group.
     const bool here = stream.context != nullptr && stream.context->group.get() == &group;
-    if (&holder == &stream || (holder.inPrimitive && here)) return releaseGroup(stream, output, from);
-    if (holder.inPrimitive) return; // stays deferred: no command of another context has come
-    Output other(holder.id, {}, otherScratch_, take_);
-    releaseGroup(holder, other, 0);
+    if (&deferringContext == &stream || (deferringContext.inPrimitive && here))
+        return releaseGroup(stream, output, from);
+    if (deferringContext.inPrimitive) return; // stays deferred: no command of another context has come
+    Output other(deferringContext.id, {}, otherScratch_, take_);
+    releaseGroup(deferringContext, other, 0);
     other.finish();
 }
 
 void CommandFilter::releaseElsewhere(Stream& stream) {
-    if (stream.context == nullptr || stream.context->group->held.empty() ||
-        stream.context->group->holder == stream.context)
+    if (stream.context == nullptr || stream.context->group->deferred.empty() ||
+        stream.context->group->deferringContext == stream.context)
         return;
     Output none(stream.id, {}, scratch_, take_);
     releaseOf(*stream.context->group, stream, none, 0);
@@ -108,7 +110,7 @@ void CommandFilter::releaseAll() {
     for (auto& [id, stream] : streams_) sendStateOf(stream);
     for (auto& [client, contexts] : clients_)
         for (auto& [id, context] : contexts) {
-            if (context->group->held.empty()) continue;
+            if (context->group->deferred.empty()) continue;
             Stream nobody;
             Output none(0, {}, scratch_, take_);
             releaseOf(*context->group, nobody, none, 0);
@@ -125,12 +127,12 @@ void CommandFilter::dropQueue(Group& group, Object& object) {
 
 // Removes the queue after it was sent or dropped.
 void CommandFilter::emptyQueue(Group& group, Object& object) {
-    ++group.heldChanges;
+    ++group.deferredChanges;
     counts_.deferredBytes -= object.deferredBytes;
     object.deferredBytes = 0;
     object.gained = false;
     std::vector<Item>().swap(object.queue);
-    std::erase(group.held, &object);
+    std::erase(group.deferred, &object);
 }
 
 void CommandFilter::release(Stream& stream, Output& output, size_t from, std::span<Object* const> objects,
@@ -146,11 +148,11 @@ void CommandFilter::release(Stream& stream, Output& output, size_t from, std::sp
             sendQueue(c, output, from, *object);
         else
             object->uniforms.send([](std::span<const std::byte>) {});
-        const bool soon = group.frame - object->heldSince <= kSoonFrames && !object->gained;
+        const bool soon = group.frame - object->deferredSince <= kSoonFrames && !object->gained;
         if (soon && because == Because::Needed)
-            object->holding.lost();
+            object->deferral.lost();
         else
-            object->holding.won();
+            object->deferral.won();
         if (object->kind != Kind::Program && because == Because::Needed) group.soonUsed.was(soon);
         emptyQueue(group, *object);
     }

@@ -67,7 +67,7 @@ bool CommandFilter::repeats(const Stream& stream) const {
     const FrameMatcher& same = stream.same;
     if (!mayRepeat(stream) || stream.context != same.context) return false;
     const Group& group = *stream.context->group;
-    return group.heldChanges == same.heldChanges && group.objectChanges == same.objectChanges;
+    return group.deferredChanges == same.deferredChanges && group.objectChanges == same.objectChanges;
 }
 
 // Skips records that match the template.
@@ -142,7 +142,7 @@ void CommandFilter::keepSame(Stream& stream, const RecordView& r, const Packet& 
 // Appends records to the template that is being built. They have been followed.
 void CommandFilter::keepRecords(Stream& stream, const Packet& packet) {
     FrameMatcher& same = stream.same;
-    trace::RecordWalk walk(packet.subspan(same.keptBytes));
+    trace::RecordWalk walk(packet.subspan(same.templateBytes));
     RecordView r;
     bool keeps = repeats(stream);
     while (keeps && walk.next(r)) {
@@ -155,9 +155,10 @@ void CommandFilter::keepRecords(Stream& stream, const Packet& packet) {
                                : takesValue ? FrameRole::SeenBound
                                             : kind.frame;
         const Same how = role == FrameRole::Draws ? Same::Head : role == FrameRole::Binds ? Same::All : Same::Seen;
-        keeps = role != FrameRole::Ends && same.layout.add(how, packet.subspan(same.keptBytes + r.offset, r.sizeBytes));
+        keeps =
+            role != FrameRole::Ends && same.layout.add(how, packet.subspan(same.templateBytes + r.offset, r.sizeBytes));
     }
-    same.keptBytes = packet.size();
+    same.templateBytes = packet.size();
     if (keeps) return;
     same.now = FrameMatcher::Now::Apart;
     same.layout.clear();
@@ -189,7 +190,7 @@ void CommandFilter::endSame(Stream& stream, const Packet& packet) {
     const double share = same.layout.share();
     ++same.frames;
     same.shares += share;
-    if (group.held.empty()) same.heldChanges = group.heldChanges; // no draw can need anything deferred
+    if (group.deferred.empty()) same.deferredChanges = group.deferredChanges; // no draw can need anything deferred
     const bool isLike = same.now == Now::Following ||
                         (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
     const bool goesOn = isLike && mayBegin(same, bound);
@@ -199,14 +200,14 @@ void CommandFilter::endSame(Stream& stream, const Packet& packet) {
     if (goesOn || same.frames < same.wait) return;
     // Builds a new template; at growing intervals if templates did not match before.
     same.wait =
-        same.shares >= kUnlike * same.frames ? FrameMatcher::kFirst : std::min(same.wait * 2, FrameMatcher::kMost);
+        same.shares >= kUnlike * same.frames ? FrameMatcher::kFirst : std::min(same.wait * 2, FrameMatcher::kMax);
     same.now = Now::Recording;
-    same.keptBytes = packet.size();
+    same.templateBytes = packet.size();
     same.inValue = false;
     same.layout.clear();
     same.mark.followed = 0;
     same.context = stream.context;
-    same.heldChanges = group.heldChanges;
+    same.deferredChanges = group.deferredChanges;
     same.objectChanges = group.objectChanges;
     same.begins = bound;
     same.frames = 0;

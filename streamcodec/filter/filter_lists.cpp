@@ -75,7 +75,9 @@ void CommandFilter::compiled(At& at) {
     case Family::ClientActiveTexture:
     case Family::ClientPush:
     case Family::ClientPop: return bind(at);
-    case Family::Cap: at.stream.compiled.binds = at.stream.compiled.binds || hearsDriver(argumentWord(at.r, 0)); return;
+    case Family::Cap:
+        at.stream.compiled.binds = at.stream.compiled.binds || isDebugOutput(argumentWord(at.r, 0));
+        return;
     case Family::Bind:
         if (at.r.opcode == op::glBindBuffer || at.r.opcode == op::glBindVertexArray) return bind(at);
         [[fallthrough]];

@@ -29,12 +29,12 @@ void CommandFilter::leaveOutSmall(bool leavesOut) {
 // Called between two packets of the stream that owns the uniforms.
 void CommandFilter::sendUniformsOf(Group& group) {
     std::vector<Object*> programs;
-    std::ranges::copy_if(group.held, std::back_inserter(programs),
+    std::ranges::copy_if(group.deferred, std::back_inserter(programs),
                          [](const Object* o) { return o->kind == Kind::Program; });
-    Stream& holder = streams_[group.holderStream];
-    if (programs.empty() || holder.context == nullptr) return;
-    Output other(holder.id, {}, otherScratch_, take_);
-    release(holder, other, 0, programs);
+    Stream& deferringContext = streams_[group.deferringStream];
+    if (programs.empty() || deferringContext.context == nullptr) return;
+    Output other(deferringContext.id, {}, otherScratch_, take_);
+    release(deferringContext, other, 0, programs);
     other.finish();
 }
 
@@ -69,7 +69,7 @@ bool CommandFilter::smallState(Stream& stream, Output& output, const RecordView&
     countFate(outcome, r.sizeBytes);
     if (outcome.fate == Disposition::Goes) return false;
     output.leaveOut(r.offset, r.offset + r.sizeBytes);
-    if (counts_.deferredBytes + pendingBytes_ > mostBytes_) sendState(stream, output, r.offset + r.sizeBytes);
+    if (counts_.deferredBytes + pendingBytes_ > maxBytes_) sendState(stream, output, r.offset + r.sizeBytes);
     return true;
 }
 

@@ -91,11 +91,11 @@ void CommandFilter::upload(At& at) {
     const size_t sizeBytes = at.r.sizeBytes + at.stream.valueBytes;
     const bool small = sizeBytes < kMinBytes && !uniform;
     if (small && object->queue.empty() && object->known.empty()) return;
-    if (uniform && object->queue.empty() && !object->holding.tries()) return;
+    if (uniform && object->queue.empty() && !object->deferral.tries()) return;
     const auto u = uploadOf(at.r, blobBytes);
     const bool first = !std::exchange(object->filled, true);
     // waiting for its blob would be in vain
-    const bool inVain = (object->holding.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first);
+    const bool inVain = (object->deferral.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first);
     // For a texture addressed by name, the cube face is one of the arguments.
     const bool anyFace =
         trace::ruleOf(at.r.opcode).type == trace::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
@@ -109,8 +109,8 @@ void CommandFilter::upload(At& at) {
     // Test whether it changes the contents.
     const bool compares = u->given && !small && !uniform && object->comparing.tries();
     if (compares) {
-        const Object::News news = object->compare(*u, first, [&] { return sumOfValue(at, *u); });
-        if (news == Object::News::Same) {
+        const Object::Comparison comparison = object->compare(*u, first, [&] { return sumOfValue(at, *u); });
+        if (comparison == Object::Comparison::Same) {
             object->comparing.won();
             at.stream.waiting.won();
             countLeftOut(1 + at.stream.pendingRecords,
@@ -119,7 +119,7 @@ void CommandFilter::upload(At& at) {
             std::vector<std::byte>().swap(at.stream.pending);
             return at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
         }
-        if (news == Object::News::Changed) object->comparing.lost();
+        if (comparison == Object::Comparison::Changed) object->comparing.lost();
     } else {
         object->forgets(*u);
     }
@@ -131,7 +131,7 @@ void CommandFilter::upload(At& at) {
         if (at.stream.values > 0) inVain ? at.stream.waiting.lost() : at.stream.waiting.won();
         return;
     }
-    hold(at, *object, &*u, u->kind == UploadKind::Storage);
+    deferUpload(at, *object, &*u, u->kind == UploadKind::Storage);
 }
 
 // A uniform that is not an array is deferred by location, so finding its predecessor needs no search.
@@ -149,7 +149,7 @@ void CommandFilter::oneUniform(At& at, Object& program, size_t locationWord) {
         releaseOne(at, program);
         return program.uniforms.forget(location);
     }
-    const bool deferrable = program.waits() || program.holding.tries();
+    const bool deferrable = program.waits() || program.deferral.tries();
     if (!leavesOutSmall_ && !deferrable) return program.uniforms.forget(location);
     const SetResult outcome = program.uniforms.set(location, record, deferrable);
     countFate(outcome, at.r.sizeBytes);
@@ -161,7 +161,7 @@ void CommandFilter::oneUniform(At& at, Object& program, size_t locationWord) {
 }
 
 // Defers the record with the pieces of its blob.
-void CommandFilter::hold(At& at, Object& object, const Upload* upload, bool barrier) {
+void CommandFilter::deferUpload(At& at, Object& object, const Upload* upload, bool barrier) {
     Item item;
     const auto here = at.packet.subspan(at.from, at.r.offset + at.r.sizeBytes - at.from);
     pendingBytes_ -= at.stream.pending.size();
@@ -192,13 +192,13 @@ void CommandFilter::hold(At& at, Object& object, const Upload* upload, bool barr
 // Registers an object with its first deferred command. It is flushed when needed, or when the limit is reached.
 void CommandFilter::waitsFor(At& at, Object& object) {
     Group& group = at.group;
-    ++group.heldChanges;
-    if (std::ranges::find(group.held, &object) == group.held.end()) {
-        group.held.push_back(&object);
-        object.heldSince = group.frame;
+    ++group.deferredChanges;
+    if (std::ranges::find(group.deferred, &object) == group.deferred.end()) {
+        group.deferred.push_back(&object);
+        object.deferredSince = group.frame;
     }
-    group.holder = &at.context;
-    group.holderStream = at.stream.id;
+    group.deferringContext = &at.context;
+    group.deferringStream = at.stream.id;
     at.context.needs = true;
     const size_t behind = at.r.offset + at.r.sizeBytes;
     if (object.queue.size() >= kMaxItems) {
@@ -237,7 +237,7 @@ void CommandFilter::objectCommand(At& at) {
     }
     if (object->queue.empty()) return;
     if (at.stream.values > 0) return releaseOne(at, *object);
-    hold(at, *object, nullptr, mipmaps);
+    deferUpload(at, *object, nullptr, mipmaps);
 }
 
 Sum CommandFilter::sumOfValue(At& at, const Upload& upload) {

@@ -6,24 +6,24 @@ namespace mural::filter {
 namespace {
 
 constexpr size_t kMaxKnown = 32;
-constexpr size_t kLookedAt = 64; // examined entries at the end of the queue
+constexpr size_t kMaxExamined = 64; // examined entries at the end of the queue
 
 } // namespace
 
-Object::News Object::compare(const Upload& u, bool first, const std::function<Sum()>& sum) {
-    News news = News::First;
+Object::Comparison Object::compare(const Upload& u, bool first, const std::function<Sum()>& sum) {
+    Comparison comparison = Comparison::First;
     std::optional<Sum> now;
     for (const Known& k : known) {
         if (!(k.shape == u.shape)) continue;
         if (!now) now = sum();
-        if (k.sum == now) return News::Same;
-        if (k.sum) news = News::Changed;
+        if (k.sum == now) return Comparison::Same;
+        if (k.sum) comparison = Comparison::Changed;
     }
     forgets(u);
     if (known.size() == kMaxKnown) known.clear();
     if (!now && !first) now = sum();
     known.push_back({u.place, u.shape, now});
-    return news;
+    return comparison;
 }
 
 void Object::forgets(const Upload& u) {
@@ -35,7 +35,7 @@ Object::Replaced Object::replaces(const Upload& u) {
     Replaced gone;
     if (u.kind == UploadKind::Storage || !u.given) return gone;
     size_t at = queue.size();
-    for (size_t looked = 0; at > 0 && looked < kLookedAt; ++looked) {
+    for (size_t examined = 0; at > 0 && examined < kMaxExamined; ++examined) {
         const Item& item = queue[--at];
         if (item.barrier) return gone;
         if (!item.isUpload || !(item.shape == u.shape)) continue;

@@ -71,10 +71,10 @@ struct Object {
     StateCache<kUniformWords>
         uniforms; // program: uniforms that are not arrays, by location; deferred ones follow the queue
     size_t deferredBytes = 0;
-    uint64_t heldSince = 0; // frame of the first deferred command
-    bool filled = false;    // has been uploaded to
-    bool gained = false;    // a deferred upload was overwritten
-    Worth holding, comparing;
+    uint64_t deferredSince = 0; // frame of the first deferred command
+    bool filled = false;        // has been uploaded to
+    bool gained = false;        // a deferred upload was overwritten
+    Worth deferral, comparing;
     struct Known {
         Place place;
         Shape shape;
@@ -87,9 +87,9 @@ struct Object {
         known.clear();
         uniforms.forgetAll();
     }
-    enum class News : uint8_t { Same, Changed, First }; // First: no comparable upload
+    enum class Comparison : uint8_t { Same, Changed, First }; // First: no comparable upload
     // Compares an upload with the known contents, and records it. first: first upload of the object.
-    News compare(const Upload& u, bool first, const std::function<Sum()>& sum);
+    Comparison compare(const Upload& u, bool first, const std::function<Sum()>& sum);
     // Records an upload without comparison.
     void forgets(const Upload& u);
     // Removes deferred uploads that this upload overwrites before any read; returns their number and size.

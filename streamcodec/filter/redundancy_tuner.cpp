@@ -55,9 +55,9 @@ void RedundancyTuner::disturbed() {
 }
 
 bool RedundancyTuner::hopeless() const {
-    const double most = median(costs_[0]) * kHopelessCost;
-    return frames_ >= kHopeless &&
-           std::all_of(costs_[1].begin(), costs_[1].begin() + frames_, [most](double cost) { return cost > most; });
+    const double maximum = median(costs_[0]) * kHopelessCost;
+    return frames_ >= kHopeless && std::all_of(costs_[1].begin(), costs_[1].begin() + frames_,
+                                               [maximum](double cost) { return cost > maximum; });
 }
 
 void RedundancyTuner::decide() {

@@ -191,13 +191,13 @@ void GlStateTracker::createContext(At& at, const RecordView& r) {
     const auto sharer = at.client.contexts.find(argumentWord(r, 1));
     if (id == 0 || at.client.contexts.contains(id)) return; // an error: the node's stays
     ContextNames context;
-    context.key = part(at.client.state, Part::Context, id, ++at.client.lives);
+    context.key = part(at.client.state, Part::Context, id, ++at.client.incarnations);
     context.cells = part(context.key, Part::Cells);
     context.api = static_cast<wire::Api>(argumentWord(r, 2));
     if (sharer == at.client.contexts.end()) {
         context.group = std::make_shared<Group>();
-        context.group->key = part(at.client.state, Part::Group, id, at.client.lives);
-        context.group->images = part(at.client.pictures, Part::Group, id, at.client.lives);
+        context.group->key = part(at.client.state, Part::Group, id, at.client.incarnations);
+        context.group->images = part(at.client.pictures, Part::Group, id, at.client.incarnations);
         at.effect.kill(context.group->key);
         at.effect.kill(context.group->images);
     } else {
@@ -221,11 +221,11 @@ void GlStateTracker::destroyContext(At& at, const RecordView& r) {
         return;
     }
     At of{at.stream, at.client, at.thread, &context, at.effect, 0};
-    for (auto& [slot, object] : context.bindings) hold(of, object, nullptr);
-    for (auto& [slot, query] : context.queries) hold(of, query, nullptr);
+    for (auto& [slot, object] : context.bindings) retain(of, object, nullptr);
+    for (auto& [slot, query] : context.queries) retain(of, query, nullptr);
     for (auto& [name, object] : context.own) {
-        for (auto& [slot, held] : object->holds) hold(of, held, nullptr);
-        for (auto& [point, attachment] : object->attachments) hold(of, attachment.object, nullptr);
+        for (auto& [slot, retained] : object->references) retain(of, retained, nullptr);
+        for (auto& [point, attachment] : object->attachments) retain(of, attachment.object, nullptr);
     }
     at.effect.add(context.key, Mode::Forget);
     if (--context.group->contexts == 0) {
@@ -277,8 +277,8 @@ void GlStateTracker::window(At& at, const RecordView& r) {
     WindowNames& window = at.client.windows[id];
     const bool fresh = window.key == kNoKey;
     if (fresh) {
-        window.key = part(at.client.state, Part::Window, id, ++at.client.lives);
-        window.picture = part(at.client.pictures, Part::Window, id, at.client.lives);
+        window.key = part(at.client.state, Part::Window, id, ++at.client.incarnations);
+        window.picture = part(at.client.pictures, Part::Window, id, at.client.incarnations);
     }
     window.config = config;
     if (fresh) {

@@ -69,7 +69,7 @@ private:
     Object* make(At& at, ObjectType type, uint32_t name);
     Object* findOrMake(At& at, ObjectType type, uint32_t name);
     Objects& tableOf(At& at, ObjectType type);
-    void hold(At& at, Object*& slot, Object* next);
+    void retain(At& at, Object*& slot, Object* next);
     void release(At& at, Object* object);
     void erase(At& at, Object* object);
     void objects(At& at, const Rule& rule, const RecordView& r);

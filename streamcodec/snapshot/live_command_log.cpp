@@ -104,7 +104,7 @@ void LiveCommandLog::compact() {
                                 item.always || item.pinned))
             stays[i] = true;
     }
-    size_t kept = 0, effects = 0, bytes = 0;
+    size_t live = 0, effects = 0, bytes = 0;
     largeBytes_ = 0;
     for (size_t i = 0; i < items_.size(); ++i) {
         if (!stays[i]) continue;
@@ -120,9 +120,9 @@ void LiveCommandLog::compact() {
             item.at = bytes;
             bytes += item.sizeBytes;
         }
-        items_[kept++] = std::move(item);
+        items_[live++] = std::move(item);
     }
-    items_.erase(items_.begin() + static_cast<std::ptrdiff_t>(kept), items_.end());
+    items_.erase(items_.begin() + static_cast<std::ptrdiff_t>(live), items_.end());
     effects_.resize(effects);
     bytes_.resize(bytes);
     grownItems_ = 2 * items_.size();

@@ -8,7 +8,7 @@ namespace mural::trace {
 bool LivenessSweep::needed(Key key) const {
     uint64_t last = 0;
     for (Key k = key;; k = keys_.parent(k)) {
-        last = std::max(last, marks_[k].said);
+        last = std::max(last, marks_[k].marked);
         if (k == kNoKey) break;
     }
     return (last & 1) == 0;
@@ -17,7 +17,7 @@ bool LivenessSweep::needed(Key key) const {
 bool LivenessSweep::anyNeeded(Key key) const {
     uint64_t last = 0;
     for (Key k = key;; k = keys_.parent(k)) {
-        last = std::max(last, marks_[k].said);
+        last = std::max(last, marks_[k].marked);
         if (k == kNoKey) break;
     }
     return (last & 1) == 0 || marks_[key].readBelow > last;
@@ -25,7 +25,7 @@ bool LivenessSweep::anyNeeded(Key key) const {
 
 void LivenessSweep::need(Key key) {
     const uint64_t now = ++step_ << 1;
-    marks_[key].said = now;
+    marks_[key].marked = now;
     for (Key k = key; k != kNoKey;) {
         k = keys_.parent(k);
         marks_[k].readBelow = now;
@@ -76,7 +76,7 @@ bool LivenessSweep::command(uint32_t number, std::span<const EffectEntry> effect
         case Mode::Restore: restored_[level].keys.emplace_back(e.key, anyNeeded(e.key)); [[fallthrough]];
         case Mode::Kill:
         case Mode::Forget:
-            marks_[e.key].said = (++step_ << 1) | 1;
+            marks_[e.key].marked = (++step_ << 1) | 1;
             if (e.mode == Mode::Kill) marks_[e.key].closer = kNobody; // the closed object does not exist
         }
     }

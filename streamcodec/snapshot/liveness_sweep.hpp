@@ -28,7 +28,7 @@ public:
 
 private:
     struct Mark {
-        uint64_t said = 0;      // step << 1 | dead
+        uint64_t marked = 0;    // step << 1 | dead
         uint64_t readBelow = 0; // the same, of the last live mark in the subtree
         uint32_t closer = kNobody;
     };

@@ -27,9 +27,9 @@ void StreamSnapshot::append(uint32_t stream, std::span<const std::byte> payload)
     log_.compact();
     if (log_.sizeBytes() <= boundBytes_ / 2 + boundBytes_ / 4) return;
     overrun_ = true;
-    const size_t keptBytes = log_.sizeBytes();
+    const size_t logBytes = log_.sizeBytes();
     log_.clear();
-    say_("the snapshot for late nodes has grown to " + std::to_string(keptBytes >> 20) +
+    say_("the snapshot for late nodes has grown to " + std::to_string(logBytes >> 20) +
          " MiB: no node can join from now on; use a larger --cache-size");
 }
 

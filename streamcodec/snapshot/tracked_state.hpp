@@ -106,7 +106,7 @@ struct Object {
     uint64_t sizeBytes = 0;                     // buffer
     std::map<uint32_t, Attachment> attachments; // framebuffer
     std::vector<uint32_t> drawBuffers;          // framebuffer
-    std::map<uint64_t, Object*> holds;          // shaders of a program, buffers of a vertex array
+    std::map<uint64_t, Object*> references;     // shaders of a program, buffers of a vertex array
     std::vector<std::byte> records;             // display list: effects of a call, without repetitions
     bool stacks = false;                        // display list that pushes or pops
     std::set<uint32_t> units;                   // texture units that may have been assigned to a program's samplers
@@ -124,7 +124,7 @@ struct Group {
     Objects objects;
     std::vector<std::unique_ptr<Object>> gone; // deleted objects that are still held
     std::map<HandleId, uint32_t> handles;      // texture names
-    uint32_t lives = 0;
+    uint32_t incarnations = 0;
 };
 
 // State that decides what commands write, and what limits clears.
@@ -156,7 +156,7 @@ struct ContextNames {
     bool depthTested = false, stencilTested = false, transfersPixels = false; // at any time in the past
     uint64_t colorMaterialMode = 0;
     Objects own; // objects that are not shared
-    uint32_t lives = 0;
+    uint32_t incarnations = 0;
     std::map<uint64_t, Object*> bindings;
     uint32_t unit = 0, clientUnit = 0, matrixMode = 0x1700, listBase = 0;
     std::map<uint64_t, uint32_t> matrixDepths;
@@ -195,7 +195,7 @@ struct ClientNames {
     Key key = kNoKey, state = kNoKey, pictures = kNoKey, results = kNoKey;
     std::map<uint32_t, ContextNames> contexts;
     std::map<uint32_t, WindowNames> windows;
-    uint32_t lives = 0;
+    uint32_t incarnations = 0;
 };
 
 } // namespace mural::trace

@@ -56,8 +56,8 @@ void GlStateTracker::buffers(At& at, const Rule& rule, const RecordView& r) {
         const uint64_t array = slotOf(Slot::VertexArray);
         at.effect.read(part(at.context->cells, Part::Binding, array));
         Object* const current = bound(at, array);
-        Object* const holder = current != nullptr ? current : find(at, ObjectType::VertexArray, 0);
-        if (holder != nullptr) at.effect.read(part(holder->key, Part::Binding, slot));
+        Object* const owner = current != nullptr ? current : find(at, ObjectType::VertexArray, 0);
+        if (owner != nullptr) at.effect.read(part(owner->key, Part::Binding, slot));
     } else if (!named) {
         at.effect.read(part(at.context->cells, Part::Binding, slot));
     }
@@ -123,17 +123,17 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
     case Family::ProgramAttach:
     case Family::ProgramDetach: {
         Object* const shader = find(at, ObjectType::Program, second);
-        Object* const known = shader != nullptr                ? shader
-                              : object->holds.contains(second) ? object->holds[second]
-                                                               : nullptr;
+        Object* const known = shader != nullptr                     ? shader
+                              : object->references.contains(second) ? object->references[second]
+                                                                    : nullptr;
         if (known == nullptr) return unknown(at, false);
         use(at, known);
         at.effect.write(part(object->key, Part::Attachments));
-        return hold(at, object->holds[second], rule.family == Family::ProgramAttach ? known : nullptr);
+        return retain(at, object->references[second], rule.family == Family::ProgramAttach ? known : nullptr);
     }
     case Family::ProgramLink:
         at.effect.read(object->key);
-        for (const auto& [name, shader] : object->holds) {
+        for (const auto& [name, shader] : object->references) {
             if (shader == nullptr) continue;
             at.effect.read(shader->key);
             object->anyUnit = object->anyUnit || shader->anyUnit;
@@ -177,7 +177,7 @@ void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
         Object* const query = findOrMake(at, ObjectType::Query, name);
         use(at, query);
         at.effect.kill(query->images);
-        return hold(at, c.queries[slot], query);
+        return retain(at, c.queries[slot], query);
     }
     case Family::QueryEnd: {
         const auto found = c.queries.find(slot);
@@ -185,7 +185,7 @@ void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
         const Key data = found->second->images;
         at.effect.write(data);
         at.effect.add(data, Mode::Close);
-        return hold(at, found->second, nullptr);
+        return retain(at, found->second, nullptr);
     }
     case Family::QueryCounter: {
         Object* const query = findOrMake(at, ObjectType::Query, first);

@@ -211,7 +211,7 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
     }
     const auto attach = [&](uint32_t at1) {
         Attachment& known = target->attachments[at1];
-        hold(at, known.object, attachment.object);
+        retain(at, known.object, attachment.object);
         known.level = attachment.level;
         known.whole = attachment.whole;
     };

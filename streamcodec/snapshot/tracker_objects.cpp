@@ -45,12 +45,12 @@ Object* GlStateTracker::make(At& at, ObjectType type, uint32_t name) {
     Group& group = *at.context->group;
     const bool taken =
         std::ranges::any_of(group.gone, [&](const auto& o) { return o->type == type && o->name == name; });
-    object->key =
-        part(isOwn(type) ? at.context->key : group.key, Part::Object, idOf(type, name), taken ? ++group.lives : 0);
+    object->key = part(isOwn(type) ? at.context->key : group.key, Part::Object, idOf(type, name),
+                       taken ? ++group.incarnations : 0);
     object->made = true;
     at.effect.kill(object->key);
     if (type == ObjectType::Texture || type == ObjectType::Renderbuffer) {
-        object->images = part(group.images, Part::Object, idOf(type, name), taken ? group.lives : 0);
+        object->images = part(group.images, Part::Object, idOf(type, name), taken ? group.incarnations : 0);
         at.effect.kill(object->images);
     }
     // Results of queries: no draw depends on them.
@@ -71,7 +71,7 @@ Object* GlStateTracker::findOrMake(At& at, ObjectType type, uint32_t name) {
     return object;
 }
 
-void GlStateTracker::hold(At& at, Object*& slot, Object* next) {
+void GlStateTracker::retain(At& at, Object*& slot, Object* next) {
     if (slot == next) return;
     if (next != nullptr) ++next->holders;
     Object* const old = std::exchange(slot, next);
@@ -88,8 +88,8 @@ void GlStateTracker::erase(At& at, Object* object) {
     if (!object->opaque && !at.context->group->trackingDisabled)
         for (const Key key : {object->key, object->images})
             if (key != kNoKey) at.effect.add(key, Mode::Forget);
-    for (auto& [slot, held] : object->holds) hold(at, held, nullptr);
-    for (auto& [point, attachment] : object->attachments) hold(at, attachment.object, nullptr);
+    for (auto& [slot, retained] : object->references) retain(at, retained, nullptr);
+    for (auto& [point, attachment] : object->attachments) retain(at, attachment.object, nullptr);
     auto& gone = at.context->group->gone;
     std::erase_if(gone, [object](const auto& o) { return o.get() == object; });
 }
@@ -163,16 +163,16 @@ void GlStateTracker::deleteOne(At& at, ObjectType type, uint32_t name) {
     ++object->holders; // keeps the object alive while its bindings are removed
     if (type != ObjectType::Program && type != ObjectType::Pipeline) {
         for (auto& [slot, there] : at.context->bindings)
-            if (there == object) hold(at, there, nullptr);
+            if (there == object) retain(at, there, nullptr);
         // Only current bindings are released.
         for (const Slot slot : {Slot::DrawFramebuffer, Slot::ReadFramebuffer})
             if (Object* const target = bound(at, slotOf(slot)))
                 for (auto& [point, attachment] : target->attachments)
-                    if (attachment.object == object) hold(at, attachment.object, nullptr);
+                    if (attachment.object == object) retain(at, attachment.object, nullptr);
         Object* const current = bound(at, slotOf(Slot::VertexArray));
         if (Object* const array = current != nullptr ? current : find(at, ObjectType::VertexArray, 0))
-            for (auto& [slot, held] : array->holds)
-                if (held == object) hold(at, held, nullptr);
+            for (auto& [slot, retained] : array->references)
+                if (retained == object) retain(at, retained, nullptr);
     }
     release(at, object);
 }
@@ -187,7 +187,7 @@ Object* GlStateTracker::bound(At& at, uint64_t slot) const {
 void GlStateTracker::bindSlot(At& at, uint64_t slot, Key key, uint32_t attribBits, Object* object) {
     if (object != nullptr) use(at, object);
     set(at, key, attribBits);
-    hold(at, at.context->bindings[slot], object);
+    retain(at, at.context->bindings[slot], object);
 }
 
 void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
@@ -229,8 +229,8 @@ void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
         if (buffer != nullptr) use(at, buffer);
         at.effect.read(keyOf(slotOf(Slot::VertexArray)));
         setClient(at, part(array->key, Part::Binding, slot));
-        hold(at, array->holds[slot], buffer);
-        return hold(at, c.bindings[slot], buffer);
+        retain(at, array->references[slot], buffer);
+        return retain(at, c.bindings[slot], buffer);
     }
     case op::glBindBufferBase:
     case op::glBindBufferRange: {
@@ -245,8 +245,10 @@ void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
         if (!c.clientAttribs.empty()) setClient(at, keyOf(slotOf(Slot::VertexArray)));
         Object* const array = find(at, ObjectType::VertexArray, first);
         const uint64_t indices = slotOf(Slot::Buffer, GL_ELEMENT_ARRAY_BUFFER);
-        const auto held = array == nullptr ? decltype(array->holds)::iterator{} : array->holds.find(indices);
-        return hold(at, c.bindings[indices], array == nullptr || held == array->holds.end() ? nullptr : held->second);
+        const auto retained =
+            array == nullptr ? decltype(array->references)::iterator{} : array->references.find(indices);
+        return retain(at, c.bindings[indices],
+                      array == nullptr || retained == array->references.end() ? nullptr : retained->second);
     }
     case op::glBindSampler: return simple(slotOf(Slot::Sampler, 0, first), second);
     case op::glBindImageTexture: return simple(slotOf(Slot::Image, 0, first), second);
@@ -275,8 +277,8 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
                                                                           : 0;
         std::vector<uint32_t> names{name};
         if (r.opcode == op::glVertexArrayVertexBuffers && !namesAt(r, 3, names)) names.clear();
-        for (const uint32_t held : names) {
-            Object* const buffer = held == 0 ? nullptr : find(at, ObjectType::Buffer, held);
+        for (const uint32_t retained : names) {
+            Object* const buffer = retained == 0 ? nullptr : find(at, ObjectType::Buffer, retained);
             if (buffer == nullptr) continue;
             use(at, buffer);
             buffer->opaque = true; // holders are not tracked
@@ -306,10 +308,10 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
         std::vector<uint32_t> names;
         if (!namesAt(r, 2, names)) names.clear();
         for (const uint32_t name : names) {
-            Object* const held = name == 0 ? nullptr : findOrMake(at, ObjectType::Buffer, name);
-            if (held == nullptr) continue;
-            use(at, held);
-            held->opaque = true; // holders are not tracked
+            Object* const retained = name == 0 ? nullptr : findOrMake(at, ObjectType::Buffer, name);
+            if (retained == nullptr) continue;
+            use(at, retained);
+            retained->opaque = true; // holders are not tracked
         }
         return setClient(at, keys_.child(above, r.opcode, index, argumentWord(r, 1)));
     }
@@ -324,7 +326,7 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
     }
     if (buffer != nullptr) use(at, buffer);
     setClient(at, key);
-    hold(at, array->holds[uint64_t{r.opcode} << 32 | (ofCoordinates ? c.clientUnit << 16 : 0) | index], buffer);
+    retain(at, array->references[uint64_t{r.opcode} << 32 | (ofCoordinates ? c.clientUnit << 16 : 0) | index], buffer);
 }
 
 } // namespace mural::trace

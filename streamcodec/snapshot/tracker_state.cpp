@@ -238,8 +238,9 @@ void GlStateTracker::popAttribs(At& at, std::vector<SavedAttribs>& stack, Part k
     for (auto& [slot, object] : c.bindings) {
         if (!savesBinding(kind, mask, slot)) continue;
         const auto was = std::ranges::find(saved.bindings, slot, &std::pair<uint64_t, uint32_t>::first);
-        hold(at, object,
-             was == saved.bindings.end() || was->second == 0 ? nullptr : find(at, typeOf(slotKind(slot)), was->second));
+        retain(at, object,
+               was == saved.bindings.end() || was->second == 0 ? nullptr
+                                                               : find(at, typeOf(slotKind(slot)), was->second));
     }
     if (kind == Part::ClientAttribLevel) {
         if (mask & GL_CLIENT_VERTEX_ARRAY_BIT) c.clientUnit = saved.clientUnit;

@@ -88,11 +88,11 @@ public:
         walked_.lastBytes = lastBytes;
     }
     // Action of pass() for a record.
-    enum class Interest : uint8_t { None, Look, Stop };
-    // As skip(), but passes records of Interest::Look to look() one by one; its result false stops before that record.
-    // A separate loop: a common one kept less state in registers and took 0.5 to 5 us longer per frame of some hundred
-    // records.
-    template <typename InterestOf, typename Looks> void pass(const InterestOf& interestOf, const Looks& look) {
+    enum class Interest : uint8_t { None, Examine, Stop };
+    // As skip(), but passes records of Interest::Examine to examine() one by one; its result false stops before that
+    // record. A separate loop: a common one kept less state in registers and took 0.5 to 5 us longer per frame of some
+    // hundred records.
+    template <typename InterestOf, typename Examine> void pass(const InterestOf& interestOf, const Examine& examine) {
         const std::span<const std::byte> packet = packet_;
         size_t at = at_, records = 0, lastBytes = 0;
         uint32_t head = 0;
@@ -100,10 +100,10 @@ public:
         std::memcpy(&head, packet.data() + at, sizeof head);
         if (interestOf(static_cast<uint16_t>(head)) == Interest::Stop) return; // typical for short primitives
         RecordRound round;
-        size_t unlooked = 0; // consecutive
+        size_t skipped = 0; // consecutive
         while (packet.size() - at >= sizeof head) {
             std::memcpy(&head, packet.data() + at, sizeof head);
-            if (unlooked >= kBeforeRounds && round.closes(head)) {
+            if (skipped >= kBeforeRounds && round.closes(head)) {
                 const size_t rounds = round.pass(packet, at);
                 records += rounds * round.size();
                 if (rounds > 0) continue;
@@ -112,16 +112,16 @@ public:
             if (sizeBytes == 0 || record::isLongForm(head) || sizeBytes > packet.size() - at) break;
             const Interest interest = interestOf(static_cast<uint16_t>(head));
             if (interest == Interest::Stop) break;
-            if (interest == Interest::Look) {
-                if (!look(
+            if (interest == Interest::Examine) {
+                if (!examine(
                         RecordView{static_cast<uint16_t>(head), at, sizeBytes, packet.subspan(at + 4, sizeBytes - 4)}))
                     break;
-                if (unlooked >= kBeforeRounds) round.begin();
-                unlooked = 0;
-            } else if (unlooked >= kBeforeRounds) {
+                if (skipped >= kBeforeRounds) round.begin();
+                skipped = 0;
+            } else if (skipped >= kBeforeRounds) {
                 round.add(head, at);
             } else {
-                ++unlooked;
+                ++skipped;
             }
             if (sizeBytes > kMaxShortRecordBytes) { // long records are always reported
                 walked_.longAt.push_back(static_cast<uint32_t>(at));

@@ -134,11 +134,11 @@ Result<bool> TraceReader::readIndex() {
     frames_ = static_cast<int64_t>(header.frames);
     blocksEnd_ = at;
     // Rows must be contiguous. Blocks are validated when they are read, so a bad block does not affect earlier ones.
-    uint64_t least = blocksAt_;
+    uint64_t minimum = blocksAt_;
     for (const IndexRow& row : blocks_) {
-        if (row.offset < least || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader))
+        if (row.offset < minimum || row.offset > blocksEnd_ || blocksEnd_ - row.offset < sizeof(BlockHeader))
             return damaged(at, "its index has invalid entries");
-        least = row.offset + sizeof(BlockHeader);
+        minimum = row.offset + sizeof(BlockHeader);
     }
     if ((blocks_.empty() ? blocksEnd_ : blocks_.front().offset) != blocksAt_)
         return damaged(at, "its index begins at a wrong offset");

@@ -69,9 +69,9 @@ struct WindowTurn {
     uint32_t window;
     int64_t frames; // number of frames begun
     int64_t turn;
-    int64_t kept;     // consecutive frames that depend on their predecessor
-    uint32_t cleared; // buffers cleared completely in this frame
-    uint32_t state;   // kTurn…
+    int64_t dependentFrames; // consecutive frames that depend on their predecessor
+    uint32_t cleared;        // buffers cleared completely in this frame
+    uint32_t state;          // kTurn…
 };
 static_assert(sizeof(WindowTurn) == 40);
 constexpr uint32_t kTurnOver = 1, kTurnUndecided = 2, kTurnFresh = 4, kTurnForGood = 8;

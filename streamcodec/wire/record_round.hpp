@@ -20,7 +20,7 @@ public:
     [[nodiscard]] bool closes(uint32_t head) {
         if (count_ < 2) return false;
         const uint32_t back = static_cast<uint8_t>(count_ - last_[pairOf(before(1), head)]);
-        if (back - 1 >= kMost || back >= count_ || before(back) != head || before(back + 1) != before(1)) return false;
+        if (back - 1 >= kMax || back >= count_ || before(back) != head || before(back + 1) != before(1)) return false;
         size_ = back;
         if (wait_ == 0) return true;
         --wait_;
@@ -29,27 +29,27 @@ public:
     // Skips whole rounds equal to the last one, from the record at `at`, which starts a round. Returns their number. If
     // it is 0, continue with add().
     [[nodiscard]] size_t pass(std::span<const std::byte> packet, size_t& at) {
-        const size_t start = places_[(count_ - size_) % kKept];
+        const size_t start = positions_[(count_ - size_) % kHistory];
         for (size_t i = 0; i < size_; ++i) {
             round_[i] = before(size_ - i);
-            offsets_[i] = places_[(count_ - size_ + i) % kKept] - start;
+            offsets_[i] = positions_[(count_ - size_ + i) % kHistory] - start;
         }
         const size_t sizeBytes = at - start, rounds = roundsAt(packet.subspan(at), sizeBytes);
         // Exponential backoff where rounds rarely repeat.
         patience_ = rounds > 0 ? 0 : std::min(2 * patience_ + 1, kMaxPatience);
         wait_ = patience_;
         // The skipped rounds may be part of a longer round.
-        const size_t kept = std::min(rounds, (kMost + size_ - 1) / size_);
-        at += (rounds - kept) * sizeBytes;
-        for (size_t i = 0; i < kept; ++i, at += sizeBytes)
+        const size_t stored = std::min(rounds, (kMax + size_ - 1) / size_);
+        at += (rounds - stored) * sizeBytes;
+        for (size_t i = 0; i < stored; ++i, at += sizeBytes)
             for (size_t k = 0; k < size_; ++k) add(round_[k], at + offsets_[k]);
         return rounds;
     }
     void begin() { count_ = 0; }
     void add(uint32_t head, size_t at) {
         if (count_ > 0) last_[pairOf(before(1), head)] = static_cast<uint8_t>(count_);
-        heads_[count_ % kKept] = head;
-        places_[count_ % kKept] = at;
+        heads_[count_ % kHistory] = head;
+        positions_[count_ % kHistory] = at;
         ++count_;
     }
 
@@ -57,11 +57,11 @@ public:
     [[nodiscard]] uint32_t head(size_t i) const { return round_[i]; }
 
 private:
-    static constexpr size_t kMost = 16, kKept = 32;
+    static constexpr size_t kMax = 16, kHistory = 32;
     static constexpr uint32_t kMaxPatience = 127;
     static constexpr size_t kPairs = 64;
 
-    [[nodiscard]] uint32_t before(size_t records) const { return heads_[(count_ - records) % kKept]; }
+    [[nodiscard]] uint32_t before(size_t records) const { return heads_[(count_ - records) % kHistory]; }
     static size_t pairOf(uint32_t first, uint32_t second) { return ((first * 5 + second) * 0x9e3779b1u) >> 26; }
 
     // Most rounds have few records. With a compile-time size, headers and offsets stay in registers.
@@ -80,28 +80,28 @@ private:
     }
     template <size_t Size> // 0: any size
     [[nodiscard]] size_t roundsOf(std::span<const std::byte> from, size_t sizeBytes) const {
-        std::array<uint32_t, Size == 0 ? kMost : Size> heads;
-        std::array<size_t, Size == 0 ? kMost : Size> places;
+        std::array<uint32_t, Size == 0 ? kMax : Size> heads;
+        std::array<size_t, Size == 0 ? kMax : Size> offsets;
         const size_t size = Size == 0 ? size_ : Size;
         std::copy_n(round_.begin(), size, heads.begin());
-        std::copy_n(offsets_.begin(), size, places.begin());
+        std::copy_n(offsets_.begin(), size, offsets.begin());
         size_t rounds = 0;
         for (const std::byte *at = from.data(), *end = at + from.size(); static_cast<size_t>(end - at) >= sizeBytes;
              at += sizeBytes, ++rounds)
             for (size_t i = 0; i < size; ++i) {
                 uint32_t head = 0;
-                std::memcpy(&head, at + places[i], sizeof head);
+                std::memcpy(&head, at + offsets[i], sizeof head);
                 if (head != heads[i]) return rounds;
             }
         return rounds;
     }
 
     std::array<uint8_t, kPairs> last_{}; // number of the last record with this pair of headers; the lower bits suffice
-    std::array<uint32_t, kKept> heads_;  // of the last records, a ring buffer
-    std::array<size_t, kKept> places_;   // bytes
+    std::array<uint32_t, kHistory> heads_;   // of the last records, a ring buffer
+    std::array<size_t, kHistory> positions_; // bytes
     size_t count_ = 0;
-    std::array<uint32_t, kMost> round_;
-    std::array<size_t, kMost> offsets_; // bytes from the round's first record
+    std::array<uint32_t, kMax> round_;
+    std::array<size_t, kMax> offsets_; // bytes from the round's first record
     size_t size_ = 0;
     uint32_t patience_ = 0, wait_ = 0; // round starts to ignore
 };

@@ -62,10 +62,10 @@ def bad():
     status, out, _ = run('check', '/nonexistent.eqc')
     expect(status == 2 and out.startswith("error: /nonexistent.eqc: cannot be read"), 'a file that is not there: %s' % out)
     expect(run('chek', '/nonexistent.eqc')[0] == 2, 'a verb that does not exist')
-    for words, said in ((('print', files[0], '--resolved', '--frame', '-3'), '--frame'), (('print', files[0], '--frame', '2'), 'require print --resolved'),
+    for words, output in ((('print', files[0], '--resolved', '--frame', '-3'), '--frame'), (('print', files[0], '--frame', '2'), 'require print --resolved'),
                         (('draw', files[0], '--resolved'), '--resolved is for print'), (('check', files[0], '--out', 'x'), '--out requires print or draw')):
         status, out, err = run(*words)
-        expect(status == 2 and not out and said in err and err.count('\n') == 1, '%s: %d %s' % (' '.join(words), status, err))
+        expect(status == 2 and not out and output in err and err.count('\n') == 1, '%s: %d %s' % (' '.join(words), status, err))
     # Each word of a file that is no configuration causes a warning; the error must still be visible.
     with tempfile.TemporaryDirectory() as folder:
         foreign = os.path.join(folder, 'foreign')

@@ -65,7 +65,7 @@ TEST(FrameFlow, clipsToViewportsOfOutputsAndInputs) {
     ASSERT_EQ(f.parts.size(), 1u);
     expectNear(f.parts[0].from, .25, .5, .5, .5);
     EXPECT_EQ(f.parts[0].from, f.parts[0].to);
-    EXPECT_TRUE(f.parts[0].way.none());
+    EXPECT_TRUE(f.parts[0].transferScale.none());
 }
 
 TEST(FrameFlow, undoesZoomsOfOutputsWhereTheyAreShown) {
@@ -75,8 +75,8 @@ TEST(FrameFlow, undoesZoomsOfOutputsWhereTheyAreShown) {
     ASSERT_EQ(f.parts.size(), 1u);
     expectNear(f.parts[0].from, 0, 0, 1, 1);
     expectNear(f.parts[0].to, 0, 0, 1, 1);
-    EXPECT_NEAR(f.parts[0].way.x, .5, 1e-9);
-    EXPECT_NEAR(f.parts[0].way.y, .25, 1e-9);
+    EXPECT_NEAR(f.parts[0].transferScale.x, .5, 1e-9);
+    EXPECT_NEAR(f.parts[0].transferScale.y, .25, 1e-9);
 }
 
 TEST(FrameFlow, scalesByZoomsOfInputs) {
@@ -85,13 +85,13 @@ TEST(FrameFlow, scalesByZoomsOfInputs) {
     ASSERT_EQ(small.parts.size(), 1u);
     expectNear(small.parts[0].from, 0, 0, 1, 1);
     expectNear(small.parts[0].to, 0, 0, .5, .5);
-    EXPECT_TRUE(small.parts[0].way.none()) << "as large as it is shown";
+    EXPECT_TRUE(small.parts[0].transferScale.none()) << "as large as it is shown";
     const Flow large =
         flowOfDraw("compound { channel \"t\" outputframe { } } inputframe { name \"frame.t\" zoom [ 2 2 ] }", "t");
     ASSERT_EQ(large.parts.size(), 1u);
     expectNear(large.parts[0].from, 0, 0, .5, .5);
     expectNear(large.parts[0].to, 0, 0, 1, 1);
-    EXPECT_NEAR(large.parts[0].way.x, 1, 1e-9) << "all that was drawn is sent";
+    EXPECT_NEAR(large.parts[0].transferScale.x, 1, 1e-9) << "all that was drawn is sent";
 }
 
 TEST(FrameFlow, replacesExistingColours) {

@@ -211,7 +211,7 @@ TEST(Plan, showsTheSamePictureInCopies) {
     }
 }
 
-TEST(Plan, timeMultiplexes) {
+TEST(Plan, supportsTimeMultiplexing) {
     const ResolvedConfig c = resolved(
         kWall + "compound { channel ( ) compound { channel \"s\" period 2 phase 0 outputframe { name \"f\" } } "
                 "compound { channel \"t\" period 2 phase 1 outputframe { name \"f\" } } inputframe { name \"f\" } }");
@@ -251,7 +251,7 @@ TEST(Plan, separatesChannelsOfOneWindow) {
     EXPECT_TRUE(shown && worked);
 }
 
-TEST(Plan, ofTwoFramesOfOneNameTheFirstIsTaken) {
+TEST(Plan, takesTheFirstOfTwoFramesOfOneName) {
     const ResolvedConfig c =
         resolved(kWall + "compound { channel ( ) compound { channel \"t\" outputframe { name \"f\" } } compound { "
                          "channel \"s\" outputframe { name \"f\" } } inputframe { name \"f\" } }");
@@ -260,7 +260,7 @@ TEST(Plan, ofTwoFramesOfOneNameTheFirstIsTaken) {
     EXPECT_EQ(c.channels[static_cast<size_t>(p.frames[0].channel)].name, "t");
 }
 
-TEST(Plan, barriersNameTheirWindows) {
+TEST(Plan, namesTheWindowsOfBarriers) {
     const ResolvedConfig c = resolved("layout { view { } } canvas { layout 0 swapbarrier { name \"w\" } segment { "
                                       "channel \"d\" } segment { channel \"t\" } }");
     const FramePlan p = plan(c);

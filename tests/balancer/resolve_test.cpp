@@ -72,8 +72,8 @@ TEST(Resolve, resolvesReferencesToChannels) {
     const std::string displays = "layout { name \"one\" view { } } layout { name \"two\" view { name \"v\" } view { "
                                  "name \"w\" viewport [ 0 0 .5 1 ] } } canvas { name \"c\" layout 0 layout 1 segment { "
                                  "name \"s\" channel \"a\" } segment { name \"t\" channel \"b\" } }";
-    const auto shown = [&](const std::string& way) {
-        const Resolved r = with(displays + "compound { channel " + way + " }");
+    const auto shown = [&](const std::string& transferScale) {
+        const Resolved r = with(displays + "compound { channel " + transferScale + " }");
         if (r.errors > 0) return r.lines.back().substr(r.lines.back().find(' ') + 1);
         const ResolvedChannel& c = r.config.channels[static_cast<size_t>(r.config.compounds[0].channel)];
         return r.config.segments[static_cast<size_t>(c.segment)].name + " " + std::to_string(c.view);

@@ -76,7 +76,7 @@ TEST(ShortForms, workInCombination) {
     }
 }
 
-TEST(ShortForms, timeMultiplexNodes) {
+TEST(ShortForms, supportTimeMultiplexedNodes) {
     Preset form;
     form.columns = form.rows = 2;
     form.nodes = {"a", "b"};

@@ -124,7 +124,7 @@ TEST(DealTiles, coversTheGridOnceForAnyCostsAndCuts) {
         TileCosts costs(columns, rows);
         for (const TileRegion& r :
              randomAreas(columns, rows, static_cast<size_t>(1 + below(std::min(columns * rows, 12))), random))
-            costs.learn(r, below(3) == 0 ? 0 : std::pow(10, below(7) - 3));
+            costs.update(r, below(3) == 0 ? 0 : std::pow(10, below(7) - 3));
         const auto after = dealTiles(costs, before);
         ASSERT_EQ(after.size(), before.size());
         ASSERT_EQ(whatIsWrong(columns, rows, after), "")
@@ -143,14 +143,14 @@ TEST(DealTiles, givesEqualAreasForEqualCosts) {
 TEST(DealTiles, keepsCutsThatFitTheCosts) {
     TileCosts costs(12, 6);
     const std::vector<TileRegion> areas{{0, 0, 3, 6}, {3, 0, 9, 2}, {3, 2, 9, 4}};
-    for (const TileRegion& r : areas) costs.learn(r, 5);
+    for (const TileRegion& r : areas) costs.update(r, 5);
     EXPECT_TRUE(same(dealTiles(costs, areas), areas));
 }
 
 TEST(TileCosts, keepsTheSharesWithinARegion) {
     TileCosts costs(4, 2);
-    costs.learn({0, 0, 1, 1}, 3);
-    costs.learn({0, 0, 2, 1}, 8);
+    costs.update({0, 0, 1, 1}, 3);
+    costs.update({0, 0, 2, 1}, 8);
     EXPECT_DOUBLE_EQ(costs.of({0, 0, 1, 1}), 6);
     EXPECT_DOUBLE_EQ(costs.of({1, 0, 1, 1}), 2);
     EXPECT_DOUBLE_EQ(costs.of({0, 0, 4, 2}), 8 + 6);

@@ -15,7 +15,7 @@ sys.dont_write_bytecode = True
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 DRAGGED = os.path.join(TOP, "tools", "bench", "dragged")
 LIMIT_SECONDS, SKIPPED = 60, 77
-LEAST_PLACES = 10
+MIN_POSITIONS = 10
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
 
 from harness.display import PrivateDisplay
@@ -34,7 +34,7 @@ def moves_fault(folder, environment):
 
     def dragged():
         found = re.findall(r"MotionNotify.*\n.*root:\((\d+),(\d+)\).*\n +state 0x100,", events())
-        return len(set(found)) >= LEAST_PLACES and "ButtonRelease" in events() and all(450 <= int(x) < 750 and 350 <= int(y) < 550 for x, y in found)
+        return len(set(found)) >= MIN_POSITIONS and "ButtonRelease" in events() and all(450 <= int(x) < 750 and 350 <= int(y) < 550 for x, y in found)
     was_dragged = until(dragged, LIMIT_SECONDS)
     process.send_signal(signal.SIGTERM)
     try:

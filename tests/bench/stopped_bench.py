@@ -30,14 +30,14 @@ def fault_of(a, number):
             return "the program that it measures did not start within %d s" % START_SECONDS
         process.send_signal(number)
         try:
-            said = process.communicate(timeout=END_SECONDS)[1].decode()
+            output = process.communicate(timeout=END_SECONDS)[1].decode()
         except subprocess.TimeoutExpired:
             process.kill()
             return "it continued for %d s" % END_SECONDS
         if process.returncode != STOPPED:
-            return "its status is %d, not %d; output: %s" % (process.returncode, STOPPED, said)
-        if "stopped" not in said:
-            return "it does not report the stop: " + said
+            return "its status is %d, not %d; output: %s" % (process.returncode, STOPPED, output)
+        if "stopped" not in output:
+            return "it does not report the stop: " + output
         # Processes that Mural started end without help, soon.
         if not until(lambda: not processes_with(inside), END_SECONDS):
             return "these go on: " + ", ".join(processes_with(inside).values())

@@ -35,13 +35,13 @@ public:
     Watched(const Watched&) = delete;
     Watched& operator=(const Watched&) = delete;
 
-    void look(bool exact = false) {
-        told.clear();
+    void check(bool exact = false) {
+        reported.clear();
         changes.collect(
             exact,
             [](void* self, size_t from, const std::byte* bytes, size_t size) {
                 auto& its = *static_cast<Watched*>(self);
-                its.told.push_back({from, size});
+                its.reported.push_back({from, size});
                 std::memcpy(its.copy.data() + from, bytes, size);
             },
             this);
@@ -55,7 +55,7 @@ public:
     MapChanges changes;
     std::byte* memory = nullptr;
     std::vector<std::byte> copy;
-    std::vector<Run> told;
+    std::vector<Run> reported;
 
 private:
     size_t size_, mappedBytes_;
@@ -73,11 +73,11 @@ INSTANTIATE_TEST_SUITE_P(Sizes, MapChangesOfSize, testing::Values(kSmall, kLarge
 TEST_P(MapChangesOfSize, reportsWritesOnce) {
     Watched memory(GetParam());
     memory.memory[100] = std::byte{1};
-    memory.look();
-    EXPECT_EQ(memory.told, (std::vector<Watched::Run>{{64, 64}}));
+    memory.check();
+    EXPECT_EQ(memory.reported, (std::vector<Watched::Run>{{64, 64}}));
     EXPECT_TRUE(memory.same());
-    memory.look();
-    EXPECT_TRUE(memory.told.empty());
+    memory.check();
+    EXPECT_TRUE(memory.reported.empty());
 }
 
 TEST_P(MapChangesOfSize, reportsRandomWritesInLongAndShortIntervals) {
@@ -88,7 +88,7 @@ TEST_P(MapChangesOfSize, reportsRandomWritesInLongAndShortIntervals) {
             const size_t size = 1 + random() % 700, at = random() % (GetParam() - size);
             std::memset(memory.memory + at, static_cast<int>(random() % 256), size);
         }
-        for (unsigned quiet = random() % 50 == 0 ? 40 : 1; quiet > 0; --quiet) memory.look(step % 2 == 0);
+        for (unsigned quiet = random() % 50 == 0 ? 40 : 1; quiet > 0; --quiet) memory.check(step % 2 == 0);
         ASSERT_TRUE(memory.same()) << step;
     }
 }
@@ -101,8 +101,8 @@ TEST_P(MapChangesOfSize, reportsWritesOfSystemCalls) {
     ASSERT_EQ(read(ends[0], memory.memory + GetParam() - 11, 11), 11);
     close(ends[0]);
     close(ends[1]);
-    memory.look();
-    EXPECT_FALSE(memory.told.empty());
+    memory.check();
+    EXPECT_FALSE(memory.reported.empty());
     EXPECT_TRUE(memory.same());
 }
 
@@ -112,9 +112,9 @@ TEST_P(MapChangesOfSize, reportsConcurrentWritesOfOtherThreads) {
         std::mt19937 random(9);
         for (int i = 0; i < 200'000; ++i) memory.memory[random() % GetParam()] = std::byte(random() % 256);
     });
-    for (int i = 0; i < 200; ++i) memory.look();
+    for (int i = 0; i < 200; ++i) memory.check();
     writer.join();
-    memory.look();
+    memory.check();
     EXPECT_TRUE(memory.same());
 }
 
@@ -123,52 +123,52 @@ TEST_P(MapChangesOfSize, reportsWritesOfAForkedChildOnlyToTheChild) {
     const pid_t child = fork();
     if (child == 0) {
         memory.memory[0] = std::byte{200};
-        memory.look();
-        _exit(memory.told.size() == 1 && memory.same() ? 0 : 1);
+        memory.check();
+        _exit(memory.reported.size() == 1 && memory.same() ? 0 : 1);
     }
     int status = 1;
     ASSERT_EQ(waitpid(child, &status, 0), child);
     EXPECT_EQ(status, 0);
-    memory.look();
-    EXPECT_TRUE(memory.told.empty());
+    memory.check();
+    EXPECT_TRUE(memory.reported.empty());
     memory.memory[GetParam() - 1] = std::byte{3};
-    memory.look();
+    memory.check();
     EXPECT_TRUE(memory.same());
 }
 
 TEST_P(MapChangesOfSize, reportsExactlyTheChangedWords) {
     Watched memory(GetParam());
     memory.memory[4] = memory.memory[15] = memory.memory[40] = std::byte{1};
-    memory.look(true);
-    EXPECT_EQ(memory.told, (std::vector<Watched::Run>{{4, 4}, {12, 4}, {40, 4}}));
+    memory.check(true);
+    EXPECT_EQ(memory.reported, (std::vector<Watched::Run>{{4, 4}, {12, 4}, {40, 4}}));
 }
 
 TEST_P(MapChangesOfSize, ignoresAcceptedForeignWrites) {
     Watched memory(GetParam());
-    std::vector<std::byte> news(memory.memory, memory.memory + 256);
-    news[8] = std::byte{9};
+    std::vector<std::byte> changed(memory.memory, memory.memory + 256);
+    changed[8] = std::byte{9};
     size_t at = 0;
     memory.changes.accept(
-        0, news.data(), news.size(),
+        0, changed.data(), changed.size(),
         [](void* self, size_t from, const std::byte*, size_t) { *static_cast<size_t*>(self) = from; }, &at);
     EXPECT_EQ(at, 8U);
     memory.memory[8] = std::byte{9};
-    memory.look();
-    EXPECT_TRUE(memory.told.empty());
+    memory.check();
+    EXPECT_TRUE(memory.reported.empty());
     memory.memory[8] = std::byte{7}; // the previous value
-    memory.look();
-    EXPECT_EQ(memory.told.size(), 1U);
+    memory.check();
+    EXPECT_EQ(memory.reported.size(), 1U);
 }
 
 TEST(MapChanges, supportsMemoryThatBeginsAndEndsWithinPages) {
     Watched memory(kLarge - 1000, 300);
-    for (int i = 0; i < 40; ++i) memory.look();
+    for (int i = 0; i < 40; ++i) memory.check();
     memory.memory[-1] = memory.memory[kLarge - 1000] = std::byte{1}; // foreign bytes in the same pages
-    memory.look();
-    EXPECT_TRUE(memory.told.empty());
+    memory.check();
+    EXPECT_TRUE(memory.reported.empty());
     memory.memory[0] = memory.memory[kLarge - 1001] = std::byte{1};
-    memory.look();
-    EXPECT_EQ(memory.told.size(), 2U);
+    memory.check();
+    EXPECT_EQ(memory.reported.size(), 2U);
     EXPECT_TRUE(memory.same());
 }
 
@@ -178,11 +178,11 @@ TEST(MapChanges, comparesWhenTheKernelWatchIsLost) {
     // Maps other memory at the same address, so the kernel drops its watch.
     auto* page = memory.memory + 8 * 4096;
     ASSERT_NE(mmap(page, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0), MAP_FAILED);
-    memory.look();
+    memory.check();
     EXPECT_FALSE(memory.changes.watched());
     EXPECT_TRUE(memory.same());
     memory.memory[5] = std::byte{1};
-    memory.look();
+    memory.check();
     EXPECT_TRUE(memory.same());
 }
 
@@ -195,11 +195,11 @@ TEST(MapChanges, supportsSharedMemoryOfAFile) {
     ASSERT_TRUE(changes.begin(memory, kLarge));
     for (int round = 0; round < 3; ++round) {
         memory[kLarge / 2] = std::byte(round + 1);
-        int told = 0;
+        int reported = 0;
         for (int i = 0; i < 40; ++i)
             changes.collect(
-                false, [](void* self, size_t, const std::byte*, size_t) { ++*static_cast<int*>(self); }, &told);
-        EXPECT_EQ(told, 1);
+                false, [](void* self, size_t, const std::byte*, size_t) { ++*static_cast<int*>(self); }, &reported);
+        EXPECT_EQ(reported, 1);
     }
     changes.end();
     munmap(memory, kLarge);

@@ -23,10 +23,10 @@ long faultsOf(size_t sizeBytes) {
     return after.ru_minflt - before.ru_minflt;
 }
 
-TEST(KeptMemory, isMappedAtFirstAndLaterUse) {
+TEST(ReusedMemory, isMappedAtFirstAndLaterUse) {
     if (testing::kSanitized) GTEST_SKIP() << "the sanitizers' malloc is another one";
     keepFreedMemory();
-    haveKeptMemory(2 * kBlockBytes);
+    reserveMallocMemory(2 * kBlockBytes);
     constexpr long kFew = kBlockBytes / kPageBytes / 20;
     EXPECT_LT(faultsOf(kBlockBytes), kFew);
     EXPECT_LT(faultsOf(kBlockBytes), kFew);

@@ -201,16 +201,16 @@ TEST(CodecSelector, ignoresOneInterruptedPiece) {
     CodecSelector selector({"raw", "bitplane"}, {.overlap = Overlap::Serial});
     for (int i = 0; i < 400; ++i) {
         const CodecSelector::Choice choice = selector.choose(kClass, kPieceBytes);
-        const auto tell = [&](size_t codec) { return codec == 0 ? Model{0.15, 0.15, 1} : Model{0.12, 0.12, 0.3}; };
+        const auto modelOf = [&](size_t codec) { return codec == 0 ? Model{0.15, 0.15, 1} : Model{0.12, 0.12, 0.3}; };
         const auto nsOf = [](double nsPerByte) { return static_cast<int64_t>(nsPerByte * kPieceBytes); };
-        const Model m = tell(choice.codec);
+        const Model m = modelOf(choice.codec);
         const double interrupted = i == 300 ? 50 : 1;
         selector.encoded(kClass, choice.codec, kPieceBytes, static_cast<uint64_t>(m.size * kPieceBytes),
                          nsOf(m.encodeNs * interrupted));
         if (choice.measure)
             selector.measured(kClass, *choice.measure, kPieceBytes,
-                              static_cast<uint64_t>(tell(*choice.measure).size * kPieceBytes),
-                              nsOf(tell(*choice.measure).encodeNs), nsOf(tell(*choice.measure).decodeNs));
+                              static_cast<uint64_t>(modelOf(*choice.measure).size * kPieceBytes),
+                              nsOf(modelOf(*choice.measure).encodeNs), nsOf(modelOf(*choice.measure).decodeNs));
         selector.decoded(kClass, choice.codec, kPieceBytes, nsOf(m.decodeNs));
         selector.transferred(kPieceBytes, kPieceBytes / 4); // 4 bytes per ns
         if (i >= 300) {

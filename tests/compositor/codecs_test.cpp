@@ -188,7 +188,7 @@ double worstError(const Plane& a, const Plane& b) {
 TEST(LossyCodecs, areAccurateOnSmoothPicturesAndKeepAlpha) {
     CodecRegistry registry;
     std::mt19937 random(5);
-    for (const auto& [name, most] : {std::pair{"yuv420", 4.0}, {"jpeg-95", 12.0}, {"jpeg-100", 4.0}})
+    for (const auto& [name, maximum] : {std::pair{"yuv420", 4.0}, {"jpeg-95", 12.0}, {"jpeg-100", 4.0}})
         for (const auto& [width, height] : kSizes)
             for (const bool mixedAlpha : {false, true}) {
                 Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Surface, width, height);
@@ -203,7 +203,7 @@ TEST(LossyCodecs, areAccurateOnSmoothPicturesAndKeepAlpha) {
                 Plane back(PlaneFormat::Rgba8, width, height);
                 const auto decoded = (*codec)->decode(bytes, back.view());
                 ASSERT_TRUE(decoded) << decoded.error().message;
-                EXPECT_LE(worstError(plane, back), most) << name << " " << width << "x" << height;
+                EXPECT_LE(worstError(plane, back), maximum) << name << " " << width << "x" << height;
                 for (size_t i = 3; i < plane.bytes().size(); i += 4)
                     ASSERT_EQ(back.bytes()[i], plane.bytes()[i]) << name;
                 for (size_t cut = 0; cut < bytes.size(); cut += 1 + bytes.size() / 50)

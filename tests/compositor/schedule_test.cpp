@@ -90,14 +90,14 @@ private:
         return wrong_.empty();
     }
 
-    void fold(DrawOrder& own, const DrawOrder& theirs, Step::Kind kind) {
+    void fold(DrawOrder& own, const DrawOrder& received, Step::Kind kind) {
         const bool fits = kind == Step::Kind::Place         ? own.empty()
-                          : kind == Step::Kind::FoldEarlier ? !own.empty() && theirs.end == own.first
-                                                            : !own.empty() && own.end == theirs.first;
+                          : kind == Step::Kind::FoldEarlier ? !own.empty() && received.end == own.first
+                                                            : !own.empty() && own.end == received.first;
         if (!fits)
-            wrong_ = "draws " + std::to_string(theirs.first) + " to " + std::to_string(theirs.end) +
+            wrong_ = "draws " + std::to_string(received.first) + " to " + std::to_string(received.end) +
                      " are no neighbours of " + std::to_string(own.first) + " to " + std::to_string(own.end);
-        own = own.empty() ? theirs : joined(own, theirs);
+        own = own.empty() ? received : joined(own, received);
     }
 
     const Schedule& schedule_;
@@ -124,39 +124,39 @@ TEST(Schedule, needsNoStepForPicturesWithoutRows) {
 }
 
 // The maximum sent by a rank, in whole pictures.
-double mostSent(Strategy strategy, int ranks) {
+double maxSent(Strategy strategy, int ranks) {
     constexpr int32_t kRows = 6720;
-    double most = 0;
+    double maximum = 0;
     for (const auto& steps : makeSchedule(strategy, ranks, kRows)) {
         double sent = 0;
         for (const Step& s : steps)
             if (!s.receives()) sent += s.rows.count();
-        most = std::max(most, sent / kRows);
+        maximum = std::max(maximum, sent / kRows);
     }
-    return most;
+    return maximum;
 }
 
 int stagesOf(Strategy strategy, int ranks) {
-    int most = 0;
+    int maximum = 0;
     for (const auto& steps : makeSchedule(strategy, ranks, 6720))
-        for (const Step& s : steps) most = std::max(most, s.receives() ? s.stage + 1 : 0);
-    return most;
+        for (const Step& s : steps) maximum = std::max(maximum, s.receives() ? s.stage + 1 : 0);
+    return maximum;
 }
 
 TEST(Schedule, sendsTheDocumentedAmountPerStrategy) {
-    EXPECT_DOUBLE_EQ(mostSent(Strategy::Serial, 8), 1);
+    EXPECT_DOUBLE_EQ(maxSent(Strategy::Serial, 8), 1);
     EXPECT_EQ(stagesOf(Strategy::Serial, 8), 1);
-    EXPECT_DOUBLE_EQ(mostSent(Strategy::DirectSend, 8), 1); // 7/8 swapped, 1/8 gathered
+    EXPECT_DOUBLE_EQ(maxSent(Strategy::DirectSend, 8), 1); // 7/8 swapped, 1/8 gathered
     EXPECT_EQ(stagesOf(Strategy::DirectSend, 8), 2);
-    EXPECT_DOUBLE_EQ(mostSent(Strategy::BinarySwap, 8), 1); // 1/2 + 1/4 + 1/8 swapped, 1/8 gathered
+    EXPECT_DOUBLE_EQ(maxSent(Strategy::BinarySwap, 8), 1); // 1/2 + 1/4 + 1/8 swapped, 1/8 gathered
     EXPECT_EQ(stagesOf(Strategy::BinarySwap, 8), 4);
-    EXPECT_DOUBLE_EQ(mostSent(Strategy::TwoThreeSwap, 9), 1); // 2/3 + 2/9 swapped, 1/9 gathered
+    EXPECT_DOUBLE_EQ(maxSent(Strategy::TwoThreeSwap, 9), 1); // 2/3 + 2/9 swapped, 1/9 gathered
     EXPECT_EQ(stagesOf(Strategy::TwoThreeSwap, 9), 3);
-    EXPECT_LT(mostSent(Strategy::TwoThreeSwap, 7), 1.5); // uneven cuts cost slightly more
-    EXPECT_EQ(stagesOf(Strategy::RadixK, 16), 3);        // 8 x 2
+    EXPECT_LT(maxSent(Strategy::TwoThreeSwap, 7), 1.5); // uneven cuts cost slightly more
+    EXPECT_EQ(stagesOf(Strategy::RadixK, 16), 3);       // 8 x 2
     EXPECT_EQ(stagesOf(Strategy::RadixK, 7), 2);
     EXPECT_EQ(stagesOf(Strategy::RadixK, 31), 4); // one is folded, then 6 x 5
-    EXPECT_DOUBLE_EQ(mostSent(Strategy::Streaming, 8), 1);
+    EXPECT_DOUBLE_EQ(maxSent(Strategy::Streaming, 8), 1);
 }
 
 // The simulation must detect faults.

@@ -133,10 +133,10 @@ def main():
                     print("%s: known to differ: %s" % (command, known[command]), flush=True)
                     continue
                 wrong += 1
-                said = [line for line in output.splitlines() if line.strip() and "PIGLIT" not in line]
+                printed = [line for line in output.splitlines() if line.strip() and "PIGLIT" not in line]
                 print("%s: status %s, %s instead of status %s, %s; output: %s" % (
                     command, status, " ".join(through) or "no result", native_status, " ".join(native),
-                    " | ".join(said[-3:])), flush=True)
+                    " | ".join(printed[-3:])), flush=True)
         end = wall.end()
         if end != 0:
             wrong += 1

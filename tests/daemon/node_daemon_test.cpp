@@ -75,7 +75,7 @@ protected:
     }
     [[nodiscard]] std::unique_ptr<ChannelSocket> head(int host = 1) const { return head(host, secret_, kNode); }
     // Returns the texts of one kind until one contains `last`, or the channel ends.
-    static std::string hear(ChannelSocket& channel, NodeMessageKind kind, const std::string& last) {
+    static std::string awaitMessage(ChannelSocket& channel, NodeMessageKind kind, const std::string& last) {
         std::string text;
         while (text.find(last) == std::string::npos) {
             auto m = channel.receive(Deadline::inMs(kMs));
@@ -105,11 +105,11 @@ protected:
 TEST_F(Waiting, runsOrdersAndReportsTheirEnd) {
     const auto channel = head();
     ASSERT_TRUE(channel);
-    EXPECT_EQ(hear(*channel, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
+    EXPECT_EQ(awaitMessage(*channel, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
     ASSERT_TRUE(channel->send(textMessage(NodeMessageKind::Input, "hello\n"), Deadline::inMs(kMs)));
-    EXPECT_EQ(hear(*channel, NodeMessageKind::Output, "\n"), "heard hello\n");
+    EXPECT_EQ(awaitMessage(*channel, NodeMessageKind::Output, "\n"), "heard hello\n");
     ASSERT_TRUE(channel->send(textMessage(NodeMessageKind::Input, "end\n"), Deadline::inMs(kMs)));
-    EXPECT_EQ(hear(*channel, NodeMessageKind::Ended, "7").substr(1), "exit status 7");
+    EXPECT_EQ(awaitMessage(*channel, NodeMessageKind::Ended, "7").substr(1), "exit status 7");
 }
 
 // The order and its input arrive in one piece; no byte may be lost.
@@ -135,8 +135,8 @@ TEST_F(Waiting, passesOnInputThatArrivesWithTheOrder) {
         ASSERT_TRUE(secure.send(encode(m)));
     write();
     ChannelSocket channel(std::move(fd), std::move(secure));
-    EXPECT_NE(hear(channel, NodeMessageKind::Output, "early").find("heard early"), std::string::npos);
-    EXPECT_EQ(hear(channel, NodeMessageKind::Ended, "3").substr(1), "exit status 3");
+    EXPECT_NE(awaitMessage(channel, NodeMessageKind::Output, "early").find("heard early"), std::string::npos);
+    EXPECT_EQ(awaitMessage(channel, NodeMessageKind::Ended, "3").substr(1), "exit status 3");
 }
 
 TEST_F(Waiting, sendsNothingToHeadsWithoutTheSecret) {
@@ -150,24 +150,24 @@ TEST_F(Waiting, sendsNothingToHeadsWithoutTheSecret) {
 TEST_F(Waiting, runsOnlyNodes) {
     const auto channel = head(1, secret_, {"run", "--", "sh"});
     ASSERT_TRUE(channel);
-    EXPECT_NE(hear(*channel, NodeMessageKind::Refused, "only").find("only render nodes"), std::string::npos);
+    EXPECT_NE(awaitMessage(*channel, NodeMessageKind::Refused, "only").find("only render nodes"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/pid"));
 }
 
 TEST_F(Waiting, acceptsOneHeadAtATimeWithAllItsNodes) {
     auto first = head(1);
     ASSERT_TRUE(first);
-    hear(*first, NodeMessageKind::Output, "\n");
+    awaitMessage(*first, NodeMessageKind::Output, "\n");
     const auto second = head(1);
     ASSERT_TRUE(second);
-    EXPECT_EQ(hear(*second, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
+    EXPECT_EQ(awaitMessage(*second, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
     const auto stranger = head(2);
     ASSERT_TRUE(stranger);
-    EXPECT_NE(hear(*stranger, NodeMessageKind::Refused, "another").find("another head"), std::string::npos);
+    EXPECT_NE(awaitMessage(*stranger, NodeMessageKind::Refused, "another").find("another head"), std::string::npos);
     ASSERT_TRUE(first->send({NodeMessageKind::InputEnd, {}}, Deadline::inMs(kMs)));
     ASSERT_TRUE(second->send({NodeMessageKind::InputEnd, {}}, Deadline::inMs(kMs)));
-    hear(*first, NodeMessageKind::Ended, "3");
-    hear(*second, NodeMessageKind::Ended, "3");
+    awaitMessage(*first, NodeMessageKind::Ended, "3");
+    awaitMessage(*second, NodeMessageKind::Ended, "3");
     // The message about the end is sent a moment before the slot is free.
     std::string output;
     for (const Deadline soon = Deadline::inMs(kMs); !soon.passed() && output.empty();) {
@@ -182,7 +182,7 @@ TEST_F(Waiting, acceptsOneHeadAtATimeWithAllItsNodes) {
 TEST_F(Waiting, endsProcessesWithTheirHead) {
     auto channel = head();
     ASSERT_TRUE(channel);
-    hear(*channel, NodeMessageKind::Output, "\n");
+    awaitMessage(*channel, NodeMessageKind::Output, "\n");
     for (const Deadline soon = Deadline::inMs(kMs); pid() == 0 && !soon.passed();) poll(nullptr, 0, 10);
     const pid_t started = pid();
     ASSERT_GT(started, 0);
@@ -193,7 +193,7 @@ TEST_F(Waiting, endsProcessesWithTheirHead) {
 TEST_F(Waiting, endsProcessesWithTheNode) {
     const auto channel = head();
     ASSERT_TRUE(channel);
-    hear(*channel, NodeMessageKind::Output, "\n");
+    awaitMessage(*channel, NodeMessageKind::Output, "\n");
     for (const Deadline soon = Deadline::inMs(kMs); pid() == 0 && !soon.passed();) poll(nullptr, 0, 10);
     const pid_t started = pid();
     stop();

@@ -72,37 +72,38 @@ TEST(DeltaDecoder, describesErrors) {
                         },
                         8),
                     "beyond the end"));
-    const auto kept = [](ControlWriter& c, uint32_t slot) {
-        c.put(ControlOp::KeptBytes), c.number(slot), c.number(2000);
+    const auto unchanged = [](ControlWriter& c, uint32_t slot) {
+        c.put(ControlOp::CachedBytes), c.number(slot), c.number(2000);
     };
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 32); }, 2000), "without its owner"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { unchanged(c, 32); }, 2000), "without its owner"));
     EXPECT_TRUE(
-        has(problemOf([](ControlWriter& c) { c.put(ControlOp::KeptBytes), c.number(3), c.number(65540); }, 65540),
+        has(problemOf([](ControlWriter& c) { c.put(ControlOp::CachedBytes), c.number(3), c.number(65540); }, 65540),
             "without its owner"));
-    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { kept(c, 3); }, 1999), "fewer bytes than announced"));
+    EXPECT_TRUE(has(problemOf([&](ControlWriter& c) { unchanged(c, 3); }, 1999), "fewer bytes than announced"));
+    EXPECT_TRUE(has(
+        problemOf([&](ControlWriter& c) { unchanged(c, 3), c.put(ControlOp::ChangedBytes), c.number(4), c.number(1); },
+                  2000),
+        "unknown"));
+    EXPECT_TRUE(has(
+        problemOf([&](ControlWriter& c) { unchanged(c, 3), c.put(ControlOp::ChangedBytes), c.number(32), c.number(1); },
+                  2000),
+        "unknown"));
     EXPECT_TRUE(
-        has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(4), c.number(1); },
-                      2000),
-            "unknown"));
-    EXPECT_TRUE(
-        has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(32), c.number(1); },
-                      2000),
-            "unknown"));
-    EXPECT_TRUE(
-        has(problemOf([&](ControlWriter& c) { kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(501); },
-                      2004),
+        has(problemOf(
+                [&](ControlWriter& c) { unchanged(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(501); },
+                2004),
             "beyond the end"));
     EXPECT_TRUE(has(problemOf(
                         [&](ControlWriter& c) {
-                            kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500),
+                            unchanged(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500),
                                 c.put(ControlOp::ChangedBytes), c.number(3), c.number(2);
                         },
                         2000),
                     "fewer words"));
     EXPECT_EQ(problemOf(
                   [&](ControlWriter& c) {
-                      kept(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500), c.put(ControlOp::End),
-                          c.put(ControlOp::Done);
+                      unchanged(c, 3), c.put(ControlOp::ChangedBytes), c.number(3), c.number(500),
+                          c.put(ControlOp::End), c.put(ControlOp::Done);
                   },
                   2000),
               "");

@@ -294,11 +294,11 @@ TEST(DeltaEncoder, preservesPlainRecordsWithAnyWalkResult) {
     Bytes packet;
     for (uint32_t i = 0; i < 50; ++i) addRecord(packet, 99, 3, [&] { return i; });
     const auto size = static_cast<uint32_t>(packet.size());
-    for (const RecordOffsets& told :
+    for (const RecordOffsets& offsets :
          {RecordOffsets{50, 12, {}}, RecordOffsets{50, 1 << 20, {}}, RecordOffsets{50, 12, {size + 4096}},
           RecordOffsets{50, 12, {size - 12}}, RecordOffsets{50, 12, {0, 24, 60}}}) {
         BothSides sides(Limits{.cacheBytes = 1 << 20});
-        sides.walked = &told;
+        sides.walked = &offsets;
         sides.packer.beginFrame(true);
         for (int i = 0; i < 3; ++i) sides.send(packet);
         EXPECT_EQ(sides.packer.counts().records, 150u);
@@ -315,13 +315,13 @@ TEST(DeltaEncoder, findsLongRecordsAmongPlainOnesByTheWalkResult) {
         bytes.insert(bytes.end(), rest.begin(), rest.end());
         return bytes;
     };
-    RecordOffsets told{};
+    RecordOffsets offsets{};
     trace::RecordView r;
     const Bytes first = frame(1);
-    for (trace::RecordWalk walk(first); walk.next(r) || (told = *walk.whole(), false);) {}
-    ASSERT_EQ(told.longAt.size(), 1u);
+    for (trace::RecordWalk walk(first); walk.next(r) || (offsets = *walk.whole(), false);) {}
+    ASSERT_EQ(offsets.longAt.size(), 1u);
     BothSides untold{Limits{}}, sides{Limits{}};
-    sides.walked = &told;
+    sides.walked = &offsets;
     for (BothSides* each : {&untold, &sides}) each->packer.beginFrame(true);
     for (uint32_t number = 1; number < 6; ++number)
         EXPECT_EQ(sides.send(frame(number)), untold.send(frame(number))) << number;
@@ -389,15 +389,15 @@ TEST(DeltaEncoder, storesAnyNumberOfReturningStates) {
     }
 }
 
-TEST(DeltaEncoder, keepsUsedPagesWhenTheStoreIsFull) {
+TEST(DeltaEncoder, keepsUsedPagesWhenTheCacheIsFull) {
     Limits limits;
     limits.cacheBytes = 4 << 20;
     BothSides sides{limits};
-    const auto kept = packetsOf(textureOf(noise(1 << 20, 1)));
-    sides.send(kept);
+    const auto unchanged = packetsOf(textureOf(noise(1 << 20, 1)));
+    sides.send(unchanged);
     for (uint32_t i = 0; i < 20; ++i) { // 20 MiB of unique data
         sides.send(packetsOf(textureOf(noise(1 << 20, 50 + i))));
-        EXPECT_LE(sides.send(kept), 400u) << i;
+        EXPECT_LE(sides.send(unchanged), 400u) << i;
     }
 }
 

@@ -23,9 +23,9 @@ Bytes noise(uint32_t seed) {
 
 uint8_t at(const Bytes& bytes, size_t i) { return static_cast<uint8_t>(bytes[i]); }
 
-Bytes apartOf(const Bytes& piece, uint8_t way) {
+Bytes apartOf(const Bytes& piece, uint8_t filter) {
     Bytes apart(kPageBytes);
-    subtractGreen(piece.data(), way, apart.data());
+    subtractGreen(piece.data(), filter, apart.data());
     return apart;
 }
 
@@ -62,11 +62,11 @@ TEST(PixelColours, invertsAllTransforms) {
     test::forEachTarget([](const char* target) {
         for (uint32_t seed = 0; seed < 20; ++seed) {
             const Bytes piece = noise(seed);
-            for (const uint8_t way : kPixelWays) {
-                if (!takesColoursApart(way)) continue;
+            for (const uint8_t filter : kPixelFilters) {
+                if (!takesColoursApart(filter)) continue;
                 Bytes back(kPageBytes);
-                addGreen(apartOf(piece, way).data(), way, back.data());
-                ASSERT_EQ(back, piece) << target << " seed " << seed << " way " << +way;
+                addGreen(apartOf(piece, filter).data(), filter, back.data());
+                ASSERT_EQ(back, piece) << target << " seed " << seed << " way " << +filter;
             }
         }
     });

@@ -15,12 +15,12 @@ struct Made {
 };
 
 // The number of plain frames among the last `last` of `frames`.
-int plainOf(ModeSelector& choice, Made looked, Made plain, int frames, int last, double linkNsPerByte = kLinkNsPerByte,
+int plainOf(ModeSelector& choice, Made coded, Made plain, int frames, int last, double linkNsPerByte = kLinkNsPerByte,
             uint64_t pageBytes = 0) {
     int count = 0;
     for (int i = 0; i < frames; ++i) {
         count += choice.plain() && i >= frames - last;
-        const Made& made = choice.plain() ? plain : looked;
+        const Made& made = choice.plain() ? plain : coded;
         choice.measured(kRawBytes, pageBytes, made.wireBytes, made.ns, linkNsPerByte);
     }
     return count;

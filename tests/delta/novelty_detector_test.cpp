@@ -9,64 +9,64 @@ namespace {
 constexpr bool kLong = true, kOther = false;
 
 // The number of consecutive new records examined before the limit.
-int lookedAt(NoveltyDetector& news) {
+int examinedRecords(NoveltyDetector& novelty) {
     int count = 0;
-    for (; !news.many() && count < 1000; ++count) news.isNew();
+    for (; !novelty.many() && count < 1000; ++count) novelty.isNew();
     return count;
 }
 
 TEST(NoveltyDetector, decreasesTheLimitAfterEachPlainRest) {
-    NoveltyDetector news;
-    news.packetBegins(1, 0, kLong);
-    EXPECT_EQ(lookedAt(news), 64);
+    NoveltyDetector novelty;
+    novelty.packetBegins(1, 0, kLong);
+    EXPECT_EQ(examinedRecords(novelty), 64);
     for (const int expected : {2, 1, 0, 0}) {
-        news.leaveOut(100);
-        news.packetBegins(1, 100, kLong);
-        EXPECT_EQ(lookedAt(news), expected);
+        novelty.leaveOut(100);
+        novelty.packetBegins(1, 100, kLong);
+        EXPECT_EQ(examinedRecords(novelty), expected);
     }
-    news.packetBegins(1, 100, kLong); // the previous packet was complete
-    EXPECT_EQ(lookedAt(news), 4);
-    news.packetBegins(1, 100, kOther);
-    EXPECT_EQ(lookedAt(news), 32);
-    news.packetEnds(true); // pages follow
-    news.packetBegins(1, 100, kLong);
-    EXPECT_EQ(lookedAt(news), 32);
+    novelty.packetBegins(1, 100, kLong); // the previous packet was complete
+    EXPECT_EQ(examinedRecords(novelty), 4);
+    novelty.packetBegins(1, 100, kOther);
+    EXPECT_EQ(examinedRecords(novelty), 32);
+    novelty.packetEnds(true); // pages follow
+    novelty.packetBegins(1, 100, kLong);
+    EXPECT_EQ(examinedRecords(novelty), 32);
     for (const int expected : {16, 8, 4, 4}) {
-        news.leaveOut(100);
-        news.packetBegins(1, 100, kLong);
-        EXPECT_EQ(lookedAt(news), expected);
+        novelty.leaveOut(100);
+        novelty.packetBegins(1, 100, kLong);
+        EXPECT_EQ(examinedRecords(novelty), expected);
     }
 }
 
 // Otherwise repetitions would stay undetected.
 TEST(NoveltyDetector, examinesSomeInEachFrame) {
-    NoveltyDetector news;
-    news.packetBegins(1, 0, kLong);
+    NoveltyDetector novelty;
+    novelty.packetBegins(1, 0, kLong);
     for (int packet = 0; packet < 10; ++packet) {
-        (void)lookedAt(news);
-        news.leaveOut(70);
-        news.packetBegins(1, 70, kLong);
+        (void)examinedRecords(novelty);
+        novelty.leaveOut(70);
+        novelty.packetBegins(1, 70, kLong);
     }
-    ASSERT_EQ(lookedAt(news), 0);
-    news.leaveOut(70);
-    news.packetBegins(2, 70, kLong);
-    EXPECT_EQ(lookedAt(news), 4);
+    ASSERT_EQ(examinedRecords(novelty), 0);
+    novelty.leaveOut(70);
+    novelty.packetBegins(2, 70, kLong);
+    EXPECT_EQ(examinedRecords(novelty), 4);
 }
 
 TEST(NoveltyDetector, examinesAllWhenOmittedRecordsRepeat) {
-    NoveltyDetector news;
-    news.packetBegins(1, 0, kLong);
-    (void)lookedAt(news);
-    news.leaveOut(64);
-    news.packetBegins(2, 64, kLong);
-    news.found(0, 64); // as in the log
-    news.another(64);
-    EXPECT_EQ(lookedAt(news), 64); // the first frame loads what others draw
-    news.leaveOut(128);
-    news.packetBegins(3, 128, kLong);
-    news.found(64, 64);
-    news.another(128);
-    EXPECT_EQ(lookedAt(news), 1000);
+    NoveltyDetector novelty;
+    novelty.packetBegins(1, 0, kLong);
+    (void)examinedRecords(novelty);
+    novelty.leaveOut(64);
+    novelty.packetBegins(2, 64, kLong);
+    novelty.found(0, 64); // as in the log
+    novelty.another(64);
+    EXPECT_EQ(examinedRecords(novelty), 64); // the first frame loads what others draw
+    novelty.leaveOut(128);
+    novelty.packetBegins(3, 128, kLong);
+    novelty.found(64, 64);
+    novelty.another(128);
+    EXPECT_EQ(examinedRecords(novelty), 1000);
 }
 
 } // namespace

@@ -39,7 +39,7 @@ TEST(PixelWords, computesAndInvertsByteDifferences) {
     test::forEachTarget([](const char* target) {
         for (uint32_t seed = 0; seed < 40; ++seed) {
             const Bytes piece = pieceOf(seed);
-            for (const uint8_t pixelBytes : kPixelWays) {
+            for (const uint8_t pixelBytes : kPixelFilters) {
                 if (pixelBytes == 0 || takesColoursApart(pixelBytes)) continue;
                 std::vector<uint32_t> words(kPieceWordRoom), expected;
                 Bytes mask(kPieceMaskBytes), expectedMask(kPieceMaskBytes), back(kPageBytes);
@@ -71,22 +71,22 @@ TEST(PixelWords, measuresEqualRoughnessWithAllInstructionSets) {
 }
 
 TEST(PixelWords, findsThePixelSizeOfASlope) {
-    for (size_t k = 1; k < kPlainWays; ++k) {
-        const size_t pixelBytes = kPixelWays[k];
+    for (size_t k = 1; k < kByteFilters; ++k) {
+        const size_t pixelBytes = kPixelFilters[k];
         Bytes piece(kPageBytes);
         for (size_t i = 0; i < piece.size(); ++i)
             piece[i] = static_cast<std::byte>(i % pixelBytes * 67 + 90 + (i / pixelBytes) % 2 * (k % 2));
         const auto rough = roughness(piece.data());
         for (size_t other = 0; other < k; ++other)
-            EXPECT_LT(rough[k], rough[other]) << pixelBytes << " beside " << +kPixelWays[other];
+            EXPECT_LT(rough[k], rough[other]) << pixelBytes << " beside " << +kPixelFilters[other];
     }
 }
 
 // Random brightness of one hue: only the common part of the channels changes.
 TEST(PixelWords, subtractsTheCommonPartForPixelsOfOneHue) {
-    for (size_t k = kPlainWays; k < kPixelWays.size(); ++k) {
-        const size_t pixelBytes = kPixelWays[k] == kColoursOfFour ? 4 : 3,
-                     before = pixelBytes == 4 ? 0 : k - kPlainWays - 1;
+    for (size_t k = kByteFilters; k < kPixelFilters.size(); ++k) {
+        const size_t pixelBytes = kPixelFilters[k] == kColoursOfFour ? 4 : 3,
+                     before = pixelBytes == 4 ? 0 : k - kByteFilters - 1;
         std::mt19937 random(5);
         Bytes piece(kPageBytes);
         uint32_t bright = 0;
@@ -96,9 +96,9 @@ TEST(PixelWords, subtractsTheCommonPartForPixelsOfOneHue) {
             piece[i] = colour == 3 ? std::byte{255} : static_cast<std::byte>(90 + 40 * colour + bright);
         }
         const auto rough = roughness(piece.data());
-        for (size_t other = 0; other < kPixelWays.size(); ++other) {
+        for (size_t other = 0; other < kPixelFilters.size(); ++other) {
             if (other == k) continue;
-            EXPECT_LT(rough[k] * 3, rough[other] * 2) << +kPixelWays[k] << " beside " << +kPixelWays[other];
+            EXPECT_LT(rough[k] * 3, rough[other] * 2) << +kPixelFilters[k] << " beside " << +kPixelFilters[other];
         }
     }
 }

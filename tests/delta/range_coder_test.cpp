@@ -27,7 +27,7 @@ struct Models {
     }
 };
 
-TEST(RangeCoder, readsWhatWasWritten) {
+TEST(RangeCoder, readsWrittenValues) {
     Models writing, reading; // they live as long as the stream
     RangeWriter writer;
     for (uint32_t batch = 0; batch < 300; ++batch) {

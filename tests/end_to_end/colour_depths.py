@@ -90,8 +90,8 @@ class Comparison:
                 program = os.path.join(self.build, "tests", "programs", "window_colours")
                 command = [os.path.join(self.build, "bin", "mural"), "run", "--display", "none", "--out", os.path.join(folder, "out"), "--", program]
                 _, _, messages = run(command, display_name, self.seconds)
-                said = EIGHT_BITS in messages
-                self.say("depth %d, pictures in files" % depth, [] if said == expected else ["the line about 8 bits %s: %s" % ("is missing" if expected else "was printed", messages.strip())])
+                printed = EIGHT_BITS in messages
+                self.say("depth %d, pictures in files" % depth, [] if printed == expected else ["the line about 8 bits %s: %s" % ("is missing" if expected else "was printed", messages.strip())])
 
 
 def main():

@@ -33,7 +33,7 @@ CANVAS_SIZE = "320x240" # size of the program's picture; canvases are integer fr
 # more, the reduced native picture 4.5
 CANVAS_MEAN = 3
 # for values rounded four times: pixels and their weights, in 256ths; a part that is one pixel off differs by more
-WAY_MOST = 2
+MAX_SCALED_DIFFERENCE = 2
 SKIPPED = 77
 
 
@@ -60,12 +60,12 @@ class Run:
             command += ["--", os.path.join(a.build, "tests", "programs", PROGRAM), "--size", size, "--frames", str(FRAMES + 1)]
             done = subprocess.run(command, env=programs.clean_environment(self.display), stdin=subprocess.DEVNULL,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=a.seconds, check=False)
-            said = done.stdout.decode(errors="replace")
+            output = done.stdout.decode(errors="replace")
             files = sorted(glob.glob(os.path.join(out, "*.png")))
             if done.returncode != 0 or not files:
-                raise RuntimeError("status %d, %d pictures: %s" % (done.returncode, len(files), said.strip().splitlines()[-1:]))
+                raise RuntimeError("status %d, %d pictures: %s" % (done.returncode, len(files), output.strip().splitlines()[-1:]))
             self.canvases = {os.path.basename(os.path.dirname(path))[len("canvas."):]: read_png(path) for path in sorted(glob.glob(os.path.join(out, "canvas.*", "*.png")))}
-            return read_png(files[-1]), said
+            return read_png(files[-1]), output
 
     def reference(self, options, times=(1, 1)):
         """Returns the picture of a run with which several files are compared; drawn once."""
@@ -148,11 +148,11 @@ def resized(lines, size):
     return [[sum(narrow[p][i] * w for p, w in row) for i in range(3 * width)] for row in weights(len(lines), height)]
 
 
-def of_frames(said):
+def of_frames(output):
     """Returns the parts of the wall that frames reduce in transit, or show elsewhere: area, size in transit, shown
     area."""
     found = []
-    for pass_text, area, shown in re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ ([^]]+) \] of the wall(?:, shown in \[ ([^]]+) \])?", said):
+    for pass_text, area, shown in re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ ([^]]+) \] of the wall(?:, shown in \[ ([^]]+) \])?", output):
         way = re.search(r"transferred at (\S+) by (\S+) times the size", pass_text)
         if way or shown:
             numbers = lambda text: tuple(float(v) for v in text.split())
@@ -178,42 +178,42 @@ def side_by_side(left, right):
     return width, height, [pictures.halved(l, half) + pictures.halved(r, width - half) for l, r in zip(left[2], right[2])]
 
 
-def other_canvases(said):
+def other_canvases(output):
     """Returns for each further canvas its name, its relative size, and the first of its nodes."""
     found = []
-    for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture with (\d+)x(\d+) pixels; the first canvas has (\d+)x(\d+)', said):
-        after = said[said.index("canvas \"%s\" shows" % name if "canvas \"%s\" shows" % name in said else "canvas %s shows" % name):]
+    for name, w, h, own_w, own_h in re.findall(r'canvas "?([^" ]+)"? shows the program\'s picture with (\d+)x(\d+) pixels; the first canvas has (\d+)x(\d+)', output):
+        after = output[output.index("canvas \"%s\" shows" % name if "canvas \"%s\" shows" % name in output else "canvas %s shows" % name):]
         first = re.search(r"node (\d+) \(local\) draws", after)
         found.append((name, (int(w) / int(own_w), int(h) / int(own_h)), int(first.group(1))))
     return found
 
 
-def of_other_canvas(line, said):
+def of_other_canvas(line, output):
     node = re.search(r"node (\d+) \(local\) draws", line)
-    others = other_canvases(said)
+    others = other_canvases(output)
     return bool(node and others and int(node.group(1)) >= min(first for _, _, first in others))
 
 
-def check_canvases(run, path, canvases, said):
+def check_canvases(run, path, canvases, output):
     """Compares the other canvases with native drawing into a window of their size."""
     about = ""
-    for name, times, _ in other_canvases(said):
+    for name, times, _ in other_canvases(output):
         if name not in canvases:
             return "", "canvas %s shows nothing" % name
-    if not other_canvases(said):
+    if not other_canvases(output):
         return "", None
     run = Run(argparse.Namespace(**{**vars(run.arguments), "size": CANVAS_SIZE}), run.display)
     run.picture(["--config", path, "--all-local", "--projection", "program"])
     canvases = run.canvases
-    for name, times, _ in other_canvases(said):
+    for name, times, _ in other_canvases(output):
         shown = canvases[name]
         expected = run.picture([], times)[0]
         if (shown[0], shown[1]) != (expected[0], expected[1]):
             return "", "canvas %s has %dx%d pixels instead of %dx%d" % (name, shown[0], shown[1], expected[0], expected[1])
-        if " eye" in said or "of each" in said or "sample" in said:
+        if " eye" in output or "of each" in output or "sample" in output:
             about += ", canvas %s has its picture" % name if any(any(row) for row in shown[2]) else ""
             continue
-        areas = [tuple(float(v) for v in area) for area in re.findall(r"node \d+ \(local\) draws for channel .*?part \[ (\S+) (\S+) (\S+) (\S+) \]", said[said.index("canvas"):])]
+        areas = [tuple(float(v) for v in area) for area in re.findall(r"node \d+ \(local\) draws for channel .*?part \[ (\S+) (\S+) (\S+) (\S+) \]", output[output.index("canvas"):])]
         wrong, _ = difference(expected, shown, areas)
         mean = mean_difference(expected, shown, (0, 0, 1, 1))
         if mean > CANVAS_MEAN:
@@ -224,16 +224,16 @@ def check_canvases(run, path, canvases, said):
 
 def check(run, path, native):
     """Returns None or an error, and a line about the checks."""
-    shown, said = run.picture(["--config", path, "--all-local", "--projection", "program"])
-    about_canvases, wrong = check_canvases(run, path, run.canvases, said)
+    shown, output = run.picture(["--config", path, "--all-local", "--projection", "program"])
+    about_canvases, wrong = check_canvases(run, path, run.canvases, output)
     if wrong:
         return wrong, ""
-    said = "\n".join(line for line in said.splitlines() if not of_other_canvas(line, said))
-    told = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", said)
-    sent = of_frames(said)
-    nodes = [node[1:] for node in told if " zoom " not in node[0] and "times the size" not in node[0]]
+    output = "\n".join(line for line in output.splitlines() if not of_other_canvas(line, output))
+    reported = re.findall(r"node \d+ \(local\) draws for channel (.*?)part \[ (\S+) (\S+) (\S+) (\S+) \]", output)
+    sent = of_frames(output)
+    nodes = [node[1:] for node in reported if " zoom " not in node[0] and "times the size" not in node[0]]
     nodes = [node for node in nodes if not any(place != area and tuple(float(v) for v in node) == area for area, _, place in sent)]
-    scaled = [(tuple(float(v) for v in node[1:]), tuple(float(v) for v in re.search(r" zoom (\S+) ([\d.]+)", node[0]).groups())) for node in told if " zoom " in node[0]]
+    scaled = [(tuple(float(v) for v in node[1:]), tuple(float(v) for v in re.search(r" zoom (\S+) ([\d.]+)", node[0]).groups())) for node in reported if " zoom " in node[0]]
     areas = [tuple(float(v) for v in node) for node in nodes]
     zoomed = ""
     for area, zoom in scaled:
@@ -253,25 +253,25 @@ def check(run, path, native):
     # Both eyes of an anaglyph see one picture at eye base 0. Side-by-side pairs have parts of half the width, which are
     # not compared.
     one = shown
-    if sent and " eye" in said:
+    if sent and " eye" in output:
         one = run.picture(["--config", path, "--all-local", "--projection", "program", "--eye-base", "0"])[0]
     eyes_as_one = one is shown or difference(native, one, areas)[0] == 0
     for area, way, place in sent if eyes_as_one else []:
-        most = way_difference(native, one, area, way, place)
-        if most > WAY_MOST:
-            return "the part %s, sent %g by %g times as large, differs by %.2f of 255 from that of the native picture" % (place, *way, most), ""
-        zoomed += ", what frames made smaller by at most %.2f of 255 from the native picture made so" % most
-    if not told:
+        maximum = way_difference(native, one, area, way, place)
+        if maximum > MAX_SCALED_DIFFERENCE:
+            return "the part %s, sent %g by %g times as large, differs by %.2f of 255 from that of the native picture" % (place, *way, maximum), ""
+        zoomed += ", what frames made smaller by at most %.2f of 255 from the native picture made so" % maximum
+    if not reported:
         return "no node is listed", ""
     # Antialiased, or every nth pixel, compared with the short form of the options.
-    samples, kernel = re.search(r"sample \d+ of (\d+)", said), re.search(r"of each (\d+x\d+)", said)
+    samples, kernel = re.search(r"sample \d+ of (\d+)", output), re.search(r"of each (\d+x\d+)", output)
     options = (["--subpixel", samples.group(1)] if samples else []) + (["--pixel", kernel.group(1)] if kernel else [])
     expected, against = native, "the native picture"
     if options:
         expected, against = run.reference(options), " ".join(options)
         if samples and expected[2] == native[2]:
             return "samples change nothing", ""
-    eyes = [word for word in ("left eye", "right eye") if word in said]
+    eyes = [word for word in ("left eye", "right eye") if word in output]
     if eyes:
         flat = one if one is not shown else run.picture(["--config", path, "--all-local", "--projection", "program", "--eye-base", "0"])[0]
         # The file's own eye base is sufficient where it moves a pixel.
@@ -284,13 +284,13 @@ def check(run, path, native):
             expected, areas, shown = side_by_side(expected, expected), [(0, 0, 1, 1)], flat
             if sent:  # in halves of the picture: approximate
                 mean = mean_difference(expected, shown, (0, 0, 1, 1))
-                about = "%d nodes, pictures that frames make smaller among them: by %.2f of 255 in the mean from %s" % (len(told), mean, against)
+                about = "%d nodes, pictures that frames make smaller among them: by %.2f of 255 in the mean from %s" % (len(reported), mean, against)
                 return (None if mean < ZOOMED_MEAN else about), about
         else:
             shown = flat
     wrong, outside = difference(expected, shown, areas)
     total = native[0] * native[1]
-    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts%s%s" % (len(told), wrong, total - outside, against, outside, zoomed, about_canvases)
+    about = "%d nodes, %d of %d pixels differ from %s, %d outside of all parts%s%s" % (len(reported), wrong, total - outside, against, outside, zoomed, about_canvases)
     return (None if wrong == 0 else about), about
 
 

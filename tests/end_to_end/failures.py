@@ -27,9 +27,9 @@ def kill_during_run(context, pattern, how_many, after_line, words):
             return "no process fits \"%s\"" % pattern
         cases.kill_all(found if how_many == 0 else found[:how_many])
         wrong = cases.check_end(run, 0, frames)
-        said = cases.error_lines(run, words)
-        if wrong is None and len(said) != max(how_many, 1):
-            wrong = "%d lines about it instead of %d: %s" % (len(said), max(how_many, 1), " | ".join(said))
+        output = cases.error_lines(run, words)
+        if wrong is None and len(output) != max(how_many, 1):
+            wrong = "%d lines about it instead of %d: %s" % (len(output), max(how_many, 1), " | ".join(output))
         return wrong
 
 
@@ -156,16 +156,16 @@ def node_without_memory(context):
 def node_driver_reset(context):
     """One node's driver reports a reset (a planted fault). A program with reset notification receives it once, through
     the status and through GL's error for it; for another program one line is printed."""
-    for arguments, told in (([], ["lost by status 0x8254, error 0x0507 behind it"]), (["--unasked"], [])):
+    for arguments, reported in (([], ["lost by status 0x8254, error 0x0507 behind it"]), (["--unasked"], [])):
         command = [context.program("context_lost"), "--frames", "60", "--size", "250x190"] + arguments
         with context.run(command, environment={"MURAL_PLANT": "reset"}) as run:
             wrong = cases.check_end(run, 0, 60)
-            said = [line for line in run.standard_output if line.startswith("lost")]
+            output = [line for line in run.standard_output if line.startswith("lost")]
             lines = cases.error_lines(run, ["did not enable reset notification"])
-            if wrong is None and said != told:
-                wrong = "it received \"%s\" instead of \"%s\"" % (" | ".join(said), " | ".join(told))
-            if wrong is None and len(lines) != (0 if told else 1):
-                wrong = "%d lines for a program that %s: %s" % (len(lines), "enabled reset notification" if told else "did not enable it", " | ".join(lines))
+            if wrong is None and output != reported:
+                wrong = "it received \"%s\" instead of \"%s\"" % (" | ".join(output), " | ".join(reported))
+            if wrong is None and len(lines) != (0 if reported else 1):
+                wrong = "%d lines for a program that %s: %s" % (len(lines), "enabled reset notification" if reported else "did not enable it", " | ".join(lines))
             if wrong is None and not cases.error_lines(run, ["lost a context"]):
                 wrong = "no message about the lost context"
             if wrong:
@@ -198,9 +198,9 @@ def node_stopped_for_good(context):
         node = run.wait_for_processes(cases.NODE, 1)[0]
         os.kill(node, signal.SIGSTOP)
         wrong = cases.check_end(run, 0, 60)
-        said = cases.error_lines(run, ["was lost:"])
-        if wrong is None and (len(said) != 1 or "pid %d)" % node not in said[0]):
-            wrong = "not one line about node %d: %s" % (node, " | ".join(said))
+        output = cases.error_lines(run, ["was lost:"])
+        if wrong is None and (len(output) != 1 or "pid %d)" % node not in output[0]):
+            wrong = "not one line about node %d: %s" % (node, " | ".join(output))
         return wrong
 
 
@@ -285,14 +285,14 @@ def ends_frames_reached(context):
 @cases.case
 def ends_picture_that_nobody_sees(context):
     # The size of the wall needs a private display, because the program's window is there.
-    for options, told in ((("--size", "250x190", "--display", "app"), 1), (("--tiles", "1x1", "--display", "app"), 0)):
+    for options, reported in ((("--size", "250x190", "--display", "app"), 1), (("--tiles", "1x1", "--display", "app"), 0)):
         with context.drawing("immediate", 3, options=options) as run:
             wrong = cases.check_end(run, 0)
             if wrong:
                 return wrong
             lines = cases.error_lines(run, ["private display"])
-            if len(lines) != told:
-                return "%s: %d lines with the window position, not %d" % (" ".join(options), len(lines), told)
+            if len(lines) != reported:
+                return "%s: %d lines with the window position, not %d" % (" ".join(options), len(lines), reported)
     return None
 
 
@@ -303,11 +303,11 @@ def complains(name, arguments, wanted_status, words, environment=None):
                    for argument in arguments]
         with session.Session([context.mural] + command, context.display, environment) as run:
             status = run.status(30)
-            said = [line for line in run.standard_error if line.strip()]
+            output = [line for line in run.standard_error if line.strip()]
             if status not in wanted_status:
-                return "status %s instead of %s: %s" % (status, wanted_status, " | ".join(said))
-            if len(said) != 1 or not any(word in said[0] for word in words):
-                return "it printed %d lines: %s" % (len(said), " | ".join(said))
+                return "status %s instead of %s: %s" % (status, wanted_status, " | ".join(output))
+            if len(output) != 1 or not any(word in output[0] for word in words):
+                return "it printed %d lines: %s" % (len(output), " | ".join(output))
             left = run.left_behind()
             return "left over: " + ", ".join(left) if left else None
     check.__name__ = "arguments_" + name
@@ -342,9 +342,9 @@ def arguments_setuid_program(context):
         os.chmod(copy, 0o755 | stat.S_ISUID)
         with context.run([copy]) as run:
             status = run.status(30)
-            said = [line for line in run.standard_error if line.strip()]
-            if status != 2 or len(said) != 1 or "setuid" not in said[0]:
-                return "status %s, output: %s" % (status, " | ".join(said))
+            output = [line for line in run.standard_error if line.strip()]
+            if status != 2 or len(output) != 1 or "setuid" not in output[0]:
+                return "status %s, output: %s" % (status, " | ".join(output))
             return None
 
 

@@ -81,15 +81,15 @@ def table_of(arguments, screen, scratch, program, title, size, ways):
     if not ways:
         return 0
     folder = os.path.join(scratch, program + size)
-    native, said = draw(arguments, screen, os.path.join(folder, "native"), program, size)
+    native, printed = draw(arguments, screen, os.path.join(folder, "native"), program, size)
     if native is None:
-        print("%s fails natively: %s" % (program, said))
+        print("%s fails natively: %s" % (program, printed))
         return 1
     columns, wrong = {}, 0
     for name, options in ways.items():
-        got, said = draw(arguments, screen, os.path.join(folder, name.replace(" ", "_")), program, size, options)
+        got, printed = draw(arguments, screen, os.path.join(folder, name.replace(" ", "_")), program, size, options)
         if got is None:
-            print("%s, %s: %s" % (program, name, said))
+            print("%s, %s: %s" % (program, name, printed))
             wrong += 1
             continue
         columns[name] = [cell_of(a, b) for a, b in zip(native, got)]

@@ -25,10 +25,10 @@ def sockets_of(run):
     return [path for place in set(SOCKETS) for path in glob.glob("%s/mural-%d-*" % (place, run.process.pid))]
 
 
-def compared(context, command, frames, options=(), said=(), through=None):
+def compared(context, command, frames, options=(), output=(), through=None):
     """Compares the command's output natively and through Mural (where it may differ: `through`). Returns None if they
     agree, `frames` are on the wall with equal pixels, and standard error has exactly one line for each of the words
-    of `said`."""
+    of `output`."""
     with session.Session(command, context.display) as native:
         status = native.status()
         wanted = list(native.standard_output)
@@ -51,7 +51,7 @@ def compared(context, command, frames, options=(), said=(), through=None):
     if report["differingPixels"] != 0 or (frames and report["verifiedPixels"] == 0):
         return "%d of %d pixels differ" % (report["differingPixels"], report["verifiedPixels"])
     lines = [line for line in run.standard_error if line.startswith("mural:")]
-    if len(lines) != len(said) or not all(word in line for word, line in zip(said, lines)):
+    if len(lines) != len(output) or not all(word in line for word, line in zip(output, lines)):
         return "it printed %d lines: %s" % (len(lines), " | ".join(lines))
     left = sockets_of(run)
     return "left over: " + ", ".join(left) if left else None
@@ -69,9 +69,9 @@ for changed in ("cleared", "unset", "put", "other"):
     reloaded("both_" + changed, "both", changed, frames=18)
 
 
-def executed(way, frames=6, said=()):
+def executed(way, frames=6, output=()):
     def check(context):
-        return compared(context, [context.program("exec_rounds"), way], frames, said=said)
+        return compared(context, [context.program("exec_rounds"), way], frames, output=output)
     check.__name__ = "executed_by_" + way
     cases.case(check)
 
@@ -120,7 +120,7 @@ sandboxed("network_without_user", ["-n"])
 
 
 @cases.case
-def sandboxed_socket_of_a_killed_launcher_goes(context):
+def sandboxed_socket_of_a_killed_launcher_is_removed(context):
     with context.run([context.program("long_run"), "--frames", "100000"], ["--quiet", "--display", "none"]) as run:
         if not run.wait_for_line("frame 10"):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])

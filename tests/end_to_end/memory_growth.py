@@ -21,10 +21,10 @@ from benchlib.memory_watch import MemoryWatch  # noqa: E402
 
 MARKS = (150, 1650)
 LEAK_MARKS = (150, 550)  # frames between which a leak becomes visible: 25 MiB or more
-MOST_GROWTH_MIB = 4.0  # heaps settle; a texture leaked in each frame makes 100, a context in every fourth 7.5
+MAX_GROWTH_MIB = 4.0  # heaps settle; a texture leaked in each frame makes 100, a context in every fourth 7.5
 WEIGHT_MARKS = (4, 12)
-LEAST_WEIGHT_MIB = 200.0  # for large_objects natively; otherwise the comparison means nothing
-MOST_NODE_SHARE = 1.3  # relative to the native run
+MIN_WEIGHT_MIB = 200.0  # for large_objects natively; otherwise the comparison means nothing
+MAX_NODE_SHARE = 1.3  # relative to the native run
 
 
 def growth(seen, role, marks=MARKS):
@@ -41,9 +41,9 @@ def heavy_objects(mural, environment, program, wall):
     native = weight(MemoryWatch(mural, environment).run(["--native"], program, WEIGHT_MARKS), "app")
     seen = MemoryWatch(mural, environment).run(wall, program, WEIGHT_MARKS)
     app, node = weight(seen, "app"), weight(seen, "node")
-    results = (("large objects natively: %.0f MiB" % native, native >= LEAST_WEIGHT_MIB),
-               ("the program: %.0f MiB, %.2f x" % (app, app / native), app <= native + MOST_GROWTH_MIB),
-               ("a node: %.0f MiB, %.2f x" % (node, node / native), node <= MOST_NODE_SHARE * native))
+    results = (("large objects natively: %.0f MiB" % native, native >= MIN_WEIGHT_MIB),
+               ("the program: %.0f MiB, %.2f x" % (app, app / native), app <= native + MAX_GROWTH_MIB),
+               ("a node: %.0f MiB, %.2f x" % (node, node / native), node <= MAX_NODE_SHARE * native))
     for text, right in results:
         print("%s: %s" % (text, "right" if right else "WRONG"))
     return sum(not right for _, right in results)
@@ -67,11 +67,11 @@ def main():
         sound = MemoryWatch(mural, environment).run(wall, program, MARKS)
         for role in ("app", "head", "node"):
             grown = growth(sound, role)
-            right = grown <= native + MOST_GROWTH_MIB
+            right = grown <= native + MAX_GROWTH_MIB
             wrong += not right
             print("%-5s grows by %.1f MiB: %s" % (role, grown, "right" if right else "WRONG"))
         leaky = growth(MemoryWatch(mural, {**environment, "MURAL_PLANT": "leak"}).run(wall, program, LEAK_MARKS), "node", LEAK_MARKS)
-        right = leaky > native + MOST_GROWTH_MIB
+        right = leaky > native + MAX_GROWTH_MIB
         wrong += not right
         print("node that forgets textures grows by %.1f MiB: %s" % (leaky, "found" if right else "MISSED"))
         heavy = [os.path.join(build, "tests", "programs", "large_objects"), "--frames", "100000", "--size", "96x96"]

@@ -72,7 +72,7 @@ def trips_are_named(context):
             report_file = os.path.join(folder, program + ".json")
             with context.run([context.program(program), "--frames", "3"], ["--tiles", "2x2", "--display", "none", "--report", report_file]) as run:
                 wrong = cases.check_end(run, 0)
-                said = " ".join(run.standard_error)
+                output = " ".join(run.standard_error)
             if wrong is not None:
                 return "%s: %s" % (program, wrong)
             with open(report_file, encoding="utf-8") as file:
@@ -80,10 +80,10 @@ def trips_are_named(context):
             by = report["roundTripsBy"]
             if sum(by.values()) != report["roundTrips"] or any(not name.startswith("gl") for name in by):
                 return "%s: %d round trips, by %s" % (program, report["roundTrips"], by)
-            if wanted == "" and (by or "0 round trips" not in said):
-                return "%s: round trips without need: %s; output: %s" % (program, by, said)
-            if wanted and (by.get(wanted, 0) < 1 or wanted not in said):
-                return "%s: no %s in %s; output: %s" % (program, wanted, by, said)
+            if wanted == "" and (by or "0 round trips" not in output):
+                return "%s: round trips without need: %s; output: %s" % (program, by, output)
+            if wanted and (by.get(wanted, 0) < 1 or wanted not in output):
+                return "%s: no %s in %s; output: %s" % (program, wanted, by, output)
     return None
 
 
@@ -93,8 +93,8 @@ def none_of_this_user(context):
     shown = stat(context)
     if shown.returncode == 0:
         return None if shown.stdout else "nothing shown, status 0"
-    said = shown.stderr.decode()
-    return None if shown.returncode == 1 and said.count("\n") == 1 and said.startswith("mural stat: ") else "status %d, output: %s" % (shown.returncode, said)
+    output = shown.stderr.decode()
+    return None if shown.returncode == 1 and output.count("\n") == 1 and output.startswith("mural stat: ") else "status %d, output: %s" % (shown.returncode, output)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ GROUP, GROUP_PORT, CONTROL_PORT = "239.255.77.90", 4277, 4278
 RATE_BYTES_PER_S = 10_000_000
 PATIENT = {"silent-ms": 20000, "stalled": "wait"}
 STEP_MS = 20  # step of the timeline
-MOST_GAP_S = 1.2
+MAX_GAP_S = 1.2
 DATAGRAMS = "udp dport %d" % GROUP_PORT
 PAYLOAD = {"counter": "@ih,96,16", "symbol": "@ih,800,16"}  # bits after the UDP header: the cipher's counter, the middle
 ENDS_WITHIN_S = 40
@@ -43,14 +43,14 @@ class End:
         with open(file.name, encoding="utf-8") as again:
             return again.read()
 
-    def said(self):
+    def output(self):
         return self._text(self.files[1])
 
     def wait_for(self, text, seconds=10):
         until = time.monotonic() + seconds
-        while text not in self.said():
+        while text not in self.output():
             if time.monotonic() > until or self.process.poll() is not None:
-                raise Wrong("%s did not print \"%s\"; output: %s" % (self.name, text, self.said()))
+                raise Wrong("%s did not print \"%s\"; output: %s" % (self.name, text, self.output()))
             time.sleep(0.01)
 
     def status(self, seconds=ENDS_WITHIN_S):
@@ -59,7 +59,7 @@ class End:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
-            raise Wrong("%s did not end within %d s; output: %s" % (self.name, seconds, self.said())) from None
+            raise Wrong("%s did not end within %d s; output: %s" % (self.name, seconds, self.output())) from None
 
     def measured(self):
         self.status()
@@ -113,7 +113,7 @@ class Lab:
         wanted, until = self._sent_bytes() + RATE_BYTES_PER_S // 10, time.monotonic() + seconds
         while self._sent_bytes() < wanted:
             if time.monotonic() > until or sender.process.poll() is not None:
-                raise Wrong("nothing flows; the sender printed: %s" % sender.said())
+                raise Wrong("nothing flows; the sender printed: %s" % sender.output())
             time.sleep(0.02)
 
     @staticmethod
@@ -134,17 +134,17 @@ class Lab:
 def whole(receivers, total_bytes):
     """Checks that each receiver has the stream from its first to its last byte; netperf itself checks the bytes
     between."""
-    told = [r.measured() for r in receivers]
-    for r, m in zip(receivers, told):
+    reported = [r.measured() for r in receivers]
+    for r, m in zip(receivers, reported):
         if r.status() != 0 or m.get("bytes") != total_bytes or m.get("firstByte") != 0:
-            raise Wrong("%s: status %d, %s bytes from %s, not %d; output: %s" % (r.name, r.status(), m.get("bytes"), m.get("firstByte"), total_bytes, r.said()))
-    return told
+            raise Wrong("%s: status %d, %s bytes from %s, not %d; output: %s" % (r.name, r.status(), m.get("bytes"), m.get("firstByte"), total_bytes, r.output()))
+    return reported
 
 
 def content(sender, members_lost=0):
     m = sender.measured()
     if sender.status() != 0 or m.get("membersLost") != members_lost:
-        raise Wrong("the sender: status %d, %s receivers lost, not %d; output: %s" % (sender.status(), m.get("membersLost"), members_lost, sender.said()))
+        raise Wrong("the sender: status %d, %s receivers lost, not %d; output: %s" % (sender.status(), m.get("membersLost"), members_lost, sender.output()))
     return m
 
 
@@ -179,10 +179,10 @@ def others_go_on(lab, seconds, lose):
     sender, receivers = lab.begin(total)
     time.sleep(0.5)
     lose(receivers[1])
-    told = whole([receivers[0], receivers[2]], total)
+    reported = whole([receivers[0], receivers[2]], total)
     content(sender, members_lost=1)
-    gap = max(longest_gap_s(m) for m in told)
-    need(gap <= MOST_GAP_S, "the others stood still for %.2f s" % gap)
+    gap = max(longest_gap_s(m) for m in reported)
+    need(gap <= MAX_GAP_S, "the others stood still for %.2f s" % gap)
     return "longest gap %.2f s" % gap
 
 
@@ -202,11 +202,11 @@ def receiver_frozen(lab):
     receivers[1].signal(signal.SIGSTOP)
     time.sleep(5)
     receivers[1].signal(signal.SIGCONT)
-    told = whole(receivers, total)
+    reported = whole(receivers, total)
     content(sender)
-    gap = longest_gap_s(told[1])
+    gap = longest_gap_s(reported[1])
     need(gap >= 4, "it was not frozen: its longest gap is %.2f s" % gap)
-    return "%d datagrams dropped by its socket" % told[1]["socketDropped"]
+    return "%d datagrams dropped by its socket" % reported[1]["socketDropped"]
 
 
 def sender_killed(lab):
@@ -215,8 +215,8 @@ def sender_killed(lab):
     sender.signal(signal.SIGKILL)
     began = time.monotonic()
     for r in receivers:
-        need(r.status() == 1, "%s: status %d; output: %s" % (r.name, r.status(), r.said()))
-        need(len(r.said().splitlines()) == 1 and "the stream was cut off after" in r.said(), "%s printed: %s" % (r.name, r.said()))
+        need(r.status() == 1, "%s: status %d; output: %s" % (r.name, r.status(), r.output()))
+        need(len(r.output().splitlines()) == 1 and "the stream was cut off after" in r.output(), "%s printed: %s" % (r.name, r.output()))
         need(r.measured()["bytes"] > 0 and "wrong" not in r.measured(), "%s: %s" % (r.name, r.measured()))
     return "known after %.2f s" % (time.monotonic() - began)
 
@@ -234,14 +234,14 @@ def comes_and_goes(lab):
         g.signal(signal.SIGKILL)
     whole(receivers, total)
     content(sender)
-    heard = 0
+    received = 0
     for g in guests:
         if g in killed:
             continue
-        need(g.status() == 0, "a guest: status %d; output: %s" % (g.status(), g.said()))
-        heard += g.measured()["bytes"] > 0
-    need(heard >= 5, "only %d guests heard anything" % heard)
-    return "%d guests heard a part" % heard
+        need(g.status() == 0, "a guest: status %d; output: %s" % (g.status(), g.output()))
+        received += g.measured()["bytes"] > 0
+    need(received >= 5, "only %d guests heard anything" % received)
+    return "%d guests heard a part" % received
 
 
 def link_cut_and_healed(lab):
@@ -250,9 +250,9 @@ def link_cut_and_healed(lab):
     lab.network.cut("wall2")
     time.sleep(3)
     lab.network.join("wall2")
-    told = whole(receivers, total)
+    reported = whole(receivers, total)
     content(sender)
-    gap = longest_gap_s(told[1])
+    gap = longest_gap_s(reported[1])
     need(gap >= 2, "it was not cut off: its longest gap is %.2f s" % gap)
     return "longest gap %.2f s" % gap
 
@@ -263,12 +263,12 @@ def out_of_order(lab):
     lab.network.detour("%s numgen random mod 100 < 5" % DATAGRAMS)
     try:
         sender, receivers = lab.begin(total)
-        told = whole(receivers, total)
+        reported = whole(receivers, total)
         sent = content(sender)
         late = counted(lab, "switch")
         need(late > 0.02 * sent["datagrams"], "only %d of %d datagrams were late" % (late, sent["datagrams"]))
         repairs = sent["parity"] + sent["resent"]
-        return "%d of %d late, %d repairs, %d arrived twice" % (late, sent["datagrams"], repairs, max(stream_of(m)["duplicates"] for m in told))
+        return "%d of %d late, %d repairs, %d arrived twice" % (late, sent["datagrams"], repairs, max(stream_of(m)["duplicates"] for m in reported))
     finally:
         lab.network.end_detour()
 
@@ -277,11 +277,11 @@ def duplicates(lab):
     total = RATE_BYTES_PER_S
     lab.network.rules("switch", "port0", *("%s numgen random mod 100 < 20 counter dup to \"port%d\"" % (DATAGRAMS, n) for n in (1, 2, 3)))
     sender, receivers = lab.begin(total)
-    told = whole(receivers, total)
+    reported = whole(receivers, total)
     content(sender)
-    refused = min(m["refused"] for m in told)
+    refused = min(m["refused"] for m in reported)
     need(refused > 300, "only %d datagrams arrived twice" % refused)
-    return "%d to %d refused by their counters" % (refused, max(m["refused"] for m in told))
+    return "%d to %d refused by their counters" % (refused, max(m["refused"] for m in reported))
 
 
 def bit_errors(lab):
@@ -290,11 +290,11 @@ def bit_errors(lab):
     for name in RECEIVERS:
         lab.network.rules(name, "eth0", *("%s numgen random mod 100 < 2 counter %s set 0x5a5a" % (DATAGRAMS, field) for field in PAYLOAD.values()))
     sender, receivers = lab.begin(total)
-    told = whole(receivers, total)
+    reported = whole(receivers, total)
     content(sender)
-    refused = min(m["refused"] for m in told)
+    refused = min(m["refused"] for m in reported)
     need(refused > 100, "only %d datagrams were refused" % refused)
-    return "%d to %d refused by their seals" % (refused, max(m["refused"] for m in told))
+    return "%d to %d refused by their seals" % (refused, max(m["refused"] for m in reported))
 
 
 def stranger(lab):
@@ -304,18 +304,18 @@ def stranger(lab):
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
     try:
         sender, receivers = lab.begin(total)
-        told = whole(receivers, total)
+        reported = whole(receivers, total)
         content(sender)
-        said = forger.communicate(timeout=20)[0].split()
+        output = forger.communicate(timeout=20)[0].split()
     finally:
         forger.kill()
         forger.wait()
-    sent = dict(zip(said[::2], map(int, said[1::2])))
+    sent = dict(zip(output[::2], map(int, output[1::2])))
     # The stranger's rate depends on the load of the machine. A small number is sufficient, because a missing check
     # rejects none.
     need(sent.get("replayed", 0) > 100 and sent.get("changed", 0) > 100, "the stranger sent: %s" % sent)
     # Counted by kind: other rejections must not hide that one of the two checks is missing.
-    refused = {kind: min(m[kind] for m in told) for kind in ("replayed", "forged")}
+    refused = {kind: min(m[kind] for m in reported) for kind in ("replayed", "forged")}
     need(min(refused.values()) > 20, "refused were only %s" % refused)
     return "%s; refused %s" % (sent, refused)
 
@@ -328,7 +328,7 @@ def bursts(lab):
     losing = [lab.network.start(name, make % first_s + "for i in 1 2 3 4; do nft add rule netdev bursts in meta l4proto udp drop; sleep 0.2; "
                                 "nft flush chain netdev bursts in; sleep 0.3; done") for name, first_s in (("wall1", 0), ("wall3", 0.1))]
     try:
-        told = whole(receivers, total)
+        reported = whole(receivers, total)
         content(sender)
         for one in losing:
             need(one.wait(timeout=20) == 0, "the rules of the bursts could not be made")
@@ -336,9 +336,9 @@ def bursts(lab):
         for one in losing:
             one.kill()
             one.wait()
-    lost = [stream_of(told[i])["lost"] for i in (0, 2)]
+    lost = [stream_of(reported[i])["lost"] for i in (0, 2)]
     need(min(lost) > 500, "only %s datagrams were lost" % lost)
-    return "%s lost, longest gap %.2f s" % (lost, max(longest_gap_s(m) for m in told))
+    return "%s lost, longest gap %.2f s" % (lost, max(longest_gap_s(m) for m in reported))
 
 
 def billion(lab):
@@ -350,12 +350,12 @@ def billion(lab):
     sender = lab.send(total, within_s=1000)
     receivers = [lab.receive(name, within_s=1000) for name in RECEIVERS]
     sender.status(1000)
-    told = whole(receivers, total)
+    reported = whole(receivers, total)
     sent = content(sender)
     lost = [counted(lab, name) for name in RECEIVERS]
     need(min(lost) > 10_000, "only %s datagrams were lost" % lost)
     return "%.0f s, %.1f Mbit/s, %s of %d datagrams lost, %d repairs, longest gap %.2f s" % (
-        time.monotonic() - began, sent["mbit"], lost, sent["datagrams"], sent["parity"] + sent["resent"], max(longest_gap_s(m) for m in told))
+        time.monotonic() - began, sent["mbit"], lost, sent["datagrams"], sent["parity"] + sent["resent"], max(longest_gap_s(m) for m in reported))
 
 
 CASES = {f.__name__: f for f in (receiver_killed, receiver_cut_off, receiver_frozen, sender_killed, comes_and_goes, link_cut_and_healed,

@@ -18,7 +18,7 @@ NODES = {"wall1": "10.79.0.2", "wall2": "10.79.0.3"}
 MULTICAST = "with reliable multicast"
 UNREACHED = "no reply to multicast"
 REACHED_AGAIN = "multicast works again"
-MOST_FRAMES = 20000  # limit for runs that end after a few hundred frames, when enough was seen
+MAX_FRAMES = 20000  # limit for runs that end after a few hundred frames, when enough was seen
 NO_MULTICAST = "ip daddr 239.0.0.0/8"
 
 
@@ -49,19 +49,19 @@ def drawn_by(run):
 
 def too_many(frames):
     """Returns an error if a run reached the frame limit instead of ending when enough was seen."""
-    return None if frames < MOST_FRAMES else "it did not end before frame %d" % frames
+    return None if frames < MAX_FRAMES else "it did not end before frame %d" % frames
 
 
 def finished(run, wants=(), wants_not=("was lost",)):
     """Returns None, or the error of a run that should now end well."""
     status = run.status()
-    said = "\n".join(run.standard_error)
+    output = "\n".join(run.standard_error)
     if status != 0:
-        return "status %s; output:\n%s" % (status, said)
-    missing = [text for text in (*wants, " 0 differ") if text not in said]
-    extra = [text for text in wants_not if text in said]
+        return "status %s; output:\n%s" % (status, output)
+    missing = [text for text in (*wants, " 0 differ") if text not in output]
+    extra = [text for text in wants_not if text in output]
     if missing or extra:
-        return "missing: %s, too much: %s; output:\n%s" % (missing, extra, said)
+        return "missing: %s, too much: %s; output:\n%s" % (missing, extra, output)
     left = run.left_behind()
     return "left over: %s" % left if left else None
 
@@ -104,7 +104,7 @@ def no_group(lab):
 
 
 def ceases_and_returns(lab):
-    with lab.run(MOST_FRAMES) as run:
+    with lab.run(MAX_FRAMES) as run:
         if not run.wait_for_line("frame 30"):
             return "it did not begin: %s" % run.standard_error
         lab.network.drop("wall1", NO_MULTICAST)
@@ -119,7 +119,7 @@ def ceases_and_returns(lab):
 
 def killed(lab, *options):
     """A killed node rejoins, first over its own connection, then in the group, and draws half of all frames there."""
-    with lab.run(MOST_FRAMES, *options) as run:
+    with lab.run(MAX_FRAMES, *options) as run:
         if not run.wait_for_line("frame 30"):
             return "it did not begin: %s" % run.standard_error
         victim = run.wait_for_processes(r"^\S*mural node", 2)[0]
@@ -130,11 +130,11 @@ def killed(lab, *options):
         lab.end_after(drawn_before + 100)
         wanted = [MULTICAST, " rejoined ", " 0 differ"]
         status = run.status()
-        said = "\n".join(run.standard_error)
+        output = "\n".join(run.standard_error)
         drawn = drawn_by(run)
         # Exactly once: a stream that continues at a wrong position ends the node again.
-        good = status == 0 and all(text in said for text in wanted) and said.count("was lost: ") == 1 and drawn_before < drawn / 2
-        return too_many(drawn) if good else "status %s, %d frames, %d before it rejoined; output:\n%s" % (status, drawn, drawn_before, said)
+        good = status == 0 and all(text in output for text in wanted) and output.count("was lost: ") == 1 and drawn_before < drawn / 2
+        return too_many(drawn) if good else "status %s, %d frames, %d before it rejoined; output:\n%s" % (status, drawn, drawn_before, output)
 
 
 def killed_without_delta(lab):

@@ -30,9 +30,9 @@ def check(build, way, names):
     if native[0] != 0:
         return "fails natively: " + native[2]
     mural = [os.path.join(build, "bin", "mural"), "run", "--tiles", "2x2", "--display", "app", "--"]
-    status, said, errors = run(mural + program, names)
-    if status != 0 or said != native[1]:
-        return "status %d, %s instead of %s; output: %s" % (status, said.split(), native[1].split(), errors)
+    status, output, errors = run(mural + program, names)
+    if status != 0 or output != native[1]:
+        return "status %d, %s instead of %s; output: %s" % (status, output.split(), native[1].split(), errors)
     return None
 
 

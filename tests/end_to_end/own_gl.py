@@ -2,7 +2,7 @@
 """Programs with a GL library that GLVND does not load. Either the preloaded library captures them exactly, or one line
 reports that their calls bypass Mural.
 
-  own_gl.py --build build/release [--cases caught,told] [--list]
+  own_gl.py --build build/release [--cases caught,reported] [--list]
 """
 
 import json
@@ -34,9 +34,9 @@ def caught(case_name, program, kind, options=(), in_script=False, more=None):
                 wrong = cases.check_end(run, 0)
                 if wrong is not None:
                     return wrong
-                said = cases.error_lines(run, ["bypass", "two GL libraries", "no frame was captured"])
-                if said:
-                    return "output: " + " | ".join(said)
+                printed = cases.error_lines(run, ["bypass", "two GL libraries", "no frame was captured"])
+                if printed:
+                    return "output: " + " | ".join(printed)
             with open(report_file, encoding="utf-8") as file:
                 report = json.load(file)
         if report["frames"] != FRAMES:
@@ -53,16 +53,16 @@ for name in ("immediate", "client_arrays", "display_lists", "core_arrays", "text
     caught(name, name, "glx")
 caught("es2", "es2_scene", "egl")
 caught("egl_proc", "route_egl_proc", "egl")
-caught("once_by_both_fronts", "immediate", "forwarding")
-caught("once_by_both_fronts_dlsym", "route_dlsym", "forwarding")
+caught("once_by_both_entries", "immediate", "forwarding")
+caught("once_by_both_entries_dlsym", "route_dlsym", "forwarding")
 caught("glvnd_with_preload", "immediate", "none", ("--capture-via", "preload"))
 caught("glvnd_with_preload_dlsym", "route_dlsym", "none", ("--capture-via", "preload"))
-# The advice in the message of told_mixed_….
+# The advice in the message of reported_mixed_….
 caught("mixed_linked_when_glvnd_is_first", "mixed_linked", "none", more={"LD_PRELOAD": "libGL.so.1"})
-caught("in_script_when_asked", "immediate", "glx", ("--capture-via", "preload"), in_script=True)
+caught("in_script_on_request", "immediate", "glx", ("--capture-via", "preload"), in_script=True)
 
 
-def told(case_name, program, words, in_script=None, options=(), output=None, shell=None, status=0):
+def reported(case_name, program, words, in_script=None, options=(), output=None, shell=None, status=0):
     """Adds a case: the program, or a line of shell, runs as without Mural, and one line says why the wall shows nothing
     of it."""
     def check(context):
@@ -80,28 +80,28 @@ def told(case_name, program, words, in_script=None, options=(), output=None, she
                 frames = json.load(file)["frames"]
             if frames != 0:
                 return "%d frames are on the wall" % frames
-        said = [line for line in run.standard_error if line.startswith("mural:")]
-        if len(said) != 1 or not all(word in said[0] for word in words):
-            return "it printed %d lines: %s" % (len(said), " | ".join(said))
+        printed = [line for line in run.standard_error if line.startswith("mural:")]
+        if len(printed) != 1 or not all(word in printed[0] for word in words):
+            return "it printed %d lines: %s" % (len(printed), " | ".join(printed))
         if output is not None and output not in run.standard_output:
             return "the program printed: " + " | ".join(run.standard_output)
         return None
-    check.__name__ = "told_" + case_name
+    check.__name__ = "reported_" + case_name
     cases.case(check)
 
 
-told("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx")
-told("own_gl_with_preload_off", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx", ("--capture-via", "glvnd"))
-told("osmesa", "osmesa_window", ["OSMesa", "libOSMesa.so", "no frame was captured"])
-told("drawn_elsewhere", "route_glapi", ["bypass Mural", "--capture-via preload"], output="the window shows the picture")
+reported("own_gl_in_script", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx")
+reported("own_gl_with_preload_off", "immediate", ["own_gl/glx/libGL.so.1", "--capture-via preload"], "glx", ("--capture-via", "glvnd"))
+reported("osmesa", "osmesa_window", ["OSMesa", "libOSMesa.so", "no frame was captured"])
+reported("drawn_elsewhere", "route_glapi", ["bypass Mural", "--capture-via preload"], output="the window shows the picture")
 for name, library in (("mixed_glx_driver", "libGLX_mesa.so.0"), ("mixed_glx_osmesa", "libOSMesa.so.8"),
                       ("mixed_egl_osmesa", "libOSMesa.so.8"), ("mixed_linked", "libOSMesa.so.8")):
-    told(name, name, ["some GL calls of the program", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
-told("x11_only", "x11_window", ["loads no GL library"])
+    reported(name, name, ["some GL calls of the program", library, "LD_PRELOAD=libGL.so.1"], output="the window shows the whole picture")
+reported("x11_only", "x11_window", ["loads no GL library"])
 # For a program that fails early, missing libraries mean nothing.
-told("failed_early", None, ["sh ended before it created a GL context (exit status 3)", "mural doctor"], shell="exit 3", status=3)
-told("killed_early", None, ["sh ended before it created a GL context (signal 9 (Killed))"], shell="kill -9 $$", status=137)
-told("never_tried", None, ["sh made no GL calls through Mural"], shell="exit 0")
+reported("failed_early", None, ["sh ended before it created a GL context (exit status 3)", "mural doctor"], shell="exit 3", status=3)
+reported("killed_early", None, ["sh ended before it created a GL context (signal 9 (Killed))"], shell="kill -9 $$", status=137)
+reported("never_tried", None, ["sh made no GL calls through Mural"], shell="exit 0")
 
 
 def silent(program):
@@ -130,7 +130,7 @@ for name in ("immediate", "display_lists", "x_fonts", "feedback_select", "pixels
     silent(name)
 
 
-def says(context, program, expected):
+def printed_is(context, program, expected):
     """Returns an error if the program's one line through Mural is not as expected."""
     with context.run([context.program(program)], ["--display", "none", "--quiet"]) as run:
         wrong = cases.check_end(run, 0)
@@ -140,13 +140,13 @@ def says(context, program, expected):
 
 
 @cases.case
-def told_extensions_of_all_machines(context):
+def reported_extensions_of_all_machines(context):
     """Checks that no list of a window system's extensions names one that exists only on one machine."""
-    return says(context, "extension_strings", "0 of 5 lists name what is on one machine only")
+    return printed_is(context, "extension_strings", "0 of 5 lists name what is on one machine only")
 
 
 @cases.case
-def told_extensions_in_order(context):
+def reported_extensions_in_order(context):
     """Checks that GL_EXTENSIONS keeps the driver's order: old programs read only the first kilobytes of the text."""
     lists = []
     for run in (session.Session([context.program("gl_extensions")], context.display),
@@ -156,27 +156,27 @@ def told_extensions_in_order(context):
             if wrong is not None:
                 return wrong
             lists.append([line.split() for line in run.standard_output])
-    native, told = lists
-    if [line[0] for line in told] != ["text", "names", "beyond"] or told[2] != native[2]:
-        return "the program printed: %s, natively: %s" % (told, native)
-    for ours, drivers in zip(told[:2], native[:2]):
-        kept = [name for name in drivers if name in ours]
-        if ours != kept or len(ours) < 100:
-            return "%s: %d names, not in the driver's order" % (ours[0], len(ours) - 1)
+    native, reported = lists
+    if [line[0] for line in reported] != ["text", "names", "beyond"] or reported[2] != native[2]:
+        return "the program printed: %s, natively: %s" % (reported, native)
+    for own, drivers in zip(reported[:2], native[:2]):
+        kept = [name for name in drivers if name in own]
+        if own != kept or len(own) < 100:
+            return "%s: %d names, not in the driver's order" % (own[0], len(own) - 1)
     return None
 
 
 @cases.case
-def told_names_stay(context):
+def reported_names_stay(context):
     """Checks that extension names are still readable after the end of EGL, which unloads the driver."""
-    return says(context, "kept_names", "names, 0 gone")
+    return printed_is(context, "kept_names", "names, 0 gone")
 
 
 @cases.case
-def told_memory_of_other_apis(context):
+def reported_memory_of_other_apis(context):
     """Checks that memory objects have no memory, and that their device matches none of another API."""
     expected = "object 1, one UUID 1, import 0x%04x, descriptor left 1, storage 0x%04x" % (0x0502, 0x0502)
-    return says(context, "memory_import", expected)
+    return printed_is(context, "memory_import", expected)
 
 
 if __name__ == "__main__":

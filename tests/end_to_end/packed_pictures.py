@@ -16,7 +16,7 @@ from harness import pictures
 cases.CASES.clear()  # keeps only the cases of this file
 PROGRAMS = ("immediate", "fixed_lighting", "copied_scene", "es2_scene")
 TILES = ["--tiles", "2x2"]
-LEAST_DB = 20  # half the colour resolution, at edges of triangles
+MIN_DB = 20  # half the colour resolution, at edges of triangles
 
 
 @passes.case
@@ -62,7 +62,7 @@ def lossy_codecs_are_near(context, notes):
     for options in (["--codec", "jpeg-95"], ["--codec", "jpeg-40"], ["--codec", "yuv420"], ["--codec", "jpeg-90", "--db", "2"]):
         got = nearness(plain, passes.through(context, (TILES if "--db" not in options else []) + options, "fixed_lighting"))
         notes.append("%s: %.1f dB" % (" ".join(options[1:]), got))
-        if not LEAST_DB <= got < 90:
+        if not MIN_DB <= got < 90:
             wrong = wrong or "%s: %.1f dB" % (" ".join(options), got)
     return wrong
 
@@ -86,27 +86,27 @@ def by_file(context, frame, taken="", more=()):
         command = [context.program("fixed_lighting"), "--frames", "3", "--size", "%dx%d" % passes.SIZE]
         with context.run(command, ["--display", "none", "--config", path, "--projection", "program", "--explain", "--out", folder] + list(more)) as run:
             status = run.status()
-            said = "\n".join(run.standard_error)
+            output = "\n".join(run.standard_error)
         names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
-        return status, said, [pictures.read_png(os.path.join(folder, name)) for name in names]
+        return status, output, [pictures.read_png(os.path.join(folder, name)) for name in names]
 
 
 @passes.case
-def files_say_how(context, notes):
+def files_select_codecs(context, notes):
     plain = passes.native(context, "fixed_lighting", frames=3)
     for frame, taken, more, line in (("mural_codec \"zstd\"", "", (), "encoded with zstd,"), ("", "mural_codec \"lz4\"", (), "encoded with lz4,"),
                                      ("mural_codec \"zstd\"", "", ("--codec", "bitplane"), "encoded with bitplane,")):
-        status, said, got = by_file(context, frame, taken, more)
+        status, output, got = by_file(context, frame, taken, more)
         wrong = passes.differing(plain, got)
-        if status != 0 or wrong or line not in said:
-            return "%s %s %s: status %s, %s: %s" % (frame, taken, more, status, wrong, said)
-    status, said, got = by_file(context, "mural_codec \"jpeg-80\" mural_exact OFF")
-    if status != 0 or "lossy" not in said or passes.differing(plain, got) is None or nearness(plain, got) < LEAST_DB:
-        return "jpeg-80 by a file: status %s: %s" % (status, said)
+        if status != 0 or wrong or line not in output:
+            return "%s %s %s: status %s, %s: %s" % (frame, taken, more, status, wrong, output)
+    status, output, got = by_file(context, "mural_codec \"jpeg-80\" mural_exact OFF")
+    if status != 0 or "lossy" not in output or passes.differing(plain, got) is None or nearness(plain, got) < MIN_DB:
+        return "jpeg-80 by a file: status %s: %s" % (status, output)
     for frame, line in (("mural_codec \"jpeg-80\"", "is lossy; set mural_exact OFF"), ("mural_codec \"none_such\"", "unknown codec \"none_such\"")):
-        status, said, _ = by_file(context, frame)
-        if status != 2 or line not in said:
-            return "%s: status %s: %s" % (frame, status, said)
+        status, output, _ = by_file(context, frame)
+        if status != 2 or line not in output:
+            return "%s: status %s: %s" % (frame, status, output)
     return None
 
 

@@ -91,8 +91,8 @@ def dplex_shares_the_work(context, notes):
     options = ["--display", "none", "--dplex", "3", "--explain"]
     with context.drawing("long_run", frames, options=options) as run:
         wrong = cases.check_end(run, 0, frames)
-        said = [line for line in run.standard_error if "one node draws all frames" in line]
-    return wrong or (said[0] if said else None)
+        printed = [line for line in run.standard_error if "one node draws all frames" in line]
+    return wrong or (printed[0] if printed else None)
 
 
 # ---- samples
@@ -176,15 +176,15 @@ def pixel_polygons_are_near(context, notes):
 
 
 @case
-def pixel_fragments_know_their_place(context, notes):
+def pixel_fragments_have_wall_positions(context, notes):
     """Drawing that uses only gl_FragCoord equals the native one; derivatives and texture levels nearly. In assembly,
     too."""
     wrong = None
-    for program, kernel, least in (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf), ("textures_modern", "3x2", 60)):
+    for program, kernel, minimum in (("frag_coord", "2x1", 50), ("frag_coord", "3x2", 50), ("fragment_places", "2x1", math.inf), ("fragment_places", "3x2", math.inf), ("textures_modern", "3x2", 60)):
         plain, got = native(context, program), through(context, ["--pixel", kernel], program)
         worst = min(pictures.decibels(a, b) for a, b in zip(plain, got))
         notes.append("%s %s: %.1f dB" % (program, kernel, worst))
-        if len(got) != len(plain) or worst < least:
+        if len(got) != len(plain) or worst < minimum:
             wrong = wrong or "%s %s: %d pictures, %.1f dB" % (program, kernel, len(got), worst)
     return wrong
 
@@ -197,7 +197,7 @@ def pixel_is_exact_where_pixels_are_copied(context, notes):
 
 
 @case
-def pixel_is_exact_where_levels_are_not_ours(context, notes):
+def pixel_is_exact_with_explicit_levels(context, notes):
     """The fixed function and OpenGL ES select texture levels by the drawn pixels. Such programs draw all pixels, from
     the next frame on."""
     scenes = (("pass_scene", ["--draw", "textured"]), ("pass_scene_es2", ["--draw", "textured"]))
@@ -465,10 +465,10 @@ def node_of_a_pass_is_killed(context, notes):
                 return "the program did not start: " + " | ".join(run.standard_error[-3:])
             cases.kill_all(run.wait_for_processes(cases.NODE, 3)[:1])
             wrong = cases.check_end(run, 0, frames)
-            said = cases.error_lines(run, ["was lost:"])
+            printed = cases.error_lines(run, ["was lost:"])
         saved = len(os.listdir(out))
-    if wrong is None and (len(said) != 1 or saved != frames):
-        wrong = "%d lines about it, %d pictures instead of %d" % (len(said), saved, frames)
+    if wrong is None and (len(printed) != 1 or saved != frames):
+        wrong = "%d lines about it, %d pictures instead of %d" % (len(printed), saved, frames)
     return wrong
 
 

@@ -27,12 +27,12 @@ PROGRAMS = "immediate,draw_calls,es2_scene"
 RANGES = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 2", "--frames", "4"]
 SWAPS = ["--programs", "range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --composition direct-send", "--frames", "4"]
 DELTA = ["--programs", "same_scene,immediate", "--layouts", "2x1", "--options", "--display none --delta on"]
-HELD = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--display none --delta on", "--frames", "3"]
+DEFERRED = ["--programs", "late_uploads", "--layouts", "2x1", "--options", "--display none --delta on", "--frames", "3"]
 CHUNKS = ["--programs", "fixed_lighting,range_ties", "--layouts", "1x1", "--options", "--display none --db 3 --chunk-queue 40", "--frames", "12"]
 EDGES = ["--programs", "blended_rectangles", "--layouts", "3x2", "--frames", "4"]
 AREAS = ["--programs", "clears_in_turns,es2_scene", "--tile-queue", "16x16", "--layouts", "2,3", "--frames", "12"]
 # Settings of the runs, and the faults that they must detect.
-SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (DELTA, ("delta",)), (HELD, ("held",)), (EDGES, ("edges",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
+SETTINGS = ((["--layouts", "2x2"], ("opcode", "shift", "drop")), (RANGES, ("range", "tie", "order")), (SWAPS, ("band", "order")), (DELTA, ("delta",)), (DEFERRED, ("held",)), (EDGES, ("edges",)), (AREAS, ("early", "uncleared")), (CHUNKS, ("lateshare",)))
 
 
 def compare(arguments, setting, fault):

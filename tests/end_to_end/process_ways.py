@@ -24,7 +24,7 @@ CASES = dict([(name, ("forked_children", frames)) for name, frames in FORKS.item
 SETTINGS = {"inherited": {"LP_NUM_THREADS": "0"}}
 # Repetitions, because timing decides whether these detect an error.
 RUNS = {"interrupted": 3, "interrupted_restart": 2}
-SAID = {"inherited": "a forked child draws with a context of its parent"}
+MESSAGES = {"inherited": "a forked child draws with a context of its parent"}
 
 
 def run(command, name, seconds=120):
@@ -45,20 +45,20 @@ def differs(build, name, native, report):
     program, frames = CASES[name]
     command = [os.path.join(build, "bin", "mural"), "run", "--tiles", "2x2", "--verify", "--report", report, "--",
                os.path.join(build, "tests", "programs", program), name]
-    status, told, said = run(command, name)
+    status, reported, output = run(command, name)
     if status != native[0]:
-        return "status %d instead of %d: %s" % (status, native[0], said[-400:])
-    wrong = unlike(native[1], told)
+        return "status %d instead of %d: %s" % (status, native[0], output[-400:])
+    wrong = unlike(native[1], reported)
     if wrong:
-        return "%s; output: %s" % (wrong, said[-400:])
+        return "%s; output: %s" % (wrong, output[-400:])
     with open(report, encoding="utf-8") as file:
         facts = json.load(file)
     if facts.get("differingPixels", 0):
         return "%d pixels differ" % facts["differingPixels"]
     if facts.get("verifiedFrames", 0) < frames:  # over all processes; "frames" counts only the main window's
-        return "%d frames on the wall instead of %d: %s" % (facts.get("verifiedFrames", 0), frames, said[-400:])
-    if SAID.get(name, "") not in said:
-        return "it did not print \"%s\"" % SAID[name]
+        return "%d frames on the wall instead of %d: %s" % (facts.get("verifiedFrames", 0), frames, output[-400:])
+    if MESSAGES.get(name, "") not in output:
+        return "it did not print \"%s\"" % MESSAGES[name]
     return None
 
 

@@ -37,7 +37,7 @@ def shown_in_quad(context, options, size=passes.SIZE, double=True, frames=passes
         command = [context.program("pass_scene"), "--frames", str(frames), "--size", "%dx%d" % size] + DRAW
         with context.run(command, ["--display", "windows", "--out", out] + options, environment) as run:
             wrong = cases.check_end(run, 0)
-            said = list(run.standard_error)
+            output = list(run.standard_error)
         if wrong:
             raise AssertionError(wrong)
         windows = []
@@ -45,7 +45,7 @@ def shown_in_quad(context, options, size=passes.SIZE, double=True, frames=passes
             there = sorted(os.listdir(os.path.join(buffers, name)))
             read = lambda path, folder=os.path.join(buffers, name): pictures.read_ppm(os.path.join(folder, path))
             windows.append([(read(left), read(left.replace(".left.", ".right."))) for left in there if ".left." in left])
-        return windows, [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))], said
+        return windows, [pictures.read_png(os.path.join(out, name)) for name in sorted(os.listdir(out))], output
 
 
 def frames_of(buffers):
@@ -76,11 +76,11 @@ def cut(picture, x, width):
 def both_eyes_are_whole(context, notes):
     """Both buffers equal native drawing with each eye's frustum; saved pictures have the eyes side by side."""
     eyes = native_eyes(context)
-    windows, saved, said = shown_in_quad(context, ["--stereo", "quad"] + EYES)
+    windows, saved, output = shown_in_quad(context, ["--stereo", "quad"] + EYES)
     if len(windows) != 1:
         return "%d windows instead of 1" % len(windows)
-    if any("side by side" in line for line in said):
-        return "it reported missing windows: %s" % said
+    if any("side by side" in line for line in output):
+        return "it reported missing windows: %s" % output
     if wrong_eyes(eyes[::-1], windows[0]) is None:
         return "eyes that are swapped are not found"
     return wrong_eyes(eyes, windows[0]) or passes.differing([passes.side_by_side(a, b) for a, b in zip(*eyes)], saved)
@@ -103,9 +103,9 @@ def files_open_them(context, notes):
         path = os.path.join(folder, "quad.eqc")
         with open(path, "w", encoding="ascii") as file:
             file.write(FILE)
-        windows, _, said = shown_in_quad(context, ["--config", path, "--projection", "program"] + EYES)
+        windows, _, output = shown_in_quad(context, ["--config", path, "--projection", "program"] + EYES)
     if len(windows) != 1:
-        return "%d windows instead of 1: %s" % (len(windows), said)
+        return "%d windows instead of 1: %s" % (len(windows), output)
     return wrong_eyes(native_eyes(context), windows[0])
 
 
@@ -113,10 +113,10 @@ def files_open_them(context, notes):
 def without_such_windows_they_lie_side_by_side(context, notes):
     """Without such windows the eyes are side by side, and one line gives the reason."""
     eyes = native_eyes(context)
-    windows, saved, said = shown_in_quad(context, ["--stereo", "quad"] + EYES, double=False)
-    lines = [line for line in said if "side by side" in line]
+    windows, saved, output = shown_in_quad(context, ["--stereo", "quad"] + EYES, double=False)
+    lines = [line for line in output if "side by side" in line]
     if windows or len(lines) != 1 or "no window with a buffer for each eye can be opened" not in lines[0]:
-        return "%d windows, output: %s" % (len(windows), said)
+        return "%d windows, output: %s" % (len(windows), output)
     return passes.differing([passes.side_by_side(a, b) for a, b in zip(*eyes)], saved)
 
 

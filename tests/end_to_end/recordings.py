@@ -164,7 +164,7 @@ def replay_vertices(place):
 @case
 def replay_reads(place):
     """Requests whose replies are not read, and copies of windows: recorded with one node, replayed with four."""
-    return all_replayed(place, ("pixels_read", "reads_owed", "queries_later", "accum_buffer", "frames_kept", "front_and_back"))
+    return all_replayed(place, ("pixels_read", "reads_deferred", "queries_later", "accum_buffer", "frames_kept", "front_and_back"))
 
 
 @case
@@ -250,8 +250,8 @@ def killed_head_leaves_what_is_whole(place):
 def full_disk_ends_the_recording_only(place):
     with place.context.drawing("long_run", 60, options=list(RECORD) + ["--record", "/dev/full"]) as run:
         wrong = cases.check_end(run, 0, 60)
-        said = cases.error_lines(run, ["No space left"])
-    return wrong or (None if len(said) == 1 and "the program continues" in said[0] else "output: " + " | ".join(run.standard_error))
+        printed = cases.error_lines(run, ["No space left"])
+    return wrong or (None if len(printed) == 1 and "the program continues" in printed[0] else "output: " + " | ".join(run.standard_error))
 
 
 @case
@@ -306,28 +306,28 @@ def arguments_of_a_file_without_a_frame(place):
 def trimmed(place, program, frames=(3, 5), options=("--tiles", "2x2")):
     """Returns None if a part shows the same as the whole file there, and the messages about it."""
     live = place.record(program)
-    said = place.trim("%d-%d" % frames)
-    return differing(live[frames[0] - 1:frames[1]], place.replay(options, "b.mural")), said
+    printed = place.trim("%d-%d" % frames)
+    return differing(live[frames[0] - 1:frames[1]], place.replay(options, "b.mural")), printed
 
 
 def all_trimmed(place, names, **more):
     for name in names:
-        wrong, said = trimmed(place, name, **more)
+        wrong, printed = trimmed(place, name, **more)
         if wrong is not None:
-            return "%s: %s; %s" % (name, wrong, said)
+            return "%s: %s; %s" % (name, wrong, printed)
     return None
 
 
-def draws_left_out(said):
-    return int(re.search(r"(\d+) of \d+ draws", said).group(1))
+def draws_left_out(printed):
+    return int(re.search(r"(\d+) of \d+ draws", printed).group(1))
 
 
 @case
 def trim_leaves_out_what_nobody_sees(place):
     for program in ("immediate", "client_arrays", "core_arrays", "many_triangles"):
-        wrong, said = trimmed(place, program)
-        if wrong is not None or draws_left_out(said) == 0:
-            return "%s: %s; %s" % (program, wrong, said)
+        wrong, printed = trimmed(place, program)
+        if wrong is not None or draws_left_out(printed) == 0:
+            return "%s: %s; %s" % (program, wrong, printed)
     return None
 
 
@@ -347,11 +347,11 @@ def trim_on_tiles(first):
         for program in TRIMMED_ON_TILES[first::2]:
             windows = place.native(program)
             wrong = unlike_all(windows, place.record(program))
-            said = place.trim("3-5")
+            printed = place.trim("3-5")
             for tiles in ("2x2", "3x1"):
                 wrong = wrong or unlike_all({name: frames[2:5] for name, frames in windows.items()}, place.replay(["--tiles", tiles], "b.mural"))
                 if wrong is not None:
-                    return "%s, %s: %s; %s" % (program, tiles, wrong, said)
+                    return "%s, %s: %s; %s" % (program, tiles, wrong, printed)
             print("  %s: 3 frames on 2x2 and 3x1 tiles as natively" % program)
         return None
     check.__name__ = "tiles_trimmed_%d" % (first + 1)
@@ -390,7 +390,7 @@ def trim_refuses(place):
 # ---- dump
 
 @case
-def dump_tells_the_calls(place):
+def dump_shows_the_calls(place):
     place.record("immediate", frames=2)
     done = place.mural("dump", place.path("a.mural"))
     lines = done.stdout.splitlines()

@@ -21,7 +21,7 @@ WIDTH, HEIGHT = 252, 190
 BACK = "rejoined "
 PROGRAM = "long_scene"
 # limit of frames per run: on a busy machine a rejoin takes seconds, and a run without an end file takes too long
-MOST = 6000
+MAX_FRAMES = 6000
 TAIL = 60  # frames drawn after the awaited event of a case
 EXACT = 20  # the last frames of these, which must not differ
 
@@ -55,7 +55,7 @@ class Watch:
     """One run of the program with pictures in files, and the states of its nodes. It ends when enough was seen, or with
     its last frame."""
 
-    def __init__(self, context, frames=MOST, options=(), environment=None, tiles="2x1", every=1, beside=False, display="none"):
+    def __init__(self, context, frames=MAX_FRAMES, options=(), environment=None, tiles="2x1", every=1, beside=False, display="none"):
         self.context, self.frames, self.tiles = context, frames, tiles
         self.every = every  # frames between two saved pictures
         self.beside = beside  # the same program also runs a second time, in a smaller window
@@ -65,7 +65,7 @@ class Watch:
         self.out = os.path.join(self.folder.name, "out")
         self.report_file = os.path.join(self.folder.name, "report.json")
         self.end_file = os.path.join(self.folder.name, "end")
-        self.least, self.drawn = frames, None  # minimum number of frames, and the actual number
+        self.minimum, self.drawn = frames, None  # minimum number of frames, and the actual number
         self.options = divided(tiles) + ["--display", display, "--report", self.report_file] + list(options)
         if display == "none":
             self.options += ["--out", self.out]
@@ -80,15 +80,15 @@ class Watch:
 
     def enough(self, run, tail=TAIL):
         """Reports that the awaited event was seen: the program draws a fixed number of further frames."""
-        self.least = min(self.frames, latest_frame(run) + 1 + tail)
+        self.minimum = min(self.frames, latest_frame(run) + 1 + tail)
         session.end_after(self.end_file, tail)
 
     def end(self, run):
         """Returns the error of the run's end; sets the number of frames."""
         wrong = cases.check_end(run, 0)
         self.drawn = len(frame_times(run))
-        if wrong is None and self.drawn < self.least:
-            wrong = "the program drew %d frames, not %d at least" % (self.drawn, self.least)
+        if wrong is None and self.drawn < self.minimum:
+            wrong = "the program drew %d frames, not %d at least" % (self.drawn, self.minimum)
         return wrong
 
     def report(self):
@@ -130,7 +130,7 @@ def nodes_of(run, count=2):
     return sorted(run.wait_for_processes(cases.NODE, count))
 
 
-def said(run, text):
+def printed(run, text):
     return [line for line in run.standard_error if text in line]
 
 
@@ -152,7 +152,7 @@ def judged(differing, spans, tail, every=1):
     return None
 
 
-def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1,), at=60, tiles="2x1", missing_columns=None, where="local", every=1, most=None):
+def kill_and_compare(context, frames=MAX_FRAMES, options=(), environment=None, victims=(1,), at=60, tiles="2x1", missing_columns=None, where="local", every=1, maximum=None):
     """Kills the nodes one after the other, each after the rejoin of the previous one."""
     watch = Watch(context, frames, options, environment, tiles, every)
     half = WIDTH // 2
@@ -177,13 +177,13 @@ def kill_and_look(context, frames=MOST, options=(), environment=None, victims=(1
         wrong = judged(differing, spans, max(EXACT, 3 * every), every)
         if wrong is None and every == 1 and not any(differing) and not tiles.startswith("queue"):
             wrong = "no picture was incomplete; check that a process was killed"
-        if wrong is None and most is not None and sum(map(bool, differing)) > most:
-            wrong = "%d frames lack something, not %d at most" % (sum(map(bool, differing)), most)
+        if wrong is None and maximum is not None and sum(map(bool, differing)) > maximum:
+            wrong = "%d frames lack something, not %d at most" % (sum(map(bool, differing)), maximum)
         nodes = watch.report()["nodes"]
         joins = sum(node["joins"] for node in nodes)
         if wrong is None and joins != len(victims):
             wrong = "%d returns instead of %d" % (joins, len(victims))
-        for line in said(run, BACK):
+        for line in printed(run, BACK):
             print("    " + line)
         return wrong
 
@@ -208,30 +208,30 @@ def first_nodes(run):
 
 @case
 def one_node(context):
-    return kill_and_look(context)
+    return kill_and_compare(context)
 
 
 @case
 def several_one_after_the_other(context):
-    return kill_and_look(context, victims=(1, 0, 1))
+    return kill_and_compare(context, victims=(1, 0, 1))
 
 
 @case
 def with_delta(context):
     """The dictionary of delta coding starts again with each rejoin."""
-    return kill_and_look(context, options=("--delta", "on"), victims=(1, 0))
+    return kill_and_compare(context, options=("--delta", "on"), victims=(1, 0))
 
 
 @case
 def by_tcp(context):
     """Nodes as on other machines: started again with the same command, connected again by TCP."""
-    return kill_and_look(context, options=("--nodes", "localhost,localhost", "--stream", "tcp"), where="localhost")
+    return kill_and_compare(context, options=("--nodes", "localhost,localhost", "--stream", "tcp"), where="localhost")
 
 
 @case
 def by_multicast(context):
     """The returning node receives the stream over its own connection, the other one continues with the group."""
-    return kill_and_look(context, options=("--nodes", "localhost,localhost", "--stream", "rsp://239.255.77.9:4299?interface=127.0.0.1"), where="localhost")
+    return kill_and_compare(context, options=("--nodes", "localhost,localhost", "--stream", "rsp://239.255.77.9:4299?interface=127.0.0.1"), where="localhost")
 
 
 @case
@@ -288,7 +288,7 @@ def wall_windows(context):
             return "it did not rejoin: " + " | ".join(run.standard_error[-4:])
         watch.enough(run)
         wrong = watch.end(run)
-        return "the wall was lost: " + " | ".join(said(run, "windows")) if wrong is None and said(run, "wall windows are lost") else wrong
+        return "the wall was lost: " + " | ".join(printed(run, "windows")) if wrong is None and printed(run, "wall windows are lost") else wrong
 
 
 @case
@@ -316,24 +316,24 @@ def turns_over_earlier_frames(context):
 @case
 def tiles_of_a_queue(context):
     """The other node takes the tiles at its next full clear, long before the rejoin."""
-    return kill_and_look(context, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0), most=24)
+    return kill_and_compare(context, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0), maximum=24)
 
 
 @case
 def areas_at_random(context):
     """Areas that change with every frame: a returning node must have the current frame's."""
-    return kill_and_look(context, tiles="queue 16x16", missing_columns=range(WIDTH), victims=(1, 0, 1), environment={"MURAL_PLANT": "areas"})
+    return kill_and_compare(context, tiles="queue 16x16", missing_columns=range(WIDTH), victims=(1, 0, 1), environment={"MURAL_PLANT": "areas"})
 
 
 @case
 def areas_of_frames_over_earlier_frames(context):
     """Windows that are never cleared keep their areas: the returning node draws everything from the start, and then has
     the same."""
-    return kill_and_look(context, tiles="queue 16x16", missing_columns=range(WIDTH), environment={"MURAL_PLANT": "areas", "SCENE_KEEPS": "1"})
+    return kill_and_compare(context, tiles="queue 16x16", missing_columns=range(WIDTH), environment={"MURAL_PLANT": "areas", "SCENE_KEEPS": "1"})
 
 
 @case
-def areas_that_nobody_knows(context):
+def areas_unknown(context):
     """All nodes are lost at once: areas start again."""
     return kill_and_compare_ends(context, (), "queue 32x32", (0, 1))
 
@@ -348,7 +348,7 @@ UNDER_WAY = 12  # frames in progress when a node is lost or rejoins, which may c
 LONGEST_MS = 8000  # time of one frame; timeouts are 20 s and more
 
 
-def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=None, where="local", frames=MOST, beside=False):
+def ranges_come_back(context, rounds, nodes, options, tiles="1x1", environment=None, where="local", frames=MAX_FRAMES, beside=False):
     """Nodes that divide draws. rounds: the nodes that are killed at once, each round after the rejoin of the previous
     round's nodes. Each frame that all of them divide is exact, from a few frames after each rejoin on. No process
     waits for a timeout. Frames have no picture while the collector is lost."""
@@ -474,7 +474,7 @@ def ranges_of_two_programs(context):
 @case
 def ranges_that_are_busy(context):
     """Without pauses: all processes wait for the nodes."""
-    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=5 * MOST)
+    return ranges_come_back(context, ((1,), (0,)), 2, by_ranges("streaming", 2), environment={"SCENE_PAUSE_US": "0"}, frames=5 * MAX_FRAMES)
 
 
 @case
@@ -488,7 +488,7 @@ def chunks_come_back(context):
 @case
 def chunks_of_a_lost_node(context):
     """A node that does not rejoin: the others take its chunks, and from then on nothing is missing."""
-    watch = Watch(context, MOST, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
+    watch = Watch(context, MAX_FRAMES, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -509,7 +509,7 @@ def chunks_of_a_lost_node(context):
 @case
 def ranges_over_earlier_frames(context):
     """Without clears nothing is divided: the collector has everything, and receives everything again."""
-    watch = Watch(context, MOST, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
+    watch = Watch(context, MAX_FRAMES, by_ranges("serial", 2), {"SCENE_SHARES": "1", "SCENE_KEEPS": "1"}, tiles="1x1")
     with watch.start() as run:
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -528,13 +528,13 @@ def ranges_over_earlier_frames(context):
 def frames_over_earlier_frames(context):
     """Without clears, skipped draws would be missing. The node detects it before a picture is shown, and draws
     everything."""
-    return kill_and_look(context, environment={"SCENE_KEEPS": "1"})
+    return kill_and_compare(context, environment={"SCENE_KEEPS": "1"})
 
 
 @case
 def nodes_that_are_busy(context):
     """Without pauses: all processes wait for the nodes, and the returning node is no faster."""
-    return kill_and_look(context, frames=5 * MOST, environment={"SCENE_PAUSE_US": "0"}, at=100, every=50)
+    return kill_and_compare(context, frames=5 * MAX_FRAMES, environment={"SCENE_PAUSE_US": "0"}, at=100, every=50)
 
 
 @case
@@ -561,7 +561,7 @@ def killed_while_it_catches_up(context):
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        tried = len(said(run, "did not rejoin:")) + len(said(run, "was lost:")) - 1
+        tried = len(printed(run, "did not rejoin:")) + len(printed(run, "was lost:")) - 1
         if tried != 2:
             return "%d failed attempts were reported instead of 2: %s" % (tried, " | ".join(run.standard_error[-6:]))
         return judged(differing, [(frame - 3, range(half, WIDTH))], EXACT)
@@ -580,7 +580,7 @@ def fresh_node(run, known, seconds=15):
 def kill_and_compare_ends(context, options, tiles, victims, against=None, environment=None):
     """Compares the first and the last frames. Frames that no node lived to show have no picture, and only frames of the
     time without the nodes may be missing."""
-    watch = Watch(context, MOST, options, environment, tiles)
+    watch = Watch(context, MAX_FRAMES, options, environment, tiles)
     with watch.start() as run:
         if not run.wait_for_line("frame 60 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
@@ -647,7 +647,7 @@ def dies_again_and_again(context):
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        if len(said(run, "tiles stay as they were")) != 2:  # until the rejoin, after 2 tries
+        if len(printed(run, "tiles stay as they were")) != 2:  # until the rejoin, after 2 tries
             return "no message that it stays lost: " + " | ".join(run.standard_error[-6:])
         return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
 
@@ -668,7 +668,7 @@ def lost_for_good(context, options, words):
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        if len(said(run, words)) != 1:
+        if len(printed(run, words)) != 1:
             return "no message: " + " | ".join(run.standard_error[-3:])
         return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
 
@@ -680,7 +680,7 @@ def never(context):
 
 
 @case
-def more_than_is_kept(context):
+def more_than_the_limit(context):
     """A program that has sent more than --cache-size: the line about the loss says so, and no rejoin is tried."""
     return lost_for_good(context, ("--cache-size", "4MiB"), "a larger --cache-size")
 
@@ -699,11 +699,11 @@ def late_node(context, how, words):
         with watch.start() as run:
             if not run.wait_for_line("frame 5 "):
                 return "the program did not start: " + " | ".join(run.standard_error[-3:])
-            if len(said(run, words)) != 1:
+            if len(printed(run, words)) != 1:
                 return "no message about the missing node: " + " | ".join(run.standard_error[-4:])
             if not run.wait_for_line(" joined ", 30):
                 return "it did not join: " + " | ".join(run.standard_error[-4:])
-            print("    " + said(run, " joined ")[0])
+            print("    " + printed(run, " joined ")[0])
             watch.enough(run)
             differing = watch.differing(run)
             if isinstance(differing, str):
@@ -728,18 +728,18 @@ def late_nodes_too_many(context):
     """Fewer nodes came than are required: one line, and no program."""
     watch = Watch(context, 10, ("--nodes", "127.0.0.2,127.0.0.3", "--launch", "false", "--min-nodes", "1"))
     with watch.start() as run:
-        return cases.check_end(run, 2) or (None if len(said(run, "fewer than --min-nodes 1 are left")) == 1 else "no message: " + " | ".join(run.standard_error[-3:]))
+        return cases.check_end(run, 2) or (None if len(printed(run, "fewer than --min-nodes 1 are left")) == 1 else "no message: " + " | ".join(run.standard_error[-3:]))
 
 
 @case
 def planted_fault_is_seen(context):
     """One packet of a node's snapshot is lost: the pictures must reveal it."""
-    wrong = kill_and_look(context, environment={"MURAL_PLANT": "rejoin"})
+    wrong = kill_and_compare(context, environment={"MURAL_PLANT": "rejoin"})
     return None if wrong is not None and "still differs" in wrong else "it was not detected: %s" % wrong
 
 
 @case
-def large_store(context):
+def large_textures(context):
     """256 MiB of textures: the duration of the rejoin, and the time of the other node's frames meanwhile."""
     watch = Watch(context, environment={"SCENE_MIB": "256"})
     half = WIDTH // 2
@@ -751,7 +751,7 @@ def large_store(context):
         if not run.wait_for_line(BACK, 60):
             return "it did not rejoin: " + " | ".join(run.standard_error[-4:])
         back = latest_frame(run)
-        line = said(run, BACK)[0]
+        line = printed(run, BACK)[0]
         print("    " + line)
         watch.enough(run, 150)
         differing = watch.differing(run)

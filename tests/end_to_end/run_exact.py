@@ -29,7 +29,7 @@ def parse_arguments(description, add_arguments):
     parser.add_argument("--programs", help="programs and groups, separated by commas; default all")
     parser.add_argument("--layouts", default="1x1,2x2,3x1,7x5", help="tiles, columns x rows")
     parser.add_argument("--tile-queue", metavar="WxH", help="nodes take tiles of this size from a queue; layouts are numbers of nodes then")
-    parser.add_argument("--least-changes", type=int, default=0, metavar="N", help="fail when areas or shares changed less often, in all runs together: then nothing was tried")
+    parser.add_argument("--min-changes", type=int, default=0, metavar="N", help="fail when areas or shares changed less often, in all runs together: then nothing was tried")
     parser.add_argument("--size", default="1000x777", help="of the programs' windows")
     parser.add_argument("--frames", type=int, default=4)
     parser.add_argument("--options", default="--display none",
@@ -163,7 +163,7 @@ class Comparison:
             return
         if native.status != wanted or not native.frames():
             self.report(name, "reference", 0, "fails natively: status %s, %d pictures%s" % (
-                native.status, len(native.frames()), said(native)))
+                native.status, len(native.frames()), printed(native)))
             return
         frames = 0  # drawn by the nodes of the first layout
         for number, (label, launcher) in enumerate(self.launchers().items()):
@@ -197,15 +197,15 @@ class Comparison:
         """Returns None if all frames are equal, otherwise an error."""
         if not programs.same_status(native.status, through.status):
             return "status %s instead of %s%s" % (
-                "none in time" if through.status is None else through.status, native.status, said(through))
+                "none in time" if through.status is None else through.status, native.status, printed(through))
         if through.captured == 0:
-            return "no frame was drawn by nodes" + said(through)
+            return "no frame was drawn by nodes" + printed(through)
         expected, got = native.frames(), through.frames()
         if set(expected) != set(got):
             missing = sorted(set(expected) - set(got))
             extra = sorted(set(got) - set(expected))
             return "missing pictures: %s; unexpected: %s%s" % (
-                " ".join(missing) or "none", " ".join(extra) or "none", said(through))
+                " ".join(missing) or "none", " ".join(extra) or "none", printed(through))
         difference = pictures.Difference()
         wrong_frames = 0
         for frame in expected:
@@ -222,7 +222,7 @@ class Comparison:
                 got_name(got), difference.pixels, pixels, difference.pixels * 100 / pixels, difference.largest))
             return None
         return "%d pixels differ in %d frames, largest difference %d, %s%s" % (
-            difference.pixels, wrong_frames, difference.largest, difference.place, said(through))
+            difference.pixels, wrong_frames, difference.largest, difference.place, printed(through))
 
     def compare_pictures(self, expected, got, frame, difference):
         first, second = pictures.read_ppm(expected), pictures.read_ppm(got)
@@ -236,7 +236,7 @@ def got_name(frames):
     return "/".join(next(iter(frames.values())).split(os.sep)[-4:-2])
 
 
-def said(run):
+def printed(run):
     """Returns the last lines that a failed run printed, on one line."""
     lines = [line for line in run.output.splitlines() if line.strip()]
     return "; output: " + " | ".join(lines[-3:]) if lines else ""
@@ -264,8 +264,8 @@ def main(description=__doc__, add_arguments=lambda parser: None, comparison_clas
     finally:
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
-    if comparison.taken < arguments.least_changes:
-        print("WRONG: areas or shares changed %d times, not %d at least" % (comparison.taken, arguments.least_changes))
+    if comparison.taken < arguments.min_changes:
+        print("WRONG: areas or shares changed %d times, not %d at least" % (comparison.taken, arguments.min_changes))
         comparison.failures += 1
     print("%d programs, %d comparisons wrong, %d known to differ, %d skipped" % (len(names), comparison.failures, comparison.known, comparison.skipped))
     for name in comparison.healed:

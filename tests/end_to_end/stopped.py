@@ -58,8 +58,8 @@ def reads_through_stops(context, kind, pattern, stops=2, seconds=2 + 2 * STOP_SE
             return counts
         if counts[0] < 2 or counts[1] or counts[2]:
             return "%d reads, %d differ, %d errors" % tuple(counts)
-        said = [line for line in run.standard_error if "alone" in line or "dropped" in line or "lost" in line]
-        return "it was lost: " + " | ".join(said) if said else None
+        output = [line for line in run.standard_error if "alone" in line or "dropped" in line or "lost" in line]
+        return "it was lost: " + " | ".join(output) if output else None
 
 
 PROGRAM_ALONE = r"^\S*stopped_reads \w+ \d+$"
@@ -170,8 +170,8 @@ def grabbed(context, way, like=None):
         took = [float(found.group(1)) for found in map(lambda line: re.search(r"grabbed for ([\d.]+) s", line), run.standard_error) if found]
         if not took or took[0] > 10:  # a picture that waits for the head takes 5 s, each
             return "the grab lasted %s s" % took
-        said = [line for line in run.standard_error if "does not answer" in line]
-        return "it printed: " + said[0] if said else None
+        output = [line for line in run.standard_error if "does not answer" in line]
+        return "it printed: " + output[0] if output else None
 
 
 # Another connection's grab holds up the program's own GL natively, so these are compared with the first way.

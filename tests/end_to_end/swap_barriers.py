@@ -76,7 +76,7 @@ def over_tcp(context):
 
 
 @cases.case
-def files_say_it(context):
+def files_name_barriers(context):
     """A file's canvas with a swap barrier, and without."""
     for barrier, members in (("swapbarrier { name \"front\" }", 2), ("", 0)):
         with tempfile.TemporaryDirectory(prefix="mural-swap.") as folder:

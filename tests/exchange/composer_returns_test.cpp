@@ -52,7 +52,7 @@ private:
             if (again == happenings_.end()) return;
             for (const Happening& h : happenings_)
                 if (h.kind == kReturned && (h.before < again->before || &h < &*again))
-                    network_.awaitLife(h.rank, livesAt(h));
+                    network_.awaitIncarnation(h.rank, incarnationAt(h));
             next = again->before;
             node = network_.comeAgain(rank);
         }
@@ -60,15 +60,17 @@ private:
     // Returns the picture at which that node is lost.
     uint64_t take(FakeNode node, uint64_t from) {
         const int ranks = static_cast<int>(scene_.parts.size());
-        std::map<int, int> lives; // incarnations of its peers
+        std::map<int, int> incarnations; // incarnations of its peers
         for (const Happening& h : happenings_) {
-            if (node.life > 0 && h.kind == kReturned && h.rank == node.rank && livesAt(h) == node.life) break;
-            if (node.life > 0 && h.kind == kReturned) lives[h.rank] = livesAt(h);
+            if (node.incarnation > 0 && h.kind == kReturned && h.rank == node.rank &&
+                incarnationAt(h) == node.incarnation)
+                break;
+            if (node.incarnation > 0 && h.kind == kReturned) incarnations[h.rank] = incarnationAt(h);
         }
-        FakeRoutes routes(network_, node, lives);
+        FakeRoutes routes(network_, node, incarnations);
         PictureComposer composer({strategy_, node.rank, ranks, kPartMs, 2 * kPartMs, 1000, ""}, routes,
                                  [](const std::string&) {});
-        bool member = node.life == 0;
+        bool member = node.incarnation == 0;
         for (uint64_t picture = from; picture < pictures_.size(); ++picture) {
             for (const Happening& h : happenings_) {
                 if (h.before != picture) continue;
@@ -76,8 +78,8 @@ private:
                 if (h.kind != kReturned) continue;
                 member = member || h.rank == node.rank;
                 if (!member) continue;
-                network_.awaitLife(h.rank, livesAt(h)); // a member is always connected
-                composer.returned(h.rank, static_cast<uint32_t>(livesAt(h)), h.absent);
+                network_.awaitIncarnation(h.rank, incarnationAt(h)); // a member is always connected
+                composer.returned(h.rank, static_cast<uint32_t>(incarnationAt(h)), h.absent);
             }
             PicturePart part = scene_.parts[static_cast<size_t>(node.rank)];
             part.id.serial = picture;
@@ -89,13 +91,13 @@ private:
         return pictures_.size();
     }
     // The incarnation of that rank after this return.
-    [[nodiscard]] int livesAt(const Happening& happening) const {
-        int lives = 0;
+    [[nodiscard]] int incarnationAt(const Happening& happening) const {
+        int incarnations = 0;
         for (const Happening& h : happenings_) {
-            lives += h.kind == kReturned && h.rank == happening.rank ? 1 : 0;
+            incarnations += h.kind == kReturned && h.rank == happening.rank ? 1 : 0;
             if (&h == &happening) break;
         }
-        return lives;
+        return incarnations;
     }
 
     const Scene& scene_;

@@ -16,7 +16,7 @@ namespace mural::test {
 
 struct FakeNode {
     int rank = 0;
-    int life = 0; // incarnation
+    int incarnation = 0; // incarnation
     friend auto operator<=>(const FakeNode&, const FakeNode&) = default;
 };
 
@@ -49,11 +49,11 @@ public:
     FakeNode comeAgain(int rank) {
         const std::lock_guard lock(mutex_);
         changed_.notify_all();
-        return {rank, ++lives_[rank]};
+        return {rank, ++incarnations_[rank]};
     }
-    void awaitLife(int rank, int life) {
+    void awaitIncarnation(int rank, int incarnation) {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return lives_[rank] >= life; });
+        changed_.wait(lock, [&] { return incarnations_[rank] >= incarnation; });
     }
     [[nodiscard]] int sentBy(int rank) {
         const std::lock_guard lock(mutex_);
@@ -67,7 +67,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::map<std::pair<FakeNode, FakeNode>, std::deque<std::vector<std::byte>>> under_;
-    std::map<int, int> lives_, sent_; // by rank
+    std::map<int, int> incarnations_, sent_; // by rank
     std::set<FakeNode> gone_;
     std::pair<int, int> cut_{-1, -1};
 };
@@ -75,26 +75,26 @@ private:
 class FakeRoutes final : public PartRoutes {
 public:
     // lives: incarnations of the connected peers; 0 if not listed.
-    FakeRoutes(FakeNetwork& network, FakeNode own, std::map<int, int> lives = {})
-        : network_(network), own_(own), lives_(std::move(lives)) {}
+    FakeRoutes(FakeNetwork& network, FakeNode own, std::map<int, int> incarnations = {})
+        : network_(network), own_(own), incarnations_(std::move(incarnations)) {}
     Result<void> send(int rank, std::vector<std::byte> message, Deadline) override {
         network_.put(own_, peer(rank), std::move(message));
         return {};
     }
-    Result<std::vector<std::byte>> receive(int rank, size_t mostBytes, Deadline deadline) override {
+    Result<std::vector<std::byte>> receive(int rank, size_t maxBytes, Deadline deadline) override {
         auto message = network_.take(peer(rank), own_, deadline);
-        if (message && message->size() > mostBytes) return Error{"too large"};
+        if (message && message->size() > maxBytes) return Error{"too large"};
         return message;
     }
     LinkTransfer takeTransfer(int) override { return {}; }
     void giveUp(int) override {}
-    void renew(int rank, uint32_t life) override { lives_[rank] = static_cast<int>(life); }
+    void renew(int rank, uint32_t incarnation) override { incarnations_[rank] = static_cast<int>(incarnation); }
 
 private:
-    [[nodiscard]] FakeNode peer(int rank) { return {rank, lives_[rank]}; }
+    [[nodiscard]] FakeNode peer(int rank) { return {rank, incarnations_[rank]}; }
     FakeNetwork& network_;
     const FakeNode own_;
-    std::map<int, int> lives_; // by rank
+    std::map<int, int> incarnations_; // by rank
 };
 
 } // namespace mural::test

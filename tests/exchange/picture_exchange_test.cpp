@@ -106,17 +106,17 @@ TEST(PictureExchange, replacesANodeWhenItsSuccessorIsAnnounced) {
 TEST(PictureExchange, deliversDataOfEachIncarnation) {
     PictureExchange low({0, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
-    for (int life = 0; life < 4; ++life) {
-        PictureExchange high({1, static_cast<uint32_t>(life)}, secretOf(1));
+    for (int incarnation = 0; incarnation < 4; ++incarnation) {
+        PictureExchange high({1, static_cast<uint32_t>(incarnation)}, secretOf(1));
         ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
-        ASSERT_TRUE(high.send(0, bytesOf(10, life), Deadline::inMs(5000)));
+        ASSERT_TRUE(high.send(0, bytesOf(10, incarnation), Deadline::inMs(5000)));
     }
-    for (int life = 0; life < 4; ++life) {
-        if (life == 2) continue; // it never became a member
-        if (life > 0) low.renew(1, static_cast<uint32_t>(life));
+    for (int incarnation = 0; incarnation < 4; ++incarnation) {
+        if (incarnation == 2) continue; // it never became a member
+        if (incarnation > 0) low.renew(1, static_cast<uint32_t>(incarnation));
         auto came = low.receive(1, 100, Deadline::inMs(5000));
-        ASSERT_TRUE(came) << life << ": " << came.error().message;
-        EXPECT_EQ(*came, bytesOf(10, life));
+        ASSERT_TRUE(came) << incarnation << ": " << came.error().message;
+        EXPECT_EQ(*came, bytesOf(10, incarnation));
     }
     EXPECT_FALSE(low.receive(1, 100, Deadline::inMs(5000)));
 }
@@ -155,14 +155,14 @@ TEST(PictureExchange, treatsAMissingPeerAsLostAtOnce) {
 }
 
 // After connecting, a node is known to its peer, however soon the peer asks.
-TEST(PictureExchange, knowsAPeerOnceItIsWelcomed) {
+TEST(PictureExchange, acceptsAPeerOnceItIsWelcomed) {
     PictureExchange low({0, 0}, secretOf(1));
     ASSERT_TRUE(low.listen(true));
-    for (uint32_t life = 1; life < 60; ++life) {
-        PictureExchange high({1, life}, secretOf(1));
+    for (uint32_t incarnation = 1; incarnation < 60; ++incarnation) {
+        PictureExchange high({1, incarnation}, secretOf(1));
         ASSERT_TRUE(high.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
-        low.renew(1, life);
-        ASSERT_TRUE(low.send(1, bytesOf(5, 7), Deadline::inMs(5000))) << life;
+        low.renew(1, incarnation);
+        ASSERT_TRUE(low.send(1, bytesOf(5, 7), Deadline::inMs(5000))) << incarnation;
         ASSERT_EQ(*high.receive(0, 100, Deadline::inMs(5000)), bytesOf(5, 7));
     }
 }

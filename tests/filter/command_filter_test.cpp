@@ -17,11 +17,11 @@ using trace::PacketBuilder;
 constexpr uint32_t kStream = wire::streamOf(1, 0), kOther = wire::streamOf(1, 1);
 constexpr uint64_t kBound = 1 << 20;
 
-class Holding : public testing::Test {
+class CommandFilterTest : public testing::Test {
 protected:
-    void send(const PacketBuilder& p, uint32_t stream = kStream) { holder_.add(stream, p.bytes()); }
+    void send(const PacketBuilder& p, uint32_t stream = kStream) { filter_.add(stream, p.bytes()); }
     void begin() {
-        holder_.leaveOutSmall(true);
+        filter_.leaveOutSmall(true);
         send(PacketBuilder()
                  .context(1)
                  .window(1, 20, 10)
@@ -47,7 +47,7 @@ protected:
     SeenModel seen_;
     std::vector<uint32_t> streams_; // of the packets that were sent
     std::vector<uint16_t> opcodes_; // of the records that were sent
-    CommandFilter holder_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets*) {
+    CommandFilter filter_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets*) {
                               seen_.packet(stream, payload);
                               streams_.push_back(stream);
                               trace::RecordWalk walk(payload);
@@ -55,7 +55,7 @@ protected:
                           }};
 };
 
-TEST_F(Holding, defersATextureUntilADrawHasItBound) {
+TEST_F(CommandFilterTest, defersATextureUntilADrawHasItBound) {
     begin();
     send(PacketBuilder()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -65,15 +65,15 @@ TEST_F(Holding, defersATextureUntilADrawHasItBound) {
     for (uint32_t frame = 1; frame <= 100; ++frame)
         send(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}).swap(1, frame));
     EXPECT_EQ(seen_.uploads(), 0u);
-    EXPECT_EQ(holder_.counts().deferredRecords, 1u);
-    EXPECT_GT(holder_.counts().deferredBytes, 1024u);
+    EXPECT_EQ(filter_.counts().deferredRecords, 1u);
+    EXPECT_GT(filter_.counts().deferredBytes, 1024u);
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(seen_.uploads(), 1u);
-    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
+    EXPECT_EQ(filter_.counts().deferredBytes, 0u);
 }
 
 // Shaders may use the texture without a binding.
-TEST_F(Holding, defersNothingAfterATextureHasAHandle) {
+TEST_F(CommandFilterTest, defersNothingAfterATextureHasAHandle) {
     begin();
     send(PacketBuilder()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -86,7 +86,7 @@ TEST_F(Holding, defersNothingAfterATextureHasAHandle) {
     EXPECT_EQ(seen_.uploads(), 2u);
 }
 
-TEST_F(Holding, defersNothingAfterAHandleIsRequestedInAList) {
+TEST_F(CommandFilterTest, defersNothingAfterAHandleIsRequestedInAList) {
     begin();
     send(PacketBuilder()
              .record(op::glNewList, {3, GL_COMPILE})
@@ -96,7 +96,7 @@ TEST_F(Holding, defersNothingAfterAHandleIsRequestedInAList) {
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
-TEST_F(Holding, dropsUploadsReplacedBeforeTheirUse) {
+TEST_F(CommandFilterTest, dropsUploadsReplacedBeforeTheirUse) {
     begin();
     send(PacketBuilder()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -107,11 +107,11 @@ TEST_F(Holding, dropsUploadsReplacedBeforeTheirUse) {
     EXPECT_EQ(seen_.uploads(), 0u);
     send(draw());
     EXPECT_EQ(seen_.uploads(), 2u);
-    EXPECT_EQ(holder_.counts().droppedRecords, 18u);
-    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().droppedBytes);
+    EXPECT_EQ(filter_.counts().droppedRecords, 18u);
+    EXPECT_EQ(filter_.counts().inBytes, filter_.counts().outBytes + filter_.counts().droppedBytes);
 }
 
-TEST_F(Holding, sendsUploadsReadBeforeTheirReplacement) {
+TEST_F(CommandFilterTest, sendsUploadsReadBeforeTheirReplacement) {
     begin();
     send(PacketBuilder()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -122,7 +122,7 @@ TEST_F(Holding, sendsUploadsReadBeforeTheirReplacement) {
     EXPECT_EQ(seen_.uploads(), 2u);
 }
 
-TEST_F(Holding, dropsUploadsThatChangeNothing) {
+TEST_F(CommandFilterTest, dropsUploadsThatChangeNothing) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
     for (uint32_t i = 0; i < 10; ++i)
@@ -131,10 +131,10 @@ TEST_F(Holding, dropsUploadsThatChangeNothing) {
                  .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
                  .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), 2u) << "the first is not remembered: most never comes again";
-    EXPECT_EQ(holder_.counts().droppedRecords, 8u);
+    EXPECT_EQ(filter_.counts().droppedRecords, 8u);
 }
 
-TEST_F(Holding, dropsUploadsOfObjectsDeletedUnused) {
+TEST_F(CommandFilterTest, dropsUploadsOfObjectsDeletedUnused) {
     begin();
     send(PacketBuilder()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -142,10 +142,10 @@ TEST_F(Holding, dropsUploadsOfObjectsDeletedUnused) {
              .record(op::glDeleteTextures, {1, 4, 1})
              .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(seen_.uploads(), 0u);
-    EXPECT_EQ(holder_.counts().droppedRecords, 1u);
+    EXPECT_EQ(filter_.counts().droppedRecords, 1u);
 }
 
-TEST_F(Holding, forwardsUploadsThatAreAlwaysUsedAtOnce) {
+TEST_F(CommandFilterTest, forwardsUploadsThatAreAlwaysUsedAtOnce) {
     begin();
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
     for (uint32_t i = 0; i < 40; ++i)
@@ -154,10 +154,10 @@ TEST_F(Holding, forwardsUploadsThatAreAlwaysUsedAtOnce) {
                  .record(op::glDrawArrays, {GL_TRIANGLES, 0, 3})
                  .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), 40u);
-    EXPECT_EQ(holder_.counts().deferredRecords, 2u) << "nothing was won twice";
+    EXPECT_EQ(filter_.counts().deferredRecords, 2u) << "nothing was won twice";
 }
 
-TEST_F(Holding, releasesEverythingForAnUnknownCommand) {
+TEST_F(CommandFilterTest, releasesEverythingForAnUnknownCommand) {
     begin();
     send(PacketBuilder()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -170,9 +170,9 @@ TEST_F(Holding, releasesEverythingForAnUnknownCommand) {
 }
 
 // Records of a group that is no longer followed are skipped at once, except those that leave the group.
-TEST_F(Holding, defersAgainInAContextWithoutSharing) {
+TEST_F(CommandFilterTest, defersAgainInAContextWithoutSharing) {
     begin();
-    holder_.leaveOutSmall(false);
+    filter_.leaveOutSmall(false);
     send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
     send(draw()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -187,7 +187,7 @@ TEST_F(Holding, defersAgainInAContextWithoutSharing) {
 }
 
 // A new vertex array does not inherit bindings of an older one in the same memory.
-TEST_F(Holding, distinguishesNewVertexArrays) {
+TEST_F(CommandFilterTest, distinguishesNewVertexArrays) {
     begin();
     send(PacketBuilder()
              .record(op::glBindBuffer, {GL_ARRAY_BUFFER, 1})
@@ -208,7 +208,7 @@ TEST_F(Holding, distinguishesNewVertexArrays) {
     EXPECT_EQ(seen_.uploads(), 1u);
 }
 
-TEST_F(Holding, releasesBeforeRecordsOfAnotherContext) {
+TEST_F(CommandFilterTest, releasesBeforeRecordsOfAnotherContext) {
     begin();
     send(PacketBuilder().context(2, 1).record(wire::kOpMakeCurrent, {2, 2, 2}), kOther);
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).record(op::glTexImage2D, image(5)));
@@ -220,18 +220,18 @@ TEST_F(Holding, releasesBeforeRecordsOfAnotherContext) {
     EXPECT_EQ(streams_[0], kStream) << "by the context that it was given to";
 }
 
-TEST_F(Holding, respectsItsMemoryLimit) {
+TEST_F(CommandFilterTest, respectsItsMemoryLimit) {
     begin();
     std::vector<uint32_t> names;
     for (uint32_t i = 0; i < 2000; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 10 + i}).record(op::glTexImage2D, image(i)));
     EXPECT_GT(seen_.uploads(), 900u);
-    EXPECT_LE(holder_.counts().deferredBytes, kBound);
-    holder_.releaseAll();
+    EXPECT_LE(filter_.counts().deferredBytes, kBound);
+    filter_.releaseAll();
     EXPECT_EQ(seen_.uploads(), 2000u);
 }
 
-TEST_F(Holding, waitsForBlobs) {
+TEST_F(CommandFilterTest, waitsForBlobs) {
     begin();
     constexpr uint32_t kPieces = 5, kWords = 10'000;
     send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}));
@@ -250,22 +250,24 @@ TEST_F(Holding, waitsForBlobs) {
     EXPECT_EQ(seen_.uploads(), 0u);
     send(draw());
     EXPECT_EQ(seen_.uploads(), 1u);
-    EXPECT_EQ(holder_.counts().droppedRecords, kPieces + 2u);
+    EXPECT_EQ(filter_.counts().droppedRecords, kPieces + 2u);
     give(2);
     send(draw());
     EXPECT_EQ(seen_.uploads(), 1u) << "it is there";
     give(3);
-    EXPECT_EQ(holder_.counts().inBytes,
-              holder_.counts().outBytes + holder_.counts().droppedBytes + holder_.counts().deferredBytes);
-    holder_.clientGone(1);
+    EXPECT_EQ(filter_.counts().inBytes,
+              filter_.counts().outBytes + filter_.counts().droppedBytes + filter_.counts().deferredBytes);
+    filter_.clientGone(1);
     EXPECT_EQ(seen_.uploads(), 1u) << "nobody needs it";
-    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
+    EXPECT_EQ(filter_.counts().deferredBytes, 0u);
 }
 
 // The number of sent records with this opcode.
-size_t Holding::countOf(uint16_t opcode) const { return static_cast<size_t>(std::ranges::count(opcodes_, opcode)); }
+size_t CommandFilterTest::countOf(uint16_t opcode) const {
+    return static_cast<size_t>(std::ranges::count(opcodes_, opcode));
+}
 
-TEST_F(Holding, dropsUnchangedState) {
+TEST_F(CommandFilterTest, dropsUnchangedState) {
     begin();
     for (uint32_t frame = 1; frame <= 50; ++frame) {
         send(PacketBuilder()
@@ -282,11 +284,11 @@ TEST_F(Holding, dropsUnchangedState) {
         EXPECT_EQ(countOf(opcode), 1u);
     EXPECT_EQ(countOf(op::glActiveTexture), 0u) << "0 is active from the start";
     EXPECT_EQ(countOf(op::glDrawArrays), 50u);
-    EXPECT_EQ(holder_.counts().droppedRecords, 4u * 49 + 50);
-    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes + holder_.counts().droppedBytes);
+    EXPECT_EQ(filter_.counts().droppedRecords, 4u * 49 + 50);
+    EXPECT_EQ(filter_.counts().inBytes, filter_.counts().outBytes + filter_.counts().droppedBytes);
 }
 
-TEST_F(Holding, defersStateUntilADrawNeedsIt) {
+TEST_F(CommandFilterTest, defersStateUntilADrawNeedsIt) {
     begin();
     send(PacketBuilder()
              .record(op::glDisable, {GL_DEPTH_TEST})
@@ -300,20 +302,20 @@ TEST_F(Holding, defersStateUntilADrawNeedsIt) {
                  .record(op::glMatrixMode, {GL_MODELVIEW})
                  .swap(1, frame));
     EXPECT_EQ(countOf(op::glEnable) + countOf(op::glDepthFunc), 1u);
-    EXPECT_GT(holder_.counts().deferredBytes, 0u);
+    EXPECT_GT(filter_.counts().deferredBytes, 0u);
     send(PacketBuilder().record(op::glClear, {GL_COLOR_BUFFER_BIT}));
     EXPECT_EQ(countOf(op::glEnable), 1u);
     EXPECT_EQ(countOf(op::glDepthFunc), 2u);
-    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
+    EXPECT_EQ(filter_.counts().deferredBytes, 0u);
     // Restored before it was used.
     send(PacketBuilder().record(op::glDisable, {GL_DEPTH_TEST}).record(op::glEnable, {GL_DEPTH_TEST}));
-    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
+    EXPECT_EQ(filter_.counts().deferredBytes, 0u);
     send(draw());
     EXPECT_EQ(countOf(op::glDisable), 1u);
 }
 
-TEST_F(Holding, sendsStateBeforeCommandsThatReadIt) {
-    const PacketBuilder asking[] = {
+TEST_F(CommandFilterTest, sendsStateBeforeCommandsThatReadIt) {
+    const PacketBuilder queries[] = {
         PacketBuilder().record(op::glPushAttrib, {GL_ENABLE_BIT}),
         PacketBuilder().record(op::glBegin, {GL_POINTS}).record(op::glEnd, {}),
         PacketBuilder().record(op::glBlitFramebuffer, {0, 0, 1, 1, 0, 0, 1, 1, GL_COLOR_BUFFER_BIT, GL_NEAREST}),
@@ -322,16 +324,16 @@ TEST_F(Holding, sendsStateBeforeCommandsThatReadIt) {
         PacketBuilder().record(wire::kOpMakeCurrent, {0, 0, 0}),
         PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull})};
     begin();
-    for (size_t i = 0; i < std::size(asking); ++i) {
+    for (size_t i = 0; i < std::size(queries); ++i) {
         send(PacketBuilder().record(wire::kOpMakeCurrent, {1, 1, 1}));
         send(PacketBuilder().record(op::glViewport, {0, 0, 10, static_cast<uint32_t>(i)}));
         EXPECT_EQ(countOf(op::glViewport), i) << "nobody has asked";
-        send(asking[i]);
+        send(queries[i]);
         EXPECT_EQ(countOf(op::glViewport), i + 1);
     }
 }
 
-TEST_F(Holding, sendsUniformsOfTheDrawingProgram) {
+TEST_F(CommandFilterTest, sendsUniformsOfTheDrawingProgram) {
     begin();
     for (const uint32_t program : {5U, 6U})
         send(PacketBuilder().record(op::glCreateProgram, {program}).record(wire::kOpProgramLayout, {program, 4, 0}));
@@ -354,11 +356,11 @@ TEST_F(Holding, sendsUniformsOfTheDrawingProgram) {
     send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(countOf(op::glUniform4f), 1u);
     EXPECT_EQ(countOf(op::glUniform1f), 2u);
-    EXPECT_EQ(holder_.counts().deferredBytes, 0u);
+    EXPECT_EQ(filter_.counts().deferredBytes, 0u);
 }
 
 // State set by another thread meanwhile is unknown.
-TEST_F(Holding, dropsNoSmallStateWhereContextsShare) {
+TEST_F(CommandFilterTest, dropsNoSmallStateWhereContextsShare) {
     begin();
     send(PacketBuilder().context(2, 1), kOther);
     send(PacketBuilder()
@@ -376,9 +378,9 @@ TEST_F(Holding, dropsNoSmallStateWhereContextsShare) {
 }
 
 // Called lists set state and bind nothing. The first frame ends with other bindings than the second starts with.
-TEST_F(Holding, followsFramesThatEndDifferently) {
+TEST_F(CommandFilterTest, followsFramesThatEndDifferently) {
     begin();
-    holder_.leaveOutSmall(false);
+    filter_.leaveOutSmall(false);
     SeenModel whole;
     const auto give = [&](const PacketBuilder& p) {
         whole.packet(kStream, p.bytes());
@@ -410,9 +412,9 @@ TEST_F(Holding, followsFramesThatEndDifferently) {
     }
 }
 
-TEST_F(Holding, skipsRepeatedFrames) {
+TEST_F(CommandFilterTest, skipsRepeatedFrames) {
     begin();
-    holder_.leaveOutSmall(false);
+    filter_.leaveOutSmall(false);
     const auto frame = [&](uint32_t number, uint32_t texture) {
         PacketBuilder p;
         for (uint32_t i = 0; i < 50; ++i)
@@ -423,10 +425,10 @@ TEST_F(Holding, skipsRepeatedFrames) {
         return p.record(op::glBindTexture, {GL_TEXTURE_2D, texture}).swap(1, number);
     };
     for (uint32_t i = 1; i <= 100; ++i) send(frame(i, 1));
-    const uint64_t alike = holder_.counts().alikeRecords;
+    const uint64_t alike = filter_.counts().alikeRecords;
     EXPECT_GT(alike, 80u * 200) << "of 201 in each";
     send(frame(101, 2)); // differs at its end
-    EXPECT_GT(holder_.counts().alikeRecords, alike + 199);
+    EXPECT_GT(filter_.counts().alikeRecords, alike + 199);
     send(PacketBuilder()
              .record(op::glTexImage2D, image(5))
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -437,9 +439,9 @@ TEST_F(Holding, skipsRepeatedFrames) {
 }
 
 // Each frame ends with another texture bound, as in programs that move one object; the next frame binds its own first.
-TEST_F(Holding, skipsFramesThatLeaveOtherTexturesBound) {
+TEST_F(CommandFilterTest, skipsFramesThatLeaveOtherTexturesBound) {
     begin();
-    holder_.leaveOutSmall(false);
+    filter_.leaveOutSmall(false);
     constexpr uint32_t kEnds = 3, kFirst = 10;
     PacketBuilder made = PacketBuilder().record(op::glGenTextures, {kEnds, 4 * kEnds, kFirst, kFirst + 1, kFirst + 2});
     for (uint32_t i = 0; i < kEnds; ++i) made.record(op::glBindTexture, {GL_TEXTURE_2D, kFirst + i});
@@ -454,7 +456,7 @@ TEST_F(Holding, skipsFramesThatLeaveOtherTexturesBound) {
     };
     uint32_t number = 0;
     while (number < 100) send(frame(++number));
-    EXPECT_GT(holder_.counts().alikeRecords, 80u * 300) << "of 302 in each";
+    EXPECT_GT(filter_.counts().alikeRecords, 80u * 300) << "of 302 in each";
     // The remaining binding is followed nevertheless.
     const uint32_t last = kFirst + number % kEnds;
     send(PacketBuilder()
@@ -470,9 +472,9 @@ TEST_F(Holding, skipsFramesThatLeaveOtherTexturesBound) {
 }
 
 // Nodes reject them; the head continues.
-TEST_F(Holding, survivesDamagedPackets) {
+TEST_F(CommandFilterTest, survivesDamagedPackets) {
     begin();
-    holder_.leaveOutSmall(false);
+    filter_.leaveOutSmall(false);
     const auto frame = [](uint32_t number) {
         PacketBuilder p;
         for (uint32_t i = 0; i < 20; ++i)
@@ -486,13 +488,13 @@ TEST_F(Holding, survivesDamagedPackets) {
     for (size_t cut = 0; cut < sizeBytes; cut += 4) {
         for (int i = 0; i < 8; ++i) send(frame(++number));
         const PacketBuilder whole = frame(++number);
-        holder_.add(kStream, whole.bytes().first(cut)); // usually within a record
-        holder_.add(kStream, whole.bytes().subspan(cut));
+        filter_.add(kStream, whole.bytes().first(cut)); // usually within a record
+        filter_.add(kStream, whole.bytes().subspan(cut));
     }
-    EXPECT_EQ(holder_.counts().inBytes, holder_.counts().outBytes);
+    EXPECT_EQ(filter_.counts().inBytes, filter_.counts().outBytes);
 }
 
-TEST_F(Holding, releasesTheOldestAtTheMemoryLimit) {
+TEST_F(CommandFilterTest, releasesTheOldestAtTheMemoryLimit) {
     begin();
     constexpr uint32_t kImages = 1100; // about a thousand fit
     for (uint32_t i = 0; i < kImages; ++i)
@@ -507,7 +509,7 @@ TEST_F(Holding, releasesTheOldestAtTheMemoryLimit) {
 }
 
 // Loaded and drawn in the same frame repeatedly: most uploads are then forwarded.
-TEST_F(Holding, defersLittleThatIsAlwaysDrawnAtOnce) {
+TEST_F(CommandFilterTest, defersLittleThatIsAlwaysDrawnAtOnce) {
     begin();
     constexpr uint32_t kTextures = 200;
     for (uint32_t i = 0; i < kTextures; ++i)
@@ -517,19 +519,19 @@ TEST_F(Holding, defersLittleThatIsAlwaysDrawnAtOnce) {
                  .append(draw())
                  .swap(1, i + 1));
     EXPECT_EQ(seen_.uploads(), kTextures);
-    EXPECT_LT(holder_.counts().deferredRecords, 60u);
+    EXPECT_LT(filter_.counts().deferredRecords, 60u);
     // A waiting object shows that deferring pays.
     for (uint32_t i = 0; i < 20; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1000 + i}).record(op::glTexImage2D, image(i)));
     for (uint32_t i = 0; i < 5; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 1}).append(draw()).swap(1, 300 + i));
-    const uint64_t held = holder_.counts().deferredRecords;
+    const uint64_t deferred = filter_.counts().deferredRecords;
     for (uint32_t i = 0; i < 100; ++i)
         send(PacketBuilder().record(op::glBindTexture, {GL_TEXTURE_2D, 2000 + i}).record(op::glTexImage2D, image(i)));
-    EXPECT_EQ(holder_.counts().deferredRecords, held + 100);
+    EXPECT_EQ(filter_.counts().deferredRecords, deferred + 100);
 }
 
-TEST_F(Holding, examinesUniformsOnlyWithSmallState) {
+TEST_F(CommandFilterTest, examinesUniformsOnlyWithSmallState) {
     begin();
     send(PacketBuilder()
              .record(op::glCreateProgram, {5})
@@ -538,18 +540,18 @@ TEST_F(Holding, examinesUniformsOnlyWithSmallState) {
     const auto sets = [&](uint32_t value) { send(PacketBuilder().record(op::glUniform1f, {0, value})); };
     sets(1);
     EXPECT_EQ(countOf(op::glUniform1f), 0u) << "it waits";
-    holder_.leaveOutSmall(false);
+    filter_.leaveOutSmall(false);
     EXPECT_EQ(countOf(op::glUniform1f), 1u) << "the next one will not";
     sets(2);
     sets(2);
     EXPECT_EQ(countOf(op::glUniform1f), 3u);
-    holder_.leaveOutSmall(true);
+    filter_.leaveOutSmall(true);
     sets(1);
     send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glUniform1f, {0, 1}).append(draw()));
     EXPECT_GE(countOf(op::glUniform1f), 4u) << "what was set meanwhile is not taken for what it was before";
 }
 
-TEST_F(Holding, followsListsThatSetState) {
+TEST_F(CommandFilterTest, followsListsThatSetState) {
     begin();
     send(PacketBuilder()
              .record(op::glNewList, {3, GL_COMPILE})
@@ -570,21 +572,21 @@ TEST_F(Holding, followsListsThatSetState) {
 }
 
 // Draw records of a list are skipped together; glBegin and glEnd are paired nevertheless, even across packets.
-TEST_F(Holding, pairsPrimitivesOfLists) {
+TEST_F(CommandFilterTest, pairsPrimitivesOfLists) {
     for (const bool leavesOut : {true, false}) {
         for (const bool ends : {true, false}) {
             SCOPED_TRACE(testing::Message()
                          << "small state left out: " << leavesOut << ", the last primitive ends: " << ends);
             SeenModel seen;
-            CommandFilter holder(kBound, [&](uint32_t stream, std::span<const std::byte> payload,
-                                             const RecordOffsets*) { seen.packet(stream, payload); });
-            const auto say = [&](const PacketBuilder& p) { holder.add(kStream, p.bytes()); };
-            holder.leaveOutSmall(leavesOut);
-            say(PacketBuilder()
-                    .context(1)
-                    .window(1, 20, 10)
-                    .record(wire::kOpMakeCurrent, {1, 1, 1})
-                    .record(op::glGenTextures, {2, 8, 1, 2}));
+            CommandFilter subject(kBound, [&](uint32_t stream, std::span<const std::byte> payload,
+                                              const RecordOffsets*) { seen.packet(stream, payload); });
+            const auto feed = [&](const PacketBuilder& p) { subject.add(kStream, p.bytes()); };
+            subject.leaveOutSmall(leavesOut);
+            feed(PacketBuilder()
+                     .context(1)
+                     .window(1, 20, 10)
+                     .record(wire::kOpMakeCurrent, {1, 1, 1})
+                     .record(op::glGenTextures, {2, 8, 1, 2}));
             PacketBuilder list;
             list.record(op::glNewList, {3, GL_COMPILE});
             for (int i = 0; i < 50; ++i)
@@ -592,21 +594,22 @@ TEST_F(Holding, pairsPrimitivesOfLists) {
                     .record(op::glBegin, {GL_POINTS})
                     .record(op::glVertex3f, {1, 2, 3})
                     .record(op::glEnd, {});
-            say(list.record(op::glBegin, {GL_POINTS}).record(op::glVertex3f, {1, 2, 3}));
+            feed(list.record(op::glBegin, {GL_POINTS}).record(op::glVertex3f, {1, 2, 3}));
             PacketBuilder rest;
             rest.record(op::glVertex3f, {1, 2, 3});
             if (ends) rest.record(op::glEnd, {});
-            say(rest.record(op::glEndList, {}).record(op::glCallList, {3}));
-            say(PacketBuilder()
-                    .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
-                    .record(op::glTexImage2D, image(5))
-                    .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
-            EXPECT_EQ(holder.counts().deferredRecords, ends ? 1u : 0u) << "a list that leaves one open is not followed";
+            feed(rest.record(op::glEndList, {}).record(op::glCallList, {3}));
+            feed(PacketBuilder()
+                     .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
+                     .record(op::glTexImage2D, image(5))
+                     .record(op::glBindTexture, {GL_TEXTURE_2D, 2}));
+            EXPECT_EQ(subject.counts().deferredRecords, ends ? 1u : 0u)
+                << "a list that leaves one open is not followed";
         }
     }
 }
 
-TEST_F(Holding, defersNothingForAProgramWithDebugOutput) {
+TEST_F(CommandFilterTest, defersNothingForAProgramWithDebugOutput) {
     begin();
     send(PacketBuilder()
              .record(op::glEnable, {GL_DEBUG_OUTPUT})

@@ -317,15 +317,15 @@ private:
 };
 
 struct Won {
-    size_t held = 0, dropped = 0, alike = 0; // records
+    size_t deferred = 0, dropped = 0, alike = 0; // records
 };
 
 // The effect of the original packets on a node, and of the filter's output.
 class Both {
 public:
-    Both(RandomProgram& program, uint64_t mostBytes, bool small, uint32_t toggles)
-        : program_(program), mostBytes_(mostBytes), toggles_(toggles) {
-        holder_.leaveOutSmall(small);
+    Both(RandomProgram& program, uint64_t maxBytes, bool small, uint32_t toggles)
+        : program_(program), maxBytes_(maxBytes), toggles_(toggles) {
+        filter_.leaveOutSmall(small);
     }
 
     // Sends in pieces: values may be divided between two packets, but not between streams.
@@ -341,51 +341,51 @@ public:
         }
         if (from < bytes.size()) give(stream, bytes.subspan(from));
         ASSERT_EQ(held_.seen(), whole_.seen());
-        ASSERT_LE(holder_.counts().deferredBytes, mostBytes_);
+        ASSERT_LE(filter_.counts().deferredBytes, maxBytes_);
     }
     void ends(Won& won) {
-        holder_.releaseAll();
+        filter_.releaseAll();
         EXPECT_EQ(held_.all(), whole_.all()) << "what was held is lost";
-        EXPECT_EQ(holder_.counts().deferredBytes, 0u);
-        won.held += holder_.counts().deferredRecords;
-        won.dropped += holder_.counts().droppedRecords;
-        won.alike += holder_.counts().alikeRecords;
+        EXPECT_EQ(filter_.counts().deferredBytes, 0u);
+        won.deferred += filter_.counts().deferredRecords;
+        won.dropped += filter_.counts().droppedRecords;
+        won.alike += filter_.counts().alikeRecords;
     }
 
 private:
     void give(uint32_t stream, std::span<const std::byte> payload) {
-        if (program_.below(toggles_) == 0) holder_.leaveOutSmall(program_.below(3) != 0);
+        if (program_.below(toggles_) == 0) filter_.leaveOutSmall(program_.below(3) != 0);
         whole_.packet(stream, payload);
-        holder_.add(stream, payload);
+        filter_.add(stream, payload);
     }
 
     RandomProgram& program_;
-    const uint64_t mostBytes_;
+    const uint64_t maxBytes_;
     const uint32_t toggles_; // mean number of packets between them
     SeenModel whole_, held_;
-    CommandFilter holder_{mostBytes_,
+    CommandFilter filter_{maxBytes_,
                           [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
                               ASSERT_LE(payload.size(), wire::kMaxPacketBytes);
                               if (walked != nullptr) isMadeOf(payload, *walked);
                               held_.packet(stream, payload);
                           }};
-    static void isMadeOf(std::span<const std::byte> payload, const RecordOffsets& told) {
+    static void isMadeOf(std::span<const std::byte> payload, const RecordOffsets& offsets) {
         trace::RecordWalk walk(payload);
         trace::RecordView r;
         while (walk.next(r)) {}
         ASSERT_NE(walk.whole(), nullptr);
-        ASSERT_EQ(told.records, walk.whole()->records);
-        ASSERT_EQ(told.lastBytes, walk.whole()->lastBytes);
-        ASSERT_EQ(told.longAt, walk.whole()->longAt);
+        ASSERT_EQ(offsets.records, walk.whole()->records);
+        ASSERT_EQ(offsets.lastBytes, walk.whole()->lastBytes);
+        ASSERT_EQ(offsets.longAt, walk.whole()->longAt);
     }
 };
 
 constexpr uint32_t kFirst = wire::streamOf(1, 0), kSecond = wire::streamOf(1, 1);
 
-void same(uint32_t seed, bool shares, uint64_t mostBytes, Won& won) {
+void same(uint32_t seed, bool shares, uint64_t maxBytes, Won& won) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomProgram program(seed, shares);
-    Both both(program, mostBytes, true, 40);
+    Both both(program, maxBytes, true, 40);
     both.send(kFirst, program.begin());
     if (shares) both.send(kSecond, program.other());
     uint32_t stream = kFirst;
@@ -438,40 +438,40 @@ void slidingFrames(uint32_t seed, Won& won) {
     both.ends(won);
 }
 
-TEST(HeldStreams, showTheSameToEachDraw) {
+TEST(FilteredStreams, showTheSameToEachDraw) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(400) && !HasFatalFailure(); ++seed) same(seed, false, 1 << 20, won);
-    EXPECT_GT(won.held, rounds(10'000)) << "or this shows nothing";
+    EXPECT_GT(won.deferred, rounds(10'000)) << "or this shows nothing";
     EXPECT_GT(won.dropped, rounds(1000));
 }
 
-TEST(HeldStreams, showTheSameInSimilarFrames) {
+TEST(FilteredStreams, showTheSameInSimilarFrames) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(50) && !HasFatalFailure(); ++seed) sameFrames(seed, won);
     EXPECT_GT(won.alike, rounds(10'000)) << "or this shows nothing";
-    EXPECT_GT(won.held, rounds(1000));
+    EXPECT_GT(won.deferred, rounds(1000));
 }
 
-TEST(HeldStreams, showTheSameInFramesWithManyBindings) {
+TEST(FilteredStreams, showTheSameInFramesWithManyBindings) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(150) && !HasFatalFailure(); ++seed) bindingFrames(seed, won);
     EXPECT_GT(won.alike, rounds(50'000)) << "or this shows nothing";
-    EXPECT_GT(won.held, rounds(500));
+    EXPECT_GT(won.deferred, rounds(500));
 }
 
-TEST(HeldStreams, showTheSameInFramesThatLeaveOtherTexturesBound) {
+TEST(FilteredStreams, showTheSameInFramesThatLeaveOtherTexturesBound) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(75) && !HasFatalFailure(); ++seed) slidingFrames(seed, won);
     EXPECT_GT(won.alike, rounds(500'000)) << "or this shows nothing";
-    EXPECT_GT(won.held, rounds(250));
+    EXPECT_GT(won.deferred, rounds(250));
 }
 
-TEST(HeldStreams, showTheSameWithTwoSharingThreads) {
+TEST(FilteredStreams, showTheSameWithTwoSharingThreads) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(200) && !HasFatalFailure(); ++seed) same(seed, true, 1 << 20, won);
 }
 
-TEST(HeldStreams, showTheSameWithLittleMemory) {
+TEST(FilteredStreams, showTheSameWithLittleMemory) {
     Won won;
     for (uint32_t seed = 0; seed < rounds(100) && !HasFatalFailure(); ++seed) same(seed, false, 3000, won);
 }

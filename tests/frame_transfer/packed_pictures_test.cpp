@@ -90,10 +90,10 @@ TEST(PackedPictures, skipUnchangedTiles) {
 
 // Returns the largest difference of a colour component.
 int farthest(const Pixels& a, const Pixels& b) {
-    int most = 0;
+    int maximum = 0;
     for (size_t i = 0; i < a.size(); ++i)
-        if (i % 4 != 3) most = std::max(most, std::abs(static_cast<int>(a[i]) - static_cast<int>(b[i])));
-    return most;
+        if (i % 4 != 3) maximum = std::max(maximum, std::abs(static_cast<int>(a[i]) - static_cast<int>(b[i])));
+    return maximum;
 }
 
 TEST(PackedPictures, haveSmallErrorsForSmoothPicturesWithLossyCodecs) {

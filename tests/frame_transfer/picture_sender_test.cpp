@@ -111,7 +111,9 @@ protected:
         f.done.busyNs = 5;
         return sender_->send(std::move(f));
     }
-    bool tell(uint32_t number) { return sender_->tell(NodeMessage::ReplyPart, std::as_bytes(std::span(&number, 1))); }
+    bool enqueue(uint32_t number) {
+        return sender_->enqueue(NodeMessage::ReplyPart, std::as_bytes(std::span(&number, 1)));
+    }
     std::vector<NodeMessage> types() {
         const std::lock_guard lock(mutex_);
         std::vector<NodeMessage> all;
@@ -148,12 +150,12 @@ TEST_F(PictureSenderTest, sendsPicturesUnchangedFollowedByTheirFrames) {
 
 TEST_F(PictureSenderTest, keepsTheOrderOfMessages) {
     start();
-    ASSERT_TRUE(tell(1));
+    ASSERT_TRUE(enqueue(1));
     EXPECT_EQ(sent_.back().by, std::this_thread::get_id()); // sent without waking the thread, because none was queued
     ASSERT_TRUE(frame(1, &gate_));
-    ASSERT_TRUE(tell(2));
+    ASSERT_TRUE(enqueue(2));
     ASSERT_TRUE(frame(2));
-    ASSERT_TRUE(tell(3));
+    ASSERT_TRUE(enqueue(3));
     EXPECT_EQ(types(), (std::vector{NodeMessage::ReplyPart})); // everything else waits for the first picture
     gate_.open();
     ASSERT_TRUE(sender_->finish());
@@ -162,7 +164,7 @@ TEST_F(PictureSenderTest, keepsTheOrderOfMessages) {
                            NodeMessage::Picture, NodeMessage::FrameDone, NodeMessage::ReplyPart}));
     EXPECT_EQ(sent_[3].as<uint32_t>(), 2u);
     EXPECT_EQ(sent_[6].as<uint32_t>(), 3u);
-    ASSERT_TRUE(tell(4));
+    ASSERT_TRUE(enqueue(4));
     EXPECT_EQ(sent_.back().as<uint32_t>(), 4u); // sent immediately again
 }
 
@@ -177,13 +179,14 @@ TEST_F(PictureSenderTest, blocksAThirdPictureUntilThereIsRoom) {
 
 TEST_F(PictureSenderTest, limitsMessagesQueuedAfterAPicture) {
     PictureSenderConfig config;
-    config.mostBytes = 6000;
+    config.maxBytes = 6000;
     start(config);
     ASSERT_TRUE(frame(1, &gate_));
     const std::vector<std::byte> large(4000);
-    ASSERT_TRUE(sender_->tell(NodeMessage::ReplyPart, large));
-    waitsFor(gate_, [&] { return sender_->tell(NodeMessage::ReplyPart, large); });    // 8000 bytes would be queued
-    ASSERT_TRUE(sender_->tell(NodeMessage::ReplyPart, std::vector<std::byte>(9000))); // above the limit: accepted alone
+    ASSERT_TRUE(sender_->enqueue(NodeMessage::ReplyPart, large));
+    waitsFor(gate_, [&] { return sender_->enqueue(NodeMessage::ReplyPart, large); }); // 8000 bytes would be queued
+    ASSERT_TRUE(
+        sender_->enqueue(NodeMessage::ReplyPart, std::vector<std::byte>(9000))); // above the limit: accepted alone
     ASSERT_TRUE(sender_->finish());
     EXPECT_EQ(types().size(), 5u);
 }
@@ -196,7 +199,7 @@ TEST_F(PictureSenderTest, sendsNothingAfterAFailedSend) {
     ASSERT_TRUE(frame(2));
     EXPECT_FALSE(frame(3));
     EXPECT_FALSE(frame(4)); // fails immediately, without another wait
-    EXPECT_FALSE(tell(1));
+    EXPECT_FALSE(enqueue(1));
     EXPECT_FALSE(sender_->finish());
     EXPECT_EQ(std::ranges::count(log_, '\n'), 1) << log_;
     EXPECT_NE(log_.find("no picture could be sent"), std::string::npos) << log_;
@@ -207,7 +210,7 @@ TEST_F(PictureSenderTest, sendsQueuedMessagesAtTheEnd) {
     start();
     ASSERT_TRUE(frame(1, &gate_));
     ASSERT_TRUE(frame(2));
-    ASSERT_TRUE(tell(9));
+    ASSERT_TRUE(enqueue(9));
     std::thread opener([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         gate_.open();
@@ -247,7 +250,7 @@ TEST_F(PictureSenderTest, restoresPackedPicturesAcrossClosedWindows) {
             sender_->clientGone(1);
         else
             sender_->windowGone(1, windows.back());
-        ASSERT_TRUE(sender_->tell(NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1))));
+        ASSERT_TRUE(sender_->enqueue(NodeMessage::WindowGone, std::as_bytes(std::span(&gone, 1))));
     }
     ASSERT_TRUE(sender_->finish());
     PictureUnpacker unpacker("bitplane");
@@ -276,11 +279,11 @@ TEST_F(PictureSenderTest, restoresPackedPicturesAcrossClosedWindows) {
 
 TEST_F(PictureSenderTest, sendsSmallerPicturesOnANarrowLink) {
     PictureSenderConfig config;
-    config.way = {0.5, 0.25};
+    config.transferScale = {0.5, 0.25};
     start(config);
     ASSERT_TRUE(frame(1));
     ASSERT_TRUE(sender_->finish());
-    const ScaledSize size = sizeOnWay(kWidth, kHeight, config.way);
+    const ScaledSize size = scaledSizeOf(kWidth, kHeight, config.transferScale);
     std::vector<std::byte> wanted(size.bytes());
     resizePicture(rows(1).data(), kWidth, kHeight, wanted.data(), size.w, size.h);
     ASSERT_EQ(sent_[0].bytes.size(), sizeof(wire::PictureHeader) + wanted.size());

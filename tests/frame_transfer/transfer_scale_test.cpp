@@ -18,15 +18,15 @@ int at(const std::vector<std::byte>& pixels, int32_t w, int32_t x, int32_t y, in
     return std::to_integer<int>(pixels[static_cast<size_t>((y * w + x) * 4 + c)]);
 }
 
-TEST(PictureWay, computesWholeSizesThatAreNeverLarger) {
-    EXPECT_EQ(sizeOnWay(101, 50, {.5, .5}).w, 51);
-    EXPECT_EQ(sizeOnWay(101, 50, {.5, .5}).h, 25);
-    EXPECT_EQ(sizeOnWay(3, 1, {.01, .01}).w, 1);
-    EXPECT_EQ(sizeOnWay(10, 10, {4, 1}).w, 10);
-    EXPECT_EQ(sizeOnWay(0, 0, {.5, .5}).bytes(), 0u);
+TEST(TransferScale, computesWholeSizesThatAreNeverLarger) {
+    EXPECT_EQ(scaledSizeOf(101, 50, {.5, .5}).w, 51);
+    EXPECT_EQ(scaledSizeOf(101, 50, {.5, .5}).h, 25);
+    EXPECT_EQ(scaledSizeOf(3, 1, {.01, .01}).w, 1);
+    EXPECT_EQ(scaledSizeOf(10, 10, {4, 1}).w, 10);
+    EXPECT_EQ(scaledSizeOf(0, 0, {.5, .5}).bytes(), 0u);
 }
 
-TEST(PictureWay, averagesFourPixelsAtHalfTheSize) {
+TEST(TransferScale, averagesFourPixelsAtHalfTheSize) {
     const auto pixels = noise(8, 6);
     std::vector<std::byte> small(ScaledSize{4, 3}.bytes());
     resizePicture(pixels.data(), 8, 6, small.data(), 4, 3);
@@ -39,14 +39,14 @@ TEST(PictureWay, averagesFourPixelsAtHalfTheSize) {
             }
 }
 
-TEST(PictureWay, keepsASingleColour) {
+TEST(TransferScale, keepsASingleColour) {
     const std::vector<std::byte> pixels(ScaledSize{13, 7}.bytes(), std::byte{201});
     std::vector<std::byte> other(ScaledSize{29, 3}.bytes());
     resizePicture(pixels.data(), 13, 7, other.data(), 29, 3);
     for (const std::byte b : other) EXPECT_EQ(b, std::byte{201});
 }
 
-TEST(PictureWay, keepsAPictureOfTheSameSize) {
+TEST(TransferScale, keepsAPictureOfTheSameSize) {
     const auto pixels = noise(9, 5);
     std::vector<std::byte> other(pixels.size());
     resizePicture(pixels.data(), 9, 5, other.data(), 9, 5);

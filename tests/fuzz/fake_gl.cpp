@@ -245,11 +245,11 @@ private:
 
 class FakeContext : public gl::Context {
 public:
-    explicit FakeContext(bool tellsReset) : tellsReset_(tellsReset) {}
-    [[nodiscard]] bool tellsReset() const override { return tellsReset_; }
+    explicit FakeContext(bool reportsReset) : reportsReset_(reportsReset) {}
+    [[nodiscard]] bool reportsReset() const override { return reportsReset_; }
 
 private:
-    bool tellsReset_;
+    bool reportsReset_;
 };
 
 // Tracks live and current objects: a current surface or context must not be destroyed.
@@ -267,9 +267,9 @@ public:
     Result<std::unique_ptr<gl::Context>> createContext(const gl::ContextConfig& c, gl::Context* share) override {
         if (c.major > 9) return Error{"no such version"};
         if (share && !dynamic_cast<gl::Context*>(share)) return Error{"a share context that is gone"};
-        return std::unique_ptr<gl::Context>(new FakeContext(c.tellsReset));
+        return std::unique_ptr<gl::Context>(new FakeContext(c.reportsReset));
     }
-    Result<void> makeCurrent(gl::Context* context, gl::Surface* draw, gl::Surface* read, gl::HeldBack) override {
+    Result<void> makeCurrent(gl::Context* context, gl::Surface* draw, gl::Surface* read, gl::PendingCommands) override {
         // A change of context flushes the old surfaces and reads the new ones, so all must be alive.
         for (const gl::Surface* s :
              {draw_, read_, static_cast<const gl::Surface*>(draw), static_cast<const gl::Surface*>(read)}) {

@@ -23,18 +23,18 @@ ReplayConfig configOf(uint8_t options) {
     return c;
 }
 
-void look(std::span<const std::byte> bytes) {
+void touch(std::span<const std::byte> bytes) {
     volatile uint8_t sum = 0;
     for (const std::byte b : bytes) sum = static_cast<uint8_t>(sum + static_cast<uint8_t>(b));
 }
 
 ReplayOutputs outputs() {
     ReplayOutputs out;
-    out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) { look(bytes); };
+    out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte> bytes) { touch(bytes); };
     out.frameDone = [](const ReplayOutputs::Frame& f) {
         // The node reads its region; a small part is sufficient here and saves time.
         const PixelViewport r = intersect(f.region, {f.region.x, f.region.y, 16, 16});
-        if (f.pixels) look({f.pixels(r), static_cast<size_t>(r.area()) * 4});
+        if (f.pixels) touch({f.pixels(r), static_cast<size_t>(r.area()) * 4});
     };
     out.log = [](const std::string&) {};
     return out;

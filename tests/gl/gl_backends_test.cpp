@@ -191,7 +191,7 @@ TEST_P(Backends, createFramebuffersWithTheRequestedBits) {
             EXPECT_EQ(bits(GL_DEPTH_BITS), drawable.surface->config().depth);
             EXPECT_EQ(bits(GL_STENCIL_BITS), drawable.surface->config().stencil);
             // others may lack 16 bits
-            EXPECT_EQ(isMesas() ? gl::whatDiffers(drawable.surface->config(), config.surface) : "", "");
+            EXPECT_EQ(isMesas() ? gl::describeDifference(drawable.surface->config(), config.surface) : "", "");
         }
 }
 
@@ -222,7 +222,7 @@ TEST_P(Backends, useTheNearestBitsForMissingOnes) {
     const gl::SurfaceConfig& there = drawable.surface->config();
     EXPECT_EQ(there.depth, 24);
     EXPECT_LT(there.samples, 77);
-    EXPECT_EQ(gl::whatDiffers(there, config.surface),
+    EXPECT_EQ(gl::describeDifference(there, config.surface),
               "depth 24 instead of 23, samples " + std::to_string(there.samples) + " instead of 77");
     const GlFunctions gl(find());
     GLint bits = 0;
@@ -526,7 +526,7 @@ TEST(OpenPlatform, checksNames) {
     EXPECT_EQ((*some)->describe().rfind("EGL", 0), 0u);
 }
 
-TEST(OpenPlatform, reportsWhatGlxLacks) {
+TEST(OpenPlatform, reportsMissingGlxFeatures) {
     unsetenv("DISPLAY");
     auto none = gl::openPlatform("glx");
     ASSERT_FALSE(none);

@@ -32,36 +32,38 @@ TEST(ConfigMatch, takesTheLowestRankThenTheFirst) {
     EXPECT_EQ(matchConfig("X", all, SurfaceConfig()).value(), 1u);
 }
 
-TEST(ConfigMatch, oneSampleIsNoMultisampling) { EXPECT_TRUE(matchConfig("X", {candidate(0, 24, 1)}, SurfaceConfig())); }
+TEST(ConfigMatch, treatsOneSampleAsNoMultisampling) {
+    EXPECT_TRUE(matchConfig("X", {candidate(0, 24, 1)}, SurfaceConfig()));
+}
 
-TEST(ConfigMatch, errorNamesTheWishAndWhatThereIs) {
-    SurfaceConfig wish;
-    wish.accum = 2;
-    auto index = matchConfig("EGL", {candidate(0, 24, 0), candidate(0, 24, 4), candidate(8, 24, 8)}, wish);
+TEST(ConfigMatch, namesTheRequestAndTheCandidatesInErrors) {
+    SurfaceConfig requested;
+    requested.accum = 2;
+    auto index = matchConfig("EGL", {candidate(0, 24, 0), candidate(0, 24, 4), candidate(8, 24, 8)}, requested);
     ASSERT_FALSE(index);
     EXPECT_NE(index.error().message.find("EGL"), std::string::npos);
     EXPECT_NE(index.error().message.find("accum 2 (it has 0)"), std::string::npos) << index.error().message;
-    EXPECT_FALSE(matchConfig("EGL", {}, wish));
+    EXPECT_FALSE(matchConfig("EGL", {}, requested));
 }
 
 // A window of 10 bits per channel and 2 of alpha, where the driver has pbuffers of 8 only.
 TEST(ConfigMatch, takesOtherAlphaOnlyWhereBothHaveOne) {
-    SurfaceConfig wish;
-    wish.alpha = 2;
-    EXPECT_EQ(matchConfig("X", {candidate(0, 24, 0), candidate(8, 24, 0)}, wish).value(), 1u);
-    EXPECT_FALSE(matchConfig("X", {candidate(0, 24, 0)}, wish));
-    wish.alpha = 0;
-    EXPECT_FALSE(matchConfig("X", {candidate(8, 24, 0)}, wish));
+    SurfaceConfig requested;
+    requested.alpha = 2;
+    EXPECT_EQ(matchConfig("X", {candidate(0, 24, 0), candidate(8, 24, 0)}, requested).value(), 1u);
+    EXPECT_FALSE(matchConfig("X", {candidate(0, 24, 0)}, requested));
+    requested.alpha = 0;
+    EXPECT_FALSE(matchConfig("X", {candidate(8, 24, 0)}, requested));
 }
 
-TEST(ConfigMatch, takesTheNearestOfWhatIsNotThere) {
+TEST(ConfigMatch, takesTheNearestCandidateForMissingBits) {
     const std::vector<ConfigCandidate> all{candidate(0, 0, 0), candidate(0, 16, 8), candidate(0, 24, 4),
                                            candidate(0, 24, 2)};
     const auto taken = [&](int depth, int samples) {
-        SurfaceConfig wish;
-        wish.depth = depth;
-        wish.samples = samples;
-        return matchConfig("X", all, wish).value();
+        SurfaceConfig requested;
+        requested.depth = depth;
+        requested.samples = samples;
+        return matchConfig("X", all, requested).value();
     };
     EXPECT_EQ(taken(32, 4), 2u); // the most that there is
     EXPECT_EQ(taken(20, 3), 2u); // the least that has more, of each
@@ -70,30 +72,30 @@ TEST(ConfigMatch, takesTheNearestOfWhatIsNotThere) {
     EXPECT_EQ(taken(24, 16), 2u);
 }
 
-TEST(ConfigMatch, tellsWhatDiffers) {
-    SurfaceConfig wish, there;
-    EXPECT_EQ(whatDiffers(there, wish), "");
-    wish.depth = 32;
-    wish.samples = 4;
+TEST(ConfigMatch, describesDifferences) {
+    SurfaceConfig requested, there;
+    EXPECT_EQ(describeDifference(there, requested), "");
+    requested.depth = 32;
+    requested.samples = 4;
     there.width = 99; // the width is not compared
-    EXPECT_EQ(whatDiffers(there, wish), "depth 24 instead of 32, samples 0 instead of 4");
+    EXPECT_EQ(describeDifference(there, requested), "depth 24 instead of 32, samples 0 instead of 4");
     const ConfigCandidate taken = candidate(0, 24, 0);
-    wish.width = 77;
-    EXPECT_EQ(bitsOf(taken, wish).width, 77);
-    EXPECT_EQ(bitsOf(taken, wish).depth, 24);
+    requested.width = 77;
+    EXPECT_EQ(bitsOf(taken, requested).width, 77);
+    EXPECT_EQ(bitsOf(taken, requested).depth, 24);
 }
 
-TEST(ConfigMatch, everyAttributeCounts) {
+TEST(ConfigMatch, comparesEveryAttribute) {
     const std::vector<int SurfaceConfig::*> numbers{
         &SurfaceConfig::red,   &SurfaceConfig::green,   &SurfaceConfig::blue,    &SurfaceConfig::alpha,
         &SurfaceConfig::depth, &SurfaceConfig::stencil, &SurfaceConfig::samples, &SurfaceConfig::accum};
     for (auto number : numbers) {
-        SurfaceConfig wish;
-        wish.*number += 2;
-        EXPECT_EQ(static_cast<bool>(matchConfig("X", {ConfigCandidate()}, wish)),
+        SurfaceConfig requested;
+        requested.*number += 2;
+        EXPECT_EQ(static_cast<bool>(matchConfig("X", {ConfigCandidate()}, requested)),
                   number != &SurfaceConfig::alpha && number != &SurfaceConfig::accum);
-        EXPECT_NE(whatDiffers(SurfaceConfig(), wish), "");
-        EXPECT_FALSE(sameBits(wish, SurfaceConfig()));
+        EXPECT_NE(describeDifference(SurfaceConfig(), requested), "");
+        EXPECT_FALSE(sameBits(requested, SurfaceConfig()));
     }
     SurfaceConfig srgb, stereo, wide;
     srgb.srgb = stereo.stereo = true;
@@ -103,32 +105,32 @@ TEST(ConfigMatch, everyAttributeCounts) {
     EXPECT_TRUE(sameBits(wide, SurfaceConfig()));
 }
 
-TEST(ConfigMatch, sizesHaveLimits) {
-    SurfaceConfig wish;
-    wish.width = wish.height = kMaxSurfaceSize;
-    EXPECT_TRUE(checkSize("X", wish, kMaxSurfaceSize));
-    wish.height = kMaxSurfaceSize + 1;
-    EXPECT_FALSE(checkSize("X", wish, kMaxSurfaceSize));
-    wish.height = 0;
-    EXPECT_FALSE(checkSize("X", wish, kMaxSurfaceSize));
+TEST(ConfigMatch, limitsSizes) {
+    SurfaceConfig requested;
+    requested.width = requested.height = kMaxSurfaceSize;
+    EXPECT_TRUE(checkSize("X", requested, kMaxSurfaceSize));
+    requested.height = kMaxSurfaceSize + 1;
+    EXPECT_FALSE(checkSize("X", requested, kMaxSurfaceSize));
+    requested.height = 0;
+    EXPECT_FALSE(checkSize("X", requested, kMaxSurfaceSize));
 }
 
-TEST(VersionRequest, profilesBeginWith31) {
-    ContextConfig wish;
-    EXPECT_FALSE(versionRequest(wish).profile);
-    wish.major = 3;
-    EXPECT_FALSE(versionRequest(wish).profile);
-    wish.minor = 1;
-    EXPECT_TRUE(versionRequest(wish).profile);
-    EXPECT_EQ(versionRequest(wish).minor, 2);
-    wish.minor = 3;
-    EXPECT_TRUE(versionRequest(wish).profile);
-    EXPECT_EQ(versionRequest(wish).minor, 3);
-    wish.api = Api::Es2;
-    EXPECT_FALSE(versionRequest(wish).profile);
+TEST(VersionRequest, setsAProfileFrom31On) {
+    ContextConfig requested;
+    EXPECT_FALSE(versionRequest(requested).profile);
+    requested.major = 3;
+    EXPECT_FALSE(versionRequest(requested).profile);
+    requested.minor = 1;
+    EXPECT_TRUE(versionRequest(requested).profile);
+    EXPECT_EQ(versionRequest(requested).minor, 2);
+    requested.minor = 3;
+    EXPECT_TRUE(versionRequest(requested).profile);
+    EXPECT_EQ(versionRequest(requested).minor, 3);
+    requested.api = Api::Es2;
+    EXPECT_FALSE(versionRequest(requested).profile);
 }
 
-TEST(DynamicLibrary, saysWhatIsMissingAndHowToGetIt) {
+TEST(DynamicLibrary, reportsAMissingLibraryAndItsPackage) {
     auto library = DynamicLibrary::open({"libmural-not-there.so.1", "libmural-not-there.so"}, "mural-not-there");
     ASSERT_FALSE(library);
     EXPECT_NE(library.error().message.find("libmural-not-there.so.1"), std::string::npos);
@@ -160,22 +162,22 @@ EGLBoolean destroyContext(EGLDisplay, EGLContext context) {
 }
 
 // The driver uses the current surfaces when the next ones become current, so they must still exist then.
-TEST(EglLeftOvers, areThereUntilToldAndGoOnce) {
+TEST(EglDeferredObjects, areDestroyedOnceOnRequest) {
     int one = 0, other = 0;
     {
         EglDisplayState state;
         state.egl.destroySurface = destroySurface;
         state.egl.destroyContext = destroyContext;
-        state.left.addSurface(&one);
-        state.left.addContext(&other);
+        state.deferredObjects.addSurface(&one);
+        state.deferredObjects.addContext(&other);
         EXPECT_TRUE(destroyed().empty());
-        state.left.destroy(state.egl, state.display);
+        state.deferredObjects.destroy(state.egl, state.display);
         EXPECT_EQ(destroyed(), (std::vector<std::pair<char, void*>>{{'c', &other}, {'s', &one}}));
-        state.left.destroy(state.egl, state.display);
+        state.deferredObjects.destroy(state.egl, state.display);
         EXPECT_EQ(destroyed().size(), 2u);
-        state.left.addSurface(&other);
+        state.deferredObjects.addSurface(&other);
     }
-    EXPECT_EQ(destroyed().size(), 3u) << "none is left when the display goes";
+    EXPECT_EQ(destroyed().size(), 3u) << "the display destroys all of them at its end";
 }
 
 TEST(GlVersion, isReadFromEveryForm) {

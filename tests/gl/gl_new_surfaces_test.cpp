@@ -45,14 +45,14 @@ protected:
     }
 
     // Creates a surface, and expects zeros in all its buffers.
-    void expectZero(const gl::SurfaceConfig& wish) {
-        SCOPED_TRACE(std::to_string(wish.width) + "x" + std::to_string(wish.height) + " alpha " +
-                     std::to_string(wish.alpha) + " samples " + std::to_string(wish.samples));
-        fillHeapWithPattern(static_cast<size_t>(wish.width) * static_cast<size_t>(wish.height) * 4);
+    void expectZero(const gl::SurfaceConfig& requested) {
+        SCOPED_TRACE(std::to_string(requested.width) + "x" + std::to_string(requested.height) + " alpha " +
+                     std::to_string(requested.alpha) + " samples " + std::to_string(requested.samples));
+        fillHeapWithPattern(static_cast<size_t>(requested.width) * static_cast<size_t>(requested.height) * 4);
         gl::ContextConfig config;
         config.major = 2;
         config.minor = 1;
-        config.surface = wish;
+        config.surface = requested;
         const Drawable drawable(*platform_, config);
         ASSERT_EQ(drawable.error, "");
         const GlFunctions gl(find());

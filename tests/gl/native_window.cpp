@@ -61,14 +61,14 @@ public:
         glXDestroyContext(x_.display(), context_);
     }
 
-    Result<void> open(const gl::ContextConfig& wish) {
+    Result<void> open(const gl::ContextConfig& requested) {
         if (!x_.display()) return Error{"no X display"};
-        GLXFBConfig config = choose(wish.surface);
+        GLXFBConfig config = choose(requested.surface);
         XVisualInfo* visual = config ? glXGetVisualFromFBConfig(x_.display(), config) : nullptr;
         if (!visual) return Error{"no GLX visual with these bits"};
-        x_.create(*visual, wish.surface.width, wish.surface.height);
+        x_.create(*visual, requested.surface.width, requested.surface.height);
         XFree(visual);
-        context_ = makeContext(config, wish);
+        context_ = makeContext(config, requested);
         if (!context_ || !glXMakeCurrent(x_.display(), x_.window(), context_)) return Error{"no GLX context"};
         return {};
     }
@@ -124,17 +124,17 @@ private:
     }
 
     // With the old call for version 1, with the new one for others.
-    GLXContext makeContext(GLXFBConfig config, const gl::ContextConfig& wish) const {
-        if (wish.api == gl::Api::Desktop && wish.major == 1)
+    GLXContext makeContext(GLXFBConfig config, const gl::ContextConfig& requested) const {
+        if (requested.api == gl::Api::Desktop && requested.major == 1)
             return glXCreateNewContext(x_.display(), config, GLX_RGBA_TYPE, nullptr, True);
         auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(find()("glXCreateContextAttribsARB"));
-        const int profile = wish.api != gl::Api::Desktop ? GLX_CONTEXT_ES_PROFILE_BIT_EXT
-                            : wish.core                  ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB
-                                                         : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB;
+        const int profile = requested.api != gl::Api::Desktop ? GLX_CONTEXT_ES_PROFILE_BIT_EXT
+                            : requested.core                  ? GLX_CONTEXT_CORE_PROFILE_BIT_ARB
+                                                              : GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB;
         const int list[] = {GLX_CONTEXT_MAJOR_VERSION_ARB,
-                            wish.major,
+                            requested.major,
                             GLX_CONTEXT_MINOR_VERSION_ARB,
-                            wish.minor,
+                            requested.minor,
                             GLX_CONTEXT_PROFILE_MASK_ARB,
                             profile,
                             0};
@@ -153,23 +153,24 @@ public:
         eglTerminate(egl_);
     }
 
-    Result<void> open(const gl::ContextConfig& wish) {
+    Result<void> open(const gl::ContextConfig& requested) {
         if (!x_.display()) return Error{"no X display"};
         egl_ = eglGetPlatformDisplay(EGL_PLATFORM_X11_KHR, x_.display(), nullptr);
         if (!eglInitialize(egl_, nullptr, nullptr)) return Error{"no EGL on X"};
         EGLint visualId = 0;
-        EGLConfig config = choose(wish.surface, visualId);
+        EGLConfig config = choose(requested.surface, visualId);
         XVisualInfo wanted{};
         wanted.visualid = static_cast<VisualID>(visualId);
         int count = 0;
         XVisualInfo* visual = config ? XGetVisualInfo(x_.display(), VisualIDMask, &wanted, &count) : nullptr;
         if (!visual) return Error{"no EGL configuration with these bits that has a visual"};
-        x_.create(*visual, wish.surface.width, wish.surface.height);
+        x_.create(*visual, requested.surface.width, requested.surface.height);
         XFree(visual);
         surface_ = eglCreateWindowSurface(egl_, config, x_.window(), nullptr);
-        const bool desktop = wish.api == gl::Api::Desktop;
+        const bool desktop = requested.api == gl::Api::Desktop;
         eglBindAPI(desktop ? EGL_OPENGL_API : EGL_OPENGL_ES_API);
-        const EGLint list[] = {EGL_CONTEXT_MAJOR_VERSION, wish.major, EGL_CONTEXT_MINOR_VERSION, wish.minor, EGL_NONE};
+        const EGLint list[] = {EGL_CONTEXT_MAJOR_VERSION, requested.major, EGL_CONTEXT_MINOR_VERSION, requested.minor,
+                               EGL_NONE};
         EGLContext context = eglCreateContext(egl_, config, EGL_NO_CONTEXT, list);
         if (!eglMakeCurrent(egl_, surface_, surface_, context)) return Error{"no EGL context for the window"};
         return {};

@@ -11,7 +11,7 @@
 #include "common/base/clock.hpp"
 #include "common/ipc/futex.hpp"
 #include "nodes/head/capture/arrival_rate.hpp"
-#include "nodes/head/capture/life_mark.hpp"
+#include "nodes/head/capture/liveness_mark.hpp"
 
 namespace mural {
 namespace {
@@ -69,7 +69,7 @@ TEST(CaptureMemory, reportsAProgramWhileItHasADescriptorOrTheMapping) {
 }
 
 // A word in memory that a process shares with its child.
-class LifeMarkTest : public ::testing::Test {
+class LivenessMarkTest : public ::testing::Test {
 protected:
     void SetUp() override {
         void* const page = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -81,11 +81,11 @@ protected:
     std::atomic<uint32_t>* word_ = nullptr;
 };
 
-TEST_F(LifeMarkTest, isMarkedWhenItsProcessIsKilled) {
+TEST_F(LivenessMarkTest, isMarkedWhenItsProcessIsKilled) {
     const pid_t child = fork();
     if (child == 0) {
         std::thread([this] {
-            const LifeMark mark(*word_);
+            const LivenessMark mark(*word_);
             pause();
         }).join();
         _exit(0);
@@ -99,9 +99,9 @@ TEST_F(LifeMarkTest, isMarkedWhenItsProcessIsKilled) {
     EXPECT_NE(word_->load() & FUTEX_OWNER_DIED, 0U);
 }
 
-TEST_F(LifeMarkTest, isMarkedWhenItsProcessEndsNormally) {
+TEST_F(LivenessMarkTest, isMarkedWhenItsProcessEndsNormally) {
     std::thread([this] {
-        const LifeMark mark(*word_);
+        const LivenessMark mark(*word_);
         EXPECT_EQ(word_->load(), static_cast<uint32_t>(gettid()));
     }).join();
     EXPECT_EQ(word_->load(), FUTEX_OWNER_DIED);
@@ -153,7 +153,7 @@ TEST_F(CaptureMemoryTest, countsFramesAcrossTheWrapOfTheirNumbers) {
     program.join();
 }
 
-TEST(ArrivalRate, napsOnlyAfterTwoQuickArrivals) {
+TEST(ArrivalRate, sleepsOnlyAfterTwoQuickArrivals) {
     ArrivalRate pace;
     constexpr int64_t kQuickNs = ArrivalRate::kQuickNs;
     EXPECT_FALSE(pace.moreSoon(0));

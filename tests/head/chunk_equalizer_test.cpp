@@ -23,7 +23,7 @@ protected:
         plan_ = planSession(configOf(nodes, chunks), "me");
         dealer_ = std::make_unique<ChunkEqualizer>(
             plan_, [this](const RangeAssignment& shares) { announced_.push_back(shares); });
-        lives_.assign(static_cast<size_t>(nodes), true);
+        alive_.assign(static_cast<size_t>(nodes), true);
     }
 
     [[nodiscard]] Range shareOf(size_t node) const {
@@ -37,14 +37,14 @@ protected:
         ++frames_;
         const uint32_t number = shares != UINT32_MAX ? shares : announced_.empty() ? 0 : announced_.back().number;
         std::vector<double> busy;
-        for (size_t node = 0; node < lives_.size(); ++node) {
+        for (size_t node = 0; node < alive_.size(); ++node) {
             const Range share = shareOf(node);
             busy.push_back(node == 0 ? more : 0);
             for (int i = 0; i < 1000; ++i)
                 if (const double at = (i + .5) / 1000; at >= share.start && at < share.end) busy.back() += cost(at);
         }
-        for (size_t node = 0; node < lives_.size(); ++node) {
-            if (!lives_[node]) continue;
+        for (size_t node = 0; node < alive_.size(); ++node) {
+            if (!alive_[node]) continue;
             wire::FrameDoneMessage m{};
             m.client = m.window = 1;
             m.frame = frames_;
@@ -61,9 +61,9 @@ protected:
     // Every draw belongs to one living node, in the order of their ranges.
     void expectWhole() const {
         double at = 0;
-        for (size_t node = 0; node < lives_.size(); ++node) {
+        for (size_t node = 0; node < alive_.size(); ++node) {
             const Range share = shareOf(node);
-            if (!lives_[node]) {
+            if (!alive_[node]) {
                 EXPECT_TRUE(share.empty()) << node;
                 continue;
             }
@@ -77,7 +77,7 @@ protected:
     SessionPlan plan_;
     std::unique_ptr<ChunkEqualizer> dealer_;
     std::vector<RangeAssignment> announced_;
-    std::vector<bool> lives_;
+    std::vector<bool> alive_;
     uint32_t frames_ = 0;
 };
 
@@ -122,14 +122,14 @@ TEST_F(ChunkDealerTest, ignoresFramesOfOlderSharesOrWithoutSharedDraws) {
 TEST_F(ChunkDealerTest, reassignsTheChunksOfALostNode) {
     begin(3, 30);
     for (int i = 0; i < 4; ++i) frame(even);
-    lives_[1] = false;
+    alive_[1] = false;
     dealer_->nodeLost(1);
     ASSERT_EQ(announced_.size(), 1u);
     expectWhole();
     EXPECT_EQ(dealer_->totals()[0].nodes[1].second, 0);
     for (int i = 0; i < 30; ++i) frame(costlyFirst);
     expectWhole();
-    lives_[1] = true;
+    alive_[1] = true;
     dealer_->nodeJoined(1);
     expectWhole();
     EXPECT_NEAR(shareOf(1).start, 1.0 / 3, 1e-9);
@@ -141,7 +141,7 @@ TEST_F(ChunkDealerTest, reassignsTheChunksOfALostNode) {
 TEST_F(ChunkDealerTest, givesEachNodeAChunk) {
     begin(5, 2);
     dealer_->nodeLost(4);
-    lives_[4] = false;
+    alive_[4] = false;
     expectWhole();
 }
 
@@ -149,7 +149,7 @@ TEST_F(ChunkDealerTest, keepsRandomSharesCompleteAndInOrder) {
     plan_ = planSession(configOf(4, 16), "me");
     dealer_ = std::make_unique<ChunkEqualizer>(
         plan_, [this](const RangeAssignment& shares) { announced_.push_back(shares); }, "shares");
-    lives_.assign(4, true);
+    alive_.assign(4, true);
     for (int i = 0; i < 50; ++i) {
         frame(even);
         expectWhole();
@@ -169,7 +169,7 @@ TEST(ChunkEqualizer, doesNothingWithoutAQueueOrForTimeMultiplexedNodes) {
     EXPECT_NE(plan.warnings[0].find("in turn"), std::string::npos) << plan.warnings[0];
 }
 
-TEST(RangeAssignment, roundTripAndRejectInvalidOnes) {
+TEST(RangeAssignment, roundTripsAndRejectsInvalidOnes) {
     const RangeAssignment shares{3, {{0, .25}, {.25, .25}, {.25, 1}}};
     const auto bytes = bytesOf(shares);
     EXPECT_EQ(sharesOf(bytes), shares);

@@ -58,8 +58,8 @@ SessionPlan planOfRanges(const std::string& composition) {
 
 TEST(ConfigPlan, readsTheCompositionOfRanges) {
     using compositor::Strategy;
-    const auto chosen = [](SessionPlan plan, const std::string& wish) {
-        chooseComposition(plan, wish);
+    const auto chosen = [](SessionPlan plan, const std::string& composition) {
+        chooseComposition(plan, composition);
         for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.composition, plan.nodes[0].composition);
         return plan.nodes[0].composition.value_or(Strategy::Serial);
     };
@@ -266,7 +266,7 @@ TEST(ConfigPlan, createsChunkQueues) {
 }
 
 // The collector shows the picture of ranges. The head shows what several pictures compose, and both eyes on one screen.
-TEST(ConfigPlan, selectsWhoShowsComposedPictures) {
+TEST(ConfigPlan, selectsTheNodeThatShowsComposedPictures) {
     SessionConfig windows;
     windows.display = Display::Windows;
     for (const char* file : {"db.eqc", "cave.eqc"}) EXPECT_FALSE(headShowsWall(windows, planOfFile(file))) << file;
@@ -359,7 +359,7 @@ TEST(ConfigPlan, placesPartialFramesOnTheWall) {
     for (const NodePlan& n : plan->nodes) {
         covered += n.area->w * n.area->h;
         EXPECT_FALSE(n.shown);
-        EXPECT_TRUE(n.way.none());
+        EXPECT_TRUE(n.transferScale.none());
         for (const NodePlan& o : plan->nodes) EXPECT_TRUE(o.node == n.node || intersect(*n.area, *o.area).empty());
         others += std::abs(n.area->x - .5) < .01 && std::abs(n.area->y - .5) < .01;
     }
@@ -377,16 +377,16 @@ TEST(ConfigPlan, reducesPicturesForTheTransfer) {
                            "outputframe { zoom [ .5 .25 ] } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->nodes.size(), 2u);
-    EXPECT_TRUE(plan->nodes[0].way.none());
-    EXPECT_NEAR(plan->nodes[1].way.x, .5, .005) << "in whole pixels of its channel";
-    EXPECT_NEAR(plan->nodes[1].way.y, .25, .005);
+    EXPECT_TRUE(plan->nodes[0].transferScale.none());
+    EXPECT_NEAR(plan->nodes[1].transferScale.x, .5, .005) << "in whole pixels of its channel";
+    EXPECT_NEAR(plan->nodes[1].transferScale.y, .25, .005);
     EXPECT_TRUE(plan->nodes[1].pass.zoom.none()) << "it is drawn as it is";
     EXPECT_TRUE(plan->warnings.empty());
     // Ranges composited by depth do not support this.
     auto ranges = planOfText("buffer [ COLOR DEPTH ] compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 "
                              "] outputframe { zoom [ .5 .5 ] } }");
     ASSERT_TRUE(ranges) << ranges.error().message;
-    for (const NodePlan& n : ranges->nodes) EXPECT_TRUE(n.way.none());
+    for (const NodePlan& n : ranges->nodes) EXPECT_TRUE(n.transferScale.none());
     ASSERT_EQ(ranges->warnings.size(), 1u);
     EXPECT_NE(ranges->warnings[0].find(".eqc:4:"), std::string::npos) << ranges->warnings[0];
 }
@@ -401,7 +401,7 @@ TEST(ConfigPlan, showsFramesOfQueuesWhereTheyAreDrawn) {
     ASSERT_EQ(plan->nodes.size(), 2u);
     for (const NodePlan& n : plan->nodes) {
         EXPECT_EQ(n.queue, 0);
-        EXPECT_TRUE(n.way.none());
+        EXPECT_TRUE(n.transferScale.none());
     }
     auto plain = planOfText(
         queue +

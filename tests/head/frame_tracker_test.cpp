@@ -81,8 +81,8 @@ TEST_F(FrameTrackerTest, skipsAFrameThatNeverComes) {
 }
 
 TEST_F(FrameTrackerTest, delaysOnlyShownFramesForHeldPictures) {
-    tracker.pictureHeld(1, 1);
-    tracker.pictureHeld(1, 2);
+    tracker.delayPicture(1, 1);
+    tracker.delayPicture(1, 2);
     for (const uint32_t frame : {1u, 2u})
         for (const int node : {0, 1}) done(node, frame);
     EXPECT_EQ(credits, (Credits{{1, 1, 0}, {1, 2, 0}}));

@@ -49,24 +49,24 @@ TEST(HeadSession, announcesCommonFeaturesOfAllNodes) {
 
 TEST(HeadSession, reportsDriverEventsToTheProgramOnce) {
     SessionHarness head(3);
-    for (auto& behaviour : head.behaviours) behaviour.news = "a slow draw" + std::string(600, '.');
+    for (auto& behaviour : head.behaviours) behaviour.driverMessage = "a slow draw" + std::string(600, '.');
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 2));
     ASSERT_TRUE(program.waitFramesDone(2));
-    ASSERT_EQ(program.header()->newsTail.load(), 2u); // from three nodes
-    wire::DriverEvent news{};
-    const capture::DriverEventSlot& slot = capture::news(program.header())[1];
-    std::memcpy(&news, slot.news, sizeof news);
-    EXPECT_EQ(news.context, 7u);
-    EXPECT_EQ(news.textBytes, capture::kDriverEventTextBytes); // long texts are truncated
+    ASSERT_EQ(program.header()->driverEventTail.load(), 2u); // from three nodes
+    wire::DriverEvent event{};
+    const capture::DriverEventSlot& slot = capture::driverEvents(program.header())[1];
+    std::memcpy(&event, slot.event, sizeof event);
+    EXPECT_EQ(event.context, 7u);
+    EXPECT_EQ(event.textBytes, capture::kDriverEventTextBytes); // long texts are truncated
     EXPECT_EQ(std::string(slot.text, 11), "a slow draw");
     // A program that never reads events: they are lost, and frames continue.
     ASSERT_TRUE(swapFrames(program, 3, 100));
     ASSERT_TRUE(program.waitFramesDone(100));
-    EXPECT_EQ(program.header()->newsTail.load(), capture::kDriverEventSlots);
+    EXPECT_EQ(program.header()->driverEventTail.load(), capture::kDriverEventSlots);
     head.finish();
     EXPECT_EQ(head.status(), 0);
 }
@@ -104,9 +104,9 @@ TEST(HeadSession, sendsEveryPacketToEveryNodeInOrder) {
 }
 
 TEST(HeadSession, givesCreditOnlyWhenAllNodesAreDone) {
-    std::atomic<bool> hold{true};
+    std::atomic<bool> filterPacket{true};
     SessionHarness head(2);
-    head.behaviours[1].hold = nullptr;
+    head.behaviours[1].filterPacket = nullptr;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
@@ -121,17 +121,17 @@ TEST(HeadSession, givesCreditOnlyWhenAllNodesAreDone) {
 }
 
 TEST(HeadSession, blocksTheProgramForASlowNode) {
-    std::atomic<bool> hold{false};
+    std::atomic<bool> filterPacket{false};
     SessionHarness head(2);
     head.pipeBytes = 4096;
-    head.behaviours[1].hold = &hold;
+    head.behaviours[1].filterPacket = &filterPacket;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 1));
     ASSERT_TRUE(program.waitFramesDone(1));
-    hold = true;
+    filterPacket = true;
     // More bytes than the pipe and all chunks hold: the publisher must block until the node reads again.
     std::atomic<bool> done{false};
     std::thread publisher([&] {
@@ -147,7 +147,7 @@ TEST(HeadSession, blocksTheProgramForASlowNode) {
     }
     EXPECT_FALSE(done);
     EXPECT_EQ(program.header()->framesDone.load(), 1u);
-    hold = false;
+    filterPacket = false;
     publisher.join();
     EXPECT_TRUE(done);
     ASSERT_TRUE(swapFrames(program, 2, 2));
@@ -157,30 +157,30 @@ TEST(HeadSession, blocksTheProgramForASlowNode) {
 
 // As after `kill -STOP`: the node's silence is the only sign.
 TEST(HeadSession, dropsASilentNodeAndContinues) {
-    std::atomic<bool> hold{false};
+    std::atomic<bool> filterPacket{false};
     SessionHarness head(2);
     head.options.silencePatienceMs = 1500;
     head.behaviours[0].alive = true; // idle nodes send a heartbeat
     head.behaviours[1].alive = true;
-    head.behaviours[1].hold = &hold;
+    head.behaviours[1].filterPacket = &filterPacket;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 1));
     ASSERT_TRUE(program.waitFramesDone(1));
-    hold = true;
+    filterPacket = true;
     ASSERT_TRUE(swapFrames(program, 2, 3));
     ASSERT_TRUE(program.publish(kFakeSum, {5}));
     FakeProgram::Answer answer;
     EXPECT_TRUE(program.readAnswer(answer));
     EXPECT_TRUE(program.waitFramesDone(3));
-    const std::string said = head.waitForSay("was lost");
-    EXPECT_EQ(said.rfind("node 1 (local) was lost: no message for", 0), 0u) << said;
+    const std::string line = head.waitForMessage("was lost");
+    EXPECT_EQ(line.rfind("node 1 (local) was lost: no message for", 0), 0u) << line;
     const auto report = head.finish();
     EXPECT_EQ(report["nodes"][0]["lost"], false);
     EXPECT_EQ(report["nodes"][1]["lost"], true);
-    hold = false;
+    filterPacket = false;
 }
 
 TEST(HeadSession, endsWithTheReasonOfANodesRefusal) {
@@ -203,11 +203,11 @@ TEST(HeadSession, reportsWindowsThatEveryNodeDrawsWholeOnce) {
     ASSERT_TRUE(program.waitFramesDone(3));
     const auto report = head.finish();
     EXPECT_EQ(report["drawnWhole"], true);
-    int said = 0;
+    int line = 0;
     for (const auto& event : head.seen)
-        said += event["event"] == "say" &&
+        line += event["event"] == "say" &&
                 event["text"].get<std::string>().find("every node draws all") != std::string::npos;
-    EXPECT_EQ(said, 1);
+    EXPECT_EQ(line, 1);
 }
 
 // Slower nodes receive less, and all nodes receive the change at the same place of the stream.
@@ -257,7 +257,7 @@ TEST(HeadSession, sendsUnchangedAreasOnce) {
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 5));
     ASSERT_TRUE(program.waitFramesDone(5));
-    head.waitForSay("tiles of a window stay with their nodes");
+    head.waitForMessage("tiles of a window stay with their nodes");
     head.finish();
     EXPECT_EQ(std::ranges::count_if(head.seen,
                                     [](const auto& e) {
@@ -391,7 +391,7 @@ TEST(HeadSession, dropsOnlyTheProgramWithAForgedRing) {
         ASSERT_TRUE(program.connect(head.config.session));
         forgery.act(program);
         EXPECT_TRUE(program.waitHeadGone()) << forgery.name;
-        head.waitForSay("program " + std::to_string(program.welcome().clientId) + " (");
+        head.waitForMessage("program " + std::to_string(program.welcome().clientId) + " (");
     }
     ASSERT_TRUE(swapFrames(honest, 1, 3));
     EXPECT_TRUE(honest.waitFramesDone(3));
@@ -438,8 +438,8 @@ TEST(HeadSession, keepsAProgramThatClosesItsSocketUntilItsMemoryIsUnmapped) {
     poll(nullptr, 0, 200); // several checks of the head
     ASSERT_TRUE(swapFrames(program, 4, 6));
     ASSERT_TRUE(program.waitFramesDone(6));
-    EXPECT_EQ(program.header()->headLife & FUTEX_OWNER_DIED, 0U);
-    EXPECT_NE(program.header()->headLife, 0U);
+    EXPECT_EQ(program.header()->headLiveness & FUTEX_OWNER_DIED, 0U);
+    EXPECT_NE(program.header()->headLiveness, 0U);
     program.disconnect();
     while (head.waitFor("clients")["count"] != 0) {}
     EXPECT_EQ(head.finish()["frames"], 6);
@@ -470,9 +470,9 @@ TEST(HeadSession, continuesWhenANodeIsLostInMidFrame) {
         ASSERT_TRUE(program.connect(head.config.session));
         ASSERT_TRUE(swapFrames(program, 1, 20));
         EXPECT_TRUE(program.waitFramesDone(20));
-        const std::string said = head.waitForSay("was lost");
-        EXPECT_EQ(said.rfind("node 1 (local) was lost: ", 0), 0u) << said;
-        EXPECT_NE(said.find("its tiles stay as they were"), std::string::npos);
+        const std::string line = head.waitForMessage("was lost");
+        EXPECT_EQ(line.rfind("node 1 (local) was lost: ", 0), 0u) << line;
+        EXPECT_NE(line.find("its tiles stay as they were"), std::string::npos);
         const auto report = head.finish();
         EXPECT_EQ(report["nodes"][1]["lost"], true);
         EXPECT_EQ(report["nodes"][0]["lost"], false);
@@ -515,18 +515,18 @@ TEST(HeadSession, keepsDeferredRepliesForTheProgram) {
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
-    constexpr uint32_t kOwedAnswers = 12, kWords = 300'000;
-    for (uint32_t i = 1; i <= kOwedAnswers; ++i)
-        ASSERT_TRUE(program.publish(kFakeBytes, {capture::kOwed | i, kWords + i}));
+    constexpr uint32_t kDeferredReplies = 12, kWords = 300'000;
+    for (uint32_t i = 1; i <= kDeferredReplies; ++i)
+        ASSERT_TRUE(program.publish(kFakeBytes, {capture::kDeferred | i, kWords + i}));
     ASSERT_TRUE(program.publish(kFakeSum, {77}));
     ASSERT_TRUE(swapFrames(program, 1, 20));
     ASSERT_TRUE(program.waitFramesDone(20)); // the ring is full by then
     std::this_thread::sleep_for(std::chrono::milliseconds(kLongPauseMs));
     EXPECT_EQ(program.header()->headGone.load(), 0u);
-    for (uint32_t i = 1; i <= kOwedAnswers; ++i) {
+    for (uint32_t i = 1; i <= kDeferredReplies; ++i) {
         FakeProgram::Answer answer;
         ASSERT_TRUE(program.readAnswer(answer));
-        EXPECT_EQ(answer.header.requestId, capture::kOwed | i);
+        EXPECT_EQ(answer.header.requestId, capture::kDeferred | i);
         EXPECT_EQ(answer.header.failed, 0u);
         EXPECT_EQ(answer.bytes.size(), (kWords + i) * 4u);
     }
@@ -570,7 +570,7 @@ TEST(HeadSession, letsProgramsContinueWithoutNodes) {
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 3));
     EXPECT_TRUE(program.waitHeadGone());
-    head.waitForSay("all render nodes are lost");
+    head.waitForMessage("all render nodes are lost");
     FakeProgram late;
     ASSERT_TRUE(late.connect(head.config.session));
     EXPECT_EQ(late.welcome().refused, 1u);
@@ -597,23 +597,23 @@ TEST(HeadSession, endsWithoutANodesFarewell) {
 }
 
 TEST(HeadSession, endsWhenANodeReadsNothing) {
-    std::atomic<bool> hold{false};
+    std::atomic<bool> filterPacket{false};
     SessionHarness head(2);
     head.pipeBytes = 4096;
-    head.behaviours[1].hold = &hold;
+    head.behaviours[1].filterPacket = &filterPacket;
     head.options.drainPatienceMs = 100;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
-    hold = true;
+    filterPacket = true;
     std::vector<uint32_t> words(4000, 0);
     words[0] = 4000;
     words[1] = kFakeNote;
     for (int i = 0; i < 10; ++i) ASSERT_TRUE(program.publishWords(words));
     const auto report = head.finish();
     EXPECT_EQ(report["nodes"][1]["lost"], true);
-    hold = false;
+    filterPacket = false;
 }
 
 TEST(HeadSession, endsWhenTheControlConnectionBreaks) {

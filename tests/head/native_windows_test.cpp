@@ -21,7 +21,7 @@ struct World {
     std::vector<std::pair<uint64_t, int64_t>> shown;   // window, frame
     std::multiset<std::pair<uint32_t, uint32_t>> done; // client, frame
     std::set<uint32_t> blocked;
-    int said = 0;
+    int messages = 0;
 
     template <class Condition> bool wait(Condition condition) {
         std::unique_lock lock(mutex);
@@ -76,7 +76,7 @@ protected:
                           : static_cast<void>(world_.blocked.erase(client));
             });
         };
-        config.say = [this](const std::string&) { world_.change([&] { ++world_.said; }); };
+        config.say = [this](const std::string&) { world_.change([&] { ++world_.messages; }); };
         return config;
     }
 
@@ -90,7 +90,7 @@ protected:
     NativeWindows windows_{config()};
 };
 
-TEST_F(NativeWindowsTest, holdUpNoOtherProgramThanThatOfTheServer) {
+TEST_F(NativeWindowsTest, delaysOnlyTheProgramOfTheStoppedServer) {
     world_.stopped = {100};
     show(1, 1);
     ASSERT_TRUE(world_.wait([&] { return world_.blocked.contains(1); }));
@@ -102,10 +102,10 @@ TEST_F(NativeWindowsTest, holdUpNoOtherProgramThanThatOfTheServer) {
     ASSERT_TRUE(world_.wait([&] { return world_.done.contains({1, 9}) && world_.blocked.empty(); }));
     EXPECT_EQ(world_.done.size(), 18u); // each once
     EXPECT_EQ(world_.shown.back(), (std::pair<uint64_t, int64_t>{100, 9}));
-    EXPECT_EQ(world_.said, 1);
+    EXPECT_EQ(world_.messages, 1);
 }
 
-TEST_F(NativeWindowsTest, leaveToTheProgramWhatItPutsItself) {
+TEST_F(NativeWindowsTest, paintsNothingOverTheProgramsOwnOutput) {
     world_.grabbed = {1};
     show(1, 1);
     show(2, 1);
@@ -116,7 +116,7 @@ TEST_F(NativeWindowsTest, leaveToTheProgramWhatItPutsItself) {
     EXPECT_FALSE(world_.done.contains({1, 1})); // reported by the component that passes it to the program
 }
 
-TEST_F(NativeWindowsTest, endWithAServerThatDoesNotAnswer) {
+TEST_F(NativeWindowsTest, endsWithAServerThatDoesNotAnswer) {
     world_.stopped = {100};
     for (uint32_t frame = 1; frame <= 3; ++frame) show(1, frame);
     show(2, 1);
@@ -125,7 +125,7 @@ TEST_F(NativeWindowsTest, endWithAServerThatDoesNotAnswer) {
     EXPECT_TRUE(world_.done.contains({2, 1}));
 }
 
-TEST_F(NativeWindowsTest, showTheLastPictureOfAProgramThatIsGone) {
+TEST_F(NativeWindowsTest, showsTheLastPictureOfAnEndedProgram) {
     show(1, 1);
     windows_.clientGone(1);
     windows_.finish();

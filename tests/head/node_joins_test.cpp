@@ -118,10 +118,10 @@ TEST(NodeJoins, takeTheProgressOfTheOnlyNode) {
 
 TEST(NodeJoins, repeatNoDriverEvents) {
     DriverEventMerger merger;
-    const wire::DriverEvent news{1, 2, 1, 0, 0, 0, 0, 0};
-    EXPECT_TRUE(merger.isNew(0, news, "a"));
+    const wire::DriverEvent event{1, 2, 1, 0, 0, 0, 0, 0};
+    EXPECT_TRUE(merger.isNew(0, event, "a"));
     merger.nodeJoins(1);
-    EXPECT_FALSE(merger.isNew(0, news, "a") && merger.isNew(1, news, "a")) << "the second of each is one message";
+    EXPECT_FALSE(merger.isNew(0, event, "a") && merger.isNew(1, event, "a")) << "the second of each is one message";
 }
 
 size_t contextsIn(const RejoinLog::Snapshot& snapshot) {
@@ -134,18 +134,18 @@ size_t contextsIn(const RejoinLog::Snapshot& snapshot) {
 }
 
 TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
-    RejoinLog kept(1 << 20);
+    RejoinLog log(1 << 20);
     const auto makes = [&](uint32_t stream, uint32_t context) {
-        kept.append(stream, trace::PacketBuilder().context(context).swap(1, context).bytes());
+        log.append(stream, trace::PacketBuilder().context(context).swap(1, context).bytes());
     };
     makes(wire::streamOf(1, 0), 7);
     makes(wire::streamOf(2, 0), 8);
     makes(wire::streamOf(1, 1), 9);
-    const uint64_t first = kept.hold();
+    const uint64_t first = log.filterPacket();
     makes(wire::streamOf(2, 0), 10); // after it
-    const uint64_t second = kept.hold();
-    auto later = std::async(std::launch::async, [&] { return kept.snapshot(second, Deadline::inMs(10'000)); });
-    auto snapshot = kept.snapshot(first, Deadline::inMs(10'000));
+    const uint64_t second = log.filterPacket();
+    auto later = std::async(std::launch::async, [&] { return log.snapshot(second, Deadline::inMs(10'000)); });
+    auto snapshot = log.snapshot(first, Deadline::inMs(10'000));
     ASSERT_TRUE(snapshot.ok());
     EXPECT_EQ(contextsIn(*snapshot), 3u);
     ASSERT_EQ(snapshot->frames.size(), 2u);
@@ -154,29 +154,29 @@ TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
     auto all = later.get();
     ASSERT_TRUE(all.ok());
     EXPECT_EQ(contextsIn(*all), 4u);
-    kept.programGone(1);
-    auto rest = kept.snapshot(kept.hold(), Deadline::inMs(10'000));
+    log.programGone(1);
+    auto rest = log.snapshot(log.filterPacket(), Deadline::inMs(10'000));
     ASSERT_TRUE(rest.ok());
     EXPECT_EQ(contextsIn(*rest), 2u);
 }
 
 TEST(RejoinLog, reportsOverflowUntilTheProgramsAreGone) {
-    RejoinLog kept(1 << 20);
-    const auto fits = [&] { return kept.snapshot(kept.hold(), Deadline::inMs(10'000)).ok(); };
+    RejoinLog log(1 << 20);
+    const auto fits = [&] { return log.snapshot(log.filterPacket(), Deadline::inMs(10'000)).ok(); };
     const std::vector<uint32_t> much(65536, 1); // a command without a rule: it stays in the log
-    kept.append(wire::streamOf(1, 0),
-                trace::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
+    log.append(wire::streamOf(1, 0),
+               trace::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());
     EXPECT_TRUE(fits());
     for (int i = 0; i < 16; ++i)
-        kept.append(wire::streamOf(1, 0), trace::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());
-    kept.append(wire::streamOf(2, 0), trace::PacketBuilder().context(1).bytes());
+        log.append(wire::streamOf(1, 0), trace::PacketBuilder().longRecord(op::glAlphaFragmentOp1ATI, much).bytes());
+    log.append(wire::streamOf(2, 0), trace::PacketBuilder().context(1).bytes());
     EXPECT_FALSE(fits());
-    EXPECT_FALSE(kept.complete());
-    kept.programGone(1);
+    EXPECT_FALSE(log.complete());
+    log.programGone(1);
     EXPECT_FALSE(fits()) << "what they shared is not known any more";
-    kept.programGone(2);
+    log.programGone(2);
     EXPECT_TRUE(fits()) << "nobody is left";
-    kept.append(wire::streamOf(3, 0), trace::PacketBuilder().context(1).bytes());
+    log.append(wire::streamOf(3, 0), trace::PacketBuilder().context(1).bytes());
     EXPECT_TRUE(fits());
 }
 

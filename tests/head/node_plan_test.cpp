@@ -6,7 +6,7 @@
 namespace mural {
 namespace {
 
-TEST(NodePlan, withoutWishesOneNodePerTileUpToFour) {
+TEST(NodePlan, startsOneNodePerTileUpToFourByDefault) {
     SessionConfig config;
     EXPECT_EQ(planSession(config, "me").nodes.size(), 1u);
     config.columns = 3;
@@ -15,7 +15,7 @@ TEST(NodePlan, withoutWishesOneNodePerTileUpToFour) {
     EXPECT_EQ(planSession(config, "me").nodes.size(), 4u);
 }
 
-TEST(NodePlan, windowsOfSeveralNodesShowFramesTogether) {
+TEST(NodePlan, synchronizesWindowsOfSeveralNodes) {
     SessionConfig config;
     config.columns = 3;
     config.display = Display::Windows;
@@ -41,7 +41,7 @@ TEST(NodePlan, windowsOfSeveralNodesShowFramesTogether) {
     EXPECT_EQ(setupOf(config, plan, plan.nodes[0]).swapMembers, 0) << "the head shows the picture";
 }
 
-TEST(NodePlan, hostsAreReachedByTheNearestWay) {
+TEST(NodePlan, selectsTheNearestTransportPerHost) {
     SessionConfig config;
     config.columns = 5;
     config.localNodes = 1;
@@ -58,7 +58,7 @@ TEST(NodePlan, hostsAreReachedByTheNearestWay) {
     EXPECT_EQ(planSession(config, "me").nodes.size(), 4u) << "hosts, and no local nodes beside them";
 }
 
-TEST(NodePlan, moreNodesThanTilesAreNotStarted) {
+TEST(NodePlan, startsNoMoreNodesThanTiles) {
     SessionConfig config;
     config.columns = 2;
     config.localNodes = 2;
@@ -69,7 +69,7 @@ TEST(NodePlan, moreNodesThanTilesAreNotStarted) {
     EXPECT_EQ(plan.warnings[0].rfind("3 render nodes requested", 0), 0u) << plan.warnings[0];
 }
 
-TEST(NodePlan, setupsSayWhatEachNodeDraws) {
+TEST(NodePlan, describesInSetupsWhatEachNodeDraws) {
     SessionConfig config;
     config.columns = 2;
     config.rows = 2;
@@ -90,7 +90,7 @@ TEST(NodePlan, setupsSayWhatEachNodeDraws) {
     EXPECT_EQ(tiles, 4);
 }
 
-TEST(NodePlan, deepPicturesGoWhereNothingComputesWithPixels) {
+TEST(NodePlan, usesDeepPicturesWhereNothingComputesWithPixels) {
     const auto deep = [](const SessionConfig& config) {
         const SessionPlan plan = planSession(config, "me");
         return setupOf(config, plan, plan.nodes.front()).deepPictures;
@@ -119,7 +119,7 @@ TEST(NodePlan, deepPicturesGoWhereNothingComputesWithPixels) {
 
 // ---- queues
 
-TEST(NodePlan, tilesOfAQueueBeginInEvenPartsAndMove) {
+TEST(NodePlan, startsQueuesWithEvenPartsThatMove) {
     SessionConfig config;
     config.tileWidth = config.tileHeight = 32;
     EXPECT_EQ(planSession(config, "me").nodes.size(), 4u);
@@ -143,7 +143,7 @@ TEST(NodePlan, tilesOfAQueueBeginInEvenPartsAndMove) {
     EXPECT_EQ(pixels, 777'000);
 }
 
-TEST(NodePlan, queuesThatCanNotMoveStay) {
+TEST(NodePlan, keepsQueuesThatCannotMove) {
     const auto planned = [](const auto& change) {
         SessionConfig config;
         config.tileWidth = config.tileHeight = 32;
@@ -168,7 +168,7 @@ TEST(NodePlan, queuesThatCanNotMoveStay) {
 
 // ---- passes
 
-TEST(NodePlan, everyPassHasANodeByDefault) {
+TEST(NodePlan, assignsANodeToEveryPassByDefault) {
     SessionConfig config;
     config.passes.samples = 3;
     config.passes.stereo = StereoMode::Anaglyph;
@@ -182,7 +182,7 @@ TEST(NodePlan, everyPassHasANodeByDefault) {
     EXPECT_NE(plan.explain[4].find("right eye, sample 2 of 3"), std::string::npos) << plan.explain[4];
 }
 
-TEST(NodePlan, fewerHostsThanPassesTakeSeveral) {
+TEST(NodePlan, assignsSeveralPassesToFewerHosts) {
     SessionConfig config;
     config.passes.samples = 5;
     config.hosts = {"a", "b"};
@@ -194,7 +194,7 @@ TEST(NodePlan, fewerHostsThanPassesTakeSeveral) {
     }
 }
 
-TEST(NodePlan, moreNodesThanPassesShareTheirTiles) {
+TEST(NodePlan, dividesTilesOfPassesAmongMoreNodes) {
     SessionConfig config;
     config.passes.stereo = StereoMode::SideBySide;
     config.columns = 2;
@@ -213,7 +213,7 @@ TEST(NodePlan, moreNodesThanPassesShareTheirTiles) {
     EXPECT_EQ(nodes[1], 2);
 }
 
-TEST(NodePlan, moreNodesThanTilesInPassesAreNotStarted) {
+TEST(NodePlan, startsNoMoreNodesThanTilesInPasses) {
     SessionConfig config;
     config.passes.samples = 2;
     config.localNodes = 9;
@@ -223,7 +223,7 @@ TEST(NodePlan, moreNodesThanTilesInPassesAreNotStarted) {
     EXPECT_EQ(plan.warnings.size(), 1u);
 }
 
-TEST(NodePlan, onlyTheFirstPictureAnswers) {
+TEST(NodePlan, letsOnlyTheFirstPictureAnswer) {
     SessionConfig config;
     config.passes.samples = 2;
     config.passes.period = 2;
@@ -246,7 +246,7 @@ TEST(NodePlan, onlyTheFirstPictureAnswers) {
     }
 }
 
-TEST(NodePlan, ofNodesThatShareDrawsOneHasTheWindow) {
+TEST(NodePlan, givesOneOfTheNodesThatShareDrawsTheWindow) {
     SessionConfig config;
     config.passes.ranges = 3;
     config.display = Display::Windows;

@@ -148,7 +148,7 @@ TEST(PassComposition, putsTheLeftEyeOnTop) {
     }
 }
 
-TEST(PassComposition, keepsBothEyesWholeForQuadBuffers) {
+TEST(PassComposition, keepsBothEyesCompleteForQuadBuffers) {
     const std::vector<OwnedPicture> eyes{noise(7, 5, 1), noise(7, 5, 2)};
     const OwnedPicture out = composed({.stereo = StereoMode::Quad}, eyes);
     ASSERT_EQ(out.width(), 7);

@@ -19,9 +19,9 @@ struct Shown {
     std::byte left{}, right{}; // value of the first pixel; right 0: one picture arrived
 };
 
-class TellingSink final : public PictureSink {
+class RecordingSink final : public PictureSink {
 public:
-    explicit TellingSink(std::vector<Shown>& shown, Result<void> finishes = {})
+    explicit RecordingSink(std::vector<Shown>& shown, Result<void> finishes = {})
         : shown_(shown), finishes_(std::move(finishes)) {}
     Result<void> show(int64_t, const Picture& p) override {
         shown_.push_back({p.width, p.height, p.row(0)[0], std::byte{0}});
@@ -58,7 +58,7 @@ TEST(PictureOutput, givesEachCanvasItsEyes) {
         for (const bool otherIsPair : {false, true}) {
             std::vector<Shown> file, wall, otherFile, otherWall;
             const auto wallInto = [](std::vector<Shown>& into) {
-                return [&into] { return Result<std::unique_ptr<PictureSink>>(std::make_unique<TellingSink>(into)); };
+                return [&into] { return Result<std::unique_ptr<PictureSink>>(std::make_unique<RecordingSink>(into)); };
             };
             PictureOutputConfig config;
             config.pairs = firstIsPair;
@@ -66,11 +66,11 @@ TEST(PictureOutput, givesEachCanvasItsEyes) {
             OtherCanvas& canvas = config.canvases.emplace_back();
             canvas.name = "monitor";
             canvas.pairs = otherIsPair;
-            canvas.file = std::make_shared<TellingSink>(otherFile);
+            canvas.file = std::make_shared<RecordingSink>(otherFile);
             canvas.openWall = wallInto(otherWall);
             config.done = [](uint32_t, uint32_t) {};
             config.say = [](const std::string& text) { ADD_FAILURE() << text; };
-            PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));
+            PictureOutput output(std::move(config), std::make_unique<RecordingSink>(file));
             output.add(
                 {1, 1, 1, 0, firstIsPair ? pairOfEyes() : filled(kLeft), {otherIsPair ? pairOfEyes() : filled(kLeft)}});
             ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
@@ -103,15 +103,15 @@ TEST(PictureOutput, reducesDeepPicturesForSinksWithoutDepth) {
     };
     std::vector<Shown> file;
     std::vector<PictureFormat> window;
-    std::string said;
+    std::string messages;
     PictureOutputConfig config;
     config.toNativeWindows = true;
     config.openWindow = [&](const WindowPicture&) {
         return Result<std::unique_ptr<PictureSink>>(std::make_unique<DeepSink>(window));
     };
     config.done = [](uint32_t, uint32_t) {};
-    config.say = [&](const std::string& text) { said += text; };
-    PictureOutput output(std::move(config), std::make_unique<TellingSink>(file));
+    config.say = [&](const std::string& text) { messages += text; };
+    PictureOutput output(std::move(config), std::make_unique<RecordingSink>(file));
     auto deep = std::make_shared<OwnedPicture>();
     deep->resize(kWidth, kHeight, PictureFormat::Bgr10A2);
     const uint32_t word = 805; // blue of 1023: 200.7 of 255
@@ -121,23 +121,23 @@ TEST(PictureOutput, reducesDeepPicturesForSinksWithoutDepth) {
     ASSERT_EQ(file.size(), 2u);
     EXPECT_EQ(file[0].left, std::byte{201});
     EXPECT_EQ(window, (std::vector{PictureFormat::Bgr10A2, PictureFormat::Bgr10A2}));
-    EXPECT_EQ(said, "the program's window has 10 bits per channel; --out saves 8 of them");
+    EXPECT_EQ(messages, "the program's window has 10 bits per channel; --out saves 8 of them");
 }
 
 TEST(PictureOutput, savesOnlyACompleteVideo) {
     for (const bool complete : {true, false}) {
         std::vector<Shown> file;
-        std::string said;
+        std::string messages;
         PictureOutputConfig config;
         config.done = [](uint32_t, uint32_t) {};
-        config.say = [&](const std::string& text) { said += text; };
-        PictureOutput output(std::move(config), std::make_unique<TellingSink>(
+        config.say = [&](const std::string& text) { messages += text; };
+        PictureOutput output(std::move(config), std::make_unique<RecordingSink>(
                                                     file, complete ? Result<void>() : Error{"the disk is full"}));
         for (uint32_t frame = 1; frame <= 3; ++frame) output.add({1, 1, frame, 0, filled(kLeft), {}});
         ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
         EXPECT_EQ(file.size(), 3u);
         EXPECT_EQ(output.totals().savedPictures, complete ? 3 : 0);
-        EXPECT_EQ(said, complete ? "" : "the disk is full");
+        EXPECT_EQ(messages, complete ? "" : "the disk is full");
     }
 }
 

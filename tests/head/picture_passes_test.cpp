@@ -137,7 +137,7 @@ TEST_F(PicturePassesTest, showsALostPassOfAnotherSizeBlack) {
     EXPECT_EQ(pixels(1), (Pixels{20, 20, 20, 21, 21, 21, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST_F(PicturePassesTest, finishedFramesNeedNoPart) { // another node's phase
+TEST_F(PicturePassesTest, composesFinishedFramesWithoutAllParts) { // another node's phase
     part(0, 1, 10), part(2, 1, 12), part(3, 1, 13);
     assembler.frameDone(1, 1, 1, 1);
     ASSERT_EQ(pictures.size(), 1u);

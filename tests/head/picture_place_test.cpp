@@ -29,7 +29,7 @@ TEST(PicturePlace, keepsThePictureByDefault) {
 
 TEST(PicturePlace, restoresTheDrawnSize) {
     NodePlan node;
-    node.way = {.5, .5};
+    node.transferScale = {.5, .5};
     auto placed = placeOnWall(node, headerOf(50, 0, 51, 40), rowsOf(26 * 20, std::byte{9}));
     ASSERT_FALSE(placed.ok() && placed->header.w != 51) << "its place is that of the header";
     ASSERT_TRUE(placed);
@@ -51,7 +51,7 @@ TEST(PicturePlace, movesThePicture) {
 
 TEST(PicturePlace, rejectsImpossibleSizes) {
     NodePlan node;
-    node.way = {.5, .5};
+    node.transferScale = {.5, .5};
     EXPECT_FALSE(placeOnWall(node, headerOf(0, 0, 40, 40), rowsOf(1600, std::byte{1})))
         << "it came as large as it was drawn";
     EXPECT_FALSE(placeOnWall(node, headerOf(0, 0, 1'000'000, 40), rowsOf(500'000 * 20, std::byte{1})));

@@ -130,8 +130,8 @@ TEST(PictureSession, forgetsAProgramAfterItsLastPicture) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
-    std::atomic<bool> hold{false};
-    head.behaviours[1].hold = &hold;
+    std::atomic<bool> filterPacket{false};
+    head.behaviours[1].filterPacket = &filterPacket;
     head.start();
     head.waitFor("ready");
     {
@@ -140,12 +140,12 @@ TEST(PictureSession, forgetsAProgramAfterItsLastPicture) {
         ASSERT_TRUE(swapFrame(program, 1, 7, 64));
         ASSERT_TRUE(swapFrame(program, 2, 8, 64));
         ASSERT_TRUE(program.waitFramesDone(2));
-        hold = true;
+        filterPacket = true;
         ASSERT_TRUE(swapFrame(program, 3, 8, 64));
         program.disconnect();
     }
     while (head.waitFor("clients")["count"] != 0) {}
-    hold = false;
+    filterPacket = false;
     const auto report = head.finish();
     EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{1})) << "the other window's are none of the wall's";
     EXPECT_EQ(report["frames"], 1);

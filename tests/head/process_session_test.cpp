@@ -108,10 +108,10 @@ TEST(ProcessSession, reportsTheSignalOfAKilledNode) {
         ASSERT_EQ(kill(victim, SIGKILL), 0);
         ASSERT_TRUE(swapFrames(program, 4, 30));
         EXPECT_TRUE(program.waitFramesDone(30));
-        const std::string said = head.waitForSay("was lost");
+        const std::string message = head.waitForMessage("was lost");
         const std::string expected = std::string("node 1 (") + (tcp ? "localhost" : "local") + ", pid " +
                                      std::to_string(victim) + ") was lost: signal 9";
-        EXPECT_EQ(said.rfind(expected, 0), 0u) << said;
+        EXPECT_EQ(message.rfind(expected, 0), 0u) << message;
         const auto report = head.finish();
         EXPECT_EQ(report["nodes"][1]["lost"], true);
         EXPECT_EQ(report["frames"], 30);
@@ -121,7 +121,7 @@ TEST(ProcessSession, reportsTheSignalOfAKilledNode) {
 
 TEST(ProcessSession, endsStoppedNodesWithTheSession) {
     SessionHarness head(2);
-    head.options.byePatienceMs = 3000;
+    head.options.goodbyePatienceMs = 3000;
     head.startProcesses(ownPath());
     const auto ready = head.waitFor("ready");
     ASSERT_TRUE(stopped(ready["nodes"][0]["pid"]));

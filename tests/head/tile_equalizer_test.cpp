@@ -19,15 +19,15 @@ protected:
         config.localNodes = nodes;
         dealer_ = std::make_unique<TileEqualizer>(
             planSession(config, "me"), [this](const ViewportAssignment& areas) { announced_.push_back(areas); });
-        lives_.assign(static_cast<size_t>(nodes), true);
+        alive_.assign(static_cast<size_t>(nodes), true);
     }
 
     // All living nodes finish a frame. A pixel costs `cost` of its position, from 0 to 1.
     void frame(const std::function<double(double x, double y)>& cost, uint32_t width = kWidth,
                uint32_t height = kHeight, uint32_t areas = UINT32_MAX) {
         ++frames_;
-        for (size_t node = 0; node < lives_.size(); ++node) {
-            if (!lives_[node]) continue;
+        for (size_t node = 0; node < alive_.size(); ++node) {
+            if (!alive_[node]) continue;
             double busy = 0;
             for (int y = 0; y < 64; ++y)
                 for (int x = 0; x < 64; ++x) {
@@ -74,7 +74,7 @@ protected:
 
     std::unique_ptr<TileEqualizer> dealer_;
     std::vector<ViewportAssignment> announced_;
-    std::vector<bool> lives_;
+    std::vector<bool> alive_;
     uint32_t frames_ = 0, client_ = 1;
 };
 
@@ -133,13 +133,13 @@ TEST_F(TileDealerTest, supportsUnevenSizesAndSmallWindows) {
 TEST_F(TileDealerTest, reassignsTheTilesOfALostNode) {
     begin(3);
     for (int i = 0; i < 5; ++i) frame(even);
-    lives_[1] = false;
+    alive_[1] = false;
     dealer_->nodeLost(1);
     expectWhole();
     EXPECT_TRUE(announced_.back().ofNodes[1].empty());
     for (int i = 0; i < 30; ++i) frame(corner);
     expectWhole();
-    lives_[1] = true;
+    alive_[1] = true;
     dealer_->nodeJoined(1);
     expectWhole();
     EXPECT_FALSE(announced_.back().ofNodes[1].empty());

@@ -10,7 +10,7 @@ namespace {
 // How often each tile is covered, and the maximum number of tiles per region.
 struct Coverage {
     bool exact = true;
-    int most = 0;
+    int maximum = 0;
 };
 
 Coverage coverageOf(int columns, int rows, const std::vector<TileRegion>& regions) {
@@ -20,7 +20,7 @@ Coverage coverageOf(int columns, int rows, const std::vector<TileRegion>& region
         if (r.columns < 1 || r.rows < 1 || r.column < 0 || r.row < 0 || r.column + r.columns > columns ||
             r.row + r.rows > rows)
             return {false, 0};
-        result.most = std::max(result.most, r.columns * r.rows);
+        result.maximum = std::max(result.maximum, r.columns * r.rows);
         for (int y = r.row; y < r.row + r.rows; ++y)
             for (int x = r.column; x < r.column + r.columns; ++x) ++covered[static_cast<size_t>(y * columns + x)];
     }
@@ -38,15 +38,15 @@ TEST(SplitGrid, coversEveryTileOnceForAnyNumberOfNodes) {
                 ASSERT_TRUE(coverage.exact) << columns << 'x' << rows << " over " << n;
                 // Rectangles of whole tiles are uneven in general; twice the equal share is the bound.
                 const int even = (columns * rows + n - 1) / n;
-                ASSERT_LE(coverage.most, 2 * even) << columns << 'x' << rows << " over " << n;
+                ASSERT_LE(coverage.maximum, 2 * even) << columns << 'x' << rows << " over " << n;
             }
 }
 
 TEST(SplitGrid, dividesEquallyWherePossible) {
     const int cases[][4] = {{2, 2, 4, 1},  {4, 4, 4, 4}, {4, 2, 2, 4},  {7, 5, 35, 1}, {6, 1, 3, 2},
                             {8, 8, 16, 4}, {5, 1, 5, 1}, {7, 5, 4, 10}, {3, 3, 9, 1},  {1, 13, 13, 1}};
-    for (const auto& [columns, rows, n, most] : cases)
-        EXPECT_EQ(coverageOf(columns, rows, splitGrid(columns, rows, n)).most, most)
+    for (const auto& [columns, rows, n, maximum] : cases)
+        EXPECT_EQ(coverageOf(columns, rows, splitGrid(columns, rows, n)).maximum, maximum)
             << columns << 'x' << rows << " over " << n;
 }
 
@@ -61,7 +61,7 @@ TEST(SplitGrid, supportsLargeWallsAndPrimeCounts) {
         const auto regions = splitGrid(32, 32, n);
         const Coverage coverage = coverageOf(32, 32, regions);
         EXPECT_TRUE(coverage.exact);
-        EXPECT_LE(coverage.most, 2 * ((1024 + n - 1) / n));
+        EXPECT_LE(coverage.maximum, 2 * ((1024 + n - 1) / n));
     }
 }
 

@@ -232,7 +232,7 @@ TEST_F(EncoderTest, usesTheLongFormForLongRecords) {
     }
 }
 
-TEST_F(EncoderTest, neverExceedsAChunkWithManySpans) {
+TEST_F(EncoderTest, staysWithinAChunkWithManySpans) {
     std::vector<std::vector<std::byte>> spans;
     std::vector<DataArg> data;
     std::vector<client_arrays::ArrayRecord> arrays;

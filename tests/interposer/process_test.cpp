@@ -60,16 +60,16 @@ TEST(Process, dropsTheSessionInTheChild) {
 }
 
 TEST(Lock, isFreeInTheChildWhenHeldByTheParent) {
-    Lock held, tried;
-    held.lock();
+    Lock retained, tried;
+    retained.lock();
     tried.lock();
     EXPECT_TRUE(trueInChild([&] {
-        held.lock(); // would wait for a thread that does not exist in the child
-        return tried.tryLock() && !tried.tryLock() && !held.tryLock();
+        retained.lock(); // would wait for a thread that does not exist in the child
+        return tried.tryLock() && !tried.tryLock() && !retained.tryLock();
     }));
-    EXPECT_FALSE(held.tryLock());
-    held.unlock();
-    EXPECT_TRUE(held.tryLock());
+    EXPECT_FALSE(retained.tryLock());
+    retained.unlock();
+    EXPECT_TRUE(retained.tryLock());
 }
 
 TEST(Readable, endsAtTheFirstPageWithoutRights) {

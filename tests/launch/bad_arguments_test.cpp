@@ -16,7 +16,7 @@
 namespace mural {
 namespace {
 
-struct Said {
+struct CommandResult {
     int status = -1;
     std::string output, errors;
 };
@@ -28,8 +28,8 @@ std::string contentOf(int fd) {
     return text;
 }
 
-Said mural(std::vector<std::string> words, std::vector<std::string> environment = {},
-           const char* outputFile = nullptr) {
+CommandResult mural(std::vector<std::string> words, std::vector<std::string> environment = {},
+                    const char* outputFile = nullptr) {
     launch::SpawnRequest request;
     request.file = MURAL_BINARY;
     request.arguments = {"mural"};
@@ -39,22 +39,22 @@ Said mural(std::vector<std::string> words, std::vector<std::string> environment 
     request.outputFd =
         outputFile != nullptr ? open(outputFile, O_WRONLY | O_CLOEXEC) : memfd_create("output", MFD_CLOEXEC);
     request.errorFd = memfd_create("errors", MFD_CLOEXEC);
-    Said said;
+    CommandResult result;
     auto child = launch::ChildProcess::start(request);
     EXPECT_TRUE(child.ok());
     EXPECT_TRUE(child.value().waitUntil(Deadline::inMs(60'000)));
-    said.status = child.value().exitStatus();
-    said.output = contentOf(request.outputFd);
-    said.errors = contentOf(request.errorFd);
-    return said;
+    result.status = child.value().exitStatus();
+    result.output = contentOf(request.outputFd);
+    result.errors = contentOf(request.errorFd);
+    return result;
 }
 
-void expectOneLine(const Said& said, int status, const std::string& word) {
-    EXPECT_EQ(said.status, status) << said.errors;
-    EXPECT_EQ(said.output, "");
-    EXPECT_EQ(std::count(said.errors.begin(), said.errors.end(), '\n'), 1) << said.errors;
-    EXPECT_EQ(said.errors.empty() ? ' ' : said.errors.back(), '\n');
-    EXPECT_NE(said.errors.find(word), std::string::npos) << said.errors;
+void expectOneLine(const CommandResult& result, int status, const std::string& word) {
+    EXPECT_EQ(result.status, status) << result.errors;
+    EXPECT_EQ(result.output, "");
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    EXPECT_EQ(result.errors.empty() ? ' ' : result.errors.back(), '\n');
+    EXPECT_NE(result.errors.find(word), std::string::npos) << result.errors;
 }
 
 TEST(BadArguments, areReportedForTheCommandItself) {
@@ -94,21 +94,21 @@ TEST(BadArguments, includeAWallThatNoNodeCanDraw) {
 
 TEST(GoodArguments, reportPicturesOfAnEarlierRun) {
     test::TemporaryFolder folder;
-    const auto toldOf = [&](const std::string& out) {
+    const auto isReported = [&](const std::string& out) {
         return mural({"run", "--tiles", "1x1", "--display", "none", "--out", out, "--", "true"})
                    .errors.find("2 pictures of an earlier run") != std::string::npos;
     };
     folder.file("frame-000001.png", {}, 0644);
     folder.file("frame-000002.png", {}, 0644);
     folder.file("other.png", {}, 0644);
-    EXPECT_TRUE(toldOf(folder.at("")));
-    EXPECT_FALSE(toldOf(folder.at("empty")));
-    EXPECT_FALSE(toldOf(folder.at("film.mp4")));
+    EXPECT_TRUE(isReported(folder.at("")));
+    EXPECT_FALSE(isReported(folder.at("empty")));
+    EXPECT_FALSE(isReported(folder.at("film.mp4")));
 }
 
 TEST(GoodArguments, printTheVersionByCommandAndByFlag) {
-    const Said byCommand = mural({"version"});
-    const Said byFlag = mural({"--version"});
+    const CommandResult byCommand = mural({"version"});
+    const CommandResult byFlag = mural({"--version"});
     EXPECT_EQ(byCommand.status, 0);
     EXPECT_EQ(byFlag.status, 0);
     EXPECT_EQ(byCommand.output.rfind("mural ", 0), 0U) << byCommand.output;
@@ -155,12 +155,12 @@ TEST(BadArguments, includeProgramsThatCannotBeCaptured) {
 
 TEST(Help, hasExamplesAndExitStatusForEveryCommand) {
     for (const char* command : {"run", "head", "node", "doctor", "list-commands", "version"}) {
-        const Said said = mural({command, "--help"});
-        EXPECT_EQ(said.status, 0);
-        EXPECT_EQ(said.errors, "");
-        EXPECT_NE(said.output.find("Example"), std::string::npos) << command;
-        EXPECT_NE(said.output.find("Exit status"), std::string::npos) << command;
-        EXPECT_NE(said.output.find(std::string("mural ") + command), std::string::npos) << command;
+        const CommandResult result = mural({command, "--help"});
+        EXPECT_EQ(result.status, 0);
+        EXPECT_EQ(result.errors, "");
+        EXPECT_NE(result.output.find("Example"), std::string::npos) << command;
+        EXPECT_NE(result.output.find("Exit status"), std::string::npos) << command;
+        EXPECT_NE(result.output.find(std::string("mural ") + command), std::string::npos) << command;
     }
 }
 

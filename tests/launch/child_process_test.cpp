@@ -48,12 +48,12 @@ TEST(ChildProcess, explainsAFailedExec) {
 
 TEST(ChildProcess, hasExactlyTheGivenEnvironmentAndDescriptors) {
     const int output = memfd_create("output", MFD_CLOEXEC);
-    const int kept = memfd_create("kept", MFD_CLOEXEC);
+    const int inherited = memfd_create("kept", MFD_CLOEXEC);
     const int other = memfd_create("other", MFD_CLOEXEC);
-    SpawnRequest request = shell("env; [ -e /proc/self/fd/" + std::to_string(kept) +
+    SpawnRequest request = shell("env; [ -e /proc/self/fd/" + std::to_string(inherited) +
                                  " ] && echo kept; [ -e /proc/self/fd/" + std::to_string(other) + " ] && echo other");
     request.environment = {"PATH=/usr/bin:/bin", "ONLY=this"};
-    request.keptFds = {kept};
+    request.inheritedFds = {inherited};
     request.outputFd = output;
     ended(request);
     const std::string text = contentOf(output);
@@ -61,7 +61,7 @@ TEST(ChildProcess, hasExactlyTheGivenEnvironmentAndDescriptors) {
     EXPECT_EQ(text.find("HOME="), std::string::npos);
     EXPECT_NE(text.find("kept\n"), std::string::npos);
     EXPECT_EQ(text.find("other\n"), std::string::npos);
-    for (const int fd : {output, kept, other}) close(fd);
+    for (const int fd : {output, inherited, other}) close(fd);
 }
 
 TEST(ChildProcess, inheritsTheOriginalSignals) {

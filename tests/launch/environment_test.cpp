@@ -48,11 +48,11 @@ TEST(CaptureEnvironment, setsTheVariablesOfBothEntries) {
 }
 
 TEST(CaptureEnvironment, preloadsTheSecondLibraryOnlyOnRequest) {
-    const std::string both = kLibrary.path + " /opt/mural/lib/libmural_front.so";
+    const std::string both = kLibrary.path + " /opt/mural/lib/libmural_preload.so";
     Environment e({"LD_PRELOAD=/grab.so"});
-    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", Fronts::VendorAndPreload).ok());
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", CaptureEntries::VendorAndPreload).ok());
     EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + both);
-    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", Fronts::VendorAndPreload).ok());
+    ASSERT_TRUE(addCapture(e, kLibrary, "mural-1", CaptureEntries::VendorAndPreload).ok());
     EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + both);
     ASSERT_TRUE(addCapture(e, kLibrary, "mural-1").ok());
     EXPECT_EQ(e.get("LD_PRELOAD"), "/grab.so " + kLibrary.path);

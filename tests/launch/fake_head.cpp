@@ -11,13 +11,13 @@ namespace {
 
 int control = -1;
 
-void say(const std::string& line) {
+void sendLine(const std::string& line) {
     const std::string bytes = line + "\n";
     if (write(control, bytes.data(), bytes.size()) < 0) _exit(3);
 }
 
 // One line, or nothing after the end of the connection.
-std::string hear() {
+std::string readLine() {
     std::string line;
     char c = 0;
     while (read(control, &c, 1) == 1) {
@@ -33,17 +33,17 @@ int main(int count, char** arguments) {
     if (count != 4 || std::strcmp(arguments[2], "--control-fd") != 0) return 2;
     const std::string mode = arguments[1];
     control = std::atoi(arguments[3]);
-    const std::string config = hear();
+    const std::string config = readLine();
     if (config.find("\"session\"") == std::string::npos) return 2;
     if (mode == "mute") return 0;
     if (mode == "error") {
-        say(R"({"event":"error","text":"no GL on this machine"})");
+        sendLine(R"({"event":"error","text":"no GL on this machine"})");
         return 1;
     }
-    say(R"({"event":"ready","explain":[]})");
+    sendLine(R"({"event":"ready","explain":[]})");
     if (mode == "die") raise(SIGKILL);
-    if (mode == "frames") say(R"({"event":"frames-reached"})");
-    if (hear() != R"({"command":"finish"})") return 4;
-    say(R"({"event":"report","frames":3,"seconds":1,"framesPerSecond":3})");
+    if (mode == "frames") sendLine(R"({"event":"frames-reached"})");
+    if (readLine() != R"({"command":"finish"})") return 4;
+    sendLine(R"({"event":"report","frames":3,"seconds":1,"framesPerSecond":3})");
     return 0;
 }

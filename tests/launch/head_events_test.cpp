@@ -14,7 +14,7 @@ HeadEvent event(const std::string& line) {
     return parsed.ok() ? parsed.value() : HeadEvent{};
 }
 
-TEST(HeadEvents, readsEachLineOfTheProtocol) {
+TEST(HeadEvents, readEachLineOfTheProtocol) {
     EXPECT_EQ(event(R"({"event":"ready","explain":["a","b"],"nodes":[]})").explain,
               (std::vector<std::string>{"a", "b"}));
     EXPECT_EQ(event(R"({"event":"error","text":"no GL"})").text, "no GL");
@@ -26,7 +26,7 @@ TEST(HeadEvents, readsEachLineOfTheProtocol) {
     EXPECT_EQ(event(R"({"event":"frames-reached"})").kind, HeadEvent::Kind::FramesReached);
 }
 
-TEST(HeadEvents, nothingFromOutsideThrows) {
+TEST(HeadEvents, rejectMalformedLinesWithoutThrowing) {
     for (const char* line : {"", "{", "[]", "7", "null", R"({"text":"x"})"})
         EXPECT_FALSE(parseHeadEvent(line).ok()) << line;
     EXPECT_EQ(event(R"({"event":"later"})").kind, HeadEvent::Kind::Unknown);
@@ -35,7 +35,7 @@ TEST(HeadEvents, nothingFromOutsideThrows) {
     EXPECT_EQ(event(R"({"event":"report","frames":[],"nodes":[1,{"node":3,"lost":true}]})").report.nodes.size(), 1u);
 }
 
-TEST(Report, saysWhatDiffersAndWhoWasLost) {
+TEST(Report, showsDifferencesAndLostNodes) {
     const HeadEvent e = event(
         R"({"event":"report","frames":90,"seconds":1.5,"framesPerSecond":60.0,"bytesPerFrame":12345,"verifiedFrames":90,)"
         R"("verifiedPixels":70778880,"differingPixels":3,"largestDifference":2,"squaredDifference":9,"savedPictures":1,"lastPicture":"out/a.png","recording":"a.mural","recordedFrames":90,"recordedBytes":1234567,)"
@@ -49,14 +49,14 @@ TEST(Report, saysWhatDiffersAndWhoWasLost) {
                                   "node 1 was lost after 12 frames"}));
 }
 
-TEST(Report, saysWhatWasNotVerified) {
+TEST(Report, showsUnverifiedFrames) {
     const HeadEvent e = event(
         R"({"event":"report","frames":9,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"uncomparedFrames":3,)"
         R"("uncomparedFramesBy":{"front buffer":2,"window not current":1}})");
     EXPECT_EQ(reportLines(e.report).back(), "not verified: 3 frames (front buffer 2, window not current 1)");
 }
 
-TEST(Report, saysWhatTheNodesWereSpared) {
+TEST(Report, showsWhatDeltaCodingSaved) {
     const HeadEvent e = event(
         R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,)"
         R"("delta":{"records":1000,"rawBytes":50000,"stagedBytes":3000,"wireBytes":1200,"pageHits":90,"newPages":10,"encodeSeconds":0.0003,"deferredRecords":7,"droppedRecords":5,"droppedBytes":4096}})");
@@ -69,7 +69,7 @@ TEST(Report, saysWhatTheNodesWereSpared) {
     EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"delta":null})").report).size(), 1u);
 }
 
-TEST(Report, saysHowTilesWereTaken) {
+TEST(Report, showsHowTilesWereTaken) {
     const HeadEvent e = event(
         R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"queues":[)"
         R"({"name":"tiles","of":"tiles","columns":25,"rows":19,"tileWidth":32,"tileHeight":32,"frames":8,"moves":2,"tilesMoved":60,"taken":2,"nodes":[{"node":0,"tiles":95},{"node":1,"tiles":380}]},)"
@@ -83,7 +83,7 @@ TEST(Report, saysHowTilesWereTaken) {
     EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"queues":null})").report).size(), 1u);
 }
 
-TEST(Report, saysWhichCommandsCauseRoundTrips) {
+TEST(Report, showsCommandsThatCauseRoundTrips) {
     const HeadEvent e =
         event(R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":1,"roundTrips":5,)"
               R"("roundTripsBy":{"glGetQueryObjectuiv":1,"glReadPixels":4,"odd":"x"}})");
@@ -91,7 +91,7 @@ TEST(Report, saysWhichCommandsCauseRoundTrips) {
                                              "5 round trips (0.50 per frame: glReadPixels 4, glGetQueryObjectuiv 1)");
 }
 
-TEST(Report, sizesHaveThreeDigits) {
+TEST(Report, formatsSizesWithThreeDigits) {
     EXPECT_EQ(sizeText(0), "0 B");
     EXPECT_EQ(sizeText(999), "999 B");
     EXPECT_EQ(sizeText(1000), "1.0 kB");

@@ -67,7 +67,7 @@ TEST_F(ProgramCheckTest, runsPlainTextInTheShell) {
     EXPECT_TRUE(checkProgram(folder_.file("text", "exit 0\n", 0755), "").ok());
 }
 
-TEST_F(ProgramCheckTest, searchesPathInOrderAndSkipsWhatIsNotExecutable) {
+TEST_F(ProgramCheckTest, searchesPathInOrderAndSkipsNonExecutables) {
     const test::TemporaryFolder first;
     const test::TemporaryFolder second;
     first.file("app", test::elf64(true, ownMachine()), 0644);

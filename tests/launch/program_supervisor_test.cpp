@@ -68,7 +68,7 @@ TEST_F(Supervisor, forwardsAnInterruptFromAnotherProcess) {
     kill(getpid(), SIGINT);
     EXPECT_TRUE(waitFor([&] { return !supervisor_->programRunning(); }));
     EXPECT_EQ(supervisor_->exitStatus(), 4);
-    EXPECT_FALSE(supervisor_->askedToStop());
+    EXPECT_FALSE(supervisor_->stopRequested());
 }
 
 TEST_F(Supervisor, endsTheProgramAndItsChildrenOnTermination) {

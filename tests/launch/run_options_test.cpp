@@ -218,9 +218,9 @@ TEST(RunOptions, shareTilesAmongNodesOfSeveralPasses) {
 
 TEST(RunOptions, nameTheOptionAndTheExpectedValueOfPasses) {
     const auto names = [](const char* option, auto change) {
-        const std::string said = refusal(change);
-        EXPECT_EQ(said.rfind(option, 0), 0u) << said;
-        EXPECT_EQ(said.find('\n'), std::string::npos);
+        const std::string message = refusal(change);
+        EXPECT_EQ(message.rfind(option, 0), 0u) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos);
     };
     for (const char* bad : {"0", "17", "-1", "nan", "inf", "0.5x", "x2", "1x2x3", "half", ""})
         names("--zoom \"", [&](RunArguments& a) { a.zoom = bad; });

@@ -29,16 +29,16 @@ protected:
         run.headEnvironment = run.programEnvironment;
         run.headCommand = {MURAL_FAKE_HEAD, mode};
         const int saved = dup(STDERR_FILENO);
-        const int heard = memfd_create("heard", MFD_CLOEXEC);
-        dup2(heard, STDERR_FILENO);
+        const int errors = memfd_create("heard", MFD_CLOEXEC);
+        dup2(errors, STDERR_FILENO);
         Console console(false);
         Outcome outcome;
         outcome.status = runSession(run, console);
         dup2(saved, STDERR_FILENO);
         outcome.words.resize(4096);
-        outcome.words.resize(static_cast<size_t>(std::max<ssize_t>(0, pread(heard, outcome.words.data(), 4096, 0))));
+        outcome.words.resize(static_cast<size_t>(std::max<ssize_t>(0, pread(errors, outcome.words.data(), 4096, 0))));
         close(saved);
-        close(heard);
+        close(errors);
         return outcome;
     }
     void expectNobodyLeft() {

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json look(double atSeconds, int frames, int calls, int bytes, int trips, double framesWait) {
+Json stateAt(double atSeconds, int frames, int calls, int bytes, int trips, double framesWait) {
     return {{"session", "mural-7-0123456789abcdef"},
             {"runPid", 7},
             {"headPid", 8},
@@ -51,7 +51,7 @@ Json look(double atSeconds, int frames, int calls, int bytes, int trips, double 
 }
 
 TEST(SessionRates, areDifferencesOfTwoStates) {
-    const auto both = withRates({look(10, 100, 1000, 5000, 4, 1.0)}, {look(12, 150, 2000, 105000, 29, 2.5)});
+    const auto both = withRates({stateAt(10, 100, 1000, 5000, 4, 1.0)}, {stateAt(12, 150, 2000, 105000, 29, 2.5)});
     const Json& recent = both[0]["programs"][0]["recent"];
     EXPECT_DOUBLE_EQ(recent["framesPerSecond"].get<double>(), 25);
     EXPECT_DOUBLE_EQ(recent["callsPerFrame"].get<double>(), 20);
@@ -79,8 +79,8 @@ TEST(SessionRates, includeDeltaCoding) {
             {"droppedBytes", 4000 * frames}};
         return session;
     };
-    const auto both =
-        withRates({with(look(10, 100, 1000, 5000, 4, 1.0), 100)}, {with(look(12, 150, 2000, 105000, 29, 2.5), 150)});
+    const auto both = withRates({with(stateAt(10, 100, 1000, 5000, 4, 1.0), 100)},
+                                {with(stateAt(12, 150, 2000, 105000, 29, 2.5), 150)});
     EXPECT_DOUBLE_EQ(both[0]["delta"]["recent"]["wireBytesPerFrame"].get<double>(), 120);
     EXPECT_EQ(statLines(both[0])[5], "  delta    5.0 kB per frame, 300 B of it new to the nodes, 120 B compressed; 9.0 "
                                      "of 10.0 pages per frame cached, encoding 30 us");
@@ -89,7 +89,7 @@ TEST(SessionRates, includeDeltaCoding) {
 }
 
 TEST(SessionRates, includeTransferredPictures) {
-    auto session = look(10, 100, 1000, 5000, 4, 1.0);
+    auto session = stateAt(10, 100, 1000, 5000, 4, 1.0);
     session["nodes"][0]["pictureRawBytes"] = 300000.0;
     session["nodes"][0]["pictureBytes"] = 2000.0;
     const auto lines = statLines(withRates({}, {session})[0]);
@@ -99,7 +99,7 @@ TEST(SessionRates, includeTransferredPictures) {
 }
 
 TEST(SessionRates, includeQueues) {
-    auto session = look(10, 100, 1000, 5000, 4, 1.0);
+    auto session = stateAt(10, 100, 1000, 5000, 4, 1.0);
     session["queues"] = {{{"name", "tiles"},
                           {"of", "tiles"},
                           {"columns", 25},
@@ -128,10 +128,10 @@ TEST(SessionRates, includeQueues) {
 }
 
 TEST(SessionRates, areOmittedForIdleAndNewEntries) {
-    const auto still = withRates({look(10, 100, 1000, 5000, 0, 1.0)}, {look(11, 100, 1000, 5000, 0, 1.0)});
+    const auto still = withRates({stateAt(10, 100, 1000, 5000, 0, 1.0)}, {stateAt(11, 100, 1000, 5000, 0, 1.0)});
     EXPECT_EQ(still[0]["programs"][0]["recent"].count("callsPerFrame"), 0u);
     EXPECT_DOUBLE_EQ(still[0]["programs"][0]["recent"]["framesPerSecond"].get<double>(), 0);
-    const auto fresh = withRates({}, {look(11, 100, 1000, 5000, 0, 1.0)});
+    const auto fresh = withRates({}, {stateAt(11, 100, 1000, 5000, 0, 1.0)});
     EXPECT_EQ(fresh[0]["programs"][0].count("recent"), 0u);
     EXPECT_EQ(statLines(fresh[0])[3], "    0 round trips in all: glReadPixels 0");
 }

@@ -33,7 +33,7 @@ void makeOld(const std::string& folder) {
     EXPECT_EQ(utime(folder.c_str(), &old), 0);
 }
 
-TEST(SessionSocket, livesInAFolderOfItsUserAlone) {
+TEST(SessionSocket, isInAPrivateFolderOfItsUser) {
     const test::TemporaryFolder runtime;
     auto socket = SessionSocket::create(kSession, runtime.path());
     ASSERT_TRUE(socket.ok());
@@ -61,7 +61,7 @@ TEST(SessionSocket, isElsewhereWhenThePathIsTooLong) {
     EXPECT_EQ(socket.value()->path(), std::string("/tmp/") + kSession + "/socket");
 }
 
-TEST(SessionSocket, isNotMadeWhereAnotherHasTheName) {
+TEST(SessionSocket, isNotCreatedWhereTheNameExists) {
     const test::TemporaryFolder runtime;
     std::filesystem::create_directory(runtime.at(kSession));
     auto socket = SessionSocket::create(kSession, runtime.path());
@@ -69,7 +69,7 @@ TEST(SessionSocket, isNotMadeWhereAnotherHasTheName) {
     EXPECT_NE(socket.value()->path(), runtime.at(kSession) + "/socket");
 }
 
-TEST(SessionSocket, removesWhatNobodyListensAt) {
+TEST(SessionSocket, removesFoldersWithoutAListener) {
     const test::TemporaryFolder runtime;
     for (const char* session : {kSession, kOther}) std::filesystem::create_directory(runtime.at(session));
     std::filesystem::create_directory(runtime.at("mural-1-of-another-kind"));
@@ -82,7 +82,7 @@ TEST(SessionSocket, removesWhatNobodyListensAt) {
     EXPECT_TRUE(std::filesystem::exists(runtime.at("mural-1-of-another-kind")));
 }
 
-TEST(SessionSocket, leavesAFolderWhoseHeadMayYetListen) {
+TEST(SessionSocket, keepsAFolderWhoseHeadMayStillListen) {
     const test::TemporaryFolder runtime;
     std::filesystem::create_directory(runtime.at(kSession));
     removeStaleSockets(runtime.path());

@@ -28,7 +28,7 @@ TEST(StreamPattern, isIndependentOfPieces) {
     EXPECT_TRUE(std::ranges::equal(pattern(3, 2), std::span(whole).subspan(2, 3)));
 }
 
-TEST(StreamPattern, revealsTheReadersFirstPosition) {
+TEST(StreamPattern, showsTheReadersFirstPosition) {
     for (const uint64_t place : {0ul, 1ul, 7ul, 8ul, 1430ul * 77, (1ul << 40) + 3}) {
         PatternCheck check;
         const auto bytes = pattern(100, place);

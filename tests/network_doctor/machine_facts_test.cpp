@@ -29,10 +29,10 @@ TEST_F(MadeUpMachine, reportsLimitsBridgesAndFilters) {
     file("/proc/sys/net/core/rmem_max", "212992");
     file("/proc/sys/net/ipv4/conf/all/rp_filter", "0");
     file("/proc/sys/net/ipv4/conf/eth7/rp_filter", "1");
-    for (const auto& [bridge, snoops, asks] : {std::tuple("br1", "1", "0"), std::tuple("br0", "1", "0"),
-                                               std::tuple("br2", "1", "1"), std::tuple("br3", "0", "0")}) {
+    for (const auto& [bridge, snoops, queries] : {std::tuple("br1", "1", "0"), std::tuple("br0", "1", "0"),
+                                                  std::tuple("br2", "1", "1"), std::tuple("br3", "0", "0")}) {
         file(std::string("/sys/class/net/") + bridge + "/bridge/multicast_snooping", snoops);
-        file(std::string("/sys/class/net/") + bridge + "/bridge/multicast_querier", asks);
+        file(std::string("/sys/class/net/") + bridge + "/bridge/multicast_querier", queries);
     }
     file("/sys/class/net/eth7/mtu", "1500");
     const MachineFacts f = readMachineFacts(card_, 1000, root_);

@@ -30,14 +30,14 @@ HostMeasured goodHost() {
     h.own = "10.0.0.2";
     h.interfaceTowards = "eth0";
     h.facts = goodCard();
-    for (WayMeasured& way : h.ways) way = {true, true, true, 1472, {}};
+    for (PathMeasured& path : h.paths) path = {true, true, true, 1472, {}};
     h.multicast = true;
     h.datagrams = 100'000;
     h.bytesPerS = 100e6;
     return h;
 }
 
-void breakWay(HostMeasured& h, ProbeWay way) { h.way(way) = {}; }
+void breakWay(HostMeasured& h, ProbePath path) { h.path(path) = {}; }
 
 // Returns the only check that is not ok; an empty check if there are more or none.
 Check fault(const HereMeasured& here, const HostMeasured& h) {
@@ -56,7 +56,7 @@ TEST(NetworkVerdict, reportsNoFaultOfAGoodNetwork) {
 
 TEST(NetworkVerdict, reportsThatOnlyTheGroupIsMissing) {
     HostMeasured h = goodHost();
-    breakWay(h, ProbeWay::Group);
+    breakWay(h, ProbePath::Group);
     h.multicast = false;
     const Check c = fault(h);
     EXPECT_EQ(c.health, Health::Bad);
@@ -68,14 +68,14 @@ TEST(NetworkVerdict, reportsThatOnlyTheGroupIsMissing) {
 
 TEST(NetworkVerdict, reportsMissingMulticast) {
     HostMeasured h = goodHost();
-    breakWay(h, ProbeWay::Group);
-    breakWay(h, ProbeWay::LinkLocal);
+    breakWay(h, ProbePath::Group);
+    breakWay(h, ProbePath::LinkLocal);
     h.multicast = false;
     EXPECT_TRUE(has(fault(h).found, "no multicast arrives")) << fault(h).found;
     EXPECT_FALSE(has(fault(h).advice, "rp_filter"));
     h.facts.strictReturnPath = true;
     EXPECT_TRUE(has(fault(h).advice, "rp_filter=2"));
-    h.way(ProbeWay::Group).trouble = "cannot send datagrams of 24 bytes: Operation not permitted";
+    h.path(ProbePath::Group).trouble = "cannot send datagrams of 24 bytes: Operation not permitted";
     EXPECT_TRUE(has(fault(h).advice, "nft list ruleset"));
     h.interfaceTowards = "eth1";
     EXPECT_EQ(fault(h).advice, "add --interface eth1");
@@ -83,19 +83,19 @@ TEST(NetworkVerdict, reportsMissingMulticast) {
 
 TEST(NetworkVerdict, reportsMulticastThatStops) {
     HostMeasured h = goodHost();
-    h.way(ProbeWay::Group).toLater = false;
+    h.path(ProbePath::Group).toLater = false;
     EXPECT_TRUE(has(fault(h).found, "arrived at first")) << fault(h).found;
 }
 
 TEST(NetworkVerdict, reportsAOneWayNetwork) {
     HostMeasured h = goodHost();
-    h.way(ProbeWay::Group).from = false;
+    h.path(ProbePath::Group).from = false;
     EXPECT_EQ(fault(h).health, Health::Warn);
 }
 
 TEST(NetworkVerdict, reportsMissingUdp) {
     HostMeasured h = goodHost();
-    for (const ProbeWay way : kProbeWays) breakWay(h, way);
+    for (const ProbePath path : kProbePaths) breakWay(h, path);
     h.multicast = false;
     EXPECT_EQ(fault(h).name, "wall1: datagrams");
     EXPECT_TRUE(has(fault(h).found, "either direction"));

@@ -22,7 +22,7 @@ class Doctor:
     def __init__(self, mural, launch):
         self.mural, self.launch = mural, launch
 
-    def ask(self, *options):
+    def diagnose(self, *options):
         command = [self.mural, 'doctor', '--network', THERE, '--launch', self.launch, '--seconds', '0.3', '--rate', '200mbit', '--json', *options]
         done = subprocess.run(command, capture_output=True, text=True, timeout=60)
         if not done.stdout:
@@ -54,43 +54,43 @@ def cases(doctor, network):
     def heal():
         network.heal('there')
 
-    report, host = doctor.ask()
+    report, host = doctor.diagnose()
     yield check('a good network', not bad(report) and host['stream']['multicast'] and host['ways']['group']['largestBytes'] == 8972, report)
 
     there('ip link set eth0 mtu 1500')
-    report, host = doctor.ask()
+    report, host = doctor.diagnose()
     yield check('a card with short packets', bad(report) == ['datagram size'] and host['ways']['group']['largestBytes'] == 1472 and host['stream']['multicast'], report)
     there('ip link set eth0 mtu 9000')
     sh('ip -n switch link set port1 mtu 4000')
-    report, host = doctor.ask()
+    report, host = doctor.diagnose()
     yield check('a switch with shorter packets', bad(report) == ['datagram size'] and 3968 <= host['ways']['group']['largestBytes'] <= 3976, report)
     sh('ip -n switch link set port1 mtu 9000')
 
     drop('ip daddr 239.0.0.0/8')
-    report, host = doctor.ask()
-    told = [c for c in host['checks'] if c['name'].endswith('multicast')][0]
-    yield check('a switch that lets no group through', bad(report) == ['multicast'] and 'querier' in told['advice'] and host['reachedBy'] == 'TCP only', report)
+    report, host = doctor.diagnose()
+    reported = [c for c in host['checks'] if c['name'].endswith('multicast')][0]
+    yield check('a switch that lets no group through', bad(report) == ['multicast'] and 'querier' in reported['advice'] and host['reachedBy'] == 'TCP only', report)
     heal()
     drop('ip daddr 224.0.0.0/4')
-    report, host = doctor.ask()
-    told = [c for c in host['checks'] if c['name'].endswith('multicast')][0]
-    yield check('no multicast', bad(report) == ['multicast'] and 'no multicast arrives' in told['found'] and host['stream']['mbit'] > 0, report)
+    report, host = doctor.diagnose()
+    reported = [c for c in host['checks'] if c['name'].endswith('multicast')][0]
+    yield check('no multicast', bad(report) == ['multicast'] and 'no multicast arrives' in reported['found'] and host['stream']['mbit'] > 0, report)
     heal()
     drop('meta l4proto udp')
-    report, host = doctor.ask()
+    report, host = doctor.diagnose()
     yield check('no UDP', bad(report) == ['datagrams'], report)
     heal()
     drop('meta l4proto udp numgen random mod 100 < 5')
-    report, host = doctor.ask()
+    report, host = doctor.diagnose()
     yield check('one datagram of twenty is lost', bad(report) == ['stream'] and 0.02 < host['stream']['lostShare'] < 0.09, report)
     heal()
     drop('tcp flags & syn == syn')
-    report, host = doctor.ask()
+    report, host = doctor.diagnose()
     yield check('no connections', bad(report) == ['connection'], report)
     heal()
-    report, host = doctor.ask('--launch', 'false')
+    report, host = doctor.diagnose('--launch', 'false')
     yield check('a host that can not be started', bad(report) == ['start'], report)
-    report, host = doctor.ask()
+    report, host = doctor.diagnose()
     yield check('healed', not bad(report), report)
 
 

@@ -24,13 +24,13 @@ struct Layers {
     std::vector<std::vector<double>> colours; // premultiplied, 0 to 255
 };
 
-Layers layersOf(int count, double leastAlpha, double mostAlpha) {
+Layers layersOf(int count, double minAlpha, double maxAlpha) {
     std::mt19937 random(static_cast<unsigned>(count));
     Layers layers;
     for (int i = 0; i < count; ++i) {
         std::vector<double> layer(4 * kBlendedPixels);
         for (size_t p = 0; p < layer.size(); p += 4) {
-            const double alpha = std::round(255 * std::uniform_real_distribution<>(leastAlpha, mostAlpha)(random));
+            const double alpha = std::round(255 * std::uniform_real_distribution<>(minAlpha, maxAlpha)(random));
             for (size_t c = 0; c < 3; ++c)
                 layer[p + c] = std::round(std::uniform_real_distribution<>(0, alpha)(random));
             layer[p + 3] = alpha;

@@ -12,7 +12,7 @@ namespace {
 
 struct Row {
     std::string what, against, unit, result;
-    double off = 0, most = 0;
+    double off = 0, maximum = 0;
     bool holds = true;
 };
 
@@ -54,7 +54,7 @@ class Table : public testing::Environment {
         for (const Row& r : rows()) {
             if (r.result.empty())
                 std::printf("| %s | %s | %.3g %s | %.3g | %s |\n", r.what.c_str(), r.against.c_str(), r.off,
-                            r.unit.c_str(), r.most, r.holds ? "holds" : "BROKEN");
+                            r.unit.c_str(), r.maximum, r.holds ? "holds" : "BROKEN");
             else
                 std::printf("| %s | %s | %s | | %s |\n", r.what.c_str(), r.against.c_str(), r.result.c_str(),
                             r.holds ? "holds" : "BROKEN");
@@ -66,16 +66,16 @@ class Table : public testing::Environment {
 
 } // namespace
 
-void expectWithin(const std::string& what, const std::string& against, double off, double most,
+void expectWithin(const std::string& what, const std::string& against, double off, double maximum,
                   const std::string& unit) {
     Row& row = rowOf(what, against);
-    const bool within = off <= most; // false for NaN as well
+    const bool within = off <= maximum; // false for NaN as well
     if (row.holds) row.off = within ? std::max(row.off, off) : off;
-    row.most = most;
+    row.maximum = maximum;
     row.unit = unit;
     row.holds = row.holds && within;
-    EXPECT_TRUE(within) << what << ", against " << against << ": off by " << off << " " << unit << ", at most " << most
-                        << " is right";
+    EXPECT_TRUE(within) << what << ", against " << against << ": off by " << off << " " << unit << ", at most "
+                        << maximum << " is right";
 }
 
 void expectThat(const std::string& what, const std::string& against, bool holds, const std::string& result) {

@@ -122,7 +122,7 @@ void expectExact(int width, int height, const std::string& parts, const std::str
                            "pixels");
 }
 
-TEST(Frusta, matchTheWholeForTiles) {
+TEST(Frusta, matchTheCompleteFrustumForTiles) {
     for (const auto& [width, height] :
          {std::pair(253, 191), std::pair(1000, 777), std::pair(1921, 1081), std::pair(8191, 4099)})
         for (const auto& [columns, rows] :
@@ -140,7 +140,7 @@ TEST(Frusta, hitPixelCentresForKernels) {
             }
 }
 
-TEST(Frusta, matchTheWholeForTilesOfKernelsOfTiles) {
+TEST(Frusta, matchTheCompleteFrustumForTilesOfKernelsOfTiles) {
     expectExact(1921, 1081,
                 "compound { viewport [ .1 .3 .5 .7 ] compound { channel \"s\" pixel [ 1 0 3 2 ] viewport [ .3 0 .7 .9 "
                 "] outputframe { } } }",

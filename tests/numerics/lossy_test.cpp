@@ -58,7 +58,7 @@ Plane blocksOfColours() {
 
 // Y, U and V are rounded to half a unit. For green that is .5 + .344 / 2 + .714 / 2, for blue .5 + 1.772 / 2, and the
 // result is rounded once more: at most 1.9.
-TEST(Lossy, nearlyPreservesUniformColours) {
+TEST(Lossy, preservesUniformColoursNearly) {
     const Plane colours = blocksOfColours();
     const Loss yuv = lossOf(colours, through("yuv420", colours));
     numerics::expectWithin("35937 colours that stay, YUV 4:2:0", "the colours", yuv.largest, 2, "of 255");

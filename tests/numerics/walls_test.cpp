@@ -185,10 +185,10 @@ TEST(Walls, areRejectedWhenDegenerate) {
     for (const auto& none : kNone) {
         config::Diagnostics diagnostics("wall.eqc");
         (void)config::resolve(config::parseConfig(configOf(100, 100, none.wall, ""), diagnostics), {}, diagnostics);
-        const std::string said = diagnostics.errors() > 0 ? diagnostics.firstError() : "";
+        const std::string error = diagnostics.errors() > 0 ? diagnostics.firstError() : "";
         expectThat(none.what, "what a wall is",
-                   !said.empty() && said.find('\n') == std::string::npos && said.find("wall.eqc:") == 0,
-                   said.empty() ? "taken" : "refused: " + said);
+                   !error.empty() && error.find('\n') == std::string::npos && error.find("wall.eqc:") == 0,
+                   error.empty() ? "taken" : "refused: " + error);
     }
     for (const char* projection :
          {"origin [ 0 0 0 ] distance 0 fov [ 60 40 ]", "origin [ 0 0 0 ] distance 3 fov [ 180 40 ]",

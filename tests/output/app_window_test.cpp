@@ -90,7 +90,7 @@ TEST_F(AppWindows, showExactlyThroughTheConnection) {
     }
 }
 
-TEST_F(AppWindows, serverWithoutSharedMemory) {
+TEST_F(AppWindows, showWithoutSharedMemory) {
     startServer(24, {"-extension", "MIT-SHM"});
     const uint32_t window = client_->makeWindow(0, 0, 301, 203, kBlue);
     openOutput(configFor(window));
@@ -100,7 +100,7 @@ TEST_F(AppWindows, serverWithoutSharedMemory) {
     expectSeen(window, 0, 0, picture.view());
 }
 
-TEST_F(AppWindows, windowWithAlphaShowsIt) {
+TEST_F(AppWindows, showAlphaInWindowsWithAlpha) {
     startServer();
     const uint32_t window = client_->makeWindow(0, 0, 64, 32, 0, 32);
     openOutput(configFor(window));
@@ -117,7 +117,7 @@ TEST_F(AppWindows, windowWithAlphaShowsIt) {
 class OtherDepths : public AppWindows, public testing::WithParamInterface<bool> {};
 
 // Width odd: rows are padded.
-TEST_P(OtherDepths, sixteenBits) {
+TEST_P(OtherDepths, supportSixteenBits) {
     startServer(16);
     const uint32_t window = client_->makeWindow(0, 0, 33, 9, 0);
     openOutput(configFor(window, GetParam()));
@@ -133,7 +133,7 @@ TEST_P(OtherDepths, sixteenBits) {
         }
 }
 
-TEST_P(OtherDepths, thirtyBits) {
+TEST_P(OtherDepths, supportThirtyBits) {
     startServer(30);
     const uint32_t window = client_->makeWindow(0, 0, 33, 9, 0);
     openOutput(configFor(window, GetParam()));
@@ -147,7 +147,7 @@ TEST_P(OtherDepths, thirtyBits) {
     EXPECT_EQ(mixed, red == 0x3ffU ? (half << 20 | 1023U << 10) : (half | 1023U << 10));
 }
 
-TEST_P(OtherDepths, thirtyBitsOfDeepPictures) {
+TEST_P(OtherDepths, supportDeepPicturesAtThirtyBits) {
     startServer(30);
     const uint32_t window = client_->makeWindow(0, 0, 33, 9, 0);
     openOutput(configFor(window, GetParam()));
@@ -163,7 +163,7 @@ TEST_P(OtherDepths, thirtyBitsOfDeepPictures) {
 INSTANTIATE_TEST_SUITE_P(Ways, OtherDepths, testing::Bool(),
                          [](const auto& shared) { return shared.param ? "sharedMemory" : "connection"; });
 
-TEST_F(AppWindows, sizesNeedNotFit) {
+TEST_F(AppWindows, acceptPicturesOfOtherSizes) {
     startServer();
     const uint32_t window = client_->makeWindow(100, 100, 80, 60, kBlue);
     openOutput(configFor(window));
@@ -183,7 +183,7 @@ TEST_F(AppWindows, sizesNeedNotFit) {
     expectSeen(window, 0, 0, larger.view());
 }
 
-TEST_F(AppWindows, childWindowsStayOnTop) {
+TEST_F(AppWindows, keepChildWindowsOnTop) {
     startServer();
     const uint32_t window = client_->makeWindow(0, 0, 80, 60, 0);
     (void)client_->makeWindow(10, 10, 20, 20, kBlue, 0, window);
@@ -195,7 +195,7 @@ TEST_F(AppWindows, childWindowsStayOnTop) {
     expectSeen(window, 0, 0, expected.view());
 }
 
-TEST_F(AppWindows, unmappedAndGoneWindowsEndNothing) {
+TEST_F(AppWindows, surviveUnmappedAndDestroyedWindows) {
     startServer();
     const uint32_t window = client_->makeWindow(0, 0, 80, 60, 0);
     const OwnedPicture picture = noisePicture(80, 60, 1);
@@ -211,7 +211,7 @@ TEST_F(AppWindows, unmappedAndGoneWindowsEndNothing) {
 }
 
 // X servers give the ids of windows that are gone to new ones, which may be of another kind.
-TEST_F(AppWindows, windowWithTheSameIdAgain) {
+TEST_F(AppWindows, acceptANewWindowWithTheSameId) {
     startServer();
     const uint32_t window = client_->makeWindow(0, 0, 80, 60, 0);
     openOutput(configFor(window));
@@ -234,7 +234,7 @@ TEST_F(AppWindows, windowWithTheSameIdAgain) {
 }
 
 // A program may end right after its last swap: before the picture comes, and before this output is opened.
-TEST_F(AppWindows, windowThatWasGoneBeforeIsNoError) {
+TEST_F(AppWindows, acceptAWindowDestroyedEarlier) {
     startServer();
     auto output = AppWindow::open(configFor(0x7777777));
     ASSERT_TRUE(output) << output.error().message;
@@ -308,7 +308,7 @@ TEST_F(OwnedWindows, paintsNothingWhenTheWindowBecomesAnothers) {
     expectSeen(window_, 0, 0, next.view());
 }
 
-TEST_F(AppWindows, whatIsMissingIsSaid) {
+TEST_F(AppWindows, reportMissingServersAndWindows) {
     startServer();
     AppWindowConfig config;
     config.displayName = ":64999";
@@ -323,7 +323,7 @@ TEST_F(AppWindows, whatIsMissingIsSaid) {
 
 class StoppedServer : public AppWindows, public testing::WithParamInterface<bool> {};
 
-TEST_P(StoppedServer, deadlinePassesAndLaterItGoesOn) {
+TEST_P(StoppedServer, delaysPicturesUntilItContinues) {
     startServer();
     const uint32_t window = client_->makeWindow(0, 0, 700, 500, 0);
     AppWindowConfig config = configFor(window, GetParam());
@@ -368,7 +368,7 @@ TEST_P(StoppedServer, deadlinePassesAndLaterItGoesOn) {
 INSTANTIATE_TEST_SUITE_P(Ways, StoppedServer, testing::Bool(),
                          [](const auto& shared) { return shared.param ? "sharedMemory" : "connection"; });
 
-TEST_F(AppWindows, serverThatEndsIsAnError) {
+TEST_F(AppWindows, reportAServerThatEnds) {
     startServer();
     const uint32_t window = client_->makeWindow(0, 0, 80, 60, 0);
     openOutput(configFor(window));

@@ -31,7 +31,7 @@ uint32_t convertDeep(const PixelFormat& format, uint32_t word) {
 
 } // namespace
 
-TEST(PixelFormat, sixteenBitsRoundAsOpenGlDoes) {
+TEST(PixelFormat, roundsSixteenBitsAsOpenGlDoes) {
     const PixelFormat format{16, 16, 32, 0xf800, 0x07e0, 0x001f};
     for (int value = 0; value < 256; ++value) {
         const auto five = static_cast<uint32_t>(std::lround(value / 255.0 * 31));
@@ -42,7 +42,7 @@ TEST(PixelFormat, sixteenBitsRoundAsOpenGlDoes) {
     }
 }
 
-TEST(PixelFormat, thirtyBits) {
+TEST(PixelFormat, convertsToThirtyBits) {
     const PixelFormat format{30, 32, 32, 0x3ff00000, 0x000ffc00, 0x000003ff};
     EXPECT_EQ(convertOne(format, 255, 255, 255), 0x3fffffffU);
     for (int value = 0; value < 256; ++value)
@@ -61,14 +61,14 @@ TEST(PixelFormat, convertsDeepPixels) {
     EXPECT_EQ(convertDeep({16, 16, 32, 0xf800, 0x07e0, 0x001f}, word), 0x1fU << 11 | 21U << 5);
 }
 
-TEST(PixelFormat, depth32KeepsAlpha) {
+TEST(PixelFormat, keepsAlphaAtDepth32) {
     EXPECT_EQ(convertOne({32, 32, 32, 0xff0000, 0xff00, 0xff}, 1, 2, 3), 0x5a010203U);
     EXPECT_EQ(convertOne({32, 32, 32, 0xff, 0xff00, 0xff0000}, 1, 2, 3), 0x5a030201U);
 }
 
-TEST(PixelFormat, swappedChannels) { EXPECT_EQ(convertOne({24, 32, 32, 0xff, 0xff00, 0xff0000}, 1, 2, 3), 0x030201U); }
+TEST(PixelFormat, swapsChannels) { EXPECT_EQ(convertOne({24, 32, 32, 0xff, 0xff00, 0xff0000}, 1, 2, 3), 0x030201U); }
 
-TEST(PixelFormat, threeBytesPerPixelArePadded) {
+TEST(PixelFormat, padsThreeBytesPerPixel) {
     auto converter = PixelConverter::make({24, 24, 32, 0xff0000, 0xff00, 0xff});
     ASSERT_TRUE(converter);
     EXPECT_EQ(converter->rowBytes(3), 12U);
@@ -81,7 +81,7 @@ TEST(PixelFormat, threeBytesPerPixelArePadded) {
     EXPECT_EQ(std::memcmp(stored, expected, sizeof stored), 0);
 }
 
-TEST(PixelFormat, refusesWhatHasNoColours) {
+TEST(PixelFormat, rejectsFormatsWithoutColours) {
     EXPECT_FALSE(PixelConverter::make({8, 8, 32, 0, 0, 0}));
     EXPECT_FALSE(PixelConverter::make({24, 32, 32, 0xf0f000, 0xff00, 0xff}));
     EXPECT_FALSE(PixelConverter::make({4, 4, 32, 8, 6, 1}));

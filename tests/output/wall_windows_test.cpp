@@ -310,7 +310,7 @@ TEST_F(Walls, areExactWithAuto) {
     expectOnScreen(200, 0, b.view());
 }
 
-TEST_F(Walls, reportWhatIsMissing) {
+TEST_F(Walls, reportMissingParts) {
     startServer();
     const std::vector<TileWindow> tiles = {{{0, 0, 120, 90}, 10, 10, "a", -1}, {{0, 0, 120, 90}, 200, 10, "b", -1}};
     WallWindowsConfig config = configFor(tiles, WallDrawing::Auto);

@@ -128,12 +128,12 @@ void XClient::resizeWindow(uint32_t window, int width, int height) {
 void XClient::sync() { x_->awaitFence(x_->sendFence(), Deadline::inMs(kAnswerTimeoutMs)); }
 
 Result<XOwned<xcb_get_image_reply_t>> XClient::image(uint32_t window, int x, int y, int width, int height) {
-    const auto asked =
+    const auto request =
         xcb_get_image(get(), XCB_IMAGE_FORMAT_Z_PIXMAP, window, static_cast<int16_t>(x), static_cast<int16_t>(y),
                       static_cast<uint16_t>(width), static_cast<uint16_t>(height), ~0U);
     XOwned<xcb_get_image_reply_t> reply;
     XOwned<xcb_generic_error_t> error;
-    const XAnswer answer = x_->await(asked.sequence, Deadline::inMs(kAnswerTimeoutMs), &reply, &error);
+    const XAnswer answer = x_->await(request.sequence, Deadline::inMs(kAnswerTimeoutMs), &reply, &error);
     if (answer == XAnswer::Reply) return reply;
     return Error{fmt::format("GetImage of {}x{} at {},{} failed: X error {}", width, height, x, y,
                              error != nullptr ? error->error_code : 0)};

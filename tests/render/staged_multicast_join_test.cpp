@@ -29,7 +29,7 @@ rsp::GroupOptions options(const std::string& control) {
 
 // The errors of a late member that is not admitted.
 struct Complaints {
-    std::function<void(const std::string&)> hear() {
+    std::function<void(const std::string&)> receiver() {
         return [this](const std::string& why) {
             const std::lock_guard lock(mutex);
             all.push_back(why);
@@ -82,7 +82,7 @@ void goesOn(size_t meanwhileBytes) {
     Writer writer(**host);
     writer.write(100'003);
     Complaints complaints;
-    StagedMulticastJoin late(options((*host)->controlAddress()), complaints.hear());
+    StagedMulticastJoin late(options((*host)->controlAddress()), complaints.receiver());
     const auto from = comesFrom(**host, writer);
     ASSERT_TRUE(from.has_value());
     writer.write(meanwhileBytes);
@@ -112,7 +112,7 @@ TEST(StagedMulticastJoin, reportsAFailedJoin) {
         nobody = (*host)->controlAddress();
     }
     Complaints complaints;
-    StagedMulticastJoin late(options(nobody), complaints.hear());
+    StagedMulticastJoin late(options(nobody), complaints.receiver());
     {
         std::unique_lock lock(complaints.mutex);
         ASSERT_TRUE(complaints.changed.wait_for(lock, std::chrono::milliseconds(kPatienceMs),

@@ -264,14 +264,14 @@ TEST_F(MovingAreas, answerForTheAreaAtThePosition) {
     open();
     draw();
     announce();
-    const auto asked = [&] {
+    const auto area = [&] {
         records::requestPixels(t_, 1, 0, 0, 64, 32, GL_RGBA, GL_UNSIGNED_BYTE, 4);
         send();
         return PixelViewport{answer_.x, answer_.y, answer_.w, answer_.h};
     };
-    EXPECT_EQ(asked(), kLeft);
+    EXPECT_EQ(area(), kLeft);
     encode_glClear(t_, kColour);
-    EXPECT_EQ(asked(), kRight);
+    EXPECT_EQ(area(), kRight);
 }
 
 // A returning node gets the state that a member reports.
@@ -279,25 +279,26 @@ TEST_F(MovingAreas, areReportedToReturningNodes) {
     open();
     draw();
     announce();
-    const auto told = replay_->tellAreas();
+    const auto sentAreas = replay_->memberAreas();
     replay_ = make(true);
     open();
     draw();
     EXPECT_EQ(shown(), kLeft);
-    ASSERT_TRUE(replay_->takeToldAreas(told));
+    ASSERT_TRUE(replay_->takeMemberAreas(sentAreas));
     encode_glClear(t_, kColour);
     EXPECT_EQ(shown(), kRight) << "they were announced before it came";
     EXPECT_EQ(frame_.areas, 1u);
-    EXPECT_NE(replay_->tellAreas(), told);
+    EXPECT_NE(replay_->memberAreas(), sentAreas);
 }
 
 TEST_F(MovingAreas, rejectInvalidReports) {
     open();
-    const auto told = replay_->tellAreas();
-    for (size_t size = 0; size < told.size(); ++size) {
+    const auto sentAreas = replay_->memberAreas();
+    for (size_t size = 0; size < sentAreas.size(); ++size) {
         replay_ = make(true);
         open();
-        EXPECT_FALSE(replay_->takeToldAreas(std::span(told).first(size))) << size << " of " << told.size() << " bytes";
+        EXPECT_FALSE(replay_->takeMemberAreas(std::span(sentAreas).first(size)))
+            << size << " of " << sentAreas.size() << " bytes";
     }
 }
 

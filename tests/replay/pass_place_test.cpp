@@ -119,9 +119,9 @@ TEST(PassPlace, alignsCentresOfZoomedPixels) {
 }
 
 TEST(PassPlace, acceptsAnyRectangle) {
-    constexpr int32_t kMost = std::numeric_limits<int32_t>::max(), kLeast = std::numeric_limits<int32_t>::min();
-    for (const PixelViewport& r : {PixelViewport{kMost, kMost, kMost, kMost},
-                                   PixelViewport{kLeast, kLeast, kMost, kMost}, PixelViewport{kLeast, 0, kLeast, 1}})
+    constexpr int32_t kMax = std::numeric_limits<int32_t>::max(), kMin = std::numeric_limits<int32_t>::min();
+    for (const PixelViewport& r : {PixelViewport{kMax, kMax, kMax, kMax}, PixelViewport{kMin, kMin, kMax, kMax},
+                                   PixelViewport{kMin, 0, kMin, 1}})
         for (const int width : {1, 2, 16}) (void)inKernel(kernel(width - 1, 0, width, 1), r);
     EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, 0, 10}), (std::array<float, 4>{}));
     EXPECT_EQ(moveInViewport(kernel(0, 0, 2, 1), {0, 0, std::numeric_limits<float>::quiet_NaN(), 10}),

@@ -26,13 +26,13 @@ TEST(RasterBins, staysInsideTheSurface) {
     EXPECT_EQ(widenToBins({900, 700, 5000, 5000}, kSurface), (PixelViewport{896, 649, 104, 128}));
 }
 
-TEST(RasterBins, leavesNothingAsNothing) {
+TEST(RasterBins, keepsEmptyRegionsEmpty) {
     EXPECT_TRUE(widenToBins({}, kSurface).empty());
     EXPECT_TRUE(widenToBins({70, 70, 0, 5}, kSurface).empty());
 }
 
 // Every pixel of each bin that the region touches is inside, and no pixel of another bin.
-TEST(RasterBins, holdsEachTouchedBinWhole) {
+TEST(RasterBins, coversEachTouchedBinCompletely) {
     const PixelViewport surface{0, 0, 150, 131};
     for (int32_t x = 0; x < 150; x += 13)
         for (int32_t y = 0; y < 131; y += 11) {

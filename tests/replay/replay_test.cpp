@@ -37,12 +37,12 @@ protected:
             pictureBytes_ = f.pixels ? static_cast<int64_t>(f.pixels(f.region) != nullptr) * f.region.area() * 4 : -1;
         };
         out.log = [this](const std::string& line) { log_ += line + "\n"; };
-        out.news = [this](const wire::DriverEvent& n, const std::string& text) {
+        out.driverEvent = [this](const wire::DriverEvent& n, const std::string& text) {
             EXPECT_EQ(n.client, 1u);
             EXPECT_EQ(n.context, 1u);
             EXPECT_EQ(n.textBytes, text.size());
-            news_.push_back(n);
-            newsText_ = text;
+            driverEvents_.push_back(n);
+            messageText_ = text;
         };
         replay_ = std::make_unique<Replay>(fuzz::makeFakePlatform(options), config, out);
     }
@@ -78,8 +78,8 @@ protected:
     size_t answerBytes_ = 0;
     int answers_ = 0;
     std::string log_;
-    std::vector<wire::DriverEvent> news_;
-    std::string newsText_;
+    std::vector<wire::DriverEvent> driverEvents_;
+    std::string messageText_;
 };
 
 TEST_F(ReplayTest, deliversAFrame) {
@@ -176,7 +176,7 @@ TEST_F(ReplayTest, rejectsOffsetsWhereOnlyBytesAreValid) {
     EXPECT_FALSE(sendWords({head(op::glCallLists, 6), 1, GL_UNSIGNED_BYTE, record::kTagOffset, 64, 0}));
 }
 
-TEST_F(ReplayTest, neverReplacesAContext) {
+TEST_F(ReplayTest, doesNotReplaceAContext) {
     begin();
     wire::WindowConfig c{};
     records::createContext(t_, {1, 0, 0, 4, 5, 0, 0, c});
@@ -392,18 +392,18 @@ TEST_F(ReplayTest, reportsExhaustedMemory) {
     begin();
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 10, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
     EXPECT_TRUE(send());
-    EXPECT_TRUE(news_.empty());
+    EXPECT_TRUE(driverEvents_.empty());
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 11, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
     records::swap(t_, 1, 1);
     EXPECT_TRUE(send());
-    ASSERT_EQ(news_.size(), 1u); // the swap reports nothing further
-    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::OutOfMemory));
-    EXPECT_EQ(news_[0].type, 0u);
-    records::errorTold(t_);
+    ASSERT_EQ(driverEvents_.size(), 1u); // the swap reports nothing further
+    EXPECT_EQ(driverEvents_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::OutOfMemory));
+    EXPECT_EQ(driverEvents_[0].type, 0u);
+    records::errorReported(t_);
     encode_glTexImage2D(t_, GL_TEXTURE_2D, 0, GL_RGBA, 11, 10, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
     EXPECT_TRUE(send());
-    ASSERT_EQ(news_.size(), 2u);
-    EXPECT_EQ(news_[1].type, 1u); // the program has received an error before
+    ASSERT_EQ(driverEvents_.size(), 2u);
+    EXPECT_EQ(driverEvents_[1].type, 1u); // the program has received an error before
 }
 
 TEST_F(ReplayTest, reportsALostContextOnce) {
@@ -411,9 +411,9 @@ TEST_F(ReplayTest, reportsALostContextOnce) {
     begin();
     for (uint32_t frame = 1; frame < 4; ++frame) records::swap(t_, 1, frame);
     EXPECT_TRUE(send());
-    ASSERT_EQ(news_.size(), 1u);
-    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::ContextLost));
-    EXPECT_EQ(news_[0].type, GLenum{GL_GUILTY_CONTEXT_RESET});
+    ASSERT_EQ(driverEvents_.size(), 1u);
+    EXPECT_EQ(driverEvents_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::ContextLost));
+    EXPECT_EQ(driverEvents_[0].type, GLenum{GL_GUILTY_CONTEXT_RESET});
     EXPECT_NE(log_.find("lost"), std::string::npos);
 }
 
@@ -422,14 +422,14 @@ TEST_F(ReplayTest, reportsDriverMessagesWithDebugOutput) {
     begin();
     encode_glDrawArrays(t_, GL_POINTS, 0, 1);
     EXPECT_TRUE(send());
-    EXPECT_TRUE(news_.empty()); // debug output is off
+    EXPECT_TRUE(driverEvents_.empty()); // debug output is off
     encode_glEnable(t_, GL_DEBUG_OUTPUT);
     encode_glDrawArrays(t_, GL_POINTS, 0, 1);
     EXPECT_TRUE(send());
-    ASSERT_EQ(news_.size(), 1u); // the program already has its own messages
-    EXPECT_EQ(news_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::DebugMessage));
-    EXPECT_EQ(news_[0].source, GLenum{GL_DEBUG_SOURCE_API});
-    EXPECT_EQ(newsText_, "a slow draw");
+    ASSERT_EQ(driverEvents_.size(), 1u); // the program already has its own messages
+    EXPECT_EQ(driverEvents_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::DebugMessage));
+    EXPECT_EQ(driverEvents_[0].source, GLenum{GL_DEBUG_SOURCE_API});
+    EXPECT_EQ(messageText_, "a slow draw");
 }
 
 TEST_F(ReplayTest, keepsLabelsWithinTheirRecord) {

@@ -10,7 +10,7 @@ namespace {
 
 // Returns the changed source without the suffixes that distinguish functions of several texts.
 std::optional<std::string> placed(std::string_view source, const FragmentReads& reads, bool es) {
-    const auto out = shaders::withWindowPlace(source, reads, es);
+    const auto out = shaders::withWindowOffset(source, reads, es);
     if (!out) return out;
     return std::regex_replace(*out, std::regex("(mural[A-Za-z0-9]+)_[0-9a-f]{8}\\("), "$1(");
 }
@@ -85,8 +85,8 @@ TEST(TextureGradients, leavesUnknownLookupsUnchanged) {
 }
 
 TEST(FragCoord, givesEachTextOfAStageItsOwnFunctions) {
-    const auto first = shaders::withWindowPlace("vec4 a() { return gl_FragCoord; }", kCoordinates, false);
-    const auto second = shaders::withWindowPlace("vec4 b() { return gl_FragCoord; }", kCoordinates, false);
+    const auto first = shaders::withWindowOffset("vec4 a() { return gl_FragCoord; }", kCoordinates, false);
+    const auto second = shaders::withWindowOffset("vec4 b() { return gl_FragCoord; }", kCoordinates, false);
     ASSERT_TRUE(first && second);
     const auto nameIn = [](const std::string& text) { return text.substr(text.find("muralWindow"), 20); };
     EXPECT_NE(nameIn(*first), nameIn(*second));
@@ -123,9 +123,9 @@ TEST(FragCoord, followsMacros) {
 
 TEST(FragCoordArb, replacesThePositionWithAVariable) {
     const auto out =
-        withWindowPlaceArb("!!ARBfp1.0\n# fragment.position\nOPTION ARB_precision_hint_fastest;\nATTRIB p = "
-                           "fragment.position;\nMOV result.color, p;\nADD result.color, p, fragment . position;\nEND",
-                           255);
+        withWindowOffsetArb("!!ARBfp1.0\n# fragment.position\nOPTION ARB_precision_hint_fastest;\nATTRIB p = "
+                            "fragment.position;\nMOV result.color, p;\nADD result.color, p, fragment . position;\nEND",
+                            255);
     EXPECT_EQ(out, "!!ARBfp1.0\n# fragment.position\nOPTION ARB_precision_hint_fastest;\n"
                    "TEMP muralPosition; MAD muralPosition.xy, fragment.position, program.env[254], "
                    "program.env[255].xyyy; ADD muralPosition.xy, muralPosition, fragment.position; MOV "
@@ -134,23 +134,23 @@ TEST(FragCoordArb, replacesThePositionWithAVariable) {
 }
 
 TEST(FragCoordArb, leavesProgramsWithoutThePositionUnchanged) {
-    EXPECT_FALSE(withWindowPlaceArb("!!ARBfp1.0\nMOV result.color, fragment.color;\nEND", 255));
-    EXPECT_FALSE(withWindowPlaceArb(
+    EXPECT_FALSE(withWindowOffsetArb("!!ARBfp1.0\nMOV result.color, fragment.color;\nEND", 255));
+    EXPECT_FALSE(withWindowOffsetArb(
         "!!ARBfp1.0\nPARAM a[256] = { program.env[0..255] };\nMOV result.color, fragment.position;\nEND", 255));
-    EXPECT_FALSE(withWindowPlaceArb("", 255));
-    EXPECT_FALSE(withWindowPlaceArb("!!ARBfp1.0", 255));
-    EXPECT_FALSE(withWindowPlaceArb("nothing of the kind: fragment.position", 255));
+    EXPECT_FALSE(withWindowOffsetArb("", 255));
+    EXPECT_FALSE(withWindowOffsetArb("!!ARBfp1.0", 255));
+    EXPECT_FALSE(withWindowOffsetArb("nothing of the kind: fragment.position", 255));
 }
 
 TEST(FragCoordArb, countsFromTheTopWithAnUpperOrigin) {
-    const auto out = withWindowPlaceArb(
+    const auto out = withWindowOffsetArb(
         "!!ARBfp1.0\nOPTION ARB_fragment_coord_origin_upper_left;\nMOV result.color, fragment.position;\nEND", 31);
     ASSERT_TRUE(out);
     EXPECT_NE(out->find("program.env[31].xzzz"), std::string::npos);
 }
 
 TEST(FragCoordArb, shiftsIntegerCentresByHalfAPixel) {
-    const auto out = withWindowPlaceArb(
+    const auto out = withWindowOffsetArb(
         "!!ARBfp1.0\nOPTION ARB_fragment_coord_pixel_center_integer;\nMOV result.color, fragment.position;\nEND", 31);
     ASSERT_TRUE(out);
     EXPECT_NE(out->find("MAD muralPosition.xy, program.env[30], 0.5, muralPosition;"), std::string::npos);

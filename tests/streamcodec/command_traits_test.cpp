@@ -98,7 +98,7 @@ TEST(CommandTraits, areOfClassDrawExactlyWhenTheCommandWritesPixelsOrOrdersThem)
 }
 
 // A driver gives a window its size at the first of these commands; textures from drawables are refreshed before them.
-TEST(CommandTraits, drawsIntoWindowForAllThatWritesToOrReadsFromFramebuffers) {
+TEST(CommandTraits, areWindowDrawsWhenTheyAccessFramebuffers) {
     const Predicate draws = [](uint16_t opcode) { return drawsIntoWindow(opcode); };
     const Rule rules[] = {
         {"output", kWrites, draws, {}},
@@ -183,7 +183,7 @@ TEST(CommandTraits, excludeEachOther) {
     expectAll(rules);
 }
 
-TEST(CommandUses, ofReplayAgreeWithEachOther) {
+TEST(CommandUses, agreeInReplay) {
     const auto range = [](RangeUse use) -> Predicate {
         return [=](uint16_t opcode) { return rangeUseOf(opcode) == use; };
     };
@@ -224,7 +224,7 @@ TEST(CommandUses, ofReplayAgreeWithEachOther) {
 }
 
 // Deferred uploads are sent before a command that may read them.
-TEST(CommandClasses, neverPassCommandsThatMayReadDeferredUploads) {
+TEST(CommandClasses, excludeCommandsThatMayReadDeferredUploads) {
     using filter::CommandClass;
     const auto about = [](CommandClass c) -> Predicate {
         return [=](uint16_t opcode) { return filter::CommandKinds::all()[opcode].about == c; };
@@ -263,7 +263,7 @@ TEST(CommandTable, hasEverySentCommandWithOneClass) {
 }
 
 // These commands were of class `state`, although all other tables had them as draws.
-TEST(CommandTraits, knowRectanglesInWindowCoordinatesAsDraws) {
+TEST(CommandTraits, classifyRectanglesInWindowCoordinatesAsDraws) {
     for (const uint16_t opcode :
          {op::glDrawTexfOES, op::glDrawTexfvOES, op::glDrawTexiOES, op::glDrawTexivOES, op::glDrawTexsOES,
           op::glDrawTexsvOES, op::glDrawTexxOES, op::glDrawTexxvOES, op::glDrawTextureNV}) {

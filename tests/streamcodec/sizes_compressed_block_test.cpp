@@ -16,7 +16,7 @@ void expectBlock(GLenum format, uint32_t width, uint32_t height, uint32_t depth,
     EXPECT_EQ(block.bytes, bytes) << std::hex << format;
 }
 
-TEST(SizesCompressedBlock, knowsBlockShapes) {
+TEST(SizesCompressedBlock, supportsBlockShapes) {
     expectBlock(GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 4, 4, 1, 8);
     expectBlock(GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT, 4, 4, 1, 16);
     expectBlock(GL_COMPRESSED_RED_RGTC1, 4, 4, 1, 8);

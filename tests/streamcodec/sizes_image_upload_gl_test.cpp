@@ -281,8 +281,8 @@ void findUnknown(TestApi api) {
     }
 }
 
-TEST(SizesImageUploadGl, knowsEveryFormatAndType) { findUnknown(TestApi::Compatibility); }
-TEST(SizesImageUploadGl, knowsEveryFormatAndTypeOfOpenGlEs) { findUnknown(TestApi::Es3); }
+TEST(SizesImageUploadGl, supportsEveryFormatAndType) { findUnknown(TestApi::Compatibility); }
+TEST(SizesImageUploadGl, supportsEveryFormatAndTypeOfOpenGlEs) { findUnknown(TestApi::Es3); }
 
 // A framebuffer with all kinds of buffers for glDrawPixels and glBitmap.
 class DrawTarget {

@@ -14,8 +14,8 @@ class Random {
 public:
     explicit Random(uint32_t seed) : engine_(seed) {}
 
-    int upTo(int most) { return std::uniform_int_distribution<int>(0, most)(engine_); }
-    int between(int least, int most) { return std::uniform_int_distribution<int>(least, most)(engine_); }
+    int upTo(int maximum) { return std::uniform_int_distribution<int>(0, maximum)(engine_); }
+    int between(int minimum, int maximum) { return std::uniform_int_distribution<int>(minimum, maximum)(engine_); }
     bool oneIn(int n) { return upTo(n - 1) == 0; }
     uint8_t byte() { return static_cast<uint8_t>(upTo(255)); }
 

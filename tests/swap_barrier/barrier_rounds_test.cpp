@@ -51,7 +51,7 @@ TEST(BarrierRounds, doesNotWaitForALateMemberUntilItReturns) {
     EXPECT_EQ(released(rounds.arrive(2, frame(3), 1034), frame(3)), (std::vector{0, 1, 2}));
 }
 
-TEST(BarrierRounds, neverWaitsForALostMember) {
+TEST(BarrierRounds, doesNotWaitForALostMember) {
     BarrierRounds rounds(2, kPatienceNs);
     (void)rounds.arrive(0, frame(1), 1);
     EXPECT_EQ(released(rounds.gone(1, 2), frame(1)), std::vector{0});

@@ -79,7 +79,7 @@ protected:
         ASSERT_TRUE(opened);
         reader_ = std::move(*opened);
     }
-    std::string saidOf(int64_t lastFrame) {
+    std::string errorOf(int64_t lastFrame) {
         const auto there = checkFrames(*reader_, lastFrame);
         return there ? "" : there.error().message;
     }
@@ -95,15 +95,15 @@ protected:
 
 TEST_F(Dumped, reportsMissingFrames) {
     write({});
-    EXPECT_EQ(saidOf(2), "");
+    EXPECT_EQ(errorOf(2), "");
     for (const int64_t last : {int64_t{3}, int64_t{99}, INT64_MAX})
-        EXPECT_EQ(saidOf(last), "the trace has 2 frames; choose some of them, such as 1-2") << last;
+        EXPECT_EQ(errorOf(last), "the trace has 2 frames; choose some of them, such as 1-2") << last;
 }
 
 TEST_F(Dumped, treatsRecordsAfterTheLastFrameAsOneMore) {
     write(PacketBuilder().record(op::glFlush, {}));
-    EXPECT_EQ(saidOf(3), "");
-    EXPECT_EQ(saidOf(4), "the trace has 2 frames; choose some of them, such as 1-2");
+    EXPECT_EQ(errorOf(3), "");
+    EXPECT_EQ(errorOf(4), "the trace has 2 frames; choose some of them, such as 1-2");
 }
 
 TEST_F(Dumped, reportsMissingCalls) {

@@ -70,7 +70,7 @@ TEST_F(RecordingFile, isReadableUpToTheLastCompleteBlockWhenTruncated) {
     ASSERT_TRUE(all);
     const uint64_t second = (*all)->blocks()[1].offset;
     const size_t inFirst = (*all)->blocks()[0].entries;
-    size_t mostRead = 0;
+    size_t maxRead = 0;
     for (size_t bytes = 0; bytes < whole.size(); ++bytes) {
         auto cut = readerOf(std::span(whole).first(bytes));
         if (!cut) { // within the header
@@ -83,9 +83,9 @@ TEST_F(RecordingFile, isReadableUpToTheLastCompleteBlockWhenTruncated) {
         EXPECT_EQ(problem, "") << bytes;
         EXPECT_TRUE(std::equal(entries.begin(), entries.end(), put.begin())) << bytes;
         EXPECT_EQ(entries.size() >= inFirst, bytes >= second) << bytes;
-        mostRead = std::max(mostRead, entries.size());
+        maxRead = std::max(maxRead, entries.size());
     }
-    EXPECT_EQ(mostRead, put.size()); // only the index is missing
+    EXPECT_EQ(maxRead, put.size()); // only the index is missing
 }
 
 TEST_F(RecordingFile, detectsEveryChangedByte) {
@@ -107,17 +107,17 @@ TEST_F(RecordingFile, detectsEveryChangedByte) {
 TEST_F(RecordingFile, reportsProblemAndRemedy) {
     writeSmall();
     const Bytes whole = readWhole(path());
-    const auto said = [&](size_t at, uint32_t value) {
+    const auto errorOf = [&](size_t at, uint32_t value) {
         Bytes changed = whole;
         std::memcpy(changed.data() + at, &value, 4);
         auto reader = readerOf(changed);
         return reader ? "" : reader.error().message;
     };
     EXPECT_EQ(
-        said(offsetof(Header, version), 2),
+        errorOf(offsetof(Header, version), 2),
         "trace in memory has version 2 of the format, but this Mural reads version 1; use the Mural that recorded it");
-    EXPECT_EQ(said(0, 0x464c457f), "in memory is not a trace of Mural; choose a file of mural run --record");
-    EXPECT_EQ(said(offsetof(Header, aboutBytes), 0xffffffff),
+    EXPECT_EQ(errorOf(0, 0x464c457f), "in memory is not a trace of Mural; choose a file of mural run --record");
+    EXPECT_EQ(errorOf(offsetof(Header, aboutBytes), 0xffffffff),
               "trace in memory is damaged at byte 0: its header is longer than the file; use another copy of it, or "
               "record it again");
     EXPECT_EQ(TraceReader::open("/nowhere.mural").error().message,

@@ -15,16 +15,16 @@ namespace {
 
 struct Passed {
     std::map<uint16_t, size_t> opcodes; // number per opcode
-    std::vector<size_t> looked;         // offsets of the opcodes in kLooked
+    std::vector<size_t> examined;       // offsets of the opcodes in kExamined
     size_t at = 0;
     RecordOffsets walked;
 };
 
-constexpr uint16_t kLooked = 99;
+constexpr uint16_t kExamined = 99;
 
 std::vector<std::byte> someRecords(std::mt19937& random) {
     std::vector<std::byte> packet =
-        mural::testing::recordRounds(random, [](auto& p) { mural::testing::putRecord(p, kLooked, 2); });
+        mural::testing::recordRounds(random, [](auto& p) { mural::testing::putRecord(p, kExamined, 2); });
     const auto below = [&](uint32_t n) { return random() % n; };
     if (below(4) == 0) mural::testing::putRecord(packet, 1, 0); // an invalid record
     // truncates the last one
@@ -32,8 +32,8 @@ std::vector<std::byte> someRecords(std::mt19937& random) {
     return packet;
 }
 
-// Walks up to a record of kLooked after mostLooked of them.
-Passed byOne(std::span<const std::byte> packet, size_t mostLooked = 0) {
+// Walks up to a record of kExamined after maxExamined of them.
+Passed byOne(std::span<const std::byte> packet, size_t maxExamined = 0) {
     Passed p;
     size_t at = 0;
     while (packet.size() - at >= 4) {
@@ -41,9 +41,9 @@ Passed byOne(std::span<const std::byte> packet, size_t mostLooked = 0) {
         std::memcpy(&head, packet.data() + at, sizeof head);
         const size_t sizeBytes = (head >> 16) * size_t{4};
         if (sizeBytes == 0 || sizeBytes > packet.size() - at) break;
-        if (static_cast<uint16_t>(head) == kLooked) {
-            if (p.looked.size() == mostLooked) break;
-            p.looked.push_back(at);
+        if (static_cast<uint16_t>(head) == kExamined) {
+            if (p.examined.size() == maxExamined) break;
+            p.examined.push_back(at);
         }
         ++p.opcodes[static_cast<uint16_t>(head)];
         p.walked.pass(at, sizeBytes);
@@ -77,7 +77,7 @@ TEST(RecordWalk, skipsRoundsLikeSingleRecords) {
         std::map<uint16_t, size_t> opcodes;
         RecordWalk walk(packet);
         walk.skip([&](uint16_t opcode, size_t times) {
-            if (opcode == kLooked) return false;
+            if (opcode == kExamined) return false;
             opcodes[opcode] += times;
             passed += times;
             return true;
@@ -89,26 +89,28 @@ TEST(RecordWalk, skipsRoundsLikeSingleRecords) {
 }
 
 TEST(RecordWalk, reportsSelectedRecords) {
-    size_t looks = 0;
+    size_t examinedRecords = 0;
     forRandomPackets([&](std::span<const std::byte> packet, std::mt19937& random) {
-        const size_t most = random() % 8;
-        const Passed right = byOne(packet, most);
-        std::vector<size_t> looked;
+        const size_t maximum = random() % 8;
+        const Passed right = byOne(packet, maximum);
+        std::vector<size_t> examined;
         RecordWalk walk(packet);
         walk.pass(
-            [](uint16_t opcode) { return opcode == kLooked ? RecordWalk::Interest::Look : RecordWalk::Interest::None; },
+            [](uint16_t opcode) {
+                return opcode == kExamined ? RecordWalk::Interest::Examine : RecordWalk::Interest::None;
+            },
             [&](const RecordView& r) {
-                if (looked.size() == most) return false;
-                EXPECT_EQ(r.opcode, kLooked);
+                if (examined.size() == maximum) return false;
+                EXPECT_EQ(r.opcode, kExamined);
                 EXPECT_EQ(r.arguments.size(), r.sizeBytes - 4);
-                looked.push_back(r.offset);
+                examined.push_back(r.offset);
                 return true;
             });
-        looks += looked.size();
-        ASSERT_EQ(looked, right.looked);
+        examinedRecords += examined.size();
+        ASSERT_EQ(examined, right.examined);
         expectPassed(walk, right);
     });
-    EXPECT_GT(looks, 1000u);
+    EXPECT_GT(examinedRecords, 1000u);
 }
 
 // From any position in a round: triangles with a normal, quads with a colour per corner, polygons.
@@ -122,15 +124,15 @@ TEST(RecordWalk, skipsRoundsWithRepeatedCommands) {
                 mural::testing::putRecord(packet, static_cast<uint32_t>(command),
                                           1 + static_cast<uint32_t>(command % 3));
             }
-            size_t asked = 0, passed = 0;
+            size_t examinedCount = 0, passed = 0;
             RecordWalk walk(packet);
             walk.skip([&](uint16_t, size_t times) {
-                ++asked;
+                ++examinedCount;
                 passed += times;
                 return true;
             });
             EXPECT_EQ(passed, 1000 * round.size());
-            EXPECT_LE(asked, 20 + 8 * round.size());
+            EXPECT_LE(examinedCount, 20 + 8 * round.size());
         }
 }
 

@@ -135,8 +135,8 @@ private:
     uint32_t frame_ = 0;
 };
 
-TEST(KeptProperty, leavesTheStateOfTheWholeStream) {
-    size_t whole = 0, kept = 0;
+TEST(SnapshotProperty, leavesTheStateOfTheWholeStream) {
+    size_t whole = 0, snapshotBytes = 0;
     for (uint32_t seed = 1; seed <= 300; ++seed) {
         RandomProgram program(seed);
         LiveCommandLog log;
@@ -158,12 +158,12 @@ TEST(KeptProperty, leavesTheStateOfTheWholeStream) {
                 bytes += records.size();
             });
             ASSERT_EQ(some.text(), all.text()) << "seed " << seed << ", packet " << i;
-            if (i == 39) kept += bytes;
+            if (i == 39) snapshotBytes += bytes;
         }
     }
     // The reduction is worthwhile.
-    EXPECT_LT(kept * 2, whole);
-    RecordProperty("keptBytes", static_cast<int>(kept));
+    EXPECT_LT(snapshotBytes * 2, whole);
+    RecordProperty("keptBytes", static_cast<int>(snapshotBytes));
 }
 
 } // namespace

@@ -16,9 +16,9 @@ namespace {
 
 constexpr uint32_t kStream = wire::streamOf(1, 0);
 
-class Kept : public testing::Test {
+class StreamSnapshotTest : public testing::Test {
 protected:
-    Kept() {
+    StreamSnapshotTest() {
         PacketBuilder p;
         p.context(1).window(1, 20, 10).record(wire::kOpMakeCurrent, {1, 1, 1});
         give(p);
@@ -42,20 +42,20 @@ protected:
                  .swap(1, ++frame_));
     }
 
-    std::vector<std::string> said_;
-    StreamSnapshot stream_{size_t{1} << 20, [this](const std::string& line) { said_.push_back(line); }};
+    std::vector<std::string> messages_;
+    StreamSnapshot stream_{size_t{1} << 20, [this](const std::string& line) { messages_.push_back(line); }};
     uint32_t frame_ = 0;
 };
 
-TEST_F(Kept, staysAsLargeAsOneFrame) {
+TEST_F(StreamSnapshotTest, staysAsLargeAsOneFrame) {
     for (int i = 0; i < 10'000; ++i) frame();
     EXPECT_EQ(left(op::glDrawArrays), 1u);
     EXPECT_EQ(left(op::glClear), 1u);
     EXPECT_EQ(left(wire::kOpSwap), 1u);
-    EXPECT_TRUE(said_.empty());
+    EXPECT_TRUE(messages_.empty());
 }
 
-TEST_F(Kept, dropsSwaps) {
+TEST_F(StreamSnapshotTest, dropsSwaps) {
     frame();
     for (const SnapshotPacket& packet : stream_.snapshot()) {
         RecordWalk walk(packet.payload);
@@ -64,7 +64,7 @@ TEST_F(Kept, dropsSwaps) {
     }
 }
 
-TEST_F(Kept, dropsObjectsWhenTheirNamesAreDeleted) {
+TEST_F(StreamSnapshotTest, dropsObjectsWhenTheirNamesAreDeleted) {
     for (int i = 0; i < 5; ++i) {
         give(PacketBuilder()
                  .record(op::glGenBuffers, {1, 4, 9})
@@ -78,7 +78,7 @@ TEST_F(Kept, dropsObjectsWhenTheirNamesAreDeleted) {
 }
 
 // Nodes that divide draws check whether shaders may ever have written to memory (nodes/replay/features/sort_last.cpp).
-TEST_F(Kept, remembersThatDeletedMemoryWasBound) {
+TEST_F(StreamSnapshotTest, remembersThatDeletedMemoryWasBound) {
     give(PacketBuilder()
              .record(op::glGenBuffers, {1, 4, 9})
              .record(op::glBindBufferBase, {GL_SHADER_STORAGE_BUFFER, 2, 9})
@@ -93,14 +93,14 @@ TEST_F(Kept, remembersThatDeletedMemoryWasBound) {
 }
 
 // The driver has created the drawable again, with new buffers.
-TEST_F(Kept, dropsAWindowsPictureWhenItIsMadeAgain) {
+TEST_F(StreamSnapshotTest, dropsAWindowsPictureWhenItIsRecreated) {
     give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, 0, 3}));
     EXPECT_EQ(left(op::glDrawArrays), 1u);
     give(PacketBuilder().window(1, 20, 10));
     EXPECT_EQ(left(op::glDrawArrays), 0u);
 }
 
-TEST_F(Kept, dropsProxies) {
+TEST_F(StreamSnapshotTest, dropsProxies) {
     const auto image = [](uint32_t target) {
         return PacketBuilder().record(op::glTexImage2D, {target, 0, GL_RGBA, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4, 7});
     };
@@ -112,7 +112,7 @@ TEST_F(Kept, dropsProxies) {
     EXPECT_EQ(left(op::glTexImage2D), 1u);
 }
 
-TEST_F(Kept, keepsABlobWithItsCommand) {
+TEST_F(StreamSnapshotTest, keepsABlobWithItsCommand) {
     give(PacketBuilder().record(op::glGenBuffers, {1, 4, 9}).record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9}));
     for (uint32_t i = 0; i < 3; ++i) {
         give(PacketBuilder().record(wire::kOpBlobBegin, {4, 0}).record(wire::kOpBlobData, {4, i}));
@@ -124,7 +124,7 @@ TEST_F(Kept, keepsABlobWithItsCommand) {
     EXPECT_EQ(left(wire::kOpBlobBegin), 2u);
 }
 
-TEST_F(Kept, keepsDeletedShadersOfALivingProgram) {
+TEST_F(StreamSnapshotTest, keepsDeletedShadersOfALivingProgram) {
     give(PacketBuilder()
              .record(op::glCreateProgram, {1})
              .record(op::glCreateShader, {GL_VERTEX_SHADER, 2})
@@ -141,31 +141,31 @@ TEST_F(Kept, keepsDeletedShadersOfALivingProgram) {
 }
 
 // A request makes the driver draw its collected bitmaps, with the state of that moment.
-TEST_F(Kept, keepsRequestsAfterBitmaps) {
-    const auto ask = [&] {
+TEST_F(StreamSnapshotTest, keepsRequestsAfterBitmaps) {
+    const auto query = [&] {
         give(PacketBuilder().record(wire::kOpRequestTexImage, {1, 0, GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, 4}));
     };
-    ask();
+    query();
     EXPECT_EQ(left(wire::kOpRequestTexImage), 0u);
     give(PacketBuilder().record(op::glBitmap, {8, 8, 0, 0, 0, 0, 0}));
-    ask();
-    ask();
+    query();
+    query();
     EXPECT_EQ(left(op::glBitmap), 1u);
     EXPECT_EQ(left(wire::kOpRequestTexImage), 1u);
 }
 
-TEST_F(Kept, keepsNothingOfAnEndedProgram) {
+TEST_F(StreamSnapshotTest, keepsNothingOfAnEndedProgram) {
     frame();
     stream_.event({Event::ClientGone, 1, 0, ""});
     EXPECT_TRUE(stream_.snapshot().empty());
 }
 
-TEST_F(Kept, reportsOnceThatItIsTooLarge) {
+TEST_F(StreamSnapshotTest, reportsOnceThatItIsTooLarge) {
     // without clears
     for (uint32_t i = 0; i < 40'000; ++i) give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, i, 3}));
     EXPECT_FALSE(stream_.serves());
-    ASSERT_EQ(said_.size(), 1u);
-    EXPECT_NE(said_[0].find("use a larger --cache-size"), std::string::npos);
+    ASSERT_EQ(messages_.size(), 1u);
+    EXPECT_NE(messages_[0].find("use a larger --cache-size"), std::string::npos);
     EXPECT_TRUE(stream_.snapshot().empty());
     EXPECT_LT(stream_.sizeBytes(), size_t{1} << 18);
 }
@@ -185,7 +185,7 @@ PacketBuilder uploadTo(uint32_t x) {
 
 // Drivers number handles in order of creation. Handles of deleted textures count too, but not the contents of these
 // textures.
-TEST_F(Kept, createsHandlesInTheSameOrder) {
+TEST_F(StreamSnapshotTest, createsHandlesInTheSameOrder) {
     for (uint32_t i = 0; i < 3; ++i) {
         give(sparseTexture(9));
         give(uploadTo(0));
@@ -201,7 +201,7 @@ TEST_F(Kept, createsHandlesInTheSameOrder) {
     EXPECT_EQ(left(op::glTexSubImage2D), 0u);
 }
 
-TEST_F(Kept, keepsTheLastResidency) {
+TEST_F(StreamSnapshotTest, keepsTheLastResidency) {
     give(sparseTexture(9));
     give(PacketBuilder().record(op::glGetTextureHandleARB, {9, 5, 0}));
     for (int i = 0; i < 4; ++i)
@@ -215,7 +215,7 @@ TEST_F(Kept, keepsTheLastResidency) {
 
 // A framebuffer object was drawn with the former contents of the resident texture, although that texture was never
 // bound.
-TEST_F(Kept, drawsDependOnResidentTextures) {
+TEST_F(StreamSnapshotTest, keepsDrawsThatUseResidentTextures) {
     give(sparseTexture(7)); // the target
     give(PacketBuilder()
              .record(op::glGenFramebuffers, {1, 4, 3})
@@ -235,7 +235,7 @@ TEST_F(Kept, drawsDependOnResidentTextures) {
     EXPECT_EQ(left(op::glTexSubImage2D), 2u);
 }
 
-TEST_F(Kept, keepsThePagesThatUploadsNeed) {
+TEST_F(StreamSnapshotTest, keepsThePagesThatUploadsNeed) {
     const auto commit = [](uint32_t x, uint32_t committed) {
         return PacketBuilder().record(op::glTexPageCommitmentARB, {GL_TEXTURE_2D, 0, x, 0, 0, 128, 256, 1, committed});
     };
@@ -254,7 +254,7 @@ TEST_F(Kept, keepsThePagesThatUploadsNeed) {
     EXPECT_LE(pages, 5u);
 }
 
-TEST_F(Kept, keepsPagesOfBuffers) {
+TEST_F(StreamSnapshotTest, keepsPagesOfBuffers) {
     give(PacketBuilder()
              .record(op::glGenBuffers, {1, 4, 9})
              .record(op::glBindBuffer, {GL_ARRAY_BUFFER, 9})

@@ -61,7 +61,7 @@ protected:
     }
     uint64_t dropped(int64_t first, int64_t last) {
         trimmed(first, last);
-        return (report_.drawsBefore - report_.drawsKept);
+        return (report_.drawsBefore - report_.drawsWritten);
     }
 
     const std::filesystem::path folder_;
@@ -72,7 +72,7 @@ protected:
     int64_t frames_ = 0;
 };
 
-TEST_F(Trim, dropsWhatALaterClearCovers) {
+TEST_F(Trim, dropsDrawsThatALaterClearCovers) {
     for (int i = 0; i < 4; ++i) frame();
     const auto lines = trimmed(3, 3);
     const std::vector<std::string> wanted{
@@ -85,7 +85,7 @@ TEST_F(Trim, dropsWhatALaterClearCovers) {
         "Mural.Swap(window=1, frame=1)"};
     EXPECT_EQ(lines, wanted);
     EXPECT_EQ(frames_, 1);
-    EXPECT_EQ((report_.drawsBefore - report_.drawsKept), 2u);
+    EXPECT_EQ((report_.drawsBefore - report_.drawsWritten), 2u);
     EXPECT_EQ(report_.drawsBefore, 2u);
 }
 
@@ -95,7 +95,7 @@ TEST_F(Trim, keepsAllOfTheFirstFrames) {
     EXPECT_EQ(frames_, 2);
 }
 
-TEST_F(Trim, keepsWhatNoClearCovers) {
+TEST_F(Trim, keepsDrawsThatNoClearCovers) {
     frame();
     frame(0);
     frame(0);
@@ -137,7 +137,7 @@ TEST_F(Trim, ignoresClearsWithScissorOrMask) {
     EXPECT_EQ(dropped(8, 8), 7u);
 }
 
-TEST_F(Trim, keepsWhatIsRead) {
+TEST_F(Trim, keepsDrawsThatAreRead) {
     frame();
     begin().record(op::glCopyTexSubImage2D, {GL_TEXTURE_2D, 0, 0, 0, 0, 0, 4, 4});
     frame();
@@ -188,7 +188,7 @@ TEST_F(Trim, dropsVerticesAndKeepsCurrentValues) {
     swap();
     frame();
     const auto lines = trimmed(2, 2);
-    EXPECT_EQ((report_.drawsBefore - report_.drawsKept), 1u);
+    EXPECT_EQ((report_.drawsBefore - report_.drawsWritten), 1u);
     EXPECT_EQ(std::ranges::count_if(lines, [](const auto& l) { return l.starts_with("glColor3f"); }), 1);
     EXPECT_EQ(std::ranges::count_if(lines, [](const auto& l) { return l.starts_with("glVertex2f"); }), 0);
     EXPECT_EQ(std::ranges::count_if(lines, [](const auto& l) { return l.starts_with("glBegin"); }), 0);
@@ -208,7 +208,7 @@ TEST_F(Trim, dropsBlobsWithTheirDraw) {
     frame();
     frame();
     const auto lines = trimmed(2, 2);
-    EXPECT_EQ((report_.drawsBefore - report_.drawsKept), 2u);
+    EXPECT_EQ((report_.drawsBefore - report_.drawsWritten), 2u);
     EXPECT_EQ(std::ranges::count_if(lines, [](const auto& l) { return l.starts_with("Mural.BlobBegin"); }), 1);
     EXPECT_TRUE(std::ranges::none_of(lines, [](const auto& l) { return l.find("malformed") != std::string::npos; }));
     EXPECT_EQ(std::ranges::count(lines, "Mural.BufferBytes(buffer=1, offset=0, bytes=<4 bytes>)"), 1);

@@ -43,15 +43,15 @@ std::vector<std::byte> bytesOf(std::string_view text) {
     return {all.begin(), all.end()};
 }
 
-// Sends `total` bytes in pieces of up to `most` while another thread reads them in other pieces.
-void streamThrough(Connection& from, Connection& to, uint64_t seed, size_t total, size_t most) {
-    std::vector<std::byte> source(most);
+// Sends `total` bytes in pieces of up to `maximum` while another thread reads them in other pieces.
+void streamThrough(Connection& from, Connection& to, uint64_t seed, size_t total, size_t maximum) {
+    std::vector<std::byte> source(maximum);
     ByteStream(seed).fill(source);
     Checksum sent;
     std::thread writer([&] {
         std::mt19937_64 random(seed);
         for (size_t done = 0; done < total;) {
-            const size_t n = std::min(randomSize(random, most), total - done);
+            const size_t n = std::min(randomSize(random, maximum), total - done);
             const auto piece = std::span(source).subspan(source.size() - n);
             sent.add(piece);
             const auto result = from.write(piece, late());
@@ -61,10 +61,10 @@ void streamThrough(Connection& from, Connection& to, uint64_t seed, size_t total
         from.flush();
     });
     Checksum received;
-    std::vector<std::byte> sink(most);
+    std::vector<std::byte> sink(maximum);
     std::mt19937_64 random(seed + 1);
     for (size_t done = 0; done < total;) {
-        const auto piece = std::span(sink).first(std::min(randomSize(random, most), total - done));
+        const auto piece = std::span(sink).first(std::min(randomSize(random, maximum), total - done));
         const auto result = to.read(piece, late());
         EXPECT_TRUE(result) << result.error().message;
         if (!result) break;

@@ -180,9 +180,9 @@ uint64_t testSeed() {
     return seed;
 }
 
-size_t randomSize(std::mt19937_64& random, size_t most) {
-    std::uniform_real_distribution<double> exponent(0.0, std::log(static_cast<double>(most) + 1));
-    return std::clamp<size_t>(static_cast<size_t>(std::exp(exponent(random))), 1, most);
+size_t randomSize(std::mt19937_64& random, size_t maximum) {
+    std::uniform_real_distribution<double> exponent(0.0, std::log(static_cast<double>(maximum) + 1));
+    return std::clamp<size_t>(static_cast<size_t>(std::exp(exponent(random))), 1, maximum);
 }
 
 bool waitUntilAsleep(pid_t thread, Deadline deadline) {

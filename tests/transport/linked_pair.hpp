@@ -58,7 +58,7 @@ private:
 uint64_t testSeed();
 
 // Sizes distributed evenly over the orders of magnitude from 1 to most.
-size_t randomSize(std::mt19937_64& random, size_t most);
+size_t randomSize(std::mt19937_64& random, size_t maximum);
 
 // Returns true if the thread sleeps in the kernel before the deadline, for tests with a blocked peer.
 bool waitUntilAsleep(pid_t thread, Deadline deadline);

@@ -142,12 +142,12 @@ TEST(SecureChannel, detectsAnyChangedBit) {
 TEST(SecureChannel, carriesLongMessagesAndRejectsLongerOnes) {
     Pair p;
     p.talk();
-    const Bytes most(SecureChannel::kMaxMessageBytes, std::byte{3});
-    ASSERT_TRUE(p.host.send(most));
+    const Bytes maximum(SecureChannel::kMaxMessageBytes, std::byte{3});
+    ASSERT_TRUE(p.host.send(maximum));
     p.talk();
     ASSERT_EQ(p.atMember.size(), 1u);
-    EXPECT_EQ(p.atMember[0], most);
-    EXPECT_FALSE(p.host.send(Bytes(most.size() + 1)));
+    EXPECT_EQ(p.atMember[0], maximum);
+    EXPECT_FALSE(p.host.send(Bytes(maximum.size() + 1)));
 }
 
 } // namespace

@@ -232,13 +232,13 @@ static IceTCommunicator subset(IceTCommunicator self, int count, const IceTInt32
 }
 
 __attribute__((visibility("default"))) int icet_ranks_open(const struct icet_links* links, int width, int height,
-                                                           enum icet_way way) {
+                                                           enum icet_way filter) {
     struct group* world = group_with(links, 1, links->ranks);
     for (int r = 0; r < links->ranks; ++r) world->members[r] = r;
     world->own = links->own;
     char k[16];
     snprintf(k, sizeof k, "%d", links->ranks);
-    if (way == ICET_WAY_DIRECT_SEND) setenv("ICET_MAGIC_K", k, 1); /* read by the next call */
+    if (filter == ICET_WAY_DIRECT_SEND) setenv("ICET_MAGIC_K", k, 1); /* read by the next call */
     icetCreateContext(&world->functions);
     icetResetTiles();
     icetAddTile(0, 0, width, height, 0);
@@ -246,9 +246,9 @@ __attribute__((visibility("default"))) int icet_ranks_open(const struct icet_lin
     icetSetDepthFormat(ICET_IMAGE_DEPTH_FLOAT);
     icetCompositeMode(ICET_COMPOSITE_MODE_Z_BUFFER);
     icetDisable(ICET_ORDERED_COMPOSITE);
-    icetStrategy(way == ICET_WAY_SERIAL ? ICET_STRATEGY_DIRECT : ICET_STRATEGY_SEQUENTIAL);
-    icetSingleImageStrategy(way == ICET_WAY_SWAP ? ICET_SINGLE_IMAGE_STRATEGY_BSWAP
-                                                 : ICET_SINGLE_IMAGE_STRATEGY_RADIXK);
+    icetStrategy(filter == ICET_WAY_SERIAL ? ICET_STRATEGY_DIRECT : ICET_STRATEGY_SEQUENTIAL);
+    icetSingleImageStrategy(filter == ICET_WAY_SWAP ? ICET_SINGLE_IMAGE_STRATEGY_BSWAP
+                                                    : ICET_SINGLE_IMAGE_STRATEGY_RADIXK);
     return icetGetError() == ICET_NO_ERROR;
 }
 

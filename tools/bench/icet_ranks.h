@@ -22,7 +22,7 @@ struct icet_links {
    each, is its radix-k with as large a k as there are ranks. */
 enum icet_way { ICET_WAY_SERIAL, ICET_WAY_DIRECT_SEND, ICET_WAY_SWAP, ICET_WAY_RADIX_K };
 
-typedef int (*icet_ranks_open_function)(const struct icet_links* links, int width, int height, enum icet_way way);
+typedef int (*icet_ranks_open_function)(const struct icet_links* links, int width, int height, enum icet_way filter);
 typedef const void* (*icet_ranks_compose_function)(const void* colour, const float* depth);
 
 #ifdef __cplusplus

@@ -30,8 +30,8 @@ constexpr size_t kPage = 4096;
 std::vector<std::byte> sink; // destination of changes, in place of the stream
 
 // A detection method.
-struct Way {
-    virtual ~Way() = default;
+struct ChosenFilter {
+    virtual ~ChosenFilter() = default;
     virtual bool begin(std::byte* memory, size_t size) = 0;
     virtual void beforeDraw() = 0;
     std::byte* memory_ = nullptr;
@@ -41,7 +41,7 @@ struct Way {
 void copyOut(const std::byte* from, size_t size) { std::memcpy(sink.data(), from, std::min(size, sink.size())); }
 
 // Compares every byte with a copy, by libc's vectorized memcmp.
-struct Comparison : Way {
+struct Comparison : ChosenFilter {
     std::vector<std::byte> shadow;
     bool begin(std::byte* memory, size_t size) override {
         memory_ = memory, size_ = size;
@@ -60,7 +60,7 @@ struct Comparison : Way {
 };
 
 // Hashes every page: no copy to read, but more work per byte.
-struct Hashes : Way {
+struct Hashes : ChosenFilter {
     std::vector<uint64_t> known;
     static uint64_t hash(const std::byte* page) {
         uint64_t lanes[8] = {};
@@ -95,14 +95,14 @@ struct Watch : Comparison {
         return Comparison::begin(memory, size) && watch.begin(memory, size);
     }
     void beforeDraw() override {
-        const bool told = watch.lock(
+        const bool locked = watch.lock(
             0, size_, [](void* self, size_t from, size_t end) { static_cast<Watch*>(self)->compare(from, end); }, this);
-        if (!told) std::abort();
+        if (!locked) std::abort();
     }
 };
 
 // Mural's method: as Watch, but recently written pages stay unlocked and are compared.
-struct Chosen : Way {
+struct Chosen : ChosenFilter {
     mural::MapChanges changes;
     bool begin(std::byte* memory, size_t size) override { return changes.begin(memory, size); }
     void beforeDraw() override {
@@ -191,18 +191,18 @@ struct Answered : Marked {
     void protect(size_t from, size_t size) override { write(reinterpret_cast<uint64_t>(memory_) + from, size, 1); }
 };
 void* Answered::answer(void* self) {
-    auto& way = *static_cast<Answered*>(self);
+    auto& filter = *static_cast<Answered*>(self);
     for (;;) {
-        pollfd waits[2] = {{way.uffd, POLLIN, 0}, {way.readEnd, POLLIN, 0}};
+        pollfd waits[2] = {{filter.uffd, POLLIN, 0}, {filter.readEnd, POLLIN, 0}};
         poll(waits, 2, -1);
         if (waits[1].revents) break;
         uint64_t message[4];
-        if (read(way.uffd, message, sizeof message) != sizeof message) continue;
+        if (read(filter.uffd, message, sizeof message) != sizeof message) continue;
         const uint64_t page = message[2] & ~(kPage - 1);
-        way.mark((page - reinterpret_cast<uint64_t>(way.memory_)) / kPage);
-        way.write(page, kPage, 0);
+        filter.mark((page - reinterpret_cast<uint64_t>(filter.memory_)) / kPage);
+        filter.write(page, kPage, 0);
     }
-    close(way.readEnd);
+    close(filter.readEnd);
     return nullptr;
 }
 
@@ -260,13 +260,13 @@ struct Writer {
 };
 
 // Returns nanoseconds per draw, over at most a frame's draws within the time limit.
-double perDraw(const Job& job, std::byte* memory, Way* way, int64_t limitNs) {
+double perDraw(const Job& job, std::byte* memory, ChosenFilter* filter, int64_t limitNs) {
     Writer writer{memory, job};
     const int64_t start = mural::monotonicNowNs();
     int draws = 0;
     while (draws < std::max(job.draws, 400) && (draws < 3 || mural::monotonicNowNs() - start < limitNs)) {
         writer.draw();
-        if (way) way->beforeDraw();
+        if (filter) filter->beforeDraw();
         ++draws;
     }
     return static_cast<double>(mural::monotonicNowNs() - start) / draws;
@@ -276,9 +276,9 @@ template <class Made> void measure(const Job& job, std::byte* memory, int64_t li
     double best = -1;
     for (int i = 0; i < 3; ++i) {
         const double bare = perDraw(job, memory, nullptr, limitNs);
-        Made way;
-        if (!way.begin(memory, job.size)) break;
-        const double now = std::max(perDraw(job, memory, &way, limitNs) - bare, 1.0);
+        Made filter;
+        if (!filter.begin(memory, job.size)) break;
+        const double now = std::max(perDraw(job, memory, &filter, limitNs) - bare, 1.0);
         best = best < 0 ? now : std::min(best, now);
     }
     if (best < 0)

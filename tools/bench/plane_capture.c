@@ -140,7 +140,7 @@ EXPORT function glXGetProcAddressARB(const char* name);
 EXPORT function glXGetProcAddress(const char* name);
 EXPORT function eglGetProcAddress(const char* name);
 
-static function ours(const char* name) {
+static function replacementOf(const char* name) {
     if (strcmp(name, "glXSwapBuffers") == 0) return (function)glXSwapBuffers;
     if (strcmp(name, "eglSwapBuffers") == 0) return (function)eglSwapBuffers;
     if (strcmp(name, "glXGetProcAddressARB") == 0) return (function)glXGetProcAddressARB;
@@ -150,7 +150,7 @@ static function ours(const char* name) {
 }
 
 static function found_by(const char* library, const char* finder, const char* name) {
-    function own = ours(name);
+    function own = replacementOf(name);
     get_proc_function find = (get_proc_function)real(library, finder);
     return own ? own : find ? find(name) : NULL;
 }
@@ -160,7 +160,7 @@ function glXGetProcAddress(const char* name) { return found_by("libGL.so.1", "gl
 function eglGetProcAddress(const char* name) { return found_by("libEGL.so.1", "eglGetProcAddress", name); }
 
 EXPORT void* dlsym(void* handle, const char* name) {
-    function own = ours(name);
-    void* theirs = real_dlsym()(handle, name);
-    return own && theirs ? (void*)own : theirs;
+    function own = replacementOf(name);
+    void* original = real_dlsym()(handle, name);
+    return own && original ? (void*)own : original;
 }

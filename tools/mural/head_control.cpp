@@ -28,7 +28,7 @@ Result<std::unique_ptr<HeadControl>> HeadControl::start(const std::vector<std::s
     request.arguments = command;
     request.arguments.insert(request.arguments.end(), {"--control-fd", std::to_string(ends[1])});
     request.environment = environment.entries();
-    request.keptFds = {ends[1]};
+    request.inheritedFds = {ends[1]};
     request.outputFd = STDERR_FILENO; // standard output belongs to the program
     request.ownSession = true;        // Ctrl-C reaches the program only; the head ends after it, in order
     auto process = launch::ChildProcess::start(request);

@@ -43,7 +43,7 @@ int usageError(const std::string& command, std::string text) {
 
 // Everything after the first "--" is the program of `mural run`, unparsed.
 struct SplitLine {
-    std::vector<std::string> ours;
+    std::vector<std::string> words;
     std::vector<std::string> program;
     bool separated = false;
 };
@@ -57,7 +57,7 @@ SplitLine split(int count, char** arguments) {
         } else if (word == "--") {
             line.separated = true;
         } else {
-            line.ours.push_back(word);
+            line.words.push_back(word);
         }
     }
     return line;
@@ -106,10 +106,10 @@ public:
 
     int perform(int count, char** arguments) {
         line_ = split(count, arguments);
-        if (!line_.ours.empty() && !line_.ours.front().starts_with("-") && !isCommand(line_.ours.front())) {
-            return usageError("mural", "unknown command " + line_.ours.front());
+        if (!line_.words.empty() && !line_.words.front().starts_with("-") && !isCommand(line_.words.front())) {
+            return usageError("mural", "unknown command " + line_.words.front());
         }
-        std::vector<std::string> reversed(line_.ours.rbegin(), line_.ours.rend()); // in the order that CLI11 expects
+        std::vector<std::string> reversed(line_.words.rbegin(), line_.words.rend()); // in the order that CLI11 expects
         try {
             app_.parse(std::move(reversed));
         } catch (const CLI::CallForHelp&) {

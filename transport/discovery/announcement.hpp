@@ -16,9 +16,9 @@
 namespace mural {
 
 enum class AnnouncementKind : uint8_t {
-    Here = 1,  // a node waits
-    Asked = 2, // a search for nodes; other fields are ignored
-    Gone = 3,  // the node no longer waits
+    Here = 1,   // a node waits
+    Search = 2, // a search for nodes; other fields are ignored
+    Gone = 3,   // the node no longer waits
 };
 
 struct Announcement {

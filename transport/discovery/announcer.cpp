@@ -4,16 +4,16 @@
 
 namespace mural {
 
-void Announcer::heard(const Announcement& a, int64_t nowNs) {
-    if (a.kind != AnnouncementKind::Asked) return;
+void Announcer::onAnnouncement(const Announcement& a, int64_t nowNs) {
+    if (a.kind != AnnouncementKind::Search) return;
     const int64_t answerNs = nowNs + static_cast<int64_t>(random_() % static_cast<uint64_t>(kMaxAnswerNs));
-    dueNs_ = std::min(dueNs_, std::max(answerNs, saidNs_ + kMinBetweenNs));
+    dueNs_ = std::min(dueNs_, std::max(answerNs, sentNs_ + kMinBetweenNs));
 }
 
-int64_t Announcer::tick(int64_t nowNs, const std::function<void(std::span<const std::byte>)>& say) {
+int64_t Announcer::tick(int64_t nowNs, const std::function<void(std::span<const std::byte>)>& broadcast) {
     if (nowNs >= dueNs_) {
-        say(encode(self_));
-        saidNs_ = nowNs;
+        broadcast(encode(self_));
+        sentNs_ = nowNs;
         dueNs_ = nowNs + kEveryNs;
     }
     return dueNs_;

@@ -18,16 +18,16 @@ public:
 
     Announcer(Announcement self, uint64_t seed) : self_(std::move(self)), random_(seed) {}
 
-    void heard(const Announcement& a, int64_t nowNs);
+    void onAnnouncement(const Announcement& a, int64_t nowNs);
     // Sends due announcements; returns the time of the next call.
-    int64_t tick(int64_t nowNs, const std::function<void(std::span<const std::byte>)>& say);
+    int64_t tick(int64_t nowNs, const std::function<void(std::span<const std::byte>)>& broadcast);
     // Returns the final announcement.
     [[nodiscard]] std::vector<std::byte> farewell() const;
 
 private:
     Announcement self_;
     std::mt19937_64 random_;
-    int64_t saidNs_ = INT64_MIN / 2;
+    int64_t sentNs_ = INT64_MIN / 2;
     int64_t dueNs_ = INT64_MIN;
 };
 

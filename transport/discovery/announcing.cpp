@@ -11,7 +11,7 @@
 namespace mural {
 
 namespace {
-constexpr int64_t kLookAtCardsNs = 5 * kNsPerS;
+constexpr int64_t kRescanCardsNs = 5 * kNsPerS;
 constexpr int64_t kMaxWaitNs = kNsPerS;
 
 Deadline until(int64_t atNs) {
@@ -53,22 +53,24 @@ void Announcing::run() {
             const std::lock_guard lock(mutex_);
             trouble_ = sockets ? "" : sockets.error().message;
         }
-        int64_t lookNs = monotonicNowNs() + kLookAtCardsNs;
+        int64_t pollNs = monotonicNowNs() + kRescanCardsNs;
         if (!sockets) {
-            if (waitForSocket(stop_.get(), POLLIN, Deadline::inMs(kLookAtCardsNs / kNsPerMs)) != 0) return;
+            if (waitForSocket(stop_.get(), POLLIN, Deadline::inMs(kRescanCardsNs / kNsPerMs)) != 0) return;
             continue;
         }
         while (true) {
             const int64_t nextNs =
-                announcer.tick(monotonicNowNs(), [&](std::span<const std::byte> bytes) { sockets->say(bytes); });
-            const auto hear = [&](const Announcement& a, const std::string&) { announcer.heard(a, monotonicNowNs()); };
-            if (sockets->listen(until(nextNs), stop_.get(), hear)) {
-                sockets->say(announcer.farewell());
+                announcer.tick(monotonicNowNs(), [&](std::span<const std::byte> bytes) { sockets->broadcast(bytes); });
+            const auto onReceived = [&](const Announcement& a, const std::string&) {
+                announcer.onAnnouncement(a, monotonicNowNs());
+            };
+            if (sockets->listen(until(nextNs), stop_.get(), onReceived)) {
+                sockets->broadcast(announcer.farewell());
                 return;
             }
-            if (monotonicNowNs() < lookNs) continue;
+            if (monotonicNowNs() < pollNs) continue;
             if (BeaconSockets::fingerprint() != cards) break;
-            lookNs = monotonicNowNs() + kLookAtCardsNs;
+            pollNs = monotonicNowNs() + kRescanCardsNs;
         }
     }
 }

@@ -65,8 +65,9 @@ void AvahiBrowser::Search::resolved(AvahiServiceResolver* resolver, AvahiIfIndex
         if (where.starts_with("fe80:") && interface >= 0 && if_indextoname(static_cast<unsigned>(interface), card))
             where += std::string("%") + card;
         // Validates as strictly as the beacon, because the texts are shown on terminals.
-        const Announcement told{AnnouncementKind::Here, port, *uuid, s.fact(facts, "name"), s.fact(facts, "version")};
-        if (const auto a = decodeAnnouncement(encode(told))) {
+        const Announcement announced{AnnouncementKind::Here, port, *uuid, s.fact(facts, "name"),
+                                     s.fact(facts, "version")};
+        if (const auto a = decodeAnnouncement(encode(announced))) {
             s.known[name] = *uuid;
             s.found(*a, where);
         }

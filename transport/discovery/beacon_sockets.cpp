@@ -50,21 +50,21 @@ Result<BeaconSockets> BeaconSockets::open(const std::string& wanted) {
     return Error{"no active network interface with multicast; available: " + known};
 }
 
-void BeaconSockets::say(std::span<const std::byte> bytes) {
+void BeaconSockets::broadcast(std::span<const std::byte> bytes) {
     std::vector<std::byte> datagram(bytes.begin(), bytes.end());
     for (Link& link : links_) (void)link.own.send(link.to, datagram, datagram.size());
 }
 
 bool BeaconSockets::listen(Deadline deadline, int alsoFd, const Handler& handler) {
-    std::vector<pollfd> look{{alsoFd, POLLIN, 0}};
-    for (const Link& link : links_) look.push_back({link.group.descriptor(), POLLIN, 0});
+    std::vector<pollfd> polled{{alsoFd, POLLIN, 0}};
+    for (const Link& link : links_) polled.push_back({link.group.descriptor(), POLLIN, 0});
     const int64_t leftNs = deadline.leftNs(kNsPerS);
-    (void)poll(look.data(), look.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
+    (void)poll(polled.data(), polled.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
     for (Link& link : links_) {
         for (const rsp::UdpSocket::Datagram& d : link.group.fetch()) // the next round reads the rest
             if (const auto a = decodeAnnouncement(d.bytes)) handler(*a, numericText(*d.from));
     }
-    return look.front().revents != 0;
+    return polled.front().revents != 0;
 }
 
 std::string BeaconSockets::fingerprint() {

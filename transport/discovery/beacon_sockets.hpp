@@ -15,7 +15,7 @@ public:
     static Result<BeaconSockets> open(const std::string& interface);
 
     // Sends on all interfaces, best effort.
-    void say(std::span<const std::byte> bytes);
+    void broadcast(std::span<const std::byte> bytes);
     using Handler = std::function<void(const Announcement&, const std::string& from)>;
     // Waits for datagrams, the deadline, or readability of `alsoFd` (-1: none); returns true for the latter.
     bool listen(Deadline deadline, int alsoFd, const Handler& handler);

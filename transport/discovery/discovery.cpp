@@ -51,14 +51,14 @@ Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline,
         else
             result.beaconTrouble = opened.error().message;
     }
-    Announcement question;
-    question.kind = AnnouncementKind::Asked;
-    const auto asked = encode(question);
+    Announcement search;
+    search.kind = AnnouncementKind::Search;
+    const auto question = encode(search);
     int64_t pauseMs = kFirstPauseMs;
     Deadline again = Deadline::inMs(0);
     do {
         if (sockets && again.passed()) {
-            sockets->say(asked);
+            sockets->broadcast(question);
             again = Deadline::inMs(pauseMs);
             pauseMs = std::min(2 * pauseMs, kMaxPauseMs);
         }
@@ -66,7 +66,7 @@ Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline,
         if (sockets) {
             (void)sockets->listen(slice, -1, [&](const Announcement& a, const std::string& from) {
                 const std::lock_guard lock(found->mutex);
-                found->table.heardBeacon(a, from, monotonicNowNs());
+                found->table.onBeacon(a, from, monotonicNowNs());
             });
         } else {
             poll(nullptr, 0, static_cast<int>(slice.leftNs() / kNsPerMs));

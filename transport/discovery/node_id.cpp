@@ -55,7 +55,7 @@ std::string stateFolder() {
 }
 
 // Two processes may run this at once: the file is written under a temporary name and linked, which only one can do.
-Result<Uuid> kept(const std::string& folder) {
+Result<Uuid> storedId(const std::string& folder) {
     const std::string path = folder + "/node-id";
     if (const auto uuid = uuidFromText(firstLine(path))) return *uuid;
     const std::string advice = "; set XDG_STATE_HOME to a writable folder";
@@ -88,7 +88,7 @@ Result<Uuid> kept(const std::string& folder) {
 Result<Uuid> nodeId(const NodeIdPlaces& places) {
     if (sodium_init() < 0) return Error{"libsodium cannot generate random numbers"};
     if (const auto uuid = fromMachineId(places.machineId)) return *uuid;
-    return kept(places.state.empty() ? stateFolder() : places.state);
+    return storedId(places.state.empty() ? stateFolder() : places.state);
 }
 
 } // namespace mural

@@ -24,7 +24,7 @@ NodeTable::Entry* NodeTable::entry(const Announcement& a) {
     return &e;
 }
 
-void NodeTable::heardBeacon(const Announcement& a, const std::string& from, int64_t nowNs) {
+void NodeTable::onBeacon(const Announcement& a, const std::string& from, int64_t nowNs) {
     if (a.kind == AnnouncementKind::Gone) {
         if (const auto found = entries_.find(a.uuid); found != entries_.end()) {
             found->second.node.byBeacon = false;
@@ -36,7 +36,7 @@ void NodeTable::heardBeacon(const Announcement& a, const std::string& from, int6
     Entry* e = entry(a);
     if (!e) return;
     e->node.byBeacon = true;
-    e->heardNs = nowNs;
+    e->receivedNs = nowNs;
     addAddress(e->node, from);
 }
 
@@ -62,7 +62,7 @@ void NodeTable::remove(std::map<Uuid, Entry>::iterator at) {
 void NodeTable::expire(int64_t nowNs) {
     for (auto at = entries_.begin(); at != entries_.end();) {
         const auto next = std::next(at);
-        if (at->second.node.byBeacon && nowNs - at->second.heardNs > kSilentNs) {
+        if (at->second.node.byBeacon && nowNs - at->second.receivedNs > kSilentNs) {
             at->second.node.byBeacon = false;
             remove(at);
         }

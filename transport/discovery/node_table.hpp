@@ -27,7 +27,7 @@ public:
     static constexpr size_t kMaxNodes = 1024;
     static constexpr size_t kMaxAddresses = 16;
 
-    void heardBeacon(const Announcement& a, const std::string& from, int64_t nowNs);
+    void onBeacon(const Announcement& a, const std::string& from, int64_t nowNs);
     void foundByAvahi(const Announcement& a, const std::string& address);
     void lostByAvahi(const Uuid& uuid);
     void expire(int64_t nowNs);
@@ -38,7 +38,7 @@ public:
 private:
     struct Entry {
         FoundNode node;
-        int64_t heardNs = 0;
+        int64_t receivedNs = 0;
     };
     Entry* entry(const Announcement& a);
     void remove(std::map<Uuid, Entry>::iterator at);

@@ -29,21 +29,21 @@ Channel::Channel(std::unique_ptr<Endpoint> endpoint, Greeting peer)
 // Advances the channel and notifies other waiting threads, including the one at the descriptors, for which no further
 // event may arrive.
 void Channel::progress(Side by) {
-    unsigned news = takeCompletions();
-    if (std::exchange(lookAtEvents_, false) && !gone_ && endpoint_->shutDownMeanwhile()) {
-        news |= takeCompletions(); // data before the end counts
+    unsigned progress = takeCompletions();
+    if (std::exchange(checkEvents_, false) && !gone_ && endpoint_->shutDownMeanwhile()) {
+        progress |= takeCompletions(); // data before the end counts
         end(0);
-        news = kReading | kWriting;
+        progress = kReading | kWriting;
     }
     sendControls();
-    news &= ~static_cast<unsigned>(by);
-    if (news & sleeper_) endpoint_->wake();
-    if (news && waiting_ > 0) changed_.notify_all();
+    progress &= ~static_cast<unsigned>(by);
+    if (progress & sleeper_) endpoint_->wake();
+    if (progress && waiting_ > 0) changed_.notify_all();
 }
 
 unsigned Channel::takeCompletions() {
     std::array<Endpoint::Completion, 16> some{};
-    unsigned news = 0;
+    unsigned progress = 0;
     while (!gone_) {
         long code = 0;
         const int got = endpoint_->completions(some, code);
@@ -52,9 +52,9 @@ unsigned Channel::takeCompletions() {
             end(code);
             return kReading | kWriting;
         }
-        for (const auto& each : std::span(some).first(static_cast<size_t>(got))) news |= onReceived(each);
+        for (const auto& each : std::span(some).first(static_cast<size_t>(got))) progress |= onReceived(each);
     }
-    return news;
+    return progress;
 }
 
 unsigned Channel::onReceived(const Endpoint::Completion& completion) {
@@ -104,8 +104,8 @@ void Channel::sendControls() {
     }
     if (closedHere_) {
         if (sendGathered()) byeSent_ = injected(makeHead(MessageKind::Bye));
-    } else if (owedCredits_ >= kCreditsAtOnce && injected(makeHead(MessageKind::Credit, owedCredits_))) {
-        owedCredits_ = 0;
+    } else if (pendingCredits_ >= kCreditsAtOnce && injected(makeHead(MessageKind::Credit, pendingCredits_))) {
+        pendingCredits_ = 0;
     }
 }
 
@@ -131,7 +131,7 @@ Channel::Message Channel::takeMessage() {
 
 void Channel::giveBack(Endpoint::Slot slot) {
     receiveInto(slot);
-    ++owedCredits_;
+    ++pendingCredits_;
     sendControls();
 }
 
@@ -185,7 +185,7 @@ void Channel::sleep(Lock& lock, Side side, Deadline deadline) {
         return;
     }
     if (!endpoint_->mayExpectWakeUp()) {
-        lookAtEvents_ = true;
+        checkEvents_ = true;
         return;
     }
     sleeper_ = static_cast<unsigned>(side);
@@ -193,7 +193,7 @@ void Channel::sleep(Lock& lock, Side side, Deadline deadline) {
     const bool eventsCame = endpoint_->sleep(deadline);
     lock.lock();
     sleeper_ = 0;
-    lookAtEvents_ |= eventsCame;
+    checkEvents_ |= eventsCame;
 }
 
 // Another waiting thread takes over the descriptors.
@@ -226,8 +226,8 @@ void Channel::wakeAll() {
     changed_.notify_all();
 }
 
-bool Channel::lookForEnd() {
-    lookAtEvents_ = true;
+bool Channel::checkForEnd() {
+    checkEvents_ = true;
     progress(Side::Reading);
     return ended();
 }

@@ -64,7 +64,7 @@ public:
 
     [[nodiscard]] bool ended() const { return closedHere_ || gone_; }
     [[nodiscard]] bool closedHere() const { return closedHere_; }
-    bool lookForEnd(); // after processing received data
+    bool checkForEnd(); // after processing received data
     // Error that broke the connection; empty: an orderly end, or none.
     [[nodiscard]] const std::string& fault() const { return fault_; }
 
@@ -86,10 +86,10 @@ private:
     std::unique_ptr<Endpoint> endpoint_;
     unsigned sleeper_ = 0; // Side that sleeps at the descriptors; 0: none
     int waiting_ = 0;      // threads on the condition variable
-    bool lookAtEvents_ = false;
+    bool checkEvents_ = false;
 
     std::deque<Message> received_;
-    uint16_t owedCredits_ = 0;
+    uint16_t pendingCredits_ = 0;
 
     const size_t messageBytes_; // including its head; the minimum of both ends
     const uint16_t window_;     // credits of the peer

@@ -110,7 +110,7 @@ bool FabricConnection::timedOut() const { return !closed_ && (readTimedOut_ || w
 bool FabricConnection::alive() const {
     if (closed_) return false;
     const auto lock = channel_->lock();
-    return !channel_->lookForEnd();
+    return !channel_->checkForEnd();
 }
 
 // A partially transferred message cannot be repaired: the connection ends, which informs the peer.

@@ -159,15 +159,15 @@ bool Endpoint::mayExpectWakeUp() {
 }
 
 bool Endpoint::sleep(Deadline deadline) {
-    pollfd looks[] = {{queueDescriptor_, POLLIN, 0}, {events_.descriptor(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
+    pollfd polled[] = {{queueDescriptor_, POLLIN, 0}, {events_.descriptor(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
     const int64_t leftNs = deadline.leftNs(kSliceMs * kNsPerMs);
     // interrupted: the caller polls again
-    const int came = poll(looks, 3, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
-    if (looks[2].revents != 0) {
+    const int ready = poll(polled, 3, static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
+    if (polled[2].revents != 0) {
         eventfd_t times = 0;
         eventfd_read(wake_.get(), &times);
     }
-    return came <= 0 || looks[1].revents != 0;
+    return ready <= 0 || polled[1].revents != 0;
 }
 
 void Endpoint::wake() { eventfd_write(wake_.get(), 1); }

@@ -45,7 +45,7 @@ Result<EventQueue> EventQueue::open(const SharedFabric& fabric) {
     return queue;
 }
 
-Event EventQueue::look() {
+Event EventQueue::poll() {
     EventBytes room{};
     uint32_t what = 0;
     const ssize_t got = fi_eq_read(queue_.get(), &what, room.bytes, sizeof room.bytes, 0);
@@ -72,7 +72,7 @@ Event EventQueue::look() {
 
 Event EventQueue::next(Deadline deadline) {
     while (true) {
-        Event event = look();
+        Event event = poll();
         if (event.kind != Event::Kind::None || deadline.passed()) return event;
         fid* waited = &queue_->fid;
         if (fi_trywait(fabric_.get(), &waited, 1) != 0) continue;

@@ -30,7 +30,7 @@ public:
     [[nodiscard]] int descriptor() const { return descriptor_; }
 
 private:
-    Event look();
+    Event poll();
 
     SharedFabric fabric_;
     Handle<fid_eq> queue_;

@@ -6,7 +6,7 @@ namespace {
 
 using Plugin = mural_transport_plugin;
 
-Error said(mural_transport_error& error) {
+Error errorFrom(mural_transport_error& error) {
     error.text[sizeof error.text - 1] = 0;
     return Error{error.text[0] ? error.text : "the transport plug-in failed without a message"};
 }
@@ -20,12 +20,12 @@ public:
     Result<void> read(std::span<std::byte> into, Deadline deadline) override {
         mural_transport_error error{};
         if (plugin_.read(connection_, into.data(), into.size(), deadline.atNs(), &error)) return {};
-        return said(error);
+        return errorFrom(error);
     }
     Result<void> write(std::span<const std::byte> bytes, Deadline deadline) override {
         mural_transport_error error{};
         if (plugin_.write(connection_, bytes.data(), bytes.size(), deadline.atNs(), &error)) return {};
-        return said(error);
+        return errorFrom(error);
     }
     void flush() override { plugin_.flush(connection_); }
     void close() override { plugin_.close(connection_); }
@@ -48,7 +48,7 @@ public:
     Result<std::unique_ptr<Connection>> accept(Deadline deadline) override {
         mural_transport_error error{};
         mural_transport_connection* made = nullptr;
-        if (!plugin_.accept(listener_, deadline.atNs(), &made, &error)) return said(error);
+        if (!plugin_.accept(listener_, deadline.atNs(), &made, &error)) return errorFrom(error);
         return std::unique_ptr<Connection>(std::make_unique<PluginConnection>(plugin_, made));
     }
     [[nodiscard]] std::string describe() const override { return plugin_.listener_description(listener_); }
@@ -64,14 +64,14 @@ Result<std::unique_ptr<Connection>> connectByPlugin(const Plugin& plugin, const 
                                                     Deadline deadline) {
     mural_transport_error error{};
     mural_transport_connection* made = nullptr;
-    if (!plugin.connect(description.c_str(), deadline.atNs(), &made, &error)) return said(error);
+    if (!plugin.connect(description.c_str(), deadline.atNs(), &made, &error)) return errorFrom(error);
     return std::unique_ptr<Connection>(std::make_unique<PluginConnection>(plugin, made));
 }
 
 Result<std::unique_ptr<Listener>> listenByPlugin(const Plugin& plugin, const std::string& description) {
     mural_transport_error error{};
     mural_transport_listener* made = nullptr;
-    if (!plugin.listen(description.c_str(), &made, &error)) return said(error);
+    if (!plugin.listen(description.c_str(), &made, &error)) return errorFrom(error);
     return std::unique_ptr<Listener>(std::make_unique<PluginListener>(plugin, made));
 }
 

@@ -42,8 +42,8 @@ Result<const mural_transport_plugin*> openPlugin(const std::string& scheme, cons
         return Error{what + "the plug-in is missing: " + file + "; check the scheme, or build or install the plug-in"};
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library) {
-        const char* said = dlerror(); // contains the file name
-        return Error{what + "cannot load the plug-in: " + (said ? said : file) + "; install its dependencies"};
+        const char* message = dlerror(); // contains the file name
+        return Error{what + "cannot load the plug-in: " + (message ? message : file) + "; install its dependencies"};
     }
     const auto entry = reinterpret_cast<mural_transport_plugin_entry>(dlsym(library, MURAL_TRANSPORT_PLUGIN_ENTRY));
     const std::string unfit = entry ? whyUnfit(entry(), scheme) : "it has no function " MURAL_TRANSPORT_PLUGIN_ENTRY;

@@ -70,12 +70,12 @@ Result<void> Group::waitForMembers(size_t count, Deadline deadline) {
 
 std::vector<MemberEvent> Group::takeEvents() {
     const std::lock_guard lock(state_->mutex);
-    return std::exchange(state_->news, {});
+    return std::exchange(state_->unreadEvents, {});
 }
 
 void Group::remove(MemberId id, const std::string& why) {
     const std::lock_guard lock(state_->mutex);
-    state_->core->expel(id, GoneReason::Removed, why);
+    state_->core->evict(id, GoneReason::Removed, why);
     state_->pump();
 }
 
@@ -170,7 +170,7 @@ Result<size_t> Group::read(MemberId from, std::span<std::byte> into, Deadline de
         lock.lock();
         r->consume(done - before);
     }
-    if (r && r->hasNews()) state_->pump();
+    if (r && r->hasUnreported()) state_->pump();
     return done;
 }
 
@@ -183,7 +183,7 @@ void Group::consume(MemberId from, size_t bytes) {
     const std::lock_guard lock(state_->mutex);
     Receiver* r = state_->core->receiver(from);
     r->consume(bytes);
-    if (r->hasNews()) state_->pump();
+    if (r->hasUnreported()) state_->pump();
 }
 
 GroupReport Group::report() const {

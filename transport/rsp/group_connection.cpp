@@ -11,9 +11,9 @@ namespace mural::rsp {
 namespace {
 
 constexpr int64_t kDrainMs = 1000;
-constexpr int64_t kLookAgainNs = 100 * kNsPerMs; // interval of checks whether this end was closed
+constexpr int64_t kPollAgainNs = 100 * kNsPerMs; // interval of checks whether this end was closed
 
-Deadline inSlice(Deadline deadline) { return Deadline::inMs(deadline.leftNs(kLookAgainNs) / kNsPerMs + 1); }
+Deadline inSlice(Deadline deadline) { return Deadline::inMs(deadline.leftNs(kPollAgainNs) / kNsPerMs + 1); }
 
 // `whole`: this is the member's own end, and owns its group; otherwise one connection of the host.
 class GroupConnection final : public Connection {

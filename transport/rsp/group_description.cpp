@@ -14,11 +14,11 @@ namespace {
 
 using Set = Result<void> (*)(GroupOptions&, const std::string&);
 
-Result<int64_t> numberOf(const std::string& text, int64_t most) {
+Result<int64_t> numberOf(const std::string& text, int64_t maximum) {
     int64_t value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || value < 0 || value > most)
-        return Error{"\"" + text + "\" must be a whole number from 0 to " + std::to_string(most)};
+    if (code != std::errc() || end != text.data() + text.size() || value < 0 || value > maximum)
+        return Error{"\"" + text + "\" must be a whole number from 0 to " + std::to_string(maximum)};
     return value;
 }
 
@@ -36,13 +36,13 @@ template <class From, class Into> Result<void> put(Result<From> value, Into& int
 }
 
 constexpr int64_t kMaxMs = 3'600'000;
-constexpr int64_t kMaxDatagramBytesAsked = 65'000;
+constexpr int64_t kMaxDatagramBytesOption = 65'000;
 constexpr int64_t kMaxWindowDatagrams = 65'536;
 
 const std::array<std::pair<const char*, Set>, 15> kParameters{{
     {"control", [](GroupOptions& o, const std::string& v) -> Result<void> { return o.control = v, Result<void>(); }},
     {"datagram",
-     [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxDatagramBytesAsked), o.datagramBytes); }},
+     [](GroupOptions& o, const std::string& v) { return put(numberOf(v, kMaxDatagramBytesOption), o.datagramBytes); }},
     {"interface",
      [](GroupOptions& o, const std::string& v) -> Result<void> { return o.interface = v, Result<void>(); }},
     {"multicast", [](GroupOptions& o, const std::string& v) { return choose(v, "on", "off", o.multicast); }},

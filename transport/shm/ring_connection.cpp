@@ -127,8 +127,8 @@ RingConnection::WaitEnd RingConnection::waitForRoom(Deadline deadline) {
 
 bool RingConnection::peerProcessGone() const {
     if (!peerSocket_.valid()) return false;
-    pollfd look{peerSocket_.get(), POLLRDHUP, 0};
-    return poll(&look, 1, 0) > 0 && (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
+    pollfd poller{peerSocket_.get(), POLLRDHUP, 0};
+    return poll(&poller, 1, 0) > 0 && (poller.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
 bool RingConnection::timedOut() const { return !closed_ && (readTimedOut_ || writeTimedOut_); }

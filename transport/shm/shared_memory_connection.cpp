@@ -83,16 +83,16 @@ Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes) {
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
         return Error{"shm: socketpair: " + errnoText(errno) + "; raise the limit of open files (ulimit -n)"};
     }
-    FileDescriptor mine(ends[0]);
-    FileDescriptor theirs(ends[1]);
-    const auto sent = sendDescriptor(mine.get(), memfd.get());
+    FileDescriptor ownEnd(ends[0]);
+    FileDescriptor peerEnd(ends[1]);
+    const auto sent = sendDescriptor(ownEnd.get(), memfd.get());
     if (!sent) return sent.error();
-    if (fcntl(theirs.get(), F_SETFD, 0) != 0) { // inherited on purpose
+    if (fcntl(peerEnd.get(), F_SETFD, 0) != 0) { // inherited on purpose
         return Error{"shm: cannot make a descriptor inheritable: " + errnoText(errno)};
     }
     SharedMemoryOffer offer;
-    offer.connection = std::make_unique<RingConnection>(*memory, 0, std::move(mine), "shm:");
-    offer.peerFd = theirs.release();
+    offer.connection = std::make_unique<RingConnection>(*memory, 0, std::move(ownEnd), "shm:");
+    offer.peerFd = peerEnd.release();
     return offer;
 }
 

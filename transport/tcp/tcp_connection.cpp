@@ -212,8 +212,8 @@ bool TcpConnection::timedOut() const { return !closed_ && (readTimedOut_ || writ
 
 bool TcpConnection::alive() const {
     if (closed_) return false;
-    pollfd look{socket_.get(), POLLRDHUP, 0};
-    return poll(&look, 1, 0) <= 0 || (look.revents & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
+    pollfd poller{socket_.get(), POLLRDHUP, 0};
+    return poll(&poller, 1, 0) <= 0 || (poller.revents & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
 }
 
 // A partially transferred message cannot be repaired: the connection ends, which informs the peer.

@@ -38,12 +38,12 @@ public:
 
     // Waits for an answer; returns an invalid descriptor without one.
     FileDescriptor answered(int64_t waitNs) {
-        std::vector<pollfd> looks;
-        for (const FileDescriptor& a : attempts_) looks.push_back({a.get(), POLLOUT, 0});
+        std::vector<pollfd> polled;
+        for (const FileDescriptor& a : attempts_) polled.push_back({a.get(), POLLOUT, 0});
         const auto waitMs = static_cast<int>((waitNs + kNsPerMs - 1) / kNsPerMs);
-        if (poll(looks.data(), looks.size(), waitMs) <= 0) return {};
-        for (size_t i = looks.size(); i-- > 0;) {
-            if (looks[i].revents == 0) continue;
+        if (poll(polled.data(), polled.size(), waitMs) <= 0) return {};
+        for (size_t i = polled.size(); i-- > 0;) {
+            if (polled[i].revents == 0) continue;
             FileDescriptor socket = std::move(attempts_[i]);
             attempts_.erase(attempts_.begin() + static_cast<ptrdiff_t>(i));
             int code = 0;

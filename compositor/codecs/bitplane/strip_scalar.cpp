@@ -69,8 +69,8 @@ size_t parseStrip(std::span<const std::byte> bytes, unsigned blocks, ParsedStrip
     if (bytes.size() < size) return 0;
     into.payload = bytes.data() + size;
     for (size_t i = 0; i < count; i += 4) {
-        const uint64_t kept = count - i < 4 ? (uint64_t{1} << 16 * (count - i)) - 1 : ~uint64_t{0};
-        const uint64_t four = loadLittle<uint64_t>(bytes.data() + kStripHeadBytes + 2 * i) & kept;
+        const uint64_t mask = count - i < 4 ? (uint64_t{1} << 16 * (count - i)) - 1 : ~uint64_t{0};
+        const uint64_t four = loadLittle<uint64_t>(bytes.data() + kStripHeadBytes + 2 * i) & mask;
         if (!validWidths(four)) return 0;
         size += payloadBytes(four);
         for (size_t j = 0; j < 4; ++j) into.widths[i + j] = static_cast<uint16_t>(four >> 16 * j);

@@ -73,8 +73,8 @@ Result<const mural_codec_plugin*> openCodecPlugin(const std::string& name, const
         return Error{what + "the plug-in is missing: " + file + "; check the name, or build or install the plug-in"};
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library) {
-        const char* said = dlerror(); // contains the file name
-        return Error{what + "cannot load the plug-in: " + (said ? said : file) + "; install its dependencies"};
+        const char* message = dlerror(); // contains the file name
+        return Error{what + "cannot load the plug-in: " + (message ? message : file) + "; install its dependencies"};
     }
     const auto entry = reinterpret_cast<mural_codec_plugin_entry>(dlsym(library, MURAL_CODEC_PLUGIN_ENTRY));
     const mural_codec_plugin* plugin = entry ? entry() : nullptr;

@@ -2,7 +2,8 @@
 // draws one consecutive run of chunks, because draw order must not change.
 //
 // FrameTimes selects the window whose times count. The other nodes take over a lost node's chunks until it returns.
-// Then all nodes reset to the initial shares at one position of the stream (Replay::shareAnew), and new shares follow.
+// Then all nodes reset to the initial shares at one position of the stream (Replay::resetShares), and new shares
+// follow.
 #pragma once
 
 #include <functional>

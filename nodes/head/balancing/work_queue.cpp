@@ -13,7 +13,7 @@ bool WorkQueue::has(int node) const { return std::ranges::find(nodes_, node) != 
 void WorkQueue::begin(const FrameTimes& times) {
     takers_.clear();
     for (const int node : nodes_)
-        if (times.lives(node)) takers_.push_back(node);
+        if (times.isAlive(node)) takers_.push_back(node);
     pieces_.reset();
 }
 

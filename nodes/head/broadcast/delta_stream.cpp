@@ -18,7 +18,7 @@ constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // the size of a writ
 // and for new bytes. Shorter work is unlikely to be preempted, so the wall clock serves as well.
 constexpr size_t kLongPacketBytes = size_t{256} << 10, kLongBytes = size_t{64} << 10;
 constexpr uint64_t kWorthAWayBytes = 2048;
-constexpr uint64_t kMaxHeldBytes = uint64_t{256} << 20;
+constexpr uint64_t kMaxDeferredBytes = uint64_t{256} << 20;
 // The first loads of a program are copied several times. Page faults (3 us per new page) took half as long as the rest.
 constexpr size_t kFirstBytes = size_t{16} << 20;
 constexpr uint64_t kFullRawBytes = uint64_t{4} << 20; // a node decodes this much in 1 to 2 ms
@@ -31,13 +31,13 @@ Result<std::unique_ptr<DeltaStream>> DeltaStream::open(const delta::Limits& limi
     auto coder = freshCoder(limits);
     if (!coder) return coder.error();
     std::unique_ptr<DeltaStream> deltaStream(new DeltaStream(limits, std::move(*coder)));
-    haveKeptMemory(kFirstBytes);
+    reserveMallocMemory(kFirstBytes);
     return deltaStream;
 }
 
 DeltaStream::DeltaStream(const delta::Limits& limits, std::unique_ptr<Coder> coder)
     : limits_(limits),
-      holder_(std::min(kMaxHeldBytes, limits.cacheBytes / 4),
+      filter_(std::min(kMaxDeferredBytes, limits.cacheBytes / 4),
               [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
                   pack(stream, payload, walked);
               }),
@@ -54,7 +54,7 @@ Result<std::unique_ptr<DeltaStream::Coder>> DeltaStream::freshCoder(const delta:
     return coder;
 }
 
-std::unique_ptr<DeltaStream::Coder> DeltaStream::beginAnew(std::unique_ptr<Coder> fresh) {
+std::unique_ptr<DeltaStream::Coder> DeltaStream::restart(std::unique_ptr<Coder> fresh) {
     const delta::DeltaEncoderCounts& c = coder_->packer.counts();
     before_ = {before_.packets + c.packets,         before_.records + c.records,   before_.rawBytes + c.rawBytes,
                before_.stagedBytes + c.stagedBytes, before_.pageHits + c.pageHits, before_.newPages + c.newPages,
@@ -66,7 +66,7 @@ void DeltaStream::add(uint32_t stream, std::span<const std::byte> payload) {
     const bool isLong = payload.size() >= kLongPacketBytes;
     MedianTimer& usualNs = packetNs_.of(payload.size());
     if (!timesFrame_ && !isLong && usualNs.isKnown()) {
-        hold(stream, payload);
+        filterPacket(stream, payload);
         encodeNs_ += static_cast<uint64_t>(usualNs.value());
         return;
     }
@@ -74,34 +74,34 @@ void DeltaStream::add(uint32_t stream, std::span<const std::byte> payload) {
     const int64_t beganNs = nowNs_();
     sendNs_ = packNs_ = 0;
     timesPacking_ = true;
-    hold(stream, payload);
+    filterPacket(stream, payload);
     timesPacking_ = false;
     const auto ns = static_cast<uint64_t>(nowNs_() - beganNs - sendNs_);
     encodeNs_ += ns;
-    measured_.holdNs += ns - std::min(ns, packNs_);
+    measured_.filterNs += ns - std::min(ns, packNs_);
     if (!isLong) usualNs.add(static_cast<double>(ns));
 }
 
 void DeltaStream::miss(uint32_t stream, std::span<const std::byte> payload) {
     missed_ = true;
-    hold(stream, payload);
+    filterPacket(stream, payload);
     missed_ = false;
 }
 
-void DeltaStream::hold(uint32_t stream, std::span<const std::byte> payload) {
-    if (!holds_) return pack(stream, payload);
+void DeltaStream::filterPacket(uint32_t stream, std::span<const std::byte> payload) {
+    if (!filters_) return pack(stream, payload);
     if (wire::clientOf(stream) != 0) {
-        holder_.leaveOutSmall(small_.leavesOut());
-        return holder_.add(stream, payload);
+        filter_.leaveOutSmall(small_.leavesOut());
+        return filter_.add(stream, payload);
     }
     // Commands of the head: data of an ended program is dropped. Before any other command all deferred data is sent, as
     // for a node that joins now.
     uint32_t words[2] = {};
     std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
     if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
-        holder_.clientGone(words[1]);
+        filter_.clientGone(words[1]);
     else
-        holder_.releaseAll();
+        filter_.releaseAll();
     pack(stream, payload);
 }
 
@@ -119,7 +119,7 @@ void DeltaStream::pack(uint32_t stream, std::span<const std::byte> payload, cons
 }
 
 // Returns whether references already replace most bytes. Another coding then gains little, and loses dictionary space.
-bool DeltaStream::isMostLeftOut() const {
+bool DeltaStream::isMostlyDropped() const {
     return measured_.rawBytes >= kWorthAWayBytes && measured_.droppedBytes > measured_.rawBytes / 2;
 }
 
@@ -146,24 +146,25 @@ Result<std::span<const std::byte>> DeltaStream::take() {
         measured_.wireBytes += batch->size();
     }
     if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
-        delta::ModeSelector& way = coder_->way;
+        delta::ModeSelector& transferScale = coder_->transferScale;
         const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
         // Deferred data costs the same either way.
-        if (isMostLeftOut())
-            way.leftOut();
+        if (isMostlyDropped())
+            transferScale.leftOut();
         else if (timesFrame_)
-            way.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes,
-                         static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.holdNs), link_.nsPerByte());
+            transferScale.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes,
+                                   static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.filterNs),
+                                   link_.nsPerByte());
         else
-            way.unmeasured();
-        if (way.plain() != packer.plain())
+            transferScale.unmeasured();
+        if (transferScale.plain() != packer.plain())
             small_.disturbed();
         else
-            small_.frame(holder_.counts().inBytes - measured_.programBytes, measured_.wireBytes,
+            small_.frame(filter_.counts().inBytes - measured_.programBytes, measured_.wireBytes,
                          timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
-        timesFrame_ = way.wantsTime() || small_.wantsTime();
-        packer.beginFrame(way.plain(), frameGoesOn);
-        measured_ = {0, 0, 0, 0, encodeNs_, holder_.counts().inBytes, 0};
+        timesFrame_ = transferScale.wantsTime() || small_.wantsTime();
+        packer.beginFrame(transferScale.plain(), frameGoesOn);
+        measured_ = {0, 0, 0, 0, encodeNs_, filter_.counts().inBytes, 0};
     }
     publishCounts();
     return batch;
@@ -182,9 +183,9 @@ void DeltaStream::publishCounts() {
     set(published_.patches, b.patches + c.patches);
     set(published_.wireBytes, wireBytes_);
     set(published_.encodeNs, encodeNs_);
-    const filter::CommandFilterCounts& h = holder_.counts();
-    set(published_.holdInBytes, h.inBytes);
-    set(published_.holdOutBytes, h.outBytes);
+    const filter::CommandFilterCounts& h = filter_.counts();
+    set(published_.filterInBytes, h.inBytes);
+    set(published_.filterOutBytes, h.outBytes);
     set(published_.deferredRecords, h.deferredRecords);
     set(published_.droppedRecords, h.droppedRecords);
     set(published_.droppedBytes, h.droppedBytes);
@@ -199,8 +200,8 @@ DeltaCounts DeltaStream::counts() const {
                 of(published_.pageHits), of(published_.newPages), of(published_.patches)};
     c.wireBytes = of(published_.wireBytes);
     c.encodeNs = of(published_.encodeNs);
-    c.holder = {of(published_.holdInBytes),    of(published_.holdOutBytes), of(published_.deferredRecords),
-                of(published_.droppedRecords), of(published_.droppedBytes), of(published_.deferredBytes)};
+    c.filter = {of(published_.filterInBytes),  of(published_.filterOutBytes), of(published_.deferredRecords),
+                of(published_.droppedRecords), of(published_.droppedBytes),   of(published_.deferredBytes)};
     return c;
 }
 

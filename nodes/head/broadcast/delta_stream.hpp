@@ -25,7 +25,7 @@ namespace mural {
 struct DeltaCounts {
     bool on = false;
     delta::DeltaEncoderCounts packer;
-    filter::CommandFilterCounts holder;
+    filter::CommandFilterCounts filter;
     uint64_t wireBytes = 0; // compressed, packet headers included
     uint64_t encodeNs = 0;  // CPU time of the coding; for short packets extrapolated from samples
 };
@@ -40,12 +40,12 @@ public:
         explicit Coder(const delta::Limits& limits);
         delta::DeltaEncoder packer;
         delta::BatchEncoder encoder;
-        delta::ModeSelector way;
+        delta::ModeSelector transferScale;
     };
     static Result<std::unique_ptr<Coder>> freshCoder(const delta::Limits& limits); // thread-safe
     // Replaces the dictionary. Nodes learn it at the same position of the stream (HeadCommand::ResetDictionary).
     // Requires empty(). Returns the old one, for destruction without the lock.
-    [[nodiscard]] std::unique_ptr<Coder> beginAnew(std::unique_ptr<Coder> fresh);
+    [[nodiscard]] std::unique_ptr<Coder> restart(std::unique_ptr<Coder> fresh);
     [[nodiscard]] const delta::Limits& limits() const { return limits_; }
 
     // May defer data that no later record uses yet (streamcodec/filter/).
@@ -55,8 +55,8 @@ public:
     void sendBy(std::function<void()> send) { send_ = std::move(send); }
     // Updates the filter's state with a packet that is not sent to any node.
     void miss(uint32_t stream, std::span<const std::byte> payload);
-    void holdNothing() { holds_ = false; }                  // disables the filter; call before the first packet
-    void losesWhatItHolds() { holder_.losesWhatItHolds(); } // fault injection for tests
+    void disableFilter() { filters_ = false; }                      // disables the filter; call before the first packet
+    void losesDeferredUploads() { filter_.losesDeferredUploads(); } // fault injection for tests
 
     [[nodiscard]] bool empty() const { return packets_ == 0; }
     // True if the batch should be sent now: it is large enough for the nodes to start decoding.
@@ -72,16 +72,16 @@ public:
 private:
     DeltaStream(const delta::Limits& limits, std::unique_ptr<Coder> coder);
     void publishCounts();
-    [[nodiscard]] bool isMostLeftOut() const;
+    [[nodiscard]] bool isMostlyDropped() const;
 
-    void hold(uint32_t stream, std::span<const std::byte> payload);
+    void filterPacket(uint32_t stream, std::span<const std::byte> payload);
     void pack(uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked = nullptr);
 
     const delta::Limits limits_;
-    filter::CommandFilter holder_;
+    filter::CommandFilter filter_;
     filter::RedundancyTuner small_;
     std::function<void()> send_;
-    bool holds_ = true;
+    bool filters_ = true;
     bool missed_ = false;                 // output of the current packet
     int64_t (*nowNs_)() = threadCpuNowNs; // clock of the current packet
     int64_t sendNs_ = 0;                  // time in send_ since add() began
@@ -97,13 +97,13 @@ private:
     uint64_t wireBytes_ = 0, encodeNs_ = 0;
     struct Measured {
         uint64_t rawBytes = 0, pageBytes = 0, droppedBytes = 0, wireBytes = 0, encodeNs = 0, programBytes = 0,
-                 holdNs = 0;
+                 filterNs = 0;
     } measured_; // since the last choice of the coding, about one frame
     struct Published {
         std::atomic<uint64_t> packets{0}, records{0}, rawBytes{0}, stagedBytes{0}, pageHits{0}, newPages{0}, patches{0},
             wireBytes{0}, encodeNs{0};
-        std::atomic<uint64_t> holdInBytes{0}, holdOutBytes{0}, deferredRecords{0}, droppedRecords{0}, droppedBytes{0},
-            deferredBytes{0};
+        std::atomic<uint64_t> filterInBytes{0}, filterOutBytes{0}, deferredRecords{0}, droppedRecords{0},
+            droppedBytes{0}, deferredBytes{0};
     } published_;
 };
 

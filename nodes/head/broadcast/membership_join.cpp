@@ -17,13 +17,13 @@ constexpr int64_t kChangeOverMs = 5; // how long watch() waits for the lock per 
 } // namespace
 
 void StreamBroadcaster::keepLocked(uint32_t stream, std::span<const std::byte> payload) {
-    if (!kept_) return;
+    if (!rejoinLog_) return;
     uint32_t words[2] = {};
     if (wire::clientOf(stream) != 0) {
-        kept_->append(stream, payload);
+        rejoinLog_->append(stream, payload);
     } else if (payload.size() >= sizeof(words)) {
         std::memcpy(words, payload.data(), sizeof(words));
-        if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) kept_->programGone(words[1]);
+        if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone)) rejoinLog_->programGone(words[1]);
     }
 }
 
@@ -38,23 +38,24 @@ void StreamBroadcaster::replace(int node, std::unique_ptr<NodeConnection> link) 
     owned_.push_back(std::move(link));
 }
 
-Result<RejoinLog::Snapshot> StreamBroadcaster::beginCatchUp(int node, TurnsAsked* turns, Deadline deadline) {
-    uint64_t place = 0;
+Result<RejoinLog::Snapshot> StreamBroadcaster::beginCatchUp(int node, PhaseRequest* turns, Deadline deadline) {
+    uint64_t position = 0;
     {
         ++joining_;
         const std::lock_guard lock(sendMutex_);
         --joining_;
-        place = kept_->hold();
+        position = rejoinLog_->pause();
         if (turns) {
             for (NodeConnection* link : links_)
-                if (link->member() && link->alive() && turns->knows(link->place().node)) turns->asked.push_back(link);
+                if (link->member() && link->alive() && turns->knows(link->location().node))
+                    turns->members.push_back(link);
             sendLocked(wire::streamOf(0, 0),
                        commandBytes(wire::HeadCommand::RequestPhase, std::as_bytes(std::span(&turns->number, 1))));
             flushLocked();
         }
         link(node).setFeed(NodeConnection::Feed::Queued);
     }
-    return kept_->snapshot(place, deadline);
+    return rejoinLog_->snapshot(position, deadline);
 }
 
 Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(uint32_t view)>& announce) {
@@ -72,18 +73,19 @@ Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(ui
     sendBatchLocked();
     const Admission admission = announce(++view_);
     if (admission.refused) return {};
-    std::vector<uint32_t> arguments = {view_, static_cast<uint32_t>(node), admission.first ? 1U : 0U, admission.life};
+    std::vector<uint32_t> arguments = {view_, static_cast<uint32_t>(node), admission.first ? 1U : 0U,
+                                       admission.incarnation};
     arguments.insert(arguments.end(), admission.absent.begin(), admission.absent.end());
     sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Activate, std::as_bytes(std::span(arguments))));
     to.setMember(true);
     if (history) {
         // The last batch of the old dictionary announces the new one. This node receives batches from here on.
-        const auto anew = commandBytes(wire::HeadCommand::ResetDictionary, {});
-        deltaStream_->add(wire::streamOf(0, 0), anew);
+        const auto reset = commandBytes(wire::HeadCommand::ResetDictionary, {});
+        deltaStream_->add(wire::streamOf(0, 0), reset);
         sendBatchLocked();
-        history = deltaStream_->beginAnew(std::move(history));
-        const wire::PacketHeader header{static_cast<uint32_t>(anew.size()), wire::streamOf(0, 0)};
-        sendTo(to, std::as_bytes(std::span(&header, 1)), anew);
+        history = deltaStream_->restart(std::move(history));
+        const wire::PacketHeader header{static_cast<uint32_t>(reset.size()), wire::streamOf(0, 0)};
+        sendTo(to, std::as_bytes(std::span(&header, 1)), reset);
         to.setInBatches(true);
     }
     sendBatchLocked();

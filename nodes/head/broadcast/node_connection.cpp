@@ -30,9 +30,9 @@ bool rectangleFits(int32_t x, int32_t y, int32_t w, int32_t h, uint64_t pixelByt
 
 } // namespace
 
-NodeConnection::NodeConnection(NodePlace place, std::unique_ptr<Connection> connection,
+NodeConnection::NodeConnection(NodeLocation location, std::unique_ptr<Connection> connection,
                                std::unique_ptr<NodeProcess> process, NodeEvents& events)
-    : place_(std::move(place)),
+    : location_(std::move(location)),
       connection_(std::move(connection)),
       process_(std::move(process)),
       events_(events),
@@ -43,12 +43,12 @@ NodeConnection::~NodeConnection() { end(); }
 
 void NodeConnection::startReading() {
     if (!connection_) return;
-    lastMessageNs_ = heardNs_ = monotonicNowNs();
+    lastMessageNs_ = receivedNs_ = monotonicNowNs();
     reader_ = std::thread([this] { readMessages(); });
 }
 
 std::string NodeConnection::describe() const {
-    std::string text = "node " + std::to_string(place_.node) + " (" + place_.where;
+    std::string text = "node " + std::to_string(location_.node) + " (" + location_.where;
     if (process_) text += ", pid " + std::to_string(process_->pid());
     return text + ")";
 }
@@ -106,8 +106,8 @@ void NodeConnection::lose(const std::string& why) {
 void NodeConnection::watch(int64_t nowNs, int64_t patienceNs) {
     // If the head itself was stopped, the silence of the nodes meanwhile does not count.
     if (nowNs - std::exchange(watchedNs_, nowNs) > kWatchGapNs) excusedNs_ = nowNs;
-    if (!alive() || saidBye() || inMessage_) return;
-    if (nowNs - std::max(excusedNs_, heardNs_.load()) <= patienceNs) return;
+    if (!alive() || goodbyeReceived() || inMessage_) return;
+    if (nowNs - std::max(excusedNs_, receivedNs_.load()) <= patienceNs) return;
     lose("no message for " + std::to_string(patienceNs / kNsPerS) + " s (stopped, or its driver hangs)");
 }
 
@@ -118,18 +118,18 @@ void NodeConnection::end() {
 }
 
 void NodeConnection::readMessages() {
-    while (alive() && !saidBye()) {
+    while (alive() && !goodbyeReceived()) {
         wire::MessageHeader header{};
         const Result<bool> got = readHeader(header);
         if (got && !got.value()) continue;
         inMessage_ = true;
         Result<void> done = got ? readMessage(header) : Result<void>(got.error());
-        heardNs_ = monotonicNowNs();
+        receivedNs_ = monotonicNowNs();
         inMessage_ = false;
         if (!done) lose(done.error().message);
     }
-    if (!saidBye()) {
-        events_.nodeLost(place_.node, reasonOfEnd());
+    if (!goodbyeReceived()) {
+        events_.nodeLost(location_.node, reasonOfEnd());
         if (process_) process_->kill(); // it may still run and hold a GPU
     }
     alive_ = false;
@@ -143,7 +143,7 @@ Result<bool> NodeConnection::readHeader(wire::MessageHeader& header) {
     if (!connection_->timedOut()) return got.error();
     // All messages have been read, so an ended process counts as lost now. A shared-memory connection does not report
     // its end.
-    if (process_ && place_.where == "local") {
+    if (process_ && location_.where == "local") {
         if (const auto how = process_->ended()) return Error{*how};
     }
     return false;
@@ -161,16 +161,16 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         wire::FrameDoneMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
         if (auto got = readStruct(message); !got) return got;
-        return handle([&] { return events_.nodeFrameDone(place_.node, message); });
+        return handle([&] { return events_.nodeFrameDone(location_.node, message); });
     }
     case NodeMessage::WindowGone: {
         wire::WindowGoneMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
         if (auto got = readStruct(message); !got) return got;
         forgetPictures(message);
-        return handle([&] { return events_.nodeWindowGone(place_.node, message); });
+        return handle([&] { return events_.nodeWindowGone(location_.node, message); });
     }
-    case NodeMessage::DriverEvent: return readNews(header.sizeBytes);
+    case NodeMessage::DriverEvent: return readDriverEvent(header.sizeBytes);
     case NodeMessage::Alive:
         if (header.sizeBytes != 0) break;
         return {};
@@ -180,7 +180,7 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         wire::SynchronizedMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
         if (auto got = readStruct(message); !got) return got;
-        return handle([&] { return events_.nodeSynchronized(place_.node, message); });
+        return handle([&] { return events_.nodeSynchronized(location_.node, message); });
     }
     }
     return Error{"it sent an invalid message (type " + std::to_string(header.type) + ", " +
@@ -193,10 +193,10 @@ Result<void> NodeConnection::readText(const wire::MessageHeader& header) {
     if (!bytes) return bytes.error();
     const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     return handle([&] {
-        if (header.type == static_cast<uint32_t>(NodeMessage::Ready)) return events_.nodeReady(place_.node, text);
-        if (header.type == static_cast<uint32_t>(NodeMessage::Log)) return events_.nodeLog(place_.node, text);
-        auto done = events_.nodeBye(place_.node, text);
-        saidBye_ = done.ok();
+        if (header.type == static_cast<uint32_t>(NodeMessage::Ready)) return events_.nodeReady(location_.node, text);
+        if (header.type == static_cast<uint32_t>(NodeMessage::Log)) return events_.nodeLog(location_.node, text);
+        auto done = events_.nodeGoodbye(location_.node, text);
+        goodbyeReceived_ = done.ok();
         return done;
     });
 }
@@ -205,14 +205,14 @@ Result<void> NodeConnection::readInView(uint32_t sizeBytes) {
     uint32_t view = 0;
     std::vector<wire::ClientFrame> frames;
     if (auto got = readList(sizeBytes, view, frames, "frame positions"); !got) return got;
-    return handle([&] { return events_.nodeInView(place_.node, view, frames); });
+    return handle([&] { return events_.nodeInView(location_.node, view, frames); });
 }
 
 Result<void> NodeConnection::readTurns(uint32_t sizeBytes) {
     uint32_t number = 0;
     std::vector<std::byte> turns;
     if (auto got = readList(sizeBytes, number, turns, "its phase"); !got) return got;
-    return handle([&] { return events_.nodeTurns(place_.node, number, turns); });
+    return handle([&] { return events_.nodeTurns(location_.node, number, turns); });
 }
 
 template <class Entry>
@@ -227,17 +227,17 @@ Result<void> NodeConnection::readList(uint32_t sizeBytes, uint32_t& first, std::
     return connection_->read(std::as_writable_bytes(std::span(entries)), Deadline::inMs(kMessageLimitMs));
 }
 
-Result<void> NodeConnection::readNews(uint32_t sizeBytes) {
-    wire::DriverEvent news{};
-    if (sizeBytes < sizeof(news) || sizeBytes > sizeof(news) + kMaxTextBytes)
+Result<void> NodeConnection::readDriverEvent(uint32_t sizeBytes) {
+    wire::DriverEvent event{};
+    if (sizeBytes < sizeof(event) || sizeBytes > sizeof(event) + kMaxTextBytes)
         return Error{"it sent a driver event of invalid size"};
-    if (auto got = readStruct(news); !got) return got;
-    if (news.textBytes != sizeBytes - sizeof(news))
+    if (auto got = readStruct(event); !got) return got;
+    if (event.textBytes != sizeBytes - sizeof(event))
         return Error{"it sent a driver event whose size contradicts its text"};
-    auto bytes = readBytes(news.textBytes);
+    auto bytes = readBytes(event.textBytes);
     if (!bytes) return bytes.error();
     const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    return handle([&] { return events_.nodeNews(place_.node, news, text); });
+    return handle([&] { return events_.nodeDriverEvent(location_.node, event, text); });
 }
 
 Result<void> NodeConnection::readAnswer(uint32_t sizeBytes) {
@@ -251,7 +251,7 @@ Result<void> NodeConnection::readAnswer(uint32_t sizeBytes) {
     if (!fits) return Error{"it sent a reply whose rectangle contradicts its size"};
     auto bytes = readBytes(dataBytes);
     if (!bytes) return bytes.error();
-    return handle([&] { return events_.nodeAnswer(place_.node, header, std::move(*bytes)); });
+    return handle([&] { return events_.nodeAnswer(location_.node, header, std::move(*bytes)); });
 }
 
 Result<void> NodeConnection::readPicture(uint32_t sizeBytes) {
@@ -259,12 +259,12 @@ Result<void> NodeConnection::readPicture(uint32_t sizeBytes) {
     if (sizeBytes < sizeof(header) || sizeBytes > kMaxDataBytes) return Error{"it sent a picture of invalid size"};
     if (auto got = readStruct(header); !got) return got;
     const uint32_t dataBytes = sizeBytes - static_cast<uint32_t>(sizeof(header));
-    const ScaledSize size = sizeOnWay(header.w, header.h, way_);
+    const ScaledSize size = scaledSizeOf(header.w, header.h, transferScale_);
     if (!rectangleFits(header.x, header.y, size.w, size.h, 4, dataBytes))
         return Error{"it sent a picture whose rectangle contradicts its size"};
     auto rows = readBytes(dataBytes);
     if (!rows) return rows.error();
-    return handle([&] { return events_.nodePicture(place_.node, header, std::move(*rows)); });
+    return handle([&] { return events_.nodePicture(location_.node, header, std::move(*rows)); });
 }
 
 Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
@@ -274,7 +274,7 @@ Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
     if (auto got = readStruct(header); !got) return got;
     auto packed = readBytes(sizeBytes - static_cast<uint32_t>(sizeof(header)));
     if (!packed) return packed.error();
-    const ScaledSize size = sizeOnWay(header.w, header.h, way_);
+    const ScaledSize size = scaledSizeOf(header.w, header.h, transferScale_);
     const uint64_t pixels = size.w > 0 && size.h > 0 ? uint64_t(size.w) * uint64_t(size.h) : 0;
     if (pixels == 0 || pixels > kMaxDataBytes / 4) return Error{"it sent an encoded picture of invalid size"};
     return handle([&]() -> Result<void> {
@@ -285,7 +285,7 @@ Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
             return Error{"it sent a picture that cannot be decoded: " + done.error().message};
         pictureBytes_ += static_cast<int64_t>(packed->size());
         pictureRawBytes_ += static_cast<int64_t>(rows.size());
-        return events_.nodePicture(place_.node, header, std::move(rows));
+        return events_.nodePicture(location_.node, header, std::move(rows));
     });
 }
 

@@ -32,9 +32,9 @@ public:
     virtual Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) = 0;
     virtual Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) = 0;
     virtual Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) = 0;
-    virtual Result<void> nodeNews(int node, const wire::DriverEvent& news, const std::string& text) = 0;
+    virtual Result<void> nodeDriverEvent(int node, const wire::DriverEvent& event, const std::string& text) = 0;
     virtual Result<void> nodeLog(int node, const std::string& text) = 0;
-    virtual Result<void> nodeBye(int node, const std::string& json) = 0;
+    virtual Result<void> nodeGoodbye(int node, const std::string& json) = 0;
     virtual Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) = 0;
     // The node reports the phases and areas of all windows, at the position of the RequestPhase command with that
     // number.
@@ -44,7 +44,7 @@ public:
     virtual void nodeLost(int node, const std::string& why) = 0;
 };
 
-struct NodePlace {
+struct NodeLocation {
     int node = 0;
     std::string where = "local"; // or the host
 };
@@ -52,7 +52,7 @@ struct NodePlace {
 // send(), flush() and setFeed() need StreamBroadcaster's lock. All other calls are thread-safe.
 class NodeConnection {
 public:
-    NodeConnection(NodePlace place,
+    NodeConnection(NodeLocation location,
                    std::unique_ptr<Connection> connection, // null: the node has not connected and counts as lost
                    std::unique_ptr<NodeProcess> process,   // null: not a child of this process (tests)
                    NodeEvents& events);
@@ -63,8 +63,8 @@ public:
 
     // Sets the decoder of the node's pictures (nodes/pictures). Call before startReading(). way: the scale of its
     // pictures in transfer (nodes/frame_transfer/transfer_scale.hpp).
-    void unpackBy(const std::string& codec, const Zoom& way) {
-        way_ = way;
+    void unpackBy(const std::string& codec, const Zoom& transferScale) {
+        transferScale_ = transferScale;
         if (codec != kRawCodec) pictures_ = std::make_unique<PictureUnpacker>(codec);
     }
     void startReading();
@@ -106,7 +106,7 @@ public:
     void watch(int64_t nowNs, int64_t patienceNs);
 
     [[nodiscard]] bool alive() const { return alive_.load(std::memory_order_acquire); }
-    [[nodiscard]] bool saidBye() const { return saidBye_.load(std::memory_order_acquire); }
+    [[nodiscard]] bool goodbyeReceived() const { return goodbyeReceived_.load(std::memory_order_acquire); }
     [[nodiscard]] bool readerEnded() const { return readerEnded_.load(std::memory_order_acquire); }
     // Returns the time of the last message or packet; the current time while the head processes a message.
     [[nodiscard]] int64_t lastProgressNs(int64_t nowNs) const {
@@ -116,8 +116,8 @@ public:
     [[nodiscard]] int64_t pictureBytes() const { return pictureBytes_.load(std::memory_order_relaxed); }
     [[nodiscard]] int64_t pictureRawBytes() const { return pictureRawBytes_.load(std::memory_order_relaxed); }
     // Time since the last message.
-    [[nodiscard]] int64_t silentNs(int64_t nowNs) const { return nowNs - std::min(nowNs, heardNs_.load()); }
-    [[nodiscard]] const NodePlace& place() const { return place_; }
+    [[nodiscard]] int64_t silentNs(int64_t nowNs) const { return nowNs - std::min(nowNs, receivedNs_.load()); }
+    [[nodiscard]] const NodeLocation& location() const { return location_; }
     [[nodiscard]] NodeProcess* process() { return process_.get(); }
     [[nodiscard]] std::string describe() const; // "node 2 (local, pid 77)"
 
@@ -130,7 +130,7 @@ private:
     Result<void> readMessage(const wire::MessageHeader& header);
     Result<ByteBuffer> readBytes(size_t sizeBytes);
     template <class Header> Result<void> readStruct(Header& header);
-    Result<void> readNews(uint32_t sizeBytes);
+    Result<void> readDriverEvent(uint32_t sizeBytes);
     Result<void> readAnswer(uint32_t sizeBytes);
     Result<void> readPicture(uint32_t sizeBytes);
     Result<void> readPackedPicture(uint32_t sizeBytes);
@@ -144,16 +144,16 @@ private:
     template <class Handler> Result<void> handle(Handler&& handler);
     std::string reasonOfEnd();
 
-    const NodePlace place_;
+    const NodeLocation location_;
     const std::unique_ptr<Connection> connection_;
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
-    Zoom way_;                                  // scale of its pictures in transfer
+    Zoom transferScale_;                        // scale of its pictures in transfer
     std::unique_ptr<PictureUnpacker> pictures_; // null: pictures are not encoded
     std::atomic<int64_t> pictureBytes_{0}, pictureRawBytes_{0};
     std::thread reader_;
     std::atomic<bool> alive_;
-    std::atomic<bool> saidBye_{false};
+    std::atomic<bool> goodbyeReceived_{false};
     std::atomic<bool> byMulticast_{false};
     std::atomic<bool> joinsGroup_{false};
     bool member_ = true;
@@ -167,7 +167,7 @@ private:
     int64_t watchedNs_ = 0;                   // time of the last watch()
     int64_t excusedNs_ = 0;                   // silence before this time does not count
     std::atomic<bool> inMessage_{false};      // the reader is inside a message
-    std::atomic<int64_t> heardNs_{0};         // time of the last complete message
+    std::atomic<int64_t> receivedNs_{0};      // time of the last complete message
     std::atomic<int64_t> handlingSinceNs_{0}; // 0: the reader is waiting for the node
     std::atomic<int64_t> lastMessageNs_{0};   // time of the last processed message other than Alive
     std::mutex reasonMutex_;

@@ -121,7 +121,7 @@ void StreamBroadcaster::sendBatchLocked() {
 
 void StreamBroadcaster::sendTo(NodeConnection& link, std::span<const std::byte> header,
                                std::span<const std::byte> payload) {
-    sendingTo_ = link.place().node;
+    sendingTo_ = link.location().node;
     link.send(header, payload);
 }
 
@@ -188,7 +188,8 @@ void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::func
         using Kind = NodeMulticast::Change::Kind;
         NodeConnection& link = this->link(change.node);
         if (change.kind == Kind::Came && link.joinsGroup()) comers_.push_back(change);
-        if (!link.alive() || link.saidBye() || !link.byMulticast()) continue; // or it has returned by another transport
+        if (!link.alive() || link.goodbyeReceived() || !link.byMulticast())
+            continue; // or it has returned by another transport
         if (change.kind == Kind::Gone)
             link.lose(change.why);
         else if (change.kind == Kind::Rerouted || !change.multicast)
@@ -202,12 +203,12 @@ void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::func
     // A writer may be waiting for space in a lost node's connection.
     for (NodeConnection* link : links_)
         if ((link->byMulticast() || link->joinsGroup()) && !link->alive())
-            multicast_->remove(link->place().node, "the head has lost its connection to it");
+            multicast_->remove(link->location().node, "the head has lost its connection to it");
 }
 
 void StreamBroadcaster::loseAll(const std::string& why) {
     for (NodeConnection* link : links_)
-        if (!link->saidBye()) link->lose(why);
+        if (!link->goodbyeReceived()) link->lose(why);
 }
 
 void StreamBroadcaster::end() {

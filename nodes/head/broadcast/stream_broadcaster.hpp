@@ -34,7 +34,7 @@ public:
     void setDeltaStream(std::unique_ptr<DeltaStream> deltaStream);
     [[nodiscard]] DeltaCounts deltaCounts() const { return deltaStream_ ? deltaStream_->counts() : DeltaCounts(); }
     // Sets the rejoin log. Call before the first broadcast.
-    void keepBy(std::unique_ptr<RejoinLog> kept) { kept_ = std::move(kept); }
+    void setRejoinLog(std::unique_ptr<RejoinLog> log) { rejoinLog_ = std::move(log); }
     void startReading();
 
     // Returns false if no node lives. Blocks while a node's connection is full.
@@ -57,7 +57,7 @@ public:
 
     // ---- nodes that come again (node_set_joins.cpp)
     // All that a node needs that comes now has been kept.
-    [[nodiscard]] bool canJoin() const { return kept_ && kept_->complete(); }
+    [[nodiscard]] bool canJoin() const { return rejoinLog_ && rejoinLog_->complete(); }
     // Replaces a lost node whose end was fully reported. The new link receives nothing yet. Call from the adding
     // thread; never blocks.
     void replace(int node, std::unique_ptr<NodeConnection> link);
@@ -65,18 +65,18 @@ public:
     enum class Turns { None, OfFrames, OfAreas };
     // Returns the snapshot for the node, and queues all later packets in its link. If `turns` is set, requests the
     // state of members at this position.
-    struct TurnsAsked {
-        uint32_t number = 0;                 // number of the RequestPhase
-        std::function<bool(int node)> knows; // the member has the same kind of state
-        std::vector<NodeConnection*> asked;  // output: the members that will answer if they live
+    struct PhaseRequest {
+        uint32_t number = 0;                  // number of the RequestPhase
+        std::function<bool(int node)> knows;  // the member has the same kind of state
+        std::vector<NodeConnection*> members; // output: the members that will answer if they live
     };
-    Result<RejoinLog::Snapshot> beginCatchUp(int node, TurnsAsked* turns, Deadline deadline);
+    Result<RejoinLog::Snapshot> beginCatchUp(int node, PhaseRequest* turns, Deadline deadline);
     // Makes the node a member after all packets so far, and informs all nodes. `announce` runs first and may refuse. If
     // the node receives batches, delta coding restarts for all nodes: only an empty dictionary equals the new node's.
     struct Admission {
         bool refused = false;
         bool first = false;           // the first member with this kind of state
-        uint32_t life = 0;            // its incarnation
+        uint32_t incarnation = 0;     // its incarnation
         std::vector<uint32_t> absent; // nodes that are no members
     };
     Result<void> admit(int node, const std::function<Admission(uint32_t view)>& announce);
@@ -118,7 +118,7 @@ private:
     // for watch(): group members that still receive their packets on both transports
     std::vector<NodeMulticast::Change> comers_;
     const NodeConnection* changingOver_ = nullptr;   // the link that receives packets on both transports, or null
-    std::unique_ptr<RejoinLog> kept_;                // null: lost nodes stay lost
+    std::unique_ptr<RejoinLog> rejoinLog_;           // null: lost nodes stay lost
     std::deque<std::atomic<NodeConnection*>> links_; // by node
     std::vector<std::unique_ptr<NodeConnection>>
         owned_;                   // includes links of lost nodes, which other threads may still use

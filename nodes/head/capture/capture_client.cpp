@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "nodes/head/broadcast/bytes_of.hpp"
-#include "nodes/head/capture/life_mark.hpp"
+#include "nodes/head/capture/liveness_mark.hpp"
 #include "streamcodec/wire/packet.hpp"
 
 namespace mural {
@@ -151,7 +151,7 @@ bool CaptureClient::drained() const {
 bool CaptureClient::programGone() const { return memory_->programGone(); }
 
 void CaptureClient::reply(Reply reply) {
-    if (reply.header.kind != capture::kPictureReply && (reply.header.requestId & capture::kAskedAhead) != 0) {
+    if (reply.header.kind != capture::kPictureReply && (reply.header.requestId & capture::kPrefetched) != 0) {
         uint64_t value = 0;
         if (reply.bytes.size() >= sizeof value) std::memcpy(&value, reply.bytes.data(), sizeof value);
         return memory_->answerAhead(reply.header.requestId, value);
@@ -168,7 +168,7 @@ void CaptureClient::reply(Reply reply) {
 }
 
 void CaptureClient::writeReplies() {
-    const LifeMark mark(memory_->lifeWord());
+    const LivenessMark mark(memory_->livenessWord());
     std::unique_lock lock(mutex_);
     while (!stop_) {
         if (replies_.empty()) {

@@ -46,8 +46,8 @@ void writeLayout(CaptureHeader& h, uint32_t chunkCount, uint32_t replyBytes) {
     h.publicationsAt = roundUp(sizeof(CaptureHeader));
     h.freedAt = roundUp(h.publicationsAt + uint64_t{chunkCount} * sizeof(Publication));
     h.repliesAt = roundUp(h.freedAt + uint64_t{chunkCount} * sizeof(uint32_t));
-    h.newsAt = roundUp(h.repliesAt + replyBytes);
-    h.chunksAt = roundUp(h.newsAt + capture::kDriverEventSlots * sizeof(capture::DriverEventSlot));
+    h.driverEventsAt = roundUp(h.repliesAt + replyBytes);
+    h.chunksAt = roundUp(h.driverEventsAt + capture::kDriverEventSlots * sizeof(capture::DriverEventSlot));
     h.totalBytes = h.chunksAt + uint64_t{chunkCount} * kChunkBytes;
 }
 
@@ -98,7 +98,7 @@ CaptureMemory::CaptureMemory(FileDescriptor fd, FileDescriptor programFd, std::b
       publicationsAt_(layout.publicationsAt),
       freedAt_(layout.freedAt),
       repliesAt_(layout.repliesAt),
-      newsAt_(layout.newsAt),
+      driverEventsAt_(layout.driverEventsAt),
       chunksAt_(layout.chunksAt),
       totalBytes_(layout.totalBytes) {
     auto* freed = reinterpret_cast<uint32_t*>(at(freedAt_));
@@ -184,16 +184,18 @@ void CaptureMemory::answerAhead(uint32_t request, uint64_t value) {
     futexWakeAll(answer.request);
 }
 
-bool CaptureMemory::putNews(const wire::DriverEvent& news, const std::string& text) {
-    static_assert(sizeof news == sizeof capture::DriverEventSlot::news);
-    const std::lock_guard lock(newsMutex_);
-    if (newsTail_ - shared_->newsHead.load(std::memory_order_acquire) >= capture::kDriverEventSlots) return false;
-    auto* slot = reinterpret_cast<capture::DriverEventSlot*>(at(newsAt_)) + newsTail_ % capture::kDriverEventSlots;
-    wire::DriverEvent put = news;
+bool CaptureMemory::putDriverEvent(const wire::DriverEvent& event, const std::string& text) {
+    static_assert(sizeof event == sizeof capture::DriverEventSlot::event);
+    const std::lock_guard lock(driverEventMutex_);
+    if (driverEventTail_ - shared_->driverEventHead.load(std::memory_order_acquire) >= capture::kDriverEventSlots)
+        return false;
+    auto* slot = reinterpret_cast<capture::DriverEventSlot*>(at(driverEventsAt_)) +
+                 driverEventTail_ % capture::kDriverEventSlots;
+    wire::DriverEvent put = event;
     put.textBytes = static_cast<uint32_t>(std::min<size_t>(text.size(), capture::kDriverEventTextBytes));
-    std::memcpy(slot->news, &put, sizeof put);
+    std::memcpy(slot->event, &put, sizeof put);
     std::memcpy(slot->text, text.data(), put.textBytes);
-    shared_->newsTail.store(++newsTail_, std::memory_order_release);
+    shared_->driverEventTail.store(++driverEventTail_, std::memory_order_release);
     return true;
 }
 

@@ -39,7 +39,8 @@ struct CaptureCounts {
     uint64_t frameCpuFrames = 0;
 };
 
-// Threads: one for publications and chunks, and one for replies. News and the progress words may come from any thread.
+// Threads: one for publications and chunks, and one for replies. Driver events and the progress words may come from any
+// thread.
 class CaptureMemory {
 public:
     // Requires powers of two.
@@ -74,11 +75,11 @@ public:
     // Writes as much as fits. Returns the number of bytes.
     size_t writeReply(std::span<const std::byte> bytes);
     void waitReplyRoom(int64_t timeoutNs) const;
-    // Stores the reply to a request with capture::kAskedAhead. The program reads it when it needs the value.
+    // Stores the reply to a request with capture::kPrefetched. The program reads it when it needs the value.
     void answerAhead(uint32_t request, uint64_t value);
 
-    // Returns false if all slots hold news that the program has not read.
-    bool putNews(const wire::DriverEvent& news, const std::string& text);
+    // Returns false if all slots hold events that the program has not read.
+    bool putDriverEvent(const wire::DriverEvent& event, const std::string& text);
 
     // Returns the format of the window if the program itself puts this frame's picture into it, otherwise nullopt.
     [[nodiscard]] std::optional<PixelFormat> ownWindow(uint32_t window, uint32_t frame) const;
@@ -87,7 +88,7 @@ public:
     void setFramesShown(uint32_t frames);
     void beat() { shared_->headBeat.fetch_add(1, std::memory_order_relaxed); } // heartbeat of the head
     void setHeadGone();                                                        // also wakes the waiters on all words
-    std::atomic<uint32_t>& lifeWord() { return shared_->headLife; }            // the word of a LifeMark
+    std::atomic<uint32_t>& livenessWord() { return shared_->headLiveness; }    // the word of a LivenessMark
     [[nodiscard]] CaptureCounts counts() const;
     // Names of the X displays on which the program has windows, by number.
     [[nodiscard]] std::vector<std::string> displayNames() const;
@@ -102,12 +103,12 @@ private:
     capture::CaptureHeader* shared_;
     uint32_t chunkCount_;
     uint32_t replyCapacity_;
-    uint64_t publicationsAt_, freedAt_, repliesAt_, newsAt_, chunksAt_, totalBytes_;
+    uint64_t publicationsAt_, freedAt_, repliesAt_, driverEventsAt_, chunksAt_, totalBytes_;
     uint32_t publishedHead_ = 0;
     uint32_t freedTail_ = 0;
     uint32_t replyTail_ = 0;
-    std::mutex newsMutex_;
-    uint32_t newsTail_ = 0;
+    std::mutex driverEventMutex_;
+    uint32_t driverEventTail_ = 0;
 };
 
 } // namespace mural

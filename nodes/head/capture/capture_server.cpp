@@ -140,16 +140,16 @@ CaptureServer::~CaptureServer() {
 void CaptureServer::serve() {
     while (!stop_) {
         // poll ignores a negative descriptor
-        std::vector<pollfd> looks{{listener_.get(), POLLIN, 0}, {pathListener_.get(), POLLIN, 0}};
-        for (const Newcomer& n : newcomers_) looks.push_back({n.socket.get(), POLLIN, 0});
-        if (poll(looks.data(), looks.size(), kAcceptSliceMs) < 0) continue;
+        std::vector<pollfd> polled{{listener_.get(), POLLIN, 0}, {pathListener_.get(), POLLIN, 0}};
+        for (const Newcomer& n : newcomers_) polled.push_back({n.socket.get(), POLLIN, 0});
+        if (poll(polled.data(), polled.size(), kAcceptSliceMs) < 0) continue;
         // Backwards, because the vector shrinks during the loop.
         for (size_t i = newcomers_.size(); i-- > 0;) {
-            if (settle(newcomers_[i], looks[i + kListeners].revents != 0))
+            if (settle(newcomers_[i], polled[i + kListeners].revents != 0))
                 newcomers_.erase(newcomers_.begin() + static_cast<std::ptrdiff_t>(i));
         }
         for (size_t i = 0; i < kListeners; ++i)
-            if (looks[i].revents != 0 && !stop_) acceptOne(looks[i].fd);
+            if (polled[i].revents != 0 && !stop_) acceptOne(polled[i].fd);
     }
 }
 
@@ -185,7 +185,7 @@ bool CaptureServer::settle(Newcomer& newcomer, bool readable) {
 }
 
 void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
-    if (hello.magic == capture::kStatusMagic) return tellStatus(socket.get());
+    if (hello.magic == capture::kStatusMagic) return sendStatus(socket.get());
     auto admission = judge(socket.get(), hello);
     if (!admission) {
         Welcome refusal{};
@@ -197,7 +197,7 @@ void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
     host_.programWelcomed(admission->welcome.clientId, sent ? std::move(socket) : FileDescriptor());
 }
 
-void CaptureServer::tellStatus(int socket) {
+void CaptureServer::sendStatus(int socket) {
     ucred peer{};
     if (!peerOf(socket, peer) || (peer.uid != geteuid() && peer.uid != 0)) return;
     const std::string text = status_();

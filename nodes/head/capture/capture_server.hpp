@@ -64,7 +64,7 @@ private:
     bool settle(Newcomer& newcomer, bool readable); // true: accepted or refused
     void answer(FileDescriptor socket, const capture::Hello& hello);
     Result<Admission> judge(int socket, const capture::Hello& hello);
-    void tellStatus(int socket);
+    void sendStatus(int socket);
 
     const FileDescriptor listener_;
     const FileDescriptor pathListener_; // invalid: no path

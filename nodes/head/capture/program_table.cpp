@@ -88,9 +88,9 @@ void ProgramTable::reply(uint32_t id, Reply reply) {
     if (const auto client = find(id)) client->reply(std::move(reply));
 }
 
-void ProgramTable::news(const wire::DriverEvent& news, const std::string& text) {
-    // the news is dropped if the program reads none
-    if (const auto client = find(news.client)) (void)client->memory().putNews(news, text);
+void ProgramTable::driverEvent(const wire::DriverEvent& event, const std::string& text) {
+    // the event is dropped if the program reads none
+    if (const auto client = find(event.client)) (void)client->memory().putDriverEvent(event, text);
 }
 
 void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
@@ -100,7 +100,7 @@ void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
     Progress& progress = progress_[id];
     progress.finished = finished;
     progress.shown = shown;
-    tellProgress(*found->second, progress);
+    publishProgress(*found->second, progress);
 }
 
 void ProgramTable::displayBlocked(uint32_t id, bool isBlocked) {
@@ -109,15 +109,15 @@ void ProgramTable::displayBlocked(uint32_t id, bool isBlocked) {
     if (found == clients_.end()) return;
     Progress& progress = progress_[id];
     progress.isBlocked = isBlocked;
-    tellProgress(*found->second, progress);
+    publishProgress(*found->second, progress);
 }
 
 // A program receives no further credit while too many of its pictures wait for their window.
-void ProgramTable::tellProgress(CaptureClient& client, const Progress& progress) const {
+void ProgramTable::publishProgress(CaptureClient& client, const Progress& progress) const {
     constexpr uint32_t kMaxUnshown = 3;
     const uint32_t allowed = progress.shown + (terms_.framesDoneWhenShown ? 0 : kMaxUnshown);
-    const bool isHeldBack = terms_.welcome.displayApp != 0 && !progress.isBlocked;
-    client.memory().setFramesDone(isHeldBack ? std::min(progress.finished, allowed) : progress.finished);
+    const bool isLimited = terms_.welcome.displayApp != 0 && !progress.isBlocked;
+    client.memory().setFramesDone(isLimited ? std::min(progress.finished, allowed) : progress.finished);
     client.memory().setFramesShown(progress.shown);
 }
 
@@ -137,7 +137,7 @@ void ProgramTable::beat() {
     for (const auto& [id, client] : clients_) client->memory().beat();
 }
 
-void ProgramTable::tellHeadGone() {
+void ProgramTable::reportHeadGone() {
     {
         const std::lock_guard lock(mutex_);
         headGone_ = true;

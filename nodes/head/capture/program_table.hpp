@@ -44,7 +44,7 @@ public:
 
     void refuseFrom(const std::string& reason); // refuses programs from now on; call before drainAll()
     void reply(uint32_t client, Reply reply);
-    void news(const wire::DriverEvent& news, const std::string& text);
+    void driverEvent(const wire::DriverEvent& event, const std::string& text);
     void credit(uint32_t client, uint32_t finished, uint32_t shown);
     // While the X server does not answer, the credit does not wait for the program's windows.
     void displayBlocked(uint32_t client, bool isBlocked);
@@ -52,8 +52,8 @@ public:
     // the program has the picture.
     bool giveOwnPicture(uint32_t client, uint32_t frame, uint64_t nativeWindow, const Picture& picture,
                         std::function<void()> done);
-    void beat();         // sends the heartbeat to all programs; called by the main loop
-    void tellHeadGone(); // all programs continue without Mural
+    void beat();           // sends the heartbeat to all programs; called by the main loop
+    void reportHeadGone(); // all programs continue without Mural
 
     // Sends everything published before this call to the nodes and ends the pumps. Replies and credit still reach the
     // programs. Calls `tick` meanwhile.
@@ -76,7 +76,7 @@ private:
     std::shared_ptr<CaptureClient> find(uint32_t client) const;
     std::vector<std::shared_ptr<CaptureClient>> all() const;
     [[nodiscard]] bool anyAdmitted() const;
-    void tellProgress(CaptureClient& client, const Progress& progress) const;
+    void publishProgress(CaptureClient& client, const Progress& progress) const;
     static void addCounts(CaptureCounts& sum, const CaptureCounts& counts);
 
     const ProgramTerms terms_;

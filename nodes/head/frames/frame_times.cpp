@@ -30,12 +30,12 @@ bool FrameTimes::follow(const wire::FrameDoneMessage& m) {
 std::optional<FrameTimes::Frame> FrameTimes::finished(int node, const wire::FrameDoneMessage& message) {
     const auto index = static_cast<size_t>(node);
     Frame& frame = frames_[message.frame];
-    frame.busyNs.resize(lives_.size(), -1);
-    frame.done.resize(lives_.size());
+    frame.busyNs.resize(alive_.size(), -1);
+    frame.done.resize(alive_.size());
     frame.busyNs[index] = std::exchange(workNs_[index], 0);
     frame.done[index] = message;
     bool complete = true;
-    for (size_t n = 0; n < lives_.size(); ++n) complete = complete && (!lives_[n] || frame.busyNs[n] >= 0);
+    for (size_t n = 0; n < alive_.size(); ++n) complete = complete && (!alive_[n] || frame.busyNs[n] >= 0);
     std::optional<Frame> whole;
     if (complete) {
         whole = std::move(frame);
@@ -53,14 +53,14 @@ void FrameTimes::windowGone(uint32_t client, uint32_t window) {
 }
 
 void FrameTimes::lost(int node) {
-    lives_[static_cast<size_t>(node)] = false;
+    alive_[static_cast<size_t>(node)] = false;
     frames_.clear();
 }
 
 bool FrameTimes::joined(int node) {
     const auto index = static_cast<size_t>(node);
-    if (lives_[index]) return false;
-    lives_[index] = true;
+    if (alive_[index]) return false;
+    alive_[index] = true;
     workNs_[index] = 0;
     frames_.clear();
     return true;

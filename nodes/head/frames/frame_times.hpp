@@ -22,7 +22,7 @@ public:
         std::vector<wire::FrameDoneMessage> done;
     };
 
-    explicit FrameTimes(size_t nodes) : lives_(nodes, true), workNs_(nodes, 0) {}
+    explicit FrameTimes(size_t nodes) : alive_(nodes, true), workNs_(nodes, 0) {}
 
     // Call first for each message. Returns true if the followed window or its size has changed.
     bool follow(const wire::FrameDoneMessage& message);
@@ -37,7 +37,7 @@ public:
     void windowGone(uint32_t client, uint32_t window); // or wire::kAllWindows
     void lost(int node);
     bool joined(int node); // returns false if the node was alive already
-    [[nodiscard]] bool lives(int node) const { return lives_[static_cast<size_t>(node)]; }
+    [[nodiscard]] bool isAlive(int node) const { return alive_[static_cast<size_t>(node)]; }
 
     [[nodiscard]] bool known() const { return width_ > 0; } // a window is followed
     [[nodiscard]] int width() const { return width_; }
@@ -46,7 +46,7 @@ public:
 private:
     using Window = std::pair<uint32_t, uint32_t>; // client, window
 
-    std::vector<bool> lives_;
+    std::vector<bool> alive_;
     std::vector<double> workNs_; // per node, since its last frame of the followed window
     Window followed_{};
     int width_ = 0, height_ = 0;       // of it

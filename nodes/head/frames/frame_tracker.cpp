@@ -83,9 +83,9 @@ void FrameTracker::windowGone(uint32_t id, uint32_t window) {
     client(id).natives.erase(window);
 }
 
-void FrameTracker::pictureHeld(uint32_t id, uint32_t frame) {
+void FrameTracker::delayPicture(uint32_t id, uint32_t frame) {
     const std::lock_guard lock(mutex_);
-    client(id).held.insert(frame);
+    client(id).unshown.insert(frame);
 }
 
 void FrameTracker::isOn(uint32_t id, uint32_t window, uint64_t native) {
@@ -96,8 +96,8 @@ void FrameTracker::isOn(uint32_t id, uint32_t window, uint64_t native) {
 void FrameTracker::pictureReleased(uint32_t id, uint32_t frame) {
     const std::lock_guard lock(mutex_);
     Client& c = client(id);
-    const auto found = c.held.find(frame);
-    if (found != c.held.end()) c.held.erase(found);
+    const auto found = c.unshown.find(frame);
+    if (found != c.unshown.end()) c.unshown.erase(found);
     giveCredit(id, c);
 }
 
@@ -116,7 +116,7 @@ void FrameTracker::advance(uint32_t id, Client& c, int64_t nowNs) {
 
 void FrameTracker::giveCredit(uint32_t id, Client& c) {
     uint32_t shown = c.finished;
-    if (!c.held.empty()) shown = std::min(shown, *c.held.begin() - 1);
+    if (!c.unshown.empty()) shown = std::min(shown, *c.unshown.begin() - 1);
     shown = std::max(shown, c.shown); // a late swap of another thread does not decrease it
     if (c.finished == c.credited && shown == c.shown) return;
     c.credited = c.finished;

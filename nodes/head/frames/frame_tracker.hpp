@@ -45,7 +45,7 @@ public:
     void windowGone(uint32_t client, uint32_t window);
 
     // Announces a picture for the outputs. Must precede the completion of its frame.
-    void pictureHeld(uint32_t client, uint32_t frame);
+    void delayPicture(uint32_t client, uint32_t frame);
     // Sets the X window of a window. Several drawables may belong to one X window.
     void isOn(uint32_t client, uint32_t window, uint64_t native);
     void pictureReleased(uint32_t client, uint32_t frame);
@@ -71,7 +71,7 @@ private:
     struct Client {
         std::vector<NodeProgress> nodes;
         std::map<uint32_t, Window> windows; // windows of frames that some nodes have not finished
-        std::multiset<uint32_t> held;
+        std::multiset<uint32_t> unshown;
         std::map<uint32_t, uint64_t> natives; // window → X window
         uint32_t finished = 0;                // by all living nodes
         uint64_t calls = 0;

@@ -15,8 +15,8 @@ using wire::PictureHeader;
 constexpr uint32_t kMaxSide = 32768;
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28; // 16384 * 16384
 constexpr size_t kMaxOpenPictures = 4096;
-constexpr size_t kKeptWindows = 8;  // more windows rarely swap; per pass
-constexpr size_t kKeptPictures = 6; // the latest, those in the output's queue, and the shown one
+constexpr size_t kMaxWindows = 8;  // more windows rarely swap; per pass
+constexpr size_t kMaxPictures = 6; // the latest, those in the output's queue, and the shown one
 
 bool sensible(const PictureHeader& h) {
     if (h.format > static_cast<uint32_t>(kLastPictureFormat)) return false;
@@ -48,7 +48,7 @@ Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteB
     const auto index = static_cast<size_t>(node);
     if (!sensible(header)) return Error{"it sent a part outside of its picture, or with an unknown pixel format"};
     const std::lock_guard lock(mutex_);
-    if (!views_.lives(node)) return {};
+    if (!views_.isAlive(node)) return {};
     if (open_.size() >= kMaxOpenPictures) return Error{"it sent a picture number that is thousands ahead"};
     const auto at = opened(node, header.client, header.window, header.frame);
     Open& open = at->second;
@@ -63,7 +63,7 @@ Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteB
 void PictureAssembler::frameDone(int node, uint32_t client, uint32_t window, uint32_t frame) {
     const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
-    if (!views_.lives(node)) return;
+    if (!views_.isAlive(node)) return;
     const auto at = opened(node, client, window, frame);
     if (!at->second.awaited[index]) return;
     at->second.done[index] = at->second.finished[index] = true;
@@ -173,9 +173,9 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
             static_cast<uint32_t>(std::clamp<double>(std::round(size.windowHeight / from.y * to.y), 1, kMaxSide));
     }
     // kernel sizes differ by 1
-    const auto near = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; };
-    if (any == open.parts.end() && before && near(before->width(), size.windowWidth) &&
-        near(before->height(), size.windowHeight))
+    const auto isClose = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; };
+    if (any == open.parts.end() && before && isClose(before->width(), size.windowWidth) &&
+        isClose(before->height(), size.windowHeight))
         return before;
     const auto width = static_cast<int>(size.windowWidth);
     const auto height = static_cast<int>(size.windowHeight);
@@ -214,7 +214,7 @@ std::shared_ptr<OwnedPicture> PictureAssembler::spare() {
         return picture;
     }
     auto picture = std::make_shared<OwnedPicture>();
-    if (made_.size() < kKeptPictures * (static_cast<size_t>(compose_ ? passes_ + 1 : passes_) + others_.size()))
+    if (made_.size() < kMaxPictures * (static_cast<size_t>(compose_ ? passes_ + 1 : passes_) + others_.size()))
         made_.push_back(picture);
     return picture;
 }
@@ -228,7 +228,7 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::latestOf(const WindowKey& 
 void PictureAssembler::keepLatest(const WindowKey& key, std::shared_ptr<const OwnedPicture> picture) {
     std::erase_if(latest_, [&](const auto& entry) { return entry.first == key; });
     latest_.emplace_front(key, std::move(picture));
-    if (latest_.size() > kKeptWindows * static_cast<size_t>(passes_)) latest_.pop_back();
+    if (latest_.size() > kMaxWindows * static_cast<size_t>(passes_)) latest_.pop_back();
 }
 
 } // namespace mural

@@ -143,7 +143,7 @@ Result<void> PictureOutput::give(PictureSink& sink, int64_t frame, const Picture
 }
 
 void PictureOutput::save(int64_t frame, const Picture& picture) {
-    if (picture.format != PictureFormat::Bgra8 && !std::exchange(saidEightBits_, true))
+    if (picture.format != PictureFormat::Bgra8 && !std::exchange(eightBitsReported_, true))
         config_.say("the program's window has 10 bits per channel; --out saves 8 of them");
     const auto saved = give(*file_, frame, picture, config_.pairs);
     if (!saved) {

@@ -88,7 +88,7 @@ private:
     const std::set<int64_t> saveFrames_;
     std::unique_ptr<PictureSink> file_;
     bool fileFailed_ = false;
-    bool saidEightBits_ = false;
+    bool eightBitsReported_ = false;
     OwnedPicture eightBits_; // scratch memory of give()
     std::unique_ptr<PictureSink> wall_;
     bool wallFailed_ = false;

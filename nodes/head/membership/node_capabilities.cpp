@@ -60,8 +60,8 @@ Result<NodeCapabilities> nodeFactsFromJson(const std::string& text) {
     facts.swapBarrier = textOf(json, "swapBarrier");
     facts.ownStream = textOf(json, "ownStream");
     facts.glVersion = versionOf(json);
-    if (const auto most = json.find("mostPixels"); most != json.end() && most->is_number_integer())
-        facts.mostPixels = most->get<int64_t>();
+    if (const auto maximum = json.find("maxPixels"); maximum != json.end() && maximum->is_number_integer())
+        facts.maxPixels = maximum->get<int64_t>();
     facts.extensions = extensionsOf(json);
     const auto pid = json.find("pid");
     if (pid != json.end() && pid->is_number_integer()) facts.pid = pid->get<int64_t>();

@@ -18,7 +18,7 @@ struct NodeCapabilities {
     std::string exchange;    // HOST:PORT of its picture exchange; no host: this machine; empty: none
     std::string swapBarrier; // the same for its swap barrier
     int glVersion = 0;       // 10 * major + minor; 0: unknown
-    int64_t mostPixels = 0;  // maximum side of a picture, pixels; 0: unknown
+    int64_t maxPixels = 0;   // maximum side of a picture, pixels; 0: unknown
     std::vector<std::string> extensions;
 };
 

@@ -95,7 +95,7 @@ Result<std::unique_ptr<NodeAcceptor>> openGate(const SessionPlan& plan) {
 }
 
 // Returns true after the node has connected. Errors: why the node failed, without its name.
-Result<bool> lookForConnection(LaunchedNode& node, NodeAcceptor& gate, Deadline deadline) {
+Result<bool> pollConnection(LaunchedNode& node, NodeAcceptor& gate, Deadline deadline) {
     node.connection = gate.take(node.plan.node);
     if (node.connection) return true;
     // A launch command may delegate to a batch system and exit with status 0.
@@ -116,23 +116,23 @@ Result<void> awaitConnections(std::vector<LaunchedNode>& nodes, NodeAcceptor* ga
     const int enough = options.minNodes > 0 ? std::min(options.minNodes, all) : all;
     std::optional<Deadline> late;
     while (true) {
-        int come = 0, gone = 0;
+        int present = 0, failed = 0;
         for (LaunchedNode& node : nodes) {
             if (!node.connection && node.absence.empty()) {
-                const auto looked = lookForConnection(node, *gate, deadline);
-                if (!looked) node.absence = looked.error().message;
-                if (!looked) node.process.reset();
+                const auto polled = pollConnection(node, *gate, deadline);
+                if (!polled) node.absence = polled.error().message;
+                if (!polled) node.process.reset();
             }
-            come += node.connection ? 1 : 0;
-            gone += node.absence.empty() ? 0 : 1;
-            if (all - gone < enough)
+            present += node.connection ? 1 : 0;
+            failed += node.absence.empty() ? 0 : 1;
+            if (all - failed < enough)
                 return Error{nameOf(node.plan) + " " + node.absence +
                              (enough < all ? "; fewer than --min-nodes " + std::to_string(enough) + " are left" : "")};
             if (!node.absence.empty() && node.plan.pass.ranges > 1)
                 return Error{nameOf(node.plan) + " " + node.absence + "; sort-last nodes (--db) begin together"};
         }
-        if (come + gone == all) return {};
-        if (come >= enough && !late) late = Deadline::inMs(options.lateMs);
+        if (present + failed == all) return {};
+        if (present >= enough && !late) late = Deadline::inMs(options.lateMs);
         if (late && late->passed()) break;
         if (cancelled()) return Error{"the session was stopped before it began"};
         poll(nullptr, 0, 20);
@@ -184,9 +184,9 @@ Result<StartingNode> startNode(const NodePlan& plan, const LaunchOptions& option
 
 Result<bool> connected(StartingNode& starting) {
     if (starting.node.connection) return true;
-    auto come = lookForConnection(starting.node, *starting.gate, starting.deadline);
-    if (!come) return Error{"it " + come.error().message};
-    return come;
+    auto present = pollConnection(starting.node, *starting.gate, starting.deadline);
+    if (!present) return Error{"it " + present.error().message};
+    return present;
 }
 
 } // namespace mural

@@ -40,7 +40,7 @@ Result<std::unique_ptr<NodeProcess>> NodeProcess::start(const NodeCommand& comma
     request.file = command.arguments[0];
     request.arguments = command.arguments;
     request.environment = environment.entries();
-    if (command.inheritFd >= 0) request.keptFds.push_back(command.inheritFd);
+    if (command.inheritFd >= 0) request.inheritedFds.push_back(command.inheritFd);
     request.inputFd = input->get();
     request.outputFd = STDERR_FILENO; // standard output belongs to the program
     request.ownSession = true;

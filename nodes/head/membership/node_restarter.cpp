@@ -52,7 +52,7 @@ void NodeRestarter::notThere(int node) {
     n.nextNs = nowNs + terms_.pausesMs[std::min<size_t>(1, terms_.pausesMs.size() - 1)] * kNsPerMs;
 }
 
-bool NodeRestarter::lostOnItsWay(int node, const std::string& why) {
+bool NodeRestarter::lostWhileRestarting(int node, const std::string& why) {
     const std::lock_guard lock(mutex_);
     Node& n = at(node);
     if (n.phase != Phase::Readying && n.phase != Phase::Ready && n.phase != Phase::CatchingUp) return false;
@@ -74,7 +74,7 @@ void NodeRestarter::synchronized(int node, const wire::SynchronizedMessage& mess
 void NodeRestarter::turns(uint32_t number, const std::vector<std::byte>& turns) {
     const std::lock_guard lock(mutex_);
     for (Node& n : nodes_)
-        if (n.catchUp) n.catchUp->toldTurns(number, turns);
+        if (n.catchUp) n.catchUp->phaseState(number, turns);
 }
 
 bool NodeRestarter::skipsFrames() const {
@@ -99,7 +99,7 @@ bool NodeRestarter::awaited() const {
                                [](const Node& n) { return n.phase != Phase::Member && n.phase != Phase::Over; });
 }
 
-bool NodeRestarter::onItsWay(int node) const {
+bool NodeRestarter::isRestarting(int node) const {
     const std::lock_guard lock(mutex_);
     const Phase phase = nodes_[static_cast<size_t>(node)].phase;
     return phase != Phase::Member && phase != Phase::Over;
@@ -138,7 +138,7 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
     case Phase::Waiting:
         if (due && set_.link(node).readerEnded()) start(node, nowNs);
         return;
-    case Phase::Starting: return look(node, nowNs);
+    case Phase::Starting: return pollStart(node, nowNs);
     case Phase::Readying:
         if (readyBy.passed())
             set_.link(node).lose("it was not ready within " + std::to_string(terms_.readyPatienceMs / 1000) + " s");
@@ -152,9 +152,9 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
 
 void NodeRestarter::catchUp(int node) {
     hooks_.introduce(node);
-    std::optional<StreamBroadcaster::TurnsAsked> turns;
+    std::optional<StreamBroadcaster::PhaseRequest> turns;
     if (const auto kind = hooks_.turns(node); kind != StreamBroadcaster::Turns::None)
-        turns = {++turnsAsked_, [this, kind](int other) { return hooks_.turns(other) == kind; }, {}};
+        turns = {++phaseRequests_, [this, kind](int other) { return hooks_.turns(other) == kind; }, {}};
     const auto catchUp = std::make_shared<NodeResync>(
         set_, node, std::move(turns), [this, node](uint32_t view) { return hooks_.admitted(node, view); });
     {
@@ -178,15 +178,15 @@ void NodeRestarter::start(int node, int64_t nowNs) {
     at(node).phase = Phase::Starting;
 }
 
-void NodeRestarter::look(int node, int64_t nowNs) {
+void NodeRestarter::pollStart(int node, int64_t nowNs) {
     StartingNode& starting = *at(node).starting;
-    const auto come = connected(starting);
-    if (!come) {
-        const std::string why = come.error().message;
+    const auto present = connected(starting);
+    if (!present) {
+        const std::string why = present.error().message;
         at(node).starting.reset();
         return fail(node, why, nowNs);
     }
-    if (!come.value()) return;
+    if (!present.value()) return;
     {
         const std::lock_guard lock(mutex_);
         at(node).phase = Phase::Readying;

@@ -49,7 +49,7 @@ public:
     // Records that a node was absent when the session began. It is restarted as well.
     void notThere(int node);
     // Returns true if the node was being restarted: the attempt has failed, and no member was lost.
-    bool lostOnItsWay(int node, const std::string& why);
+    bool lostWhileRestarting(int node, const std::string& why);
     void ready(int node); // its capabilities suit the session
     void synchronized(int node, const wire::SynchronizedMessage& message);
     void turns(uint32_t number, const std::vector<std::byte>& turns);
@@ -59,7 +59,7 @@ public:
     // Called by Hooks::admitted when it agrees. Returns false if the node is lost already.
     bool becomesMember(int node);
     [[nodiscard]] bool awaited() const; // a node may return
-    [[nodiscard]] bool onItsWay(int node) const;
+    [[nodiscard]] bool isRestarting(int node) const;
 
     struct Numbers {
         double secondsToRejoin = 0; // time from the loss to membership
@@ -91,7 +91,7 @@ private:
     void fail(int node, const std::string& why, int64_t nowNs);
     void tickNode(int node, int64_t nowNs);
     void start(int node, int64_t nowNs);
-    void look(int node, int64_t nowNs);
+    void pollStart(int node, int64_t nowNs);
 
     const ReturnTerms terms_;
     StreamBroadcaster& set_;
@@ -100,7 +100,7 @@ private:
     std::vector<Node> nodes_;
     bool stopped_ = false;
     bool skipsFrames_ = true;
-    uint32_t turnsAsked_ = 0; // accessed by tick() only
+    uint32_t phaseRequests_ = 0; // accessed by tick() only
 };
 
 } // namespace mural

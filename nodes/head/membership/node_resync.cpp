@@ -18,12 +18,12 @@ constexpr int kMaxRounds = 8;                    // a node that is no faster tha
 constexpr int64_t kDrawPatienceMs = 500;         // until each window has had a frame
 constexpr int64_t kDirectPatienceMs = 2'000;     // after this time the queue is flushed while other nodes wait
 constexpr int64_t kSnapshotMs = 20'000;          // limit for the snapshot
-constexpr int64_t kLookMs = 50;                  // interval of the check that a member is left to report the phase
+constexpr int64_t kPollMs = 50;                  // interval of the check that a member is left to report the phase
 constexpr int64_t kSyncLimitMs = 600'000;        // a last resort: watch() loses silent nodes earlier
 
 } // namespace
 
-NodeResync::NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns,
+NodeResync::NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::PhaseRequest> turns,
                        Admitted admitted)
     : nodes_(nodes), node_(node), link_(nodes.link(node)), turns_(std::move(turns)), admitted_(std::move(admitted)) {}
 
@@ -48,9 +48,9 @@ void NodeResync::linkLost() {
     changed_.notify_all();
 }
 
-void NodeResync::toldTurns(uint32_t number, const std::vector<std::byte>& turns) {
+void NodeResync::phaseState(uint32_t number, const std::vector<std::byte>& turns) {
     const std::lock_guard lock(mutex_);
-    if (turns_ && number == turns_->number && !told_) told_ = turns; // all members report the same
+    if (turns_ && number == turns_->number && !phase_) phase_ = turns; // all members report the same
     changed_.notify_all();
 }
 
@@ -105,10 +105,10 @@ bool NodeResync::sendTurns() {
     std::optional<std::vector<std::byte>> turns;
     do {
         std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, std::chrono::milliseconds(kLookMs), [this] { return lost_ || told_; });
+        changed_.wait_for(lock, std::chrono::milliseconds(kPollMs), [this] { return lost_ || phase_; });
         if (lost_) return false;
-        turns = told_;
-    } while (!turns && std::ranges::any_of(turns_->asked, &NodeConnection::alive) && !deadline.passed());
+        turns = phase_;
+    } while (!turns && std::ranges::any_of(turns_->members, &NodeConnection::alive) && !deadline.passed());
     if (turns) sendCommand(wire::HeadCommand::Turns, *turns);
     return true; // no member reports the phase: it restarts with the first new member
 }
@@ -143,7 +143,7 @@ bool NodeResync::drawsAgain() {
 
 // Returns false if the node is lost.
 bool NodeResync::synchronize(bool draws) {
-    const uint32_t number = ++asked_;
+    const uint32_t number = ++syncNumber_;
     const uint32_t arguments[] = {number, draws ? 1U : 0U};
     sendCommand(wire::HeadCommand::Synchronize, bytesOf(arguments));
     std::unique_lock lock(mutex_);

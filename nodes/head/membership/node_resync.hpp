@@ -21,7 +21,7 @@ public:
     // receives the view in which the node becomes a member
     using Admitted = std::function<StreamBroadcaster::Admission(uint32_t view)>;
     // turns: for nodes whose phase or areas members report.
-    NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::TurnsAsked> turns,
+    NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::PhaseRequest> turns,
                Admitted admitted);
     NodeResync(const NodeResync&) = delete;
     NodeResync& operator=(const NodeResync&) = delete;
@@ -32,7 +32,7 @@ public:
     void synchronized(const wire::SynchronizedMessage& message); // the node has reached this position; thread-safe
     [[nodiscard]] bool invalid() const { return invalid_; } // the node's frames depend on frames that it has skipped
     void linkLost();                                        // thread-safe
-    void toldTurns(uint32_t number, const std::vector<std::byte>& turns); // thread-safe
+    void phaseState(uint32_t number, const std::vector<std::byte>& turns); // thread-safe
     [[nodiscard]] bool done() const { return done_; }
     [[nodiscard]] uint64_t snapshotBytes() const { return snapshotBytes_; }
     [[nodiscard]] uint64_t queuedBytes() const { return queuedBytes_; }
@@ -54,9 +54,9 @@ private:
     StreamBroadcaster& nodes_;
     const int node_;
     NodeConnection& link_;
-    std::optional<StreamBroadcaster::TurnsAsked> turns_;
+    std::optional<StreamBroadcaster::PhaseRequest> turns_;
     const Admitted admitted_;
-    uint32_t asked_ = 0; // number of the last Synchronize
+    uint32_t syncNumber_ = 0; // number of the last Synchronize
     std::atomic<bool> done_{false};
     std::atomic<bool> invalid_{false};
     std::atomic<uint64_t> snapshotBytes_{0}, queuedBytes_{0};
@@ -65,7 +65,7 @@ private:
     uint32_t reached_ = 0;
     uint32_t validity_ = 0; // wire::FrameValidity at that position
     bool lost_ = false;
-    std::optional<std::vector<std::byte>> told_;
+    std::optional<std::vector<std::byte>> phase_;
     std::vector<wire::ClientFrame> frames_;
     std::thread thread_; // declared last: it uses the members above
 };

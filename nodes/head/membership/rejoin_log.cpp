@@ -14,15 +14,15 @@ namespace {
 
 constexpr int64_t kSliceMs = 100;
 
-std::unique_ptr<trace::StreamSnapshot> emptyStream(uint64_t mostBytes) {
+std::unique_ptr<trace::StreamSnapshot> emptyStream(uint64_t maxBytes) {
     // Drops the message, because another component reports nodes that cannot return.
-    return std::make_unique<trace::StreamSnapshot>(static_cast<size_t>(mostBytes), [](const std::string&) {});
+    return std::make_unique<trace::StreamSnapshot>(static_cast<size_t>(maxBytes), [](const std::string&) {});
 }
 
 } // namespace
 
-RejoinLog::RejoinLog(uint64_t mostBytes)
-    : mostBytes_(mostBytes), kept_(emptyStream(mostBytes)), thread_([this] { work(); }) {}
+RejoinLog::RejoinLog(uint64_t maxBytes)
+    : maxBytes_(maxBytes), snapshot_(emptyStream(maxBytes)), thread_([this] { work(); }) {}
 
 RejoinLog::~RejoinLog() {
     {
@@ -41,7 +41,7 @@ void RejoinLog::append(uint32_t stream, std::span<const std::byte> payload) {
     if (!complete_) tooLarge_.insert(wire::clientOf(stream)); // it may share objects with the overflowed programs
     waitingBytes_ += payload.size();
     entries_.push_back(std::move(entry));
-    if (complete_ && waitingBytes_ > mostBytes_) overflow();
+    if (complete_ && waitingBytes_ > maxBytes_) overflow();
     changed_.notify_all();
 }
 
@@ -53,9 +53,9 @@ void RejoinLog::programGone(uint32_t client) {
     changed_.notify_all();
 }
 
-uint64_t RejoinLog::hold() {
+uint64_t RejoinLog::pause() {
     const std::lock_guard lock(mutex_);
-    holds_.insert(appended_);
+    pauses_.insert(appended_);
     return appended_;
 }
 
@@ -67,8 +67,8 @@ void RejoinLog::overflow() {
 void RejoinLog::work() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock,
-                      [this] { return stop_ || (!entries_.empty() && (holds_.empty() || taken_ < *holds_.begin())); });
+        changed_.wait(
+            lock, [this] { return stop_ || (!entries_.empty() && (pauses_.empty() || taken_ < *pauses_.begin())); });
         if (stop_) return;
         const Entry entry = std::move(entries_.front());
         entries_.pop_front();
@@ -77,14 +77,14 @@ void RejoinLog::work() {
         inHand_ = true;
         lock.unlock();
         if (wanted || entry.clientGone != 0) take(entry);
-        const bool fits = kept_->serves();
-        keptBytes_ = kept_->sizeBytes();
+        const bool fits = snapshot_->serves();
+        logBytes_ = snapshot_->sizeBytes();
         lock.lock();
         inHand_ = false;
         ++taken_;
         if (entry.clientGone != 0) tooLarge_.erase(entry.clientGone);
         if (!fits && complete_) overflow();
-        if (!complete_ && (!fits || keptBytes_ > 0)) kept_ = emptyStream(mostBytes_), frames_.clear(), keptBytes_ = 0;
+        if (!complete_ && (!fits || logBytes_ > 0)) snapshot_ = emptyStream(maxBytes_), frames_.clear(), logBytes_ = 0;
         if (!complete_ && tooLarge_.empty()) complete_ = true;
         changed_.notify_all();
     }
@@ -92,7 +92,7 @@ void RejoinLog::work() {
 
 void RejoinLog::take(const Entry& entry) {
     if (entry.clientGone != 0) {
-        kept_->event({trace::Event::ClientGone, entry.clientGone, 0, {}});
+        snapshot_->event({trace::Event::ClientGone, entry.clientGone, 0, {}});
         frames_.erase(entry.clientGone);
         return;
     }
@@ -101,36 +101,36 @@ void RejoinLog::take(const Entry& entry) {
     while (walk.next(r))
         if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
             frames_[wire::clientOf(entry.stream)] = trace::argumentWord(r, 1);
-    kept_->append(entry.stream, entry.payload);
+    snapshot_->append(entry.stream, entry.payload);
 }
 
-Result<RejoinLog::Snapshot> RejoinLog::snapshot(uint64_t place, Deadline deadline) {
+Result<RejoinLog::Snapshot> RejoinLog::snapshot(uint64_t position, Deadline deadline) {
     std::unique_lock lock(mutex_);
-    while (!stop_ && (taken_ < place || inHand_) && !deadline.passed())
+    while (!stop_ && (taken_ < position || inHand_) && !deadline.passed())
         changed_.wait_for(lock, std::chrono::milliseconds(kSliceMs));
-    const bool there = complete_ && taken_ == place && !inHand_;
+    const bool there = complete_ && taken_ == position && !inHand_;
     Result<Snapshot> result = Error{complete_ ? "its snapshot was not ready in time"
-                                              : "programs have sent more than the " + std::to_string(mostBytes_ >> 20) +
+                                              : "programs have sent more than the " + std::to_string(maxBytes_ >> 20) +
                                                     " MiB of the rejoin log; a larger --cache-size holds more"};
     if (there) {
         lock.unlock(); // the thread is paused, and no other thread touches the log
         {
             // Locked after `lock` was released: a snapshot of a later position waits for earlier ones.
             const std::lock_guard alone(snapshots_);
-            Snapshot snapshot{kept_->snapshot(), {}};
+            Snapshot snapshot{snapshot_->snapshot(), {}};
             for (const auto& [client, frame] : frames_) snapshot.frames.push_back({client, frame});
             result = std::move(snapshot);
         }
         lock.lock();
     }
-    holds_.erase(holds_.find(place));
+    pauses_.erase(pauses_.find(position));
     changed_.notify_all();
     return result;
 }
 
 uint64_t RejoinLog::sizeBytes() const {
     const std::lock_guard lock(mutex_);
-    return keptBytes_ + waitingBytes_;
+    return logBytes_ + waitingBytes_;
 }
 
 } // namespace mural

@@ -28,7 +28,7 @@ namespace mural {
 class RejoinLog {
 public:
     // mostBytes: memory for the reduced log, and as much again for entries that the thread has not processed.
-    explicit RejoinLog(uint64_t mostBytes);
+    explicit RejoinLog(uint64_t maxBytes);
     RejoinLog(const RejoinLog&) = delete;
     RejoinLog& operator=(const RejoinLog&) = delete;
     ~RejoinLog();
@@ -37,7 +37,7 @@ public:
     void append(uint32_t stream, std::span<const std::byte> payload);
     void programGone(uint32_t client);
     // Returns the current position of the stream. The thread pauses there until a snapshot of the position exists.
-    [[nodiscard]] uint64_t hold();
+    [[nodiscard]] uint64_t pause();
 
     struct Snapshot {
         std::vector<trace::SnapshotPacket> packets; // in stream order
@@ -45,7 +45,7 @@ public:
     };
     // Returns the snapshot of a held position; once per position, from any thread. Waits until the thread reaches the
     // position. Errors: the log has overflowed; the deadline has passed.
-    Result<Snapshot> snapshot(uint64_t place, Deadline deadline);
+    Result<Snapshot> snapshot(uint64_t position, Deadline deadline);
 
     [[nodiscard]] bool complete() const { return complete_; } // false: the log of some program has overflowed
     [[nodiscard]] uint64_t sizeBytes() const;
@@ -60,25 +60,25 @@ private:
     void take(const Entry& entry);
     void overflow(); // with the lock held: discards the log of all current programs
 
-    const uint64_t mostBytes_;
+    const uint64_t maxBytes_;
     uint64_t appended_ = 0; // accessed by appending threads only
 
     mutable std::mutex mutex_; // guards all members except the thread's own
     std::condition_variable changed_;
     std::deque<Entry> entries_; // not yet processed
     uint64_t waitingBytes_ = 0;
-    uint64_t taken_ = 0;            // number of processed entries
-    std::multiset<uint64_t> holds_; // the thread pauses at the first of these positions
-    std::set<uint32_t> programs_;   // programs that have sent packets
-    std::set<uint32_t> tooLarge_;   // programs whose log was discarded
+    uint64_t taken_ = 0;             // number of processed entries
+    std::multiset<uint64_t> pauses_; // the thread pauses at the first of these positions
+    std::set<uint32_t> programs_;    // programs that have sent packets
+    std::set<uint32_t> tooLarge_;    // programs whose log was discarded
     std::atomic<bool> complete_{true};
-    std::atomic<uint64_t> keptBytes_{0};
+    std::atomic<uint64_t> logBytes_{0};
     bool inHand_ = false; // the thread is processing an entry
     bool stop_ = false;
 
-    std::unique_ptr<trace::StreamSnapshot> kept_; // owned by the thread; by snapshot() while the thread is paused
-    std::map<uint32_t, uint32_t> frames_;         // the same; last frame by program
-    std::mutex snapshots_;                        // serialises snapshot()
+    std::unique_ptr<trace::StreamSnapshot> snapshot_; // owned by the thread; by snapshot() while the thread is paused
+    std::map<uint32_t, uint32_t> frames_;             // the same; last frame by program
+    std::mutex snapshots_;                            // serialises snapshot()
     std::thread thread_;
 };
 

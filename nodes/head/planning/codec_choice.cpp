@@ -16,10 +16,10 @@ std::string described(const std::string& codec) {
 
 } // namespace
 
-void chooseCodecs(SessionPlan& plan, const std::string& asked) {
+void chooseCodecs(SessionPlan& plan, const std::string& requested) {
     std::map<std::string, int> nodes;
     for (NodePlan& node : plan.nodes) {
-        if (asked != kQuickestCodec) node.codec = asked;
+        if (requested != kQuickestCodec) node.codec = requested;
         const bool byMemory = node.reach == NodeReach::SharedMemory;
         node.pictureCodec = byMemory && node.codec == kQuickestCodec ? kRawCodec : node.codec;
         ++nodes[node.pictureCodec];

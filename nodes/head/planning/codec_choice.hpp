@@ -9,6 +9,6 @@
 namespace mural {
 
 // asked: the value of --codec. Pictures in shared memory stay raw unless the user or the file names a codec.
-void chooseCodecs(SessionPlan& plan, const std::string& asked);
+void chooseCodecs(SessionPlan& plan, const std::string& requested);
 
 } // namespace mural

@@ -4,8 +4,8 @@
 
 namespace mural {
 
-void chooseComposition(SessionPlan& plan, const std::string& wish) {
-    const auto asked = compositor::strategyNamed(wish);
+void chooseComposition(SessionPlan& plan, const std::string& name) {
+    const auto requested = compositor::strategyNamed(name);
     for (NodePlan& node : plan.nodes) {
         const int ranges = node.pass.ranges;
         if (ranges < 2) continue;
@@ -14,9 +14,9 @@ void chooseComposition(SessionPlan& plan, const std::string& wish) {
             node.composition = plan.nodes[static_cast<size_t>(node.collector)].composition;
             continue;
         }
-        const bool chosen = asked || node.composition;
-        if (asked)
-            node.composition = asked;
+        const bool chosen = requested || node.composition;
+        if (requested)
+            node.composition = requested;
         else if (!node.composition)
             node.composition = compositor::chooseStrategy(ranges);
         plan.explain.push_back("nodes " + std::to_string(node.node) + " to " + std::to_string(node.node + ranges - 1) +

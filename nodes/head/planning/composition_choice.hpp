@@ -9,6 +9,6 @@
 namespace mural {
 
 // wish: "auto" or the name of a strategy. Adds one line per picture for --explain.
-void chooseComposition(SessionPlan& plan, const std::string& wish);
+void chooseComposition(SessionPlan& plan, const std::string& name);
 
 } // namespace mural

@@ -38,7 +38,7 @@ struct Draw {
     int queue = -1, chunkQueue = -1; // indices into the plan's queues
     compound::Flow flow;             // the path of its frames
     std::optional<Viewport> shown;   // on the canvas, if different from area
-    Zoom way;                        // scale of its picture in transfer
+    Zoom transferScale;              // scale of its picture in transfer
     [[nodiscard]] const Viewport& onWall() const { return shown ? *shown : area; }
 };
 
@@ -49,10 +49,10 @@ std::string nameOf(const config::ResolvedChannel& channel, Index index) {
 class Planner {
 public:
     // only: plans this canvas alone; nodesBefore nodes of other canvases precede its nodes.
-    Planner(const LoadedConfig& loaded, const PlanOptions& wishes, Index only = kNone, int nodesBefore = 0)
+    Planner(const LoadedConfig& loaded, const PlanOptions& options, Index only = kNone, int nodesBefore = 0)
         : config_(loaded.resolved),
           file_(loaded.diagnostics.file()),
-          wishes_(wishes),
+          options_(options),
           only_(only),
           nodesBefore_(nodesBefore) {}
 
@@ -65,18 +65,18 @@ public:
             return Error{file_ + ": no channel draws: it has no canvas with segments, or no compound with channels; "
                                  "see mural config print --resolved"};
         if (auto done = placeParts(); !done) return done.error();
-        lookIntoRoom();
+        chooseProjection();
         if (auto placed = placeNodes(); !placed) return placed.error();
         placeWindows();
         takeObserver();
-        tell();
+        addExplanations();
         return std::move(plan_);
     }
 
     compound::PixelSize wallSize() {
         if (!chooseLayouts()) return {0, 0};
         for (size_t c = 0; c < config_.canvases.size(); ++c) {
-            if (!wishes_.canvas.empty() && config_.canvases[c].name != wishes_.canvas) continue;
+            if (!options_.canvas.empty() && config_.canvases[c].name != options_.canvas) continue;
             if (const compound::PixelSize size = sizeOf(static_cast<Index>(c)); size.w > 0) return size;
         }
         return {0, 0};
@@ -105,8 +105,8 @@ private:
         input_ = compound::firstFrame(config_);
         input_.activeLayouts.resize(config_.canvases.size(), 0);
         input_.views.resize(config_.views.size());
-        for (compound::ViewState& view : input_.views) view.modelUnit = wishes_.modelUnit;
-        for (const std::string& wanted : wishes_.layouts) {
+        for (compound::ViewState& view : input_.views) view.modelUnit = options_.modelUnit;
+        for (const std::string& wanted : options_.layouts) {
             bool found = false;
             for (size_t c = 0; c < config_.canvases.size(); ++c) {
                 const auto& layouts = config_.canvases[c].layouts;
@@ -168,12 +168,12 @@ private:
         for (const Draw& d : draws_) canvases.insert(canvasOf(d));
         if (only_ != kNone) canvases = {only_};
         Index chosen = canvases.empty() ? kNone : *canvases.begin();
-        if (!wishes_.canvas.empty()) {
+        if (!options_.canvas.empty()) {
             const auto named = std::find_if(canvases.begin(), canvases.end(), [&](Index c) {
-                return c != kNone && config_.canvases[at(c)].name == wishes_.canvas;
+                return c != kNone && config_.canvases[at(c)].name == options_.canvas;
             });
             if (named == canvases.end())
-                return Error{"--canvas \"" + wishes_.canvas + "\": " + file_ +
+                return Error{"--canvas \"" + options_.canvas + "\": " + file_ +
                              " has no channel on a canvas of this name; mural config print shows the canvases"};
             chosen = *named;
             canvases = {chosen};
@@ -211,16 +211,17 @@ private:
         const Draw* draw;
         Zoom scale;  // from the drawn picture to the part of the wall
         double x, y; // position of the drawn picture's corner, in units of the picture's size
-        Zoom way;
+        Zoom transferScale;
         [[nodiscard]] bool moved() const {
             return std::abs(scale.x - 1) > 1e-6 || std::abs(scale.y - 1) > 1e-6 || std::abs(x) > 1e-6 ||
                    std::abs(y) > 1e-6;
         }
     };
     static bool alike(const Arrival& a, const Arrival& b) {
-        const auto near = [](double v, double w) { return std::abs(v - w) < 1e-6; };
-        return near(a.scale.x, b.scale.x) && near(a.scale.y, b.scale.y) && near(a.x, b.x) && near(a.y, b.y) &&
-               near(a.way.x, b.way.x) && near(a.way.y, b.way.y);
+        const auto isClose = [](double v, double w) { return std::abs(v - w) < 1e-6; };
+        return isClose(a.scale.x, b.scale.x) && isClose(a.scale.y, b.scale.y) && isClose(a.x, b.x) &&
+               isClose(a.y, b.y) && isClose(a.transferScale.x, b.transferScale.x) &&
+               isClose(a.transferScale.y, b.transferScale.y);
     }
 
     void takeApart(std::vector<const Draw*> draws, std::vector<Draw>& into) {
@@ -235,7 +236,7 @@ private:
                                         ": the pixels drawn here are not transferred to the wall");
             for (const compound::ShownPart& p : d->flow.parts) {
                 const Zoom scale{p.to.w / p.from.w, p.to.h / p.from.h};
-                const Arrival a{d, scale, p.to.x - p.from.x * scale.x, p.to.y - p.from.y * scale.y, p.way};
+                const Arrival a{d, scale, p.to.x - p.from.x * scale.x, p.to.y - p.from.y * scale.y, p.transferScale};
                 auto known = std::find_if(arrivals.begin(), arrivals.end(),
                                           [&](const Arrival& other) { return other.draw == d && alike(other, a); });
                 if (known == arrivals.end()) known = arrivals.insert(arrivals.end(), a);
@@ -262,7 +263,7 @@ private:
                                 return alike(*a, *there.front()) && a->draw->area == there.front()->draw->area;
                             }) ||
                 std::none_of(there.begin(), there.end(),
-                             [&](const Arrival* a) { return a->moved() || !a->way.none(); });
+                             [&](const Arrival* a) { return a->moved() || !a->transferScale.none(); });
             if (!together && unlike_.insert(there.front()->draw->context.destination).second)
                 plan_.warnings.push_back(placeOf(there.front()->draw->context.compound) +
                                          ": ranges of one picture are composited by depth at their drawn size; the "
@@ -270,7 +271,7 @@ private:
             for (const Arrival* a : there) {
                 Draw d = *a->draw;
                 d.area = cell.area;
-                if (together) d.way = a->way;
+                if (together) d.transferScale = a->transferScale;
                 if (together && a->moved()) {
                     const Viewport own = relativeTo(cell.area, a->draw->area);
                     d.area = compose(a->draw->area, Viewport{(own.x - a->x) / a->scale.x, (own.y - a->y) / a->scale.y,
@@ -397,7 +398,7 @@ private:
                 NodePlan node;
                 node.node = static_cast<int>(plan_.nodes.size());
                 node.pass = passOf(config_, c);
-                tellTooLarge(c.compound);
+                warnTooLarge(c.compound);
                 if (node.pass.zoom != passOf(config_, draws_[draws.front()].context).zoom)
                     return Error{file_ + ":" + std::to_string(config_.compounds[at(c.compound)].at.line) +
                                  ": ranges of one picture have different zooms and cannot be composited by depth; give "
@@ -407,7 +408,7 @@ private:
                 node.picture = pictures_[i];
                 node.area = draws_[i].area;
                 node.shown = draws_[i].shown;
-                node.way = draws_[i].way;
+                node.transferScale = draws_[i].transferScale;
                 node.queue = draws_[i].queue;
                 node.chunkQueue = draws_[i].chunkQueue;
                 node.screen = screenOf(c);
@@ -430,7 +431,7 @@ private:
         return file_ + ":" + std::to_string(there.line) + ":" + std::to_string(there.column);
     }
 
-    void tellTooLarge(Index compound) {
+    void warnTooLarge(Index compound) {
         const Zoom zoom = zoomOf(config_, compound);
         if ((zoom.x <= kMaxZoom && zoom.y <= kMaxZoom) || !tooLarge_.insert(compound).second) return;
         plan_.warnings.push_back(placeOf(compound) + ": nodes draw at most " +
@@ -456,21 +457,21 @@ private:
     // The codec of the pictures that a compound outputs. A compound that inputs a picture may override it.
     [[nodiscard]] Result<void> takeCodec(NodePlan& node, Index compound) const {
         for (const config::ResolvedFrame& given : config_.compounds[at(compound)].outputFrames) {
-            const config::ResolvedFrame* said = &given;
+            const config::ResolvedFrame* named = &given;
             bool exact = given.exact;
             for (size_t taker = 0; taker < config_.compounds.size(); ++taker)
                 for (const config::ResolvedFrame& taken : config_.compounds[taker].inputFrames) {
                     if (taken.name != given.name || rootOf(static_cast<Index>(taker)) != rootOf(compound)) continue;
                     exact = exact && taken.exact;
-                    if (taken.codec != kQuickestCodec) said = &taken;
+                    if (taken.codec != kQuickestCodec) named = &taken;
                 }
-            const std::string place =
-                file_ + ":" + std::to_string(said->at.line) + ": mural_codec \"" + said->codec + "\"";
-            auto wanted = wantedCodec(said->codec);
-            if (!wanted) return Error{place + ": " + wanted.error().message};
+            const std::string location =
+                file_ + ":" + std::to_string(named->at.line) + ": mural_codec \"" + named->codec + "\"";
+            auto wanted = wantedCodec(named->codec);
+            if (!wanted) return Error{location + ": " + wanted.error().message};
             if (!wanted->lossless && exact)
-                return Error{place + " is lossy; set mural_exact OFF in the same frame, or choose another codec"};
-            node.codec = said->codec == kQuickestCodec && !exact ? kLossyCodec : said->codec;
+                return Error{location + " is lossy; set mural_exact OFF in the same frame, or choose another codec"};
+            node.codec = named->codec == kQuickestCodec && !exact ? kLossyCodec : named->codec;
         }
         return {};
     }
@@ -479,9 +480,9 @@ private:
         const config::ResolvedPipe& pipe = config_.pipeOf(config_.channels[at(c.channel)]);
         const config::ResolvedNode& machine = config_.nodes[at(pipe.node)];
         node.where = "local";
-        if (wishes_.allLocal || machine.isApplication || machine.host.empty()) return;
+        if (options_.allLocal || machine.isApplication || machine.host.empty()) return;
         node.where = machine.host;
-        node.reach = reachOf(machine.host, wishes_.ownHost);
+        node.reach = reachOf(machine.host, options_.ownHost);
     }
 
     // Nodes show their own pictures if the file assigns a window to their channel, and one node draws each channel of
@@ -497,7 +498,7 @@ private:
                 ++pictures;
                 drawer = &n;
             }
-            if (!plain || pictures != 1 || drawer->pass.period > 1 || drawer->shown || !drawer->way.none() ||
+            if (!plain || pictures != 1 || drawer->pass.period > 1 || drawer->shown || !drawer->transferScale.none() ||
                 !same(*drawer->area, part.area) || !isDestination(*drawer))
                 return headShowsIt();
             shows.push_back(drawer);
@@ -505,7 +506,7 @@ private:
         for (size_t a = 0; a < shows.size(); ++a)
             for (size_t b = 0; b < a; ++b) {
                 const bool sameChannel = channels_[node(*shows[a])] == channels_[node(*shows[b])];
-                if (sameChannel || (wishes_.allLocal && !intersect(*shows[a]->area, *shows[b]->area).empty()))
+                if (sameChannel || (options_.allLocal && !intersect(*shows[a]->area, *shows[b]->area).empty()))
                     return headShowsIt();
             }
         for (NodePlan* n : shows) {
@@ -535,7 +536,7 @@ private:
         const config::ResolvedPipe& pipe = config_.pipes[at(window.pipe)];
         NodeWindow shown;
         shown.title = "Mural " + nameOf(channel, index);
-        if (wishes_.allLocal) return shown;
+        if (options_.allLocal) return shown;
         const compound::DisplaySizes& sizes = input_.sizes;
         shown.asOnWall = false;
         shown.x = sizes.windows[at(channel.window)].x + sizes.channels[at(index)].x;
@@ -569,10 +570,10 @@ private:
         });
     }
 
-    void lookIntoRoom() {
+    void chooseProjection() {
         const bool atAngles = standAtAngles();
-        inRoom_ =
-            wishes_.projection == ProjectionChoice::Room || (wishes_.projection == ProjectionChoice::Auto && atAngles);
+        inRoom_ = options_.projection == ProjectionChoice::Room ||
+                  (options_.projection == ProjectionChoice::Auto && atAngles);
         if (inRoom_)
             plan_.explain.push_back(
                 std::string(atAngles ? "its screens stand at angles to each other: " : "") +
@@ -598,7 +599,7 @@ private:
         return ScreenView{area, f.left / n, f.right / n, f.bottom / n, f.top / n, c.perspectiveHead};
     }
 
-    void tell() {
+    void addExplanations() {
         for (size_t i = 0; i < plan_.nodes.size(); ++i) {
             const NodePlan& n = plan_.nodes[i];
             const std::string pass = describe(n.pass);
@@ -607,14 +608,15 @@ private:
             plan_.explain.push_back(
                 "node " + std::to_string(nodesBefore_ + n.node) + " (" + n.where + ") draws for channel \"" +
                 nameOf(config_.channels[at(channels_[i])], channels_[i]) + "\" " + (pass.empty() ? "" : pass + ", ") +
-                onItsWay(n) + "the part [ " + area + " ] of the wall" + shownElsewhere(n));
+                isRestarting(n) + "the part [ " + area + " ] of the wall" + shownElsewhere(n));
         }
     }
 
-    static std::string onItsWay(const NodePlan& n) {
-        if (n.way.none()) return {};
+    static std::string isRestarting(const NodePlan& n) {
+        if (n.transferScale.none()) return {};
         char text[64];
-        std::snprintf(text, sizeof text, "transferred at %.4g by %.4g times the size, ", n.way.x, n.way.y);
+        std::snprintf(text, sizeof text, "transferred at %.4g by %.4g times the size, ", n.transferScale.x,
+                      n.transferScale.y);
         return text;
     }
     static std::string shownElsewhere(const NodePlan& n) {
@@ -627,7 +629,7 @@ private:
 
     const ResolvedConfig& config_;
     const std::string file_;
-    const PlanOptions& wishes_;
+    const PlanOptions& options_;
     const Index only_;
     const int nodesBefore_;
     std::set<Index> canvases_; // canvases with content, or the selected one
@@ -684,13 +686,13 @@ void add(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
     plan.canvases.push_back(std::move(canvas));
 }
 
-void addCanvases(const LoadedConfig& loaded, const PlanOptions& wishes, const Planner& first, SessionPlan& plan) {
+void addCanvases(const LoadedConfig& loaded, const PlanOptions& options, const Planner& first, SessionPlan& plan) {
     const compound::PixelSize own = first.sizeOf(first.canvas());
-    int offsetX = wishes.width > 0 ? wishes.width : own.w;
+    int offsetX = options.width > 0 ? options.width : own.w;
     for (const Index c : first.canvases()) {
         if (c == first.canvas() || c == kNone) continue;
         const std::string name = nameOf(loaded.resolved, c);
-        Planner planner(loaded, wishes, c, static_cast<int>(plan.nodes.size()));
+        Planner planner(loaded, options, c, static_cast<int>(plan.nodes.size()));
         const compound::PixelSize size = planner.sizeOf(c);
         auto planned = planner.plan();
         if (!planned || size.w <= 0 || own.w <= 0) {
@@ -710,7 +712,7 @@ void addCanvases(const LoadedConfig& loaded, const PlanOptions& wishes, const Pl
             canvas.shown = {std::min(canvas.shown.x, kMaxZoom), std::min(canvas.shown.y, kMaxZoom)};
         }
         canvas.offsetX = offsetX;
-        offsetX += static_cast<int>(std::lround(canvas.shown.x * (wishes.width > 0 ? wishes.width : own.w)));
+        offsetX += static_cast<int>(std::lround(canvas.shown.x * (options.width > 0 ? options.width : own.w)));
         plan.explain.push_back(name + " shows the program's picture with " + std::to_string(size.w) + "x" +
                                std::to_string(size.h) + " pixels; the first canvas has " + std::to_string(own.w) + "x" +
                                std::to_string(own.h));
@@ -720,16 +722,16 @@ void addCanvases(const LoadedConfig& loaded, const PlanOptions& wishes, const Pl
 
 } // namespace
 
-Result<SessionPlan> planOf(const LoadedConfig& loaded, const PlanOptions& wishes) {
-    Planner planner(loaded, wishes);
+Result<SessionPlan> planOf(const LoadedConfig& loaded, const PlanOptions& options) {
+    Planner planner(loaded, options);
     auto plan = planner.plan();
-    if (plan) addCanvases(loaded, wishes, planner, *plan);
+    if (plan) addCanvases(loaded, options, planner, *plan);
     if (plan) std::ranges::copy(fieldsWithoutEffect(loaded.diagnostics), std::back_inserter(plan->warnings));
     return plan;
 }
 
-compound::PixelSize wallSizeOf(const LoadedConfig& loaded, const PlanOptions& wishes) {
-    return Planner(loaded, wishes).wallSize();
+compound::PixelSize wallSizeOf(const LoadedConfig& loaded, const PlanOptions& options) {
+    return Planner(loaded, options).wallSize();
 }
 
 } // namespace mural

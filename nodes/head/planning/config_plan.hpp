@@ -26,10 +26,10 @@ struct PlanOptions {
 // Plans every canvas that shows something, unless one is named. Each canvas has its own nodes, which draw the program's
 // picture at the resolution of the canvas. Errors, one line each: nothing to draw; an unsupported mix of
 // decompositions.
-Result<SessionPlan> planOf(const compound::LoadedConfig& loaded, const PlanOptions& wishes);
+Result<SessionPlan> planOf(const compound::LoadedConfig& loaded, const PlanOptions& options);
 
 // The size in pixels of the first canvas that shows something, derived from the channels of its segments. 0 x 0 if
 // there is none.
-compound::PixelSize wallSizeOf(const compound::LoadedConfig& loaded, const PlanOptions& wishes);
+compound::PixelSize wallSizeOf(const compound::LoadedConfig& loaded, const PlanOptions& options);
 
 } // namespace mural

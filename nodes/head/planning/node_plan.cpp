@@ -86,8 +86,8 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
     int localNodes = config.localNodes;
     if (localNodes == 0 && config.hosts.empty())
         localNodes = std::max(passCount * ranges, std::min(tiles, kMaxLocalByDefault));
-    const int asked = localNodes + static_cast<int>(config.hosts.size());
-    const int wanted = std::max(asked, passCount * ranges);
+    const int requested = localNodes + static_cast<int>(config.hosts.size());
+    const int wanted = std::max(requested, passCount * ranges);
     const int count = std::min(wanted, tiles * passCount * ranges);
 
     SessionPlan plan;
@@ -118,9 +118,9 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 node.collector = collector;
                 if (config.chunks > 0 && ranges > 1) node.chunkQueue = static_cast<int>(plan.chunkQueues.size());
                 if (plan.nodesShowWall) node.swapBarrier = "barrier";
-                const int place = node.node % asked; // with more passes than nodes, each machine runs several
-                if (place >= localNodes) {
-                    node.where = config.hosts[static_cast<size_t>(place - localNodes)];
+                const int machine = node.node % requested; // with more passes than nodes, each machine runs several
+                if (machine >= localNodes) {
+                    node.where = config.hosts[static_cast<size_t>(machine - localNodes)];
                     node.reach = reachOf(node.where, ownHost);
                 }
                 plan.explain.push_back(describeRegion(node));
@@ -225,7 +225,7 @@ namespace {
 // Returns true if the node's pixels reach the program's window unchanged: without scaling, averaging or a lossy codec.
 bool keepsPixels(const SessionPlan& plan, const NodePlan& node) {
     const RenderPass& p = node.pass;
-    const bool scales = !node.way.none() || node.shown || !p.zoom.none() || !p.shown.none();
+    const bool scales = !node.transferScale.none() || node.shown || !p.zoom.none() || !p.shown.none();
     return picturesOf(plan.wall) == 1 && plan.canvases.empty() && !scales && !mayLose(node.pictureCodec);
 }
 
@@ -253,7 +253,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
         return other.node != node.node && (bothHere || (other.reach == node.reach && other.where == node.where));
     });
     setup.pass = node.pass;
-    setup.way = node.way;
+    setup.transferScale = node.transferScale;
     setup.screen = node.screen;
     setup.collector = node.collector;
     setup.composition = nameOf(node.composition.value_or(compositor::Strategy::Serial));

@@ -61,7 +61,7 @@ struct NodePlan {
     TileRegion region;
     std::optional<Viewport> area;  // on the picture, instead of tiles
     std::optional<Viewport> shown; // place on the wall, if different from area
-    Zoom way;            // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
+    Zoom transferScale;  // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
     int chunkQueue = -1; // index into SessionPlan::chunkQueues; -1: its range is fixed
     int queue = -1;      // index into SessionPlan::queues; -1: its area is fixed
     std::optional<ScreenView> screen; // for a screen in a room

@@ -27,10 +27,10 @@ void weighCuts(bool columns, int length, int across, int n, Cut& best) {
         const int tilesA = at * across;
         const int tilesB = (length - at) * across;
         const int fewest = std::max(1, n - tilesB);
-        const int most = std::min(tilesA, n - 1);
+        const int maximum = std::min(tilesA, n - 1);
         const int share = n * at / length;
         for (int nodes : {share, share + 1}) {
-            nodes = std::clamp(nodes, fewest, most);
+            nodes = std::clamp(nodes, fewest, maximum);
             const double load =
                 std::max(static_cast<double>(tilesA) / nodes, static_cast<double>(tilesB) / (n - nodes));
             const Cut cut{columns, at, nodes, load, std::abs(2 * at - length), across};

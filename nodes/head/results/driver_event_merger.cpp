@@ -5,14 +5,14 @@ namespace {
 constexpr size_t kMaxKinds = 4096; // bounds the remembered messages; the counts restart at this limit
 } // namespace
 
-bool DriverEventMerger::isNew(int node, const wire::DriverEvent& news, const std::string& text) {
+bool DriverEventMerger::isNew(int node, const wire::DriverEvent& event, const std::string& text) {
     const std::lock_guard lock(mutex_);
     if (counts_.size() >= kMaxKinds) counts_.clear();
-    Count& count = counts_[{news.client, news.context, news.kind, news.source, news.type, news.severity, text}];
+    Count& count = counts_[{event.client, event.context, event.kind, event.source, event.type, event.severity, text}];
     const auto index = static_cast<size_t>(node);
     if (count.byNode.size() <= index) count.byNode.resize(index + 1);
-    if (++count.byNode[index] <= count.told) return false;
-    ++count.told;
+    if (++count.byNode[index] <= count.delivered) return false;
+    ++count.delivered;
     return true;
 }
 
@@ -21,7 +21,7 @@ void DriverEventMerger::nodeJoins(int node) {
     const auto index = static_cast<size_t>(node);
     for (auto& [kind, count] : counts_) {
         if (count.byNode.size() <= index) count.byNode.resize(index + 1);
-        count.byNode[index] = count.told;
+        count.byNode[index] = count.delivered;
     }
 }
 

@@ -16,7 +16,7 @@ namespace mural {
 class DriverEventMerger {
 public:
     // Returns true if the message is new to the program. The n-th message of a kind is the same message on all nodes.
-    bool isNew(int node, const wire::DriverEvent& news, const std::string& text);
+    bool isNew(int node, const wire::DriverEvent& event, const std::string& text);
     void programGone(uint32_t client);
     void nodeJoins(int node); // earlier messages are not expected from this node
 
@@ -25,7 +25,7 @@ private:
     using Key = std::tuple<uint32_t, uint32_t, uint32_t, uint32_t, uint32_t, uint32_t, std::string>;
     struct Count {
         std::vector<uint32_t> byNode;
-        uint32_t told = 0;
+        uint32_t delivered = 0;
     };
     std::mutex mutex_;
     std::map<Key, Count> counts_;

@@ -27,7 +27,7 @@ Result<void> ReplyAssembler::answer(int node, const ReplyPartHeader& header, Byt
     Request complete;
     {
         const std::lock_guard lock(mutex_);
-        if (!views_.lives(node)) return {};
+        if (!views_.isAlive(node)) return {};
         if (requests_.size() >= kMaxOpenRequests) return Error{"it sent too many replies without a request"};
         const Key key{header.client, header.requestId};
         Request& request = requests_[key];
@@ -136,9 +136,9 @@ std::vector<int> ReplyAssembler::missing(uint32_t client) const {
     const auto oldest = requests_.lower_bound({client, 0});
     const bool known = oldest != requests_.end() && oldest->first.first == client;
     for (size_t node = 0; node < nodes_; ++node) {
-        const bool asked =
-            known ? oldest->second.awaited[node] && !oldest->second.last[node] : views_.lives(static_cast<int>(node));
-        if (asked) nodes.push_back(static_cast<int>(node));
+        const bool isAwaited =
+            known ? oldest->second.awaited[node] && !oldest->second.last[node] : views_.isAlive(static_cast<int>(node));
+        if (isAwaited) nodes.push_back(static_cast<int>(node));
     }
     return nodes;
 }

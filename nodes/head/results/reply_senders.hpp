@@ -18,21 +18,21 @@ public:
     void joins(int node, uint32_t view) { at(node) = {true, view, view}; }
     // Records that the node's messages belong to this view from now on.
     void reached(int node, uint32_t view) { at(node).in = view; }
-    void lost(int node) { at(node).lives = false; }
+    void lost(int node) { at(node).isAlive = false; }
 
     [[nodiscard]] uint32_t since(int node) const { return nodes_[static_cast<size_t>(node)].since; }
-    [[nodiscard]] bool lives(int node) const { return nodes_[static_cast<size_t>(node)].lives; }
+    [[nodiscard]] bool isAlive(int node) const { return nodes_[static_cast<size_t>(node)].isAlive; }
     // Returns the nodes that will report the same item as `teller`, which is the first to report it.
     [[nodiscard]] std::vector<bool> awaited(int teller) const {
         const uint32_t view = nodes_[static_cast<size_t>(teller)].in;
-        std::vector<bool> who;
-        for (const Node& node : nodes_) who.push_back(node.lives && node.since <= view);
-        return who;
+        std::vector<bool> senders;
+        for (const Node& node : nodes_) senders.push_back(node.isAlive && node.since <= view);
+        return senders;
     }
 
 private:
     struct Node {
-        bool lives = true;
+        bool isAlive = true;
         uint32_t since = 0;
         uint32_t in = 0; // view of its current messages
     };

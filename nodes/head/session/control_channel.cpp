@@ -103,8 +103,8 @@ bool ControlChannel::markedBroken() const {
 }
 
 bool ControlChannel::broken() const {
-    pollfd look{fd_.get(), 0, 0};
-    const bool hungUp = poll(&look, 1, 0) > 0 && (look.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+    pollfd poller{fd_.get(), 0, 0};
+    const bool hungUp = poll(&poller, 1, 0) > 0 && (poller.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
     return hungUp || markedBroken();
 }
 

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 constexpr int64_t kTickMs = 50;
 constexpr int64_t kProgressNs = 200 * kNsPerMs; // at most 5 lines per second
-constexpr int64_t kOutputNewsMs = 20'000;       // below the silence after which `mural run` gives up the head
+constexpr int64_t kOutputProgressMs = 20'000;   // below the silence after which `mural run` gives up the head
 constexpr int64_t kProcessPatienceMs = 2000;    // time between a node's Bye and the end of its process
 
 std::vector<int> picturesOf(const SessionPlan& plan) {
@@ -84,7 +84,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
       pictures_(
           picturesOf(plan_), composeBy(plan_.wall),
           [this](WindowPicture picture) {
-              frames_.pictureHeld(picture.client, picture.frame);
+              frames_.delayPicture(picture.client, picture.frame);
               frames_.isOn(picture.client, picture.window, picture.nativeWindow);
               output_->add(std::move(picture));
           },
@@ -107,7 +107,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
       facts_(nodes.size()),
       ready_(nodes.size(), false),
       introduced_(nodes.size(), true),
-      lives_(nodes.size(), 0),
+      incarnations_(nodes.size(), 0),
       refusals_(nodes.size()),
       totals_(nodes.size()) {
     NodeEvents& events = *this; // make_unique can't convert to a private base
@@ -115,14 +115,15 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
         LaunchedNode& launched = nodes[static_cast<size_t>(node)];
         totals_[static_cast<size_t>(node)].node = node;
         ready_[static_cast<size_t>(node)] = !launched.connection; // the start does not wait for an absent node
-        nodes_.add(std::make_unique<NodeConnection>(
-            NodePlace{node, launched.plan.where}, std::move(launched.connection), std::move(launched.process), events));
+        nodes_.add(std::make_unique<NodeConnection>(NodeLocation{node, launched.plan.where},
+                                                    std::move(launched.connection), std::move(launched.process),
+                                                    events));
     }
     ReturnTerms terms;
     terms.tries = config_.restartNodes;
     terms.readyPatienceMs = options_.readyPatienceMs;
     if (terms.tries > 0 && options_.startNode)
-        nodes_.keepBy(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes)));
+        nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes)));
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
     if (!sendsPictures_) return;
     PictureOutputConfig output;
@@ -177,10 +178,10 @@ int HeadSession::run() {
 // ---- while it runs
 
 void HeadSession::serve() {
-    while (!askedToFinish(Deadline::inMs(kTickMs))) tick();
+    while (!finishRequested(Deadline::inMs(kTickMs))) tick();
 }
 
-bool HeadSession::askedToFinish(Deadline deadline) {
+bool HeadSession::finishRequested(Deadline deadline) {
     const auto line = control_.receive(deadline);
     if (control_.broken() || (options_.interrupted && options_.interrupted())) return true;
     if (!line) return false;
@@ -233,7 +234,7 @@ void HeadSession::reportProgress(int64_t nowNs) {
 Result<void> HeadSession::nodeReady(int node, const std::string& json) {
     auto facts = nodeFactsFromJson(json);
     if (!facts) return facts.error();
-    if (returns_->onItsWay(node)) return takeAgain(node, std::move(*facts));
+    if (returns_->isRestarting(node)) return takeAgain(node, std::move(*facts));
     const auto index = static_cast<size_t>(node);
     const std::lock_guard lock(mutex_);
     if (ready_[index]) return Error{"it sent two ready messages"};
@@ -308,8 +309,8 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
     output_->clientGone(client);
 }
 
-Result<void> HeadSession::nodeNews(int node, const wire::DriverEvent& news, const std::string& text) {
-    if (serving_ && news_.isNew(node, news, text)) programs_->news(news, text);
+Result<void> HeadSession::nodeDriverEvent(int node, const wire::DriverEvent& event, const std::string& text) {
+    if (serving_ && driverEvents_.isNew(node, event, text)) programs_->driverEvent(event, text);
     return {};
 }
 
@@ -326,10 +327,10 @@ Result<void> HeadSession::nodeLog(int node, const std::string& text) {
     return {};
 }
 
-Result<void> HeadSession::nodeBye(int node, const std::string& json) {
+Result<void> HeadSession::nodeGoodbye(int node, const std::string& json) {
     if (!finishing_) return Error{"it ended without a request from the head"};
     const std::lock_guard lock(mutex_);
-    readBye(json, totals_[static_cast<size_t>(node)]);
+    readGoodbye(json, totals_[static_cast<size_t>(node)]);
     return {};
 }
 
@@ -349,7 +350,7 @@ void HeadSession::nodeLost(int node, const std::string& why) {
 void HeadSession::noNodeIsLeft() {
     control_.say("all render nodes are lost: programs continue alone, without the wall; restart the session");
     programs_->refuseFrom("all render nodes of this session are lost; restart it");
-    programs_->tellHeadGone();
+    programs_->reportHeadGone();
     control_.send({{"event", "wall-lost"}});
 }
 
@@ -369,7 +370,7 @@ void HeadSession::finish() {
     const Deadline deadline = Deadline::inMs(kProcessPatienceMs);
     for (int node = 0; node < nodeCount_; ++node) {
         NodeConnection& link = nodes_.link(node);
-        if (link.process() != nullptr && link.saidBye()) link.process()->waitEnded(deadline);
+        if (link.process() != nullptr && link.goodbyeReceived()) link.process()->waitEnded(deadline);
     }
     tearingDown_ = true;
     if (output_) output_->drop();
@@ -381,20 +382,20 @@ void HeadSession::finishNodes() {
     const int64_t beganNs = monotonicNowNs();
     const Deadline deadline = Deadline::inMs(options_.endPatienceMs);
     // Broadcasts on a separate thread, because a node that reads nothing would block this one, which watches the nodes.
-    std::thread asking([this] { nodes_.broadcast(wire::HeadCommand::Finish, {}); });
+    std::thread finishing([this] { nodes_.broadcast(wire::HeadCommand::Finish, {}); });
     while (!allReadersEnded()) {
         watchNodes(monotonicNowNs());
         loseSilentNodes(beganNs, deadline.passed());
         if (deadline.passed()) break; // a reader may hang in an output, which finishOutput() handles
         poll(nullptr, 0, kSliceMs);
     }
-    asking.join();
+    finishing.join();
 }
 
 void HeadSession::finishOutput() {
     if (!output_) return;
     const Deadline deadline = Deadline::inMs(options_.outputPatienceMs);
-    while (!output_->finish(Deadline::inMs(std::min(kOutputNewsMs, options_.outputPatienceMs)))) {
+    while (!output_->finish(Deadline::inMs(std::min(kOutputProgressMs, options_.outputPatienceMs)))) {
         if (deadline.passed()) {
             control_.say("the last pictures could not be written in time; the output may be incomplete");
             return;
@@ -408,8 +409,8 @@ void HeadSession::loseSilentNodes(int64_t sinceNs, bool all) {
     for (int node = 0; node < nodeCount_; ++node) {
         NodeConnection& link = nodes_.link(node);
         const int64_t silentNs = nowNs - std::max(sinceNs, link.lastProgressNs(nowNs));
-        const bool silent = silentNs > options_.byePatienceMs * kNsPerMs;
-        if (!link.saidBye() && (silent || all)) link.lose("it did not end in time with the session");
+        const bool silent = silentNs > options_.goodbyePatienceMs * kNsPerMs;
+        if (!link.goodbyeReceived() && (silent || all)) link.lose("it did not end in time with the session");
     }
 }
 
@@ -457,11 +458,12 @@ SessionStatus HeadSession::status() {
     const std::lock_guard lock(mutex_);
     for (size_t i = 0; i < facts_.size(); ++i) {
         NodeConnection& link = nodes_.link(static_cast<int>(i));
-        NodeStatus node{totals_[i], link.place().where, facts_[i].pid, facts_[i].renderer, 0, streamOf(plan_.nodes[i])};
+        NodeStatus node{totals_[i], link.location().where,   facts_[i].pid, facts_[i].renderer,
+                        0,          streamOf(plan_.nodes[i])};
         node.totals.frames = frames_.framesOf(node.totals.node);
         node.totals.pictureBytes = link.pictureBytes(); // the node's Bye holds the other numbers
         node.totals.pictureRawBytes = link.pictureRawBytes();
-        node.returning = returns_->onItsWay(node.totals.node);
+        node.returning = returns_->isRestarting(node.totals.node);
         node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
         result.nodes.push_back(std::move(node));
     }

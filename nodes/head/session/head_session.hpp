@@ -61,7 +61,7 @@ struct HeadOptions {
     uint32_t chunkCount = capture::kDefaultChunks;
     int64_t readyPatienceMs = 30'000;
     int64_t drainPatienceMs = 10'000;
-    int64_t byePatienceMs = 10'000;     // silence of a node at the end of the session
+    int64_t goodbyePatienceMs = 10'000; // silence of a node at the end of the session
     int64_t silencePatienceMs = 20'000; // silence of a node before that; nodes send a heartbeat every 4 s
     int64_t endPatienceMs = 60'000;     // end of all nodes, even if they send messages
     int64_t outputPatienceMs = 150'000; // video encoders buffer frames
@@ -83,9 +83,9 @@ private:
     Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) override;
     Result<void> nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) override;
     Result<void> nodeWindowGone(int node, const wire::WindowGoneMessage& message) override;
-    Result<void> nodeNews(int node, const wire::DriverEvent& news, const std::string& text) override;
+    Result<void> nodeDriverEvent(int node, const wire::DriverEvent& event, const std::string& text) override;
     Result<void> nodeLog(int node, const std::string& text) override;
-    Result<void> nodeBye(int node, const std::string& json) override;
+    Result<void> nodeGoodbye(int node, const std::string& json) override;
     Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) override;
     Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) override;
     Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) override;
@@ -116,7 +116,7 @@ private:
     std::vector<std::string> explainLines();
 
     void serve();
-    bool askedToFinish(Deadline deadline); // waits for the control connection until the deadline
+    bool finishRequested(Deadline deadline); // waits for the control connection until the deadline
     void tick();
     void watchNodes(int64_t nowNs);
     // called by the output's thread
@@ -149,7 +149,7 @@ private:
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameTracker frames_;
     ReplyAssembler answers_;
-    DriverEventMerger news_;
+    DriverEventMerger driverEvents_;
     std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
     PictureAssembler pictures_;
     TileEqualizer dealer_;
@@ -180,10 +180,10 @@ private:
     std::string promisedExtensions_; // …from the nodes of the start
     std::vector<NodeCapabilities> facts_;
     std::vector<bool> ready_;
-    std::vector<bool> introduced_;      // nodes that have the addresses of the other nodes of their picture
-    std::vector<uint32_t> lives_;       // number of restarts by node
-    std::set<int> rerouted_;            // nodes that multicast does not reach
-    std::vector<std::string> refusals_; // latest log line of each node before it was ready
+    std::vector<bool> introduced_;       // nodes that have the addresses of the other nodes of their picture
+    std::vector<uint32_t> incarnations_; // number of restarts by node
+    std::set<int> rerouted_;             // nodes that multicast does not reach
+    std::vector<std::string> refusals_;  // latest log line of each node before it was ready
     std::vector<NodeTotals> totals_;
     std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // by window: nodes that have not reported its end
     std::string startFailure_;

@@ -61,27 +61,27 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
 }
 
 void HeadSession::linkAgain(int node, StartingNode& starting) {
-    uint32_t life = 0;
+    uint32_t incarnation = 0;
     {
         const std::lock_guard lock(mutex_);
         ready_[static_cast<size_t>(node)] = false;
         refusals_[static_cast<size_t>(node)].clear();
         rerouted_.erase(node);
         introduced_[static_cast<size_t>(node)] = false;
-        life = ++lives_[static_cast<size_t>(node)];
+        incarnation = ++incarnations_[static_cast<size_t>(node)];
     }
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
     NodeEvents& events = *this; // a private base: make_unique could not convert
-    auto link = std::make_unique<NodeConnection>(NodePlace{node, plan.where}, std::move(starting.node.connection),
+    auto link = std::make_unique<NodeConnection>(NodeLocation{node, plan.where}, std::move(starting.node.connection),
                                                  std::move(starting.node.process), events);
     link->setJoinsBatches(deltaNodes_.contains(node));
     link->setJoinsGroup(multicastNodes_.contains(node));
     nodes_.replace(node, std::move(link));
-    nodes_.link(node).unpackBy(plan.pictureCodec, plan.way);
+    nodes_.link(node).unpackBy(plan.pictureCodec, plan.transferScale);
     nodes_.link(node).startReading();
     NodeSetup setup = setupFor(plan);
     setup.isResyncing = true;
-    setup.life = life;
+    setup.incarnation = incarnation;
     setup.swapMembers = 0; // the other members of its swap barrier continue without it
     setup.skipsFrames = returns_->skipsFrames();
     setup.delta = false; // its snapshot is not delta-coded; ResetDictionary starts the batches
@@ -135,10 +135,10 @@ StreamBroadcaster::Admission HeadSession::admit(int node, uint32_t view) {
     answers_.nodeJoins(node, view);
     pictures_.nodeJoins(node, view);
     frames_.nodeJoins(node);
-    news_.nodeJoins(node);
+    driverEvents_.nodeJoins(node);
     const std::lock_guard lock(mutex_);
     views_.joins(node, view);
-    admission.life = lives_[static_cast<size_t>(node)];
+    admission.incarnation = incarnations_[static_cast<size_t>(node)];
     admission.first = true; // of time-multiplexed nodes or nodes with moving areas
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
         admission.first = admission.first &&
@@ -196,7 +196,7 @@ void HeadSession::loseMember(int node, const std::string& why) {
         const std::lock_guard lock(mutex_);
         refusal = refusals_[static_cast<size_t>(node)];
     }
-    if (returns_->lostOnItsWay(node, refusal.empty() ? why : refusal)) return;
+    if (returns_->lostWhileRestarting(node, refusal.empty() ? why : refusal)) return;
     const std::lock_guard membership(membership_);
     control_.say(nodes_.link(node).describe() + " was lost: " + why + "; " + returns_->memberLost(node));
     goOnWithout(node);

@@ -37,7 +37,7 @@ const char* whyOwnStreams(const std::string& stream) {
 
 Result<void> HeadSession::bringUp() {
     placement_ = placeOwnThreads(); // before its threads start, because they inherit the placement
-    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.way);
+    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.transferScale);
     nodes_.startReading();
     openMulticast();
     if (auto opened = openDeltaStream(); !opened) return opened;
@@ -114,7 +114,7 @@ Result<void> HeadSession::openDeltaStream() {
     auto deltaStream = DeltaStream::open(limits);
     if (!deltaStream) return deltaStream.error();
     if (const char* const plant = std::getenv("MURAL_PLANT"); plant != nullptr && std::string_view(plant) == "held")
-        (*deltaStream)->losesWhatItHolds();
+        (*deltaStream)->losesDeferredUploads();
     nodes_.setDeltaStream(std::move(*deltaStream));
     for (const int node : plan.nodes) nodes_.link(node).setInBatches(!absences_.contains(node));
     deltaNodes_.insert(plan.nodes.begin(), plan.nodes.end());
@@ -152,7 +152,7 @@ Result<void> HeadSession::awaitReady() {
                              std::to_string(options_.readyPatienceMs / 1000) + " s; try --gl osmesa, or fewer nodes"};
             }
         }
-        if (askedToFinish(Deadline::inMs(10))) return Error{"the session was stopped before its nodes were ready"};
+        if (finishRequested(Deadline::inMs(10))) return Error{"the session was stopped before its nodes were ready"};
     }
 }
 
@@ -160,10 +160,10 @@ Result<void> HeadSession::awaitReady() {
 Result<void> HeadSession::checkSize() {
     const int64_t side = std::max(config_.width, config_.height);
     for (size_t i = 0; config_.tiling != Tiling::Lean && i < facts_.size(); ++i) {
-        const int64_t most = facts_[i].mostPixels;
-        if (most == 0 || side <= most) continue;
+        const int64_t maximum = facts_[i].maxPixels;
+        if (maximum == 0 || side <= maximum) continue;
         return Error{nodes_.link(static_cast<int>(i)).describe() + " draws pictures with at most " +
-                     std::to_string(most) + " pixels per side, but the wall has " + std::to_string(config_.width) +
+                     std::to_string(maximum) + " pixels per side, but the wall has " + std::to_string(config_.width) +
                      "x" + std::to_string(config_.height) + "; choose a smaller --size"};
     }
     return {};
@@ -200,7 +200,7 @@ void HeadSession::openTables() {
     };
     events.countChanged = [this](size_t count) { control_.send({{"event", "clients"}, {"count", count}}); };
     events.gone = [this](uint32_t client, const std::string& line) {
-        news_.programGone(client);
+        driverEvents_.programGone(client);
         if (options_.recorder) options_.recorder->event({trace::Event::ClientGone, client, 0, ""});
         if (!line.empty()) control_.say(line);
     };

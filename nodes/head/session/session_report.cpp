@@ -26,7 +26,7 @@ double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<doub
 
 } // namespace
 
-void readBye(const std::string& text, NodeTotals& totals) {
+void readGoodbye(const std::string& text, NodeTotals& totals) {
     const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object()) return;
     totals.commands = wholeOf(json, "commands");
@@ -110,11 +110,11 @@ Json deltaJson(const DeltaCounts& c) {
             {"newPages", c.packer.newPages},
             {"patches", c.packer.patches},
             {"encodeSeconds", secondsOf(static_cast<int64_t>(c.encodeNs))},
-            {"programBytes", c.holder.inBytes},
-            {"deferredRecords", c.holder.deferredRecords},
-            {"deferredBytes", c.holder.deferredBytes},
-            {"droppedRecords", c.holder.droppedRecords},
-            {"droppedBytes", c.holder.droppedBytes}};
+            {"programBytes", c.filter.inBytes},
+            {"deferredRecords", c.filter.deferredRecords},
+            {"deferredBytes", c.filter.deferredBytes},
+            {"droppedRecords", c.filter.droppedRecords},
+            {"droppedBytes", c.filter.droppedBytes}};
 }
 
 Json reportOf(const SessionNumbers& n) {

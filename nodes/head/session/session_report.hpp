@@ -40,7 +40,7 @@ struct NodeTotals {
 };
 
 // Reads a node's Bye. Missing or invalid values stay 0.
-void readBye(const std::string& json, NodeTotals& totals);
+void readGoodbye(const std::string& json, NodeTotals& totals);
 
 struct SessionNumbers {
     FrameTotals frames;

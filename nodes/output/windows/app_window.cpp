@@ -120,19 +120,19 @@ Result<void> AppWindow::confirmOwner(Deadline deadline) {
 // Reads the window's pixel format and size. A missing window is not an error.
 Result<void> AppWindow::adopt(Deadline deadline) {
     xcb_connection_t* c = x_->get();
-    const auto attributesAsked = xcb_get_window_attributes(c, config_.window);
-    const auto geometryAsked = xcb_get_geometry(c, config_.window);
+    const auto attributesCookie = xcb_get_window_attributes(c, config_.window);
+    const auto geometryCookie = xcb_get_geometry(c, config_.window);
     XOwned<xcb_get_window_attributes_reply_t> attributes;
     XOwned<xcb_get_geometry_reply_t> geometry;
-    const XAnswer first = x_->await(attributesAsked.sequence, deadline, &attributes);
+    const XAnswer first = x_->await(attributesCookie.sequence, deadline, &attributes);
     if (first == XAnswer::TimedOut || first == XAnswer::ConnectionLost) {
-        xcb_discard_reply(c, attributesAsked.sequence);
-        xcb_discard_reply(c, geometryAsked.sequence);
+        xcb_discard_reply(c, attributesCookie.sequence);
+        xcb_discard_reply(c, geometryCookie.sequence);
         return missed(first);
     }
-    const XAnswer second = x_->await(geometryAsked.sequence, deadline, &geometry);
+    const XAnswer second = x_->await(geometryCookie.sequence, deadline, &geometry);
     if (second == XAnswer::TimedOut || second == XAnswer::ConnectionLost) {
-        xcb_discard_reply(c, geometryAsked.sequence);
+        xcb_discard_reply(c, geometryCookie.sequence);
         return missed(second);
     }
     windowGone_ = attributes == nullptr || geometry == nullptr;
@@ -203,7 +203,7 @@ Result<void> AppWindow::putInPieces(const Picture& picture, int width, int heigh
     const size_t roomBytes = std::min({config_.pieceBytes, requestBytes - kPutImageHeaderBytes, x_->bytesInFlight()});
     const int pieceWidth = std::clamp(static_cast<int>(roomBytes / converter_->bytesPerPixel()) - 4, 1, width);
     const int pieceHeight = std::clamp(static_cast<int>(roomBytes / converter_->rowBytes(pieceWidth)), 1, height);
-    const size_t mostUnanswered = std::max<size_t>(x_->bytesInFlight() / roomBytes, 1);
+    const size_t maxUnanswered = std::max<size_t>(x_->bytesInFlight() / roomBytes, 1);
     for (int top = 0; top < height; top += pieceHeight) {
         const int h = std::min(pieceHeight, height - top);
         for (int left = 0; left < width; left += pieceWidth) {
@@ -215,7 +215,7 @@ Result<void> AppWindow::putInPieces(const Picture& picture, int width, int heigh
                                        static_cast<uint16_t>(w), static_cast<uint16_t>(h), static_cast<int16_t>(left),
                                        static_cast<int16_t>(top), 0, static_cast<uint8_t>(converter_->format().depth),
                                        static_cast<uint32_t>(sizeBytes), reinterpret_cast<uint8_t*>(piece_.data())));
-            if (Result<void> ready = settle(mostUnanswered - 1, deadline); !ready || firstError_)
+            if (Result<void> ready = settle(maxUnanswered - 1, deadline); !ready || firstError_)
                 return ready; // after an error the id may belong to another window
         }
     }

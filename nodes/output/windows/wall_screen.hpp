@@ -56,7 +56,7 @@ private:
     Result<void> createFullScreen(const Options& options);
     Result<void> prepareDrawing(const Options& options);
     void resize(int width, int height);
-    Result<void> drawKept();
+    Result<void> drawShown();
     Result<void> drawEye(const Picture& picture, TextureBlit::Target target, int width, int height);
     [[nodiscard]] std::string where() const;
 
@@ -66,8 +66,8 @@ private:
     int wantedWidth_ = 0; // last requested size; a window manager may refuse it
     int wantedHeight_ = 0;
     std::string title_;
-    OwnedPicture kept_;      // the shown picture
-    OwnedPicture keptRight_; // empty: both eyes show kept_
+    OwnedPicture shown_;      // the shown picture
+    OwnedPicture shownRight_; // empty: both eyes show kept_
     bool stereo_ = false;
     std::unique_ptr<TextureBlit> blit_; // one of the two is set
     std::unique_ptr<AppWindow> painter_;

@@ -158,7 +158,7 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
         return {};
     }
-    if (Result<void> drawn = drawKept(); !drawn) return drawn;
+    if (Result<void> drawn = drawShown(); !drawn) return drawn;
     return present();
 }
 
@@ -186,10 +186,10 @@ void WallWindow::resize(int width, int height) {
 }
 
 Result<void> WallWindow::draw(OwnedPicture& picture, OwnedPicture& right) {
-    const bool otherSize = picture.width() != kept_.width() || picture.height() != kept_.height();
+    const bool otherSize = picture.width() != shown_.width() || picture.height() != shown_.height();
     resize(picture.width(), picture.height());
-    std::swap(kept_, picture);
-    std::swap(keptRight_, right);
+    std::swap(shown_, picture);
+    std::swap(shownRight_, right);
     if (blit_) {
         glfwMakeContextCurrent(window_);
     } else if (otherSize) {
@@ -198,19 +198,19 @@ Result<void> WallWindow::draw(OwnedPicture& picture, OwnedPicture& right) {
         XClearWindow(glfwGetX11Display(), glfwGetX11Window(window_));
         (void)session_.sync();
     }
-    return drawKept();
+    return drawShown();
 }
 
-Result<void> WallWindow::drawKept() {
+Result<void> WallWindow::drawShown() {
     uncovered_ = false;
     if (!blit_) return {};
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
-    if (!stereo_) return drawEye(kept_.view(), TextureBlit::Target::Back, width, height);
-    Result<void> left = drawEye(kept_.view(), TextureBlit::Target::BackLeft, width, height);
+    if (!stereo_) return drawEye(shown_.view(), TextureBlit::Target::Back, width, height);
+    Result<void> left = drawEye(shown_.view(), TextureBlit::Target::BackLeft, width, height);
     if (!left) return left;
-    const Picture right = keptRight_.view().empty() ? kept_.view() : keptRight_.view();
+    const Picture right = shownRight_.view().empty() ? shown_.view() : shownRight_.view();
     return drawEye(right, TextureBlit::Target::BackRight, width, height);
 }
 
@@ -227,8 +227,8 @@ Result<void> WallWindow::present() {
         glfwSwapBuffers(window_);
         return {};
     }
-    if (kept_.view().empty()) return {};
-    return painter_->show(0, kept_.view());
+    if (shown_.view().empty()) return {};
+    return painter_->show(0, shown_.view());
 }
 
 void WallWindow::finish() {
@@ -240,7 +240,7 @@ void WallWindow::finish() {
 Result<void> WallWindow::redrawIfUncovered() {
     if (!uncovered_) return {};
     if (blit_) glfwMakeContextCurrent(window_);
-    if (Result<void> drawn = drawKept(); !drawn) return drawn;
+    if (Result<void> drawn = drawShown(); !drawn) return drawn;
     return present();
 }
 

@@ -22,7 +22,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kIdleNs = 250 * kNsPerMs; // poll interval of an idle display
-constexpr size_t kBuffersKept = 32;
+constexpr size_t kMaxSpareBuffers = 32;
 
 // A task for the windows' thread.
 struct Job {
@@ -173,7 +173,7 @@ void WallWindows::Shared::giveBuffers(std::vector<WallScreen::TileBuffer>& used)
     const std::lock_guard lock(mutex);
     for (WallScreen::TileBuffer& buffer : used)
         for (OwnedPicture* const memory : {&buffer.picture, &buffer.right})
-            if (buffers.size() < kBuffersKept) buffers.push_back(std::move(*memory));
+            if (buffers.size() < kMaxSpareBuffers) buffers.push_back(std::move(*memory));
 }
 
 Result<std::unique_ptr<WallWindows>> WallWindows::open(const WallWindowsConfig& config) {

@@ -15,11 +15,11 @@ using namespace window_mark;
 // Returns XCB_ATOM_NONE if `onlyIfExists` is set and the server has no such atom.
 Result<xcb_atom_t> propertyOf(XConnection& x, uint32_t client, bool onlyIfExists, Deadline deadline) {
     const PropertyName name(client);
-    const auto asked = xcb_intern_atom(x.get(), onlyIfExists, name.length, name.text);
+    const auto cookie = xcb_intern_atom(x.get(), onlyIfExists, name.length, name.text);
     XOwned<xcb_intern_atom_reply_t> atom;
-    const XAnswer answer = x.await(asked.sequence, deadline, &atom);
+    const XAnswer answer = x.await(cookie.sequence, deadline, &atom);
     if (answer == XAnswer::TimedOut || answer == XAnswer::ConnectionLost) {
-        xcb_discard_reply(x.get(), asked.sequence);
+        xcb_discard_reply(x.get(), cookie.sequence);
         return x.describe(answer);
     }
     return atom ? atom->atom : xcb_atom_t{XCB_ATOM_NONE};
@@ -46,11 +46,11 @@ Result<WindowOwnerCheck::Owned> WindowOwnerCheck::owns(XConnection& x, xcb_windo
         if (auto found = findProperty(x, deadline); !found) return found.error();
         if (property_ == XCB_ATOM_NONE) return Owned::No;
     }
-    const auto asked = xcb_get_property(x.get(), 0, window, property_, XCB_ATOM_CARDINAL, 0, kMaxWords);
+    const auto cookie = xcb_get_property(x.get(), 0, window, property_, XCB_ATOM_CARDINAL, 0, kMaxWords);
     XOwned<xcb_get_property_reply_t> mark;
-    const XAnswer answer = x.await(asked.sequence, deadline, &mark);
+    const XAnswer answer = x.await(cookie.sequence, deadline, &mark);
     if (answer == XAnswer::TimedOut || answer == XAnswer::ConnectionLost) {
-        xcb_discard_reply(x.get(), asked.sequence);
+        xcb_discard_reply(x.get(), cookie.sequence);
         return x.describe(answer);
     }
     if (!mark) return Owned::WindowGone;

@@ -20,14 +20,14 @@ bool isImageType(GLint type) { return type >= GL_IMAGE_1D && type <= GL_UNSIGNED
 
 // ---- created handles
 
-void Replay::dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours) {
-    if (!c_->shared || c_->shared->handles.set(of, theirs, ours)) return;
+void Replay::dealtHandle(HandleTable::Of of, uint64_t appHandle, uint64_t nodeHandle) {
+    if (!c_->shared || c_->shared->handles.set(of, appHandle, nodeHandle)) return;
     char text[512];
     snprintf(text, sizeof text,
              "texture handles of this node's driver differ from the program's (0x%" PRIx64 " for 0x%" PRIx64
              "): handles that shaders read from buffers, vertex arrays or integers may be wrong on this node's tiles; "
              "use the same driver for program and nodes",
-             ours, theirs);
+             nodeHandle, appHandle);
     out_.log(text);
 }
 
@@ -112,25 +112,26 @@ uint64_t Replay::equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GL
 
 // Requests the program's handle from this driver. Until the first handle is freed, drivers number handles in request
 // order.
-void Replay::askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs) {
+void Replay::requestTextureHandle(GLuint texture, GLuint sampler, uint64_t appHandle) {
     if (!c_->shared) return;
-    const auto known = c_->shared->dealt.find(theirs);
+    const auto known = c_->shared->dealt.find(appHandle);
     // a repeated request
     if (known != c_->shared->dealt.end() && known->second.texture == texture && known->second.sampler == sampler)
         return;
     DealtHandle dealt{texture, sampler, 0};
-    uint64_t ours = c_->shared->handlesFreed ? equalHandle(texture, sampler, theirs, dealt.made) : 0;
-    if (!ours) ours = sampler ? gl.glGetTextureSamplerHandleARB(texture, sampler) : gl.glGetTextureHandleARB(texture);
-    c_->shared->dealt[theirs] = dealt;
-    dealtHandle(HandleTable::Of::Texture, theirs, ours);
+    uint64_t nodeHandle = c_->shared->handlesFreed ? equalHandle(texture, sampler, appHandle, dealt.made) : 0;
+    if (!nodeHandle)
+        nodeHandle = sampler ? gl.glGetTextureSamplerHandleARB(texture, sampler) : gl.glGetTextureHandleARB(texture);
+    c_->shared->dealt[appHandle] = dealt;
+    dealtHandle(HandleTable::Of::Texture, appHandle, nodeHandle);
 }
 
 // Deleting a texture or a sampler ends its handles.
-void Replay::handlesGone(Kind kind, GLuint ours) {
+void Replay::handlesGone(Kind kind, GLuint nodeName) {
     if (!c_->shared || c_->shared->dealt.empty()) return;
     std::erase_if(c_->shared->dealt, [&](const auto& d) {
         const DealtHandle& handle = d.second;
-        if ((kind == Kind::Texture ? handle.texture : handle.sampler) != ours) return false;
+        if ((kind == Kind::Texture ? handle.texture : handle.sampler) != nodeName) return false;
         if (handle.made) gl.glDeleteSamplers(1, &handle.made);
         c_->shared->handlesFreed = true;
         return true;
@@ -139,11 +140,11 @@ void Replay::handlesGone(Kind kind, GLuint ours) {
 
 void Replay::glGetTextureHandleARB(GLuint texture, uint64_t result) {
     if (!gl.glGetTextureHandleARB) return (void)lacking(op::glGetTextureHandleARB);
-    askTextureHandle(name(Kind::Texture, texture), 0, result);
+    requestTextureHandle(name(Kind::Texture, texture), 0, result);
 }
 void Replay::glGetTextureSamplerHandleARB(GLuint texture, GLuint sampler, uint64_t result) {
     if (!gl.glGetTextureSamplerHandleARB) return (void)lacking(op::glGetTextureSamplerHandleARB);
-    askTextureHandle(name(Kind::Texture, texture), name(Kind::Sampler, sampler), result);
+    requestTextureHandle(name(Kind::Texture, texture), name(Kind::Sampler, sampler), result);
 }
 void Replay::glGetImageHandleARB(GLuint texture, GLint level, GLboolean layered, GLint layer, GLenum format,
                                  uint64_t result) {
@@ -155,22 +156,22 @@ void Replay::glGetImageHandleARB(GLuint texture, GLint level, GLboolean layered,
 // ---- residency. An unknown handle is an error, which the program's own GL has reported.
 
 void Replay::glMakeTextureHandleResidentARB(GLuint64 handle) {
-    const uint64_t ours = c_->shared ? c_->shared->handles.find(HandleTable::Of::Texture, handle) : 0;
-    if (ours && gl.glMakeTextureHandleResidentARB) gl.glMakeTextureHandleResidentARB(ours);
+    const uint64_t nodeHandle = c_->shared ? c_->shared->handles.find(HandleTable::Of::Texture, handle) : 0;
+    if (nodeHandle && gl.glMakeTextureHandleResidentARB) gl.glMakeTextureHandleResidentARB(nodeHandle);
 }
 void Replay::glMakeTextureHandleNonResidentARB(GLuint64 handle) {
-    const uint64_t ours = c_->shared ? c_->shared->handles.find(HandleTable::Of::Texture, handle) : 0;
-    if (ours && gl.glMakeTextureHandleNonResidentARB) gl.glMakeTextureHandleNonResidentARB(ours);
+    const uint64_t nodeHandle = c_->shared ? c_->shared->handles.find(HandleTable::Of::Texture, handle) : 0;
+    if (nodeHandle && gl.glMakeTextureHandleNonResidentARB) gl.glMakeTextureHandleNonResidentARB(nodeHandle);
 }
 void Replay::glMakeImageHandleResidentARB(GLuint64 handle, GLenum access) {
-    const uint64_t ours = c_->shared ? c_->shared->handles.find(HandleTable::Of::Image, handle) : 0;
-    if (!ours || !gl.glMakeImageHandleResidentARB) return;
+    const uint64_t nodeHandle = c_->shared ? c_->shared->handles.find(HandleTable::Of::Image, handle) : 0;
+    if (!nodeHandle || !gl.glMakeImageHandleResidentARB) return;
     c_->writesMemory = c_->writesMemory || access != GL_READ_ONLY;
-    gl.glMakeImageHandleResidentARB(ours, access);
+    gl.glMakeImageHandleResidentARB(nodeHandle, access);
 }
 void Replay::glMakeImageHandleNonResidentARB(GLuint64 handle) {
-    const uint64_t ours = c_->shared ? c_->shared->handles.find(HandleTable::Of::Image, handle) : 0;
-    if (ours && gl.glMakeImageHandleNonResidentARB) gl.glMakeImageHandleNonResidentARB(ours);
+    const uint64_t nodeHandle = c_->shared ? c_->shared->handles.find(HandleTable::Of::Image, handle) : 0;
+    if (nodeHandle && gl.glMakeImageHandleNonResidentARB) gl.glMakeImageHandleNonResidentARB(nodeHandle);
 }
 
 // ---- values
@@ -195,12 +196,12 @@ HandleTable::Of Replay::handlesOfUniform(GLuint program, GLint location) const {
 // Converts values to this node's handles. The location is this node's.
 std::vector<GLuint64> Replay::handleValues(GLuint program, GLint location, const GLuint64* values,
                                            GLsizei count) const {
-    std::vector<GLuint64> ours(static_cast<size_t>(count));
-    std::memcpy(ours.data(), values, ours.size() * sizeof(GLuint64)); // records are aligned to 4 bytes
-    if (!c_->shared || !c_->shared->handles.differ()) return ours;
+    std::vector<GLuint64> nodeHandles(static_cast<size_t>(count));
+    std::memcpy(nodeHandles.data(), values, nodeHandles.size() * sizeof(GLuint64)); // records are aligned to 4 bytes
+    if (!c_->shared || !c_->shared->handles.differ()) return nodeHandles;
     const HandleTable::Of of = handlesOfUniform(program, location);
-    for (GLuint64& value : ours) value = c_->shared->handles.value(of, value);
-    return ours;
+    for (GLuint64& value : nodeHandles) value = c_->shared->handles.value(of, value);
+    return nodeHandles;
 }
 
 void Replay::glUniformHandleui64ARB(GLint location, GLuint64 value) {
@@ -217,16 +218,17 @@ void Replay::glUniformHandleui64vARB(GLint location, GLsizei count, const Data& 
 }
 void Replay::glProgramUniformHandleui64ARB(GLuint program, GLint location, GLuint64 value) {
     if (!gl.glProgramUniformHandleui64ARB) return (void)lacking(op::glProgramUniformHandleui64ARB);
-    const GLuint ours = name(Kind::Program, program);
+    const GLuint nodeName = name(Kind::Program, program);
     const GLint at = uniformLocation(program, location);
-    gl.glProgramUniformHandleui64ARB(ours, at, handleValues(ours, at, &value, 1)[0]);
+    gl.glProgramUniformHandleui64ARB(nodeName, at, handleValues(nodeName, at, &value, 1)[0]);
 }
 void Replay::glProgramUniformHandleui64vARB(GLuint program, GLint location, GLsizei count, const Data& values) {
     if (!gl.glProgramUniformHandleui64vARB) return (void)lacking(op::glProgramUniformHandleui64vARB);
     if (count <= 0 || values.size() < size_t{8} * static_cast<size_t>(count)) return;
-    const GLuint ours = name(Kind::Program, program);
+    const GLuint nodeName = name(Kind::Program, program);
     const GLint at = uniformLocation(program, location);
-    gl.glProgramUniformHandleui64vARB(ours, at, count, handleValues(ours, at, values.as<GLuint64>(), count).data());
+    gl.glProgramUniformHandleui64vARB(nodeName, at, count,
+                                      handleValues(nodeName, at, values.as<GLuint64>(), count).data());
 }
 // The kind of a handle in a vertex attribute depends on the shader and is unknown here. Most are textures.
 void Replay::glVertexAttribL1ui64ARB(GLuint index, GLuint64EXT x) {

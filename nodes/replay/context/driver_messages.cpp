@@ -15,12 +15,12 @@ constexpr size_t kMaxMessages = 64; // between two packets; later ones are dropp
 void Replay::listenToDriver() {
     if (c_->listens || c_ == none_.get() || !gl.glDebugMessageCallback) return;
     c_->listens = true;
-    gl.glDebugMessageCallback(reinterpret_cast<void*>(&Replay::hearDriver), &c_->debug);
+    gl.glDebugMessageCallback(reinterpret_cast<void*>(&Replay::onDriverMessage), &c_->debug);
 }
 
 // Messages that the program has inserted itself are not reported to it.
-void APIENTRY Replay::hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
-                                 const GLchar* text, const void* inbox) {
+void APIENTRY Replay::onDriverMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                                      const GLchar* text, const void* inbox) {
     if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_THIRD_PARTY || !text) return;
     auto& box = *static_cast<DebugInbox*>(const_cast<void*>(inbox));
     const std::lock_guard lock(box.mutex);
@@ -30,14 +30,14 @@ void APIENTRY Replay::hearDriver(GLenum source, GLenum type, GLuint id, GLenum s
     box.any.store(true, std::memory_order_release);
 }
 
-void Replay::tell(wire::DriverEventKind kind, const DebugInbox::Message& m) {
-    if (!out_.news) return;
-    out_.news({c_->client, c_->id, static_cast<uint32_t>(kind), m.source, m.type, m.id, m.severity,
-               static_cast<uint32_t>(m.text.size())},
-              m.text);
+void Replay::sendDriverEvent(wire::DriverEventKind kind, const DebugInbox::Message& m) {
+    if (!out_.driverEvent) return;
+    out_.driverEvent({c_->client, c_->id, static_cast<uint32_t>(kind), m.source, m.type, m.id, m.severity,
+                      static_cast<uint32_t>(m.text.size())},
+                     m.text);
 }
 
-void Replay::tellMessages() {
+void Replay::sendDriverMessages() {
     if (!c_ || !c_->debug.any.load(std::memory_order_acquire)) return;
     std::vector<DebugInbox::Message> messages;
     {
@@ -45,7 +45,7 @@ void Replay::tellMessages() {
         messages.swap(c_->debug.messages);
         c_->debug.any.store(false, std::memory_order_relaxed);
     }
-    for (const auto& message : messages) tell(wire::DriverEventKind::DebugMessage, message);
+    for (const auto& message : messages) sendDriverEvent(wire::DriverEventKind::DebugMessage, message);
 }
 
 // Clears GL errors. The program's own context reports all errors except out of memory on this machine. Returns true if
@@ -63,9 +63,10 @@ bool Replay::takeErrors() {
 }
 
 // The program has received an error. It includes allocation failures before it, which are therefore not reported again.
-bool Replay::errorTold() {
-    if (bound_ == c_ && takeErrors()) tell(wire::DriverEventKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
-    ++c_->errorsTold;
+bool Replay::errorReported() {
+    if (bound_ == c_ && takeErrors())
+        sendDriverEvent(wire::DriverEventKind::OutOfMemory, {0, c_->errorsReported, 0, 0, {}});
+    ++c_->errorsReported;
     return true;
 }
 
@@ -74,7 +75,7 @@ bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     (void)takeErrors();
     const bool ok = function(*this, in);
     if (takeErrors()) {
-        tell(wire::DriverEventKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
+        sendDriverEvent(wire::DriverEventKind::OutOfMemory, {0, c_->errorsReported, 0, 0, {}});
         out_.log("no memory for a GL object of the program; it receives GL_OUT_OF_MEMORY");
     }
     return ok;
@@ -109,10 +110,10 @@ Kind kindOf(GLenum identifier) {
 
 void Replay::glObjectLabel(GLenum identifier, GLuint object, GLsizei length, const Data& label) {
     const Kind kind = kindOf(identifier);
-    const GLuint ours = kind == Kind::Count ? 0 : table(kind).find(object);
-    if (!ours || !gl.glObjectLabel) return;
+    const GLuint nodeName = kind == Kind::Count ? 0 : table(kind).find(object);
+    if (!nodeName || !gl.glObjectLabel) return;
     const std::string text = textOf(label, length);
-    gl.glObjectLabel(identifier, ours, static_cast<GLsizei>(text.size()), label.absent() ? nullptr : text.c_str());
+    gl.glObjectLabel(identifier, nodeName, static_cast<GLsizei>(text.size()), label.absent() ? nullptr : text.c_str());
 }
 void Replay::glObjectPtrLabel(uint64_t ptr, GLsizei length, const Data& label) {
     if (!c_->shared || !gl.glObjectPtrLabel) return;
@@ -132,22 +133,22 @@ void Replay::glDebugMessageControl(GLenum source, GLenum type, GLenum severity, 
 }
 
 // Reports, at the end of a frame, problems that only drawing reveals.
-void Replay::tellTroubles() {
+void Replay::reportDriverProblems() {
     if (!bound_) return;
     ContextState* const own = std::exchange(c_, bound_);
-    if (takeErrors()) tell(wire::DriverEventKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
+    if (takeErrors()) sendDriverEvent(wire::DriverEventKind::OutOfMemory, {0, c_->errorsReported, 0, 0, {}});
     // ES 1 has no reset status: Mesa raises an error there.
-    if (!c_->lost && c_->api != wire::Api::Es1 && c_->context->tellsReset() && gl.glGetGraphicsResetStatus) {
+    if (!c_->lost && c_->api != wire::Api::Es1 && c_->context->reportsReset() && gl.glGetGraphicsResetStatus) {
         const bool planted = config_.plant == "reset" && config_.node == 1 && counts_.frames == 5;
         const GLenum status = planted ? GL_INNOCENT_CONTEXT_RESET : gl.glGetGraphicsResetStatus();
         c_->lost = status != GL_NO_ERROR;
         if (c_->lost) {
-            tell(wire::DriverEventKind::ContextLost, {0, status, 0, 0, {}});
+            sendDriverEvent(wire::DriverEventKind::ContextLost, {0, status, 0, 0, {}});
             out_.log("the graphics driver lost a context (GPU reset): its drawings are missing on this node's tiles; "
                      "restart the program");
         }
     }
-    tellMessages();
+    sendDriverMessages();
     c_ = own;
 }
 

@@ -53,9 +53,9 @@ void Replay::glEGLImageTargetTexStorageEXT(GLenum target, uint64_t image, const 
         withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTexStorageEXT(target, i, nullptr); });
 }
 void Replay::glEGLImageTargetTextureStorageEXT(GLuint texture, uint64_t image, const Data&) {
-    const GLuint ours = name(Kind::Texture, texture);
+    const GLuint nodeName = name(Kind::Texture, texture);
     if (gl.glEGLImageTargetTextureStorageEXT)
-        withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTextureStorageEXT(ours, i, nullptr); });
+        withImage(image, [&](GLeglImageOES i) { gl.glEGLImageTargetTextureStorageEXT(nodeName, i, nullptr); });
 }
 
 } // namespace mural

@@ -69,7 +69,7 @@ GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
 GLenum Replay::onlyBuffer(const gl::Surface& surface) {
     return surface.colorBuffers() == gl::ColorBuffers::OneNamedBack ? GL_BACK : GL_FRONT_LEFT;
 }
-// Returns the only colour buffer of the surface that contains the window's buffer (replay_front.cpp).
+// Returns the only colour buffer of the surface that contains the window's buffer (front_buffer.cpp).
 GLenum Replay::windowBuffer(GLenum buffer, const Window* w) const {
     if (!w || !w->surface || !w->surface->singleBuffered() || c_->api != wire::Api::Desktop) return buffer;
     switch (buffer) {
@@ -111,7 +111,8 @@ void Replay::drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::
     drawBufferOfWindow(first);
 }
 void Replay::glDrawBuffers(GLsizei n, const Data& bufs) {
-    if (gl.glDrawBuffers) drawBuffers(drawsWindow(), n, bufs, [&](const GLenum* ours) { gl.glDrawBuffers(n, ours); });
+    if (gl.glDrawBuffers)
+        drawBuffers(drawsWindow(), n, bufs, [&](const GLenum* nodeBuffers) { gl.glDrawBuffers(n, nodeBuffers); });
 }
 void Replay::glReadBuffer(GLenum src) {
     if (c_->readFramebuffer == 0) src = readBufferOfEye(src, c_->read);
@@ -130,8 +131,8 @@ void Replay::glNamedFramebufferDrawBuffer(GLuint framebuffer, GLenum buf) {
     if (framebuffer == 0) drawBufferOfWindow(buf);
 }
 void Replay::glNamedFramebufferDrawBuffers(GLuint framebuffer, GLsizei n, const Data& bufs) {
-    drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) {
-        gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, ours);
+    drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* nodeBuffers) {
+        gl.glNamedFramebufferDrawBuffers(name(Kind::Framebuffer, framebuffer), n, nodeBuffers);
     });
 }
 void Replay::glNamedFramebufferReadBuffer(GLuint framebuffer, GLenum src) {
@@ -150,8 +151,8 @@ void Replay::glFramebufferDrawBufferEXT(GLuint framebuffer, GLenum mode) {
 }
 void Replay::glFramebufferDrawBuffersEXT(GLuint framebuffer, GLsizei n, const Data& bufs) {
     if (gl.glFramebufferDrawBuffersEXT)
-        drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* ours) {
-            gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, ours);
+        drawBuffers(framebuffer == 0, n, bufs, [&](const GLenum* nodeBuffers) {
+            gl.glFramebufferDrawBuffersEXT(name(Kind::Framebuffer, framebuffer), n, nodeBuffers);
         });
 }
 void Replay::glFramebufferReadBufferEXT(GLuint framebuffer, GLenum mode) {

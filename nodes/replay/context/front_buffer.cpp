@@ -43,11 +43,11 @@ gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
 }
 
 // Makes bound_, boundDraw_ and boundRead_ current.
-bool Replay::bindSurfaces(gl::HeldBack heldBack) {
+bool Replay::bindSurfaces(gl::PendingCommands pendingCommands) {
     const auto bind = [&] {
         drawSurface_ = surfaceOf(boundDraw_, c_->drawBuffer0);
         readSurface_ = surfaceOf(boundRead_, readFrom(c_->readBuffer0));
-        return platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_, heldBack);
+        return platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_, pendingCommands);
     };
     auto made = bind();
     if (made && !loaded_) { // before the first load, surface support is unknown
@@ -88,7 +88,7 @@ void Replay::beginFront(Window& w) {
     w.frontStale = false;
     w.moving.front = w.moving.areas;
     if (platform_->makeCurrent(bound_->context.get(), w.front.get(), w.front.get()))
-        aside([&] { clearToBlack(*w.front); });
+        withQueriesSuspended([&] { clearToBlack(*w.front); });
     (void)platform_->makeCurrent(bound_->context.get(), drawSurface_, readSurface_);
     c_->scissorsDiffer = true; // all viewports' enables were touched
     applyScissors();

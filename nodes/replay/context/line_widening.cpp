@@ -24,7 +24,7 @@ void Replay::widenToWindow(Window& w) {
     const std::unique_ptr<gl::Surface> tile = std::exchange(w.surface, std::move(*made));
     w.lean = false;
     dropFront(w);
-    if (tile && gl.glBlitFramebuffer) aside([&] { copyTile(w, *tile); });
+    if (tile && gl.glBlitFramebuffer) withQueriesSuspended([&] { copyTile(w, *tile); });
     (void)bindSurfaces();
 }
 

@@ -9,12 +9,12 @@ namespace mural {
 
 namespace {
 
-// Extends [from, from + size) to multiples of `step`, but not beyond `most`.
-template <class T, class S> void enlarge(T& from, S& size, int64_t step, int64_t most) {
+// Extends [from, from + size) to multiples of `step`, but not beyond `maximum`.
+template <class T, class S> void enlarge(T& from, S& size, int64_t step, int64_t maximum) {
     if (step <= 0) return;
     const int64_t end = (int64_t{from} + size + step - 1) / step * step;
     from = static_cast<T>(from / step * step);
-    size = static_cast<S>(std::min(end, std::max<int64_t>(most, from)) - from);
+    size = static_cast<S>(std::min(end, std::max<int64_t>(maximum, from)) - from);
 }
 
 } // namespace
@@ -71,11 +71,11 @@ void Replay::commitPages(GLenum target, GLuint texture, const PageBox& box, bool
     (void)isError();
     call(box);
     if (!isError() || !commits) return;
-    PageBox ours = box;
-    const bool known = enlargeToPages(target, texture, ours);
-    if (known) call(ours);
-    if ((!isError() && known) || saidPages_) return;
-    saidPages_ = true;
+    PageBox aligned = box;
+    const bool known = enlargeToPages(target, texture, aligned);
+    if (known) call(aligned);
+    if ((!isError() && known) || pagesReported_) return;
+    pagesReported_ = true;
     out_.log("this node's driver cannot commit pages of a sparse texture; their contents are missing on this node's "
              "tiles; use the same driver for program and nodes");
 }
@@ -90,9 +90,9 @@ void Replay::glTexPageCommitmentARB(GLenum target, GLint level, GLint x, GLint y
 void Replay::glTexturePageCommitmentEXT(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei w, GLsizei h,
                                         GLsizei d, GLboolean commit) {
     if (!gl.glTexturePageCommitmentEXT) return (void)lacking(op::glTexturePageCommitmentEXT);
-    const GLuint ours = name(Kind::Texture, texture);
-    commitPages(0, ours, {level, x, y, z, w, h, d}, commit, [&](const PageBox& b) {
-        gl.glTexturePageCommitmentEXT(ours, b.level, b.x, b.y, b.z, b.width, b.height, b.depth, commit);
+    const GLuint nodeName = name(Kind::Texture, texture);
+    commitPages(0, nodeName, {level, x, y, z, w, h, d}, commit, [&](const PageBox& b) {
+        gl.glTexturePageCommitmentEXT(nodeName, b.level, b.x, b.y, b.z, b.width, b.height, b.depth, commit);
     });
 }
 
@@ -130,15 +130,15 @@ void Replay::glNamedBufferPageCommitmentARB(GLuint buffer, GLintptr offset, GLsi
         gl.glNamedBufferPageCommitmentARB ? gl.glNamedBufferPageCommitmentARB : gl.glNamedBufferPageCommitmentEXT;
     if (!call) return (void)lacking(op::glNamedBufferPageCommitmentARB);
     if (offset < 0 || size < 0) return;
-    const GLuint ours = name(Kind::Buffer, buffer);
+    const GLuint nodeName = name(Kind::Buffer, buffer);
     const auto bytes = [&] {
         GLint64 all = 0;
-        if (gl.glGetNamedBufferParameteri64v) gl.glGetNamedBufferParameteri64v(ours, GL_BUFFER_SIZE, &all);
+        if (gl.glGetNamedBufferParameteri64v) gl.glGetNamedBufferParameteri64v(nodeName, GL_BUFFER_SIZE, &all);
         return static_cast<uint64_t>(all);
     };
     commitBuffer(static_cast<uint64_t>(offset), static_cast<uint64_t>(size), commit, bytes,
                  [&](uint64_t from, uint64_t count) {
-                     call(ours, static_cast<GLintptr>(from), static_cast<GLsizeiptr>(count), commit);
+                     call(nodeName, static_cast<GLintptr>(from), static_cast<GLsizeiptr>(count), commit);
                  });
 }
 void Replay::glNamedBufferPageCommitmentEXT(GLuint buffer, GLintptr offset, GLsizeiptr size, GLboolean commit) {

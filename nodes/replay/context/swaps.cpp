@@ -56,7 +56,7 @@ bool Replay::onSwap(Args& in, bool front) {
         swapUnbound(*window, *drawer, id, frame, front);
     else
         showWindow(window, id, frame, front);
-    answerAskedAhead();
+    sendPrefetched();
     return true;
 }
 
@@ -89,7 +89,7 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
     f.frame = frame;
     f.drawnWhole = bound_ && bound_->shared && bound_->shared->allDrawn;
     ++counts_.frames;
-    Window* ours = nullptr; // the window, if its pixels can be read
+    Window* readable = nullptr; // the window, if its pixels can be read
     if (window) {
         Window& w = *window;
         if (takesRanges()) rangeDrawn(w);
@@ -106,7 +106,8 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         if (!front && f.valid) w.frontStaled = false;
         showedInvalid_ = showedInvalid_ || (!f.valid && !w.skipped && w.begun);
         if (bound_ && &w == boundDraw_ && w.surface)
-            ours = &w, f.format = pictureFormatOf(*bound_, w), f.pixels = [this, &w, front](const PixelViewport& r) {
+            readable = &w, f.format = pictureFormatOf(*bound_, w),
+            f.pixels = [this, &w, front](const PixelViewport& r) {
                 ContextState* const own = std::exchange(c_, bound_);
                 const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
                 const std::byte* pixels = zoomed                                 ? readScaled(w, r, front)
@@ -122,21 +123,21 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
                 return static_cast<const std::byte*>(black.data());
             };
     }
-    if (window && bound_) flushIfAsked(*window);
+    if (window && bound_) flushIfRequested(*window);
     // A frame counts after its draws, because pacing and frame rates depend on that. If its picture is read later, the
     // frame counts with the picture.
     const bool shown = frame != wire::kUnseenFrame;
-    const bool later = shown && ours && readsLater(*ours, f.region);
+    const bool later = shown && readable && readsLater(*readable, f.region);
     const int64_t beganNs = monotonicNowNs();
     if (!skips_ && !later) waitUntilDrawn();
-    tellTroubles();
+    reportDriverProblems();
     bool read = false;
     if (f.pixels)
         f.read = [&]() -> std::unique_ptr<PictureRead> {
             read = true;
-            std::unique_ptr<PictureRead> picture = later ? readLater(*ours, f.region, front) : nullptr;
+            std::unique_ptr<PictureRead> picture = later ? readLater(*readable, f.region, front) : nullptr;
             if (!picture) picture = readAtOnce(f, f.region);
-            if (ours && config_.readback == Readback::Auto) ours->readback.took(monotonicNowNs() - beganNs);
+            if (readable && config_.readback == Readback::Auto) readable->readback.took(monotonicNowNs() - beganNs);
             return picture;
         };
     if (shown) out_.frameDone(f);

@@ -18,8 +18,8 @@ namespace mural {
 namespace {
 
 // Viewports and boxes set by one command: an invalid one leaves all of them unchanged.
-template <class T> bool areBoxes(GLuint most, GLuint first, GLsizei count, const T* v) {
-    if (!v || count <= 0 || first >= most || static_cast<GLuint>(count) > most - first) return false;
+template <class T> bool areBoxes(GLuint maximum, GLuint first, GLsizei count, const T* v) {
+    if (!v || count <= 0 || first >= maximum || static_cast<GLuint>(count) > maximum - first) return false;
     for (GLsizei i = 0; i < count; ++i) {
         if (v[4 * i + 2] < 0 || v[4 * i + 3] < 0) return false;
     }

@@ -36,14 +36,14 @@ gl::SurfaceConfig Replay::surfaceConfig(const wire::WindowConfig& c, int width, 
 }
 
 bool Replay::own(uint16_t opcode, Args& in) {
-    tellMessages(); // before a reply that the program waits for
+    sendDriverMessages(); // before a reply that the program waits for
     if (!leavesBitmaps(opcode)) settleBitmaps();
     if (opcode == wire::kOpRequestPixels || opcode == wire::kOpRequestTexImage || opcode == wire::kOpRequestBuffer ||
         opcode == wire::kOpFillWindow) {
         for (Window* const w : {c_->draw, c_->read}) {
             if (!w) continue;
-            flushIfAsked(*w);
-            w->asked = true;
+            flushIfRequested(*w);
+            w->requested = true;
         }
     }
     switch (opcode) {
@@ -70,7 +70,7 @@ bool Replay::own(uint16_t opcode, Args& in) {
     case wire::kOpBeginConditional: return onBeginConditional(in);
     case wire::kOpQueryKnown: return onQueryKnown(in);
     case wire::kOpDrawAll: return onDrawAll(in);
-    case wire::kOpErrorReported: return errorTold();
+    case wire::kOpErrorReported: return errorReported();
     case wire::kOpRequestProgram: return onRequestProgram(in);
     case wire::kOpProgramRecipe: return onProgramRecipe(in);
     case wire::kOpRequestBuffer: return onRequestBuffer(in);
@@ -114,18 +114,18 @@ bool Replay::onCreateContext(Args& in) {
     const auto sharer = client.contexts.find(share);
     ContextState* with = sharer == client.contexts.end() ? nullptr : sharer->second.get();
     auto c = std::make_unique<ContextState>();
-    gl::ContextConfig wish;
-    wish.api = static_cast<gl::Api>(api);
-    wish.major = static_cast<int>(major);
-    wish.minor = static_cast<int>(minor);
-    wish.core = profile & GL_CONTEXT_CORE_PROFILE_BIT;
-    wish.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
-    wish.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
-    c->heldBack = flags & wire::kKeepsUnflushed;
-    wish.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
-    wish.tellsReset = true; // the node needs the notification, even if the program does not request it
-    wish.surface = surfaceConfig(*config, 1, 1);
-    auto made = platform_->createContext(wish, with ? with->context.get() : nullptr);
+    gl::ContextConfig contextConfig;
+    contextConfig.api = static_cast<gl::Api>(api);
+    contextConfig.major = static_cast<int>(major);
+    contextConfig.minor = static_cast<int>(minor);
+    contextConfig.core = profile & GL_CONTEXT_CORE_PROFILE_BIT;
+    contextConfig.forwardCompatible = flags & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT;
+    contextConfig.debug = flags & GL_CONTEXT_FLAG_DEBUG_BIT;
+    c->pendingCommands = flags & wire::kKeepsUnflushed;
+    contextConfig.robust = flags & GL_CONTEXT_FLAG_ROBUST_ACCESS_BIT;
+    contextConfig.reportsReset = true; // the node needs the notification, even if the program does not request it
+    contextConfig.surface = surfaceConfig(*config, 1, 1);
+    auto made = platform_->createContext(contextConfig, with ? with->context.get() : nullptr);
     if (!made) {
         out_.log("cannot create a context like the program's: " + made.error().message);
         return true;
@@ -133,12 +133,12 @@ bool Replay::onCreateContext(Args& in) {
     c->client = wire::clientOf(stream_);
     c->id = id;
     c->context = std::move(*made);
-    c->wish = wish;
+    c->contextConfig = contextConfig;
     c->shared = with ? with->shared : std::make_shared<Shared>();
     c->api = static_cast<wire::Api>(api);
     c->version = static_cast<int>(major * 10 + minor);
-    c->core = wish.core;
-    c->debugs = wish.debug;
+    c->core = contextConfig.core;
+    c->debugs = contextConfig.debug;
     c->unpack.values[5] = c->pack[5] = 4; // alignment
     c->drawBuffer0 = c->readBuffer0 = config->doubleBuffer || c->api != wire::Api::Desktop ? GL_BACK : GL_FRONT;
     client.contexts[id] = std::move(c);
@@ -155,7 +155,7 @@ bool Replay::onMakeCurrent(Args& in) {
     };
     const auto it = client.contexts.find(context);
     // Flushes the context that the thread releases, unless the program has disabled that (KHR_context_flush_control).
-    if (s_->context && s_->context == bound_ && !s_->context->heldBack && gl.glFlush) gl.glFlush();
+    if (s_->context && s_->context == bound_ && !s_->context->pendingCommands && gl.glFlush) gl.glFlush();
     s_->context = it == client.contexts.end() ? nullptr : it->second.get();
     s_->draw = windowOf(draw);
     s_->read = windowOf(read);
@@ -184,7 +184,7 @@ bool Replay::onWindow(Args& in) {
         slot->lean = config_.lean;
         slot->skipped = skips_;
         if (skips_) slot->stale = kWindowBuffers | GL_ACCUM_BUFFER_BIT;
-        slot->range.returns = returnsTold();
+        slot->range.returns = returnsSeen();
     }
     Window& w = *slot;
     w.destroyed = false; // the program has bound it again
@@ -200,7 +200,7 @@ bool Replay::onWindow(Args& in) {
     w.whole = {0, 0, width, height};
     if (moves() && (!w.surface || renewed || w.surface->width() != std::max(width, 1) ||
                     w.surface->height() != std::max(height, 1)))
-        divideAnew(w);
+        redivide(w);
     w.part = partOf(w, w.moving.areas.get());
     placePart(w);
     const PixelViewport size = surfaceOf(w, w.lean);
@@ -247,7 +247,7 @@ void Replay::takeBitsOfSurface(Window& w) {
     w.config.depth = static_cast<uint8_t>(there.depth);
     w.config.stencil = static_cast<uint8_t>(there.stencil);
     w.config.samples = static_cast<uint8_t>(there.samples);
-    if (differs == std::exchange(toldBits_, differs)) return;
+    if (differs == std::exchange(reportedBits_, differs)) return;
     out_.log("its GL has no framebuffer like the program's window and draws it with " + differs +
              "; pixels may differ from the native picture");
 }
@@ -326,7 +326,7 @@ bool Replay::onProgramLayout(Args& in) {
     uint32_t count = 0;
     std::memcpy(&count, bytes.data(), 4);
     ProgramInfo info;
-    const GLuint ours = name(Kind::Program, program);
+    const GLuint nodeName = name(Kind::Program, program);
     size_t at = 4;
     for (uint32_t i = 0; i < count; ++i) {
         GLint location = 0;
@@ -338,7 +338,7 @@ bool Replay::onProgramLayout(Args& in) {
         if (length > bytes.size() - at) return false;
         const std::string text(reinterpret_cast<const char*>(bytes.data()) + at, length);
         at = std::min(at + (size_t{length} + 3) / 4 * 4, bytes.size());
-        const GLint here = gl.glGetUniformLocation(ours, text.c_str());
+        const GLint here = gl.glGetUniformLocation(nodeName, text.c_str());
         if (here != location) info.locations[location] = here;
     }
     if (info.locations.empty())
@@ -354,13 +354,13 @@ bool Replay::onBufferBytes(Args& in) {
     const Data bytes = in.data();
     if (!in.ok()) return false;
     if (c_ == none_.get() || bytes.size() == 0) return true;
-    const GLuint ours = name(Kind::Buffer, buffer);
+    const GLuint nodeName = name(Kind::Buffer, buffer);
     // Uses a target that no draw reads, so that the program's bindings do not change.
     const bool copyTarget = c_->version >= 31 || (c_->api != wire::Api::Desktop && c_->version >= 30);
     const GLenum target = copyTarget ? GL_COPY_WRITE_BUFFER : GL_ARRAY_BUFFER;
     GLint before = 0;
     gl.glGetIntegerv(copyTarget ? GL_COPY_WRITE_BUFFER_BINDING : GL_ARRAY_BUFFER_BINDING, &before);
-    gl.glBindBuffer(target, ours);
+    gl.glBindBuffer(target, nodeName);
     if (copyTarget && onlyCopiesWrite(target))
         copyIntoBuffer(target, offset, bytes.span());
     else

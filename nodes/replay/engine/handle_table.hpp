@@ -12,26 +12,26 @@ class HandleTable {
 public:
     enum class Of : uint8_t { Texture, Image };
 
-    // Records that this node's driver returned `ours` for the program's `theirs`. Replaces an older pair: handles end
-    // with their textures, and drivers reuse them. Returns false if the two differ for the first time.
-    bool set(Of of, uint64_t theirs, uint64_t ours) {
-        table(of)[theirs] = ours;
-        const bool news = theirs != ours && !differ_;
-        differ_ = differ_ || theirs != ours;
-        return !news;
+    // Records that this node's driver returned `nodeHandle` for the program's `appHandle`. Replaces an older pair:
+    // handles end with their textures, and drivers reuse them. Returns false if the two differ for the first time.
+    bool set(Of of, uint64_t appHandle, uint64_t nodeHandle) {
+        table(of)[appHandle] = nodeHandle;
+        const bool fresh = appHandle != nodeHandle && !differ_;
+        differ_ = differ_ || appHandle != nodeHandle;
+        return !fresh;
     }
     // 0: unknown handle.
-    [[nodiscard]] uint64_t find(Of of, uint64_t theirs) const {
+    [[nodiscard]] uint64_t find(Of of, uint64_t appHandle) const {
         const auto& known = of == Of::Texture ? textures_ : images_;
-        const auto it = known.find(theirs);
+        const auto it = known.find(appHandle);
         return it == known.end() ? 0 : it->second;
     }
     // For a number that may be a handle: returns it unchanged if it is none. `first`: the more likely kind.
-    [[nodiscard]] uint64_t value(Of first, uint64_t theirs) const {
-        if (!differ_) return theirs;
-        if (const uint64_t ours = find(first, theirs)) return ours;
-        const uint64_t other = find(first == Of::Texture ? Of::Image : Of::Texture, theirs);
-        return other ? other : theirs;
+    [[nodiscard]] uint64_t value(Of first, uint64_t appHandle) const {
+        if (!differ_) return appHandle;
+        if (const uint64_t nodeHandle = find(first, appHandle)) return nodeHandle;
+        const uint64_t other = find(first == Of::Texture ? Of::Image : Of::Texture, appHandle);
+        return other ? other : appHandle;
     }
     [[nodiscard]] bool differ() const { return differ_; } // some pair has differed
 

@@ -15,12 +15,12 @@ public:
         const auto it = sparse_.find(name);
         return it == sparse_.end() ? 0 : it->second;
     }
-    void set(GLuint name, GLuint ours) {
+    void set(GLuint name, GLuint nodeName) {
         if (name < kDense) {
             if (name >= dense_.size()) dense_.resize(name + name / 2 + 64, 0);
-            dense_[name] = ours;
+            dense_[name] = nodeName;
         } else {
-            sparse_[name] = ours;
+            sparse_[name] = nodeName;
         }
     }
     void erase(GLuint name) {

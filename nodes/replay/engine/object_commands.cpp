@@ -12,24 +12,24 @@ namespace mural {
 // ---- buffers and vertex arrays
 
 void Replay::glBindBuffer(GLenum target, GLuint buffer) {
-    const GLuint ours = name(Kind::Buffer, buffer);
-    if (target == GL_ARRAY_BUFFER) c_->arrayBuffer = ours;
-    if (target == GL_PIXEL_PACK_BUFFER) c_->packBuffer = ours;
-    if (target == GL_QUERY_BUFFER) c_->queryBuffer = ours;
-    if (target == GL_PIXEL_UNPACK_BUFFER) c_->unpackBuffer = ours;
-    gl.glBindBuffer(target, ours);
+    const GLuint nodeName = name(Kind::Buffer, buffer);
+    if (target == GL_ARRAY_BUFFER) c_->arrayBuffer = nodeName;
+    if (target == GL_PIXEL_PACK_BUFFER) c_->packBuffer = nodeName;
+    if (target == GL_QUERY_BUFFER) c_->queryBuffer = nodeName;
+    if (target == GL_PIXEL_UNPACK_BUFFER) c_->unpackBuffer = nodeName;
+    gl.glBindBuffer(target, nodeName);
 }
 void Replay::glDeleteBuffers(GLsizei n, const Data& buffers) {
     if (n <= 0 || !buffers.pointer()) return;
-    const GLuint* ours = names(Kind::Buffer, buffers.as<GLuint>(), n);
+    const GLuint* nodeNames = names(Kind::Buffer, buffers.as<GLuint>(), n);
     for (GLsizei i = 0; i < n; ++i) {
-        if (ours[i] == 0) continue;
-        if (ours[i] == c_->arrayBuffer) c_->arrayBuffer = 0;
-        if (ours[i] == c_->packBuffer) c_->packBuffer = 0;
-        if (ours[i] == c_->queryBuffer) c_->queryBuffer = 0;
-        if (ours[i] == c_->unpackBuffer) c_->unpackBuffer = 0;
+        if (nodeNames[i] == 0) continue;
+        if (nodeNames[i] == c_->arrayBuffer) c_->arrayBuffer = 0;
+        if (nodeNames[i] == c_->packBuffer) c_->packBuffer = 0;
+        if (nodeNames[i] == c_->queryBuffer) c_->queryBuffer = 0;
+        if (nodeNames[i] == c_->unpackBuffer) c_->unpackBuffer = 0;
     }
-    gl.glDeleteBuffers(n, ours);
+    gl.glDeleteBuffers(n, nodeNames);
     forget(Kind::Buffer, buffers.as<GLuint>(), n);
 }
 void Replay::glBindVertexArray(GLuint array) { gl.glBindVertexArray(name(Kind::VertexArray, array)); }
@@ -138,11 +138,11 @@ void Replay::glCopyImageSubData(GLuint srcName, GLenum srcTarget, GLint srcLevel
                                 GLuint dstName, GLenum dstTarget, GLint dstLevel, GLint dstX, GLint dstY, GLint dstZ,
                                 GLsizei w, GLsizei h, GLsizei d) {
     if (!gl.glCopyImageSubData) return;
-    const auto ours = [&](GLuint n, GLenum target) {
+    const auto nodeName = [&](GLuint n, GLenum target) {
         return name(target == GL_RENDERBUFFER ? Kind::Renderbuffer : Kind::Texture, n);
     };
-    gl.glCopyImageSubData(ours(srcName, srcTarget), srcTarget, srcLevel, srcX, srcY, srcZ, ours(dstName, dstTarget),
-                          dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
+    gl.glCopyImageSubData(nodeName(srcName, srcTarget), srcTarget, srcLevel, srcX, srcY, srcZ,
+                          nodeName(dstName, dstTarget), dstTarget, dstLevel, dstX, dstY, dstZ, w, h, d);
 }
 
 void Replay::glCopyImageSubDataNV(GLuint srcName, GLenum srcTarget, GLint srcLevel, GLint srcX, GLint srcY, GLint srcZ,

@@ -14,7 +14,7 @@ Replay::Replay(std::unique_ptr<gl::Platform> platform, ReplayConfig config, Repl
     : platform_(std::move(platform)),
       config_(std::move(config)),
       out_(std::move(outputs)),
-      saidLacking_(op::kLimit, false) {
+      lackingReported_(op::kLimit, false) {
     share_ = config_.pass.share;
     knowsTurns_ = knowsCosts_ = knowsAreas_ = !config_.isResyncing;
     if (config_.areas) areas_ = std::make_shared<const ViewportAssignment>(*config_.areas);
@@ -36,7 +36,7 @@ bool Replay::packet(uint32_t stream, std::span<const std::byte> payload) {
         if (!header || !record(payload.subspan(at, header.sizeBytes))) return false;
         at += header.sizeBytes;
     }
-    tellMessages();
+    sendDriverMessages();
     return true;
 }
 
@@ -158,7 +158,7 @@ bool Replay::bindStream(Stream& s) {
     if (s.draw) s.draw->drawer = s.context;
     // The context belongs to another thread of the program. It stays current there, as the previous context stays
     // current in its own thread.
-    if (!bindSurfaces(gl::HeldBack::Kept)) {
+    if (!bindSurfaces(gl::PendingCommands::Pending)) {
         c_ = none_.get();
         return true;
     }
@@ -230,15 +230,15 @@ constexpr GLuint kNoObject = UINT32_MAX; // a name that no GL object has
 
 GLuint Replay::name(Kind kind, GLuint app) {
     if (app == 0) return 0;
-    GLuint ours = table(kind).find(app);
-    if (ours) return ours;
-    if (kind == Kind::Framebuffer && c_->shared) ours = c_->shared->framebuffersOfAll.find(app); // Mesa shares them
-    if (ours) return ours;
+    GLuint nodeName = table(kind).find(app);
+    if (nodeName) return nodeName;
+    if (kind == Kind::Framebuffer && c_->shared) nodeName = c_->shared->framebuffersOfAll.find(app); // Mesa shares them
+    if (nodeName) return nodeName;
     if (c_->core) return kNoObject; // only created names are valid
-    ours = generate(kind);
-    if (!ours) return app; // if GL rejects the name here, it rejects the program's name as well
-    bindName(kind, app, ours);
-    return ours;
+    nodeName = generate(kind);
+    if (!nodeName) return app; // if GL rejects the name here, it rejects the program's name as well
+    bindName(kind, app, nodeName);
+    return nodeName;
 }
 
 const GLuint* Replay::names(Kind kind, const GLuint* app, int64_t count) {
@@ -265,10 +265,10 @@ void Replay::make(Kind kind, int64_t count, const GLuint* app, const std::functi
     }
 }
 
-void Replay::bindName(Kind kind, GLuint app, GLuint ours) {
+void Replay::bindName(Kind kind, GLuint app, GLuint nodeName) {
     if (app == 0) return;
-    table(kind).set(app, ours);
-    if (kind == Kind::Framebuffer && c_->shared) c_->shared->framebuffersOfAll.set(app, ours);
+    table(kind).set(app, nodeName);
+    if (kind == Kind::Framebuffer && c_->shared) c_->shared->framebuffersOfAll.set(app, nodeName);
     if (kind == Kind::Program && c_->shared) c_->shared->programs.erase(app);
 }
 
@@ -294,8 +294,8 @@ GLint Replay::uniformLocation(GLint location) { return uniformLocation(c_->progr
 
 bool Replay::lacking(uint16_t opcode) {
     ++counts_.lacking;
-    if (!saidLacking_[opcode]) {
-        saidLacking_[opcode] = true;
+    if (!lackingReported_[opcode]) {
+        lackingReported_[opcode] = true;
         const char* text = glOpcodeName(opcode);
         out_.log(std::string("this node's driver has no ") + (text ? text : "such command") +
                  "; its effect is missing on this node's tiles");

@@ -75,15 +75,15 @@ public:
     // Sort-last: handles the return of a node; `itself`: this node has returned. All nodes of the picture call it at
     // the same position of the stream. `returned` is called between the last composition without the returned node and
     // the first one with it.
-    void shareAnew(bool itself, std::function<void()> returned);
+    void resetShares(bool itself, std::function<void()> returned);
     // Announces new shares. Each window adopts them with the first shared draw of its next frame.
     void moveShares(const RangeAssignment& shares);
     // Requires ReplayConfig::areas. Applies new areas to each window at its next full clear (replay_areas.cpp).
     void moveAreas(ViewportAssignment areas);
     // Returns the payload of a Turns message: the areas that divide this node's windows.
-    [[nodiscard]] std::vector<std::byte> tellAreas() const;
+    [[nodiscard]] std::vector<std::byte> memberAreas() const;
     // Sets the areas from such a payload of another node. Returns false if malformed.
-    bool takeToldAreas(std::span<const std::byte> bytes);
+    bool takeMemberAreas(std::span<const std::byte> bytes);
     // Called if no node has the areas. Divides all windows by the latest ones.
     void beginAreas();
     // Reports whether the next shown frames depend on skipped draws.
@@ -95,7 +95,7 @@ public:
     GLuint name(Kind kind, GLuint app);
     const GLuint* names(Kind kind, const GLuint* app, int64_t count);
     void make(Kind kind, int64_t count, const GLuint* app, const std::function<void(GLuint*)>& call);
-    void bindName(Kind kind, GLuint app, GLuint ours);
+    void bindName(Kind kind, GLuint app, GLuint nodeName);
     void forget(Kind kind, const GLuint* app, int64_t count);
     GLint uniformLocation(GLint location);
     GLint uniformLocation(GLuint program, GLint location);
@@ -186,15 +186,15 @@ private:
         PixelViewport drawn;
         int64_t frames = 0; // number of frames begun, and below of turns begun (replay_turns.cpp)
         int64_t turn = 0;
-        bool turnOver = false;  // the frame is complete; the next drawing command begins another
-        bool undecided = false; // the frame has only cleared, and may begin the next node's turn
-        bool fresh = false;     // the frame has begun the next node's turn
-        int64_t kept = 0;       // consecutive frames that built on their predecessor
-        GLbitfield cleared = 0; // buffers that were cleared whole since the frame began
-        bool plain = true;      // drawn without the kernel of this pass; its pixels are selected at the end
-        bool copied = true;     // pixels were read or copied, or selected texture levels: the next frame is plain
-        int askedOfLevels = 0;  // draws of this frame that were checked for texture levels (replay_whole_windows.cpp)
-        bool asked = false;     // pixels or bytes were requested in this frame
+        bool turnOver = false;       // the frame is complete; the next drawing command begins another
+        bool undecided = false;      // the frame has only cleared, and may begin the next node's turn
+        bool fresh = false;          // the frame has begun the next node's turn
+        int64_t dependentFrames = 0; // consecutive frames that built on their predecessor
+        GLbitfield cleared = 0;      // buffers that were cleared whole since the frame began
+        bool plain = true;           // drawn without the kernel of this pass; its pixels are selected at the end
+        bool copied = true;          // pixels were read or copied, or selected texture levels: the next frame is plain
+        int levelChecks = 0;    // draws of this frame that were checked for texture levels (replay_whole_windows.cpp)
+        bool requested = false; // pixels or bytes were requested in this frame
         // draws the whole window: a copy must find this pass's own pixels, and other tiles deliver another pass's
         bool drawsAll = true;
         bool filled = true; // the frame had copies: the next one draws the whole window
@@ -236,7 +236,7 @@ private:
         NameTable framebuffersOfAll;
         // by this node's shader name: contains a module that reads gl_FragCoord
         std::unordered_map<GLuint, bool> placedModules;
-        bool listsHoldBitmaps = false;                 // at least one list contains a bitmap
+        bool listsContainBitmaps = false;              // at least one list contains a bitmap
         bool texturesHaveLevels = false;               // at least one texture has (replay_whole_windows.cpp)
         bool testsDepth = false, testsStencil = false; // some command or list has enabled the test
         // every node draws everything: the program's side requested it, or a module reads gl_FragCoord
@@ -253,7 +253,7 @@ private:
         std::unordered_map<GLuint, bool> memoryWriters;
         ProjectionDetector projection;        // the last one found in any buffer
         std::shared_ptr<AsyncReadback> later; // null: unavailable, or not requested yet
-        bool laterAsked = false;              // creation was tried once
+        bool asyncTried = false;              // creation was tried once
     };
     struct Scissor {
         bool enabled = false;
@@ -287,7 +287,7 @@ private:
     };
     // A piece of a query. Fragments that every node draws count once; the others are summed over the tiles.
     struct QueryPiece {
-        GLuint ours;
+        GLuint nodeName;
         bool whole;
     };
     struct QueryInfo {
@@ -302,7 +302,7 @@ private:
         GLuint framebuffer = 0, color = 0, depthStencil = 0;
         std::vector<uint32_t> depth; // kept until the stencil arrives
     };
-    struct AskedAhead { // a query whose result is answered at the next swap
+    struct Prefetch { // a query whose result is answered at the next swap
         uint32_t request;
         GLuint query;
     };
@@ -321,14 +321,14 @@ private:
         bool debugs = false;                           // the program requested a debug context
         bool listens = false;                          // the driver sends its messages to `debug`
         bool lost = false;                             // the driver has reset it
-        bool heldBack = false;                         // not flushed when the program releases it
-        uint32_t errorsTold = 0;                       // number of errors that the program's own GL has reported to it
+        bool pendingCommands = false;                  // not flushed when the program releases it
+        uint32_t errorsReported = 0;                   // number of errors that the program's own GL has reported to it
         std::unordered_map<GLuint, QueryInfo> queries; // by the program's name
-        std::vector<AskedAhead> askedAhead;
+        std::vector<Prefetch> prefetches;
         std::map<GLenum, GLuint> counting; // active fragment queries: target to the program's query
         bool countsWhole = false;          // value of isReplicatedDraw() at the start of the last piece
         bool countedWhole = false;         // an active query requires the whole picture on every node
-        bool conditional = false, conditionMet = false;
+        bool conditional = false, isConditionTrue = false;
         GLuint condition = 0; // this node's name of the deciding query, and its mode
         GLenum conditionMode = 0;
         GLuint queryBuffer = 0;    // this node's name of the buffer for results
@@ -336,7 +336,7 @@ private:
         uint32_t client = 0, id = 0;
         bool destroyed = false; // freed when no stream has it current
         std::unique_ptr<gl::Context> context;
-        gl::ContextConfig wish; // configuration of its creation
+        gl::ContextConfig contextConfig; // configuration of its creation
         std::shared_ptr<Shared> shared;
         NameTable own[static_cast<int>(Kind::Count)];
         wire::Api api = wire::Api::Desktop;
@@ -452,7 +452,7 @@ private:
     void readTexels(bool byName, GLuint which, GLint level, GLenum format, GLenum type);
     void readBlocks(bool byName, GLuint which, GLint level);
     bool onRequestBuffer(Args& in);
-    void readBuffer(GLuint ours, uint64_t offset);
+    void readBuffer(GLuint nodeName, uint64_t offset);
     void answerBytes(uint32_t request, wire::ReplyKind kind, std::span<const std::byte> bytes);
     enum class Beyond : uint8_t { Black, Nothing }; // pixels outside the framebuffer: returned as black, or impossible
     [[nodiscard]] bool isAnswering();
@@ -485,13 +485,13 @@ private:
     bool onDestroyImage(Args& in);
     void withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call);
     // replay_handles.cpp
-    void dealtHandle(HandleTable::Of of, uint64_t theirs, uint64_t ours);
-    void askTextureHandle(GLuint texture, GLuint sampler, uint64_t theirs);
+    void dealtHandle(HandleTable::Of of, uint64_t appHandle, uint64_t nodeHandle);
+    void requestTextureHandle(GLuint texture, GLuint sampler, uint64_t appHandle);
     uint64_t equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GLuint& made);
-    void handlesGone(Kind kind, GLuint ours);
+    void handlesGone(Kind kind, GLuint nodeName);
     GLuint samplerLike(GLuint texture, GLuint sampler);
     void settleDriver();
-    void flushIfAsked(Window& w);
+    void flushIfRequested(Window& w);
     [[nodiscard]] HandleTable::Of handlesOfUniform(GLuint program, GLint location) const;
     [[nodiscard]] std::vector<GLuint64> handleValues(GLuint program, GLint location, const GLuint64* values,
                                                      GLsizei count) const;
@@ -506,16 +506,16 @@ private:
     bool enlargeToPages(GLenum target, GLuint texture, PageBox& box);
     void commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits, const std::function<uint64_t()>& bufferBytes,
                       const std::function<void(uint64_t, uint64_t)>& call);
-    bool saidPages_ = false;
+    bool pagesReported_ = false;
     // replay_news.cpp
     void listenToDriver();
-    static void APIENTRY hearDriver(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
-                                    const GLchar* text, const void* inbox);
-    void tellMessages();
-    void tell(wire::DriverEventKind kind, const DebugInbox::Message& message);
+    static void APIENTRY onDriverMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                                         const GLchar* text, const void* inbox);
+    void sendDriverMessages();
+    void sendDriverEvent(wire::DriverEventKind kind, const DebugInbox::Message& message);
     bool takeErrors();
-    bool errorTold();
-    void tellTroubles();
+    bool errorReported();
+    void reportDriverProblems();
     bool executeAllocating(ReplayFunction function, Args& in);
     // replay_release.cpp
     bool onDestroyContext(Args& in);
@@ -523,24 +523,24 @@ private:
     void unbindPlatform();
     void freeDestroyed(Client& client);
     // replay_queries.cpp
-    void aside(const std::function<void()>& call);
+    void withQueriesSuspended(const std::function<void()>& call);
     void beginPiece(GLenum target, GLuint query);
     bool onRequestQuery(Args& in);
     void answerQuery(uint32_t request, GLuint query);
-    void answerAskedAhead();
+    void sendPrefetched();
     bool onBeginConditional(Args& in);
     bool onQueryKnown(Args& in);
     bool onDrawAll(Args& in);
     void beginConditional(bool draws);
-    void askDriver(GLuint ours, GLenum mode);
+    void queryDriver(GLuint nodeName, GLenum mode);
     [[nodiscard]] bool isReplicatedDraw() const;
     void splitQueries();
     void dropPieces(QueryInfo& query);
-    uint64_t queryResult(GLuint ours);
-    uint64_t readQuery(GLuint ours);
+    uint64_t queryResult(GLuint nodeName);
+    uint64_t readQuery(GLuint nodeName);
     // replay_areas.cpp
     [[nodiscard]] bool moves() const { return areas_ != nullptr; }
-    [[nodiscard]] bool learnsAreas(const Window& w) const { return moves() && !knowsAreas_ && !w.skipped; }
+    [[nodiscard]] bool isLearningAreas(const Window& w) const { return moves() && !knowsAreas_ && !w.skipped; }
     [[nodiscard]] PixelViewport partOf(const Window& w, const ViewportAssignment* areas) const;
     void onArea(uint16_t opcode, std::span<const std::byte> arguments);
     [[nodiscard]] GLbitfield clearedBy(uint16_t opcode, std::span<const std::byte> arguments) const;
@@ -548,13 +548,13 @@ private:
     void onNativeList();
     void onTests(GLenum cap);
     void takeAreas(Window& w);
-    void divideAnew(Window& w);
+    void redivide(Window& w);
     void areasChanged();
     [[nodiscard]] bool drawsOldFront() const;
     [[nodiscard]] PixelViewport regionOf(const Window& w, bool front) const;
     [[nodiscard]] bool readsFront() const;
     // replay_widening.cpp
-    void onModules(GLuint ours);
+    void onModules(GLuint nodeName);
     [[nodiscard]] bool alone() const { // this node's part is the whole picture
         if (config_.area || moves()) return !moves() && config_.area->full() && !takesTurns();
         return config_.region.columns == config_.grid.columns && config_.region.rows == config_.grid.rows &&
@@ -565,7 +565,7 @@ private:
     void copyTile(const Window& w, gl::Surface& from);
     // replay_turns.cpp
     [[nodiscard]] bool takesTurns() const { return config_.pass.period > 1; }
-    [[nodiscard]] bool learnsTurns(const Window& w) const;
+    [[nodiscard]] bool isLearningTurns(const Window& w) const;
     void turnsChanged();
     void placePart(Window& w);
     [[nodiscard]] bool drawsWholeBins(const Window& w) const;
@@ -640,7 +640,7 @@ private:
     void onRangeState(uint16_t opcode, std::span<const std::byte> arguments);
     void onCompiled(uint16_t opcode, std::span<const std::byte> arguments);
     bool onRangeList(const ListItem& item);
-    void notePrimitiveIds(GLuint ours);
+    void notePrimitiveIds(GLuint nodeName);
     [[nodiscard]] bool mayShare();
     bool shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last);
     void beginSplit(Window& w);
@@ -653,10 +653,10 @@ private:
     void readPart(Window& w, const PixelViewport& box, PicturePart& part);
     void writePart(const PicturePart& part, const PixelViewport& area);
     std::vector<std::byte> sliced_; // arguments of a draw, reduced to this node's piece
-    // replay_front.cpp
+    // front_buffer.cpp
     [[nodiscard]] bool hasTwoSurfaces(const Window* w) const;
     gl::Surface* surfaceOf(Window* w, GLenum buffer);
-    bool bindSurfaces(gl::HeldBack heldBack = gl::HeldBack::Flushed);
+    bool bindSurfaces(gl::PendingCommands pendingCommands = gl::PendingCommands::Flushed);
     void drawBufferOfWindow(GLenum buffer);
     void readBufferOfWindow(GLenum buffer);
     void buffersChanged(GLenum drawnBefore);
@@ -675,8 +675,8 @@ private:
     [[nodiscard]] bool hidesAlpha() const;
     void applyColorMasks();
     void makeOpaque();
-    bool alphaHides_ = false; // some window hides its alpha
-    std::string toldBits_;    // last logged difference between a window here and the program's
+    bool alphaHides_ = false;  // some window hides its alpha
+    std::string reportedBits_; // last logged difference between a window here and the program's
     // replay_accum.cpp
     // x, y, z, width and height, in window coordinates.
     void drawTexture(const std::array<GLfloat, 5>& rectangle);
@@ -685,14 +685,14 @@ private:
     [[nodiscard]] PixelViewport accumulatedBox() const;
     void accumulateColours(GLfloat value, bool add);
     void returnAccumulated(GLfloat value);
-    bool saidAccumulation_ = false;
+    bool accumulationReported_ = false;
     // replay_binaries.cpp
     bool onRequestProgram(Args& in);
     bool onProgramRecipe(Args& in);
-    void linkFrom(GLuint ours, ProgramSources recipe);
+    void linkFrom(GLuint nodeName, ProgramSources recipe);
     // replay_programs.cpp
-    void compileShader(GLuint ours);
-    void linkProgram(GLuint ours);
+    void compileShader(GLuint nodeName);
+    void linkProgram(GLuint nodeName);
     [[nodiscard]] ShaderRewrites rewrites() const;
     [[nodiscard]] bool esContext() const { return c_->api != wire::Api::Desktop; }
     void applyTileValues();
@@ -744,7 +744,7 @@ private:
     std::vector<std::vector<GLuint>> scratch_;  // translated names of the record being replayed
     size_t scratchUsed_ = 0;
     std::vector<std::byte> pixels_;
-    std::vector<bool> saidLacking_;
+    std::vector<bool> lackingReported_;
     int listDepth_ = 0;         // nested display lists in execution
     uint32_t listCommands_ = 0; // executed since the outermost list began
     bool hasSkipped_ = false;   // began by skipping frames
@@ -757,7 +757,7 @@ private:
     // callbacks of returned nodes of its picture that no composition includes yet
     std::deque<std::function<void()>> returns_;
     uint64_t returnsTaken_ = 0; // number of returns before those
-    [[nodiscard]] uint64_t returnsTold() const { return returnsTaken_ + returns_.size(); }
+    [[nodiscard]] uint64_t returnsSeen() const { return returnsTaken_ + returns_.size(); }
     std::shared_ptr<const ViewportAssignment>
         areas_; // current for new windows, wanted by the others; null: areas never change
     bool knowsAreas_ = true;

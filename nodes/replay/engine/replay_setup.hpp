@@ -44,7 +44,7 @@ struct ReplayConfig {
     std::optional<ScreenView> screen;         // includes the position of the eye
     bool skips = false;                       // draws no frames until drawAgain()
     // The node is in resync, and other nodes have the turns. Until takeTurns() or beginTurns() the node draws all
-    // frames and owns none of them. It shares no draws before shareAnew().
+    // frames and owns none of them. It shares no draws before resetShares().
     bool isResyncing = false;
     bool cull = false;          // rewritten shaders drop whole primitives outside the region
     bool lean = false;          // framebuffers of the tile's size; false: of the picture's size (exact)
@@ -88,7 +88,7 @@ struct ReplayOutputs {
     // is the whole picture. Returns the area of it that may have changed.
     std::function<PixelViewport(PicturePart&, const CompositeRule&)> composeParts;
     // Driver events of a program's context.
-    std::function<void(const wire::DriverEvent&, const std::string& text)> news;
+    std::function<void(const wire::DriverEvent&, const std::string& text)> driverEvent;
 };
 
 struct ReplayCounts {

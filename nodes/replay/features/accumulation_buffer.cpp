@@ -18,7 +18,7 @@ bool Replay::accumulatesHere() {
                      c_->api == wire::Api::Desktop && !c_->core;
     if (!has || gl.glIsEnabled(GL_RASTERIZER_DISCARD)) return false;
     if (c_->draw->config.red == 8 && c_->draw->config.samples == 0) return true;
-    if (!std::exchange(saidAccumulation_, true))
+    if (!std::exchange(accumulationReported_, true))
         out_.log("accumulation buffers of multisampled windows, and those with other than 8 bits per colour, are not "
                  "supported here; use --gl glx");
     return false;

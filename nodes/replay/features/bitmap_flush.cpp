@@ -9,9 +9,9 @@ namespace mural {
 // Calls of display lists count only if some list contains a bitmap. settleBitmaps() has a side effect: Mesa commits
 // pending materials, which a later colour would otherwise still change.
 void Replay::onBitmaps(uint16_t opcode) {
-    if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsHoldBitmaps = true;
+    if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsContainBitmaps = true;
     const bool listed =
-        (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsHoldBitmaps;
+        (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsContainBitmaps;
     if (opcode == op::glBitmap || listed) c_->gathersBitmaps = true;
 }
 

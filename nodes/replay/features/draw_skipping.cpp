@@ -33,17 +33,17 @@ bool Replay::mayWriteMemory(GLuint program) {
     const auto known = c_->shared->memoryWriters.find(program);
     if (known != c_->shared->memoryWriters.end()) return known->second;
     bool writes = !gl.glGetProgramInterfaceiv || !gl.glGetActiveUniformsiv;
-    const GLuint ours = name(Kind::Program, program);
+    const GLuint nodeName = name(Kind::Program, program);
     for (const GLenum kind : {GL_SHADER_STORAGE_BLOCK, GL_ATOMIC_COUNTER_BUFFER}) {
         GLint count = 0;
-        if (!writes) gl.glGetProgramInterfaceiv(ours, kind, GL_ACTIVE_RESOURCES, &count);
+        if (!writes) gl.glGetProgramInterfaceiv(nodeName, kind, GL_ACTIVE_RESOURCES, &count);
         writes = writes || count > 0;
     }
     GLint uniforms = 0;
-    if (!writes) gl.glGetProgramiv(ours, GL_ACTIVE_UNIFORMS, &uniforms);
+    if (!writes) gl.glGetProgramiv(nodeName, GL_ACTIVE_UNIFORMS, &uniforms);
     for (GLuint i = 0; i < static_cast<GLuint>(uniforms) && !writes; ++i) {
         GLint type = 0;
-        gl.glGetActiveUniformsiv(ours, 1, &i, GL_UNIFORM_TYPE, &type);
+        gl.glGetActiveUniformsiv(nodeName, 1, &i, GL_UNIFORM_TYPE, &type);
         writes = type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
     }
     return c_->shared->memoryWriters[program] = writes;

@@ -72,7 +72,7 @@ void Replay::moveAreas(ViewportAssignment areas) {
 }
 
 // The window has new buffers, with equal content on all nodes.
-void Replay::divideAnew(Window& w) {
+void Replay::redivide(Window& w) {
     w.moving = {};
     w.moving.areas = w.moving.wanted = w.moving.front = areas_;
 }
@@ -169,7 +169,7 @@ void Replay::onTests(GLenum cap) {
 
 // ---- returned nodes: their snapshot contains no areas. Until they receive them, they draw every window whole.
 
-std::vector<std::byte> Replay::tellAreas() const {
+std::vector<std::byte> Replay::memberAreas() const {
     std::vector<std::shared_ptr<const ViewportAssignment>> named{areas_};
     std::vector<wire::WindowAreas> windows;
     for (const auto& [client, its] : clients_)
@@ -192,7 +192,7 @@ std::vector<std::byte> Replay::tellAreas() const {
     return bytes;
 }
 
-bool Replay::takeToldAreas(std::span<const std::byte> bytes) {
+bool Replay::takeMemberAreas(std::span<const std::byte> bytes) {
     uint32_t count = 0;
     if (!moves() || bytes.size() < sizeof count) return false;
     std::memcpy(&count, bytes.data(), sizeof count);
@@ -209,16 +209,17 @@ bool Replay::takeToldAreas(std::span<const std::byte> bytes) {
         if (named.empty()) areas_ = shared;
         named.emplace(shared->number, shared);
     }
-    for (const wire::WindowAreas& told : windows) {
-        const auto client = clients_.find(told.client);
-        if (client == clients_.end() || !client->second.windows.contains(told.window)) continue;
-        if (!named.contains(told.areas) || !named.contains(told.wanted) || !named.contains(told.front)) return false;
-        MovingPart& m = client->second.windows[told.window]->moving;
-        m.areas = named[told.areas];
-        m.wanted = named[told.wanted];
-        m.front = named[told.front];
-        m.drawn = told.drawn;
-        m.fixed = told.fixed != 0;
+    for (const wire::WindowAreas& member : windows) {
+        const auto client = clients_.find(member.client);
+        if (client == clients_.end() || !client->second.windows.contains(member.window)) continue;
+        if (!named.contains(member.areas) || !named.contains(member.wanted) || !named.contains(member.front))
+            return false;
+        MovingPart& m = client->second.windows[member.window]->moving;
+        m.areas = named[member.areas];
+        m.wanted = named[member.wanted];
+        m.front = named[member.front];
+        m.drawn = member.drawn;
+        m.fixed = member.fixed != 0;
     }
     knowsAreas_ = true;
     areasChanged();

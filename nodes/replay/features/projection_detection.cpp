@@ -35,7 +35,7 @@ template <class T> ProjectionDetector projectionFrom(const std::byte* from, bool
     return seenProjection(m);
 }
 
-bool looksLikeOne(const float (&m)[16]) {
+bool isPlausible(const float (&m)[16]) {
     for (const int zero : {1, 2, 3, 4, 6, 7, 12, 13, 15})
         if (m[zero] != 0) return false;
     return std::fabs(m[11]) == 1 && m[0] != 0 && m[5] != 0 && m[14] != 0;
@@ -43,7 +43,7 @@ bool looksLikeOne(const float (&m)[16]) {
 
 } // namespace
 
-bool ProjectionDetector::near(const ProjectionDetector& o) const {
+bool ProjectionDetector::isClose(const ProjectionDetector& o) const {
     const auto same = [](double a, double b) { return std::fabs(a - b) <= 1e-4 * std::fmax(1, std::fabs(a)); };
     return same(scaleX, o.scaleX) && same(scaleY, o.scaleY) && same(shearX, o.shearX) && same(shearY, o.shearY) &&
            same(depth, o.depth);
@@ -76,7 +76,7 @@ ProjectionDetector lastProjectionIn(std::span<const std::byte> bytes) {
     for (size_t at = 0; at + 64 <= bytes.size(); at += 4) {
         float m[16];
         std::memcpy(m, bytes.data() + at, sizeof m);
-        if (!looksLikeOne(m)) continue;
+        if (!isPlausible(m)) continue;
         const ProjectionDetector seen = seenProjection(m);
         if (seen.perspective()) last = seen;
     }

@@ -18,7 +18,7 @@ struct ProjectionDetector {
 
     [[nodiscard]] bool perspective() const { return scaleX > 0; }
     // Equality up to the rounding of products with moving models.
-    [[nodiscard]] bool near(const ProjectionDetector& other) const;
+    [[nodiscard]] bool isClose(const ProjectionDetector& other) const;
 };
 
 // Column-major, as in OpenGL.

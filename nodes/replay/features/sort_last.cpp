@@ -118,10 +118,10 @@ void Replay::onRangeState(uint16_t opcode, std::span<const std::byte> arguments)
     }
 }
 
-void Replay::notePrimitiveIds(GLuint ours) {
+void Replay::notePrimitiveIds(GLuint nodeName) {
     GLuint attached[64] = {};
     GLsizei count = 0;
-    gl.glGetAttachedShaders(ours, 64, &count, attached);
+    gl.glGetAttachedShaders(nodeName, 64, &count, attached);
     bool numbers = count == 0;
     for (GLsizei i = 0; i < count; ++i) {
         GLint length = 0;
@@ -130,7 +130,7 @@ void Replay::notePrimitiveIds(GLuint ours) {
         gl.glGetShaderSource(attached[i], static_cast<GLsizei>(text.size()), nullptr, text.data());
         numbers = numbers || length <= 1 || text.find("gl_PrimitiveID") != std::string::npos;
     }
-    if (c_->shared) c_->shared->primitiveIds[ours] = numbers;
+    if (c_->shared) c_->shared->primitiveIds[nodeName] = numbers;
 }
 
 // Records the content of a native list during its compilation.
@@ -325,7 +325,7 @@ void Replay::readPart(Window& w, const PixelViewport& box, PicturePart& part) {
     part.id = {wire::clientOf(stream_), w.range.serial, box};
     part.colour.resize(pixels);
     part.depth.resize(pixels);
-    aside([&] {
+    withQueriesSuspended([&] {
         withPlainTransfer([&] {
             std::memcpy(part.colour.data(), readRegion(box, GL_RGBA, GL_UNSIGNED_BYTE, pixels * 4), pixels * 4);
             std::memcpy(part.depth.data(), readRegion(box, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, pixels * 4),
@@ -347,7 +347,7 @@ void Replay::writePart(const PicturePart& part, const PixelViewport& area) {
     }
     const PixelViewport inWindow{part.id.box.x + area.x, part.id.box.y + area.y, area.w, area.h};
     const GLenum reads = std::exchange(c_->readBuffer0, c_->drawBuffer0);
-    aside([&] {
+    withQueriesSuspended([&] {
         fillColor(inWindow, colour.data());
         fillByOtherContext(inWindow, GL_DEPTH_BUFFER_BIT, depth.data());
     });
@@ -396,11 +396,11 @@ void Replay::rangeDrawn(Window& w) {
     c_ = own;
     const uint64_t total = r.cost, serial = r.serial;
     const uint32_t drawnBy = r.shares;
-    const bool split = r.wasSplit, knows = knowsCosts_ && r.returns == returnsTold();
+    const bool split = r.wasSplit, knows = knowsCosts_ && r.returns == returnsSeen();
     r = {};
     r.wasSplit = split;
     r.drawnBy = drawnBy;
-    r.returns = returnsTold();
+    r.returns = returnsSeen();
     if (!knows) return; // as after the first frame
     r.lastTotal = total;
     r.serial = serial;
@@ -418,7 +418,7 @@ void Replay::moveShares(const RangeAssignment& shares) {
 // The returned node may have received only a part of the current frame's draws, and of their cost. The current frame is
 // therefore composited without it. All nodes treat the next frame of each window as its first, and count its cost. A
 // frame whose sharing has begun ends with the same nodes and shares.
-void Replay::shareAnew(bool itself, std::function<void()> returned) {
+void Replay::resetShares(bool itself, std::function<void()> returned) {
     if (!takesRanges()) return;
     share_ = config_.pass.share; // new shares follow
     sharesNumber_ = 0;

@@ -91,7 +91,7 @@ void Replay::onFixedProjection() {
     GLfloat p[16];
     gl.glGetFloatv(GL_PROJECTION_MATRIX, p);
     const ProjectionDetector seen = seenProjection(p);
-    if (c_->fixedProjection.near(seen)) return;
+    if (c_->fixedProjection.isClose(seen)) return;
     c_->fixedProjection = seen;
     applyTileValues();
 }
@@ -104,7 +104,7 @@ void Replay::onMatrices(GLuint program, const Data& values, GLsizei count, bool 
         const ProjectionDetector seen = seenProjectionAt(at, doubles, transposed);
         if (!seen.perspective()) continue;
         ProjectionDetector& known = c_->shared->projections[program];
-        if (known.near(seen)) continue;
+        if (known.isClose(seen)) continue;
         known = seen;
         if (program == c_->program) applyTileValues();
     }
@@ -116,7 +116,7 @@ void Replay::onProjections(std::span<const std::byte> bytes) {
     if (!c_->shared || bytes.size() > kMaxBytes) return;
     const ProjectionDetector seen = lastProjectionIn(bytes);
     if (!seen.perspective()) return;
-    if (c_->shared->projection.near(seen)) return;
+    if (c_->shared->projection.isClose(seen)) return;
     c_->shared->projection = seen;
     applyTileValues();
 }

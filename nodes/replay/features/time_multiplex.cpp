@@ -26,7 +26,7 @@ namespace mural {
 namespace {
 
 constexpr int64_t kLearnedFrames = 2;
-constexpr int64_t kKeptFrames = 8; // consecutive frames, after which the node reports that turns do not help
+constexpr int64_t kDependentFrames = 8; // consecutive frames, after which the node reports that turns do not help
 
 } // namespace
 
@@ -44,7 +44,9 @@ GLbitfield Replay::clearsOf(uint16_t opcode, std::span<const std::byte> argument
     }
 }
 
-bool Replay::learnsTurns(const Window& w) const { return takesTurns() && (w.frames < kLearnedFrames || !knowsTurns_); }
+bool Replay::isLearningTurns(const Window& w) const {
+    return takesTurns() && (w.frames < kLearnedFrames || !knowsTurns_);
+}
 
 bool Replay::hasTurn(int64_t turn) const {
     return !takesTurns() || (knowsTurns_ && turn % config_.pass.period == config_.pass.phase);
@@ -147,7 +149,7 @@ void Replay::beginTurn(Window& w) {
 void Replay::decideTurn(Window& w, bool builds) {
     w.undecided = false;
     w.fresh = !builds;
-    w.kept = builds ? w.kept + 1 : 0;
+    w.dependentFrames = builds ? w.dependentFrames + 1 : 0;
     if (w.fresh) ++w.turn;
     placePart(w);
     restoreWindowState();
@@ -159,7 +161,7 @@ void Replay::keepTurn(Window& w) {
     if (w.undecided) decideTurn(w, true);
 }
 
-bool Replay::keepsTurn(const Window& w) const { return w.keepsPicture || w.kept >= kKeptFrames; }
+bool Replay::keepsTurn(const Window& w) const { return w.keepsPicture || w.dependentFrames >= kDependentFrames; }
 
 void Replay::partChanged(Window& w) {
     placePart(w);
@@ -175,7 +177,7 @@ void Replay::turnDrawn(Window& w, bool shownInFront) {
         // modules that read gl_FragCoord, or counted fragments
         const bool needsAll = bound_ && bound_->shared && bound_->shared->allDrawn;
         const bool plain = std::exchange(w.plain, std::exchange(w.copied, false) || needsAll);
-        w.askedOfLevels = 0;
+        w.levelChecks = 0;
         if (plain != w.plain) partChanged(w);
     }
     if (copiesOthers() && std::exchange(w.drawsAll, std::exchange(w.filled, false)) != w.drawsAll) partChanged(w);
@@ -193,7 +195,7 @@ std::vector<wire::WindowTurn> Replay::turns() const {
         for (const auto& [id, w] : its.windows) {
             const uint32_t state = (w->turnOver ? wire::kTurnOver : 0) | (w->undecided ? wire::kTurnUndecided : 0) |
                                    (w->fresh ? wire::kTurnFresh : 0) | (w->keepsPicture ? wire::kTurnForGood : 0);
-            turns.push_back({client, id, w->frames, w->turn, w->kept, w->cleared, state});
+            turns.push_back({client, id, w->frames, w->turn, w->dependentFrames, w->cleared, state});
         }
     return turns;
 }
@@ -207,7 +209,7 @@ void Replay::takeTurns(std::span<const wire::WindowTurn> turns) {
         Window& w = *found->second;
         w.frames = t.frames;
         w.turn = t.turn;
-        w.kept = t.kept;
+        w.dependentFrames = t.dependentFrames;
         w.cleared = t.cleared;
         w.turnOver = (t.state & wire::kTurnOver) != 0;
         w.undecided = (t.state & wire::kTurnUndecided) != 0;
@@ -221,7 +223,7 @@ void Replay::beginTurns() {
     if (!takesTurns()) return;
     for (auto& [client, its] : clients_)
         for (auto& [id, w] : its.windows) {
-            w->turn = w->kept = 0;
+            w->turn = w->dependentFrames = 0;
             w->undecided = w->fresh = w->keepsPicture = false;
         }
     turnsChanged();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr GLuint kFixedUnits = 4; // texture units that are queried; textures of other units alone are not detected
 // draws checked per frame; if any draw of a longer frame uses levels, one of these is assumed to
-constexpr int kMaxAsked = 256;
+constexpr int kMaxLevelChecks = 256;
 
 uint32_t secondOf(std::span<const std::byte> arguments) {
     uint32_t words[2] = {};
@@ -47,7 +47,7 @@ void Replay::onWholeWindow(uint16_t opcode, std::span<const std::byte> arguments
     if (use == WholeUse::Copies || use == WholeUse::Draw) {
         if (!drawsWindow() || !c_->draw || c_->draw->copied) return;
         Window& w = *c_->draw;
-        w.copied = use == WholeUse::Copies || (++w.askedOfLevels <= kMaxAsked && choosesOwnLevels());
+        w.copied = use == WholeUse::Copies || (++w.levelChecks <= kMaxLevelChecks && choosesOwnLevels());
         return;
     }
     if (!c_->shared) return;

@@ -10,11 +10,11 @@ namespace mural {
 
 // Returns at most 64 shaders, in the driver's order.
 inline std::vector<GLuint> attachedShaders(const GlFunctions& gl, GLuint program) {
-    constexpr GLsizei kMost = 64;
-    std::vector<GLuint> attached(kMost);
+    constexpr GLsizei kMax = 64;
+    std::vector<GLuint> attached(kMax);
     GLsizei count = 0;
-    gl.glGetAttachedShaders(program, kMost, &count, attached.data());
-    attached.resize(static_cast<size_t>(std::clamp(count, 0, kMost)));
+    gl.glGetAttachedShaders(program, kMax, &count, attached.data());
+    attached.resize(static_cast<size_t>(std::clamp(count, 0, kMax)));
     return attached;
 }
 

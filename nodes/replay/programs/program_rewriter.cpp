@@ -51,7 +51,7 @@ void ProgramRewriter::compile(const GlFunctions& gl, GLuint shader) {
 }
 
 // Compiles `shader` from `text` unless it already is. Keeps the source that the program has set.
-bool ProgramRewriter::holds(const GlFunctions& gl, GLuint shader, const std::string& text) {
+bool ProgramRewriter::compiles(const GlFunctions& gl, GLuint shader, const std::string& text) {
     Shader& s = shaders_[shader];
     if (s.compiled != text) {
         const std::string now = sourceOf(gl, shader);
@@ -81,7 +81,7 @@ std::vector<ProgramRewriter::Part> ProgramRewriter::rewritten(const GlFunctions&
         parts.push_back({shader, {}, false});
         if (place(it->second.type) > place(last)) last = it->second.type;
         if (it->second.type == GL_FRAGMENT_SHADER)
-            parts.back().wanted = shaders::withWindowPlace(it->second.text, fragmentReads(rewrites), es).value_or("");
+            parts.back().wanted = shaders::withWindowOffset(it->second.text, fragmentReads(rewrites), es).value_or("");
     }
     const auto separable = separable_.find(program);
     // The stage after a separable one may be in another program, which must declare the same block.
@@ -110,7 +110,7 @@ std::vector<ProgramRewriter::Part> ProgramRewriter::rewritten(const GlFunctions&
 bool ProgramRewriter::linkParts(const GlFunctions& gl, GLuint program, std::vector<Part>& parts) {
     bool any = false, compiled = true;
     for (const Part& p : parts) {
-        const bool ok = holds(gl, p.shader, p.wanted.empty() ? shaders_[p.shader].text : p.wanted);
+        const bool ok = compiles(gl, p.shader, p.wanted.empty() ? shaders_[p.shader].text : p.wanted);
         any = any || !p.wanted.empty();
         compiled = compiled && (ok || p.wanted.empty());
     }
@@ -151,7 +151,7 @@ GLuint ProgramRewriter::create(const GlFunctions& gl, GLenum type, GLsizei count
     if (rewrites.place() && type == GL_FRAGMENT_SHADER) {
         std::string all;
         for (GLsizei i = 0; i < count; ++i) all += texts[i];
-        if (const auto patched = shaders::withWindowPlace(all, fragmentReads(rewrites), es)) {
+        if (const auto patched = shaders::withWindowOffset(all, fragmentReads(rewrites), es)) {
             const GLchar* text = patched->c_str();
             const GLuint program = gl.glCreateShaderProgramv(type, 1, &text);
             if (program && linked(gl, program)) {

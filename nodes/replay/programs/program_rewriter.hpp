@@ -47,7 +47,7 @@ private:
     };
 
     std::vector<Part> rewritten(const GlFunctions& gl, GLuint program, const ShaderRewrites& rewrites, bool es);
-    bool holds(const GlFunctions& gl, GLuint shader, const std::string& text);
+    bool compiles(const GlFunctions& gl, GLuint shader, const std::string& text);
     bool linkParts(const GlFunctions& gl, GLuint program, std::vector<Part>& parts);
     void remember(const GlFunctions& gl, GLuint program, bool separable);
 

@@ -48,32 +48,32 @@ void Replay::applyTileValues() {
 // ---- shaders and programs
 
 void Replay::glCompileShader(GLuint shader) {
-    const GLuint ours = name(Kind::Program, shader);
-    compileShader(ours);
-    if (c_->shared) c_->shared->recipes.compiled(gl, ours, false);
+    const GLuint nodeName = name(Kind::Program, shader);
+    compileShader(nodeName);
+    if (c_->shared) c_->shared->recipes.compiled(gl, nodeName, false);
 }
-void Replay::compileShader(GLuint ours) {
+void Replay::compileShader(GLuint nodeName) {
     if (c_->shared && rewrites().any())
-        c_->shared->tiled.compile(gl, ours);
+        c_->shared->tiled.compile(gl, nodeName);
     else
-        gl.glCompileShader(ours);
+        gl.glCompileShader(nodeName);
 }
 // Modules are not rewritten. If they need window coordinates, the whole window is drawn.
 void Replay::glShaderBinary(GLsizei count, const Data& shaders, GLenum format, const Data& binary, GLsizei length) {
     if (!gl.glShaderBinary || !c_->shared || count < 0 || length < 0 ||
         shaders.size() < size_t{4} * static_cast<size_t>(count))
         return;
-    std::vector<GLuint> ours(static_cast<size_t>(count));
+    std::vector<GLuint> nodeNames(static_cast<size_t>(count));
     const bool placed = shaders::moduleReadsFragCoord(binary.span());
-    for (size_t i = 0; i < ours.size(); ++i) {
-        GLuint theirs = 0;
-        std::memcpy(&theirs, shaders.as<std::byte>() + 4 * i, 4);
-        ours[i] = name(Kind::Program, theirs);
-        c_->shared->tiled.forget(ours[i]);
-        c_->shared->recipes.forget(ours[i]);
-        c_->shared->placedModules[ours[i]] = placed;
+    for (size_t i = 0; i < nodeNames.size(); ++i) {
+        GLuint appName = 0;
+        std::memcpy(&appName, shaders.as<std::byte>() + 4 * i, 4);
+        nodeNames[i] = name(Kind::Program, appName);
+        c_->shared->tiled.forget(nodeNames[i]);
+        c_->shared->recipes.forget(nodeNames[i]);
+        c_->shared->placedModules[nodeNames[i]] = placed;
     }
-    gl.glShaderBinary(count, ours.data(), format, binary.pointer(), length);
+    gl.glShaderBinary(count, nodeNames.data(), format, binary.pointer(), length);
 }
 void Replay::glSpecializeShader(GLuint shader, const Data& entryPoint, GLuint count, const Data& indices,
                                 const Data& values) {
@@ -81,11 +81,11 @@ void Replay::glSpecializeShader(GLuint shader, const Data& entryPoint, GLuint co
     gl.glSpecializeShader(name(Kind::Program, shader), entryPoint.as<GLchar>(), count, indices.as<GLuint>(),
                           values.as<GLuint>());
 }
-void Replay::onModules(GLuint ours) {
+void Replay::onModules(GLuint nodeName) {
     if (!c_->shared || !rewrites().windowCoordinates || c_->shared->placedModules.empty()) return;
     GLuint attached[16] = {};
     GLsizei count = 0;
-    gl.glGetAttachedShaders(ours, 16, &count, attached);
+    gl.glGetAttachedShaders(nodeName, 16, &count, attached);
     for (GLsizei i = 0; i < count; ++i) {
         const auto found = c_->shared->placedModules.find(attached[i]);
         if (found != c_->shared->placedModules.end() && found->second && !std::exchange(c_->shared->allDrawn, true))
@@ -96,46 +96,46 @@ void Replay::onModules(GLuint ours) {
 void Replay::glCompileShaderIncludeARB(GLuint shader, GLsizei count, const Data& path) {
     StringList paths;
     if (!gl.glCompileShaderIncludeARB || !paths.parse(path, count)) return;
-    const GLuint ours = name(Kind::Program, shader);
-    gl.glCompileShaderIncludeARB(ours, count, paths.pointers(), paths.lengths());
+    const GLuint nodeName = name(Kind::Program, shader);
+    gl.glCompileShaderIncludeARB(nodeName, count, paths.pointers(), paths.lengths());
     if (!c_->shared) return;
-    c_->shared->tiled.forget(ours);
-    c_->shared->recipes.compiled(gl, ours, true);
+    c_->shared->tiled.forget(nodeName);
+    c_->shared->recipes.compiled(gl, nodeName, true);
 }
 void Replay::glProgramParameteri(GLuint program, GLenum pname, GLint value) {
-    const GLuint ours = name(Kind::Program, program);
+    const GLuint nodeName = name(Kind::Program, program);
     if (!gl.glProgramParameteri) return;
-    gl.glProgramParameteri(ours, pname, value);
+    gl.glProgramParameteri(nodeName, pname, value);
     if (pname != GL_PROGRAM_SEPARABLE || !c_->shared) return;
-    c_->shared->tiled.setSeparable(ours, value != 0);
-    c_->shared->recipes.separable(ours, value != 0);
+    c_->shared->tiled.setSeparable(nodeName, value != 0);
+    c_->shared->recipes.separable(nodeName, value != 0);
 }
 void Replay::glLinkProgram(GLuint program) {
-    const GLuint ours = name(Kind::Program, program);
-    linkProgram(ours);
-    if (c_->shared) c_->shared->recipes.linked(gl, ours);
-    onModules(ours);
-    if (takesRanges()) notePrimitiveIds(ours);
+    const GLuint nodeName = name(Kind::Program, program);
+    linkProgram(nodeName);
+    if (c_->shared) c_->shared->recipes.linked(gl, nodeName);
+    onModules(nodeName);
+    if (takesRanges()) notePrimitiveIds(nodeName);
     applyTileValues(); // it may be the current program
 }
-void Replay::linkProgram(GLuint ours) {
+void Replay::linkProgram(GLuint nodeName) {
     if (c_->shared) c_->shared->memoryWriters.clear();
     if (!c_->shared || !rewrites().any())
-        gl.glLinkProgram(ours);
+        gl.glLinkProgram(nodeName);
     else
-        c_->shared->tiled.link(gl, ours, rewrites(), esContext());
+        c_->shared->tiled.link(gl, nodeName, rewrites(), esContext());
 }
 void Replay::glCreateShaderProgramv(GLenum type, GLsizei count, const Data& strings, GLuint result) {
     StringList texts;
     if (!gl.glCreateShaderProgramv || !c_->shared || !texts.parse(strings, count) || texts.count() == 0) return;
     bindName(Kind::Program, result,
              c_->shared->tiled.create(gl, type, count, texts.pointers(), rewrites(), esContext()));
-    const GLuint ours = name(Kind::Program, result);
+    const GLuint nodeName = name(Kind::Program, result);
     ProgramSources recipe;
     recipe.separable = true;
     recipe.shaders.push_back({type, texts.joined()});
-    c_->shared->recipes.linkedFrom(ours, std::move(recipe));
-    onModules(ours);
+    c_->shared->recipes.linkedFrom(nodeName, std::move(recipe));
+    onModules(nodeName);
     applyTileValues();
 }
 void Replay::glUseProgram(GLuint program) {
@@ -167,7 +167,7 @@ void Replay::glProgramStringARB(GLenum target, GLenum format, GLsizei len, const
         gl.glProgramEnvParameter4fvARB) {
         GLint count = 0;
         gl.glGetProgramivARB(target, GL_MAX_PROGRAM_ENV_PARAMETERS_ARB, &count);
-        const auto text = shaders::withWindowPlaceArb({string.as<char>(), static_cast<size_t>(len)}, count - 1);
+        const auto text = shaders::withWindowOffsetArb({string.as<char>(), static_cast<size_t>(len)}, count - 1);
         if (text && load(static_cast<GLsizei>(text->size()), text->data())) {
             c_->arbPositions = true;
             return applyTileValues();

@@ -21,8 +21,8 @@ bool Replay::hasFences(const ContextState& c) const {
 // Creates the object for the first frame that wants it. A share group without support is not tried again.
 std::shared_ptr<AsyncReadback> Replay::laterReads() {
     Shared& shared = *bound_->shared;
-    if (!std::exchange(shared.laterAsked, true)) {
-        auto reader = platform_->createReader(bound_->wish, *bound_->context);
+    if (!std::exchange(shared.asyncTried, true)) {
+        auto reader = platform_->createReader(bound_->contextConfig, *bound_->context);
         if (reader)
             shared.later = std::make_shared<AsyncReadback>(std::move(*reader), gl);
         else if (config_.readback == Readback::Buffer)

@@ -26,8 +26,9 @@ bool countsClipping(GLenum target) {
 
 // Returns true if every node currently draws the same pixels, not only its own.
 bool Replay::isReplicatedDraw() const {
-    return !drawsWindow() || (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || drawsOldFront() ||
-                                               (c_->draw && (learnsTurns(*c_->draw) || learnsAreas(*c_->draw)))));
+    return !drawsWindow() ||
+           (!drawsLean() && (tileOff_ || allDrawn() || c_->countedWhole || drawsOldFront() ||
+                             (c_->draw && (isLearningTurns(*c_->draw) || isLearningAreas(*c_->draw)))));
 }
 
 // Must be called after any change of isReplicatedDraw(), before the next draw.
@@ -41,14 +42,14 @@ void Replay::splitQueries() {
 }
 
 void Replay::beginPiece(GLenum target, GLuint query) {
-    GLuint ours = 0;
-    gl.glGenQueries(1, &ours);
-    gl.glBeginQuery(target, ours);
-    c_->queries[query].pieces.push_back({ours, isReplicatedDraw()});
+    GLuint nodeName = 0;
+    gl.glGenQueries(1, &nodeName);
+    gl.glBeginQuery(target, nodeName);
+    c_->queries[query].pieces.push_back({nodeName, isReplicatedDraw()});
 }
 
 // Runs draws of the replay itself: no condition skips them, and no query counts them.
-void Replay::aside(const std::function<void()>& call) {
+void Replay::withQueriesSuspended(const std::function<void()>& call) {
     if (c_->conditional) gl.glEndConditionalRender();
     for (const auto& [target, id] : c_->counting) gl.glEndQuery(target);
     call();
@@ -58,15 +59,15 @@ void Replay::aside(const std::function<void()>& call) {
 
 void Replay::dropPieces(QueryInfo& query) {
     // the first is the program's query
-    for (size_t i = 1; i < query.pieces.size(); ++i) gl.glDeleteQueries(1, &query.pieces[i].ours);
+    for (size_t i = 1; i < query.pieces.size(); ++i) gl.glDeleteQueries(1, &query.pieces[i].nodeName);
     query.pieces.clear();
 }
 
 void Replay::glBeginQuery(GLenum target, GLuint id) {
-    const GLuint ours = name(Kind::Query, id);
+    const GLuint nodeName = name(Kind::Query, id);
     QueryInfo& query = c_->queries[id];
     // their results are obsolete
-    std::erase_if(c_->askedAhead, [&](const AskedAhead& asked) { return asked.query == id; });
+    std::erase_if(c_->prefetches, [&](const Prefetch& prefetch) { return prefetch.query == id; });
     dropPieces(query);
     query.target = target;
     query.skipped = c_->draw && c_->draw->skipped;
@@ -79,9 +80,9 @@ void Replay::glBeginQuery(GLenum target, GLuint id) {
         applyScissors();
     }
     splitQueries();
-    query.pieces.push_back({ours, isReplicatedDraw()});
+    query.pieces.push_back({nodeName, isReplicatedDraw()});
     if (countsSamples(target) || target == GL_FRAGMENT_SHADER_INVOCATIONS) c_->counting[target] = id;
-    gl.glBeginQuery(target, ours);
+    gl.glBeginQuery(target, nodeName);
     c_->clippingCounted = c_->clippingCounted || countsClipping(target);
     if (!countsSamples(target)) c_->openQueries.insert(target);
     applyTileValues();
@@ -115,37 +116,37 @@ void Replay::glDeleteQueries(GLsizei n, const Data& ids) {
         const auto query = c_->queries.find(app[i]);
         if (query == c_->queries.end()) continue;
         std::erase_if(c_->counting, [&](const auto& active) { return active.second == app[i]; });
-        std::erase_if(c_->askedAhead, [&](const AskedAhead& asked) { return asked.query == app[i]; });
+        std::erase_if(c_->prefetches, [&](const Prefetch& prefetch) { return prefetch.query == app[i]; });
         dropPieces(query->second);
         c_->queries.erase(query);
     }
     forget(Kind::Query, app, n);
 }
 
-uint64_t Replay::queryResult(GLuint ours) {
+uint64_t Replay::queryResult(GLuint nodeName) {
     if (c_->queryBuffer) gl.glBindBuffer(GL_QUERY_BUFFER, 0);
-    const uint64_t result = readQuery(ours);
+    const uint64_t result = readQuery(nodeName);
     if (c_->queryBuffer) gl.glBindBuffer(GL_QUERY_BUFFER, c_->queryBuffer);
     return result;
 }
 
-uint64_t Replay::readQuery(GLuint ours) {
+uint64_t Replay::readQuery(GLuint nodeName) {
     if (gl.glGetQueryObjectui64v && c_->api == wire::Api::Desktop) {
         GLuint64 result = 0;
-        gl.glGetQueryObjectui64v(ours, GL_QUERY_RESULT, &result);
+        gl.glGetQueryObjectui64v(nodeName, GL_QUERY_RESULT, &result);
         return result;
     }
     GLuint result = 0;
-    if (gl.glGetQueryObjectuiv) gl.glGetQueryObjectuiv(ours, GL_QUERY_RESULT, &result);
+    if (gl.glGetQueryObjectuiv) gl.glGetQueryObjectuiv(nodeName, GL_QUERY_RESULT, &result);
     return result;
 }
 
 bool Replay::onRequestQuery(Args& in) {
     const auto request = in.get<uint32_t>(), query = in.get<uint32_t>(), pname = in.get<uint32_t>();
     if (!in.ok()) return false;
-    constexpr size_t kMaxAskedAhead = 65536;
-    if ((request & capture::kAskedAhead) && pname == GL_QUERY_RESULT && bound_) {
-        if (c_->askedAhead.size() < kMaxAskedAhead) c_->askedAhead.push_back({request, query});
+    constexpr size_t kMaxPrefetches = 65536;
+    if ((request & capture::kPrefetched) && pname == GL_QUERY_RESULT && bound_) {
+        if (c_->prefetches.size() < kMaxPrefetches) c_->prefetches.push_back({request, query});
     } else {
         answerQuery(request, query);
     }
@@ -153,10 +154,10 @@ bool Replay::onRequestQuery(Args& in) {
 }
 
 // Answers requested results when a frame is complete, so that answers do not delay its drawing.
-void Replay::answerAskedAhead() {
-    if (!bound_ || bound_->askedAhead.empty()) return;
+void Replay::sendPrefetched() {
+    if (!bound_ || bound_->prefetches.empty()) return;
     ContextState* const own = std::exchange(c_, bound_);
-    for (const AskedAhead& asked : std::exchange(c_->askedAhead, {})) answerQuery(asked.request, asked.query);
+    for (const Prefetch& prefetch : std::exchange(c_->prefetches, {})) answerQuery(prefetch.request, prefetch.query);
     c_ = own;
 }
 
@@ -170,7 +171,7 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
                 std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
         if (added && info->second.skipped) out_.invalid();
         for (const QueryPiece& piece : pieces) {
-            if (!added || (piece.whole ? config_.node == 0 : config_.answers)) value += queryResult(piece.ours);
+            if (!added || (piece.whole ? config_.node == 0 : config_.answers)) value += queryResult(piece.nodeName);
         }
     } else if (bound_) {
         value = queryResult(name(Kind::Query, query));
@@ -199,12 +200,12 @@ bool Replay::onQueryKnown(Args& in) {
 // draws everything and has the result itself.
 void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const auto info = c_->queries.find(id);
-    if (info == c_->queries.end()) return askDriver(name(Kind::Query, id), mode); // never begun: GL handles that case
+    if (info == c_->queries.end()) return queryDriver(name(Kind::Query, id), mode); // never begun: GL handles that case
     const std::vector<QueryPiece>& pieces = info->second.pieces;
     bool passed = info->second.passed;
     if (alone() || std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
-        passed =
-            std::any_of(pieces.begin(), pieces.end(), [&](const QueryPiece& p) { return queryResult(p.ours) != 0; });
+        passed = std::any_of(pieces.begin(), pieces.end(),
+                             [&](const QueryPiece& p) { return queryResult(p.nodeName) != 0; });
     beginConditional(passed != isInverted(mode));
 }
 
@@ -222,7 +223,7 @@ bool Replay::onBeginConditional(Args& in) {
 
 void Replay::beginConditional(bool draws) {
     if (draws || !bound_ || !gl.glBeginConditionalRender || !gl.glGenQueries) {
-        c_->conditionMet = true;
+        c_->isConditionTrue = true;
         return;
     }
     const bool counting = c_->counting.count(GL_SAMPLES_PASSED) > 0; // GL allows one active query per target
@@ -233,18 +234,18 @@ void Replay::beginConditional(bool draws) {
         gl.glEndQuery(GL_SAMPLES_PASSED);
         if (counting) beginPiece(GL_SAMPLES_PASSED, c_->counting[GL_SAMPLES_PASSED]);
     }
-    askDriver(c_->nothingCounted, GL_QUERY_WAIT);
+    queryDriver(c_->nothingCounted, GL_QUERY_WAIT);
 }
 
-void Replay::askDriver(GLuint ours, GLenum mode) {
+void Replay::queryDriver(GLuint nodeName, GLenum mode) {
     c_->conditional = bound_ && gl.glBeginConditionalRender;
-    c_->condition = ours;
+    c_->condition = nodeName;
     c_->conditionMode = mode;
-    if (c_->conditional) gl.glBeginConditionalRender(ours, mode);
+    if (c_->conditional) gl.glBeginConditionalRender(nodeName, mode);
 }
 
 void Replay::glEndConditionalRender() {
-    if (std::exchange(c_->conditionMet, false)) return;
+    if (std::exchange(c_->isConditionTrue, false)) return;
     c_->conditional = false;
     if (gl.glEndConditionalRender) gl.glEndConditionalRender();
 }

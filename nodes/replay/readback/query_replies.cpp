@@ -41,7 +41,7 @@ const std::byte* Replay::readRegion(const PixelViewport& r, GLenum format, GLenu
     const bool fresh = beyond == Beyond::Nothing && !into_;
     const bool answering = !fresh || isAnswering();
     // Earlier errors must not count as errors of the read.
-    if (fresh && takeErrors()) tell(wire::DriverEventKind::OutOfMemory, {0, c_->errorsTold, 0, 0, {}});
+    if (fresh && takeErrors()) sendDriverEvent(wire::DriverEventKind::OutOfMemory, {0, c_->errorsReported, 0, 0, {}});
     gl.glReadPixels(r.x - o.x - planted, r.y - o.y, r.w, r.h, format, type, into_ ? nullptr : pixels_.data());
     if (fresh && (!answering || gl.glGetError() != GL_NO_ERROR)) std::ranges::fill(pixels_, std::byte{0});
     packTightly(false);
@@ -84,14 +84,14 @@ bool Replay::onRequestPixels(Args& in) {
         return false;
     const ColourWords* const words = format == GL_RGBA ? colourWordsOf(type) : nullptr;
     if ((groupAndFlags & wire::kResolved) && !words) return false;
-    const PixelViewport asked{x, y, w, h};
+    const PixelViewport requested{x, y, w, h};
     if (!bound_ || group != sizes::groupBytes(format, type)) {
         answerBytes(request, wire::ReplyKind::Bytes, {});
         return true;
     }
     if (c_->readFramebuffer != 0) { // every node has all of it
         const size_t bytes = size_t(w) * size_t(h) * group;
-        answerBytes(request, wire::ReplyKind::Bytes, {readRegion(asked, format, type, bytes), bytes});
+        answerBytes(request, wire::ReplyKind::Bytes, {readRegion(requested, format, type, bytes), bytes});
         return true;
     }
     const bool deep = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
@@ -99,7 +99,7 @@ bool Replay::onRequestPixels(Args& in) {
     const bool repeats = c_->read && interleaves(c_->read) && !c_->read->region.empty();
     const PixelViewport part =
         c_->read && config_.answers
-            ? intersect(asked, repeats ? c_->read->part : regionOf(*c_->read, readsFront() && !deep))
+            ? intersect(requested, repeats ? c_->read->part : regionOf(*c_->read, readsFront() && !deep))
             : PixelViewport{};
     if (c_->read) c_->read->copied = true;
     if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.invalid();
@@ -114,7 +114,7 @@ bool Replay::onRequestPixels(Args& in) {
                      : readRegion(nothing ? PixelViewport{} : part, format, type, bytes);
     };
     if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read))
-        aside([&] { pixels = readResolved(part, format, *words); });
+        withQueriesSuspended([&] { pixels = readResolved(part, format, *words); });
     else if ((groupAndFlags & wire::kPlainTransfer) && type == GL_FLOAT)
         withPlainTransfer([&] { withoutReadClamp(read); });
     else if (groupAndFlags & wire::kPlainTransfer)
@@ -130,7 +130,7 @@ bool Replay::onRequestPixels(Args& in) {
     header.y = part.y;
     header.w = part.w;
     header.h = part.h;
-    header.first = !repeats && !part.empty() && part == asked; // no other node has pixels of it
+    header.first = !repeats && !part.empty() && part == requested; // no other node has pixels of it
     header.last = 1;
     out_.answer(header, {pixels, bytes});
     return true;
@@ -139,9 +139,9 @@ bool Replay::onRequestPixels(Args& in) {
 // Works around a defect of zink (Mesa 25.0). A read lacks the scissored clears since the last request of pixels or
 // bytes, unless the driver is flushed in between, as by a swap. A flush also draws bitmaps that Mesa has batched. It is
 // therefore omitted while the request must leave bitmaps in the batch (leavesBitmaps).
-void Replay::flushIfAsked(Window& w) {
+void Replay::flushIfRequested(Window& w) {
     if (bound_ && bound_->gathersBitmaps) return;
-    if (std::exchange(w.asked, false) && gl.glFlush) gl.glFlush();
+    if (std::exchange(w.requested, false) && gl.glFlush) gl.glFlush();
 }
 
 void Replay::answerBytes(uint32_t request, wire::ReplyKind kind, std::span<const std::byte> bytes) {
@@ -218,12 +218,12 @@ bool Replay::onRequestBuffer(Args& in) {
 }
 
 // Reads into pixels_. Copies storage first that cannot be mapped for reading (immutable, of ES).
-void Replay::readBuffer(GLuint ours, uint64_t offset) {
+void Replay::readBuffer(GLuint nodeName, uint64_t offset) {
     const auto bytes = static_cast<GLsizeiptr>(pixels_.size());
     const bool desktop = c_->api == wire::Api::Desktop && gl.glGetBufferSubData;
     GLint before = 0;
     gl.glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &before);
-    gl.glBindBuffer(GL_COPY_READ_BUFFER, ours);
+    gl.glBindBuffer(GL_COPY_READ_BUFFER, nodeName);
     if (gl.glMemoryBarrier) gl.glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     if (desktop) {
         gl.glGetBufferSubData(GL_COPY_READ_BUFFER, static_cast<GLintptr>(offset), bytes, pixels_.data());
@@ -273,7 +273,7 @@ const std::byte* Replay::readShown(Window& w, const PixelViewport& r, bool front
     const PictureFormat shownFormat = pictureFormatOf(*c_, w);
     const ColourWords& words = shownFormat == PictureFormat::Bgr10A2 ? kTenBitWords : kByteWords;
     if (resolves(w) && !r.empty())
-        aside([&] { pixels = readResolved(r, format, words); });
+        withQueriesSuspended([&] { pixels = readResolved(r, format, words); });
     else
         withPlainTransfer([&] { pixels = readRegion(r, format, words.type, bytes, Beyond::Nothing); });
     if (!bgra && !into_) swapRedAndBlue(shownFormat, pixels_.data(), pixels_.data(), bytes / 4);
@@ -353,7 +353,7 @@ bool Replay::onFillWindow(Args& in) {
     c_->read->copied = true;
     if (interleaves(c_->read)) return true; // a window with a kernel has no room for them
     forgetGathered();                       // from another window
-    aside([&] {
+    withQueriesSuspended([&] {
         if (plane != GL_COLOR_BUFFER_BIT)
             fillByOtherContext({x, y, w, h}, plane, data.pointer());
         else

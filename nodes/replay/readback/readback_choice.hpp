@@ -30,12 +30,13 @@ public:
             (later() ? laterNs_ : atOnceNs_)[static_cast<size_t>(frames_ - kWarmUp) / 2] = ns;
         // similar times favour the simpler way
         if (++frames_ == kMeasured) later_ = 4 * median(laterNs_) < 3 * median(atOnceNs_);
-        if (frames_ == kMeasured + kKept) frames_ = kWarmUp;
+        if (frames_ == kMeasured + kDecisionFrames) frames_ = kWarmUp;
     }
 
 private:
     static constexpr int kWarmUp = 4, kSamples = 5, kMeasured = kWarmUp + 2 * kSamples;
-    static constexpr int kKept = 2000; // frames until the next measurement, because the program's load changes
+    static constexpr int kDecisionFrames =
+        2000; // frames until the next measurement, because the program's load changes
     static int64_t median(std::array<int64_t, kSamples> times) {
         std::ranges::sort(times);
         return times[kSamples / 2];

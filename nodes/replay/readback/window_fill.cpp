@@ -22,11 +22,11 @@ const GLfloat* Replay::depthAsFloats(const Window& w, const PixelViewport& r, co
 
 gl::Context* Replay::fillerOf(Window& w) {
     if (w.filler) return w.filler.get();
-    gl::ContextConfig wish;
-    wish.major = 2;
-    wish.minor = 1;
-    wish.surface = surfaceConfig(w.config, 1, 1);
-    auto made = platform_->createContext(wish, nullptr);
+    gl::ContextConfig contextConfig;
+    contextConfig.major = 2;
+    contextConfig.minor = 1;
+    contextConfig.surface = surfaceConfig(w.config, 1, 1);
+    auto made = platform_->createContext(contextConfig, nullptr);
     if (!made) {
         out_.log("cannot combine the depth of other tiles; copies of depth across tiles are incomplete: " +
                  made.error().message);

@@ -106,7 +106,7 @@ def data_argument(c, p):
 
 def buffer_uses(c):
     """Returns statements for buffers that deferred reads may still write to."""
-    if c.option('owed') == 'settled':
+    if c.option('deferred') == 'completed':
         buffer = next((p.name for p in c.params if p.kind == 'Buffer'), None)
         return '    settleReads(self, %s);\n' % buffer if buffer else '    settleBound(self, target);\n'
     out = ''
@@ -162,8 +162,8 @@ def wrapper(c):
             out += '    copies::gather(self, x, y, width, %s, %s);\n' % ('height' if c.param('height') else '1', c.option('copies'))
         elements = uniform_elements(c)
         if elements:
-            out += '    const GLsizei told = count;\n    if (count > kSureElements) [[unlikely]] count = readableElements(value, count, %d);\n' % elements
-            names = names.replace('count', 'told')
+            out += '    const GLsizei given = count;\n    if (count > kSureElements) [[unlikely]] count = readableElements(value, count, %d);\n' % elements
+            names = names.replace('count', 'given')
         out += '    encode_%s(%s);\n' % (c.name, encode_args)
         local = c.option('local') != 'no'
         if local and c.command_class == 'draw':

@@ -16,7 +16,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 import emit_common        # noqa: E402
 import emit_epoxy         # noqa: E402
-import emit_front         # noqa: E402
+import emit_preload         # noqa: E402
 import emit_interposer    # noqa: E402
 import emit_parameters    # noqa: E402
 import emit_replay        # noqa: E402
@@ -85,7 +85,7 @@ def main():
     files.update(emit_parameters.emit(model, o.registry))
     files.update(emit_traits.emit(model))
     if o.glx_registry and o.egl_header:
-        files.update(emit_front.emit(model, o.glx_registry, o.egl_header))
+        files.update(emit_preload.emit(model, o.glx_registry, o.egl_header))
     for name, text in files.items():
         write_if_changed(os.path.join(o.out, name), text)
 

@@ -15,15 +15,15 @@ public:
         Expected& far = far_[(before_ * 0x9e3779b97f4a7c15u) >> (64 - kFarBits)];
         Expected& near = near_[((before_ & 0xffff) * 0x9e3779b1u & UINT32_MAX) >> (32 - kNearBits)];
         const uint32_t expected = far.byte, other = near.byte;
-        const bool asked = far.trust != 0, askedOther = near.trust != 0 && !(asked && other == expected);
-        if (asked && coder.code(farHit_[far.trust], value == expected))
+        const bool farTried = far.trust != 0, nearTried = near.trust != 0 && !(farTried && other == expected);
+        if (farTried && coder.code(farHit_[far.trust], value == expected))
             value = expected;
-        else if (askedOther && coder.code(nearHit_[asked][near.trust], value == other))
+        else if (nearTried && coder.code(nearHit_[farTried][near.trust], value == other))
             value = other;
         else
             value = bytes_.code(coder, value);
-        far.learn(value);
-        near.learn(value);
+        far.update(value);
+        near.update(value);
         before_ = before_ << 8 | value;
         return value;
     }
@@ -34,7 +34,7 @@ private:
     struct Expected {
         uint8_t byte = 0;
         uint8_t trust = 0; // confidence; 0: no prediction
-        void learn(uint32_t value) {
+        void update(uint32_t value) {
             if (trust != 0 && byte == value)
                 trust = trust < kMaxTrust ? static_cast<uint8_t>(trust + 1) : kMaxTrust;
             else if (trust > 1)

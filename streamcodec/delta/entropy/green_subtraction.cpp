@@ -101,8 +101,8 @@ struct Threes {
     size_t before, count, behind; // bytes, pixels, bytes
 };
 
-Threes threesOf(uint8_t way) {
-    const size_t before = way - size_t{kColoursOfThree}, count = (kPageBytes - before) / 3;
+Threes threesOf(uint8_t filter) {
+    const size_t before = filter - size_t{kColoursOfThree}, count = (kPageBytes - before) / 3;
     return {before, count, kPageBytes - before - 3 * count};
 }
 
@@ -137,18 +137,18 @@ void putThrees(const std::byte* apart, const Threes& threes, std::byte* piece) {
 
 } // namespace
 
-void subtractGreen(const std::byte* piece, uint8_t way, std::byte* apart) {
-    if (way == kColoursOfFour)
+void subtractGreen(const std::byte* piece, uint8_t filter, std::byte* apart) {
+    if (filter == kColoursOfFour)
         HWY_DYNAMIC_DISPATCH(takeFours)(bytesOf(piece), bytesOf(apart));
     else
-        takeThrees(piece, threesOf(way), apart);
+        takeThrees(piece, threesOf(filter), apart);
 }
 
-void addGreen(const std::byte* apart, uint8_t way, std::byte* piece) {
-    if (way == kColoursOfFour)
+void addGreen(const std::byte* apart, uint8_t filter, std::byte* piece) {
+    if (filter == kColoursOfFour)
         HWY_DYNAMIC_DISPATCH(putFours)(bytesOf(apart), bytesOf(piece));
     else
-        putThrees(apart, threesOf(way), piece);
+        putThrees(apart, threesOf(filter), piece);
 }
 
 } // namespace mural::delta

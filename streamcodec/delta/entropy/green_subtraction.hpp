@@ -10,8 +10,8 @@
 
 namespace mural::delta {
 
-// `way`: kColoursOfFour or above. Both buffers have kPageBytes and do not overlap.
-void subtractGreen(const std::byte* piece, uint8_t way, std::byte* apart);
-void addGreen(const std::byte* apart, uint8_t way, std::byte* piece);
+// `filter`: kColoursOfFour or above. Both buffers have kPageBytes and do not overlap.
+void subtractGreen(const std::byte* piece, uint8_t filter, std::byte* apart);
+void addGreen(const std::byte* apart, uint8_t filter, std::byte* piece);
 
 } // namespace mural::delta

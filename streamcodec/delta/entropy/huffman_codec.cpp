@@ -38,12 +38,12 @@ double leftByCounts(const Counts& counts, size_t bytes) {
 
 struct HuffmanCompressor::State {
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> zstd{nullptr, ZSTD_freeCCtx};
-    bool asked = false;
+    bool tried = false;
     std::vector<std::byte> scratch{};
 
     // Returns null without memory, or without support in the library.
     ZSTD_CCtx* open() {
-        if (std::exchange(asked, true)) return zstd.get();
+        if (std::exchange(tried, true)) return zstd.get();
         zstd.reset(ZSTD_createCCtx());
         if (!zstd) return nullptr;
         for (const auto& [parameter, value] : {std::pair{ZSTD_c_compressionLevel, kFastest},

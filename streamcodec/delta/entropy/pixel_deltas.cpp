@@ -26,21 +26,21 @@ uint32_t roughnessOf(uint8_t difference) {
 }
 
 void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
-    for (size_t k = 0; k < kPixelWays.size(); ++k) roughnesses[k] = 0;
+    for (size_t k = 0; k < kPixelFilters.size(); ++k) roughnesses[k] = 0;
     for (size_t s = 0; s < kSamples * kSampleBytes; ++s) {
         const size_t at = kSampleBytes + s / kSampleBytes * kSampleStep + s % kSampleBytes;
         const auto behind = [piece](size_t byte, size_t pixelBytes) {
             return static_cast<uint8_t>(piece[byte] - piece[byte - pixelBytes]);
         };
-        for (size_t k = 0; k < kPlainWays; ++k)
-            roughnesses[k] += roughnessOf(kPixelWays[k] == 0 ? piece[at] : behind(at, kPixelWays[k]));
+        for (size_t k = 0; k < kByteFilters; ++k)
+            roughnesses[k] += roughnessOf(kPixelFilters[k] == 0 ? piece[at] : behind(at, kPixelFilters[k]));
         const auto fours =
             static_cast<uint8_t>(at % 2 == 1 ? behind(at, 4) : behind(at, 4) - behind(at / 4 * 4 + 1, 4));
-        roughnesses[kPlainWays] += roughnessOf(fours);
+        roughnesses[kByteFilters] += roughnessOf(fours);
         const uint8_t now = behind(at, 3), beside = static_cast<uint8_t>(behind(at + 1, 3) - now);
         for (size_t before = 0; before < 3; ++before) {
             const size_t colour = (at + 3 - before) % 3; // red relative to green; green itself; blue relative to green
-            roughnesses[kPlainWays + 1 + before] +=
+            roughnesses[kByteFilters + 1 + before] +=
                 (colour == 1 ? roughnessOf(now) : 0) + (colour == 2 ? 0 : roughnessOf(beside));
         }
     }
@@ -77,9 +77,9 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
     const hn::CappedTag<uint8_t, kSampleBytes> d;
     const hn::RepartitionToWide<hn::RepartitionToWide<hn::RepartitionToWide<decltype(d)>>> sumOf;
     const hn::Repartition<uint32_t, decltype(d)> pixels;
-    const auto none = hn::Zero(d), most = hn::Set(d, 31), there = hn::Set(d, 8);
+    const auto none = hn::Zero(d), maximum = hn::Set(d, 31), there = hn::Set(d, 8);
     const auto roughnessOf = [&](hn::Vec<decltype(d)> difference) {
-        const auto magnitude = hn::Min(hn::Min(difference, hn::Sub(none, difference)), most);
+        const auto magnitude = hn::Min(hn::Min(difference, hn::Sub(none, difference)), maximum);
         return hn::Add(magnitude, hn::IfThenZeroElse(hn::Eq(difference, none), there));
     };
     const auto behind = [&](const uint8_t* at, size_t pixelBytes) {
@@ -93,16 +93,16 @@ void roughnessVectors(const uint8_t* piece, uint32_t* roughnesses) {
         roughnesses[k] = static_cast<uint32_t>(hn::GetLane(hn::SumOfLanes(sumOf, sum)));
     };
     forSamples(0, [&](size_t at) { return hn::SumsOf8(roughnessOf(hn::LoadU(d, piece + at))); });
-    for (size_t k = 1; k < kPlainWays; ++k)
-        forSamples(k, [&](size_t at) { return hn::SumsOf8(roughnessOf(behind(piece + at, kPixelWays[k]))); });
-    forSamples(kPlainWays, [&](size_t at) {
+    for (size_t k = 1; k < kByteFilters; ++k)
+        forSamples(k, [&](size_t at) { return hn::SumsOf8(roughnessOf(behind(piece + at, kPixelFilters[k]))); });
+    forSamples(kByteFilters, [&](size_t at) {
         const auto changed = behind(piece + at, 4);
         const auto green = hn::ShiftRight<8>(hn::And(hn::BitCast(pixels, changed), hn::Set(pixels, 0xff00)));
         return hn::SumsOf8(roughnessOf(hn::Sub(changed, hn::BitCast(d, hn::Or(green, hn::ShiftLeft<16>(green))))));
     });
     for (size_t before = 0; before < 3; ++before) {
         // red relative to green; green itself; blue relative to green
-        forSamples(kPlainWays + 1 + before, [&](size_t at) {
+        forSamples(kByteFilters + 1 + before, [&](size_t at) {
             const auto now = behind(piece + at, 3), beside = hn::Sub(behind(piece + at + 1, 3), now);
             const auto greens = hn::LoadU(d, kThirds.data() + (at + 2 - before) % 3),
                        blues = hn::LoadU(d, kThirds.data() + (at + 1 - before) % 3);
@@ -175,7 +175,7 @@ HWY_EXPORT(fromPlanesVectors);
 namespace {
 
 constexpr size_t kInFront = 16; // zero bytes before the first pixel
-static_assert(kInFront >= kPixelWays[kPlainWays - 1]);
+static_assert(kInFront >= kPixelFilters[kByteFilters - 1]);
 
 uint8_t* bytesOf(std::byte* bytes) { return reinterpret_cast<uint8_t*>(bytes); }
 const uint8_t* bytesOf(const std::byte* bytes) { return reinterpret_cast<const uint8_t*>(bytes); }

@@ -15,7 +15,7 @@ constexpr size_t kPieceWordRoom = kPieceWords + 16; // words that differences() 
 
 // Number of bytes of a piece that are sampled to estimate its bits for each of kPixelWays.
 constexpr size_t kSampledBytes = 256;
-using Roughness = std::array<uint32_t, kPixelWays.size()>;
+using Roughness = std::array<uint32_t, kPixelFilters.size()>;
 Roughness roughness(const std::byte* piece);
 
 // Writes the non-zero difference words and a bit per word; returns the number of words. `words`: room for

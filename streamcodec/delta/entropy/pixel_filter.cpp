@@ -30,21 +30,22 @@ constexpr uint32_t kEvenBits = 2 * kSampledBytes;
 constexpr size_t kEvenPieces = 4, kLeftOfEven = 8;
 
 size_t bestOf(const Roughness& rough) {
-    const auto plain = std::ranges::min_element(rough.begin(), rough.begin() + kPlainWays);
-    const auto colours = std::ranges::min_element(rough.begin() + kPlainWays, rough.end());
+    const auto plain = std::ranges::min_element(rough.begin(), rough.begin() + kByteFilters);
+    const auto colours = std::ranges::min_element(rough.begin() + kByteFilters, rough.end());
     const bool apart = *plain >= kEvenBits && *colours * kForColours < *plain * (kForColours + 1);
     return static_cast<size_t>((apart ? colours : plain) - rough.begin());
 }
 
-struct Way {
-    uint8_t way = 0;
+struct ChosenFilter {
+    uint8_t filter = 0;
     uint32_t roughness = 0; // estimated bits after the filter
 };
 
-Way wayOf(const std::byte* piece) {
+ChosenFilter chooseFilter(const std::byte* piece) {
     const auto rough = roughness(piece);
     const size_t best = bestOf(rough);
-    return rough[best] * 20 < rough[0] * kLeftOfTwenty ? Way{kPixelWays[best], rough[best]} : Way{};
+    return rough[best] * 20 < rough[0] * kLeftOfTwenty ? ChosenFilter{kPixelFilters[best], rough[best]}
+                                                       : ChosenFilter{};
 }
 
 // Size without run lengths: LZ4 spends a byte per 255 bytes of a run, Zstandard none.
@@ -62,36 +63,36 @@ size_t leftOfPixels(const std::byte* piece) {
 
 bool PixelFilterEncoder::split(std::span<const std::byte> pages) {
     const size_t pieces = pages.size() / kPageBytes;
-    ways_.resize(pieces);
+    filters_.resize(pieces);
     size_t pixelPieces = 0;
     uint64_t left = 0;
     for (size_t i = 0; i < pieces; ++i) {
-        const Way way = wayOf(pages.data() + i * kPageBytes);
-        ways_[i] = way.way;
-        pixelPieces += way.way != 0;
-        left += way.roughness;
+        const ChosenFilter filter = chooseFilter(pages.data() + i * kPageBytes);
+        filters_[i] = filter.filter;
+        pixelPieces += filter.filter != 0;
+        left += filter.roughness;
     }
     if (pixelPieces == 0 || (left < pixelPieces * kEvenBits && repeats(pages))) return false;
-    takeApart(pages, ways_);
+    takeApart(pages, filters_);
     return true;
 }
 
 // Estimates with LZ4, which is fast, whether unfiltered data is smaller.
 bool PixelFilterEncoder::repeats(std::span<const std::byte> pages) {
-    const size_t all = ways_.size(), pieces = std::min(kEvenPieces, (all + 1) / 2), before = (all - pieces) / 3;
+    const size_t all = filters_.size(), pieces = std::min(kEvenPieces, (all + 1) / 2), before = (all - pieces) / 3;
     size_t asIs = 0, apart = 0;
     for (const size_t first : {before, all - pieces - before}) {
         const auto sample = pages.subspan(first * kPageBytes, pieces * kPageBytes);
-        takeApart(sample, std::span(ways_).subspan(first, pieces));
+        takeApart(sample, std::span(filters_).subspan(first, pieces));
         for (const auto part : {front(), planes(), rest()}) apart += beyondRuns(part, scratch_);
         asIs += beyondRuns(sample, scratch_);
     }
     return asIs < apart && asIs * kLeftOfEven < 2 * pieces * kPageBytes;
 }
 
-void PixelFilterEncoder::takeApart(std::span<const std::byte> pages, std::span<const uint8_t> ways) {
-    const size_t pieces = ways.size();
-    pixelPieces_ = pieces - static_cast<size_t>(std::ranges::count(ways, uint8_t{0}));
+void PixelFilterEncoder::takeApart(std::span<const std::byte> pages, std::span<const uint8_t> filters) {
+    const size_t pieces = filters.size();
+    pixelPieces_ = pieces - static_cast<size_t>(std::ranges::count(filters, uint8_t{0}));
     rest_.clear();
     front_.resize(frontBytes(pages.size(), pixelPieces_));
     if (words_.size() < pixelPieces_ * kPieceWords + kPieceWordRoom)
@@ -100,16 +101,16 @@ void PixelFilterEncoder::takeApart(std::span<const std::byte> pages, std::span<c
     size_t count = 0;
     for (size_t i = 0; i < pieces; ++i) {
         const auto piece = pages.subspan(i * kPageBytes, kPageBytes);
-        const uint8_t way = ways[i];
-        front_[i] = static_cast<std::byte>(way);
-        if (way == 0) {
+        const uint8_t filter = filters[i];
+        front_[i] = static_cast<std::byte>(filter);
+        if (filter == 0) {
             rest_.insert(rest_.end(), piece.begin(), piece.end());
             continue;
         }
         std::byte apart[kPageBytes];
-        if (takesColoursApart(way)) subtractGreen(piece.data(), way, apart);
-        count +=
-            differences(takesColoursApart(way) ? apart : piece.data(), pixelBytesOf(way), words_.data() + count, mask);
+        if (takesColoursApart(filter)) subtractGreen(piece.data(), filter, apart);
+        count += differences(takesColoursApart(filter) ? apart : piece.data(), pixelBytesOf(filter),
+                             words_.data() + count, mask);
         mask += kPieceMaskBytes;
     }
     const auto last = pages.subspan(pieces * kPageBytes);
@@ -126,12 +127,12 @@ size_t frontBytes(size_t pagesBytes, size_t pixelPieces) {
 bool PixelFilterDecoder::begin(std::span<const std::byte> front, size_t pagesBytes, size_t pixelPieces) {
     const size_t pieces = pagesBytes / kPageBytes;
     if (pixelPieces > pieces || front.size() != frontBytes(pagesBytes, pixelPieces)) return false;
-    ways_ = front.first(pieces);
+    filters_ = front.first(pieces);
     masks_ = front.subspan(pieces);
     pagesBytes_ = pagesBytes;
     pixelPieces_ = 0;
-    for (const std::byte b : ways_) {
-        if (!isPixelWay(static_cast<uint8_t>(b))) return false;
+    for (const std::byte b : filters_) {
+        if (!isPixelFilter(static_cast<uint8_t>(b))) return false;
         pixelPieces_ += b != std::byte{0};
     }
     if (pixelPieces_ != pixelPieces) return false;
@@ -152,16 +153,16 @@ void PixelFilterDecoder::join(std::span<const std::byte> planes, std::span<const
     fromPlanes(planes.data(), count, words_.data());
     const uint32_t* words = words_.data();
     auto masks = masks_;
-    for (const std::byte b : ways_) {
-        const auto way = static_cast<uint8_t>(b);
-        if (way == 0) {
+    for (const std::byte b : filters_) {
+        const auto filter = static_cast<uint8_t>(b);
+        if (filter == 0) {
             std::memcpy(pages.data(), rest.data(), kPageBytes);
             rest = rest.subspan(kPageBytes);
         } else {
             std::byte apart[kPageBytes];
-            words +=
-                sumDifferences(words, masks.data(), pixelBytesOf(way), takesColoursApart(way) ? apart : pages.data());
-            if (takesColoursApart(way)) addGreen(apart, way, pages.data());
+            words += sumDifferences(words, masks.data(), pixelBytesOf(filter),
+                                    takesColoursApart(filter) ? apart : pages.data());
+            if (takesColoursApart(filter)) addGreen(apart, filter, pages.data());
             masks = masks.subspan(kPieceMaskBytes);
         }
         pages = pages.subspan(kPageBytes);

@@ -30,9 +30,9 @@ public:
 
 private:
     [[nodiscard]] bool repeats(std::span<const std::byte> pages);
-    void takeApart(std::span<const std::byte> pages, std::span<const uint8_t> ways);
+    void takeApart(std::span<const std::byte> pages, std::span<const uint8_t> filters);
 
-    std::vector<uint8_t> ways_;
+    std::vector<uint8_t> filters_;
     std::vector<std::byte> front_, planes_, rest_, scratch_;
     std::vector<uint32_t> words_;
     size_t pixelPieces_ = 0, planeBytes_ = 0;
@@ -49,7 +49,7 @@ public:
     void join(std::span<const std::byte> planes, std::span<const std::byte> rest, std::span<std::byte> pages);
 
 private:
-    std::span<const std::byte> ways_, masks_;
+    std::span<const std::byte> filters_, masks_;
     std::vector<uint32_t> words_;
     size_t pagesBytes_ = 0, pixelPieces_ = 0, planeBytes_ = 0;
 };

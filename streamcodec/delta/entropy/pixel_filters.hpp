@@ -12,18 +12,20 @@ namespace mural::delta {
 // or alternating pairs of pixels. Larger values add green subtraction (pixel_colours.hpp).
 // plus the number of bytes before the first whole pixel: 0, 1, 2
 constexpr uint8_t kColoursOfFour = 16, kColoursOfThree = 17;
-constexpr std::array<uint8_t, 10> kPixelWays{
+constexpr std::array<uint8_t, 10> kPixelFilters{
     0, 1, 2, 3, 4, 8, kColoursOfFour, kColoursOfThree, kColoursOfThree + 1, kColoursOfThree + 2};
-constexpr size_t kPlainWays = 6; // filters without green subtraction
+constexpr size_t kByteFilters = 6; // filters without green subtraction
 
-[[nodiscard]] constexpr bool isPixelWay(uint8_t way) { return std::ranges::find(kPixelWays, way) != kPixelWays.end(); }
+[[nodiscard]] constexpr bool isPixelFilter(uint8_t filter) {
+    return std::ranges::find(kPixelFilters, filter) != kPixelFilters.end();
+}
 
-[[nodiscard]] constexpr bool takesColoursApart(uint8_t way) { return way >= kColoursOfFour; }
+[[nodiscard]] constexpr bool takesColoursApart(uint8_t filter) { return filter >= kColoursOfFour; }
 
 // Returns the reference distance after green subtraction: pixels of four bytes keep their order, pixels of three become
 // colour planes.
-[[nodiscard]] constexpr size_t pixelBytesOf(uint8_t way) {
-    return !takesColoursApart(way) ? way : way == kColoursOfFour ? 4 : 1;
+[[nodiscard]] constexpr size_t pixelBytesOf(uint8_t filter) {
+    return !takesColoursApart(filter) ? filter : filter == kColoursOfFour ? 4 : 1;
 }
 
 } // namespace mural::delta

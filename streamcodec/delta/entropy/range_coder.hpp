@@ -15,16 +15,16 @@ namespace mural::delta {
 class BitModel {
 public:
     [[nodiscard]] uint32_t zero() const { return zero_; } // of 65536
-    void learn(bool bit) {
+    void update(bool bit) {
         static constexpr std::array<uint16_t, 16> kShares{26214, 18724, 14563, 11915, 10082, 8738, 7710, 6898,
                                                           5957,  5041,  4369,  3855,  3277,  2849, 2427, 2048};
-        const int32_t wrong = (bit ? kLeast : kMost) - zero_;
+        const int32_t wrong = (bit ? kMin : kMax) - zero_;
         zero_ = static_cast<uint16_t>(zero_ + wrong * kShares[seen_] / 65536);
         seen_ = static_cast<uint16_t>(seen_ + (seen_ + 1u < kShares.size()));
     }
 
 private:
-    static constexpr int32_t kLeast = 24, kMost = 65536 - kLeast;
+    static constexpr int32_t kMin = 24, kMax = 65536 - kMin;
     uint16_t zero_ = 32768;
     uint16_t seen_ = 0;
 };
@@ -36,14 +36,14 @@ public:
 
     [[nodiscard]] uint32_t from(uint32_t symbol) const { return static_cast<uint32_t>(from_[symbol]); }
     [[nodiscard]] uint32_t to(uint32_t symbol) const { return symbol + 1 == kSymbols ? 1u << kBits : from(symbol + 1); }
-    [[nodiscard]] uint32_t at(uint32_t place) const {
+    [[nodiscard]] uint32_t at(uint32_t position) const {
         // larger values are malformed
-        const auto there = static_cast<int16_t>(place < 1u << kBits ? place : (1u << kBits) - 1);
+        const auto there = static_cast<int16_t>(position < 1u << kBits ? position : (1u << kBits) - 1);
         uint32_t symbols = 0; // with 16 bits GCC 12 returns the negative count at -O3
         for (const int16_t from : from_) symbols += from <= there ? 1 : 0;
         return symbols - 1;
     }
-    void learn(uint32_t symbol) {
+    void update(uint32_t symbol) {
         const int rate = kRates[seen_ >> 2];
         seen_ = static_cast<uint8_t>(seen_ + (seen_ + 1u < 4 * kRates.size()));
         const std::array<int16_t, kSymbols>& goals = kGoals[symbol];
@@ -54,13 +54,12 @@ public:
 private:
     // Target distribution per symbol: the symbol dominates, and every other symbol stays possible.
     static constexpr auto kGoals = [] {
-        constexpr int kLeast = 4;
+        constexpr int kMin = 4;
         std::array<std::array<int16_t, kSymbols>, kSymbols> goals{};
         for (uint32_t symbol = 0; symbol < kSymbols; ++symbol)
             for (uint32_t i = 0; i < kSymbols; ++i)
-                goals[symbol][i] =
-                    static_cast<int16_t>(static_cast<int>(i) * kLeast +
-                                         (i <= symbol ? 0 : (1 << kBits) - kLeast * static_cast<int>(kSymbols)));
+                goals[symbol][i] = static_cast<int16_t>(
+                    static_cast<int>(i) * kMin + (i <= symbol ? 0 : (1 << kBits) - kMin * static_cast<int>(kSymbols)));
         return goals;
     }();
     static constexpr std::array<uint8_t, 6> kRates{2, 3, 3, 4, 4, 5};
@@ -79,7 +78,7 @@ public:
         const uint32_t bound = (range_ >> 16) * model.zero();
         low_ += bit ? bound : 0;
         range_ = bit ? range_ - bound : bound;
-        model.learn(bit);
+        model.update(bit);
         settle();
         return bit;
     }
@@ -87,7 +86,7 @@ public:
         const uint32_t from = model.from(symbol), part = range_ >> SymbolModel::kBits;
         low_ += uint64_t{part} * from;
         range_ = part * (model.to(symbol) - from);
-        model.learn(symbol);
+        model.update(symbol);
         settle();
         return symbol;
     }
@@ -100,12 +99,12 @@ public:
     }
     // Ends the data; clear() starts again. The reader assumes zeros after the end.
     std::span<const std::byte> finish() {
-        for (unsigned kept = 0; kept <= 4; ++kept) {
-            const uint64_t rest = (uint64_t{1} << (32 - 8 * kept)) - 1, value = (low_ + rest) & ~rest;
+        for (unsigned count = 0; count <= 4; ++count) {
+            const uint64_t rest = (uint64_t{1} << (32 - 8 * count)) - 1, value = (low_ + rest) & ~rest;
             if (value > low_ + range_ - 1) continue;
             low_ = value;
             carry();
-            for (unsigned i = 0; i < kept; ++i) bytes_.push_back(static_cast<std::byte>(low_ >> (24 - 8 * i)));
+            for (unsigned i = 0; i < count; ++i) bytes_.push_back(static_cast<std::byte>(low_ >> (24 - 8 * i)));
             break;
         }
         low_ = 0;
@@ -155,7 +154,7 @@ public:
         const bool bit = code_ >= bound;
         code_ -= bit ? bound : 0;
         range_ = bit ? range_ - bound : bound;
-        model.learn(bit);
+        model.update(bit);
         settle();
         return bit;
     }
@@ -163,7 +162,7 @@ public:
         const uint32_t part = range_ >> SymbolModel::kBits, symbol = model.at(code_ / part), from = model.from(symbol);
         code_ -= part * from;
         range_ = part * (model.to(symbol) - from);
-        model.learn(symbol);
+        model.update(symbol);
         settle();
         return symbol;
     }

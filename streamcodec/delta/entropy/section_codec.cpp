@@ -29,9 +29,9 @@ public:
     template <typename Move> std::span<std::byte> add(size_t sizeBytes, Move&& move) {
         if (!room_) room_ = std::make_unique_for_overwrite<std::byte[]>(kRoomBytes);
         if (sizeBytes > kRoomBytes - end_) {
-            const auto kept = last();
-            move(room_.get(), kept);
-            end_ = kept.size();
+            const auto window = last();
+            move(room_.get(), window);
+            end_ = window.size();
         }
         end_ += sizeBytes;
         return {room_.get() + end_ - sizeBytes, sizeBytes};
@@ -168,8 +168,8 @@ struct SectionDecompressor::State {
                                                           static_cast<int>(size), static_cast<int>(piece.size()),
                                                           chars(last.data()), static_cast<int>(last.size()));
             if (got < 0 || static_cast<size_t>(got) != piece.size()) return false;
-            copyBytes(piece, window.add(piece.size(), [](std::byte* to, std::span<const std::byte> kept) {
-                std::memmove(to, kept.data(), kept.size());
+            copyBytes(piece, window.add(piece.size(), [](std::byte* to, std::span<const std::byte> window) {
+                std::memmove(to, window.data(), window.size());
             }));
             bytes = bytes.subspan(size);
             into = into.subspan(piece.size());

@@ -14,8 +14,8 @@
 namespace mural::delta {
 
 struct WordSpan {
-    uint32_t kept = 0;    // unchanged words since the last span
-    uint32_t changed = 0; // changed words that follow
+    uint32_t unchanged = 0; // unchanged words since the last span
+    uint32_t changed = 0;   // changed words that follow
 };
 
 class WordPatch {
@@ -24,8 +24,8 @@ public:
     size_t costBytes = 0;    // of spans and words
     size_t changedBytes = 0; // of words
 
-    // Compares two entries of equal size, a multiple of 4. Returns false as soon as the cost exceeds `mostBytes`.
-    bool find(std::span<const std::byte> old, std::span<const std::byte> now, size_t mostBytes) {
+    // Compares two entries of equal size, a multiple of 4. Returns false as soon as the cost exceeds `maxBytes`.
+    bool find(std::span<const std::byte> old, std::span<const std::byte> now, size_t maxBytes) {
         spans.clear();
         costBytes = changedBytes = 0;
         const auto words = static_cast<uint32_t>(now.size() / 4);
@@ -57,7 +57,7 @@ public:
                 }
                 spans.push_back({begin - from, w - begin});
                 costBytes += ControlWriter::spanBytes(begin - from, w - begin) + size_t{w - begin} * 4;
-                if (costBytes > mostBytes) return false;
+                if (costBytes > maxBytes) return false;
                 changed += w - begin;
                 from = w;
             }
@@ -74,7 +74,7 @@ public:
         }
         size_t at = 0;
         for (const WordSpan& span : spans) {
-            at += size_t{span.kept} * 4;
+            at += size_t{span.unchanged} * 4;
             const size_t sizeBytes = size_t{span.changed} * 4;
             std::memcpy(old.data() + at, now.data() + at, sizeBytes);
             at += sizeBytes;

@@ -17,9 +17,9 @@ uint32_t exponentOf(uint32_t word) { return word >> 23 & 255; }
 bool isPlain(uint32_t word) { return (word << 1) == 0 || (exponentOf(word) > 40 && exponentOf(word) < 200); }
 double floatOf(uint32_t word) { return static_cast<double>(std::bit_cast<float>(word)); }
 uint32_t wordOf(double value) {
-    constexpr double kMost = 1e30, kLeast = 1e-30;
-    if (!(std::abs(value) < kMost)) return 0x7f000000;
-    return std::abs(value) < kLeast ? 0 : std::bit_cast<uint32_t>(static_cast<float>(value));
+    constexpr double kMax = 1e30, kMin = 1e-30;
+    if (!(std::abs(value) < kMax)) return 0x7f000000;
+    return std::abs(value) < kMin ? 0 : std::bit_cast<uint32_t>(static_cast<float>(value));
 }
 // Returns the distance between adjacent floats.
 double stepAt(uint32_t word) { return std::bit_cast<double>(uint64_t{exponentOf(word) + 1023 - 127 - 23} << 52); }
@@ -31,7 +31,7 @@ uint32_t widthOf(uint32_t number) { return static_cast<uint32_t>(std::bit_width(
 
 // Symbols for bit widths. Rare large widths share symbols.
 struct Widths {
-    uint8_t least = 0;
+    uint8_t minimum = 0;
     uint8_t bits = 0; // additional bits that select the width
 };
 constexpr std::array<Widths, SymbolModel::kSymbols> kWidths{{{0, 0},
@@ -53,7 +53,7 @@ constexpr std::array<Widths, SymbolModel::kSymbols> kWidths{{{0, 0},
 constexpr auto kSymbolOfWidth = [] {
     std::array<uint8_t, 33> symbols{};
     for (uint8_t s = 0; s < kWidths.size(); ++s)
-        for (uint32_t w = kWidths[s].least; w < symbols.size(); ++w) symbols[w] = s;
+        for (uint32_t w = kWidths[s].minimum; w < symbols.size(); ++w) symbols[w] = s;
     return symbols;
 }();
 
@@ -107,7 +107,7 @@ template <class Coder> uint32_t WordPredictor::code(Coder& coder, uint32_t i, ui
     const uint32_t distance =
         codeDistance(coder, std::min<uint32_t>(word.cost[best] / 7u, kContexts - 1), ordered(now) - expected);
     const uint32_t value = wordOf(expected + distance);
-    learn(word, value, guesses, curve);
+    update(word, value, guesses, curve);
     word.twoBefore = word.before;
     word.before = old;
     return value;
@@ -119,9 +119,9 @@ template <class Coder> uint32_t WordPredictor::codeDistance(Coder& coder, uint32
     const uint32_t symbol = coder.code(widths_[context], uint32_t{kSymbolOfWidth[width]});
     const Widths widths = kWidths[symbol];
     if (widths.bits > 0)
-        width = widths.least + coder.code((width - widths.least) & 7, unsigned{widths.bits});
+        width = widths.minimum + coder.code((width - widths.minimum) & 7, unsigned{widths.bits});
     else
-        width = widths.least;
+        width = widths.minimum;
     if (width <= 1) return unfolded(width);
     uint32_t value = 1;
     for (unsigned bits = std::min(width, 32u) - 1; bits > 0;) {
@@ -132,12 +132,12 @@ template <class Coder> uint32_t WordPredictor::codeDistance(Coder& coder, uint32
     return unfolded(value);
 }
 
-void WordPredictor::learn(WordState& word, uint32_t value, const Guesses& guesses, const Curve& curve) {
-    uint32_t least = UINT32_MAX;
+void WordPredictor::update(WordState& word, uint32_t value, const Guesses& guesses, const Curve& curve) {
+    uint32_t minimum = UINT32_MAX;
     for (size_t g = 0; g < kGuesses; ++g) {
         const uint32_t bits = widthOf(folded(ordered(value) - ordered(guesses[g])));
         word.cost[g] = static_cast<uint8_t>((word.cost[g] * 3u + bits * 4 + 2) / 4);
-        if (g != static_cast<size_t>(Prediction::ControlOp)) least = std::min(least, bits);
+        if (g != static_cast<size_t>(Prediction::ControlOp)) minimum = std::min(minimum, bits);
     }
     // A smoothly moving word reveals the time step; faster words are more precise.
     constexpr uint32_t kGain = 8;
@@ -151,15 +151,15 @@ void WordPredictor::learn(WordState& word, uint32_t value, const Guesses& guesse
             weight_ += weight;
         }
     }
-    const uint32_t place = ((value & 0x7fffffff) * 0x9e3779b1u) >> 24;
-    if (least > 2 && guesses[static_cast<size_t>(Prediction::ControlOp)] != value) {
-        const uint32_t back = recentEnd_ - places_[place], there = recent_[places_[place] % kRecent];
+    const uint32_t slot = ((value & 0x7fffffff) * 0x9e3779b1u) >> 24;
+    if (minimum > 2 && guesses[static_cast<size_t>(Prediction::ControlOp)] != value) {
+        const uint32_t back = recentEnd_ - positions_[slot], there = recent_[positions_[slot] % kRecent];
         if (back - 1 < kRecent - 1 && ((there ^ value) & 0x7fffffff) == 0) {
             word.other = static_cast<uint8_t>(back);
             word.negated = there != value;
         }
     }
-    places_[place] = recentEnd_;
+    positions_[slot] = recentEnd_;
     recent_[recentEnd_++ % kRecent] = value;
 }
 

@@ -31,7 +31,7 @@ private:
     };
     [[nodiscard]] Curve guess(const WordState& word, uint32_t old, Guesses& guesses) const;
     template <class Coder> uint32_t codeDistance(Coder& coder, uint32_t context, uint32_t distance);
-    void learn(WordState& word, uint32_t value, const Guesses& guesses, const Curve& curve);
+    void update(WordState& word, uint32_t value, const Guesses& guesses, const Curve& curve);
 
     PredictorState models_;
     EntryModel* item_ = nullptr;
@@ -43,8 +43,8 @@ private:
     double speed_ = 1, weight_ = 0;
 
     static constexpr uint32_t kRecent = 256;
-    std::array<uint32_t, kRecent> recent_{}; // recent values of changed words, a ring
-    std::array<uint32_t, kRecent> places_{}; // position in recent_ by hash
+    std::array<uint32_t, kRecent> recent_{};    // recent values of changed words, a ring
+    std::array<uint32_t, kRecent> positions_{}; // position in recent_ by hash
     uint32_t recentEnd_ = 0;
 
     static constexpr uint32_t kContexts = 18;

@@ -45,7 +45,7 @@ constexpr OwnRecord kOwn[] = {
     {wire::kOpDestroyImage, "DestroyImage", "image:q"},
     {wire::kOpRequestProgram, "RequestProgram", "request:x program"},
     {wire::kOpProgramRecipe, "ProgramSources", "program recipe:v"},
-    {wire::kOpErrorReported, "ErrorTold", ""},
+    {wire::kOpErrorReported, "ErrorReported", ""},
 };
 
 const OwnRecord* ownRecord(uint16_t opcode) {

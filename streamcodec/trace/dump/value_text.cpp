@@ -10,7 +10,7 @@ namespace {
 constexpr size_t kMaxElements = 16;
 constexpr size_t kMaxText = 120;
 // Smaller enums without a group are usually numbers: components, levels, GL_ONE.
-constexpr uint32_t kFirstTellingEnum = 0x100;
+constexpr uint32_t kFirstUnambiguousEnum = 0x100;
 
 template <class T> T load(const std::byte* at) {
     T value{};
@@ -22,8 +22,8 @@ template <class T> T load(const std::byte* at) {
 
 std::string enumText(uint16_t group, uint32_t value) {
     if (const char* name = group != 0 ? enumName(group, value) : nullptr) return name;
-    if (const char* name = value >= kFirstTellingEnum ? enumName(0, value) : nullptr) return name;
-    return value < kFirstTellingEnum ? std::to_string(value) : fmt::format("0x{:x}", value);
+    if (const char* name = value >= kFirstUnambiguousEnum ? enumName(0, value) : nullptr) return name;
+    return value < kFirstUnambiguousEnum ? std::to_string(value) : fmt::format("0x{:x}", value);
 }
 
 std::string bitsText(uint16_t group, uint32_t value) {

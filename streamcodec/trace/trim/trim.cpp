@@ -92,7 +92,7 @@ public:
         : survey_(survey), writer_(writer), report_(report) {}
 
     // Writes the needed part of earlier frames.
-    bool kept() {
+    bool copyNeeded() {
         for (const auto& [client, event] : survey_.came)
             if (!put({0, 0, event})) return false;
         PacketSplitter packets([&](uint32_t stream, std::span<const std::byte> payload) {
@@ -116,39 +116,39 @@ private:
     }
 
     bool packet(const Entry& e) {
-        kept_.clear();
+        records_.clear();
         RecordWalk walk(e.payload);
         RecordView r;
         bool more = true;
         for (; more && walk.next(r); ++number_) {
             more = number_ < survey_.endRecord;
             if (number_ < survey_.beginRecord) continue;
-            const size_t at = kept_.size();
-            kept_.insert(kept_.end(), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset),
-                         e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset + r.sizeBytes));
+            const size_t at = records_.size();
+            records_.insert(records_.end(), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset),
+                            e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset + r.sizeBytes));
             if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
                 number(e.stream, r, at + r.sizeBytes - r.arguments.size(), number_ < survey_.shownFrom);
         }
-        return (kept_.empty() || put({e.stream, timeOf(e), kept_})) && more;
+        return (records_.empty() || put({e.stream, timeOf(e), records_})) && more;
     }
 
     // Swaps before the first frame become unseen; visible frames are renumbered from 1.
     void number(uint32_t stream, const RecordView& r, size_t argumentsAt, bool before) {
         if (r.arguments.size() < 8 || argumentWord(r, 1) == wire::kUnseenFrame) return;
         const uint32_t frame = before ? wire::kUnseenFrame : ++frames_[wire::clientOf(stream)];
-        std::memcpy(kept_.data() + argumentsAt + 4, &frame, sizeof frame);
+        std::memcpy(records_.data() + argumentsAt + 4, &frame, sizeof frame);
     }
 
     std::span<const std::byte> unseen(std::span<const std::byte> payload) {
-        kept_.assign(payload.begin(), payload.end());
+        records_.assign(payload.begin(), payload.end());
         RecordWalk walk(payload);
         RecordView r;
         while (walk.next(r)) {
-            ++report_.recordsKept;
-            report_.drawsKept += draws(r.opcode);
+            ++report_.recordsWritten;
+            report_.drawsWritten += draws(r.opcode);
         }
-        hideFrames(kept_);
-        return kept_;
+        hideFrames(records_);
+        return records_;
     }
 
     bool put(const Entry& e) {
@@ -161,7 +161,7 @@ private:
     TrimReport& report_;
     uint64_t number_ = 0;
     std::map<uint32_t, uint32_t> frames_;
-    std::vector<std::byte> kept_;
+    std::vector<std::byte> records_;
     Result<void> failed_;
 };
 
@@ -183,7 +183,7 @@ Result<TrimReport> trim(TraceReader& reader, int64_t firstFrame, int64_t lastFra
     report.recordsBefore = survey.beginRecord;
     report.drawsBefore = survey.drawsBefore;
     Copy copy(survey, out, report);
-    if (!copy.kept()) return copy.failed().error();
+    if (!copy.copyNeeded()) return copy.failed().error();
     if (auto r = forEachEntry(reader, [&](const Entry& e) { return copy.entry(e); }); !r) return r.error();
     if (!copy.failed()) return copy.failed().error();
     if (auto r = out.flush(); !r) return r.error();

@@ -11,10 +11,10 @@ namespace mural::trace {
 
 struct TrimReport {
     int64_t frames = 0;
-    uint64_t recordsBefore = 0; // in earlier frames
-    uint64_t recordsKept = 0;   // of these
-    uint64_t drawsBefore = 0;   // draw calls, primitives and display list calls in earlier frames
-    uint64_t drawsKept = 0;
+    uint64_t recordsBefore = 0;  // in earlier frames
+    uint64_t recordsWritten = 0; // of these
+    uint64_t drawsBefore = 0;    // draw calls, primitives and display list calls in earlier frames
+    uint64_t drawsWritten = 0;
     uint64_t fileBytes = 0;
 };
 

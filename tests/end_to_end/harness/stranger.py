@@ -12,7 +12,7 @@ import struct
 import sys
 import time
 
-KEPT = 5000
+MAX_DATAGRAMS = 5000
 
 
 def group_socket(group, port, address):
@@ -42,7 +42,7 @@ def changed(datagram):
 def main():
     group, port, address, seconds = sys.argv[1], int(sys.argv[2]), sys.argv[3], float(sys.argv[4])
     s = group_socket(group, port, address)
-    heard, sent = [], {"heard": 0, "replayed": 0, "changed": 0, "random": 0}
+    received, sent = [], {"heard": 0, "replayed": 0, "changed": 0, "random": 0}
     until = time.monotonic() + seconds
     while time.monotonic() < until:
         try:
@@ -51,17 +51,17 @@ def main():
                 if len(datagram) < 16:
                     continue
                 sent["heard"] += 1
-                if len(heard) < KEPT:
-                    heard.append(datagram)
+                if len(received) < MAX_DATAGRAMS:
+                    received.append(datagram)
                 else:
-                    heard[random.randrange(KEPT)] = datagram
+                    received[random.randrange(MAX_DATAGRAMS)] = datagram
         except BlockingIOError:
             pass
         for _ in range(5):
             made = {"random": os.urandom(random.randrange(1473))}
-            if heard:
-                made["replayed"] = random.choice(heard)
-                made["changed"] = changed(random.choice(heard[-100:]))
+            if received:
+                made["replayed"] = random.choice(received)
+                made["changed"] = changed(random.choice(received[-100:]))
             for kind, datagram in made.items():
                 s.sendto(datagram, (group, port))
                 sent[kind] += 1

@@ -90,7 +90,7 @@ EXPORT void* dlopen(const char* name, int flags) {
 
 EXPORT int dlclose(void* handle) { return ((dlclose_function)of_libc("dlclose"))(handle); }
 
-__attribute__((destructor)) static void tell(void) {
+__attribute__((destructor)) static void reportCalls(void) {
     char line[96];
     const int length =
         snprintf(line, sizeof line, "the overlay saw %d swaps, %s\n", swaps, lookups ? "lookups" : "no lookups");

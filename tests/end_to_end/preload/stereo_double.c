@@ -313,8 +313,8 @@ static Function replacementOf(const char* name, Function found) {
 
 static Function lookUp(const unsigned char* name) {
     const Function found = real.lookUp(name);
-    const Function ours = found ? replacementOf((const char*)name, found) : NULL;
-    return ours ? ours : found;
+    const Function replacement = found ? replacementOf((const char*)name, found) : NULL;
+    return replacement ? replacement : found;
 }
 
 /* ---- audit interface of the dynamic linker: intercepts GLFW's lookups in the GL libraries --------- */
@@ -337,6 +337,6 @@ EXPORT uintptr_t la_symbind64(Elf64_Sym* symbol, unsigned index, uintptr_t* from
     (void)to;
     (void)flags;
     const Function found = (Function)symbol->st_value;
-    const Function ours = replacementOf(name, found);
-    return (uintptr_t)(ours ? ours : found);
+    const Function replacement = replacementOf(name, found);
+    return (uintptr_t)(replacement ? replacement : found);
 }

@@ -38,11 +38,11 @@ PicturePart clearedPart(const ExpectedPart& e) {
 // Unpacks into the part, as nodes do. Returns nothing if it was rejected.
 std::optional<PartState> unpackInto(PicturePart& part, const std::vector<std::byte>& message, const ExpectedPart& e) {
     static PlaneDecoder decoder; // keeps its scratch memory, as in the product
-    int64_t told = 0;
+    int64_t pixels = 0;
     const PixelViewport band{0, e.rows.first, e.id.box.w, e.rows.count()};
     auto state = unpackPart(message, e.id, e.rows, e.rule, decoder, [&](const ArrivedPiece& piece) {
         must(!piece.area.empty() && band.contains(piece.area), "a piece lies in the rows that were waited for");
-        told += piece.area.area();
+        pixels += piece.area.area();
         for (int32_t y = 0; y < piece.area.h; ++y) {
             const size_t from = static_cast<size_t>(y) * static_cast<size_t>(piece.area.w),
                          at = part.at(piece.area.x, piece.area.y + y);
@@ -51,7 +51,7 @@ std::optional<PartState> unpackInto(PicturePart& part, const std::vector<std::by
                          LayerOrder::Later, e.rule);
         }
     });
-    must(told <= band.area(), "pieces are no more than the rows hold");
+    must(pixels <= band.area(), "pieces are no more than the rows hold");
     if (state) return *state;
     must(!state.error().message.empty() && state.error().message.find('\n') == std::string::npos,
          "an error is one line");

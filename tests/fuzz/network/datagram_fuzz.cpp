@@ -35,7 +35,7 @@ bool same(const Feedback& a, const Feedback& b) {
         return x.base == y.base && x.missing == y.missing && x.rows == y.rows && x.span == y.span;
     };
     return a.from == b.from && a.to == b.to && a.flags == b.flags && a.cumulative == b.cumulative && a.edge == b.edge &&
-           a.highest == b.highest && a.echoUs == b.echoUs && a.heldUs == b.heldUs && a.lost == b.lost &&
+           a.highest == b.highest && a.echoUs == b.echoUs && a.ackDelayUs == b.ackDelayUs && a.lost == b.lost &&
            a.dropped == b.dropped && a.entryCount == b.entryCount &&
            std::equal(a.entries.begin(), a.entries.begin() + a.entryCount, b.entries.begin(), sameEntry);
 }

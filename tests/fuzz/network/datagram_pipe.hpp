@@ -12,7 +12,7 @@ namespace mural::fuzz {
 class DatagramPipe : public rsp::DatagramSink {
 public:
     std::span<std::byte> datagram(rsp::MemberId, size_t bytes) override {
-        if (queue_.size() == kMost) queue_.pop_front();
+        if (queue_.size() == kMax) queue_.pop_front();
         return queue_.emplace_back(bytes);
     }
     std::optional<std::vector<std::byte>> take() {
@@ -23,7 +23,7 @@ public:
     }
 
 private:
-    static constexpr size_t kMost = 512;
+    static constexpr size_t kMax = 512;
     std::deque<std::vector<std::byte>> queue_;
 };
 

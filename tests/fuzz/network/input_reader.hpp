@@ -30,8 +30,8 @@ public:
     // Reads a length of two bytes and the bytes after it. Returns a copy of exactly this size, so that a sanitizer
     // detects the first byte read beyond it.
     std::vector<std::byte> piece() {
-        const size_t told = half(); // read before size() is evaluated
-        const size_t count = std::min(told, left_.size());
+        const size_t wanted = half(); // read before size() is evaluated
+        const size_t count = std::min(wanted, left_.size());
         const auto taken = left_.first(count);
         left_ = left_.subspan(count);
         return {taken.begin(), taken.end()};

@@ -76,7 +76,7 @@ std::vector<std::pair<std::string, ControlMessage>> messages() {
     Join join;
     join.udpPort = 4711;
     join.socketDatagrams = 64;
-    join.mostDatagramBytes = 512;
+    join.maxDatagramBytes = 512;
     join.seals = 0xff;
     Welcome welcome;
     welcome.self = 1;
@@ -185,11 +185,11 @@ void announcements(const std::filesystem::path& folder) {
     Seed().raw(encode(a)).save(folder, "announcement", "here");
     a.kind = AnnouncementKind::Gone;
     Seed().raw(encode(a)).save(folder, "announcement", "gone");
-    Seed().raw(encode(Announcement{AnnouncementKind::Asked, 0, {}, "", ""})).save(folder, "announcement", "asked");
+    Seed().raw(encode(Announcement{AnnouncementKind::Search, 0, {}, "", ""})).save(folder, "announcement", "asked");
 }
 
 void probes(const std::filesystem::path& folder) {
-    for (const cli::ProbeWay way : cli::kProbeWays) {
+    for (const cli::ProbePath way : cli::kProbePaths) {
         Bytes bytes(60);
         cli::writeProbe({7, way, true, static_cast<uint16_t>(bytes.size())}, bytes);
         Seed().raw(bytes).save(folder, "probe_datagram", "way_" + std::to_string(static_cast<int>(way)));

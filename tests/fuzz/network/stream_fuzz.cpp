@@ -37,7 +37,7 @@ public:
         case StreamStep::Flush: sender_.flush(); break;
         case StreamStep::Read: receiver_.consume(std::min<size_t>(in.half(), receiver_.readable().size())); break;
         case StreamStep::PassOn: pass(in, sent_, [this](const auto& d) { toReader(d); }); break;
-        case StreamStep::Answer: pass(in, told_, [this](const auto& d) { toWriter(d); }); break;
+        case StreamStep::Answer: pass(in, feedback_, [this](const auto& d) { toWriter(d); }); break;
         case StreamStep::Lose: (void)sent_.take(); break;
         case StreamStep::AddMember: (void)sender_.addMember(in.byte(), nowNs_); break;
         default: sender_.removeMember(in.byte()); break;
@@ -45,7 +45,7 @@ public:
         const Sequence before = receiver_.cumulative();
         must(sender_.tick(nowNs_, sent_) > INT64_MIN, "the writer wants to be asked again some time");
         const uint32_t lostBefore = receiver_.lost();
-        (void)receiver_.tick(nowNs_, told_);
+        (void)receiver_.tick(nowNs_, feedback_);
         must(receiver_.lost() - lostBefore <= kShape.windowDatagrams, "no more is lost than a window");
         must(receiver_.cumulative() == before, "telling moves nothing");
         must(sender_.roomBytes() <= kShape.payloadBytes * kShape.windowDatagrams,
@@ -93,7 +93,7 @@ private:
     int64_t nowNs_ = 1'000'000'000;
     Sender sender_;
     Receiver receiver_;
-    DatagramPipe sent_, told_;
+    DatagramPipe sent_, feedback_;
     uint64_t meant_ = 0;
     volatile uint8_t sum_ = 0; // touches all readable bytes
 };

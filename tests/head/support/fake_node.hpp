@@ -23,19 +23,19 @@ namespace mural {
 
 struct FakeNodeBehaviour {
     bool pictures = false;
-    bool silentStart = false;          // never ready
-    bool refuses = false;              // reports this reason instead of being ready, and ends
-    bool drawsWhole = false;           // reported with every frame
-    bool keepsAreas = false;           // reported with every frame
-    uint64_t busyNs = 0;               // reported with every frame
-    std::string news;                  // a driver event with every frame
-    uint32_t dieAtFrame = 0;           // closes its connection instead of finishing this frame
-    uint32_t dieAtRequest = 0;         // instead of answering
-    uint32_t garbageAtFrame = 0;       // sends a malformed message
-    bool halfAnswer = false;           // sends the first part of an answer, then dies
-    bool noBye = false;                // hangs at the end
-    bool alive = false;                // sends heartbeats
-    std::atomic<bool>* hold = nullptr; // reads nothing while true
+    bool silentStart = false;                  // never ready
+    bool refuses = false;                      // reports this reason instead of being ready, and ends
+    bool drawsWhole = false;                   // reported with every frame
+    bool keepsAreas = false;                   // reported with every frame
+    uint64_t busyNs = 0;                       // reported with every frame
+    std::string driverMessage;                 // a driver event with every frame
+    uint32_t dieAtFrame = 0;                   // closes its connection instead of finishing this frame
+    uint32_t dieAtRequest = 0;                 // instead of answering
+    uint32_t garbageAtFrame = 0;               // sends a malformed message
+    bool halfAnswer = false;                   // sends the first part of an answer, then dies
+    bool noBye = false;                        // hangs at the end
+    bool alive = false;                        // sends heartbeats
+    std::atomic<bool>* filterPacket = nullptr; // reads nothing while true
 };
 
 class FakeNode {
@@ -65,7 +65,7 @@ private:
 
     void work() {
         while (!stop_) {
-            if (behaviour_.hold != nullptr && *behaviour_.hold) {
+            if (behaviour_.filterPacket != nullptr && *behaviour_.filterPacket) {
                 std::this_thread::yield();
                 continue;
             }
@@ -79,12 +79,12 @@ private:
             if (!connection_->read(bytes, Deadline::inMs(kTestPatienceMs))) return;
             words.resize(header.sizeBytes / 4);
             // still requested
-            while (behaviour_.hold != nullptr && *behaviour_.hold && !stop_) std::this_thread::yield();
+            while (behaviour_.filterPacket != nullptr && *behaviour_.filterPacket && !stop_) std::this_thread::yield();
             note(header.stream, words);
             const bool goOn = header.stream == 0 ? command(words, bytes) : records(header.stream, words);
             connection_->flush();
             if (!goOn) connection_->close();
-            if (!goOn || saidBye_) return;
+            if (!goOn || goodbyeReceived_) return;
         }
     }
 
@@ -115,7 +115,7 @@ private:
             sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{words.at(1), wire::kAllWindows}, {});
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {
             sendText(wire::NodeMessage::Goodbye, R"({"commands":42,"cpuSeconds":0.5})");
-            saidBye_ = true;
+            goodbyeReceived_ = true;
         }
         return true;
     }
@@ -128,8 +128,8 @@ private:
             if (words[at + 1] == kFakeSwap && !swap(client, a)) return false;
             if (words[at + 1] == kFakeWindowGone)
                 sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{client, a[0]}, {});
-            const bool asks = words[at + 1] >= kFakePixels && words[at + 1] <= kFakeSum;
-            if (asks && !answer(client, words[at + 1], a)) return false;
+            const bool isRead = words[at + 1] >= kFakePixels && words[at + 1] <= kFakeSum;
+            if (isRead && !answer(client, words[at + 1], a)) return false;
         }
         return true;
     }
@@ -154,16 +154,16 @@ private:
             const std::vector<uint32_t> rows(static_cast<size_t>(v.area()), pixel);
             sendStruct(wire::NodeMessage::Picture, header, std::as_bytes(std::span(rows)));
         }
-        if (!behaviour_.news.empty()) {
-            const wire::DriverEvent news{client,
-                                         7,
-                                         static_cast<uint32_t>(wire::DriverEventKind::DebugMessage),
-                                         1,
-                                         2,
-                                         static_cast<uint32_t>(setup_.node),
-                                         4,
-                                         static_cast<uint32_t>(behaviour_.news.size())};
-            sendStruct(wire::NodeMessage::DriverEvent, news, std::as_bytes(std::span(behaviour_.news)));
+        if (!behaviour_.driverMessage.empty()) {
+            const wire::DriverEvent event{client,
+                                          7,
+                                          static_cast<uint32_t>(wire::DriverEventKind::DebugMessage),
+                                          1,
+                                          2,
+                                          static_cast<uint32_t>(setup_.node),
+                                          4,
+                                          static_cast<uint32_t>(behaviour_.driverMessage.size())};
+            sendStruct(wire::NodeMessage::DriverEvent, event, std::as_bytes(std::span(behaviour_.driverMessage)));
         }
         wire::FrameDoneMessage done{};
         done.client = client;
@@ -189,11 +189,11 @@ private:
         header.last = 1;
         std::vector<uint32_t> data;
         if (verb == kFakePixels) {
-            const PixelViewport asked{static_cast<int32_t>(a[1]), static_cast<int32_t>(a[2]),
-                                      static_cast<int32_t>(a[3]), static_cast<int32_t>(a[4])};
+            const PixelViewport queried{static_cast<int32_t>(a[1]), static_cast<int32_t>(a[2]),
+                                        static_cast<int32_t>(a[3]), static_cast<int32_t>(a[4])};
             // Windows of requests are 64 × 48 in these tests.
-            PixelViewport mine = intersect(asked, region(64, 48));
-            header.first = !mine.empty() && mine == asked;
+            PixelViewport mine = intersect(queried, region(64, 48));
+            header.first = !mine.empty() && mine == queried;
             header.groupBytes = 4;
             if (a[0] == behaviour_.dieAtRequest) mine.h = 1; // half of it, then gone
             header.x = mine.x;
@@ -234,7 +234,7 @@ private:
     FakeNodeBehaviour behaviour_;
     NodeSetup setup_;
     uint32_t areas_ = 0;
-    bool saidBye_ = false;
+    bool goodbyeReceived_ = false;
     std::atomic<bool> stop_{false};
     mutable std::mutex mutex_;
     std::vector<Packet> packets_;

@@ -31,7 +31,7 @@ public:
         options.registryDigest = kTestDigest;
         options.chunkCount = 16;
         config.placeThreads = false; // tests do not change CPU affinity
-        options.byePatienceMs = 1000;
+        options.goodbyePatienceMs = 1000;
     }
     ~SessionHarness() {
         mine_ = FileDescriptor(); // the head ends when its control connection breaks
@@ -89,7 +89,7 @@ public:
         ADD_FAILURE() << "no event " << event;
         return {};
     }
-    std::string waitForSay(const std::string& part) {
+    std::string waitForMessage(const std::string& part) {
         const Deadline deadline = Deadline::inMs(kTestPatienceMs);
         for (const auto& e : seen)
             if (e["event"] == "say" && e["text"].get<std::string>().find(part) != std::string::npos) return e["text"];

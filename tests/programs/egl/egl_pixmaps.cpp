@@ -45,11 +45,12 @@ int main(int argc, char** argv) {
     const auto window = openEglWindow({.profile = Profile::Compatibility}, options.width, options.height);
     Display* x = openDisplayOnce();
     const EGLDisplay egl = eglGetDisplay(reinterpret_cast<EGLNativeDisplayType>(x));
-    const EGLint wishes[] = {EGL_SURFACE_TYPE,    EGL_PIXMAP_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
-                             EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    const EGLint attributes[] = {
+        EGL_SURFACE_TYPE,    EGL_PIXMAP_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
+        EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    require(eglChooseConfig(egl, wishes, &config, 1, &count) == EGL_TRUE && count == 1, "pixmaps");
+    require(eglChooseConfig(egl, attributes, &config, 1, &count) == EGL_TRUE && count == 1, "pixmaps");
     EGLint visual = 0;
     eglGetConfigAttrib(egl, config, EGL_NATIVE_VISUAL_ID, &visual);
     XVisualInfo wanted{};

@@ -155,13 +155,13 @@ int main(int argc, char** argv) {
     XVisualInfo* visual = visualOf(other);
     const ::Window window = makeWindow(other, *visual, 0xffffff);
     makeStranger(window);
-    Display* looking = openDisplay("DISPLAY");
-    std::printf("stranger %08lx\n", sumOf(looking, window));
+    Display* observer = openDisplay("DISPLAY");
+    std::printf("stranger %08lx\n", sumOf(observer, window));
     const bool glx = std::strcmp(way, "glx") == 0 || std::strcmp(way, "both") == 0;
     const Shown shown = glx ? openGlx(other, window, visual) : openEgl(other, window, way);
     showFrames(shown, 0.2F);
-    if (std::strcmp(way, "both") == 0) showOnBoth(shown, looking);
+    if (std::strcmp(way, "both") == 0) showOnBoth(shown, observer);
     std::printf("window %08lx\n", sumOf(other, window));
-    std::printf("stranger %08lx\n", sumOf(looking, window));
+    std::printf("stranger %08lx\n", sumOf(observer, window));
     return 0;
 }

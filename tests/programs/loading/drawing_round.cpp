@@ -89,13 +89,13 @@ public:
     ~OwnWindow() { XDestroyWindow(display_, id_); }
 
     [[nodiscard]] ::Window id() const { return id_; }
-    void sayPixels(const char* where, int round, int frame, const Painter& gl) const {
+    void printPixels(const char* where, int round, int frame, const Painter& gl) const {
         std::vector<uint8_t> pixels(size_t(width_) * size_t(height_) * 4);
         gl.readPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
         std::printf("%s round %d frame %d: %016llx\n", where, round, frame,
                     static_cast<unsigned long long>(sumOf(pixels.data(), pixels.size())));
     }
-    void sayWindow(int round) const {
+    void printWindow(int round) const {
         XImage* image = XGetImage(display_, id_, 0, 0, unsigned(width_), unsigned(height_), AllPlanes, ZPixmap);
         if (image == nullptr) fail("no image");
         uint64_t sum = 0;
@@ -128,10 +128,10 @@ void drawByGlx(const Round& round, Display* display, int width, int height) {
         const Painter gl(library);
         for (int frame = 0; frame < round.frames; ++frame) {
             gl.draw(round.number, frame, width, height);
-            window.sayPixels("glx", round.number, frame, gl);
+            window.printPixels("glx", round.number, frame, gl);
             swapBuffers(display, window.id());
         }
-        window.sayWindow(round.number);
+        window.printWindow(round.number);
         makeCurrent(display, None, nullptr);
         destroyContext(display, context);
     }
@@ -174,10 +174,10 @@ void drawByEgl(const Round& round, Display* display, int width, int height) {
         const Painter gl(gles);
         for (int frame = 0; frame < round.frames; ++frame) {
             gl.draw(round.number, frame, width, height);
-            window.sayPixels("egl", round.number, frame, gl);
+            window.printPixels("egl", round.number, frame, gl);
             swapBuffers(connection, surface);
         }
-        window.sayWindow(round.number);
+        window.printWindow(round.number);
         makeCurrent(connection, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         FUNCTION(egl, eglDestroyContext)(connection, context);
         FUNCTION(egl, eglDestroySurface)(connection, surface);

@@ -12,7 +12,7 @@ namespace programs {
 
 PassOptions takePassOptions(int& argc, char** argv) {
     PassOptions options;
-    int kept = 1;
+    int remaining = 1;
     for (int i = 1; i < argc; ++i) {
         const char* value = i + 1 < argc ? argv[i + 1] : "";
         const auto pair = [&](float& first, float& second) {
@@ -36,9 +36,9 @@ PassOptions takePassOptions(int& argc, char** argv) {
             options.screen = s;
             ++i;
         } else
-            argv[kept++] = argv[i];
+            argv[remaining++] = argv[i];
     }
-    argc = kept;
+    argc = remaining;
     return options;
 }
 

@@ -110,23 +110,23 @@ void tryObjects() {
 void tryGlx(bool& objects) {
     Display* display = openDisplayOnce();
     for (const int alpha : {2, 0}) {
-        const int wishes[] = {GLX_DRAWABLE_TYPE,
-                              GLX_PBUFFER_BIT,
-                              GLX_DOUBLEBUFFER,
-                              True,
-                              GLX_RED_SIZE,
-                              10,
-                              GLX_GREEN_SIZE,
-                              10,
-                              GLX_BLUE_SIZE,
-                              10,
-                              GLX_ALPHA_SIZE,
-                              alpha,
-                              GLX_DEPTH_SIZE,
-                              24,
-                              None};
+        const int attributes[] = {GLX_DRAWABLE_TYPE,
+                                  GLX_PBUFFER_BIT,
+                                  GLX_DOUBLEBUFFER,
+                                  True,
+                                  GLX_RED_SIZE,
+                                  10,
+                                  GLX_GREEN_SIZE,
+                                  10,
+                                  GLX_BLUE_SIZE,
+                                  10,
+                                  GLX_ALPHA_SIZE,
+                                  alpha,
+                                  GLX_DEPTH_SIZE,
+                                  24,
+                                  None};
         int count = 0;
-        GLXFBConfig* configs = glXChooseFBConfig(display, DefaultScreen(display), wishes, &count);
+        GLXFBConfig* configs = glXChooseFBConfig(display, DefaultScreen(display), attributes, &count);
         require(configs != nullptr && count > 0, "GLX pbuffers of 10 bits per channel");
         const int size[] = {GLX_PBUFFER_WIDTH, kWidth, GLX_PBUFFER_HEIGHT, kHeight, None};
         const GLXPbuffer pbuffer = glXCreatePbuffer(display, configs[0], size);
@@ -153,22 +153,22 @@ void tryHalfFloats() {
     const EGLDisplay egl = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
     require(egl != EGL_NO_DISPLAY && eglInitialize(egl, nullptr, nullptr) && eglBindAPI(EGL_OPENGL_API),
             "EGL without a window system");
-    const EGLint wishes[] = {EGL_SURFACE_TYPE,
-                             EGL_PBUFFER_BIT,
-                             EGL_RENDERABLE_TYPE,
-                             EGL_OPENGL_BIT,
-                             EGL_COLOR_COMPONENT_TYPE_EXT,
-                             EGL_COLOR_COMPONENT_TYPE_FLOAT_EXT,
-                             EGL_RED_SIZE,
-                             16,
-                             EGL_ALPHA_SIZE,
-                             16,
-                             EGL_DEPTH_SIZE,
-                             24,
-                             EGL_NONE};
+    const EGLint attributes[] = {EGL_SURFACE_TYPE,
+                                 EGL_PBUFFER_BIT,
+                                 EGL_RENDERABLE_TYPE,
+                                 EGL_OPENGL_BIT,
+                                 EGL_COLOR_COMPONENT_TYPE_EXT,
+                                 EGL_COLOR_COMPONENT_TYPE_FLOAT_EXT,
+                                 EGL_RED_SIZE,
+                                 16,
+                                 EGL_ALPHA_SIZE,
+                                 16,
+                                 EGL_DEPTH_SIZE,
+                                 24,
+                                 EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    if (!eglChooseConfig(egl, wishes, &config, 1, &count) || count == 0) {
+    if (!eglChooseConfig(egl, attributes, &config, 1, &count) || count == 0) {
         std::printf("EGL has no pbuffers of half floats\n");
         return;
     }

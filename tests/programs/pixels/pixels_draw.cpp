@@ -105,9 +105,9 @@ void drawRasterPositions(unsigned frame) {
     glBitmap(0, 0, 0, 0, -6, 0, nullptr);
     mark();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    GLfloat told[4];
-    glGetFloatv(GL_CURRENT_RASTER_POSITION, told);
-    showBits(37, told[0]);
+    GLfloat readBack[4];
+    glGetFloatv(GL_CURRENT_RASTER_POSITION, readBack);
+    showBits(37, readBack[0]);
 }
 
 void drawZoomed(unsigned frame) {
@@ -277,7 +277,7 @@ void readBehindBitmaps(GLuint program) {
 
 // Reads a shader's results after bitmaps. Bitmaps are drawn with the program's uniforms of that time, and the read does
 // not cause the draw.
-void askBehindBitmaps(GLuint tinting, GLuint writing, GLuint buffer) {
+void queryBehindBitmaps(GLuint tinting, GLuint writing, GLuint buffer) {
     const std::vector<GLubyte> bits(16, 0xe9);
     GLfloat written[4] = {};
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
@@ -335,6 +335,6 @@ int main(int argc, char** argv) {
             blitStencil(window.width(), window.height());
             copyPixels(window, number);
             readBehindBitmaps(sampling);
-            askBehindBitmaps(tinting, writing, written);
+            queryBehindBitmaps(tinting, writing, written);
         });
 }

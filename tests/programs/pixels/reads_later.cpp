@@ -11,11 +11,11 @@ using namespace programs;
 
 namespace {
 
-constexpr int kMost = 3, kTurn = 40; // frames with three buffers, then the same number with two
+constexpr int kMax = 3, kTurn = 40; // frames with three buffers, then the same number with two
 constexpr int kSize = 32, kBlocks = kSize / 4, kBlockBytes = 8;
 constexpr GLsizei kImageBytes = 20 * 12 * 4, kPartBytes = 5 * 4 * kBlockBytes,
                   kAllBytes = kBlocks * kBlocks * kBlockBytes;
-GLuint buffers[kMost], images[kMost], blocks[kMost], allBlocks[kMost];
+GLuint buffers[kMax], images[kMax], blocks[kMax], allBlocks[kMax];
 GLuint drawn, compressed, framebuffer;
 
 GLuint roomFor(GLsizei sizeBytes) {
@@ -104,9 +104,9 @@ void showTextures(int turn) {
         const auto* const mapped =
             static_cast<const GLubyte*>(glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, read.sizeBytes, GL_MAP_READ_BIT));
         if (!mapped) fail("a buffer that a texture was read into can't be mapped");
-        const std::uint32_t told = sum(mapped, std::size_t(read.sizeBytes));
+        const std::uint32_t readBack = sum(mapped, std::size_t(read.sizeBytes));
         glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
-        showBits(row++, told);
+        showBits(row++, readBack);
     }
 }
 
@@ -116,13 +116,13 @@ void showRead(const Window& window, GLuint buffer) {
     const auto* const mapped =
         static_cast<const GLubyte*>(glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, GLsizeiptr(bytes), GL_MAP_READ_BIT));
     if (!mapped) fail("a buffer that was read into can't be mapped");
-    const std::uint32_t told = sum(mapped, bytes);
+    const std::uint32_t readBack = sum(mapped, bytes);
     glPixelZoom(0.4F, 0.4F);
     glWindowPos2i(window.width() / 2, window.height() / 2);
     glDrawPixels(window.width(), window.height(), GL_BGRA, GL_UNSIGNED_BYTE, mapped);
     glPixelZoom(1, 1);
     glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
-    showBits(1, told);
+    showBits(1, readBack);
 }
 
 } // namespace
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
     return runInGlxWindow(
         argc, argv, {},
         [](Window& window) {
-            for (int i = 0; i < kMost; ++i) {
+            for (int i = 0; i < kMax; ++i) {
                 buffers[i] = roomFor(window.width() * window.height() * 4);
                 images[i] = roomFor(2 * kImageBytes);
                 blocks[i] = roomFor(kPartBytes);
@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
         },
         [](Window& window, int frame) {
             moving(frame);
-            const int used = frame / kTurn % 2 == 0 ? kMost : 2, since = frame % kTurn;
+            const int used = frame / kTurn % 2 == 0 ? kMax : 2, since = frame % kTurn;
             glBindBuffer(GL_PIXEL_PACK_BUFFER, buffers[since % used]);
             glReadPixels(0, 0, window.width(), window.height(), GL_BGRA, GL_UNSIGNED_BYTE, nullptr);
             drawTextures(frame);

@@ -36,14 +36,14 @@ std::uint32_t recordOne(GLuint buffer, GLsync fence, std::size_t bytes) {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
     const auto* const mapped = static_cast<const GLubyte*>(glMapBuffer(GL_PIXEL_PACK_BUFFER, GL_READ_ONLY));
     if (!mapped) fail("the recorder can't map a buffer");
-    std::uint32_t told = sum(mapped, bytes);
+    std::uint32_t readBack = sum(mapped, bytes);
     glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     GLubyte pixel[4] = {};
-    glClearColor(float(told % 251) / 255, 0, 0, 1);
+    glClearColor(float(readBack % 251) / 255, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     glReadPixels(3, 3, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel); // a round trip of its own
-    return told + pixel[0];
+    return readBack + pixel[0];
 }
 
 void recorder(Window& own, std::size_t bytes) {
@@ -57,9 +57,9 @@ void recorder(Window& own, std::size_t bytes) {
         if (framesRead == framesRecorded) break;
         const int turn = framesRecorded % kBuffers;
         lock.unlock();
-        const std::uint32_t told = recordOne(buffers[turn], fences[turn], bytes);
+        const std::uint32_t readBack = recordOne(buffers[turn], fences[turn], bytes);
         lock.lock();
-        sums[turn] = told;
+        sums[turn] = readBack;
         ++framesRecorded;
         changed.notify_all();
     }

@@ -16,12 +16,12 @@ using namespace programs;
 
 namespace {
 
-GLXContext makeRobustContext(Display* display, GLXFBConfig config, bool asks) {
+GLXContext makeRobustContext(Display* display, GLXFBConfig config, bool requestsNotification) {
     const auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(
         glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
-    const int attributes[] = {GLX_CONTEXT_FLAGS_ARB, GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB,
-                              GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB,
-                              asks ? GLX_LOSE_CONTEXT_ON_RESET_ARB : GLX_NO_RESET_NOTIFICATION_ARB, None};
+    const int attributes[] = {
+        GLX_CONTEXT_FLAGS_ARB, GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB, GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB,
+        requestsNotification ? GLX_LOSE_CONTEXT_ON_RESET_ARB : GLX_NO_RESET_NOTIFICATION_ARB, None};
     const GLXContext made = create(display, config, nullptr, True, attributes);
     if (made == nullptr) {
         fail("no context with robust access");
@@ -32,12 +32,12 @@ GLXContext makeRobustContext(Display* display, GLXFBConfig config, bool asks) {
 } // namespace
 
 int main(int argc, char** argv) {
-    const bool asks = std::strcmp(argv[argc - 1], "--unasked") != 0;
-    const Options options = parseOptions(asks ? argc : argc - 1, argv);
+    const bool requestsNotification = std::strcmp(argv[argc - 1], "--unasked") != 0;
+    const Options options = parseOptions(requestsNotification ? argc : argc - 1, argv);
     Display* display = openDisplayOnce();
     const GLXFBConfig config = chooseGlxConfig(display, GLX_WINDOW_BIT);
     const XWindow window(*glXGetVisualFromFBConfig(display, config), 0, 0, options.width, options.height);
-    if (glXMakeCurrent(display, window.id(), makeRobustContext(display, config, asks)) != True) {
+    if (glXMakeCurrent(display, window.id(), makeRobustContext(display, config, requestsNotification)) != True) {
         fail("glXMakeCurrent failed");
     }
     for (int frame = 0; frame < options.frames; ++frame) {

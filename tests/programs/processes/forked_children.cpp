@@ -73,7 +73,7 @@ void calls(bool raw) {
     drawFrames(own, 0, 3);
     awaitChild(startChild(callMuch, raw));
     awaitChild(startChild([] { std::exit(9); }, raw)); // through destructors and atexit
-    tellFrame("parent", own, 3);
+    printFrame("parent", own, 3);
 }
 
 // Draws in both processes at the same time; the child prints first.
@@ -84,41 +84,41 @@ void together(bool raw, const std::function<Plain()>& open) {
         [&] {
             const Plain childs = open();
             drawFrames(childs, 10, 5);
-            tellFrame("child", childs, 20);
+            printFrame("child", childs, 20);
             awaitChild(startChild(
                 [&] {
                     const Plain grandchilds = open();
-                    tellFrame("grandchild", grandchilds, 30);
+                    printFrame("grandchild", grandchilds, 30);
                 },
                 raw));
-            tellFrame("child", childs, 21);
+            printFrame("child", childs, 21);
         },
         raw);
     drawFrames(own, 3, 8);
     awaitChild(child);
-    tellFrame("parent", own, 11);
+    printFrame("parent", own, 11);
 }
 
 void before() {
     const pid_t child = startChild([] {
         const Plain childs = openGlx();
         drawFrames(childs, 0, 4);
-        tellFrame("child", childs, 4);
+        printFrame("child", childs, 4);
     });
     const Plain own = openGlx();
     drawFrames(own, 5, 4);
     awaitChild(child);
-    tellFrame("parent", own, 9);
+    printFrame("parent", own, 9);
 }
 
 void after() {
     const Plain own = openGlx();
-    tellFrame("parent", own, 0);
+    printFrame("parent", own, 0);
     glXMakeCurrent(own.display, None, nullptr);
     glXDestroyContext(own.display, own.context);
     XCloseDisplay(own.display);
-    awaitChild(startChild([] { tellFrame("child", openGlx(), 1); }));
-    tellFrame("parent", openGlx(), 2);
+    awaitChild(startChild([] { printFrame("child", openGlx(), 1); }));
+    printFrame("parent", openGlx(), 2);
 }
 
 void executed() {
@@ -140,17 +140,17 @@ void executed() {
             std::printf("system %d\n", std::system("true")); // NOLINT(cert-env33-c)
         }
         if (child != 0) awaitChild(child);
-        tellFrame("parent", own, i);
+        printFrame("parent", own, i);
     }
 }
 
 // The drawing thread may hold locks at the fork. The driver's locks would block more calls than these.
 bool drawsOn = true;
-void* drawAside(void* plain) {
+void* drawInThread(void* plain) {
     auto& own = *static_cast<Plain*>(plain);
     glXMakeCurrent(own.display, own.window, own.context);
     for (int i = 0; __atomic_load_n(&drawsOn, __ATOMIC_RELAXED); ++i) drawFrames(own, i, 1);
-    tellFrame("thread", own, 40);
+    printFrame("thread", own, 40);
     glXMakeCurrent(own.display, None, nullptr);
     return nullptr;
 }
@@ -158,9 +158,9 @@ void* drawAside(void* plain) {
 void threads() {
     XInitThreads();
     const Plain own = openGlx();
-    Plain aside = makeGlx(own.display, own.context); // shares objects: every command takes the group's lock
+    Plain other = makeGlx(own.display, own.context); // shares objects: every command takes the group's lock
     pthread_t thread{};
-    pthread_create(&thread, nullptr, drawAside, &aside);
+    pthread_create(&thread, nullptr, drawInThread, &other);
     for (int i = 0; i < 12; ++i) {
         drawFrames(own, i, 1);
         awaitChild(
@@ -168,17 +168,17 @@ void threads() {
     }
     __atomic_store_n(&drawsOn, false, __ATOMIC_RELAXED);
     pthread_join(thread, nullptr);
-    tellFrame("parent", own, 50);
+    printFrame("parent", own, 50);
 }
 
 // Draws in a child with the parent's connection. Run the program with LP_NUM_THREADS=0, with which llvmpipe draws in a
 // child, too. After the child has used its X connection the parent must not, so the parent ends.
 void inherited() {
     const Plain own = openGlx();
-    tellFrame("parent", own, 0);
+    printFrame("parent", own, 0);
     awaitChild(startChild([&] {
-        tellFrame("child", own, 1);
-        tellFrame("child's own", openGlx(), 2);
+        printFrame("child", own, 1);
+        printFrame("child's own", openGlx(), 2);
     }));
     std::fflush(stdout);
     _exit(0);
@@ -187,7 +187,7 @@ void inherited() {
 // Behaves like daemon(3): the parent ends, the child continues with a context of its own.
 void daemonised() {
     const Plain own = openGlx();
-    tellFrame("parent", own, 0);
+    printFrame("parent", own, 0);
     std::fflush(stdout);
     int whole[2];
     if (pipe(whole) != 0) fail("no pipe");
@@ -198,7 +198,7 @@ void daemonised() {
         setsid();
         const Plain childs = openGlx();
         drawFrames(childs, 1, 4);
-        tellFrame("daemon", childs, 5);
+        printFrame("daemon", childs, 5);
         _exit(0);
     }
     _exit(3);

@@ -44,7 +44,7 @@ void interrupted(bool restart) {
     const Plain own = makeGlx(display);
     glXMakeCurrent(own.display, own.window, own.context);
     drawFrames(own, 0, 20);
-    tellFrame("frame", own, 20);
+    printFrame("frame", own, 20);
     const itimerval none{};
     setitimer(ITIMER_REAL, &none, nullptr);
     std::printf("interrupted %s\n", interruptions > 5 ? "often" : "seldom");
@@ -52,9 +52,9 @@ void interrupted(bool restart) {
 
 // ---- descriptors
 
-void closeAllBut(int kept) {
+void closeAllBut(int except) {
     for (int fd = 3; fd < 1024; ++fd)
-        if (fd != kept) close(fd);
+        if (fd != except) close(fd);
 }
 
 // Gives the descriptor numbers another meaning: a closed pipe, a pipe with bytes in it, files.
@@ -74,7 +74,7 @@ void closed(bool reuse) {
     if (reuse) reuseNumbers();
     usleep(200'000); // time for another process to notice
     drawFrames(own, 3, 20);
-    tellFrame("frame", own, 23);
+    printFrame("frame", own, 23);
 }
 
 // Makes descriptor 2 a file of the program, to which no other code may write.
@@ -87,7 +87,7 @@ void daemonFiles() {
     dup2(file, 2);
     // an unsupported call that causes a warning
     glSeparableFilter2D(GL_SEPARABLE_2D, GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, nullptr, nullptr);
-    tellFrame("frame", own, 3);
+    printFrame("frame", own, 3);
     struct stat facts {};
     fstat(file, &facts);
     std::printf("the file has %lld bytes\n", static_cast<long long>(facts.st_size));
@@ -107,7 +107,7 @@ void limitedFirst() {
     limit(RLIMIT_CORE, 0);
     glXMakeCurrent(own.display, own.window, own.context);
     drawFrames(own, 0, 5);
-    tellFrame("frame", own, 5);
+    printFrame("frame", own, 5);
 }
 
 void limitedLater() {
@@ -117,7 +117,7 @@ void limitedLater() {
     limit(RLIMIT_FSIZE, 0);
     limit(RLIMIT_MEMLOCK, 0);
     drawFrames(own, 3, 5);
-    tellFrame("frame", own, 8);
+    printFrame("frame", own, 8);
 }
 
 // ---- sandboxes
@@ -151,7 +151,7 @@ void* drawShared(void* plain) {
     auto& own = *static_cast<Plain*>(plain);
     glXMakeCurrent(own.display, own.window, own.context);
     drawFrames(own, 0, 10);
-    tellFrame("second", own, 10);
+    printFrame("second", own, 10);
     glXMakeCurrent(own.display, None, nullptr);
     return nullptr;
 }
@@ -203,7 +203,7 @@ void sandboxed(unsigned action) {
                 glGetError());
     own.show();
     glUseProgram(0);
-    tellFrame("frame", own, 17);
+    printFrame("frame", own, 17);
 }
 
 } // namespace

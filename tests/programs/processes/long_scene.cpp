@@ -154,7 +154,7 @@ void grow(int frame) {
 }
 
 // Prints the time from the previous frame's beginning to this one's.
-void sayFrame(int frame) {
+void printFrame(int frame) {
     static auto before = std::chrono::steady_clock::now();
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double, std::milli> took = now - std::exchange(before, now);
@@ -163,7 +163,7 @@ void sayFrame(int frame) {
 }
 
 void draw(Window& window, int frame) {
-    sayFrame(frame);
+    printFrame(frame);
     grow(frame);
     glViewport(0, 0, window.width(), window.height());
     glClearColor(0.1F, 0.1F, 0.05F * float(frame % 12), 1);

@@ -13,10 +13,10 @@ int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     const auto window = openGlxWindow({}, options.width, options.height);
     window->makeCurrent();
-    int told = -1; // frame of the report
+    int reportedFrame = -1; // frame of the report
     for (int frame = 0; frame < options.frames; ++frame) {
         drawSimple(*window, frame);
-        if (told < 0) {
+        if (reportedFrame < 0) {
             GLuint texture = 0;
             glGenTextures(1, &texture);
             glBindTexture(GL_TEXTURE_2D, texture);
@@ -24,10 +24,10 @@ int main(int argc, char** argv) {
             glBindTexture(GL_TEXTURE_2D, 0);
         }
         const GLenum error = glGetError();
-        if (error == GL_OUT_OF_MEMORY && told < 0) {
-            told = frame;
+        if (error == GL_OUT_OF_MEMORY && reportedFrame < 0) {
+            reportedFrame = frame;
             std::printf("no memory\n");
-        } else if (error != GL_NO_ERROR && (error != GL_OUT_OF_MEMORY || frame > told + 3)) {
+        } else if (error != GL_NO_ERROR && (error != GL_OUT_OF_MEMORY || frame > reportedFrame + 3)) {
             fail("GL error 0x%04x in frame %d", error, frame);
         }
         window->swap();

@@ -124,7 +124,7 @@ inline void drawFrames(const Plain& plain, int first, int count) {
 }
 
 // Draws one frame, reads it before it is shown, and prints the sum and the error.
-inline void tellFrame(const char* who, const Plain& plain, int frame) {
+inline void printFrame(const char* who, const Plain& plain, int frame) {
     drawPlain(frame);
     const uint64_t sum = readPlain();
     std::printf("%s %d: %016llx error %x\n", who, frame, static_cast<unsigned long long>(sum), glGetError());

@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
             std::printf("\n");
             checkNoError("after the extensions");
             const GLubyte* const beyond = glGetStringi(GL_EXTENSIONS, GLuint(count));
-            const GLenum told = glGetError();
-            std::printf("beyond %s 0x%04x\n", beyond != nullptr ? "something" : "nothing", told);
+            const GLenum error = glGetError();
+            std::printf("beyond %s 0x%04x\n", beyond != nullptr ? "something" : "nothing", error);
         });
 }

@@ -37,7 +37,7 @@ inline GlFunction findElsewhere(const char* name) {
 
 // Prints whether the window shows the whole picture, for the size 253x191: immediate mode draws above, buffers and
 // shaders below.
-inline void sayWhetherWhole(Display* display, ::Window window, int width) {
+inline void printWhetherComplete(Display* display, ::Window window, int width) {
     XSync(display, False);
     const bool above = changesInRow(display, window, 60, width) > 5,
                below = changesInRow(display, window, 140, width) > 5;

@@ -27,6 +27,6 @@ int main(int argc, char** argv) {
     const programs::Options options = programs::parseOptions(argc, argv);
     return programs::runSceneByEgl(options, find, [&] {
         Display* display = programs::openDisplayOnce();
-        programs::sayWhetherWhole(display, ownWindow(display), options.width);
+        programs::printWhetherComplete(display, ownWindow(display), options.width);
     });
 }

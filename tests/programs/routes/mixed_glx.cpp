@@ -15,5 +15,5 @@ programs::GlFunction findGl(const char* name) {
 } // namespace
 
 int main(int argc, char** argv) {
-    return programs::runSceneByGlx(programs::parseOptions(argc, argv), findGlx, findGl, programs::sayWhetherWhole);
+    return programs::runSceneByGlx(programs::parseOptions(argc, argv), findGlx, findGl, programs::printWhetherComplete);
 }

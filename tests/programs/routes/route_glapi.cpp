@@ -20,7 +20,7 @@ programs::GlFunction findGl(const char* name) {
     return lookUp(name);
 }
 
-void sayWhatIsSeen(Display* display, ::Window window, int width) {
+void printVisiblePixels(Display* display, ::Window window, int width) {
     XSync(display, False);
     std::printf("the window shows %s\n",
                 programs::changesInRow(display, window, 60, width) > 5 ? "the picture" : "nothing");
@@ -29,5 +29,5 @@ void sayWhatIsSeen(Display* display, ::Window window, int width) {
 } // namespace
 
 int main(int argc, char** argv) {
-    return programs::runSceneByGlx(programs::parseOptions(argc, argv), findGlx, findGl, sayWhatIsSeen);
+    return programs::runSceneByGlx(programs::parseOptions(argc, argv), findGlx, findGl, printVisiblePixels);
 }

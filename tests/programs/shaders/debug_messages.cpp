@@ -11,7 +11,7 @@ using namespace programs;
 
 namespace {
 
-struct Heard {
+struct MessageCounter {
     std::uint32_t count = 0;
     std::uint32_t hash = 5381;
     void add(GLenum source, GLenum type, GLenum severity, const GLchar* text) {
@@ -24,10 +24,11 @@ struct Heard {
         }
     }
 };
-Heard heard, logged;
+MessageCounter counted, logged;
 
-void APIENTRY hear(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* text, const void* user) {
-    static_cast<Heard*>(const_cast<void*>(user))->add(source, type, severity, text);
+void APIENTRY countMessage(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* text,
+                           const void* user) {
+    static_cast<MessageCounter*>(const_cast<void*>(user))->add(source, type, severity, text);
 }
 
 void insert(GLenum severity, const char* text) {
@@ -79,12 +80,13 @@ void labels() {
 
 // Receives messages with the callback, with groups and filters.
 void listen() {
-    glDebugMessageCallback(hear, &heard);
+    glDebugMessageCallback(countMessage, &counted);
     void* function = nullptr;
     void* user = nullptr;
     glGetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &function);
     glGetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &user);
-    showBits(5, std::uint32_t(function == reinterpret_cast<void*>(&hear)) * 2 + std::uint32_t(user == &heard));
+    showBits(5,
+             std::uint32_t(function == reinterpret_cast<void*>(&countMessage)) * 2 + std::uint32_t(user == &counted));
     makeErrors();
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 3, -1, "a group");
     glDebugMessageControl(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_ERROR, GL_DONT_CARE, 0, nullptr, GL_FALSE);
@@ -117,8 +119,8 @@ int main(int argc, char** argv) {
             insert(GL_DEBUG_SEVERITY_HIGH, "for the log");
             readLog();
             labels();
-            showBits(1, heard.count);
-            showBits(2, heard.hash);
+            showBits(1, counted.count);
+            showBits(2, counted.hash);
             showBits(3, logged.count);
             showBits(4, logged.hash);
             fillRectangle(20 + frame * 7, 90, window.width() / 2, window.height() / 3, {0.8F, 0.4F, 0.2F});

@@ -32,13 +32,13 @@ void drawCounted(int frame) {
     glDisable(GL_DEPTH_TEST);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_ATOMIC_COUNTER_BARRIER_BIT);
     GLuint counts[2] = {};
-    GLuint told[65] = {};
+    GLuint readBack[65] = {};
     glGetBufferSubData(GL_ATOMIC_COUNTER_BUFFER, 0, sizeof counts, counts);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof readBack, readBack);
     showBits(36, counts[0]);
     showBits(35, counts[1]);
-    showBits(34, told[0]);
-    showBits(33, told[17]);
+    showBits(34, readBack[0]);
+    showBits(33, readBack[17]);
     glDeleteBuffers(1, &sums);
 }
 

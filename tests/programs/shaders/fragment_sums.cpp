@@ -59,10 +59,10 @@ void drawCounted() {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_STENCIL_TEST);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    GLuint told[8] = {};
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
+    GLuint readBack[8] = {};
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof readBack, readBack);
     for (int i = 0; i < 8; ++i) {
-        showBits(30 + i, told[i]);
+        showBits(30 + i, readBack[i]);
     }
     glDeleteBuffers(2, buffers);
 }

@@ -189,11 +189,11 @@ void drawCaptured() {
         }
     }
     glDisableVertexAttribArray(1);
-    GLuint told[2] = {};
+    GLuint readBack[2] = {};
     glBindBuffer(GL_ARRAY_BUFFER, feedbackBuffer);
-    glGetBufferSubData(GL_ARRAY_BUFFER, 24 * 8, sizeof told, told);
-    showBits(0, told[0]);
-    showBits(1, told[1]);
+    glGetBufferSubData(GL_ARRAY_BUFFER, 24 * 8, sizeof readBack, readBack);
+    showBits(0, readBack[0]);
+    showBits(1, readBack[1]);
 }
 
 } // namespace

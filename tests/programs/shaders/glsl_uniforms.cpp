@@ -149,9 +149,9 @@ void setOther(int frame) {
     const GLfloat matrix[] = {0.5F, 0.1F, 0.2F, float(frame) * 0.2F};
     glProgramUniformMatrix2fv(other, glGetUniformLocation(other, "m2"), 1, GL_FALSE, matrix);
     glProgramUniform4d(other, glGetUniformLocation(other, "d4"), 0.3, 0.6, 0.9, 0.1 * frame);
-    GLfloat told[3] = {};
-    glGetUniformfv(program, saved, told);
-    showBits(0, told[0]);
+    GLfloat readBack[3] = {};
+    glGetUniformfv(program, saved, readBack);
+    showBits(0, readBack[0]);
     GLint active = 0;
     glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &active);
     showBits(1, std::uint32_t(active));

@@ -153,9 +153,9 @@ void drawPainted(const Window& window, int frame) {
     glViewport(0, 0, window.width(), window.height());
     blitTarget(0, 20);
     blitTarget(1, 120);
-    GLfloat kept[5] = {};
-    glGetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 20, sizeof kept, kept);
-    showBits(0, kept[0] + 16 * kept[2]);
+    GLfloat captured[5] = {};
+    glGetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 20, sizeof captured, captured);
+    showBits(0, captured[0] + 16 * captured[2]);
     glUseProgram(0);
     glDeleteProgram(program);
     glDeleteBuffers(1, &block);
@@ -167,9 +167,9 @@ void drawSeparable(int frame) {
     glProgramUniform3f(separate[1], glGetUniformLocation(separate[1], "base"), 0.1F, 0.4F, 0.5F);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     glBindProgramPipeline(0);
-    GLint told = 0;
-    glGetProgramiv(separate[0], GL_PROGRAM_SEPARABLE, &told);
-    showBits(1, unsigned(told));
+    GLint readBack = 0;
+    glGetProgramiv(separate[0], GL_PROGRAM_SEPARABLE, &readBack);
+    showBits(1, unsigned(readBack));
 }
 
 void loadWrongOnes() {

@@ -58,22 +58,22 @@ void countStreams(int frame) {
     glUseProgram(streamsProgram);
     glUniform1i(0, 2 + frame);
     glEnable(GL_RASTERIZER_DISCARD);
-    GLuint told[4] = {};
+    GLuint readBack[4] = {};
     for (GLuint stream = 0; stream < 2; ++stream) {
         glBeginQueryIndexed(GL_PRIMITIVES_GENERATED, stream, names[13]);
         // Mesa 22.3 counts the first stream again: different numbers of points reveal it
         glDrawArrays(GL_POINTS, 0, stream == 0 ? 1 : 3);
         glEndQueryIndexed(GL_PRIMITIVES_GENERATED, stream);
-        told[stream] = waitFor(names[13]);
+        readBack[stream] = waitFor(names[13]);
     }
     for (GLuint stream = 0; stream < 2; ++stream)
         glBeginQueryIndexed(GL_PRIMITIVES_GENERATED, stream, names[13 + stream]);
     glDrawArrays(GL_POINTS, 0, 1);
     for (GLuint stream = 0; stream < 2; ++stream) glEndQueryIndexed(GL_PRIMITIVES_GENERATED, stream);
-    for (GLuint stream = 0; stream < 2; ++stream) told[2 + stream] = waitFor(names[13 + stream]);
+    for (GLuint stream = 0; stream < 2; ++stream) readBack[2 + stream] = waitFor(names[13 + stream]);
     glDisable(GL_RASTERIZER_DISCARD);
     glUseProgram(program);
-    showBits(24, told[0] | told[1] << 8 | told[2] << 16 | told[3] << 24);
+    showBits(24, readBack[0] | readBack[1] << 8 | readBack[2] << 16 | readBack[3] << 24);
 }
 
 // Shows only that there are times, because they differ between runs.
@@ -119,10 +119,10 @@ void resultIntoBuffer(int frame) {
     glFinish(); // llvmpipe writes 0 into the buffer when it is not ready
     glGetQueryObjectuiv(names[8], GL_QUERY_RESULT, nullptr);
     glGetQueryObjectuiv(names[8], GL_QUERY_RESULT_AVAILABLE, reinterpret_cast<GLuint*>(8));
-    GLuint told[4] = {};
-    glGetBufferSubData(GL_QUERY_BUFFER, 0, sizeof told, told);
+    GLuint readBack[4] = {};
+    glGetBufferSubData(GL_QUERY_BUFFER, 0, sizeof readBack, readBack);
     glBindBuffer(GL_QUERY_BUFFER, 0);
-    showBits(32, told[0]);
+    showBits(32, readBack[0]);
 }
 
 // Writes a result into memory that only GL may write. The next draw reads its instance count from it.

@@ -92,15 +92,15 @@ void showPart(int cell, int layer, int x, int y, int width, int height) {
 void drawFrame(Window& window, int frame) {
     glClearColor(0.1F, 0.12F, 0.16F, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    const int kept = frame % kColumns, gone = (frame + 3) % kColumns;
-    commit(kept, 0, true);
-    commit(kept, 2, true);
+    const int resident = frame % kColumns, released = (frame + 3) % kColumns;
+    commit(resident, 0, true);
+    commit(resident, 2, true);
     glFinish();
-    fill(GL_TEXTURE_2D, kept * pageWidth, 0, 0, pageWidth, pageHeight, unsigned(frame) + 1);
+    fill(GL_TEXTURE_2D, resident * pageWidth, 0, 0, pageWidth, pageHeight, unsigned(frame) + 1);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer); // and one written by drawing
     glEnable(GL_SCISSOR_TEST);
     for (int i = 0; i < 8; ++i) {
-        glScissor(kept * pageWidth + i * pageWidth / 8, 2 * pageHeight, pageWidth / 8,
+        glScissor(resident * pageWidth + i * pageWidth / 8, 2 * pageHeight, pageWidth / 8,
                   pageHeight - i * pageHeight / 16);
         glClearColor(0.125F * float(i), 0.2F, 0.25F * float(frame), 1);
         glClear(GL_COLOR_BUFFER_BIT);
@@ -108,8 +108,8 @@ void drawFrame(Window& window, int frame) {
     glDisable(GL_SCISSOR_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, window.width(), window.height());
-    showPart(0, -1, kept * pageWidth, 0, pageWidth, pageHeight);
-    showPart(1, -1, kept * pageWidth, 2 * pageHeight, pageWidth, pageHeight / 2);
+    showPart(0, -1, resident * pageWidth, 0, pageWidth, pageHeight);
+    showPart(1, -1, resident * pageWidth, 2 * pageHeight, pageWidth, pageHeight / 2);
     glActiveTexture(GL_TEXTURE1);
     const int layer = frame % kLayers;
     glTexturePageCommitmentEXT(layered, 0, layerWidth, 0, layer, layerWidth, layerHeight, 1, GL_TRUE);
@@ -127,8 +127,8 @@ void drawFrame(Window& window, int frame) {
     showBits(3, glGetError());
     if (frame > 0) { // two stay committed
         glFinish();
-        commit(gone, 0, false);
-        commit(gone, 2, false);
+        commit(released, 0, false);
+        commit(released, 2, false);
     }
 }
 

@@ -95,9 +95,9 @@ void drawPlanes(int frame) {
     glUseProgram(0);
     glDisable(GL_CLIP_PLANE0);
     glDisable(GL_CLIP_PLANE3);
-    GLdouble told[4];
-    glGetClipPlane(GL_CLIP_PLANE0, told);
-    showBits(37, float(told[3]));
+    GLdouble readBack[4];
+    glGetClipPlane(GL_CLIP_PLANE0, readBack);
+    showBits(37, float(readBack[3]));
 }
 
 void drawDistances(int frame) {

@@ -97,12 +97,12 @@ void drawLights(int frame) {
     glLightModeli(GL_LIGHT_MODEL_TWO_SIDE, GL_FALSE);
     glLightModeli(GL_LIGHT_MODEL_COLOR_CONTROL, GL_SINGLE_COLOR);
     glLightModeli(GL_LIGHT_MODEL_LOCAL_VIEWER, GL_FALSE);
-    GLfloat told[4];
-    glGetLightfv(GL_LIGHT2, GL_POSITION, told);
+    GLfloat readBack[4];
+    glGetLightfv(GL_LIGHT2, GL_POSITION, readBack);
     glDisable(GL_LIGHT2);
     glDisable(GL_LIGHT0);
     glDisable(GL_LIGHTING);
-    showBits(37, told[0]);
+    showBits(37, readBack[0]);
 }
 
 void drawFog(int frame) {
@@ -220,9 +220,9 @@ void drawMatrices(int frame) {
     glScaled(0.3, 0.3, 0.3);
     glTranslated(1.5, 0, 0.2);
     patch(frame, true);
-    GLfloat told[16];
-    glGetFloatv(GL_MODELVIEW_MATRIX, told);
-    showBits(36, told[12]);
+    GLfloat readBack[16];
+    glGetFloatv(GL_MODELVIEW_MATRIX, readBack);
+    showBits(36, readBack[12]);
 }
 
 void setUp() {

@@ -11,7 +11,7 @@ using namespace programs;
 
 namespace {
 
-GLuint texture, queries[3], conditionList, copyList, pixelsList, innerList, askingList;
+GLuint texture, queries[3], conditionList, copyList, pixelsList, innerList, queryList;
 GLuint feedbackBuffer, feedbackProgram;
 
 void texturedBox(int x, int y, int w, int h) {
@@ -121,7 +121,7 @@ GLuint written() {
 
 // Requests transform feedback of a point, and samples of a box, while something else begins. Nothing is drawn before
 // the replies.
-void ask(int frame, GLenum listMode, bool selects, int row) {
+void query(int frame, GLenum listMode, bool selects, int row) {
     const GLfloat nothing[4] = {};
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, feedbackBuffer);
     glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, sizeof nothing, nothing, GL_DYNAMIC_READ);
@@ -140,7 +140,7 @@ void ask(int frame, GLenum listMode, bool selects, int row) {
         glSelectBuffer(4, names);
         glRenderMode(GL_SELECT);
     }
-    if (listMode != 0) glNewList(askingList, listMode);
+    if (listMode != 0) glNewList(queryList, listMode);
     answers[0] = counted();
     answers[1] = written();
     if (listMode != 0) glEndList();
@@ -153,7 +153,7 @@ void ask(int frame, GLenum listMode, bool selects, int row) {
 // whole.
 void readInPrimitive(GLenum mode, GLenum listMode, int row) {
     GLuint pixels[2 * 2] = {};
-    glNewList(askingList, listMode);
+    glNewList(queryList, listMode);
     glColor3f(0.2F, 0.9F, 0.7F);
     glBegin(mode);
     glVertex2i(150, row);
@@ -163,7 +163,7 @@ void readInPrimitive(GLenum mode, GLenum listMode, int row) {
     glVertex2i(60, row + 22);
     glEnd();
     glEndList();
-    glCallList(askingList);
+    glCallList(queryList);
     showBits(row / 4, pixels[0]);
     showBits(row / 4 + 1, pixels[3]);
 }
@@ -187,7 +187,7 @@ void setUp(Window&) {
     copyList = conditionList + 1;
     pixelsList = conditionList + 2;
     innerList = conditionList + 3;
-    askingList = conditionList + 4;
+    queryList = conditionList + 4;
 }
 
 } // namespace
@@ -202,9 +202,9 @@ int main(int argc, char** argv) {
         glClearColor(0.1F, 0.1F, 0.3F, 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         pattern(frame);
-        ask(frame, GL_COMPILE, false, 100);
-        ask(frame, GL_COMPILE_AND_EXECUTE, false, 112);
-        ask(frame, 0, true, 124);
+        query(frame, GL_COMPILE, false, 100);
+        query(frame, GL_COMPILE_AND_EXECUTE, false, 112);
+        query(frame, 0, true, 124);
         readInPrimitive(GL_QUADS, GL_COMPILE, 4);
         readInPrimitive(GL_LINE_LOOP, GL_COMPILE, 24);
         readInPrimitive(GL_QUADS, GL_COMPILE_AND_EXECUTE, 48);

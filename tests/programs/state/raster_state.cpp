@@ -31,9 +31,9 @@ void drawStipples(int frame) {
     fan(25, 25, 22, 7);
     glRectf(50, 5, 90.5F, 30);
     glDisable(GL_POLYGON_STIPPLE);
-    GLubyte told[128] = {};
-    glGetPolygonStipple(told);
-    showBits(37, std::uint32_t(told[0]) | std::uint32_t(told[77]) << 8);
+    GLubyte readBack[128] = {};
+    glGetPolygonStipple(readBack);
+    showBits(37, std::uint32_t(readBack[0]) | std::uint32_t(readBack[77]) << 8);
     glEnable(GL_LINE_STIPPLE);
     for (int i = 0; i < 4; ++i) {
         glLineStipple(i + 1, GLushort(0x3c57 + frame * 0x1111));

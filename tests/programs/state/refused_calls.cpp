@@ -154,11 +154,11 @@ void nameBuffers() {
     glNamedBufferSubDataEXT(buffers[0], 8, 4, words);
     const GLenum error = glGetError();
     glNamedBufferStorageEXT(buffers[1], sizeof words, words, GL_MAP_READ_BIT);
-    GLuint told = 0;
-    glGetNamedBufferSubDataEXT(buffers[1], 4, 4, &told);
+    GLuint readBack = 0;
+    glGetNamedBufferSubDataEXT(buffers[1], 4, 4, &readBack);
     showBits(20, error);
     showBits(21, glIsBuffer(buffers[0]) == GL_TRUE ? 1U : 2U);
-    showBits(22, told);
+    showBits(22, readBack);
     showBar(23, errors());
     glDeleteBuffers(2, buffers);
 }
@@ -169,11 +169,11 @@ void nameWithoutBuffer() {
     glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
     GLuint buffer = 0;
     glGenBuffers(1, &buffer);
-    GLuint told = 7;
-    glGetNamedBufferSubData(buffer, 0, 4, &told);
+    GLuint readBack = 7;
+    glGetNamedBufferSubData(buffer, 0, 4, &readBack);
     showBits(34, glGetError());
     showBits(35, glIsBuffer(buffer) == GL_TRUE ? 1U : 2U);
-    showBits(36, told);
+    showBits(36, readBack);
     glDeleteBuffers(1, &buffer);
 }
 
@@ -243,7 +243,7 @@ void inPrimitive() {
 // collected, in two parts, and still treats the time after glEnd as inside the primitive.
 void inExecutedList() {
     const GLuint list = glGenLists(1);
-    std::uint32_t told[4] = {};
+    std::uint32_t readBack[4] = {};
     glNewList(list, GL_COMPILE_AND_EXECUTE);
     glVertexAttribIFormat(9, 1, 0x905d, 31);
     glBegin(GL_TRIANGLES);
@@ -253,14 +253,14 @@ void inExecutedList() {
     glFogCoordf(0.25F);
     glVertex2f(-0.7F, 0.4F);
     glEnd();
-    told[0] = glGetError();
+    readBack[0] = glGetError();
     glFlush();
-    told[1] = glGetError();
+    readBack[1] = glGetError();
     glEndList();
-    told[2] = glGetError();
-    told[3] = glGetError();
+    readBack[2] = glGetError();
+    readBack[3] = glGetError();
     for (int i = 0; i < 4; ++i) {
-        showBits(28 + i, told[i]);
+        showBits(28 + i, readBack[i]);
     }
     glDeleteLists(list, 1);
 }

@@ -86,10 +86,10 @@ void writeWords(GLbitfield flags, int row) {
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 5, sizeof bytes, bytes);
     showBits(row + 2, std::uint32_t{bytes[3]} << 24U | std::uint32_t{bytes[7]} << 16U | std::uint32_t{bytes[19]} << 8U |
                           bytes[21]);
-    GLuint told[8] = {};
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
-    showBits(row + 2, told[7]);
-    if (const void* const mapped = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, GL_MAP_READ_BIT)) {
+    GLuint readBack[8] = {};
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof readBack, readBack);
+    showBits(row + 2, readBack[7]);
+    if (const void* const mapped = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, sizeof readBack, GL_MAP_READ_BIT)) {
         showBits(row + 3, static_cast<const GLuint*>(mapped)[6]);
         glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
     }
@@ -110,10 +110,10 @@ void clearWithSkippedWords() {
     glClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, words);
     glPixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
     glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 8, 4, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-    GLuint told[4] = {};
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof told, told);
-    showBits(30, told[1]);
-    showBits(31, told[2]);
+    GLuint readBack[4] = {};
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof readBack, readBack);
+    showBits(30, readBack[1]);
+    showBits(31, readBack[2]);
     glDeleteBuffers(1, &buffer);
 }
 

@@ -11,7 +11,7 @@ using namespace programs;
 namespace {
 
 constexpr int kSide = 64, kLate = 100; // delay in frames
-enum : unsigned { kLateTexture, kReplaced, kParts, kUnused, kKept, kTextures };
+enum : unsigned { kLateTexture, kReplaced, kParts, kUnused, kUnchanged, kTextures };
 enum : unsigned { kLateBuffer, kReplacedBuffer, kBuffers };
 GLuint textures[kTextures], buffers[kBuffers];
 
@@ -55,7 +55,7 @@ void setUp(Window&) {
     glBindTexture(GL_TEXTURE_2D, textures[kLateTexture]);
     glGenerateMipmap(GL_TEXTURE_2D);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
-    glBindTexture(GL_TEXTURE_2D, textures[kKept]);
+    glBindTexture(GL_TEXTURE_2D, textures[kUnchanged]);
 }
 
 void drawTextured(unsigned which, float x, float y, float side) {
@@ -88,8 +88,8 @@ void draw(Window&, int frame) {
         glTexSubImage2D(GL_TEXTURE_2D, 0, i < 3 ? 0 : 16, 8, 32, 32, GL_RGBA, GL_UNSIGNED_BYTE,
                         texels(seed + 5 + i, 32).data());
     giveTexture(kUnused, seed + 9);
-    giveTexture(kKept, kKept + 1); // with unchanged contents
-    drawTextured(kKept, -1, -1, 0.5F);
+    giveTexture(kUnchanged, kUnchanged + 1); // with unchanged contents
+    drawTextured(kUnchanged, -1, -1, 0.5F);
     if (frame % 2 == 1) {
         drawTextured(kReplaced, -1, 0, 0.6F);
         drawTextured(kParts, -0.4F, 0, 0.4F);

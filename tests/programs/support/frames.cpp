@@ -26,16 +26,16 @@ void runFrame(Window& window, int frame, const Draw& draw) {
 }
 
 // Returns the total number of frames, as known before this one.
-int framesInAll(int frame, int most) {
+int framesInAll(int frame, int maximum) {
     static const char* path = std::getenv("END_FILE");
-    static int inAll = most;
+    static int inAll = maximum;
     std::FILE* file = path ? std::fopen(path, "r") : nullptr;
     if (!file) return inAll;
     int more = 0;
     if (std::fscanf(file, "%d", &more) != 1) fail("no number of frames in %s", path);
     std::fclose(file);
     path = nullptr; // once
-    return inAll = std::min(most, frame + more);
+    return inAll = std::min(maximum, frame + more);
 }
 
 } // namespace

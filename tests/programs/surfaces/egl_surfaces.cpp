@@ -65,12 +65,12 @@ EGLConfig choose(int alpha) {
 
 void test(int alpha, int width, int height) {
     const EGLConfig config = choose(alpha);
-    XVisualInfo wish{};
+    XVisualInfo pattern{};
     EGLint id = 0;
     eglGetConfigAttrib(egl, config, EGL_NATIVE_VISUAL_ID, &id);
-    wish.visualid = VisualID(id);
+    pattern.visualid = VisualID(id);
     int count = 0;
-    XVisualInfo* const visual = XGetVisualInfo(openDisplayOnce(), VisualIDMask, &wish, &count);
+    XVisualInfo* const visual = XGetVisualInfo(openDisplayOnce(), VisualIDMask, &pattern, &count);
     XWindow window(*visual, 0, 0, width, height);
     const EGLContext context = eglCreateContext(egl, config, EGL_NO_CONTEXT, nullptr);
     const EGLint size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};

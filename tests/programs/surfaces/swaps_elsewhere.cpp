@@ -141,7 +141,7 @@ void withOneBuffer(const Drawn& a, const Drawn& b) {
     release();
 }
 
-void frontOf(const Drawn& a) {
+void entryOf(const Drawn& a) {
     a.bind();
     a.draw(80);
     glXSwapBuffers(display, a.id);
@@ -163,7 +163,7 @@ int main(int argc, char** argv) {
         b(choose(True), options.width + 20, options.width / 2 + 3, options.height / 2 + 5);
     withOneContext(a, b);
     withTwoContexts(a, b);
-    frontOf(a);
+    entryOf(a);
     const Drawn c(choose(False), 0, options.width, options.height),
         d(choose(False), options.width + 20, options.width / 2 + 3, options.height / 2 + 5);
     withOneBuffer(c, d);

@@ -11,7 +11,7 @@ using namespace programs;
 
 namespace {
 
-constexpr std::size_t kMost = 5;
+constexpr std::size_t kMax = 5;
 
 struct Place {
     std::unique_ptr<Window> window;
@@ -73,7 +73,7 @@ void draw(Place& place, unsigned seed) {
 
 void step(const Options& options, unsigned seed) {
     const unsigned action = seed % 5;
-    if (places.empty() || (action == 0 && places.size() < kMost)) {
+    if (places.empty() || (action == 0 && places.size() < kMax)) {
         open(options, seed / 5);
     } else if (action == 1 && places.size() > 1) {
         places.erase(places.begin() + long(seed / 5 % places.size()));

@@ -137,9 +137,9 @@ int main(int argc, char** argv) {
     const Options options = parseOptions(argc, argv);
     const WindowSpec spec = {Profile::Core, 3, 3};
     const auto window = openGlxWindow(spec, options.width, options.height);
-    WindowSpec aside = spec;
-    aside.x = options.width;
-    const auto loading = openGlxWindow(aside, 8, 8, window.get()); // never drawn into
+    WindowSpec otherWindow = spec;
+    otherWindow.x = options.width;
+    const auto loading = openGlxWindow(otherWindow, 8, 8, window.get()); // never drawn into
     window->makeCurrent();
     makeShared();
     std::thread loader(runLoader, std::ref(*loading), unsigned(options.frames * kCells));

@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     const GLXPbuffer pbuffer = glXCreatePbuffer(display, config, size);
     const GLXContext shown = makeCoreGlxContext(display, config, nullptr),
                      bare = makeCoreGlxContext(display, config, shown),
-                     aside = makeCoreGlxContext(display, config, bare);
+                     otherContext = makeCoreGlxContext(display, config, bare);
     use(window.id(), shown);
     const GLuint textures[] = {makeTexture(), makeTexture()};
     const GLuint program =
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
         glXMakeContextCurrent(display, None, None, nullptr);
         const auto seed = unsigned(frame) * 2;
         std::thread first(paint, None, bare, textures[0], seed, true),
-            second(paint, pbuffer, aside, textures[1], seed + 1, frame % 2 == 0);
+            second(paint, pbuffer, otherContext, textures[1], seed + 1, frame % 2 == 0);
         first.join();
         second.join();
         use(window.id(), shown);

@@ -118,10 +118,10 @@ void drawCopies(unsigned seed) {
 
 void showReadBack() {
     bind(5);
-    GLuint told[4] = {};
-    glGetBufferSubData(GL_ARRAY_BUFFER, 48 * 5, sizeof told, told);
+    GLuint readBack[4] = {};
+    glGetBufferSubData(GL_ARRAY_BUFFER, 48 * 5, sizeof readBack, readBack);
     for (int i = 0; i < 3; ++i) {
-        showBits(35 + i, told[i]);
+        showBits(35 + i, readBack[i]);
     }
     const auto* mapped = static_cast<const GLuint*>(glMapBuffer(GL_ARRAY_BUFFER, GL_READ_ONLY));
     showBits(34, mapped[12 * 5 + 2]);

@@ -266,7 +266,7 @@ void drawAnimated(int frame) {
 }
 
 // Element 6 starts a new strip; as a vertex it would be far away.
-void drawElementsAnew() {
+void drawElementsAgain() {
     static const GLfloat places[] = {0, 0, 6, 14, 8, 2, 12, 0, 16, 14, 20, 2, 20, 20};
     glEnableClientState(GL_VERTEX_ARRAY);
     glVertexPointer(2, GL_FLOAT, 0, places);
@@ -516,7 +516,7 @@ int main(int argc, char** argv) {
             drawTextured(frame);
             drawInterleaved(frame);
             drawAnimated(frame);
-            drawElementsAnew();
+            drawElementsAgain();
             drawMixedWithBuffers(frame);
             drawAfterPoppedClientState(frame);
             drawReformatted(frame);

@@ -208,8 +208,8 @@ int main(int argc, char** argv) {
             drawHalvesAndDoubles(frame);
             drawInterleaved(frame);
             drawUnboundIndices();
-            GLint told = 0;
-            glGetVertexAttribiv(4, GL_VERTEX_ATTRIB_ARRAY_TYPE, &told);
-            showBits(37, std::uint32_t(told));
+            GLint readBack = 0;
+            glGetVertexAttribiv(4, GL_VERTEX_ATTRIB_ARRAY_TYPE, &readBack);
+            showBits(37, std::uint32_t(readBack));
         });
 }

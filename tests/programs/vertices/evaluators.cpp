@@ -109,9 +109,9 @@ void drawSurfaces(int frame) {
          {GL_TEXTURE_2D, GL_MAP2_TEXTURE_COORD_2, GL_MAP2_VERTEX_3, GL_AUTO_NORMAL, GL_DEPTH_TEST}) {
         glDisable(name);
     }
-    GLfloat told[48] = {};
-    glGetMapfv(GL_MAP2_VERTEX_3, GL_COEFF, told);
-    showBits(37, told[5]);
+    GLfloat readBack[48] = {};
+    glGetMapfv(GL_MAP2_VERTEX_3, GL_COEFF, readBack);
+    showBits(37, readBack[5]);
     GLint order[2] = {};
     glGetMapiv(GL_MAP2_VERTEX_3, GL_ORDER, order);
     showBits(36, std::uint32_t(order[0] * 16 + order[1]));

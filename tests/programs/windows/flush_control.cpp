@@ -114,16 +114,16 @@ std::uint32_t seen() {
 }
 
 // Observations of the other thread, step by step.
-struct Looks {
+struct Observations {
     std::uint32_t held = 0, givenUp = 0, taken = 0, flushed = 0;
     GLint behavior = 0;
 };
 
-Looks look(GLXDrawable window, GLXContext drawer, GLXContext other, GLXDrawable aside, GLXContext watcher,
-           bool toNone) {
-    Looks looks;
+Observations observe(GLXDrawable window, GLXContext drawer, GLXContext other, GLXDrawable otherWindow,
+                     GLXContext watcher, bool toNone) {
+    Observations observed;
     use(window, drawer);
-    glGetIntegerv(GL_CONTEXT_RELEASE_BEHAVIOR, &looks.behavior);
+    glGetIntegerv(GL_CONTEXT_RELEASE_BEHAVIOR, &observed.behavior);
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
@@ -135,22 +135,22 @@ Looks look(GLXDrawable window, GLXContext drawer, GLXContext other, GLXDrawable 
     clearWith(1, 0); // not flushed
     Worker worker;
     worker([&] {
-        use(aside, watcher);
+        use(otherWindow, watcher);
         drawTo(texture);
-        looks.held = seen();
+        observed.held = seen();
     });
     toNone ? use(None, nullptr) : use(window, other);
-    worker([&] { looks.givenUp = seen(); });
+    worker([&] { observed.givenUp = seen(); });
     use(window, drawer);
-    worker([&] { looks.taken = seen(); });
+    worker([&] { observed.taken = seen(); });
     glFinish();
     worker([&] {
-        looks.flushed = seen();
+        observed.flushed = seen();
         checkNoError("in the thread that looks");
         use(None, nullptr);
     });
     checkNoError("in the thread that draws");
-    return looks;
+    return observed;
 }
 
 } // namespace
@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
     config = chooseGlxConfig(display, GLX_WINDOW_BIT);
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow window(*visual, 0, 0, options.width, options.height);
-    const XWindow aside(*visual, options.width, 0, 16, 16);
+    const XWindow otherWindow(*visual, options.width, 0, 16, 16);
     const GLXContext shown = makeContext(nullptr, Unsaid);
     for (int frame = 0; frame < options.frames; ++frame) {
         use(window.id(), shown);
@@ -172,10 +172,10 @@ int main(int argc, char** argv) {
             for (const bool toNone : {false, true}) {
                 const GLXContext drawer = makeContext(shown, release), other = makeContext(shown, Flush),
                                  watcher = makeContext(shown, Unsaid);
-                const Looks looks = look(window.id(), drawer, other, aside.id(), watcher, toNone);
+                const Observations observed = observe(window.id(), drawer, other, otherWindow.id(), watcher, toNone);
                 use(window.id(), shown);
-                for (const std::uint32_t value :
-                     {looks.held, looks.givenUp, looks.taken, looks.flushed, std::uint32_t(looks.behavior)}) {
+                for (const std::uint32_t value : {observed.held, observed.givenUp, observed.taken, observed.flushed,
+                                                  std::uint32_t(observed.behavior)}) {
                     showBits(row++, value);
                 }
                 for (const GLXContext context : {drawer, other, watcher}) {

@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
     const XWindow window(*visual, 0, 0, options.width, options.height);
     const GLXContext context = glXCreateNewContext(display, config, GLX_RGBA_TYPE, nullptr, True);
-    const GLXPbuffer kept = makePbuffer(config);
+    const GLXPbuffer permanent = makePbuffer(config);
     const Pixmap pixmap = XCreatePixmap(display, window.id(), kSize, kSize, unsigned(visual->depth));
     const GLXPixmap glxPixmap = glXCreatePixmap(display, config, pixmap, nullptr);
     std::vector<GLubyte> pixels(kSize * kSize * 4);
@@ -63,13 +63,13 @@ int main(int argc, char** argv) {
         require(glXMakeContextCurrent(display, fresh, fresh, context), "a new pbuffer");
         drawShapes(unsigned(frame) + 5, true);
         glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-        require(glXMakeContextCurrent(display, kept, kept, context), "the kept pbuffer");
+        require(glXMakeContextCurrent(display, permanent, permanent, context), "the kept pbuffer");
         drawShapes(unsigned(frame) + 90, frame == 0); // over the earlier frames
         require(glXMakeContextCurrent(display, glxPixmap, glxPixmap, context), "the pixmap");
         std::vector<GLubyte> others(kSize * kSize * 4);
         drawShapes(unsigned(frame) + 40, true);
         glReadPixels(0, 0, kSize, kSize, GL_BGRA, GL_UNSIGNED_BYTE, others.data());
-        require(glXMakeContextCurrent(display, window.id(), kept, context), "the window, reading the pbuffer");
+        require(glXMakeContextCurrent(display, window.id(), permanent, context), "the window, reading the pbuffer");
         glViewport(0, 0, options.width, options.height);
         glClearColor(0.1F, 0.1F, 0.1F, 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

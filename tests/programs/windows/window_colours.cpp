@@ -187,22 +187,22 @@ void tryGlx() {
     std::set<std::string> tried;
     for (int i = 0; i < count; ++i) {
         const GLXFBConfig config = configs[i];
-        const auto ask = [&](int name) {
+        const auto query = [&](int name) {
             int value = 0;
             return glXGetFBConfigAttrib(display, config, name, &value) == 0 ? value : 0;
         };
-        const int samples = ask(GLX_SAMPLES);
+        const int samples = query(GLX_SAMPLES);
         XVisualInfo* visual = glXGetVisualFromFBConfig(display, config);
-        if (visual == nullptr || !ask(GLX_DOUBLEBUFFER) || ask(GLX_DEPTH_SIZE) != 24 || ask(GLX_STENCIL_SIZE) != 8 ||
-            ask(GLX_ACCUM_RED_SIZE) != 0) {
+        if (visual == nullptr || !query(GLX_DOUBLEBUFFER) || query(GLX_DEPTH_SIZE) != 24 ||
+            query(GLX_STENCIL_SIZE) != 8 || query(GLX_ACCUM_RED_SIZE) != 0) {
             continue;
         }
-        if (samples != 0 && (samples != 4 || ask(GLX_ALPHA_SIZE) == 0)) {
+        if (samples != 0 && (samples != 4 || query(GLX_ALPHA_SIZE) == 0)) {
             continue;
         }
-        Kind kind{nameOf("GLX", ask(GLX_RED_SIZE), ask(GLX_ALPHA_SIZE), samples, visual->depth),
+        Kind kind{nameOf("GLX", query(GLX_RED_SIZE), query(GLX_ALPHA_SIZE), samples, visual->depth),
                   *visual,
-                  ask(GLX_ALPHA_SIZE),
+                  query(GLX_ALPHA_SIZE),
                   samples,
                   true,
                   false,
@@ -243,28 +243,28 @@ void tryEgl(const EglApi& api) {
     if (!eglInitialize(egl, nullptr, nullptr) || !eglBindAPI(api.api)) {
         fail("no EGL");
     }
-    const EGLint wishes[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, api.renderable, EGL_DEPTH_SIZE, 24,
-                             EGL_NONE};
+    const EGLint attributes[] = {
+        EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, api.renderable, EGL_DEPTH_SIZE, 24, EGL_NONE};
     EGLConfig configs[200];
     EGLint count = 0;
-    eglChooseConfig(egl, wishes, configs, 200, &count);
+    eglChooseConfig(egl, attributes, configs, 200, &count);
     std::set<std::string> tried;
     for (int i = 0; i < count; ++i) {
         const EGLConfig config = configs[i];
-        const auto ask = [&](EGLint name) {
+        const auto query = [&](EGLint name) {
             EGLint value = 0;
             return eglGetConfigAttrib(egl, config, name, &value) ? value : 0;
         };
         XVisualInfo wanted{};
-        wanted.visualid = VisualID(ask(EGL_NATIVE_VISUAL_ID));
+        wanted.visualid = VisualID(query(EGL_NATIVE_VISUAL_ID));
         int visuals = 0;
         XVisualInfo* visual = XGetVisualInfo(x, VisualIDMask, &wanted, &visuals);
-        if (visual == nullptr || ask(EGL_SAMPLES) != 0) {
+        if (visual == nullptr || query(EGL_SAMPLES) != 0) {
             continue;
         }
-        Kind kind{nameOf(api.name, ask(EGL_RED_SIZE), ask(EGL_ALPHA_SIZE), 0, visual->depth),
+        Kind kind{nameOf(api.name, query(EGL_RED_SIZE), query(EGL_ALPHA_SIZE), 0, visual->depth),
                   *visual,
-                  ask(EGL_ALPHA_SIZE),
+                  query(EGL_ALPHA_SIZE),
                   0,
                   api.api == EGL_OPENGL_API,
                   api.major == 3,
@@ -272,7 +272,7 @@ void tryEgl(const EglApi& api) {
                   {},
                   {},
                   {}};
-        kind.visual.bits_per_rgb = ask(EGL_RED_SIZE);
+        kind.visual.bits_per_rgb = query(EGL_RED_SIZE);
         if (!tried.insert(kind.name).second) {
             continue;
         }

@@ -91,11 +91,11 @@ int main(int argc, char** argv) {
     context = glXCreateContext(display, visual, nullptr, True);
     require(context, "a context");
     const Pixmap pixmap = XCreatePixmap(display, window.id(), kSize, kSize, unsigned(visual->depth));
-    const GLXPixmap kept = glXCreateGLXPixmap(display, visual, pixmap);
+    const GLXPixmap permanent = glXCreateGLXPixmap(display, visual, pixmap);
     for (int frame = 0; frame < options.frames; ++frame) {
         const Pixmap second = XCreatePixmap(display, window.id(), kSize, kSize, unsigned(visual->depth));
         const GLXPixmap fresh = glXCreateGLXPixmap(display, visual, second);
-        const Drawn drawn[] = {drawInto(pixmap, kept, unsigned(frame) + 3),
+        const Drawn drawn[] = {drawInto(pixmap, permanent, unsigned(frame) + 3),
                                drawInto(second, fresh, unsigned(frame) + 70)};
         require(glXMakeCurrent(display, window.id(), context), "the window");
         glViewport(0, 0, options.width, options.height);
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
         XFreePixmap(display, second);
     }
     glXMakeCurrent(display, None, nullptr);
-    glXDestroyGLXPixmap(display, kept);
+    glXDestroyGLXPixmap(display, permanent);
     glXDestroyContext(display, context);
     return 0;
 }

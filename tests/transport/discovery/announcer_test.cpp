@@ -8,27 +8,27 @@ namespace {
 
 constexpr int64_t kMs = 1'000'000;
 
-class Told {
+class AnnouncerRun {
 public:
-    Told() : announcer_(Announcement{AnnouncementKind::Here, 4278, {}, "wall1", "0.1.0"}, 7) {}
+    AnnouncerRun() : announcer_(Announcement{AnnouncementKind::Here, 4278, {}, "wall1", "0.1.0"}, 7) {}
     // Runs until a time, as an event loop with timers; queries every askedEveryNs, 0: never.
-    void run(int64_t untilNs, int64_t askedEveryNs) {
-        int64_t askNs = askedEveryNs;
+    void run(int64_t untilNs, int64_t questionEveryNs) {
+        int64_t questionNs = questionEveryNs;
         while (nowNs_ < untilNs) {
             const int64_t nextNs = announcer_.tick(nowNs_, [&](std::span<const std::byte> bytes) {
                 EXPECT_TRUE(decodeAnnouncement(bytes));
-                saidNs.push_back(nowNs_);
+                sentNs.push_back(nowNs_);
             });
             ASSERT_GT(nextNs, nowNs_);
             nowNs_ = nextNs;
-            if (askedEveryNs != 0 && askNs <= nextNs) {
-                nowNs_ = askNs;
-                askNs += askedEveryNs;
-                announcer_.heard({AnnouncementKind::Asked, 0, {}, "", ""}, nowNs_);
+            if (questionEveryNs != 0 && questionNs <= nextNs) {
+                nowNs_ = questionNs;
+                questionNs += questionEveryNs;
+                announcer_.onAnnouncement({AnnouncementKind::Search, 0, {}, "", ""}, nowNs_);
             }
         }
     }
-    std::vector<int64_t> saidNs;
+    std::vector<int64_t> sentNs;
 
 private:
     Announcer announcer_;
@@ -36,32 +36,32 @@ private:
 };
 
 TEST(Announcer, announcesEverySecond) {
-    Told told;
-    told.run(10'500 * kMs, 0);
-    EXPECT_EQ(told.saidNs.size(), 11u);
+    AnnouncerRun announced;
+    announced.run(10'500 * kMs, 0);
+    EXPECT_EQ(announced.sentNs.size(), 11u);
 }
 
 TEST(Announcer, answersQueriesPromptly) {
-    Told told;
-    told.run(1'400 * kMs, 1'300 * kMs);
-    ASSERT_EQ(told.saidNs.size(), 3u);
-    EXPECT_LT(told.saidNs.back(), 1'350 * kMs);
+    AnnouncerRun announced;
+    announced.run(1'400 * kMs, 1'300 * kMs);
+    ASSERT_EQ(announced.sentNs.size(), 3u);
+    EXPECT_LT(announced.sentNs.back(), 1'350 * kMs);
 }
 
 // A thousand queries per second get as many answers as five.
 TEST(Announcer, limitsItsRateUnderManyQueries) {
-    Told told;
-    told.run(10'000 * kMs, kMs);
-    EXPECT_LE(told.saidNs.size(), 51u);
-    EXPECT_GE(told.saidNs.size(), 35u);
-    for (size_t i = 1; i < told.saidNs.size(); ++i)
-        EXPECT_GE(told.saidNs[i] - told.saidNs[i - 1], Announcer::kMinBetweenNs);
+    AnnouncerRun announced;
+    announced.run(10'000 * kMs, kMs);
+    EXPECT_LE(announced.sentNs.size(), 51u);
+    EXPECT_GE(announced.sentNs.size(), 35u);
+    for (size_t i = 1; i < announced.sentNs.size(); ++i)
+        EXPECT_GE(announced.sentNs[i] - announced.sentNs[i - 1], Announcer::kMinBetweenNs);
 }
 
 TEST(Announcer, ignoresAnnouncementsOfOthers) {
     Announcer announcer({AnnouncementKind::Here, 1, {}, "a", "0"}, 1);
     const int64_t dueNs = announcer.tick(0, [](auto) {});
-    announcer.heard({AnnouncementKind::Here, 1, {}, "b", "0"}, kMs);
+    announcer.onAnnouncement({AnnouncementKind::Here, 1, {}, "b", "0"}, kMs);
     EXPECT_EQ(announcer.tick(kMs, [](auto) { FAIL(); }), dueNs);
     EXPECT_EQ(decodeAnnouncement(announcer.farewell())->kind, AnnouncementKind::Gone);
 }

@@ -26,7 +26,7 @@ protected:
     NodeIdPlaces places_;
 };
 
-TEST_F(NodeId, isStableAndRevealsNothing) {
+TEST_F(NodeId, isStableAndContainsNoMachineId) {
     machineId("0123456789abcdef0123456789abcdef");
     const std::string id = idText();
     EXPECT_EQ(idText(), id);

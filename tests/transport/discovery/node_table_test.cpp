@@ -14,12 +14,12 @@ Announcement node(uint8_t number, const std::string& name, AnnouncementKind kind
 
 TEST(NodeTable, listsANodeOnce) {
     NodeTable table;
-    table.heardBeacon(node(1, "wall1"), "10.0.0.1", 0);
-    table.heardBeacon(node(1, "wall1"), "10.0.0.1", 1);
-    table.heardBeacon(node(1, "wall1"), "fe80::1%eth0", 1);
+    table.onBeacon(node(1, "wall1"), "10.0.0.1", 0);
+    table.onBeacon(node(1, "wall1"), "10.0.0.1", 1);
+    table.onBeacon(node(1, "wall1"), "fe80::1%eth0", 1);
     table.foundByAvahi(node(1, "wall1"), "10.0.0.1");
-    table.heardBeacon(node(2, "lab"), "10.0.0.2", 1);
-    table.heardBeacon(node(3, "nobody", AnnouncementKind::Asked), "10.0.0.3", 1);
+    table.onBeacon(node(2, "lab"), "10.0.0.2", 1);
+    table.onBeacon(node(3, "nobody", AnnouncementKind::Search), "10.0.0.3", 1);
     const auto nodes = table.nodes();
     ASSERT_EQ(nodes.size(), 2u);
     EXPECT_EQ(nodes[0].name, "lab");
@@ -29,11 +29,11 @@ TEST(NodeTable, listsANodeOnce) {
 
 TEST(NodeTable, removesSilentAndLeavingNodes) {
     NodeTable table;
-    table.heardBeacon(node(1, "silent"), "10.0.0.1", 0);
-    table.heardBeacon(node(2, "gone"), "10.0.0.2", 0);
-    table.heardBeacon(node(3, "both"), "10.0.0.3", 0);
+    table.onBeacon(node(1, "silent"), "10.0.0.1", 0);
+    table.onBeacon(node(2, "gone"), "10.0.0.2", 0);
+    table.onBeacon(node(3, "both"), "10.0.0.3", 0);
     table.foundByAvahi(node(3, "both"), "10.0.0.3");
-    table.heardBeacon(node(2, "gone", AnnouncementKind::Gone), "10.0.0.2", 1);
+    table.onBeacon(node(2, "gone", AnnouncementKind::Gone), "10.0.0.2", 1);
     EXPECT_EQ(table.nodes().size(), 2u);
     table.expire(NodeTable::kSilentNs);
     EXPECT_EQ(table.nodes().size(), 2u);
@@ -47,10 +47,10 @@ TEST(NodeTable, removesSilentAndLeavingNodes) {
 
 TEST(NodeTable, updatesTheAddressOfARestartedNode) {
     NodeTable table;
-    table.heardBeacon(node(1, "wall1"), "10.0.0.1", 0);
+    table.onBeacon(node(1, "wall1"), "10.0.0.1", 0);
     Announcement again = node(1, "wall1");
     again.port = 9999;
-    table.heardBeacon(again, "10.0.0.7", 1);
+    table.onBeacon(again, "10.0.0.7", 1);
     EXPECT_EQ(table.nodes()[0].port, 9999);
     EXPECT_EQ(table.nodes()[0].addresses, std::vector<std::string>{"10.0.0.7"});
 }
@@ -61,10 +61,10 @@ TEST(NodeTable, limitsTheNumberOfNodes) {
         Announcement a = node(0, "x");
         a.uuid[1] = static_cast<std::byte>(i);
         a.uuid[2] = static_cast<std::byte>(i >> 8);
-        table.heardBeacon(a, "10.0.0.1", 0);
+        table.onBeacon(a, "10.0.0.1", 0);
     }
     EXPECT_EQ(table.nodes().size(), NodeTable::kMaxNodes);
-    for (unsigned i = 0; i < 100; ++i) table.heardBeacon(node(0, "x"), "10.0.1." + std::to_string(i), 0);
+    for (unsigned i = 0; i < 100; ++i) table.onBeacon(node(0, "x"), "10.0.1." + std::to_string(i), 0);
     EXPECT_EQ(table.nodes()[0].addresses.size(), NodeTable::kMaxAddresses);
 }
 

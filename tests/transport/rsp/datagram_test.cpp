@@ -90,7 +90,7 @@ TEST(Datagram, decodesItsOwnFeedback) {
     f.edge = Sequence(1000);
     f.highest = Sequence(99);
     f.echoUs = 1;
-    f.heldUs = 2;
+    f.ackDelayUs = 2;
     f.lost = 3;
     f.dropped = 4;
     f.entryCount = 2;

@@ -18,7 +18,7 @@ public:
         : random_(seed), patient_(seed % 2 == 0), group_(seed, [this](GroupSettings& s) {
               if (patient_) s.silentNs = 60 * kNsPerS, s.stalled = StallPolicy::Wait;
               s.socketDatagrams = static_cast<uint32_t>(64 + random_() % 500);
-              s.rate.mostBytesPerS = 10e6;
+              s.rate.maxBytesPerS = 10e6;
           }) {}
 
     void run() {

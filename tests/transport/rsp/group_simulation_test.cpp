@@ -60,7 +60,7 @@ TEST(GroupSimulation, tunnelsToAMemberWithoutMulticast) {
 }
 
 TEST(GroupSimulation, continuesSoonAfterAMemberIsKilled) {
-    SimulatedGroup group(4, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
+    SimulatedGroup group(4, [](GroupSettings& s) { s.rate.maxBytesPerS = 20e6; });
     for (int i = 0; i < 4; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     group.processes[0].write(20 << 20);
@@ -76,7 +76,7 @@ TEST(GroupSimulation, continuesSoonAfterAMemberIsKilled) {
 }
 
 TEST(GroupSimulation, evictsASilentMemberInTime) {
-    SimulatedGroup group(5, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
+    SimulatedGroup group(5, [](GroupSettings& s) { s.rate.maxBytesPerS = 20e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     group.processes[0].write(60 << 20);
@@ -91,7 +91,7 @@ TEST(GroupSimulation, evictsASilentMemberInTime) {
 }
 
 TEST(GroupSimulation, tunnelsToAMemberThatLosesMulticast) {
-    SimulatedGroup group(11, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
+    SimulatedGroup group(11, [](GroupSettings& s) { s.rate.maxBytesPerS = 20e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     for (auto& p : group.processes) p.write(20 << 20);
@@ -108,7 +108,7 @@ TEST(GroupSimulation, tunnelsToAMemberThatLosesMulticast) {
 
 // A member that was stopped long enough for a tunnel may read its connection first. Its socket still holds the rest.
 TEST(GroupSimulation, losesNothingWhenTheTunnelIsReadBeforeTheSocket) {
-    SimulatedGroup group(12, [](GroupSettings& s) { s.rate.mostBytesPerS = 20e6; });
+    SimulatedGroup group(12, [](GroupSettings& s) { s.rate.maxBytesPerS = 20e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     group.processes[0].write(20 << 20);
@@ -127,7 +127,7 @@ TEST(GroupSimulation, losesNothingWhenTheTunnelIsReadBeforeTheSocket) {
 
 TEST(GroupSimulation, returnsToMulticastAtOnceAfterAStop) {
     SimulatedGroup group(16, [](GroupSettings& s) {
-        s.rate.mostBytesPerS = 20e6;
+        s.rate.maxBytesPerS = 20e6;
         s.silentNs = 4 * kNsPerS;
         s.stalled = StallPolicy::Wait;
     });
@@ -150,7 +150,7 @@ TEST(GroupSimulation, returnsToMulticastAtOnceAfterAStop) {
 }
 
 TEST(GroupSimulation, returnsToMulticastWhenItReachesTheMemberAgain) {
-    SimulatedGroup group(13, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
+    SimulatedGroup group(13, [](GroupSettings& s) { s.rate.maxBytesPerS = 5e6; });
     for (int i = 0; i < 3; ++i) group.join();
     group.deaf = {2}; // from the start
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
@@ -170,7 +170,7 @@ TEST(GroupSimulation, returnsToMulticastWhenItReachesTheMemberAgain) {
 // A lost segment of the control connection arrives 200 ms late, so the member cannot see a probe in time. The multicast
 // stream reaches it anyway, and must not fill its tunnel for seconds.
 TEST(GroupSimulation, usesMulticastForAMemberWithALateWelcome) {
-    SimulatedGroup group(15, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
+    SimulatedGroup group(15, [](GroupSettings& s) { s.rate.maxBytesPerS = 5e6; });
     group.join();
     group.lateControlNs[2] = GroupSettings{}.probeNs + 50 * kNsPerMs;
     group.join();
@@ -188,7 +188,7 @@ TEST(GroupSimulation, usesMulticastForAMemberWithALateWelcome) {
 
 // The host numbers its probes from probeSeed. The join's probes were sent before multicast failed.
 TEST(GroupSimulation, ignoresRepliesToEarlierProbes) {
-    SimulatedGroup group(14, [](GroupSettings& s) { s.rate.mostBytesPerS = 5e6; });
+    SimulatedGroup group(14, [](GroupSettings& s) { s.rate.maxBytesPerS = 5e6; });
     for (int i = 0; i < 3; ++i) group.join();
     ASSERT_TRUE(group.run(kNsPerS, [&] { return group.allLive(); }));
     const MemberId deaf = *group.idOf(2);

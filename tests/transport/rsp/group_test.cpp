@@ -131,14 +131,14 @@ TEST(Group, letsAReaderWorkInPlace) {
     uint64_t seen = 0, wrong = 0;
     std::string failure;
     std::thread reader([&] {
-        for (size_t most = 1;; most = most % 99'991 * 3 + 1) {
+        for (size_t maximum = 1;; maximum = maximum % 99'991 * 3 + 1) {
             std::array<std::span<const std::byte>, 7> pieces;
             auto found = (*member)->view(kHost, pieces, Deadline::inMs(20'000));
             if (!found) failure = found.error().message;
             if (!found || *found == 0) return;
             size_t count = 0;
             for (const auto piece : std::span(pieces).first(*found)) {
-                const auto part = piece.first(std::min(piece.size(), most - count));
+                const auto part = piece.first(std::min(piece.size(), maximum - count));
                 for (size_t i = 0; i < part.size(); ++i) wrong += part[i] != byteAt(seen + i);
                 seen += part.size();
                 count += part.size();

@@ -26,10 +26,10 @@ def start_pair(mural, secret, size, sender_options=(), receiver_options=(), rate
     common = ["--interface", "lo", "--group", "239.255.77.87:%d" % (20000 + os.getpid() % 20000), "--secret-file", secret,
               "--within", str(WAIT_SECONDS)]
     sender = start([mural, "netperf", "send", "--members", "1", "--bytes", size, "--rate", rate, "--control", "127.0.0.1:0"] + common + list(sender_options))
-    said = sender.stderr.readline()
-    found = re.search(r"listens on (\S+)", said)
+    output = sender.stderr.readline()
+    found = re.search(r"listens on (\S+)", output)
     if not found:
-        sys.exit("netperf_ends: the sender does not print its address: %r" % said)
+        sys.exit("netperf_ends: the sender does not print its address: %r" % output)
     return sender, start([mural, "netperf", "receive", "--json", "--control", found.group(1)] + common + list(receiver_options))
 
 
@@ -41,9 +41,9 @@ def go_on(receiver):
         pass
 
 
-def expect(what, good, told):
+def expect(what, good, reported):
     if not good:
-        sys.exit("netperf_ends: %s: %r" % (what, told))
+        sys.exit("netperf_ends: %s: %r" % (what, reported))
 
 
 def main():
@@ -53,20 +53,20 @@ def main():
         secret.flush()
 
         sender, receiver = start_pair(mural, secret.name, "2M")
-        told = receiver.communicate(timeout=WAIT_SECONDS)
-        expect("a sender that is done is no success", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
+        reported = receiver.communicate(timeout=WAIT_SECONDS)
+        expect("a sender that is done is no success", receiver.returncode == 0 and '"bytes":2097152' in reported[0], reported)
         sender.communicate(timeout=WAIT_SECONDS)
 
         unchecked = ["--unchecked"]
         sender, receiver = start_pair(mural, secret.name, "2M", unchecked, unchecked)
-        told = receiver.communicate(timeout=WAIT_SECONDS)
-        expect("unchecked data fails", receiver.returncode == 0 and '"bytes":2097152' in told[0], told)
+        reported = receiver.communicate(timeout=WAIT_SECONDS)
+        expect("unchecked data fails", receiver.returncode == 0 and '"bytes":2097152' in reported[0], reported)
         sender.communicate(timeout=WAIT_SECONDS)
 
         # A checking receiver detects that these bytes are not the pattern.
         sender, receiver = start_pair(mural, secret.name, "2M", unchecked)
-        told = receiver.communicate(timeout=WAIT_SECONDS)
-        expect("changed bytes pass", receiver.returncode == 1 and "received data differs from sent data" in told[1], told)
+        reported = receiver.communicate(timeout=WAIT_SECONDS)
+        expect("changed bytes pass", receiver.returncode == 1 and "received data differs from sent data" in reported[1], reported)
         sender.communicate(timeout=WAIT_SECONDS)
 
         # The receiver is stopped until it is evicted: the end of its data is not the end of the stream. Its socket
@@ -76,19 +76,19 @@ def main():
         receiver.send_signal(signal.SIGSTOP)
         time.sleep(REMOVED_SECONDS)
         receiver.send_signal(signal.SIGCONT)
-        told = receiver.communicate(timeout=WAIT_SECONDS)
+        reported = receiver.communicate(timeout=WAIT_SECONDS)
         sender.kill()
         sender.communicate()
-        expect("to be removed is no failure", receiver.returncode == 1 and "has evicted this member" in told[1], told)
+        expect("to be removed is no failure", receiver.returncode == 1 and "has evicted this member" in reported[1], reported)
 
         sender, receiver = start_pair(mural, secret.name, "1G")
         go_on(receiver)
         sender.send_signal(signal.SIGKILL)
-        told = receiver.communicate(timeout=WAIT_SECONDS)
+        reported = receiver.communicate(timeout=WAIT_SECONDS)
         sender.communicate()
-        expect("a killed sender is no failure", receiver.returncode == 1, told)
-        expect("a killed sender is not reported in one line", re.fullmatch(r"mural netperf: the stream was cut off after \d+ bytes.*connection to the group's host was lost.*\n", told[1]), told)
-        expect("earlier measurements are missing", '"cut":' in told[0], told)
+        expect("a killed sender is no failure", receiver.returncode == 1, reported)
+        expect("a killed sender is not reported in one line", re.fullmatch(r"mural netperf: the stream was cut off after \d+ bytes.*connection to the group's host was lost.*\n", reported[1]), reported)
+        expect("earlier measurements are missing", '"cut":' in reported[0], reported)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@
 namespace mural::rsp {
 namespace {
 
-constexpr double kMost = 25e6;
+constexpr double kMax = 25e6;
 constexpr double kDatagramBytes = 1538;
 constexpr int64_t kRoundNs = 50'000'000;
 
@@ -33,21 +33,21 @@ struct Rounds {
 
 TEST(RateControl, keepsTheRateOnALossyLink) {
     for (const double share : {0.001, 0.01, 0.05, 0.15}) {
-        RateControl rate({kMost});
+        RateControl rate({kMax});
         Rounds rounds;
         double sum = 0;
         for (int i = 0; i < 400; ++i) {
             rounds.run(rate, 1, 8, [&](double) { return share; });
             sum += rate.bytesPerS();
         }
-        EXPECT_GT(sum / 400, 0.93 * kMost) << share;
+        EXPECT_GT(sum / 400, 0.93 * kMax) << share;
     }
 }
 
 TEST(RateControl, reducesTheRateUnderCongestion) {
-    RateControl rate({kMost});
+    RateControl rate({kMax});
     Rounds rounds;
-    const double room = 0.4 * kMost;
+    const double room = 0.4 * kMax;
     rounds.run(rate, 400, 4, [&](double bytesPerS) { return std::clamp(1 - room / bytesPerS, 0.0, 1.0); });
     double sum = 0;
     for (int i = 0; i < 200; ++i) {
@@ -59,36 +59,36 @@ TEST(RateControl, reducesTheRateUnderCongestion) {
 }
 
 TEST(RateControl, increasesTheRateAgain) {
-    RateControl rate({kMost});
+    RateControl rate({kMax});
     Rounds rounds;
-    rounds.run(rate, 100, 4, [](double bytesPerS) { return std::clamp(1 - 0.1 * kMost / bytesPerS, 0.0, 1.0); });
-    ASSERT_LT(rate.bytesPerS(), 0.5 * kMost);
+    rounds.run(rate, 100, 4, [](double bytesPerS) { return std::clamp(1 - 0.1 * kMax / bytesPerS, 0.0, 1.0); });
+    ASSERT_LT(rate.bytesPerS(), 0.5 * kMax);
     const int64_t beganNs = rounds.nowNs;
-    while (rate.bytesPerS() < 0.99 * kMost && rounds.nowNs - beganNs < 20'000'000'000)
+    while (rate.bytesPerS() < 0.99 * kMax && rounds.nowNs - beganNs < 20'000'000'000)
         rounds.run(rate, 1, 4, [](double) { return 0.0; });
-    EXPECT_GT(rate.bytesPerS(), 0.98 * kMost) << "within 20 s";
+    EXPECT_GT(rate.bytesPerS(), 0.98 * kMax) << "within 20 s";
 }
 
 TEST(RateControl, compensatesForASleepWithItsBucket) {
-    RateControl rate({kMost});
+    RateControl rate({kMax});
     while (rate.take(kDatagramBytes, 0)) {}
     double sent = 0;
     while (rate.take(kDatagramBytes, 4'000'000)) sent += kDatagramBytes;
-    EXPECT_NEAR(sent, kMost * 0.004, 2 * kDatagramBytes);
+    EXPECT_NEAR(sent, kMax * 0.004, 2 * kDatagramBytes);
     // But only for short sleeps: queues on the path are finite.
     sent = 0;
     while (rate.take(kDatagramBytes, 1'000'000'000)) sent += kDatagramBytes;
-    EXPECT_LT(sent, kMost * 0.006);
+    EXPECT_LT(sent, kMax * 0.006);
 }
 
 TEST(RateControl, reportsWhetherABatchMayBeSent) {
-    RateControl rate({kMost});
+    RateControl rate({kMax});
     while (rate.take(kDatagramBytes, 0)) {}
     EXPECT_FALSE(rate.has(10 * kDatagramBytes, 500'000));
     EXPECT_TRUE(rate.has(10 * kDatagramBytes, 700'000));
     EXPECT_TRUE(rate.take(10 * kDatagramBytes, 700'000)) << "to ask takes nothing";
-    EXPECT_FALSE(rate.has(kMost, 4'000'000));
-    EXPECT_TRUE(rate.has(kMost, 1'000'000'000)) << "more never goes at once";
+    EXPECT_FALSE(rate.has(kMax, 4'000'000));
+    EXPECT_TRUE(rate.has(kMax, 1'000'000'000)) << "more never goes at once";
     EXPECT_TRUE(RateControl({}).has(1e12, 0)) << "no limit";
 }
 

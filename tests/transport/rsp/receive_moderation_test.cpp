@@ -11,25 +11,25 @@ constexpr int64_t kUs = 1000;
 constexpr uint32_t kSocketDatagrams = 4096;
 
 // Simulates a flow and a reader that polls and rests as advised. Returns the number of polls.
-int looksAtAFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64_t& longestNs) {
-    int looks = 0;
+int pollsOfFlow(ReceiveModeration& m, int64_t everyNs, int64_t lastingNs, int64_t& longestNs) {
+    int polls = 0;
     int64_t seenNs = kBeginNs;
     for (int64_t nowNs = kBeginNs + everyNs; nowNs < kBeginNs + lastingNs;) {
-        m.looked({.datagrams = static_cast<size_t>((nowNs - seenNs) / everyNs)}, nowNs);
+        m.onPolled({.datagrams = static_cast<size_t>((nowNs - seenNs) / everyNs)}, nowNs);
         seenNs = nowNs;
-        ++looks;
+        ++polls;
         const int64_t restNs = m.restNs(nowNs);
         EXPECT_LE(restNs, (nowNs - kBeginNs) / ReceiveModeration::kShareOfFlow);
         longestNs = std::max(longestNs, restNs);
         nowNs += std::max(restNs, everyNs);
     }
-    return looks;
+    return polls;
 }
 
 TEST(ReceiveModeration, accumulatesDatagramsOfAFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
-    EXPECT_LT(looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs), 8333 / 20);
+    EXPECT_LT(pollsOfFlow(m, 12 * kUs, 100'000 * kUs, longestNs), 8333 / 20);
     EXPECT_EQ(longestNs, ReceiveModeration::kMaxRestNs);
 }
 
@@ -38,15 +38,15 @@ TEST(ReceiveModeration, pollsASmallSocketBeforeItIsFull) {
     constexpr uint32_t kFew = 100;
     ReceiveModeration m(kFew);
     int64_t longestNs = 0;
-    (void)looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
+    (void)pollsOfFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
     EXPECT_LE(longestNs, 12 * kUs * kFew / 3);
     EXPECT_GE(longestNs, 12 * kUs * kFew / 5);
     // Datagrams left by one poll count together with the next poll's.
     const int64_t endNs = kBeginNs + 100'000 * kUs;
-    m.looked({.datagrams = 1}, endNs);
-    m.looked({.datagrams = 32, .mayBeMore = true}, endNs);
-    m.looked({.datagrams = 32, .mayBeMore = true}, endNs);
-    m.looked({.datagrams = 16}, endNs + 160 * kUs); // 2 us apart
+    m.onPolled({.datagrams = 1}, endNs);
+    m.onPolled({.datagrams = 32, .mayBeMore = true}, endNs);
+    m.onPolled({.datagrams = 32, .mayBeMore = true}, endNs);
+    m.onPolled({.datagrams = 16}, endNs + 160 * kUs); // 2 us apart
     EXPECT_EQ(m.restNs(endNs + 160 * kUs), 0) << "50 us: a timer is later than that";
 }
 
@@ -54,13 +54,13 @@ TEST(ReceiveModeration, pollsAtOnceForFirstAndUrgentDatagrams) {
     ReceiveModeration m(kSocketDatagrams);
     EXPECT_EQ(m.restNs(kBeginNs), 0);
     int64_t longestNs = 0;
-    (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
+    (void)pollsOfFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
     const int64_t endNs = kBeginNs + 50'000 * kUs;
-    m.looked({.datagrams = 1}, endNs);
+    m.onPolled({.datagrams = 1}, endNs);
     EXPECT_GT(m.restNs(endNs), 0);
-    m.looked({.datagrams = 1, .urgent = true}, endNs);
+    m.onPolled({.datagrams = 1, .urgent = true}, endNs);
     EXPECT_EQ(m.restNs(endNs), 0);
-    m.looked({.datagrams = 1}, endNs + 100 * kUs);
+    m.onPolled({.datagrams = 1}, endNs + 100 * kUs);
     EXPECT_EQ(m.restNs(endNs + 100 * kUs), 0);
 }
 
@@ -68,11 +68,11 @@ TEST(ReceiveModeration, pollsAtOnceForFirstAndUrgentDatagrams) {
 TEST(ReceiveModeration, pollsAgainAtOnceWhenDatagramsAreLeft) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
-    (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
+    (void)pollsOfFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
     const int64_t endNs = kBeginNs + 50'000 * kUs;
-    m.looked({.datagrams = 64, .mayBeMore = true}, endNs);
+    m.onPolled({.datagrams = 64, .mayBeMore = true}, endNs);
     EXPECT_EQ(m.restNs(endNs), 0);
-    m.looked({.datagrams = 3}, endNs + 50 * kUs);
+    m.onPolled({.datagrams = 3}, endNs + 50 * kUs);
     EXPECT_GT(m.restNs(endNs + 50 * kUs), 0);
 }
 
@@ -81,21 +81,21 @@ TEST(ReceiveModeration, pollsAgainAtOnceWhenDatagramsAreLeft) {
 TEST(ReceiveModeration, continuesALateFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
-    (void)looksAtAFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
+    (void)pollsOfFlow(m, 12 * kUs, 100'000 * kUs, longestNs);
     const int64_t lateNs = kBeginNs + 106'000 * kUs;
-    m.looked({}, lateNs - 3'000 * kUs); // no datagram arrived
+    m.onPolled({}, lateNs - 3'000 * kUs); // no datagram arrived
     EXPECT_EQ(m.restNs(lateNs - 3'000 * kUs), ReceiveModeration::kMaxRestNs);
-    m.looked({.datagrams = 500}, lateNs);
+    m.onPolled({.datagrams = 500}, lateNs);
     EXPECT_EQ(m.restNs(lateNs), ReceiveModeration::kMaxRestNs);
 }
 
 TEST(ReceiveModeration, endsAStoppedFlow) {
     ReceiveModeration m(kSocketDatagrams);
     int64_t longestNs = 0;
-    (void)looksAtAFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
+    (void)pollsOfFlow(m, 12 * kUs, 50'000 * kUs, longestNs);
     const int64_t laterNs = kBeginNs + 50'000 * kUs + ReceiveModeration::kMaxSilenceNs;
     EXPECT_EQ(m.restNs(laterNs), 0);
-    m.looked({.datagrams = 1}, laterNs);
+    m.onPolled({.datagrams = 1}, laterNs);
     EXPECT_EQ(m.restNs(laterNs), 0);
 }
 

@@ -15,7 +15,7 @@ public:
         bytes_.resize(bytes);
         return bytes_;
     }
-    [[nodiscard]] Feedback told() const { return readFeedback(bytes_).value_or(Feedback{}); }
+    [[nodiscard]] Feedback feedback() const { return readFeedback(bytes_).value_or(Feedback{}); }
 
 private:
     std::vector<std::byte> bytes_;
@@ -35,7 +35,7 @@ TEST(Receiver, limitsLossesToTheWindowForAPollFarAhead) {
     receiver.input(poll, 1'000'000);
     (void)receiver.tick(1'000'000, out);
     EXPECT_EQ(receiver.lost(), 256u);
-    EXPECT_EQ(out.told().highest, Sequence(7) + 256);
+    EXPECT_EQ(out.feedback().highest, Sequence(7) + 256);
 }
 
 // Found by stream_fuzz: the datagram was before received ones and after the newest, so half of all numbers counted as
@@ -56,7 +56,7 @@ TEST(Receiver, countsNoLossForADatagramHalfTheNumbersBehind) {
     receiver.input(data, 2'000'000);
     (void)receiver.tick(50'000'000, out);
     EXPECT_EQ(receiver.lost(), 0u);
-    EXPECT_EQ(out.told().highest, Sequence(7) + 101);
+    EXPECT_EQ(out.feedback().highest, Sequence(7) + 101);
 }
 
 // Feedback is timely for the writer, but no more frequent: it costs both ends.
@@ -79,7 +79,7 @@ TEST(Receiver, sendsFeedbackTwicePerWindow) {
         receiver.input(data, nowNs += 20'000);
         receiver.consume(100);
         (void)receiver.tick(nowNs, out);
-        ASSERT_LE(receiver.cumulative() - out.told().cumulative, 128) << i;
+        ASSERT_LE(receiver.cumulative() - out.feedback().cumulative, 128) << i;
     }
     EXPECT_EQ(receiver.feedbackSent() - before, 2u * kWindows);
 }
@@ -91,8 +91,8 @@ TEST(Receiver, usesPayloadsInPlace) {
     settings.shape = {100, 64};
     Receiver receiver(settings, Sequence(7));
     ReceiveBuffers landing = receiver.landing();
-    ASSERT_GE(landing.placeBytes, kStreamHeadBytes + 100);
-    ASSERT_GE(landing.places.size(), 4u);
+    ASSERT_GE(landing.bufferBytes, kStreamHeadBytes + 100);
+    ASSERT_GE(landing.buffers.size(), 4u);
     const auto come = [&](int number, std::span<const std::byte> payload) {
         StreamDatagram data;
         data.sequence = Sequence(7) + number;
@@ -101,7 +101,7 @@ TEST(Receiver, usesPayloadsInPlace) {
         receiver.input(data, 1'000'000);
     };
     const auto landed = [&](size_t place, int value) {
-        std::byte* const at = landing.places[place] + kStreamHeadBytes;
+        std::byte* const at = landing.buffers[place] + kStreamHeadBytes;
         std::fill_n(at, 100, static_cast<std::byte>(value));
         return std::span<const std::byte>(at, 100);
     };
@@ -110,16 +110,16 @@ TEST(Receiver, usesPayloadsInPlace) {
     come(0, landed(0, 10));
     come(1, landed(2, 11)); // one slot was skipped: another stream's, or a duplicate
     ASSERT_EQ(receiver.readable(pieces), 2u);
-    EXPECT_EQ(pieces[0].data(), landing.places[0] + kStreamHeadBytes);
-    EXPECT_EQ(pieces[1].data(), landing.places[2] + kStreamHeadBytes);
+    EXPECT_EQ(pieces[0].data(), landing.buffers[0] + kStreamHeadBytes);
+    EXPECT_EQ(pieces[1].data(), landing.buffers[2] + kStreamHeadBytes);
     come(1, landed(3, 99)); // a duplicate: rejected, and its slot is reused
     const std::vector<std::byte> elsewhere(100, std::byte{12});
     come(2, elsewhere);
     const ReceiveBuffers next = receiver.landing();
-    for (std::byte* const place : next.places)
+    for (std::byte* const place : next.buffers)
         for (const auto& piece : std::span(pieces).first(2)) EXPECT_NE(place + kStreamHeadBytes, piece.data());
     for (const size_t again : {1, 3})
-        EXPECT_NE(std::ranges::find(next.places, landing.places[again]), next.places.end()) << again;
+        EXPECT_NE(std::ranges::find(next.buffers, landing.buffers[again]), next.buffers.end()) << again;
     receiver.consume(40);
     ASSERT_EQ(receiver.readable(pieces), 3u);
     EXPECT_EQ(pieces[0].size(), 60u) << "what is left of it";
@@ -133,9 +133,9 @@ TEST(Receiver, usesPayloadsInPlace) {
     for (int i = 3; i < 3 + 64; ++i) {
         landing = receiver.landing();
         come(i, i % 3 == 0 ? std::span<const std::byte>(elsewhere)
-                           : landed(static_cast<size_t>(i) % landing.places.size(), i));
+                           : landed(static_cast<size_t>(i) % landing.buffers.size(), i));
     }
-    EXPECT_EQ(receiver.landing().places.size(), next.places.size());
+    EXPECT_EQ(receiver.landing().buffers.size(), next.buffers.size());
     for (int i = 3; i < 3 + 64; ++i) {
         ASSERT_FALSE(receiver.readable().empty());
         EXPECT_EQ(std::to_integer<int>(receiver.readable()[99]), i % 3 == 0 ? 12 : i);

@@ -27,8 +27,8 @@ TEST(RetransmitPlanner, doesNotResendRowsInFlight) {
     plan.want(group, 0b111, 0, 500); // reported before the rows can have arrived
     EXPECT_FALSE(take(plan, 1500));
     plan.want(group, 0b111, 1, 1000); // one has arrived, and two are lost
-    EXPECT_EQ(take(plan, 1600)->place, 3);
-    EXPECT_EQ(take(plan, 1600)->place, 4);
+    EXPECT_EQ(take(plan, 1600)->index, 3);
+    EXPECT_EQ(take(plan, 1600)->index, 4);
     EXPECT_FALSE(take(plan, 1600));
 }
 
@@ -36,12 +36,12 @@ TEST(RetransmitPlanner, doesNotResendRetransmissionsInFlight) {
     RetransmitPlanner plan(1024);
     const auto group = groupAt(plan, 0);
     plan.wantAgain(group, 0b101, 100);
-    EXPECT_EQ(take(plan, 1000)->place, 0);
-    EXPECT_EQ(take(plan, 1000)->place, 2);
+    EXPECT_EQ(take(plan, 1000)->index, 0);
+    EXPECT_EQ(take(plan, 1000)->index, 2);
     plan.wantAgain(group, 0b101, 500);
     EXPECT_FALSE(take(plan, 1500));
     plan.wantAgain(group, 0b100, 1000);
-    EXPECT_EQ(take(plan, 1600)->place, 2);
+    EXPECT_EQ(take(plan, 1600)->index, 2);
 }
 
 TEST(RetransmitPlanner, repairsTheOldestGroupFirst) {

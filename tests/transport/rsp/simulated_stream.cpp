@@ -91,8 +91,8 @@ size_t SimulatedStream::join() {
 std::optional<StreamDatagram> SimulatedStream::landed(std::span<const std::byte> datagram, Receiver& receiver) {
     if (datagram.size() <= kStreamHeadBytes || network_.random() % 2 == 0) return readStream(datagram);
     const ReceiveBuffers landing = receiver.landing();
-    if (datagram.size() > landing.placeBytes) return readStream(datagram);
-    std::byte* const place = landing.places[network_.random() % landing.places.size()];
+    if (datagram.size() > landing.bufferBytes) return readStream(datagram);
+    std::byte* const place = landing.buffers[network_.random() % landing.buffers.size()];
     std::ranges::copy(datagram, place);
     return readStream({place, datagram.size()});
 }

@@ -11,29 +11,29 @@
 namespace mural::rsp {
 namespace {
 
-constexpr uint32_t kPlaces = 256;
+constexpr uint32_t kSlots = 256;
 constexpr size_t kBytes = 100;
 
 TEST(SlotPool, providesTheRequestedNumber) {
-    SlotPool places(kBytes, kPlaces);
+    SlotPool slots(kBytes, kSlots);
     std::set<uint32_t> taken;
-    for (uint32_t i = 0; i < kPlaces; ++i) {
-        const uint32_t place = places.take();
-        EXPECT_LT(place, kPlaces);
-        EXPECT_TRUE(taken.insert(place).second) << place << " came twice";
-        EXPECT_EQ(places.at(place), places.at(0) + place * kBytes);
+    for (uint32_t i = 0; i < kSlots; ++i) {
+        const uint32_t slot = slots.take();
+        EXPECT_LT(slot, kSlots);
+        EXPECT_TRUE(taken.insert(slot).second) << slot << " came twice";
+        EXPECT_EQ(slots.at(slot), slots.at(0) + slot * kBytes);
     }
 }
 
 TEST(SlotPool, usesFewSlotsWhenTheyAreReturnedAtOnce) {
-    SlotPool places(kBytes, kPlaces);
+    SlotPool slots(kBytes, kSlots);
     uint32_t highest = 0;
     std::deque<uint32_t> held;
     for (int i = 0; i < 10'000; ++i) {
-        held.push_back(places.take());
+        held.push_back(slots.take());
         highest = std::max(highest, held.back());
         if (held.size() == 40) {
-            for (; held.size() > 8; held.pop_front()) places.giveBack(held.front());
+            for (; held.size() > 8; held.pop_front()) slots.giveBack(held.front());
         }
     }
     EXPECT_EQ(highest, 39u);
@@ -42,17 +42,17 @@ TEST(SlotPool, usesFewSlotsWhenTheyAreReturnedAtOnce) {
 TEST(SlotPool, returnsTheLowestFreeSlotInAnyOrder) {
     constexpr unsigned kSeed = 7;
     std::mt19937 random(kSeed);
-    SlotPool places(kBytes, kPlaces);
+    SlotPool slots(kBytes, kSlots);
     std::set<uint32_t> free, held;
-    for (uint32_t i = 0; i < kPlaces; ++i) free.insert(i);
+    for (uint32_t i = 0; i < kSlots; ++i) free.insert(i);
     for (int i = 0; i < 20'000; ++i) {
         if (held.empty() || (!free.empty() && random() % 2 == 0)) {
-            const uint32_t place = places.take();
-            ASSERT_EQ(place, *free.begin()) << "seed " << kSeed << ", step " << i;
+            const uint32_t slot = slots.take();
+            ASSERT_EQ(slot, *free.begin()) << "seed " << kSeed << ", step " << i;
             held.insert(free.extract(free.begin()).value());
         } else {
             const auto it = std::next(held.begin(), static_cast<std::ptrdiff_t>(random() % held.size()));
-            places.giveBack(*it);
+            slots.giveBack(*it);
             free.insert(held.extract(it).value());
         }
     }

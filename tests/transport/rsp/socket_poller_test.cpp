@@ -125,12 +125,12 @@ TEST(HandoverTimer, reportsAPostponementAfterItFired) {
 TEST(HandoverTimer, isPostponedByALeaderThatSleepsLonger) {
     auto timer = HandoverTimer::open();
     ASSERT_TRUE(timer);
-    timer->keepBehind(quickNowNs(), kNsPerMs);
+    timer->postpone(quickNowNs(), kNsPerMs);
     EXPECT_FALSE(readableWithin(timer->descriptor(), 20)) << "nobody has set it";
     const int64_t beganNs = quickNowNs();
     timer->push(beganNs, 400 * kNsPerMs);
-    timer->keepBehind(beganNs + 100 * kNsPerMs, kNsPerS); // it is later already
-    timer->keepBehind(beganNs + 500 * kNsPerMs, 300 * kNsPerMs);
+    timer->postpone(beganNs + 100 * kNsPerMs, kNsPerS); // it is later already
+    timer->postpone(beganNs + 500 * kNsPerMs, 300 * kNsPerMs);
     ASSERT_TRUE(readableWithin(timer->descriptor(), 10'000));
     const int64_t tookNs = quickNowNs() - beganNs;
     EXPECT_GE(tookNs, 800 * kNsPerMs);

@@ -239,7 +239,7 @@ TEST(StreamSimulation, evictsNoMemberAfterAClockJump) {
     stream.network().jumpClock(30 * kNsPerS);
     stream.run(20 * kNsPerMs, [] { return false; });
     for (const auto& [id, m] : stream.sender().members())
-        EXPECT_LT(stream.network().nowNs() - m.heardNs, kNsPerS) << id;
+        EXPECT_LT(stream.network().nowNs() - m.receivedNs, kNsPerS) << id;
     EXPECT_TRUE(stream.run(60 * kNsPerS));
     EXPECT_EQ(stream.wrongBytes(), 0u);
 }
@@ -257,7 +257,7 @@ TEST(StreamSimulation, survivesRandomSchedules) {
     if (const char* seeds = std::getenv("MURAL_SEEDS")) std::sscanf(seeds, "%lu:%lu", &first, &count);
     for (uint64_t seed = first; seed < first + count; ++seed) {
         std::mt19937_64 random(seed);
-        const auto up = [&](double most) { return most * static_cast<double>(random() % 1000) / 1000; };
+        const auto up = [&](double maximum) { return maximum * static_cast<double>(random() % 1000) / 1000; };
         StreamPlan plan{
             .seed = seed,
             .members = 1 + random() % 6,

@@ -52,7 +52,7 @@ struct Came {
         pollfd one{socket.descriptor(), POLLIN, 0};
         while (datagrams.size() < count && poll(&one, 1, 10'000) == 1) {
             for (const UdpSocket::Datagram& d : socket.fetch(landing)) {
-                landed += std::ranges::count(landing.places, d.bytes.data());
+                landed += std::ranges::count(landing.buffers, d.bytes.data());
                 datagrams.emplace_back(d.bytes.begin(), d.bytes.end());
             }
         }
@@ -62,13 +62,13 @@ struct Came {
 struct Places {
     std::vector<std::byte> bytes;
     std::vector<std::byte*> each;
-    size_t placeBytes;
-    explicit Places(size_t count, size_t sizeBytes = kPlace) : bytes(count * sizeBytes), placeBytes(sizeBytes) {
-        for (size_t i = 0; i < count; ++i) each.push_back(bytes.data() + i * placeBytes);
+    size_t bufferBytes;
+    explicit Places(size_t count, size_t sizeBytes = kPlace) : bytes(count * sizeBytes), bufferBytes(sizeBytes) {
+        for (size_t i = 0; i < count; ++i) each.push_back(bytes.data() + i * bufferBytes);
     }
     Places(const Places&) = delete; // `each` points into `bytes`
     Places& operator=(const Places&) = delete;
-    [[nodiscard]] ReceiveBuffers landing() const { return {placeBytes, each}; }
+    [[nodiscard]] ReceiveBuffers landing() const { return {bufferBytes, each}; }
 };
 
 // Sends and receives enough single datagrams to show that none are merged.
@@ -86,12 +86,12 @@ void showThatNoneAreJoined(Ends& ends, const ReceiveBuffers& landing) {
 
 TEST(UdpSocket, receivesInPlaceWithoutMerging) {
     Ends ends;
-    Places places(4);
-    showThatNoneAreJoined(ends, places.landing());
+    Places buffers(4);
+    showThatNoneAreJoined(ends, buffers.landing());
     // more than there are slots; the last ones use the socket's own buffer
     const std::vector<size_t> sizes{kPlace, 1, 32, 5, 1000, kPlace};
     for (const size_t size : sizes) ends.send(numbered(size, size), size);
-    const Came came(ends.to, places.landing(), sizes.size());
+    const Came came(ends.to, buffers.landing(), sizes.size());
     ASSERT_EQ(came.datagrams.size(), sizes.size());
     for (size_t i = 0; i < sizes.size(); ++i) EXPECT_EQ(came.datagrams[i], numbered(sizes[i], sizes[i])) << i;
     EXPECT_EQ(came.landed, 4u);
@@ -102,17 +102,17 @@ TEST(UdpSocket, usesSeparateSlotsPerCall) {
     Ends ends;
     ends.to.leaveOutSenders();
     const Places few(4);
-    const std::array<Places, 4> looks{Places(kMaxAtOnce), Places(kMaxAtOnce), Places(kMaxAtOnce, 2 * kPlace),
+    const std::array<Places, 4> calls{Places(kMaxAtOnce), Places(kMaxAtOnce), Places(kMaxAtOnce, 2 * kPlace),
                                       Places(kMaxAtOnce)};
     showThatNoneAreJoined(ends, few.landing());
-    for (size_t look = 0; look < looks.size(); ++look) {
-        const size_t size = looks[look].placeBytes;
-        for (size_t i = 0; i < kMaxAtOnce; ++i) ends.send(numbered(size, look + i), size);
-        const Came came(ends.to, looks[look].landing(), kMaxAtOnce);
-        ASSERT_EQ(came.datagrams.size(), kMaxAtOnce) << look;
+    for (size_t call = 0; call < calls.size(); ++call) {
+        const size_t size = calls[call].bufferBytes;
+        for (size_t i = 0; i < kMaxAtOnce; ++i) ends.send(numbered(size, call + i), size);
+        const Came came(ends.to, calls[call].landing(), kMaxAtOnce);
+        ASSERT_EQ(came.datagrams.size(), kMaxAtOnce) << call;
         for (size_t i = 0; i < kMaxAtOnce; ++i)
-            EXPECT_EQ(came.datagrams[i], numbered(size, look + i)) << look << ", " << i;
-        EXPECT_EQ(came.landed, kMaxAtOnce) << look;
+            EXPECT_EQ(came.datagrams[i], numbered(size, call + i)) << call << ", " << i;
+        EXPECT_EQ(came.landed, kMaxAtOnce) << call;
     }
     // The same with fewer slots and with none.
     ends.send(numbered(kPlace, 9), kPlace);
@@ -124,10 +124,10 @@ TEST(UdpSocket, usesSeparateSlotsPerCall) {
 
 TEST(UdpSocket, dropsDatagramsLongerThanTheirSlot) {
     Ends ends;
-    Places places(32);
-    showThatNoneAreJoined(ends, places.landing());
+    Places buffers(32);
+    showThatNoneAreJoined(ends, buffers.landing());
     for (const size_t size : {kPlace, kPlace + 1, kPlace - 1}) ends.send(numbered(size, size), size);
-    const Came came(ends.to, places.landing(), 2);
+    const Came came(ends.to, buffers.landing(), 2);
     ASSERT_EQ(came.datagrams.size(), 2u);
     EXPECT_EQ(came.datagrams[0], numbered(kPlace, kPlace));
     EXPECT_EQ(came.datagrams[1], numbered(kPlace - 1, kPlace - 1));
@@ -147,18 +147,18 @@ TEST(UdpSocket, usesItsOwnBufferWithoutSlots) {
 TEST(UdpSocket, dividesMergedDatagrams) {
     for (const size_t segment : {kPlace, kPlace / 2, size_t{32}, size_t{700}}) {
         Ends ends;
-        Places places(32);
+        Places buffers(32);
         const auto all = numbered(10 * segment - 3, 1);
         for (int again = 0; again < 2; ++again) {
             ends.send(all, segment);
-            const Came came(ends.to, places.landing(), 10);
+            const Came came(ends.to, buffers.landing(), 10);
             ASSERT_EQ(came.datagrams.size(), 10u) << segment;
             for (size_t i = 0; i < 10; ++i) {
                 const auto expected = std::span(all).subspan(i * segment, std::min(segment, all.size() - i * segment));
                 EXPECT_TRUE(std::ranges::equal(came.datagrams[i], expected)) << segment << ", " << i;
             }
             EXPECT_EQ(came.landed, 0u);
-            if (again == 0) showThatNoneAreJoined(ends, places.landing());
+            if (again == 0) showThatNoneAreJoined(ends, buffers.landing());
         }
     }
 }
@@ -176,7 +176,7 @@ TEST(UdpSocket, countsDroppedDatagrams) {
 }
 
 // Sends datagrams of equal size and a shorter one by each method. A rejected method is not tried again.
-class Sent : public ::testing::Test {
+class SentDatagrams : public ::testing::Test {
 protected:
     static constexpr size_t kSegment = 232;
     Ends ends;
@@ -197,13 +197,13 @@ protected:
     }
 };
 
-TEST_F(Sent, asOneSegmentedDatagram) {
+TEST_F(SentDatagrams, arriveFromOneSegmentedDatagram) {
     sendAll(kSegment);
     sendAll(3);
     EXPECT_STREQ(ends.from.sendingBy(), "UDP_SEGMENT");
 }
 
-TEST_F(Sent, bySeveralMessagesPerCall) {
+TEST_F(SentDatagrams, arriveFromSeveralMessagesPerCall) {
     joinedOnesAreRefused();
     sendAll(kSegment);
     EXPECT_STREQ(ends.from.sendingBy(), "sendmmsg");
@@ -211,7 +211,7 @@ TEST_F(Sent, bySeveralMessagesPerCall) {
 }
 
 // Simulates a kernel without that call for this thread.
-TEST_F(Sent, oneByOne) {
+TEST_F(SentDatagrams, arriveOneByOne) {
     joinedOnesAreRefused();
     std::thread([&] {
         std::array<sock_filter, 4> program{{

@@ -1,6 +1,6 @@
 """Traces of apitrace, which are compared with Mural's capture."""
 
-LEAST_TRACE_BYTES = 1000  # less: it has recorded nothing
+MIN_TRACE_BYTES = 1000  # less: it has recorded nothing
 TRIES = 4
 
 
@@ -13,6 +13,6 @@ def traced(trace):
     """
     for _ in range(TRIES):
         size_bytes, *rest = trace()
-        if size_bytes >= LEAST_TRACE_BYTES:
+        if size_bytes >= MIN_TRACE_BYTES:
             break
     return (size_bytes, *rest)

@@ -44,6 +44,6 @@ def glmark_scenes():
     """Returns the names of glmark2's scenes that draw; empty if glmark2 is not installed."""
     if not shutil.which("glmark2"):
         return []
-    said = subprocess.run(["glmark2", "--list-scenes"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=60, check=False)
-    names = re.findall(r"^\[Scene\] (\S+)", said.stdout.decode(), re.MULTILINE)
+    output = subprocess.run(["glmark2", "--list-scenes"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=60, check=False)
+    names = re.findall(r"^\[Scene\] (\S+)", output.stdout.decode(), re.MULTILINE)
     return [name for name in names if name != "default"]

@@ -35,7 +35,7 @@ def _rate_rows(results):
         native = measured["walls"]["native"]
         for wall, reports in measured["walls"].items():
             rates = [report["framesPerSecond"] for report in reports]
-            ratios = [mine["framesPerSecond"] / theirs["framesPerSecond"] for mine, theirs in zip(reports, native) if theirs["framesPerSecond"] > 0]
+            ratios = [mine["framesPerSecond"] / others["framesPerSecond"] for mine, others in zip(reports, native) if others["framesPerSecond"] > 0]
             size = "" if wall == "native" else "%.0f" % median_of(reports, lambda r: r["bytesPerFrame"])
             rows.append([measured["program"], wall, "%.1f" % statistics.median(rates), "%.1f to %.1f" % (min(rates), max(rates)),
                          "" if wall == "native" or not ratios else "%.2f" % statistics.median(ratios), size])

@@ -60,8 +60,8 @@ def latency(bench):
                     got[peer.name].append(_attempt(bench, "acknowledged flush", lambda: peer.messages(rig, receivers, 64, count), essential=False))
             rig.loss("0")
             tcp = got.get("TCP", [])
-            for name, told in got.items():
-                p50, p99 = ([None if t is None else t[key] for t in told] for key in ("p50", "p99"))
+            for name, reported in got.items():
+                p50, p99 = ([None if t is None else t[key] for t in reported] for key in ("p50", "p99"))
                 pairs = [a / b["p50"] for a, b in zip(p50, tcp) if a is not None and b]
                 ratio = _median(pairs)
                 goal, good = "", ""
@@ -81,13 +81,13 @@ def frame(bench):
     receivers, rows, numbers = 4, [], {}
     with Rig(bench.netlab, receivers + 1, 1500, LINK) as rig:
         for background in ("none", "100 Mbit/s"):
-            told = []
+            reported = []
             for index in range(bench.rounds):
                 bench.say("frames, background %s: round %d of %d" % (background, index + 1, bench.rounds))
-                told.append(_attempt(bench, "frames", lambda: _frames(bench, rig, receivers, background != "none")))
-            cells = [_cell([None if t is None else t[key] for t in told]) for key in ("p50", "p90", "p99", "max")]
+                reported.append(_attempt(bench, "frames", lambda: _frames(bench, rig, receivers, background != "none")))
+            cells = [_cell([None if t is None else t[key] for t in reported]) for key in ("p50", "p90", "p99", "max")]
             rows.append([background, str(receivers)] + cells)
-            numbers[background] = told
+            numbers[background] = reported
     table("a frame of 10 kB until all have it, us, 200 Mbit/s (on the wire alone it takes 430)", ["background", "receivers", "p50", "p90", "p99", "longest"], rows)
     return numbers
 
@@ -99,10 +99,10 @@ def _frames(bench, rig, receivers, busy):
     other = bench.rsp.group(rig, receivers, ["--bytes", str(10 * 1000 ** 3), "--rate", "100mbit"], place=1)
     try:
         wait_until_all_flow(other)
-        told = bench.rsp.messages(rig, receivers, 10_000, count, PACE * LINK_MBIT - 100)
+        reported = bench.rsp.messages(rig, receivers, 10_000, count, PACE * LINK_MBIT - 100)
         if any(program.poll() is not None for program in [other.sender] + other.receivers):
             raise StreamFailed("rsp: the background stream ended too soon")
-        return told
+        return reported
     finally:
         rig.end_programs()
 
@@ -124,8 +124,8 @@ def join(bench):
         rig.loss("5%")
         for index in range(bench.joins):
             bench.say("joins: try %d of %d" % (index + 1, bench.joins))
-            told = _attempt(bench, "16 joins at 5 % loss", lambda: bench.rsp.group(rig, receivers, ["--bytes", "64k", "--rate", "190mbit"]).end())
-            times.append(max(r["join"]["seconds"] for r in told[1]) if told else None)
+            reported = _attempt(bench, "16 joins at 5 % loss", lambda: bench.rsp.group(rig, receivers, ["--bytes", "64k", "--rate", "190mbit"]).end())
+            times.append(max(r["join"]["seconds"] for r in reported[1]) if reported else None)
         rig.loss("0")
     known = [t for t in times if t is not None]
     within = sum(t <= 2.0 for t in known)
@@ -139,8 +139,8 @@ def join(bench):
 class Flow:
     """The bytes of a receiver over time, from its report."""
 
-    def __init__(self, told):
-        line = told["timeline"]
+    def __init__(self, reported):
+        line = reported["timeline"]
         self.began, self.step, self.bytes = line["beganAt"], line["stepSeconds"], line["bytes"]
 
     def rate(self, begin, end):

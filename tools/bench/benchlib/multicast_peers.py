@@ -23,7 +23,7 @@ def finish(name, programs, seconds=LIMIT_SECONDS):
                 other.end()
             raise StreamFailed("%s: not done after %d s" % (name, seconds))
         if finished.status != 0:
-            raise StreamFailed("%s: status %d: %s" % (name, finished.status, (finished.wrong or finished.said).strip().split("\n")[-1]))
+            raise StreamFailed("%s: status %d: %s" % (name, finished.status, (finished.wrong or finished.output).strip().split("\n")[-1]))
     return done
 
 
@@ -59,9 +59,9 @@ class Raw(Harness):
         sender = rig.start(0, [self.path, "send"] + common + [rig.address(0), "mode=" + sending, "size=%d" % payload, "batch=%d" % batch,
                                                                "secs=%g" % seconds, "rate=%g" % rate])
         done = finish("raw", [sender] + hosts)
-        told = [numbers_of(d.said) for d in done]
-        return StreamResult(min(t["gbit"] for t in told[1:]) * 1000, told[0]["cpu_s_per_GB"],
-                            sum(t["cpu_s_per_GB"] for t in told[1:]) / receivers)
+        reported = [numbers_of(d.output) for d in done]
+        return StreamResult(min(t["gbit"] for t in reported[1:]) * 1000, reported[0]["cpu_s_per_GB"],
+                            sum(t["cpu_s_per_GB"] for t in reported[1:]) / receivers)
 
 
 class OwnProgram:
@@ -92,12 +92,12 @@ class OwnProgram:
             wait_all(hosts, JOIN_SECONDS)
         sender = rig.start(0, [self.harness.path, "send"] + self.sender_words(rig, receivers, size_bytes, wire_mbit))
         done = finish(self.name, [sender] + hosts)
-        told = [numbers_of(d.said) for d in done]
-        for host, t in enumerate(told):
+        reported = [numbers_of(d.output) for d in done]
+        for host, t in enumerate(reported):
             if t.get("bytes", 0) < size_bytes - self.may_miss_bytes:
                 raise StreamFailed("%s: host %d has %d of %d bytes" % (self.name, host, t.get("bytes", 0), size_bytes))
-        mbit = min(t["gbit"] for t in (told if self.counts_late else told[1:])) * 1000
-        return StreamResult(mbit, told[0].get("cpu_s_per_GB"), sum(t["cpu_s_per_GB"] for t in told[1:]) / receivers)
+        mbit = min(t["gbit"] for t in (reported if self.counts_late else reported[1:])) * 1000
+        return StreamResult(mbit, reported[0].get("cpu_s_per_GB"), sum(t["cpu_s_per_GB"] for t in reported[1:]) / receivers)
 
 
 class Norm(OwnProgram):
@@ -116,10 +116,10 @@ class Norm(OwnProgram):
         wait_all(hosts, JOIN_SECONDS)
         sender = rig.start(0, [self.harness.path, "send", "n=%d" % receivers, "msg=%d" % message_bytes, "count=%d" % count, "rate=180", "par=0", "if=eth0"])
         try:
-            told = numbers_of(finish(self.name, [sender], 8)[0].said)
+            reported = numbers_of(finish(self.name, [sender], 8)[0].output)
         finally:
             rig.end_programs()
-        return {"p50": told["p50us"], "p99": told["p99us"]}
+        return {"p50": reported["p50us"], "p99": reported["p99us"]}
 
 
 class Program:
@@ -163,8 +163,8 @@ class Tcp(OwnProgram):
     def messages(self, rig, receivers, message_bytes, count):
         sender = rig.start(0, [self.harness.path, "send", "n=%d" % receivers, "msg=%d" % message_bytes, "count=%d" % count])
         hosts = [rig.start(host, [self.harness.path, "recv", "msg=%d" % message_bytes, "server=" + rig.address(0)]) for host in range(1, receivers + 1)]
-        told = numbers_of(finish(self.name, [sender] + hosts, 40)[0].said)
-        return {"p50": told["p50us"], "p99": told["p99us"]}
+        reported = numbers_of(finish(self.name, [sender] + hosts, 40)[0].output)
+        return {"p50": reported["p50us"], "p99": reported["p99us"]}
 
 
 class Files:
@@ -204,7 +204,7 @@ class Uftp(Files):
             done = finish(self.name, [rig.start(0, ["uftp", "-R", rate, "-I", "eth0", "-B", "4194304", "-b", "1400", "-H", ",".join(ids), path])])[0]
         finally:
             ended = [host.end() for host in hosts]
-        kept = re.search(r"Total elapsed time: ([0-9.]+) s", done.said + done.wrong)
+        kept = re.search(r"Total elapsed time: ([0-9.]+) s", done.output + done.wrong)
         whole = [os.path.getsize(os.path.join(self.folder, "host-%d" % h, os.path.basename(path))) for h in range(1, receivers + 1)
                  if os.path.exists(os.path.join(self.folder, "host-%d" % h, os.path.basename(path)))]
         if not kept or whole != [size_bytes] * receivers:
@@ -228,7 +228,7 @@ class Udpcast(Files):
         done = finish(self.name, [sender] + hosts, 15)
         rates = []
         for finished in done[1:]:
-            found = re.findall(r"\(\s*([0-9.]+) ([KMG]?)bps\)", finished.said + finished.wrong)
+            found = re.findall(r"\(\s*([0-9.]+) ([KMG]?)bps\)", finished.output + finished.wrong)
             if not found:
                 raise StreamFailed("udpcast: a receiver tells no rate")
             rates.append(float(found[-1][0]) * {"": 1e-6, "K": 1e-3, "M": 1.0, "G": 1e3}[found[-1][1]])

@@ -82,6 +82,6 @@ class MuralRuns:
             report = {}
         if status != 0 or report.get("frames", 0) < 1:
             with open(errors_file, encoding="utf-8", errors="replace") as file:
-                said = file.read().strip().replace("\n", " | ")
-            raise RunFailed("status %d, %d frames: %s%s" % (status, report.get("frames", 0), " ".join(command), " said: " + said if said else ""))
+                output = file.read().strip().replace("\n", " | ")
+            raise RunFailed("status %d, %d frames: %s%s" % (status, report.get("frames", 0), " ".join(command), " said: " + output if output else ""))
         return report

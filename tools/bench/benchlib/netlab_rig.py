@@ -25,8 +25,8 @@ class RigFailed(Exception):
 class Finished:
     """An ended program: its output, and the CPU seconds that it used."""
 
-    def __init__(self, status, said, wrong, cpu_seconds):
-        self.status, self.said, self.wrong, self.cpu_seconds = status, said, wrong, cpu_seconds
+    def __init__(self, status, output, wrong, cpu_seconds):
+        self.status, self.output, self.wrong, self.cpu_seconds = status, output, wrong, cpu_seconds
 
 
 class Program:
@@ -39,7 +39,7 @@ class Program:
         self.pid = self._process.pid
         self.finished = None
 
-    def said_so_far(self):
+    def output_so_far(self):
         size = os.fstat(self._err.fileno()).st_size
         return os.pread(self._err.fileno(), size, 0).decode(errors="replace")
 
@@ -105,8 +105,8 @@ def go_inside(tool):
     script = "mount -t tmpfs none /run && exec \"$@\""
     tried = subprocess.run(unshare + ["sh", "-c", script, "sh", "true"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
     if tried.returncode != 0:
-        said = tried.stderr.decode(errors="replace").strip()
-        _skip(tool, "namespaces cannot be made here: %s; run it as root, or allow user namespaces (sysctl kernel.unprivileged_userns_clone)" % said)
+        output = tried.stderr.decode(errors="replace").strip()
+        _skip(tool, "namespaces cannot be made here: %s; run it as root, or allow user namespaces (sysctl kernel.unprivileged_userns_clone)" % output)
     os.environ[INSIDE] = "1"
     words = unshare + ["sh", "-c", script, "sh", sys.executable] + sys.argv
     os.execvp(words[0], words)

@@ -9,7 +9,7 @@ from benchlib.netlab_rig import wait_all
 from benchlib.stream_result import StreamFailed, StreamResult
 
 START_SECONDS = 10
-KEPT_SECONDS = 40 # longest duration of a run
+MAX_SECONDS = 40 # longest duration of a run
 
 
 class RspGroup:
@@ -20,7 +20,7 @@ class RspGroup:
         time that the transport does not use. receiver_programs: another `mural` for each receiver."""
         self.rig = rig
         ends = [] if checked else ["--unchecked"]
-        network = ["--json", "--interface", "eth0", "--secret-file", secret, "--within", str(KEPT_SECONDS),
+        network = ["--json", "--interface", "eth0", "--secret-file", secret, "--within", str(MAX_SECONDS),
                    "--group", "239.255.77.%d:4277" % (85 + place)]
         self.control = "%s:%d" % (rig.address(0), 4278 + place)
         receive = ["netperf", "receive", "--control", self.control, "--timeline", "5"] + ends + network
@@ -31,7 +31,7 @@ class RspGroup:
 
     def _wait_until_it_listens(self):
         until = time.monotonic() + START_SECONDS
-        while not re.search(r"listens on", self.sender.said_so_far() if self.sender.poll() is None else "listens on"):
+        while not re.search(r"listens on", self.sender.output_so_far() if self.sender.poll() is None else "listens on"):
             if time.monotonic() > until:
                 raise StreamFailed("rsp: the sender does not listen")
             time.sleep(0.005)
@@ -39,21 +39,21 @@ class RspGroup:
     def end(self, without=()):
         """Returns (sender's report, [receivers' reports]) after all have ended without error. `without`: hosts that
         need not end; None in the list."""
-        told = []
+        reported = []
         hosts = [host for host in range(len(self.receivers) + 1) if host not in without]
         all_of_it = [self.sender] + self.receivers
-        ended = dict(zip(hosts, wait_all([all_of_it[host] for host in hosts], KEPT_SECONDS)))
+        ended = dict(zip(hosts, wait_all([all_of_it[host] for host in hosts], MAX_SECONDS)))
         for host in range(len(all_of_it)):
             if host in without:
-                told.append(None)
+                reported.append(None)
                 continue
             finished = ended[host]
             if finished is None or finished.status != 0:
-                why = "still runs after %d s" % KEPT_SECONDS if finished is None else finished.wrong.strip().split("\n")[-1]
+                why = "still runs after %d s" % MAX_SECONDS if finished is None else finished.wrong.strip().split("\n")[-1]
                 self.rig.end_programs()
                 raise StreamFailed("rsp: host %d: %s" % (host, why))
-            told.append(json.loads(finished.said.strip().split("\n")[-1]))
-        return told[0], told[1:]
+            reported.append(json.loads(finished.output.strip().split("\n")[-1]))
+        return reported[0], reported[1:]
 
 
 class Rsp:
@@ -85,8 +85,8 @@ class Rsp:
 
 
 def check_whole(sent, received, size_bytes):
-    for told in [sent] + [r for r in received if r is not None]:
-        if told["bytes"] != size_bytes:
-            raise StreamFailed("rsp: %s has %d of %d bytes" % (told["role"], told["bytes"], size_bytes))
-        if told.get("cut"):
-            raise StreamFailed("rsp: %s was cut off: %s" % (told["role"], told["cut"]))
+    for reported in [sent] + [r for r in received if r is not None]:
+        if reported["bytes"] != size_bytes:
+            raise StreamFailed("rsp: %s has %d of %d bytes" % (reported["role"], reported["bytes"], size_bytes))
+        if reported.get("cut"):
+            raise StreamFailed("rsp: %s was cut off: %s" % (reported["role"], reported["cut"]))

@@ -114,12 +114,12 @@ Faults benchCodecs(const std::vector<NamedPlane>& planes, const BenchOptions& op
         for (const std::string& name : names)
             fmt::print("{:<16} {:>8.2f}   {:<24} {}\n", name, sums[name].ratio(), spread(sums[name].encodes),
                        spread(sums[name].decodes));
-        const char* ours = isDepth(format) ? "slope" : "bitplane";
-        const double better = sums[ours].ratio() / sums["rle-swizzled"].ratio();
-        fmt::print("{} has {:.2f} times the ratio of rle-swizzled\n", ours, better);
+        const char* muralCodec = isDepth(format) ? "slope" : "bitplane";
+        const double better = sums[muralCodec].ratio() / sums["rle-swizzled"].ratio();
+        fmt::print("{} has {:.2f} times the ratio of rle-swizzled\n", muralCodec, better);
         if (!options.quick && better < kRatioGoal)
             faults.push_back(fmt::format("{}: the ratio of {} is only {:.2f} times that of rle-swizzled, and not {}",
-                                         nameOf(format), ours, better, kRatioGoal));
+                                         nameOf(format), muralCodec, better, kRatioGoal));
     }
     return faults;
 }

@@ -300,14 +300,14 @@ void benchIcet(const BenchOptions& options, Faults& faults) {
     const auto blendCompressed =
         library ? reinterpret_cast<void (*)()>(dlsym(library, "icet_bench_blend_compressed")) : nullptr;
     if (!open || !load || !blend || !blendCompressed || !open(kColumns, kRows)) {
-        const char* said = library ? "it lacks a function" : dlerror();
-        faults.push_back("IceT: " + options.icetLibrary + " cannot be used: " + (said ? said : "") +
+        const char* cause = library ? "it lacks a function" : dlerror();
+        faults.push_back("IceT: " + options.icetLibrary + " cannot be used: " + (cause ? cause : "") +
                          "; let tools/bench/compositing --icet build it");
         return;
     }
     const size_t plane = 4 * kPixels, buffers = buffersFor(plane, options.quick);
     RotatedBuffers copies(buffers, plane), back(buffers, plane), front(buffers, plane);
-    std::vector<double> ours, theirs, theirsCompressed, gain;
+    std::vector<double> muralRatios, icetRatios, compressedRatios, gain;
     for (size_t turn = 0; turn < static_cast<size_t>(options.turns); ++turn) {
         fillLayer(back.at(turn).data(), 1, static_cast<uint32_t>(turn));
         fillLayer(front.at(turn).data(), 1, static_cast<uint32_t>(turn + 7));
@@ -317,14 +317,14 @@ void benchIcet(const BenchOptions& options, Faults& faults) {
         const double mural = cpuNsOf([&] {
             blendOverRow(PlaneFormat::Rgba8, back.at(turn).data(), front.at(turn).data(), kPixels, SourceSide::InFront);
         });
-        ours.push_back(copied / mural);
-        theirs.push_back(copied / icet);
-        theirsCompressed.push_back(copied / compressed);
+        muralRatios.push_back(copied / mural);
+        icetRatios.push_back(copied / icet);
+        compressedRatios.push_back(copied / compressed);
         gain.push_back(icet / mural);
     }
     fmt::print("\ndense blending of 1920x1080 RGBA8, as multiples of memcpy's speed\nMural {:.2f}   IceT, plain images "
                "{:.2f}   IceT, compressed images {:.2f}   Mural against IceT's plain images {:.2f}\n",
-               medianOf(ours), medianOf(theirs), medianOf(theirsCompressed), medianOf(gain));
+               medianOf(muralRatios), medianOf(icetRatios), medianOf(compressedRatios), medianOf(gain));
 }
 
 } // namespace

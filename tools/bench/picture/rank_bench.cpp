@@ -28,19 +28,19 @@ struct Drawn {
     std::vector<float> depth; // the same as floats, for IceT
 };
 
-struct Way {
+struct ChosenFilter {
     const char* name;
     Strategy strategy;
-    int icet; // -1: no equivalent
+    int icetStrategy; // -1: no equivalent
 };
-constexpr Way kWays[] = {{"serial", Strategy::Serial, ICET_WAY_SERIAL},
-                         {"direct send", Strategy::DirectSend, ICET_WAY_DIRECT_SEND},
-                         {"binary swap", Strategy::BinarySwap, ICET_WAY_SWAP},
-                         {"radix-k", Strategy::RadixK, ICET_WAY_RADIX_K},
-                         {"streaming", Strategy::Streaming, -1}};
+constexpr ChosenFilter kWays[] = {{"serial", Strategy::Serial, ICET_WAY_SERIAL},
+                                  {"direct send", Strategy::DirectSend, ICET_WAY_DIRECT_SEND},
+                                  {"binary swap", Strategy::BinarySwap, ICET_WAY_SWAP},
+                                  {"radix-k", Strategy::RadixK, ICET_WAY_RADIX_K},
+                                  {"streaming", Strategy::Streaming, -1}};
 
 // Final report of a rank.
-struct Told {
+struct RankResult {
     int64_t cpuNs = 0;
     uint64_t bytes = 0;
     int64_t wrong = 0; // wrong pixels; first rank only
@@ -102,13 +102,13 @@ class LinkRoutes final : public PartRoutes {
 public:
     explicit LinkRoutes(RankLinks& links) : links_(links) {}
     Result<void> send(int rank, std::vector<std::byte> message, Deadline) override {
-        kept_.push_back({rank, 0, std::move(message)});
-        kept_.back().number = links_.post(rank, kPartTag, kept_.back().bytes);
+        sent_.push_back({rank, 0, std::move(message)});
+        sent_.back().number = links_.post(rank, kPartTag, sent_.back().bytes);
         return {};
     }
-    Result<std::vector<std::byte>> receive(int rank, size_t mostBytes, Deadline) override {
+    Result<std::vector<std::byte>> receive(int rank, size_t maxBytes, Deadline) override {
         RankMessage message = links_.take(rank, kPartTag);
-        if (message.bytes.size() > mostBytes) return Error{"a message is too large"};
+        if (message.bytes.size() > maxBytes) return Error{"a message is too large"};
         return std::move(message.bytes);
     }
     LinkTransfer takeTransfer(int rank) override {
@@ -119,18 +119,18 @@ public:
     void renew(int, uint32_t) override {} // no rank is lost
     // Called at the end of a picture.
     void waitSent() {
-        for (const Kept& k : kept_) links_.waitSent(k.rank, k.number);
-        kept_.clear();
+        for (const SentMessage& k : sent_) links_.waitSent(k.rank, k.number);
+        sent_.clear();
     }
 
 private:
-    struct Kept {
+    struct SentMessage {
         int rank;
         uint64_t number;
         std::vector<std::byte> bytes;
     };
     RankLinks& links_;
-    std::deque<Kept> kept_;
+    std::deque<SentMessage> sent_;
 };
 
 int64_t processCpuNowNs() {
@@ -161,25 +161,25 @@ int64_t wrongPixels(const std::vector<Drawn>& drawn, int ranks, const uint32_t* 
 
 // Runs one rank: composites frames between barriers by `compose`, which returns the picture at the first rank.
 template <class Compose>
-Told measure(RankLinks& links, const std::vector<Drawn>& drawn, int frames, bool tiesCount, Compose&& compose) {
-    Told told;
+RankResult measure(RankLinks& links, const std::vector<Drawn>& drawn, int frames, bool tiesCount, Compose&& compose) {
+    RankResult result;
     const uint32_t* picture = nullptr;
     uint64_t before = 0;
     for (int f = 0; f < kWarmFrames + frames; ++f) {
         if (f == kWarmFrames) before = links.bytesSent();
         links.barrier();
         const int64_t tookNs = compose(picture);
-        if (f >= kWarmFrames) told.cpuNs += tookNs;
+        if (f >= kWarmFrames) result.cpuNs += tookNs;
     }
-    told.cpuNs /= frames;
-    told.bytes = (links.bytesSent() - before) / static_cast<uint64_t>(frames);
-    if (links.own() == 0) told.wrong = picture == nullptr ? 1 : wrongPixels(drawn, links.ranks(), picture, tiesCount);
-    return told;
+    result.cpuNs /= frames;
+    result.bytes = (links.bytesSent() - before) / static_cast<uint64_t>(frames);
+    if (links.own() == 0) result.wrong = picture == nullptr ? 1 : wrongPixels(drawn, links.ranks(), picture, tiesCount);
+    return result;
 }
 
-Told ours(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int frames) {
+RankResult composeByMural(RankLinks& links, const std::vector<Drawn>& drawn, const ChosenFilter& filter, int frames) {
     LinkRoutes routes(links);
-    PictureComposer composer({way.strategy, links.own(), links.ranks(), 60'000, 60'000, 5'000, ""}, routes,
+    PictureComposer composer({filter.strategy, links.own(), links.ranks(), 60'000, 60'000, 5'000, ""}, routes,
                              [](const std::string& line) { fmt::print(stderr, "compositing_bench: {}\n", line); });
     PicturePart part;
     return measure(links, drawn, frames, true, [&](const uint32_t*& picture) {
@@ -196,7 +196,8 @@ Told ours(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int
 
 RankLinks& linksOf(void* self) { return *static_cast<RankLinks*>(self); }
 
-Told icet(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int frames, const std::string& path) {
+RankResult composeByIcet(RankLinks& links, const std::vector<Drawn>& drawn, const ChosenFilter& filter, int frames,
+                         const std::string& path) {
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     const auto open = library ? reinterpret_cast<icet_ranks_open_function>(dlsym(library, "icet_ranks_open")) : nullptr;
     const auto composed =
@@ -216,7 +217,7 @@ Told icet(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int
                                linksOf(self).waitForAny({from, from + count});
                            }};
     const PixelViewport& box = drawn[0].part.id.box;
-    if (!open || !composed || !open(&given, box.w, box.h, static_cast<icet_way>(way.icet))) {
+    if (!open || !composed || !open(&given, box.w, box.h, static_cast<icet_way>(filter.icetStrategy))) {
         fmt::print(stderr, "compositing_bench: IceT: {} cannot be used; let tools/bench/compositing --icet build it\n",
                    path);
         std::_Exit(1);
@@ -230,7 +231,7 @@ Told icet(RankLinks& links, const std::vector<Drawn>& drawn, const Way& way, int
 }
 
 struct Sum {
-    int64_t meanCpuNs = 0, mostCpuNs = 0;
+    int64_t meanCpuNs = 0, maxCpuNs = 0;
     uint64_t bytes = 0;
     std::string fault;
 };
@@ -248,13 +249,13 @@ template <class Rank> Sum perform(int ranks, Rank&& rank) {
         const pid_t child = fork();
         if (child == 0) {
             sockets->closeOthers(r);
-            Told told;
+            RankResult result;
             {
                 RankLinks links(*sockets, r);
-                told = rank(links);
+                result = rank(links);
                 links.barrier();
             }
-            std::_Exit(write(results[1], &told, sizeof told) == static_cast<ssize_t>(sizeof told) ? 0 : 1);
+            std::_Exit(write(results[1], &result, sizeof result) == static_cast<ssize_t>(sizeof result) ? 0 : 1);
         }
         if (child > 0)
             children.push_back(child);
@@ -263,15 +264,15 @@ template <class Rank> Sum perform(int ranks, Rank&& rank) {
     }
     sockets->closeAll();
     close(results[1]);
-    Told told;
+    RankResult result;
     int count = 0;
     // all ends close when all ranks have ended; a rank waits at most a minute for another
-    while (read(results[0], &told, sizeof told) == static_cast<ssize_t>(sizeof told)) {
+    while (read(results[0], &result, sizeof result) == static_cast<ssize_t>(sizeof result)) {
         ++count;
-        sum.meanCpuNs += told.cpuNs / ranks;
-        sum.mostCpuNs = std::max(sum.mostCpuNs, told.cpuNs);
-        sum.bytes += told.bytes;
-        if (told.wrong > 0) sum.fault = fmt::format("{} pixels are wrong", told.wrong);
+        sum.meanCpuNs += result.cpuNs / ranks;
+        sum.maxCpuNs = std::max(sum.maxCpuNs, result.cpuNs);
+        sum.bytes += result.bytes;
+        if (result.wrong > 0) sum.fault = fmt::format("{} pixels are wrong", result.wrong);
     }
     close(results[0]);
     for (const pid_t child : children) waitpid(child, nullptr, 0);
@@ -281,7 +282,7 @@ template <class Rank> Sum perform(int ranks, Rank&& rank) {
 
 std::string cell(const Sum& s) {
     return s.fault.empty() ? fmt::format("{:.2f} / {:.2f} / {:.2f}", static_cast<double>(s.meanCpuNs) / 1e6,
-                                         static_cast<double>(s.mostCpuNs) / 1e6, static_cast<double>(s.bytes) / 1e6)
+                                         static_cast<double>(s.maxCpuNs) / 1e6, static_cast<double>(s.bytes) / 1e6)
                            : "failed";
 }
 
@@ -297,25 +298,25 @@ Faults benchRanks(const std::vector<NamedPlane>& planes, const BenchOptions& opt
                drawn[0].part.id.box.w, drawn[0].part.id.box.h);
     fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", "", "ranks", "ours", "IceT", "IceT's CPU over ours",
                "bytes");
-    for (const Way& way : kWays)
+    for (const ChosenFilter& filter : kWays)
         for (const int ranks : {2, 3, 4, 8, static_cast<int>(kMaxRanks)}) {
             if (static_cast<size_t>(ranks) > drawn.size() || (options.quick && ranks > 3)) continue;
             Sum best[2]; // the fastest of several turns
             const int turns = options.quick ? 1 : 3, frames = options.quick ? 3 : 10;
             for (int turn = 0; turn < turns; ++turn)
-                for (const bool theirs : {false, true}) {
-                    if (theirs && (options.icetLibrary.empty() || way.icet < 0)) continue;
+                for (const bool byIcet : {false, true}) {
+                    if (byIcet && (options.icetLibrary.empty() || filter.icetStrategy < 0)) continue;
                     const Sum sum = perform(ranks, [&](RankLinks& links) {
-                        return theirs ? icet(links, drawn, way, frames, options.icetLibrary)
-                                      : ours(links, drawn, way, frames);
+                        return byIcet ? composeByIcet(links, drawn, filter, frames, options.icetLibrary)
+                                      : composeByMural(links, drawn, filter, frames);
                     });
                     if (!sum.fault.empty())
-                        faults.push_back(fmt::format("{} by {} ranks, {}: {}", way.name, ranks,
-                                                     theirs ? "IceT" : "ours", sum.fault));
-                    if (turn == 0 || sum.meanCpuNs < best[theirs].meanCpuNs || !sum.fault.empty()) best[theirs] = sum;
+                        faults.push_back(fmt::format("{} by {} ranks, {}: {}", filter.name, ranks,
+                                                     byIcet ? "IceT" : "ours", sum.fault));
+                    if (turn == 0 || sum.meanCpuNs < best[byIcet].meanCpuNs || !sum.fault.empty()) best[byIcet] = sum;
                 }
             const bool both = best[1].meanCpuNs > 0 && best[0].meanCpuNs > 0;
-            fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", way.name, ranks, cell(best[0]),
+            fmt::print("{:<14} {:>5} {:>24} {:>24} {:>22} {:>8}\n", filter.name, ranks, cell(best[0]),
                        best[1].meanCpuNs > 0 ? cell(best[1]) : "",
                        both ? fmt::format("{:.2f}", static_cast<double>(best[1].meanCpuNs) /
                                                         static_cast<double>(best[0].meanCpuNs))

@@ -218,13 +218,13 @@ void RankLinks::barrier() {
     const std::byte token{1};
     const std::span<const std::byte> bytes(&token, 1);
     std::vector<uint64_t> numbers(peers_.size(), 0);
-    const auto tell = [&](int to) { numbers[static_cast<size_t>(to)] = post(to, kBarrierTag, bytes); };
+    const auto notify = [&](int to) { numbers[static_cast<size_t>(to)] = post(to, kBarrierTag, bytes); };
     if (own_ != 0) {
-        tell(0);
+        notify(0);
         (void)take(0, kBarrierTag);
     } else {
         for (int r = 1; r < ranks(); ++r) (void)take(r, kBarrierTag);
-        for (int r = 1; r < ranks(); ++r) tell(r);
+        for (int r = 1; r < ranks(); ++r) notify(r);
     }
     for (int r = 0; r < ranks(); ++r)
         if (numbers[static_cast<size_t>(r)] > 0) waitSent(r, numbers[static_cast<size_t>(r)]);

@@ -13,13 +13,13 @@ namespace {
 
 class DeltaCoding final : public StreamCoding {
 public:
-    DeltaCoding(std::unique_ptr<DeltaStream> deltaStream, const delta::Limits& limits, bool holds)
-        : deltaStream_(std::move(deltaStream)), unpacker_(limits), holds_(holds) {
+    DeltaCoding(std::unique_ptr<DeltaStream> deltaStream, const delta::Limits& limits, bool filters)
+        : deltaStream_(std::move(deltaStream)), unpacker_(limits), filters_(filters) {
         deltaStream_->sendBy([this] { take(); });
-        if (!holds) deltaStream_->holdNothing(); // decoded packets are compared with the originals
+        if (!filters) deltaStream_->disableFilter(); // decoded packets are compared with the originals
     }
 
-    [[nodiscard]] std::string name() const override { return holds_ ? "sent" : "all packed"; }
+    [[nodiscard]] std::string name() const override { return filters_ ? "sent" : "all packed"; }
 
     void packet(const StreamPacket& p) override { sent_.push_back({p.stream, {p.payload.begin(), p.payload.end()}}); }
 
@@ -36,7 +36,7 @@ public:
     }
 
     Result<void> comesOut(const StreamPacket& p) override {
-        if (holds_) return {};
+        if (filters_) return {};
         uint32_t stream = 0;
         std::span<const std::byte> payload;
         while (true) {
@@ -68,7 +68,7 @@ private:
             return;
         }
         bytes_ += batch->size();
-        if (!holds_) batches_.emplace_back(batch->begin(), batch->end());
+        if (!filters_) batches_.emplace_back(batch->begin(), batch->end());
     }
 
     Result<void> unpack() {
@@ -90,7 +90,7 @@ private:
     std::vector<Sent> sent_;                     // of the frame
     std::deque<std::vector<std::byte>> batches_; // not decoded yet
     std::vector<std::byte> batch_;               // being decoded
-    const bool holds_;                           // with the filter, output differs from input and is not compared
+    const bool filters_;                         // with the filter, output differs from input and is not compared
     bool unpacking_ = false;
     int64_t cpuNs_ = 0;
     std::string wrong_;
@@ -99,12 +99,12 @@ private:
 
 } // namespace
 
-static Result<std::unique_ptr<StreamCoding>> deltaCoding(uint64_t cacheBytes, bool holds) {
+static Result<std::unique_ptr<StreamCoding>> deltaCoding(uint64_t cacheBytes, bool filters) {
     delta::Limits limits;
     limits.cacheBytes = cacheBytes;
     auto deltaStream = DeltaStream::open(limits);
     if (!deltaStream) return deltaStream.error();
-    return std::unique_ptr<StreamCoding>(new DeltaCoding(std::move(*deltaStream), limits, holds));
+    return std::unique_ptr<StreamCoding>(new DeltaCoding(std::move(*deltaStream), limits, filters));
 }
 
 Result<std::unique_ptr<StreamCoding>> filteredDeltaCoding(uint64_t cacheBytes) { return deltaCoding(cacheBytes, true); }

@@ -21,15 +21,15 @@ namespace mural::cli {
 namespace {
 
 // Avoids fmt::print, which throws if the reader of the pipe has gone.
-void tell(const std::string& what) { std::fputs(("mural bench accuracy: " + what + "\n").c_str(), stderr); }
+void printError(const std::string& what) { std::fputs(("mural bench accuracy: " + what + "\n").c_str(), stderr); }
 
 // Silent after an interruption.
 void say(const std::string& what) {
-    if (Interruption::signal() == 0) tell(what);
+    if (Interruption::signal() == 0) printError(what);
 }
 
 int complain(const Error& error) {
-    tell(error.message);
+    printError(error.message);
     const int number = Interruption::signal();
     return number != 0 ? 128 + number : launch::kExitUsage;
 }
@@ -86,7 +86,7 @@ Result<AccuracyReport> measure(const BenchArguments& a) {
 
 bool write(ResultFile& file, const std::string& text) {
     const auto written = file.write(text);
-    if (!written) tell(written.error().message);
+    if (!written) printError(written.error().message);
     return written.ok();
 }
 

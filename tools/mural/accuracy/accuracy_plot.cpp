@@ -23,12 +23,12 @@ using drawing::Svg;
 constexpr double kWidth = 1080, kLabels = 330, kNone = 60, kPlot = 440; // column of exact results, then the scale
 constexpr double kLeft = kLabels + kNone, kRight = kLeft + kPlot;
 constexpr double kTop = 118, kRow = 17, kHeading = 26;
-constexpr double kLeast = 1e-3, kMost = 255;
+constexpr double kMin = 1e-3, kMax = 255;
 const char *const kGood = "#1f6f8b", *const kBad = "#c0392b", *const kFaint = "#d5dce3", *const kText = "#1f2933",
                   *const kSoft = "#66727f";
 
 double placeOf(double value) {
-    return kLeft + kPlot * std::log(std::clamp(value, kLeast, kMost) / kLeast) / std::log(kMost / kLeast);
+    return kLeft + kPlot * std::log(std::clamp(value, kMin, kMax) / kMin) / std::log(kMax / kMin);
 }
 
 Style filled(const char* colour, double rounding) {

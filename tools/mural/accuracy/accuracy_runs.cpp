@@ -69,11 +69,11 @@ void endWithAll(launch::ChildProcess& child, pid_t display) {
 Result<OwnedPicture> readPpm(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::string magic;
-    int width = 0, height = 0, most = 0;
-    file >> magic >> width >> height >> most;
+    int width = 0, height = 0, maximum = 0;
+    file >> magic >> width >> height >> maximum;
     file.get();
     constexpr int kLargest = 1 << 16;
-    if (!file || magic != "P6" || most != 255 || width <= 0 || height <= 0 || width > kLargest || height > kLargest)
+    if (!file || magic != "P6" || maximum != 255 || width <= 0 || height <= 0 || width > kLargest || height > kLargest)
         return Error{path + " is not a PPM picture with 8 bits; check for a full disk"};
     OwnedPicture picture(width, height);
     std::vector<char> row(static_cast<size_t>(width) * 3);
@@ -138,7 +138,7 @@ Result<std::string> AccuracyRuns::replay(const Words& options, const std::string
 
 Result<std::string> AccuracyRuns::perform(const Words& command, const std::string& name, int64_t limitMs) const {
     if (Interruption::signal() != 0) return Error{name + " was not started: the measurement was interrupted"};
-    const std::string said = scratch_.path() + "/said", complained = scratch_.path() + "/complained";
+    const std::string output = scratch_.path() + "/said", errors = scratch_.path() + "/complained";
     launch::SpawnRequest request;
     request.file = command.front();
     request.arguments = command;
@@ -146,8 +146,8 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
     launch::removeCapture(environment);
     display_->use(environment);
     request.environment = environment.entries();
-    request.outputFd = ::open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    request.errorFd = ::open(complained.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    request.outputFd = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    request.errorFd = ::open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     request.signalWhenWeDie = SIGTERM;
     auto child =
         request.outputFd >= 0 && request.errorFd >= 0
@@ -160,8 +160,8 @@ Result<std::string> AccuracyRuns::perform(const Words& command, const std::strin
         endWithAll(*child, display_->pid());
         return Error{name + " did not end within " + std::to_string(limitMs / 1000) + " s and was stopped"};
     }
-    if (child->exitStatus() == 0) return textOf(said);
-    const std::string why = lastLine(textOf(complained));
+    if (child->exitStatus() == 0) return textOf(output);
+    const std::string why = lastLine(textOf(errors));
     return Error{name + ": " + (why.empty() ? child->describeEnd() : why)};
 }
 

@@ -24,7 +24,7 @@ const char *const kText = "#1f2933", *const kSoft = "#66727f", *const kFaint = "
 
 struct Plot {
     Box area;
-    double least, most; // range of the vertical axis, powers of ten
+    double minimum, maximum; // range of the vertical axis, powers of ten
 
     [[nodiscard]] double x(double error) const {
         if (error <= 0) return area.x + kAxis + kExact / 2;
@@ -33,7 +33,8 @@ struct Plot {
                           std::log(kMaxError / kMinError);
     }
     [[nodiscard]] double y(double value) const {
-        return area.y + area.h - area.h * std::log(std::clamp(value, least, most) / least) / std::log(most / least);
+        return area.y + area.h -
+               area.h * std::log(std::clamp(value, minimum, maximum) / minimum) / std::log(maximum / minimum);
     }
 };
 
@@ -46,7 +47,7 @@ void drawFrame(Svg& svg, const Plot& p, const std::string& title) {
     svg.rect({p.area.x + kAxis, p.area.y, kExact, p.area.h}, column);
     svg.text({p.area.x + kAxis + kExact / 2, p.area.y + p.area.h + 14}, "equal",
              {.size = 10, .color = kText, .align = Align::Middle});
-    for (double v = p.least; v <= p.most * 1.01; v *= 10) {
+    for (double v = p.minimum; v <= p.maximum * 1.01; v *= 10) {
         svg.line({p.area.x + kAxis, p.y(v)}, {p.area.x + p.area.w, p.y(v)}, faint);
         svg.text({p.area.x + kAxis - 5, p.y(v) + 3}, fmt::format("{:g}", v),
                  {.size = 10, .color = kText, .align = Align::Right});
@@ -85,11 +86,11 @@ void drawDots(Svg& svg, const Plot& p, const AccuracyReport& report, double Cost
         const std::string label = labelOf(row.what);
         Box box{at.x + 6, at.y - 5, Svg::widthOf(label, 9), 10};
         if (box.x + box.w > p.area.x + p.area.w) box.x = at.x - 6 - box.w;
-        const auto meets = [&](const Box& other) {
+        const auto overlaps = [&](const Box& other) {
             return box.x < other.x + other.w && other.x < box.x + box.w && box.y < other.y + other.h &&
                    other.y < box.y + box.h;
         };
-        if (std::ranges::any_of(taken, meets)) continue;
+        if (std::ranges::any_of(taken, overlaps)) continue;
         taken.push_back(box);
         svg.text({box.x, box.y + 8}, label, {.size = 9, .color = colour});
     }
@@ -119,15 +120,15 @@ double drawCosts(Svg& svg, const AccuracyReport& report, const Box& area) {
     const std::pair<const char*, double Cost::*> plots[] = {{"CPU time against error, ns per pixel", &Cost::cpuNs},
                                                             {"bytes against error, per pixel", &Cost::bytes}};
     for (size_t i = 0; i < 2; ++i) {
-        double least = 1e9, most = 1e-9;
+        double minimum = 1e9, maximum = 1e-9;
         for (const AccuracyRow& row : report.rows)
             if (row.cost && (*row.cost).*plots[i].second > 0) {
-                least = std::min(least, (*row.cost).*plots[i].second);
-                most = std::max(most, (*row.cost).*plots[i].second);
+                minimum = std::min(minimum, (*row.cost).*plots[i].second);
+                maximum = std::max(maximum, (*row.cost).*plots[i].second);
             }
         const Plot p{{area.x + static_cast<double>(i) * (width + 30), y, width, area.h},
-                     std::pow(10, std::floor(std::log10(least))),
-                     std::pow(10, std::ceil(std::log10(most * 1.001)))};
+                     std::pow(10, std::floor(std::log10(minimum))),
+                     std::pow(10, std::ceil(std::log10(maximum * 1.001)))};
         drawFrame(svg, p, plots[i].first);
         drawDots(svg, p, report, plots[i].second, groups);
     }

@@ -9,14 +9,14 @@ namespace mural::cli {
 
 namespace {
 
-struct Way {
+struct Method {
     const char* name;
     Words options;
     Bound bound;
     bool quick;
 };
 
-std::vector<Way> ways() {
+std::vector<Method> methods() {
     const Bound exact = Bound::exact(), notPromised{}; // the error of tiling lean depends on the program's drawing
     return {
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, true},
@@ -51,13 +51,13 @@ Result<MeasuredError> errorOfReport(const std::string& path) {
 
 void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick, const SayProgress& say,
                     std::vector<AccuracyRow>& rows) {
-    for (const Way& way : ways()) {
-        if (quick && !way.quick) continue;
-        say(way.name);
-        AccuracyRow row{"Decompositions", way.name, "its own context", {}, way.bound, {}};
+    for (const Method& method : methods()) {
+        if (quick && !method.quick) continue;
+        say(method.name);
+        AccuracyRow row{"Decompositions", method.name, "its own context", {}, method.bound, {}};
         auto folder = ScratchFolder::make();
         const std::string report = folder ? folder->path() + "/report.json" : "";
-        Words options = way.options;
+        Words options = method.options;
         options.insert(options.end(), {"--verify", "--frames", std::to_string(frames), "--report", report});
         const auto done = folder ? runs.mural(options, program, frames) : Result<std::string>(folder.error());
         const auto error = done ? errorOfReport(report) : Result<MeasuredError>(done.error());

@@ -16,7 +16,7 @@ namespace {
 constexpr size_t kWholeFrames = 2; // per window; afterwards the reads of the program are determined
 constexpr int kMaxSamples = 16;    // reference for antialiasing
 
-struct Way {
+struct Method {
     std::string name;
     Words options;
     Bound bound;
@@ -26,9 +26,9 @@ struct Way {
     bool otherPixels = false; // nodes draw other pixels than shown, except in the first frames
 };
 
-std::vector<Way> ways() {
+std::vector<Method> methods() {
     const Bound exact = Bound::exact(), notPromised{};
-    std::vector<Way> all{
+    std::vector<Method> all{
         {"2D, 2x2 tiles", {"--tiles", "2x2"}, exact, false, 1, true},
         {"DB, 3 ranges", {"--db", "3"}, exact, false, 1, true},
         {"DPlex, 3 phases", {"--dplex", "3"}, exact, false, 1, false},
@@ -62,17 +62,17 @@ Result<Replayed> replayed(const AccuracyRuns& runs, const std::string& recording
     const std::string report = folder->path() + "/report.json", out = folder->path() + "/pictures";
     Words all = options;
     all.insert(all.end(), {"--out", out, "--report", report});
-    if (auto said = runs.replay(all, recording); !said) return said.error();
+    if (auto output = runs.replay(all, recording); !output) return output.error();
     auto pictures = readPictures(out);
     if (!pictures) return pictures.error();
     if (pictures->empty()) return Error{recording + " contains no picture; record a program that draws"};
     Replayed r{std::move(*pictures), 0, 0, 0};
     std::ifstream file(report);
-    const auto told = nlohmann::json::parse(file, nullptr, false);
-    if (!told.is_object() || !told.contains("nodes") || !told["nodes"].is_array())
+    const auto json = nlohmann::json::parse(file, nullptr, false);
+    if (!json.is_object() || !json.contains("nodes") || !json["nodes"].is_array())
         return Error{report + " contains no data about the nodes"};
-    r.frames = told.value("frames", int64_t{0});
-    for (const auto& node : told["nodes"]) {
+    r.frames = json.value("frames", int64_t{0});
+    for (const auto& node : json["nodes"]) {
         r.cpuSeconds += node.value("replaySeconds", 0.0) + node.value("readbackSeconds", 0.0);
         r.exchangeBytes += node.value("exchangeBytes", int64_t{0});
     }
@@ -101,30 +101,30 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
         return;
     }
     const auto many = replayed(runs, recording, {"--subpixel", std::to_string(kMaxSamples)});
-    for (const Way& way : ways()) {
-        if (quick && !way.quick) continue;
-        say(name + ": " + way.name);
-        const Result<Replayed>& wanted = way.manySamples ? many : one;
-        AccuracyRow row{group, way.name,  way.manySamples ? fmt::format("{} samples", kMaxSamples) : "one node",
-                        {},    way.bound, {},
+    for (const Method& method : methods()) {
+        if (quick && !method.quick) continue;
+        say(name + ": " + method.name);
+        const Result<Replayed>& wanted = method.manySamples ? many : one;
+        AccuracyRow row{group, method.name,  method.manySamples ? fmt::format("{} samples", kMaxSamples) : "one node",
+                        {},    method.bound, {},
                         {}};
-        const auto got = wanted ? replayed(runs, recording, way.options) : Result<Replayed>(wanted.error());
+        const auto got = wanted ? replayed(runs, recording, method.options) : Result<Replayed>(wanted.error());
         if (!got)
             row.failure = got.error().message;
         else if (got.value().pictures.size() != wanted.value().pictures.size())
             row.failure = fmt::format("{} pictures received, {} expected", got.value().pictures.size(),
                                       wanted.value().pictures.size());
-        else if (way.otherPixels && got.value().pictures.size() <= kWholeFrames)
+        else if (method.otherPixels && got.value().pictures.size() <= kWholeFrames)
             row.failure = fmt::format("the first {} frames do not count, and there are no others; record more frames",
                                       kWholeFrames);
         if (row.failure.empty()) {
             const Replayed &a = wanted.value(), &b = got.value();
-            for (size_t p = way.otherPixels ? kWholeFrames : 0; p < a.pictures.size(); ++p)
+            for (size_t p = method.otherPixels ? kWholeFrames : 0; p < a.pictures.size(); ++p)
                 row.error.add(errorOf(a.pictures[p].view(), b.pictures[p].view()));
             const double pixels = static_cast<double>(std::max<int64_t>(b.frames, 1)) * b.pictures.front().width() *
                                   b.pictures.front().height();
             row.cost = Cost{1e9 * b.cpuSeconds / pixels,
-                            b.exchangeBytes > 0 ? static_cast<double>(b.exchangeBytes) / pixels : 4 * way.pictures};
+                            b.exchangeBytes > 0 ? static_cast<double>(b.exchangeBytes) / pixels : 4 * method.pictures};
         }
         rows.push_back(row);
     }

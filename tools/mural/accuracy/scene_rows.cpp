@@ -21,7 +21,7 @@ const Bound kNotPromised{};
 
 } // namespace
 
-struct SceneRows::Way {
+struct SceneRows::Method {
     enum class Reference { Native, LeftEye, RightEye, BothEyes, Mean, TwiceAsLarge };
 
     std::string name;
@@ -35,8 +35,8 @@ struct SceneRows::Way {
 };
 
 // Bounds are exact for exact methods; docs/measurements/accuracy.md gives reasons for the others.
-std::vector<SceneRows::Way> SceneRows::ways() {
-    using R = Way::Reference;
+std::vector<SceneRows::Method> SceneRows::methods() {
+    using R = Method::Reference;
     const Bounds exact{Bound::exact()};
     const Words eyes{"--eye-base", fmt::format("{}", 2 * kEye), "--focus", fmt::format("{}", kFocus)};
     const auto eye = [&](const std::string& mode, const Words& more = {}) {
@@ -115,9 +115,9 @@ Result<std::vector<OwnedPicture>> SceneRows::drawNatively(const Words& more) {
     if (!folder) return folder.error();
     Words arguments{"--save", folder->path()};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    auto said = runs_.native(program(arguments));
-    if (!said) return said.error();
-    gl_ = said->substr(0, said->find('\n'));
+    auto output = runs_.native(program(arguments));
+    if (!output) return output.error();
+    gl_ = output->substr(0, output->find('\n'));
     return readPictures(folder->path());
 }
 
@@ -126,7 +126,7 @@ Result<std::vector<OwnedPicture>> SceneRows::drawByMural(const Words& options, c
     if (!folder) return folder.error();
     Words all = options;
     all.insert(all.end(), {"--out", folder->path()});
-    if (auto said = runs_.mural(all, program(more)); !said) return said.error();
+    if (auto output = runs_.mural(all, program(more)); !output) return output.error();
     return readPictures(folder->path());
 }
 
@@ -200,13 +200,13 @@ Result<std::vector<OwnedPicture>> SceneRows::anaglyph() {
     return right;
 }
 
-Result<std::vector<OwnedPicture>> SceneRows::referenceOf(const Way& way) {
-    using R = Way::Reference;
-    switch (way.reference) {
+Result<std::vector<OwnedPicture>> SceneRows::referenceOf(const Method& method) {
+    using R = Method::Reference;
+    switch (method.reference) {
     case R::LeftEye: return drawNatively({"--eye", fmt::format("{},{}", -kEye, kFocus)});
     case R::RightEye: return drawNatively({"--eye", fmt::format("{},{}", kEye, kFocus)});
     case R::BothEyes: return anaglyph();
-    case R::Mean: return meanOf(way.samples);
+    case R::Mean: return meanOf(method.samples);
     case R::TwiceAsLarge: return reduced({});
     case R::Native: break;
     }
@@ -216,58 +216,58 @@ Result<std::vector<OwnedPicture>> SceneRows::referenceOf(const Way& way) {
 }
 
 void SceneRows::measure(std::vector<AccuracyRow>& rows) {
-    for (const Way& way : ways()) {
-        if (quick_ && !way.quick) continue;
-        say_(way.name);
-        if (way.otherPixels)
-            measureEachScene(way, rows);
+    for (const Method& method : methods()) {
+        if (quick_ && !method.quick) continue;
+        say_(method.name);
+        if (method.otherPixels)
+            measureEachScene(method, rows);
         else
-            measureAllScenes(way, rows);
+            measureAllScenes(method, rows);
     }
 }
 
-AccuracyRow SceneRows::rowOf(const Way& way, size_t scene) {
-    using R = Way::Reference;
-    const bool exact = way.bounds.size() == 1;
+AccuracyRow SceneRows::rowOf(const Method& method, size_t scene) {
+    using R = Method::Reference;
+    const bool exact = method.bounds.size() == 1;
     AccuracyRow row;
     row.group = exact ? "Exact decompositions" : "Decompositions with other rounding, and approximate ones";
-    row.reference = way.reference == R::Native         ? "native"
-                    : way.reference == R::Mean         ? fmt::format("mean of {} native", way.samples)
-                    : way.reference == R::BothEyes     ? "two native eyes"
-                    : way.reference == R::TwiceAsLarge ? "native at twice the size, reduced"
-                                                       : "native eye";
-    row.what = exact ? way.name : way.name + ": " + scenes::kSceneNames[scene];
-    row.bound = way.bounds[scene];
+    row.reference = method.reference == R::Native         ? "native"
+                    : method.reference == R::Mean         ? fmt::format("mean of {} native", method.samples)
+                    : method.reference == R::BothEyes     ? "two native eyes"
+                    : method.reference == R::TwiceAsLarge ? "native at twice the size, reduced"
+                                                          : "native eye";
+    row.what = exact ? method.name : method.name + ": " + scenes::kSceneNames[scene];
+    row.bound = method.bounds[scene];
     return row;
 }
 
-void SceneRows::measureAllScenes(const Way& way, std::vector<AccuracyRow>& rows) {
-    const bool exact = way.bounds.size() == 1;
+void SceneRows::measureAllScenes(const Method& method, std::vector<AccuracyRow>& rows) {
+    const bool exact = method.bounds.size() == 1;
     const size_t step = exact ? 1 : scenes::kSceneNames.size();
-    auto wanted = referenceOf(way);
-    auto got = wanted ? drawByMural(way.options, {}) : Result<std::vector<OwnedPicture>>(wanted.error());
+    auto wanted = referenceOf(method);
+    auto got = wanted ? drawByMural(method.options, {}) : Result<std::vector<OwnedPicture>>(wanted.error());
     if (!got || got->size() != wanted->size()) {
-        AccuracyRow row = rowOf(way, 0);
-        row.what = way.name;
+        AccuracyRow row = rowOf(method, 0);
+        row.what = method.name;
         row.failure =
             got ? fmt::format("{} pictures received, {} expected", got->size(), wanted->size()) : got.error().message;
         rows.push_back(row);
         return;
     }
-    for (size_t scene = 0; scene < way.bounds.size(); ++scene) {
-        AccuracyRow row = rowOf(way, scene);
+    for (size_t scene = 0; scene < method.bounds.size(); ++scene) {
+        AccuracyRow row = rowOf(method, scene);
         for (size_t p = exact ? 0 : scene; p < got->size(); p += step)
             row.error.add(errorOf((*wanted)[p].view(), (*got)[p].view()));
         rows.push_back(row);
     }
 }
 
-void SceneRows::measureEachScene(const Way& way, std::vector<AccuracyRow>& rows) {
-    for (size_t scene = 0; scene < way.bounds.size(); ++scene) {
+void SceneRows::measureEachScene(const Method& method, std::vector<AccuracyRow>& rows) {
+    for (size_t scene = 0; scene < method.bounds.size(); ++scene) {
         const Words alone{"--scene", scenes::kSceneNames[scene], "--frames", std::to_string(2 * kWholeFrames)};
-        AccuracyRow row = rowOf(way, scene);
-        auto wanted = way.reference == Way::Reference::TwiceAsLarge ? reduced(alone) : drawNatively(alone);
-        auto got = wanted ? drawByMural(way.options, alone) : Result<std::vector<OwnedPicture>>(wanted.error());
+        AccuracyRow row = rowOf(method, scene);
+        auto wanted = method.reference == Method::Reference::TwiceAsLarge ? reduced(alone) : drawNatively(alone);
+        auto got = wanted ? drawByMural(method.options, alone) : Result<std::vector<OwnedPicture>>(wanted.error());
         if (!got)
             row.failure = got.error().message;
         else if (got->size() != wanted->size())

@@ -20,20 +20,20 @@ public:
     [[nodiscard]] const std::string& gl() const { return gl_; }
 
 private:
-    struct Way;
-    static std::vector<Way> ways();
+    struct Method;
+    static std::vector<Method> methods();
     [[nodiscard]] int width() const { return quick_ ? 253 : 1021; }
     [[nodiscard]] int height() const { return quick_ ? 191 : 767; }
     [[nodiscard]] Words program(const Words& more) const;
     Result<std::vector<OwnedPicture>> drawNatively(const Words& more);
     Result<std::vector<OwnedPicture>> drawByMural(const Words& options, const Words& more);
-    Result<std::vector<OwnedPicture>> referenceOf(const Way& way);
+    Result<std::vector<OwnedPicture>> referenceOf(const Method& method);
     Result<std::vector<OwnedPicture>> meanOf(int samples);
     Result<std::vector<OwnedPicture>> anaglyph();
     Result<std::vector<OwnedPicture>> reduced(const Words& more);
-    static AccuracyRow rowOf(const Way& way, size_t scene);
-    void measureAllScenes(const Way& way, std::vector<AccuracyRow>& rows);
-    void measureEachScene(const Way& way, std::vector<AccuracyRow>& rows);
+    static AccuracyRow rowOf(const Method& method, size_t scene);
+    void measureAllScenes(const Method& method, std::vector<AccuracyRow>& rows);
+    void measureEachScene(const Method& method, std::vector<AccuracyRow>& rows);
 
     const AccuracyRuns& runs_;
     bool quick_;

@@ -24,30 +24,30 @@ static_assert(kFactor * inverseOf(kFactor) == 1);
 
 constexpr uint64_t kMaxWords = uint64_t{1} << 60; // larger results are chance
 
-bool isFilled(std::span<const std::byte> bytes, uint64_t place) {
+bool isFilled(std::span<const std::byte> bytes, uint64_t position) {
     std::array<std::byte, kWordBytes> right;
     const auto expected = std::span(right).first(bytes.size());
-    fillPattern(expected, place);
+    fillPattern(expected, position);
     return std::ranges::equal(bytes, expected);
 }
 
 // Compares without building a copy, whose cost would distort netperf's measurement.
-bool isPattern(std::span<const std::byte> bytes, uint64_t place) {
-    const size_t before = std::min(bytes.size(), (kWordBytes - place % kWordBytes) % kWordBytes);
+bool isPattern(std::span<const std::byte> bytes, uint64_t position) {
+    const size_t before = std::min(bytes.size(), (kWordBytes - position % kWordBytes) % kWordBytes);
     const auto words = bytes.subspan(before, (bytes.size() - before) / kWordBytes * kWordBytes);
-    uint64_t word = ((place + before) / kWordBytes + 1) * kFactor;
+    uint64_t word = ((position + before) / kWordBytes + 1) * kFactor;
     uint64_t wrong = 0;
     for (size_t at = 0; at < words.size(); at += kWordBytes, word += kFactor)
         wrong |= loadLittle<uint64_t>(words.data() + at) ^ word;
     const size_t behind = before + words.size();
-    return wrong == 0 && isFilled(bytes.first(before), place) && isFilled(bytes.subspan(behind), place + behind);
+    return wrong == 0 && isFilled(bytes.first(before), position) && isFilled(bytes.subspan(behind), position + behind);
 }
 
 } // namespace
 
-void fillPattern(std::span<std::byte> into, uint64_t place) {
-    uint64_t word = (place / kWordBytes + 1) * kFactor;
-    const size_t skipped = place % kWordBytes;
+void fillPattern(std::span<std::byte> into, uint64_t position) {
+    uint64_t word = (position / kWordBytes + 1) * kFactor;
+    const size_t skipped = position % kWordBytes;
     std::array<std::byte, kWordBytes> cut;
     if (skipped != 0) {
         storeLittle(cut.data(), word);
@@ -65,10 +65,10 @@ std::optional<uint64_t> findPattern(std::span<const std::byte> bytes) {
     if (bytes.size() < kFindBytes) return {};
     for (size_t skipped = 0; skipped < kWordBytes; ++skipped) {
         const uint64_t word = loadLittle<uint64_t>(bytes.data() + skipped);
-        const uint64_t place = (word * inverseOf(kFactor) - 1) * kWordBytes;
-        if (place / kWordBytes >= kMaxWords || place < skipped) continue;
+        const uint64_t position = (word * inverseOf(kFactor) - 1) * kWordBytes;
+        if (position / kWordBytes >= kMaxWords || position < skipped) continue;
         if (loadLittle<uint64_t>(bytes.data() + skipped + kWordBytes) != word + kFactor) continue;
-        return place - skipped;
+        return position - skipped;
     }
     return {};
 }
@@ -78,13 +78,13 @@ void PatternCheck::take(std::span<const std::byte> bytes) {
     if (found_) return compare(bytes);
     first_.insert(first_.end(), bytes.begin(), bytes.end());
     if (first_.size() < kFindBytes) return;
-    const auto place = findPattern(first_);
-    if (!place) {
+    const auto position = findPattern(first_);
+    if (!position) {
         fault_ = "the first received bytes do not occur in the stream";
         return;
     }
     found_ = true;
-    place_ = beganAt_ = *place;
+    position_ = beganAt_ = *position;
     compare(first_);
     first_ = {};
 }
@@ -93,17 +93,18 @@ void PatternCheck::compare(std::span<const std::byte> bytes) {
     constexpr size_t kPieceBytes = 4096;
     while (!bytes.empty()) {
         const auto piece = bytes.first(std::min(bytes.size(), kPieceBytes));
-        if (!isPattern(piece, place_)) {
+        if (!isPattern(piece, position_)) {
             std::vector<std::byte> expected(piece.size());
-            fillPattern(expected, place_);
+            fillPattern(expected, position_);
             const auto wrongAt = static_cast<size_t>(std::ranges::mismatch(piece, expected).in1 - piece.begin());
-            const uint64_t place = place_ + wrongAt;
-            const auto came = findPattern(bytes.subspan(wrongAt));
-            fault_ = came && *came != place ? fmt::format("byte {} has the contents of byte {}", place, *came)
-                                            : fmt::format("byte {} was changed", place);
+            const uint64_t position = position_ + wrongAt;
+            const auto arrived = findPattern(bytes.subspan(wrongAt));
+            fault_ = arrived && *arrived != position
+                         ? fmt::format("byte {} has the contents of byte {}", position, *arrived)
+                         : fmt::format("byte {} was changed", position);
             return;
         }
-        place_ += piece.size();
+        position_ += piece.size();
         bytes = bytes.subspan(piece.size());
     }
 }

@@ -12,7 +12,7 @@
 namespace mural::cli {
 
 // Fills with the data of a position in bytes.
-void fillPattern(std::span<std::byte> into, uint64_t place);
+void fillPattern(std::span<std::byte> into, uint64_t position);
 // Returns the position of these bytes; empty if they are too few (below kFindBytes) or not part of the pattern.
 std::optional<uint64_t> findPattern(std::span<const std::byte> bytes);
 constexpr size_t kFindBytes = 7 + 2 * 8; // contains two whole words at any alignment
@@ -32,7 +32,7 @@ private:
 
     bool found_ = false;
     uint64_t beganAt_ = 0;
-    uint64_t place_ = 0;           // of the next byte
+    uint64_t position_ = 0;        // of the next byte
     std::vector<std::byte> first_; // until the position is known
     std::string fault_;
 };

@@ -9,7 +9,7 @@
 
 namespace mural::cli {
 
-struct WayMeasured {
+struct PathMeasured {
     bool to = false;         // small datagrams arrive at the host
     bool from = false;       // small datagrams arrive from the host
     bool toLater = false;    // at the end of the survey
@@ -24,7 +24,7 @@ struct HostMeasured {
     std::string reached, own, unreachedWhy; // of the TCP connection from the host
     std::string interfaceTowards;           // interface of this machine; empty: unknown
     MachineFacts facts;
-    std::array<WayMeasured, std::size(kProbeWays)> ways;
+    std::array<PathMeasured, std::size(kProbePaths)> paths;
     std::string streamFailure; // empty: the stream was measured
     bool multicast = false;    // the stream used multicast, not the member's connection
     uint64_t datagrams = 0;
@@ -33,8 +33,8 @@ struct HostMeasured {
     double droppedShare = 0;   // by the host's socket
     uint64_t queueDropped = 0; // packets dropped by the host's kernel before a socket
 
-    [[nodiscard]] const WayMeasured& way(ProbeWay w) const { return ways[static_cast<size_t>(w)]; }
-    [[nodiscard]] WayMeasured& way(ProbeWay w) { return ways[static_cast<size_t>(w)]; }
+    [[nodiscard]] const PathMeasured& path(ProbePath w) const { return paths[static_cast<size_t>(w)]; }
+    [[nodiscard]] PathMeasured& path(ProbePath w) { return paths[static_cast<size_t>(w)]; }
 };
 
 // Results for the doctor's own machine.

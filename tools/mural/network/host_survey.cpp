@@ -37,16 +37,16 @@ uint64_t numberOf(const json& j, const char* name) {
 void takeTroubles(const json& answer, HostMeasured& m) {
     const auto list = answer.find("troubles");
     if (list == answer.end() || !list->is_array()) return;
-    for (size_t i = 0; i < std::min(list->size(), m.ways.size()); ++i) {
+    for (size_t i = 0; i < std::min(list->size(), m.paths.size()); ++i) {
         if ((*list)[i].is_string() && !(*list)[i].get<std::string>().empty())
-            m.ways[i].trouble = "there: " + (*list)[i].get<std::string>();
+            m.paths[i].trouble = "there: " + (*list)[i].get<std::string>();
     }
 }
 
 } // namespace
 
 Result<void> HostSurvey::greet(Deadline deadline) {
-    auto hello = process_.hear(deadline);
+    auto hello = process_.receive(deadline);
     if (!hello) return hello.error();
     m_.version = textOf(*hello, "version");
     m_.reached = textOf(*hello, "reached");
@@ -63,43 +63,43 @@ Result<void> HostSurvey::greet(Deadline deadline) {
 
 Result<void> HostSurvey::measure() {
     std::vector<size_t> sizes{kMinProbeBytes};
-    if (auto r = probeThere(sizes, {std::begin(kProbeWays), std::end(kProbeWays)}); !r) return r;
+    if (auto r = probeThere(sizes, {std::begin(kProbePaths), std::end(kProbePaths)}); !r) return r;
     if (auto r = probeBack(); !r) return r;
-    for (const ProbeWay way : {ProbeWay::Single, ProbeWay::Group}) {
-        if (!m_.way(way).to) continue;
-        if (auto r = findLargest(way); !r) return r;
+    for (const ProbePath path : {ProbePath::Single, ProbePath::Group}) {
+        if (!m_.path(path).to) continue;
+        if (auto r = findLargest(path); !r) return r;
     }
-    for (const ProbeWay way : kProbeWays) {
-        if (m_.way(way).trouble.empty()) m_.way(way).trouble = sockets_.trouble(way);
+    for (const ProbePath path : kProbePaths) {
+        if (m_.path(path).trouble.empty()) m_.path(path).trouble = sockets_.trouble(path);
     }
     if (auto r = stream(); !r) m_.streamFailure = r.error().message;
-    return lookAgain();
+    return probeAgain();
 }
 
 // Records arrivals in m_, and the largest size of the first method in seenBytes_.
-Result<void> HostSurvey::probeThere(const std::vector<size_t>& sizes, const std::vector<ProbeWay>& ways) {
+Result<void> HostSurvey::probeThere(const std::vector<size_t>& sizes, const std::vector<ProbePath>& paths) {
     for (unsigned copy = 0; copy < kCopies; ++copy) {
-        for (const ProbeWay way : ways) {
+        for (const ProbePath path : paths) {
             for (const size_t size : sizes) {
-                sockets_.send(way, size, single_);
+                sockets_.send(path, size, single_);
                 poll(nullptr, 0, kBetweenProbesMs);
             }
         }
     }
     poll(nullptr, 0, kUnderWayMs);
-    auto answer = process_.ask({{"do", "seen"}}, Deadline::inMs(kAnswerMs));
+    auto answer = process_.query({{"do", "seen"}}, Deadline::inMs(kAnswerMs));
     if (!answer) return answer.error();
     seenBytes_ = 0;
     const auto seen = answer->find("seen");
     if (seen == answer->end() || !seen->is_array()) return Error{"the host sent no list of received datagrams"};
     for (const json& each : *seen) {
-        const uint64_t number = each.is_object() ? numberOf(each, "way") : ~uint64_t{0};
-        if (number >= m_.ways.size()) continue;
-        const auto way = static_cast<ProbeWay>(number);
+        const uint64_t number = each.is_object() ? numberOf(each, "path") : ~uint64_t{0};
+        if (number >= m_.paths.size()) continue;
+        const auto path = static_cast<ProbePath>(number);
         const size_t size = numberOf(each, "size");
-        m_.way(way).to = m_.way(way).toLater = true;
-        m_.way(way).largestBytes = std::max(m_.way(way).largestBytes, size);
-        if (way == ways.front()) seenBytes_ = std::max(seenBytes_, size);
+        m_.path(path).to = m_.path(path).toLater = true;
+        m_.path(path).largestBytes = std::max(m_.path(path).largestBytes, size);
+        if (path == paths.front()) seenBytes_ = std::max(seenBytes_, size);
     }
     return {};
 }
@@ -111,32 +111,33 @@ Result<void> HostSurvey::probeBack() {
                      {"port", sockets_.port()},
                      {"sizes", {kMinProbeBytes}},
                      {"copies", kCopies}};
-    auto answer = process_.ask(order, Deadline::inMs(kAnswerMs));
+    auto answer = process_.query(order, Deadline::inMs(kAnswerMs));
     if (!answer) return answer.error();
     takeTroubles(*answer, m_);
     (void)sockets_.listen(Deadline::inMs(kUnderWayMs));
-    for (const auto& [probe, count] : sockets_.take()) m_.way(probe.way).from = true;
+    for (const auto& [probe, count] : sockets_.take()) m_.path(probe.path).from = true;
     return {};
 }
 
 // Tries common sizes first, then bisects between the largest arrival and the smallest loss.
-Result<void> HostSurvey::findLargest(ProbeWay way) {
+Result<void> HostSurvey::findLargest(ProbePath path) {
     // Interfaces accept packets somewhat larger than their MTU, but cannot send replies of that size.
-    const size_t theirs = m_.facts.mtuBytes > plan_.headerBytes + kMinProbeBytes ? m_.facts.mtuBytes - plan_.headerBytes
-                                                                                 : plan_.cardBytes;
-    const size_t most = std::min(plan_.cardBytes, theirs);
+    const size_t hostMtuBytes = m_.facts.mtuBytes > plan_.headerBytes + kMinProbeBytes
+                                    ? m_.facts.mtuBytes - plan_.headerBytes
+                                    : plan_.cardBytes;
+    const size_t maximum = std::min(plan_.cardBytes, hostMtuBytes);
     std::vector<size_t> sizes{kMinProbeBytes};
     for (const size_t packet : kKnownPackets) {
-        if (packet - plan_.headerBytes < most) sizes.push_back(packet - plan_.headerBytes);
+        if (packet - plan_.headerBytes < maximum) sizes.push_back(packet - plan_.headerBytes);
     }
-    sizes.push_back(most);
-    if (auto r = probeThere(sizes, {way}); !r) return r;
+    sizes.push_back(maximum);
+    if (auto r = probeThere(sizes, {path}); !r) return r;
     size_t comes = seenBytes_;
-    if (comes >= most || comes == 0) return {};
+    if (comes >= maximum || comes == 0) return {};
     size_t comesNot = *std::ranges::upper_bound(sizes, comes);
     while (comesNot - comes > kExactBytes) {
         const size_t middle = comes + (comesNot - comes) / 2;
-        if (auto r = probeThere({middle}, {way}); !r) return r;
+        if (auto r = probeThere({middle}, {path}); !r) return r;
         (seenBytes_ == middle ? comes : comesNot) = middle;
     }
     return {};
@@ -145,7 +146,7 @@ Result<void> HostSurvey::findLargest(ProbeWay way) {
 Result<void> HostSurvey::stream() {
     rsp::GroupOptions options = plan_.group;
     // Streams at the largest size that arrives, which is the size of a session configured for this network.
-    const size_t largest = m_.way(ProbeWay::Group).largestBytes;
+    const size_t largest = m_.path(ProbePath::Group).largestBytes;
     if (largest >= kMinSessionBytes && largest < plan_.cardBytes) options.datagramBytes = largest;
     auto group = rsp::Group::host(options);
     if (!group) return group.error();
@@ -153,13 +154,13 @@ Result<void> HostSurvey::stream() {
     if (!where) return where.error();
     const bool brackets = m_.reached.find(':') != std::string::npos;
     const std::string control = (brackets ? "[" + m_.reached + "]" : m_.reached) + ":" + std::to_string(where->port);
-    auto joined = process_.ask({{"do", "join"}, {"control", control}}, Deadline::inMs(kJoinMs));
+    auto joined = process_.query({{"do", "join"}, {"control", control}}, Deadline::inMs(kJoinMs));
     if (!joined) return joined.error();
     if (!joined->contains("joined") || (*joined)["joined"] != true)
         return Error{"the host could not join the group: " + textOf(*joined, "why")};
     auto r = streamTo(**group);
     group->reset();
-    auto left = process_.ask({{"do", "leave"}}, Deadline::inMs(kAnswerMs));
+    auto left = process_.query({{"do", "leave"}}, Deadline::inMs(kAnswerMs));
     if (!r) return r;
     if (!left) return left.error();
     m_.queueDropped = numberOf(*left, "queueDropped");
@@ -195,12 +196,12 @@ Result<void> HostSurvey::streamTo(rsp::Group& group) {
     return {};
 }
 
-Result<void> HostSurvey::lookAgain() {
+Result<void> HostSurvey::probeAgain() {
     if (m_.reached.empty()) return {};
-    const bool arrived = m_.way(ProbeWay::Group).to;
-    for (WayMeasured& way : m_.ways) way.toLater = false;
+    const bool arrived = m_.path(ProbePath::Group).to;
+    for (PathMeasured& path : m_.paths) path.toLater = false;
     if (!arrived) return {};
-    return probeThere({kMinProbeBytes}, {ProbeWay::Group});
+    return probeThere({kMinProbeBytes}, {ProbePath::Group});
 }
 
 } // namespace mural::cli

@@ -24,12 +24,12 @@ public:
     Result<void> greet(Deadline deadline);
     Result<void> measure();
     // Checks again that multicast arrives.
-    Result<void> lookAgain();
+    Result<void> probeAgain();
 
 private:
-    Result<void> probeThere(const std::vector<size_t>& sizes, const std::vector<ProbeWay>& ways);
+    Result<void> probeThere(const std::vector<size_t>& sizes, const std::vector<ProbePath>& paths);
     Result<void> probeBack();
-    Result<void> findLargest(ProbeWay way);
+    Result<void> findLargest(ProbePath path);
     Result<void> stream();
     Result<void> streamTo(rsp::Group& group);
 

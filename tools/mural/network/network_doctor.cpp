@@ -22,11 +22,11 @@ using nlohmann::json;
 std::string reachOf(const HostMeasured& h) {
     if (!h.failure.empty() || h.reached.empty()) return "not reached";
     if (h.streamFailure.empty()) return h.multicast ? "multicast" : "TCP only";
-    return h.way(ProbeWay::Group).to ? "multicast" : h.way(ProbeWay::Single).to ? "no multicast" : "TCP only";
+    return h.path(ProbePath::Group).to ? "multicast" : h.path(ProbePath::Single).to ? "no multicast" : "TCP only";
 }
 
 size_t largestOf(const HostMeasured& h) {
-    return h.way(ProbeWay::Group).to ? h.way(ProbeWay::Group).largestBytes : h.way(ProbeWay::Single).largestBytes;
+    return h.path(ProbePath::Group).to ? h.path(ProbePath::Group).largestBytes : h.path(ProbePath::Single).largestBytes;
 }
 
 void printTable(const std::vector<HostMeasured>& hosts) {
@@ -53,13 +53,13 @@ json hostJson(const HostMeasured& h, const std::vector<Check>& checks) {
            {"machine", toJson(h.facts)},
            {"checks", toJson(checks)}};
     constexpr const char* kNames[] = {"single", "group", "linkLocal"};
-    for (const ProbeWay w : kProbeWays) {
-        const WayMeasured& way = h.way(w);
-        j["ways"][kNames[static_cast<size_t>(w)]] = {{"arrivesThere", way.to},
-                                                     {"arrivesHere", way.from},
-                                                     {"atTheEnd", way.toLater},
-                                                     {"largestBytes", way.largestBytes},
-                                                     {"trouble", way.trouble}};
+    for (const ProbePath w : kProbePaths) {
+        const PathMeasured& path = h.path(w);
+        j["ways"][kNames[static_cast<size_t>(w)]] = {{"arrivesThere", path.to},
+                                                     {"arrivesHere", path.from},
+                                                     {"atTheEnd", path.toLater},
+                                                     {"largestBytes", path.largestBytes},
+                                                     {"trouble", path.trouble}};
     }
     j["stream"] = {{"failure", h.streamFailure},    {"multicast", h.multicast}, {"mbit", h.bytesPerS * 8e-6},
                    {"datagrams", h.datagrams},      {"lostShare", h.lostShare}, {"droppedShare", h.droppedShare},

@@ -81,12 +81,12 @@ public:
         for (size_t i = 0; i < hosts.size(); ++i) {
             if (!started_[i].survey) continue;
             progress(hosts[i]);
-            look(started_[i], survey_.hosts[i], deadline);
+            surveyHost(started_[i], survey_.hosts[i], deadline);
         }
         // Checks the first hosts again, because switches forget multicast groups after some time.
         for (size_t i = 0; i + 1 < hosts.size(); ++i) {
             if (started_[i].survey && survey_.hosts[i].failure.empty())
-                note(started_[i].survey->lookAgain(), survey_.hosts[i]);
+                note(started_[i].survey->probeAgain(), survey_.hosts[i]);
         }
         return std::move(survey_);
     }
@@ -155,10 +155,10 @@ private:
             h.failure = process.error().message;
             return {};
         }
-        const SocketAddress* ours = interface_.address(family_);
+        const SocketAddress* ownEnd = interface_.address(family_);
         const std::string towards =
-            a_.hosts.empty() ? (ours ? numericText(*ours) : "") : ownAddressTowards(h.host, family_);
-        if (auto way = rsp::findInterface(towards, family_); way && !towards.empty()) h.interfaceTowards = way->name;
+            a_.hosts.empty() ? (ownEnd ? numericText(*ownEnd) : "") : ownAddressTowards(h.host, family_);
+        if (auto path = rsp::findInterface(towards, family_); path && !towards.empty()) h.interfaceTowards = path->name;
         auto port = splitHostPort(listening_->controlAddress());
         const nlohmann::json order{{"secret", toHex(secret_)},
                                    {"addresses", addressesFor(towards)},
@@ -166,7 +166,7 @@ private:
                                    {"group", a_.group},
                                    {"interface", a_.hosts.empty() ? interface_.name : ""},
                                    {"survey", number_}};
-        if (auto r = (*process)->say(order); !r) {
+        if (auto r = (*process)->send(order); !r) {
             h.failure = r.error().message;
             return {};
         }
@@ -176,7 +176,7 @@ private:
         return s;
     }
 
-    static void look(Started& s, HostMeasured& h, Deadline deadline) {
+    static void surveyHost(Started& s, HostMeasured& h, Deadline deadline) {
         note(s.survey->greet(deadline), h);
         if (h.failure.empty() && !h.reached.empty()) note(s.survey->measure(), h);
     }

@@ -42,18 +42,18 @@ Check buffers(const std::string& name, const std::string& where, const MachineFa
 
 // Returns true if the sending interface is not the one towards the host, and no multicast arrives.
 bool byWrongCard(const HereMeasured& here, const HostMeasured& h) {
-    return !h.way(ProbeWay::Group).to && !h.interfaceTowards.empty() && h.interfaceTowards != here.facts.interface;
+    return !h.path(ProbePath::Group).to && !h.interfaceTowards.empty() && h.interfaceTowards != here.facts.interface;
 }
 
 // No multicast arrives, but unicast does.
 Check noMulticast(const HereMeasured& here, const HostMeasured& h, const std::string& name) {
-    const WayMeasured& group = h.way(ProbeWay::Group);
+    const PathMeasured& group = h.path(ProbePath::Group);
     if (!group.trouble.empty())
         return {Health::Bad, name, group.trouble,
                 fmt::format("check for a firewall rule that blocks sending, and for a missing route: `nft list "
                             "ruleset`, `ip route add 224.0.0.0/4 dev {}`",
                             here.facts.interface)};
-    if (h.way(ProbeWay::LinkLocal).to) {
+    if (h.path(ProbePath::LinkLocal).to) {
         std::string querier = "enable the switch's IGMP querier, or disable its IGMP snooping";
         const auto& bridges = h.facts.silentBridges.empty() ? here.facts.silentBridges : h.facts.silentBridges;
         if (!bridges.empty())
@@ -77,7 +77,7 @@ Check noMulticast(const HereMeasured& here, const HostMeasured& h, const std::st
 }
 
 Check multicast(const HereMeasured& here, const HostMeasured& h, const std::string& name) {
-    const WayMeasured& group = h.way(ProbeWay::Group);
+    const PathMeasured& group = h.path(ProbePath::Group);
     if (!group.to) return noMulticast(here, h, name);
     if (!group.toLater)
         return {Health::Bad, name, "multicast arrived at first, then stopped: the switch snoops IGMP without a querier",
@@ -93,10 +93,10 @@ Check multicast(const HereMeasured& here, const HostMeasured& h, const std::stri
 }
 
 Check datagramSize(const HereMeasured& here, const HostMeasured& h, const std::string& name) {
-    const WayMeasured& way = h.way(ProbeWay::Group).to ? h.way(ProbeWay::Group) : h.way(ProbeWay::Single);
-    const std::string found = fmt::format("datagrams up to {} bytes arrive", way.largestBytes);
-    if (way.largestBytes >= here.cardBytes) return {Health::Ok, name, found, {}};
-    const size_t packet = way.largestBytes + here.headerBytes;
+    const PathMeasured& path = h.path(ProbePath::Group).to ? h.path(ProbePath::Group) : h.path(ProbePath::Single);
+    const std::string found = fmt::format("datagrams up to {} bytes arrive", path.largestBytes);
+    if (path.largestBytes >= here.cardBytes) return {Health::Ok, name, found, {}};
+    const size_t packet = path.largestBytes + here.headerBytes;
     if (h.facts.mtuBytes < here.facts.mtuBytes && h.facts.mtuBytes <= packet)
         return {Health::Bad, name,
                 fmt::format("{}; the MTU of {} there is {}, of {} here {}", found, h.facts.interface, h.facts.mtuBytes,
@@ -159,7 +159,7 @@ std::vector<Check> judgeHost(const HereMeasured& here, const HostMeasured& h) {
     checks.push_back({Health::Ok, about("connection"), fmt::format("{} connects to {}", h.own, h.reached), {}});
     checks.push_back(card(about("card"), h.facts));
     checks.push_back(buffers(about("buffers"), " there", h.facts));
-    const WayMeasured& single = h.way(ProbeWay::Single);
+    const PathMeasured& single = h.path(ProbePath::Single);
     if (byWrongCard(here, h)) {
         checks.push_back({Health::Bad, about("interface"),
                           fmt::format("{} is used here, but {} is reached through {}", here.facts.interface, h.host,
@@ -178,7 +178,7 @@ std::vector<Check> judgeHost(const HereMeasured& here, const HostMeasured& h) {
              fmt::format("a firewall: allow UDP between {} and {}, all ports, both directions (`nft list ruleset`)",
                          h.own, h.reached)});
     }
-    if (single.to || h.way(ProbeWay::Group).to || h.way(ProbeWay::LinkLocal).to) {
+    if (single.to || h.path(ProbePath::Group).to || h.path(ProbePath::LinkLocal).to) {
         checks.push_back(multicast(here, h, about("multicast")));
         checks.push_back(datagramSize(here, h, about("datagram size")));
     }

@@ -12,18 +12,18 @@
 namespace mural::cli {
 
 // Destination of a probe.
-enum class ProbeWay : uint8_t {
+enum class ProbePath : uint8_t {
     Single = 0,    // the machine's unicast address
     Group = 1,     // the multicast group
     LinkLocal = 2, // a multicast group that switches always forward (RFC 4541, 2.1.2)
 };
-constexpr ProbeWay kProbeWays[] = {ProbeWay::Single, ProbeWay::Group, ProbeWay::LinkLocal};
+constexpr ProbePath kProbePaths[] = {ProbePath::Single, ProbePath::Group, ProbePath::LinkLocal};
 
 constexpr size_t kMinProbeBytes = 24;
 
 struct ProbeDatagram {
     uint64_t survey = 0; // random; distinguishes surveys
-    ProbeWay way = ProbeWay::Single;
+    ProbePath path = ProbePath::Single;
     bool fromDoctor = false;
     uint16_t sizeBytes = kMinProbeBytes;
 };

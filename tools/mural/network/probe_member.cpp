@@ -171,7 +171,7 @@ private:
         (void)sockets_->listen(Deadline::inMs(0)); // already received
         json list = json::array();
         for (const auto& [probe, count] : sockets_->take())
-            list.push_back({{"way", static_cast<int>(probe.way)}, {"size", probe.sizeBytes}, {"count", count}});
+            list.push_back({{"path", static_cast<int>(probe.path)}, {"size", probe.sizeBytes}, {"count", count}});
         return {{"seen", list}};
     }
 
@@ -179,9 +179,9 @@ private:
         auto to = numericAddress(order.at("to").get<std::string>(), order.at("port").get<uint16_t>());
         if (!to) return {{"failed", to.error().message}};
         for (unsigned copy = 0; copy < order.at("copies").get<unsigned>(); ++copy) {
-            for (const ProbeWay way : kProbeWays) {
+            for (const ProbePath path : kProbePaths) {
                 for (const json& size : order.at("sizes")) {
-                    sockets_->send(way, std::clamp<size_t>(size.get<size_t>(), kMinProbeBytes, 65'000), *to);
+                    sockets_->send(path, std::clamp<size_t>(size.get<size_t>(), kMinProbeBytes, 65'000), *to);
                     poll(nullptr, 0, kBetweenDatagramsMs);
                 }
             }
@@ -201,7 +201,7 @@ private:
 
     [[nodiscard]] json troubles() const {
         json list = json::array();
-        for (const ProbeWay way : kProbeWays) list.push_back(sockets_->trouble(way));
+        for (const ProbePath path : kProbePaths) list.push_back(sockets_->trouble(path));
         return list;
     }
 

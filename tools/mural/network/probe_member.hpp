@@ -3,7 +3,7 @@
 //
 //   First line: {"secret", "addresses": the doctor's, "port": TCP, "group", "interface", "survey"}.
 //   Reply to it: {"version", "reached", "own", "why", "port", "troubles", "facts"}.
-//   Request {"do": "seen"} returns {"seen": [{"way", "size", "count"}]}: the probes since the last request.
+//   Request {"do": "seen"} returns {"seen": [{"path", "size", "count"}]}: the probes since the last request.
 //   Request {"do": "send", "to", "port", "sizes", "copies"} sends probes of all kinds to the doctor.
 //   Reply to it: {"troubles"}.
 //   Request {"do": "join", "control"} joins the doctor's group and reads its stream.

@@ -10,7 +10,7 @@
 namespace mural::cli {
 
 namespace {
-constexpr int64_t kSayMs = 5'000;
+constexpr int64_t kSendMs = 5'000;
 constexpr int64_t kEndMs = 2'000;
 } // namespace
 
@@ -19,9 +19,9 @@ Result<std::unique_ptr<ProbeProcess>> ProbeProcess::start(const std::vector<std:
     int fromIt[2];
     if (pipe2(toIt, O_CLOEXEC) != 0) return Error{"cannot create a pipe: " + errnoText(errno)};
     const FileDescriptor itsInput(toIt[0]);
-    FileDescriptor ours(toIt[1]);
+    FileDescriptor ownEnd(toIt[1]);
     if (pipe2(fromIt, O_CLOEXEC) != 0) return Error{"cannot create a pipe: " + errnoText(errno)};
-    FileDescriptor heard(fromIt[0]);
+    FileDescriptor output(fromIt[0]);
     const FileDescriptor itsOutput(fromIt[1]);
     launch::Environment environment = launch::Environment::current();
     launch::removeCapture(environment);
@@ -35,7 +35,7 @@ Result<std::unique_ptr<ProbeProcess>> ProbeProcess::start(const std::vector<std:
     request.signalWhenWeDie = SIGKILL;
     auto process = launch::ChildProcess::start(request);
     if (!process) return process.error();
-    return std::unique_ptr<ProbeProcess>(new ProbeProcess(*process, LineChannel(std::move(heard), std::move(ours))));
+    return std::unique_ptr<ProbeProcess>(new ProbeProcess(*process, LineChannel(std::move(output), std::move(ownEnd))));
 }
 
 ProbeProcess::~ProbeProcess() {
@@ -45,11 +45,11 @@ ProbeProcess::~ProbeProcess() {
     process_.end(Deadline::inMs(0));
 }
 
-Result<void> ProbeProcess::say(const nlohmann::json& words) {
-    return lines_.write(words.dump(), Deadline::inMs(kSayMs));
+Result<void> ProbeProcess::send(const nlohmann::json& words) {
+    return lines_.write(words.dump(), Deadline::inMs(kSendMs));
 }
 
-Result<nlohmann::json> ProbeProcess::hear(Deadline deadline) {
+Result<nlohmann::json> ProbeProcess::receive(Deadline deadline) {
     auto line = lines_.read(deadline);
     if (!line) {
         const bool ended = process_.waitUntil(Deadline::inMs(200));
@@ -62,9 +62,9 @@ Result<nlohmann::json> ProbeProcess::hear(Deadline deadline) {
     return answer;
 }
 
-Result<nlohmann::json> ProbeProcess::ask(const nlohmann::json& words, Deadline deadline) {
-    if (auto r = say(words); !r) return r.error();
-    return hear(deadline);
+Result<nlohmann::json> ProbeProcess::query(const nlohmann::json& words, Deadline deadline) {
+    if (auto r = send(words); !r) return r.error();
+    return receive(deadline);
 }
 
 } // namespace mural::cli

@@ -20,10 +20,10 @@ public:
     ProbeProcess& operator=(const ProbeProcess&) = delete;
     ~ProbeProcess(); // ends it with its descendants
 
-    Result<void> say(const nlohmann::json& words);
+    Result<void> send(const nlohmann::json& words);
     // Returns a JSON object. Errors: the process has ended, is silent, reports an error, or sends no JSON.
-    Result<nlohmann::json> hear(Deadline deadline);
-    Result<nlohmann::json> ask(const nlohmann::json& words, Deadline deadline);
+    Result<nlohmann::json> receive(Deadline deadline);
+    Result<nlohmann::json> query(const nlohmann::json& words, Deadline deadline);
 
 private:
     ProbeProcess(launch::ChildProcess process, LineChannel lines)

@@ -21,53 +21,53 @@ Result<ProbeSockets> ProbeSockets::open(const SocketAddress& group, const rsp::N
     ProbeSockets sockets(std::move(*own), survey, doctor);
     sockets.group_ = group;
     sockets.linkLocal_ = *linkLocal;
-    const auto join = [&](ProbeWay way, const SocketAddress& address, std::optional<rsp::UdpSocket>& into) {
+    const auto join = [&](ProbePath path, const SocketAddress& address, std::optional<rsp::UdpSocket>& into) {
         auto socket = rsp::UdpSocket::openGroup(address, interface, kWantedBufferBytes);
         if (socket)
             into.emplace(std::move(*socket));
         else
-            sockets.troubles_[static_cast<size_t>(way)] = socket.error().message;
+            sockets.troubles_[static_cast<size_t>(path)] = socket.error().message;
     };
-    join(ProbeWay::Group, group, sockets.inGroup_);
-    join(ProbeWay::LinkLocal, *linkLocal, sockets.inLinkLocal_);
+    join(ProbePath::Group, group, sockets.inGroup_);
+    join(ProbePath::LinkLocal, *linkLocal, sockets.inLinkLocal_);
     return sockets;
 }
 
 uint16_t ProbeSockets::port() const { return tcpPort(own_.localAddress()); }
 
-void ProbeSockets::send(ProbeWay way, size_t sizeBytes, const SocketAddress& single) {
+void ProbeSockets::send(ProbePath path, size_t sizeBytes, const SocketAddress& single) {
     std::vector<std::byte> datagram(sizeBytes);
-    writeProbe({survey_, way, doctor_, static_cast<uint16_t>(sizeBytes)}, datagram);
-    const SocketAddress& to = way == ProbeWay::Single ? single : way == ProbeWay::Group ? group_ : linkLocal_;
+    writeProbe({survey_, path, doctor_, static_cast<uint16_t>(sizeBytes)}, datagram);
+    const SocketAddress& to = path == ProbePath::Single ? single : path == ProbePath::Group ? group_ : linkLocal_;
     // A rejected long datagram is not reported as an error; it is missing in the arrivals.
     if (auto r = own_.send(to, datagram, sizeBytes); !r && sizeBytes == kMinProbeBytes)
-        troubles_[static_cast<size_t>(way)] = r.error().message;
+        troubles_[static_cast<size_t>(path)] = r.error().message;
 }
 
-void ProbeSockets::hear(rsp::UdpSocket& socket, bool multicast) {
+void ProbeSockets::receive(rsp::UdpSocket& socket, bool multicast) {
     do {
         for (const rsp::UdpSocket::Datagram& d : socket.fetch()) {
             const auto probe = readProbe(d.bytes);
             if (!probe || probe->survey != survey_ || probe->fromDoctor == doctor_ ||
-                (probe->way != ProbeWay::Single) != multicast)
+                (probe->path != ProbePath::Single) != multicast)
                 continue;
-            ++seen_[{probe->way, probe->sizeBytes}];
+            ++seen_[{probe->path, probe->sizeBytes}];
         }
     } while (socket.mayBeMore());
 }
 
 bool ProbeSockets::listen(Deadline deadline, int alsoFd) {
     while (true) {
-        std::array<pollfd, 4> look{{{own_.descriptor(), POLLIN, 0},
-                                    {inGroup_ ? inGroup_->descriptor() : -1, POLLIN, 0},
-                                    {inLinkLocal_ ? inLinkLocal_->descriptor() : -1, POLLIN, 0},
-                                    {alsoFd, POLLIN, 0}}};
+        std::array<pollfd, 4> polled{{{own_.descriptor(), POLLIN, 0},
+                                      {inGroup_ ? inGroup_->descriptor() : -1, POLLIN, 0},
+                                      {inLinkLocal_ ? inLinkLocal_->descriptor() : -1, POLLIN, 0},
+                                      {alsoFd, POLLIN, 0}}};
         const int64_t leftNs = deadline.leftNs(kNsPerS);
-        (void)poll(look.data(), look.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
-        hear(own_, false);
-        if (inGroup_) hear(*inGroup_, true);
-        if (inLinkLocal_) hear(*inLinkLocal_, true);
-        if (look[3].revents != 0) return true;
+        (void)poll(polled.data(), polled.size(), static_cast<int>((leftNs + kNsPerMs - 1) / kNsPerMs));
+        receive(own_, false);
+        if (inGroup_) receive(*inGroup_, true);
+        if (inLinkLocal_) receive(*inLinkLocal_, true);
+        if (polled[3].revents != 0) return true;
         if (deadline.passed()) return false;
     }
 }

@@ -22,17 +22,17 @@ public:
     // Returns the granted part of kWantedBufferBytes; the kernel doubles the value for its overhead.
     [[nodiscard]] size_t bufferBytes() const { return own_.bufferBytes() / 2; }
     // Returns the reason why a kind of probe is unusable here (join or send failed); empty: usable.
-    [[nodiscard]] const std::string& trouble(ProbeWay way) const { return troubles_[static_cast<size_t>(way)]; }
+    [[nodiscard]] const std::string& trouble(ProbePath path) const { return troubles_[static_cast<size_t>(path)]; }
 
     // Sends one probe; `single` is the destination of ProbeWay::Single.
-    void send(ProbeWay way, size_t sizeBytes, const SocketAddress& single);
+    void send(ProbePath path, size_t sizeBytes, const SocketAddress& single);
     // Receives until the deadline, or until `alsoFd` is readable (-1: none); returns true for the latter.
     bool listen(Deadline deadline, int alsoFd = -1);
 
     struct Seen {
-        ProbeWay way;
+        ProbePath path;
         uint16_t sizeBytes;
-        bool operator<(const Seen& o) const { return way != o.way ? way < o.way : sizeBytes < o.sizeBytes; }
+        bool operator<(const Seen& o) const { return path != o.path ? path < o.path : sizeBytes < o.sizeBytes; }
     };
     // Returns the arrivals since the last call.
     [[nodiscard]] std::map<Seen, unsigned> take() { return std::exchange(seen_, {}); }
@@ -40,14 +40,14 @@ public:
 private:
     ProbeSockets(rsp::UdpSocket own, uint64_t survey, bool doctor)
         : own_(std::move(own)), survey_(survey), doctor_(doctor) {}
-    void hear(rsp::UdpSocket& socket, bool multicast);
+    void receive(rsp::UdpSocket& socket, bool multicast);
 
     rsp::UdpSocket own_;
     std::optional<rsp::UdpSocket> inGroup_, inLinkLocal_;
     SocketAddress group_, linkLocal_;
     uint64_t survey_;
     bool doctor_;
-    std::array<std::string, std::size(kProbeWays)> troubles_;
+    std::array<std::string, std::size(kProbePaths)> troubles_;
     std::map<Seen, unsigned> seen_;
 };
 

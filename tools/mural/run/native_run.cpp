@@ -40,8 +40,8 @@ public:
     [[nodiscard]] std::optional<Count> read() const {
         char text[4096];
         const off_t size = lseek(fd_, 0, SEEK_END);
-        const off_t most = sizeof text - 1;
-        const ssize_t n = pread(fd_, text, sizeof text - 1, size > most ? size - most : 0);
+        const off_t maximum = sizeof text - 1;
+        const ssize_t n = pread(fd_, text, sizeof text - 1, size > maximum ? size - maximum : 0);
         if (n <= 0) return {};
         text[n] = '\0';
         std::optional<Count> last;
@@ -64,7 +64,7 @@ private:
     int fd_;
 };
 
-void tell(const std::optional<NativeReport::Count>& count, const PreparedRun& run, Console& console) {
+void printCount(const std::optional<NativeReport::Count>& count, const PreparedRun& run, Console& console) {
     if (!count || count->frames == 0) {
         console.error("no frame was counted: " + run.program.front() +
                       " showed no picture through GL; check that it is an OpenGL program");
@@ -86,7 +86,7 @@ bool countFrames(PreparedRun& run, launch::ProgramSupervisor& program, const Nat
     bool reached = false;
     int64_t frames = 0;
     Deadline patience = Deadline::inMs(kNoPictureMs);
-    while (program.programRunning() || (program.anyoneLeft() && !program.askedToStop() && !patience.passed())) {
+    while (program.programRunning() || (program.anyoneLeft() && !program.stopRequested() && !patience.passed())) {
         waitTurn(run, program, -1);
         const auto count = report.read();
         if (program.programRunning() || (count && count->frames != frames)) patience = Deadline::inMs(kNoPictureMs);
@@ -121,7 +121,7 @@ int runNative(PreparedRun& run, Console& console) {
     if (!startProgram(run, program, console)) return launch::kExitNotExecutable;
 
     const bool framesReached = countFrames(run, program, report, console);
-    tell(report.read(), run, console);
+    printCount(report.read(), run, console);
     return framesReached ? 0 : program.exitStatus();
 }
 

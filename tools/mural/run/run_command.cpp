@@ -12,15 +12,15 @@ namespace mural::cli {
 namespace {
 
 // A program whose GL library is not GLVND's needs the preloaded front.
-launch::Fronts chooseFronts(const RunOptions& options, const launch::ProgramCheck& program,
-                            const launch::Environment& environment) {
-    if (options.captureVia == EntryChoice::Preload) return launch::Fronts::VendorAndPreload;
-    if (options.captureVia == EntryChoice::Glvnd || program.binary.empty()) return launch::Fronts::Vendor;
+launch::CaptureEntries chooseEntries(const RunOptions& options, const launch::ProgramCheck& program,
+                                     const launch::Environment& environment) {
+    if (options.captureVia == EntryChoice::Preload) return launch::CaptureEntries::VendorAndPreload;
+    if (options.captureVia == EntryChoice::Glvnd || program.binary.empty()) return launch::CaptureEntries::Vendor;
     const auto own = launch::ownGlLibraries(program.binary, environment);
-    if (own.empty()) return launch::Fronts::Vendor;
+    if (own.empty()) return launch::CaptureEntries::Vendor;
     if (options.config.explain)
         Console(true).error("capture: preloaded library, for " + own.front() + ", which GLVND does not load");
-    return launch::Fronts::VendorAndPreload;
+    return launch::CaptureEntries::VendorAndPreload;
 }
 
 int complain(const std::string& text, int status) {
@@ -50,8 +50,8 @@ int runCommand(const RunOptions& options) {
     run.programPath = program.path;
     const auto library = launch::findCaptureLibrary(launch::ownBinary());
     if (!library.ok()) return complain(library.error().message, launch::kExitUsage);
-    const launch::Fronts fronts = chooseFronts(options, program, run.programEnvironment);
-    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, fronts); !r)
+    const launch::CaptureEntries entries = chooseEntries(options, program, run.programEnvironment);
+    if (auto r = launch::addCapture(run.programEnvironment, library.value(), run.config.session, entries); !r)
         return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkOutput(run.config.out); !r) return complain(r.error().message, launch::kExitUsage);
     if (auto r = checkReport(run.reportFile); !r) return complain(r.error().message, launch::kExitUsage);

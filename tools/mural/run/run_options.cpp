@@ -203,13 +203,14 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
                 "--nodes", *a.nodes,
                 "must be host names, such as wall1,wall2; --local-nodes sets the number of nodes on this machine");
     }
-    const int asked = c.localNodes + static_cast<int>(c.hosts.size());
+    const int requested = c.localNodes + static_cast<int>(c.hosts.size());
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
-    if (asked > 0 && !a.tiles && !a.tileQueue) std::tie(c.columns, c.rows) = gridFor(std::max(1, asked / passes));
-    if (!a.tileQueue && asked > c.columns * c.rows * passes) {
+    if (requested > 0 && !a.tiles && !a.tileQueue)
+        std::tie(c.columns, c.rows) = gridFor(std::max(1, requested / passes));
+    if (!a.tileQueue && requested > c.columns * c.rows * passes) {
         return Error{
             fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes",
-                        asked, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
+                        requested, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
     }
     if (a.launch) c.launchCommand = *a.launch;
     if (a.stream) {
@@ -229,8 +230,8 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     int64_t minNodes = c.minNodes;
     if (auto r = readNumber("--min-nodes", a.minNodes, 1, kMaxRestarts, minNodes); !r) return r;
     c.minNodes = static_cast<int>(minNodes);
-    if (asked > 0 && c.minNodes > asked)
-        return badValue("--min-nodes", *a.minNodes, fmt::format("must be at most {}, the number of nodes", asked));
+    if (requested > 0 && c.minNodes > requested)
+        return badValue("--min-nodes", *a.minNodes, fmt::format("must be at most {}, the number of nodes", requested));
     if (c.minNodes > 0 && c.restartNodes == 0)
         return Error{"--min-nodes needs restarts of late nodes, but --restart-nodes 0 disables them; omit one of them"};
     return {};
@@ -387,13 +388,13 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
                                                                           loaded.diagnostics.errors() - 1, *a.config)
                                                             : "")};
     if (auto r = readProjection(a, c); !r) return r;
-    const PlanOptions wishes{"", a.allLocal, a.canvas.value_or(""), a.layouts, c.projection, c.modelUnit};
-    auto plan = planOf(loaded, wishes);
+    const PlanOptions planOptions{"", a.allLocal, a.canvas.value_or(""), a.layouts, c.projection, c.modelUnit};
+    auto plan = planOf(loaded, planOptions);
     if (!plan) return plan.error();
     std::error_code failed;
     c.configFile = std::filesystem::absolute(*a.config, failed).string();
     c.allLocal = a.allLocal;
-    c.canvas = wishes.canvas;
+    c.canvas = planOptions.canvas;
     c.layouts = a.layouts;
     if (!a.eyeBase) c.eyeBase = plan->eyeBase.value_or(c.eyeBase);
     if (!a.focus) c.focusDistance = plan->focusDistance.value_or(c.focusDistance);
@@ -406,7 +407,7 @@ Result<void> readConfigFile(const RunArguments& a, RunOptions& options) {
     for (const NodePlan& node : plan->nodes) turns = std::max(turns, node.pass.period);
     if (!a.latency) c.latency = std::max({1, turns, std::min(static_cast<int>(loaded.resolved.latency), kMaxLatency)});
     if (a.size || a.tiles) return {};
-    const compound::PixelSize wall = wallSizeOf(loaded, wishes);
+    const compound::PixelSize wall = wallSizeOf(loaded, planOptions);
     if (wall.w > launch::kMaxScreenSize || wall.h > launch::kMaxScreenSize || wall.w < 1 || wall.h < 1)
         return Error{fmt::format(
             "{}: its wall has {}x{} pixels, but a screen has at most {} in each direction; set a smaller --size WxH",

@@ -23,7 +23,7 @@ constexpr int64_t kFirstContextMs = 30'000;
 constexpr int64_t kAfterLastContextMs = 1'000;
 constexpr int64_t kWaitNoticeMs = 3'000;
 // A program without a context for this time may draw without the capture library. Its libraries are then examined.
-constexpr int64_t kUnseenMs = 10'000;
+constexpr int64_t kExaminationMs = 10'000;
 // Interval of the check for processes that run without the capture library.
 constexpr int64_t kUncapturedMs = 1'000;
 // Permitted silence of the head after the program's end, while it drains and writes pictures.
@@ -44,7 +44,7 @@ public:
         if (const auto failed = awaitReady()) return *failed;
         run_.programEnvironment.set("MURAL_NOTES", bypass_.notesPath());
         if (!startProgram(run_, program_, console_)) return launch::kExitNotExecutable;
-        lookAt_ = Deadline::inMs(kUnseenMs);
+        nextExamination_ = Deadline::inMs(kExaminationMs);
         uncapturedAt_ = Deadline::inMs(kUncapturedMs);
         whileRunning();
         finish();
@@ -78,7 +78,7 @@ private:
     void whileRunning() {
         if (framesReached_) program_.end(kEndGraceMs); // the event arrived before the program was started
         while (program_.programRunning()) turn();
-        if (framesReached_ || wallLost_ || program_.askedToStop()) {
+        if (framesReached_ || wallLost_ || program_.stopRequested()) {
             endDescendants();
             return;
         }
@@ -92,7 +92,7 @@ private:
         Deadline until = Deadline::never();
         bool drawing = true;
         bool noticed = false;
-        while (program_.anyoneLeft() && !program_.askedToStop()) {
+        while (program_.anyoneLeft() && !program_.stopRequested()) {
             if (drawing && clients_ == 0) until = Deadline::inMs(everClients_ ? kAfterLastContextMs : kFirstContextMs);
             drawing = clients_ > 0;
             if (!drawing && until.passed()) return;
@@ -124,18 +124,18 @@ private:
                 break;
             }
         }
-        if (report_) tellReport();
+        if (report_) printReport();
     }
 
-    void tellReport() {
+    void printReport() {
         writeReport(run_, report_->json, console_);
         for (const std::string& line : reportLines(*report_)) console_.say(line);
-        tellUnsaved();
-        if (report_->frames > 0 || bypassSaid_) return;
+        reportUnsaved();
+        if (report_->frames > 0 || bypassReported_) return;
         console_.error("no frame was captured: " + whyNoFrame());
     }
 
-    void tellUnsaved() {
+    void reportUnsaved() {
         const auto& wanted = run_.config.saveFrames; // in ascending order
         if (wanted.empty() || report_->frames == 0 || wanted.back() <= report_->frames) return;
         const auto first = std::upper_bound(wanted.begin(), wanted.end(), report_->frames);
@@ -146,8 +146,8 @@ private:
     std::string whyNoFrame() {
         const std::string& name = run_.program.front();
         if (everClients_) return name + " created a GL context but showed no picture (no buffer swap)";
-        const bool failed = program_.exitStatus() != 0 && !program_.askedToStop();
-        if (std::string bypass = bypass_.aboutEnded(failed); !bypass.empty()) return bypass;
+        const bool failed = program_.exitStatus() != 0 && !program_.stopRequested();
+        if (std::string bypass = bypass_.describeEnded(failed); !bypass.empty()) return bypass;
         if (failed)
             return name + " ended before it created a GL context (" + program_.describeEnd() +
                    "); its messages are above. Try it with mural run --native; mural doctor checks display and GL";
@@ -158,29 +158,29 @@ private:
     // Reports programs that draw without the capture library: their own notes, and at most one line from an
     // examination.
     void watchBypass() {
-        for (const std::string& line : bypass_.news()) {
+        for (const std::string& line : bypass_.newLines()) {
             console_.error(line);
-            bypassSaid_ = true;
+            bypassReported_ = true;
         }
-        sayUncaptured();
-        if (!lookAt_.passed()) return;
-        lookAt_ = Deadline::inMs(kUnseenMs);
-        if (everClients_ || bypassSaid_) return;
-        const std::string line = bypass_.lookAt(program_.processes());
+        reportUncaptured();
+        if (!nextExamination_.passed()) return;
+        nextExamination_ = Deadline::inMs(kExaminationMs);
+        if (everClients_ || bypassReported_) return;
+        const std::string line = bypass_.describeRunning(program_.processes());
         if (line.empty()) return;
         console_.error(line);
-        bypassSaid_ = true;
+        bypassReported_ = true;
     }
 
     // Reports processes that run without the capture library, such as children of a shell whose environment was
     // cleared.
-    void sayUncaptured() {
+    void reportUncaptured() {
         if (!uncapturedAt_.passed() || finishing_) return;
         uncapturedAt_ = Deadline::inMs(kUncapturedMs);
-        const std::string line = bypass_.uncaptured(program_.processes());
+        const std::string line = bypass_.describeUncaptured(program_.processes());
         if (line.empty()) return;
         console_.error(line);
-        bypassSaid_ = true;
+        bypassReported_ = true;
     }
 
     void turn() {
@@ -188,10 +188,10 @@ private:
         waitTurn(run_, program_, wasConnected ? head_->fd() : -1);
         for (const std::string& line : head_->receive()) take(line);
         watchBypass();
-        if (wasConnected && !head_->connected() && ready_ && !report_) tellHeadLost();
+        if (wasConnected && !head_->connected() && ready_ && !report_) reportHeadLost();
     }
 
-    void tellHeadLost() {
+    void reportHeadLost() {
         clients_ = 0;
         head_->process().waitUntil(Deadline::inMs(500));
         console_.error("the head process was lost (" + head_->process().describeEnd() + "); " +
@@ -243,9 +243,9 @@ private:
     Console& console_;
     launch::ProgramSupervisor& program_;
     launch::BypassWatch& bypass_;
-    Deadline lookAt_ = Deadline::never();
+    Deadline nextExamination_ = Deadline::never();
     Deadline uncapturedAt_ = Deadline::never();
-    bool bypassSaid_ = false;
+    bool bypassReported_ = false;
     std::unique_ptr<HeadControl> head_;
     bool ready_ = false;
     bool finishing_ = false;

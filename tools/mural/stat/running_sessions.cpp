@@ -49,15 +49,15 @@ FileDescriptor connectTo(const std::string& session) {
 }
 
 // Checks the owner, because any user may listen under such a name.
-bool isOurs(int fd) {
+bool isTrustedPeer(int fd) {
     ucred peer{};
     socklen_t size = sizeof peer;
     return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
 }
 
-std::optional<nlohmann::json> askSession(const std::string& name) {
+std::optional<nlohmann::json> querySession(const std::string& name) {
     const FileDescriptor fd = connectTo(name);
-    if (!fd.valid() || !isOurs(fd.get())) return {};
+    if (!fd.valid() || !isTrustedPeer(fd.get())) return {};
     capture::Hello hello{};
     hello.magic = capture::kStatusMagic;
     hello.version = capture::kVersion;
@@ -88,7 +88,7 @@ std::vector<std::string> sessionNamesIn(const std::string& unixSockets) {
     return {names.begin(), names.end()};
 }
 
-Result<std::vector<nlohmann::json>> askRunningSessions() {
+Result<std::vector<nlohmann::json>> queryRunningSessions() {
     std::ifstream file("/proc/net/unix", std::ios::binary);
     if (!file)
         return Error{std::string("/proc/net/unix cannot be read: ") + std::strerror(errno) +
@@ -96,7 +96,7 @@ Result<std::vector<nlohmann::json>> askRunningSessions() {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     std::vector<nlohmann::json> sessions;
     for (const std::string& name : sessionNamesIn(text))
-        if (auto state = askSession(name)) sessions.push_back(std::move(*state));
+        if (auto state = querySession(name)) sessions.push_back(std::move(*state));
     return sessions;
 }
 

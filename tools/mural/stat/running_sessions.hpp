@@ -14,6 +14,6 @@ std::vector<std::string> sessionNamesIn(const std::string& unixSockets);
 
 // Returns the state of each session (nodes/head/session/session_status.hpp), without sessions that do not answer or
 // belong to others.
-Result<std::vector<nlohmann::json>> askRunningSessions();
+Result<std::vector<nlohmann::json>> queryRunningSessions();
 
 } // namespace mural::cli

@@ -95,10 +95,10 @@ std::string waitText(const Json& program) {
         {"window", "for its window to show the picture"}};
     const Json& shares = part(part(program, "recent"), "waitShares");
     const char* what = nullptr;
-    double most = 0.005;
+    double maximum = 0.005;
     for (const auto& [name, words] : kWords) {
-        if (number(shares, name) <= most) continue;
-        most = number(shares, name);
+        if (number(shares, name) <= maximum) continue;
+        maximum = number(shares, name);
         what = words;
     }
     std::string nodes;
@@ -106,7 +106,7 @@ std::string waitText(const Json& program) {
         if (node.is_number_integer()) nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", node.get<int>());
     if (!nodes.empty()) nodes = ", now for node " + nodes;
     return (what == nullptr ? "does not wait"
-                            : fmt::format("waits {:.0f} % of the time {}", 100 * std::min(most, 1.0), what)) +
+                            : fmt::format("waits {:.0f} % of the time {}", 100 * std::min(maximum, 1.0), what)) +
            nodes;
 }
 

@@ -36,7 +36,7 @@ void print(const std::vector<nlohmann::json>& sessions, bool asJson) {
 } // namespace
 
 int statCommand(const StatOptions& options) {
-    auto before = askRunningSessions();
+    auto before = queryRunningSessions();
     if (!before) return fail(before.error().message, launch::kExitUsage);
     if (before->empty() && options.watchSeconds == 0)
         return fail("no session of this user runs on this machine; start one: mural run --tiles 2x2 -- PROGRAM",
@@ -44,7 +44,7 @@ int statCommand(const StatOptions& options) {
     while (true) {
         const double seconds = options.watchSeconds > 0 ? options.watchSeconds : kOnceSeconds;
         std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-        auto now = askRunningSessions();
+        auto now = queryRunningSessions();
         if (!now) return fail(now.error().message, launch::kExitUsage);
         print(withRates(*before, *now), options.asJson);
         if (options.watchSeconds == 0) return now->empty() ? fail("the session has ended", kExitNone) : 0;

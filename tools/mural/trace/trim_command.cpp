@@ -54,7 +54,7 @@ int trimCommand(const TrimArguments& a) {
     const trace::TrimReport& r = trimmed.value();
     console.say(fmt::format("{} of {} frames in {}, {}; from earlier frames {} of {} records dropped, {} of {} draws",
                             r.frames, reader.frames(), a.out, sizeText(static_cast<double>(r.fileBytes)),
-                            r.recordsBefore - r.recordsKept, r.recordsBefore, r.drawsBefore - r.drawsKept,
+                            r.recordsBefore - r.recordsWritten, r.recordsBefore, r.drawsBefore - r.drawsWritten,
                             r.drawsBefore));
     return 0;
 }

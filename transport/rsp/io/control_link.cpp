@@ -40,8 +40,8 @@ void ControlLink::send(const ControlMessage& message) {
     flush();
 }
 
-bool ControlLink::offer(const ControlMessage& message, size_t mostWaitingBytes) {
-    if (ended_ || leaving_ || waitingBytes() > mostWaitingBytes) return false;
+bool ControlLink::offer(const ControlMessage& message, size_t maxWaitingBytes) {
+    if (ended_ || leaving_ || waitingBytes() > maxWaitingBytes) return false;
     offered_.push_back(encode(message));
     offeredBytes_ += offered_.back().size();
     flush();

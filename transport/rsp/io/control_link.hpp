@@ -30,8 +30,8 @@ public:
     void start(Events events);
     void send(const ControlMessage& message);
     // Queues a message that may be lost, with lower priority than send(). Returns false and drops it if more than
-    // `mostWaitingBytes` are queued.
-    bool offer(const ControlMessage& message, size_t mostWaitingBytes);
+    // `maxWaitingBytes` are queued.
+    bool offer(const ControlMessage& message, size_t maxWaitingBytes);
     void dropOffered(); // drops queued messages that are not sealed yet
     // Sends queued messages, except offered ones, and closes when the peer has received them, or after two seconds.
     // Does not call closed(). An immediate close could lose the goodbye with a lost segment or with unread data.

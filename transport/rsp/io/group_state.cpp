@@ -84,9 +84,9 @@ Result<void> Group::State::openCore(bool isHost) {
     s.multicast = options_.multicast;
     s.udpPort = tcpPort(own_->localAddress());
     const size_t overhead = group_.family() == AF_INET ? kUdpOverIpv4Bytes : kUdpOverIpv6Bytes;
-    const size_t most = std::min(interface_.mtuBytes - overhead, kMaxDatagramBytes);
-    s.mostDatagramBytes = static_cast<uint16_t>(most);
-    s.datagramBytes = static_cast<uint16_t>(options_.datagramBytes != 0 ? options_.datagramBytes : most);
+    const size_t maximum = std::min(interface_.mtuBytes - overhead, kMaxDatagramBytes);
+    s.maxDatagramBytes = static_cast<uint16_t>(maximum);
+    s.datagramBytes = static_cast<uint16_t>(options_.datagramBytes != 0 ? options_.datagramBytes : maximum);
     s.socketDatagrams = own_->capacity(s.datagramBytes);
     moderation_ = ReceiveModeration(s.socketDatagrams);
     s.seals = 0;
@@ -96,7 +96,7 @@ Result<void> Group::State::openCore(bool isHost) {
     if (isHost) s.keys = makeSessionKeys(options_.seal);
     s.windowDatagrams = options_.windowDatagrams;
     windowBytes_ = size_t{s.windowDatagrams} * s.datagramBytes;
-    s.rate.mostBytesPerS = options_.bytesPerS > 0 ? options_.bytesPerS : kShareOfLink * interface_.bytesPerS;
+    s.rate.maxBytesPerS = options_.bytesPerS > 0 ? options_.bytesPerS : kShareOfLink * interface_.bytesPerS;
     s.parity = options_.parity;
     s.stalled = options_.stalled;
     s.stalledNs = options_.stalledMs * kNsPerMs;
@@ -177,7 +177,7 @@ void Group::State::stop() {
             if (acceptor_) acceptor_->close();
             for (const auto& [id, link] : links_) link->hangUp();
             for (const auto& link : strangers_) link->hangUp();
-            endWhenSaid(Deadline::inMs(kGoodbyeMs));
+            endAfterGoodbyes(Deadline::inMs(kGoodbyeMs));
         });
         thread_.join();
     }
@@ -189,11 +189,11 @@ void Group::State::stop() {
 }
 
 // Waits until the goodbyes are delivered or time out.
-void Group::State::endWhenSaid(Deadline deadline) {
+void Group::State::endAfterGoodbyes(Deadline deadline) {
     const bool all = std::ranges::all_of(links_, [](const auto& l) { return l.second->ended(); });
     if (all || deadline.passed()) return context_.stop();
     goodbyeTimer_.expires_after(std::chrono::milliseconds(2));
-    goodbyeTimer_.async_wait([this, deadline](const error_code&) { endWhenSaid(deadline); });
+    goodbyeTimer_.async_wait([this, deadline](const error_code&) { endAfterGoodbyes(deadline); });
 }
 
 void Group::State::fail(const std::string& why) {
@@ -336,8 +336,8 @@ void Group::State::memberCame(MemberId id, const MemberInfo& info) {
 // Bounded, because the events may never be queried: drops the oldest.
 void Group::State::note(const MemberEvent& event) {
     constexpr size_t kMaxEvents = 4096;
-    if (news.size() >= kMaxEvents) news.erase(news.begin());
-    news.push_back(event);
+    if (unreadEvents.size() >= kMaxEvents) unreadEvents.erase(unreadEvents.begin());
+    unreadEvents.push_back(event);
 }
 
 void Group::State::memberRerouted(MemberId id, bool multicast) {

@@ -67,7 +67,7 @@ struct Group::State : GroupOutput {
     std::string failure;   // reason for the end of the group; empty: alive
     bool hostLeft = false; // the host ended the group in order: end of its stream, not a failure
     std::set<MemberId> accepted;
-    std::vector<MemberEvent> news; // unread membership events
+    std::vector<MemberEvent> unreadEvents; // unread membership events
     std::string controlAddress;
 
 private:
@@ -84,17 +84,17 @@ private:
     void endLead(int64_t nowNs);
     void letWatch();
     void watchLeaders();
-    [[nodiscard]] bool ownIsOnItsWay() const; // this member's stream has unacknowledged data
-    [[nodiscard]] int64_t takeOverNs() const; // time without a leader before the group's thread takes over
+    [[nodiscard]] bool ownIsInTransit() const; // this member's stream has unacknowledged data
+    [[nodiscard]] int64_t takeOverNs() const;  // time without a leader before the group's thread takes over
     [[nodiscard]] int64_t restNs(const Waits* what, int64_t nowNs) const;
     void receive(std::span<const int> sockets, int64_t nowNs);
     void takeDatagrams(std::span<const int> sockets, int64_t nowNs);
     void armTimer(int64_t atNs);
-    void tellTime(int64_t atNs);
+    void publishTimer(int64_t atNs);
     void wakeWaiting();
     void wake(Waits& what);
     void wakeAll();
-    void endWhenSaid(Deadline deadline);
+    void endAfterGoodbyes(Deadline deadline);
     void fail(const std::string& why);
     void updateLoop();
     void ignoreOwn();
@@ -121,9 +121,9 @@ private:
     std::optional<HandoverTimer> takeOver_;
     std::optional<boost::asio::posix::stream_descriptor> takeOverRings_;
     ReceiveModeration moderation_{GroupSettings{}.socketDatagrams};
-    int64_t lookedNs_ = INT64_MIN / 2;       // last poll of the sockets
-    int64_t askedDroppedNs_ = INT64_MIN / 2; // last query of the sockets' drop counters
-    unsigned looksUnasked_ = 0;              // reads since the last poll
+    int64_t polledNs_ = INT64_MIN / 2;         // last poll of the sockets
+    int64_t droppedQueriedNs_ = INT64_MIN / 2; // last query of the sockets' drop counters
+    unsigned readsWithoutPoll_ = 0;            // reads since the last poll
     std::optional<SendBatcher> outbox_;
     std::optional<DatagramOpener> opener_;
     std::map<MemberId, std::shared_ptr<ControlLink>> links_;
@@ -134,7 +134,7 @@ private:
     std::set<std::string> ownAddresses_; // addresses of this machine
     bool loop_ = true;                   // multicast loopback is on
     int64_t timerNs_ = INT64_MAX;        // time of the next due work
-    int64_t toldNs_ = INT64_MAX;         // time set in arrivals_
+    int64_t publishedNs_ = INT64_MAX;    // time set in arrivals_
     std::thread thread_;
 };
 

@@ -24,7 +24,7 @@ void HandoverTimer::push(int64_t nowNs, int64_t afterNs) {
     set(nowNs + afterNs);
 }
 
-void HandoverTimer::keepBehind(int64_t untilNs, int64_t afterNs) {
+void HandoverTimer::postpone(int64_t untilNs, int64_t afterNs) {
     if (atNs_ != INT64_MIN && atNs_ <= untilNs) set(untilNs + afterNs);
 }
 

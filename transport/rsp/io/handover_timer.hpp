@@ -21,7 +21,7 @@ public:
     // Sets the expiry between half of `afterNs` from now and all of it. Replaces the previous setting.
     void push(int64_t nowNs, int64_t afterNs);
     // A leader sleeps until `untilNs`: the timer does not expire earlier.
-    void keepBehind(int64_t untilNs, int64_t afterNs);
+    void postpone(int64_t untilNs, int64_t afterNs);
     // Returns true after expiry. The timer may have been postponed since the descriptor became readable.
     bool rang(int64_t nowNs);
 

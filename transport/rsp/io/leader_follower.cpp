@@ -15,8 +15,8 @@ namespace {
 // losses need repair, and otherwise.
 constexpr int64_t kTakeOverNs = 3 * kNsPerMs;
 constexpr int64_t kTakeOverOfReadersNs = 8 * kNsPerMs;
-constexpr unsigned kMaxLooksInARow = 3;       // consecutive reads of a socket; more would exceed the processor's cache
-constexpr unsigned kAsksSocketsEvery = 8;     // reads of a flowing socket between two polls
+constexpr unsigned kMaxPollsInARow = 3;       // consecutive reads of a socket; more would exceed the processor's cache
+constexpr unsigned kPollSocketsEvery = 8;     // reads of a flowing socket between two polls
 constexpr int64_t kCaughtUpNs = 6 * kNsPerMs; // longer than a reader's rest
 constexpr int64_t kBetweenDroppedNs = 20 * kNsPerMs; // the writer is informed, but does not react
 constexpr int64_t kMaxPauseNs = 2 * kNsPerMs;        // pause of a writer between two batches
@@ -38,10 +38,10 @@ bool Group::State::wait(std::unique_lock<std::mutex>& lock, Waits& what, Deadlin
         leaderUntilNs_ = std::min(untilNs, timerNs_);
         const int64_t timeoutNs = leaderUntilNs_ - nowNs - rest;
         leaderSleeps_ = true;
-        if (rest > 0) takeOver_->keepBehind(nowNs + rest, takeOverNs());
+        if (rest > 0) takeOver_->postpone(nowNs + rest, takeOverNs());
         // A socket with remaining data, or in full flow, needs no poll; poll sometimes for the other socket.
-        const bool flows = rest > 0 && &what == &data && !arrivals_->found().empty() && !ownIsOnItsWay();
-        const bool knows = (moderation_.mayBeMore() || flows) && ++looksUnasked_ % kAsksSocketsEvery != 0;
+        const bool flows = rest > 0 && &what == &data && !arrivals_->found().empty() && !ownIsInTransit();
+        const bool knows = (moderation_.mayBeMore() || flows) && ++readsWithoutPoll_ % kPollSocketsEvery != 0;
         lock.unlock();
         if (rest > 0) sleepUntilNs(nowNs + rest);
         const auto sockets = knows ? arrivals_->found() : arrivals_->wait(timeoutNs);
@@ -71,7 +71,7 @@ void Group::State::endLead(int64_t nowNs) {
 void Group::State::letWatch() {
     if (std::exchange(isWatched_, true)) return;
     arrivals_->setWatched(true);
-    tellTime(timerNs_);
+    publishTimer(timerNs_);
 }
 
 // Group's thread: takes over from a leader that does not return.
@@ -108,9 +108,9 @@ void Group::State::watch() {
     });
 }
 
-int64_t Group::State::takeOverNs() const { return ownIsOnItsWay() ? kTakeOverNs : kTakeOverOfReadersNs; }
+int64_t Group::State::takeOverNs() const { return ownIsInTransit() ? kTakeOverNs : kTakeOverOfReadersNs; }
 
-bool Group::State::ownIsOnItsWay() const {
+bool Group::State::ownIsInTransit() const {
     const Sender* own = core->sender();
     return own && !own->allArrived();
 }
@@ -128,43 +128,43 @@ int64_t Group::State::restNs(const Waits* what, int64_t nowNs) const {
 // Reads these sockets and executes due work.
 void Group::State::receive(std::span<const int> sockets, int64_t nowNs) {
     if (nowNs >= timerNs_) timerNs_ = INT64_MAX;
-    if (nowNs >= toldNs_) toldNs_ = INT64_MAX;
+    if (nowNs >= publishedNs_) publishedNs_ = INT64_MAX;
     takeDatagrams(sockets, nowNs);
     pump(nowNs);
 }
 
 void Group::State::takeDatagrams(std::span<const int> sockets, int64_t nowNs) {
-    ReceiveModeration::Look look;
-    const bool waitsForAnswers = ownIsOnItsWay();
+    ReceiveModeration::PollResult result;
+    const bool waitsForAnswers = ownIsInTransit();
     for (const int descriptor : sockets) {
         const bool isOwn = descriptor == own_->descriptor();
         UdpSocket& socket = isOwn ? *own_ : *groupSocket_;
         // Consecutive reads cost less than reads with processing in between; the limit bounds the time under the lock.
-        for (unsigned looks = 0; looks < kMaxLooksInARow; ++looks) {
+        for (unsigned polls = 0; polls < kMaxPollsInARow; ++polls) {
             for (const UdpSocket::Datagram& d : socket.fetch(isOwn ? ReceiveBuffers{} : core->landing())) {
                 if (!opener_) continue;
                 const auto opened = opener_->open(d.bytes);
                 if (opened.empty()) continue;
-                ++look.datagrams;
-                look.urgent = look.urgent || isUrgent(opened, waitsForAnswers);
+                ++result.datagrams;
+                result.urgent = result.urgent || isUrgent(opened, waitsForAnswers);
                 core->inputDatagram(opened, nowNs);
             }
             if (!socket.mayBeMore()) break;
         }
-        look.mayBeMore = look.mayBeMore || socket.mayBeMore();
+        result.mayBeMore = result.mayBeMore || socket.mayBeMore();
     }
-    moderation_.looked(look, nowNs);
-    lookedNs_ = nowNs;
-    if (nowNs - askedDroppedNs_ >= kBetweenDroppedNs) {
+    moderation_.onPolled(result, nowNs);
+    polledNs_ = nowNs;
+    if (nowNs - droppedQueriedNs_ >= kBetweenDroppedNs) {
         core->socketDropped(dropped());
-        askedDroppedNs_ = nowNs;
+        droppedQueriedNs_ = nowNs;
     }
 }
 
 // A running process polls often, so unread datagrams arrived just now.
 bool Group::State::behind() {
     const int64_t nowNs = quickNowNs();
-    if (moderation_.mayBeMore() || nowNs - lookedNs_ < kCaughtUpNs) return moderation_.mayBeMore();
+    if (moderation_.mayBeMore() || nowNs - polledNs_ < kCaughtUpNs) return moderation_.mayBeMore();
     std::array<int, 2> sockets{own_->descriptor()};
     if (groupSocket_) sockets[1] = groupSocket_->descriptor();
     takeDatagrams(std::span(sockets).first(groupSocket_ ? 2 : 1), nowNs);
@@ -181,13 +181,13 @@ void Group::State::pump(int64_t nowNs) {
 // The leader checks the time itself; only sleeping threads need the timer.
 void Group::State::armTimer(int64_t atNs) {
     timerNs_ = std::min(timerNs_, atNs);
-    if (leaderSleeps_ ? timerNs_ < leaderUntilNs_ : isWatched_) tellTime(timerNs_);
+    if (leaderSleeps_ ? timerNs_ < leaderUntilNs_ : isWatched_) publishTimer(timerNs_);
 }
 
 // An earlier timer stays set: it costs one poll, while setting it costs a system call.
-void Group::State::tellTime(int64_t atNs) {
-    if (atNs >= toldNs_) return;
-    toldNs_ = atNs;
+void Group::State::publishTimer(int64_t atNs) {
+    if (atNs >= publishedNs_) return;
+    publishedNs_ = atNs;
     arrivals_->wakeAt(atNs);
 }
 
@@ -209,7 +209,7 @@ void Group::State::wake(Waits& what) {
     if (what.sleeping > 0) what.wake.notify_all();
     if (leaderWaitsFor_ != &what || leaderCalled_) return;
     leaderCalled_ = true;
-    if (leaderSleeps_) tellTime(0);
+    if (leaderSleeps_) publishTimer(0);
 }
 
 void Group::State::wakeAll() {

@@ -26,18 +26,20 @@ public:
         name.copy(request_.ifr_name, sizeof request_.ifr_name - 1);
     }
     // 0: unknown.
-    size_t mtuBytes() { return ask(SIOCGIFMTU) && request_.ifr_mtu > 0 ? static_cast<size_t>(request_.ifr_mtu) : 0; }
+    size_t mtuBytes() {
+        return request(SIOCGIFMTU) && request_.ifr_mtu > 0 ? static_cast<size_t>(request_.ifr_mtu) : 0;
+    }
     double bytesPerS() {
         ethtool_cmd link{};
         link.cmd = ETHTOOL_GSET;
         request_.ifr_data = reinterpret_cast<char*>(&link);
-        if (!ask(SIOCETHTOOL)) return 0;
+        if (!request(SIOCETHTOOL)) return 0;
         const uint32_t mbit = ethtool_cmd_speed(&link);
         return mbit == 0 || mbit == static_cast<uint32_t>(SPEED_UNKNOWN) || mbit == UINT16_MAX ? 0 : mbit * 1e6 / 8;
     }
 
 private:
-    bool ask(unsigned long what) { return ioctl(socket_.get(), what, &request_) == 0; }
+    bool request(unsigned long what) { return ioctl(socket_.get(), what, &request_) == 0; }
     FileDescriptor socket_;
     ifreq request_{};
 };

@@ -27,7 +27,7 @@ std::span<std::byte> SendBatcher::datagram(MemberId to, size_t bytes) {
     const size_t whole = bytes + tagBytes_;
     // All datagrams of a batch have one size; the last may be shorter.
     const bool joins = count_ > 0 && to == to_ && whole <= segmentBytes_ && used_ == count_ * segmentBytes_ &&
-                       count_ < mostInSending(segmentBytes_);
+                       count_ < maxInSend(segmentBytes_);
     if (!joins) {
         flush();
         to_ = to;

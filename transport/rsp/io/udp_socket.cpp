@@ -79,25 +79,25 @@ struct UdpSocket::Slots {
 
     bool plain = false; // each message has a buffer and no metadata
 
-    void prepare(bool tellsSenders, const ReceiveBuffers& landing) {
-        const bool wantsPlain = !tellsSenders && landing.places.size() == kMaxAtOnce;
+    void prepare(bool reportsSenders, const ReceiveBuffers& landing) {
+        const bool wantsPlain = !reportsSenders && landing.buffers.size() == kMaxAtOnce;
         // the kernel leaves these fields unchanged
-        if (plain && wantsPlain && pieces[0].iov_len == landing.placeBytes) {
-            for (size_t i = 0; i < kMaxAtOnce; ++i) pieces[i].iov_base = landing.places[i];
+        if (plain && wantsPlain && pieces[0].iov_len == landing.bufferBytes) {
+            for (size_t i = 0; i < kMaxAtOnce; ++i) pieces[i].iov_base = landing.buffers[i];
             return;
         }
         plain = wantsPlain;
         for (size_t i = 0; i < kMaxAtOnce; ++i) {
-            if (i < landing.places.size())
-                pieces[i] = {landing.places[i], landing.placeBytes};
+            if (i < landing.buffers.size())
+                pieces[i] = {landing.buffers[i], landing.bufferBytes};
             else
                 pieces[i] = {bytes.get() + i * kSlotStrideBytes, kSlotBytes};
             msghdr& h = messages[i].msg_hdr;
             h = {};
             h.msg_iov = &pieces[i];
             h.msg_iovlen = 1;
-            if (tellsSenders) h.msg_name = &from[i].storage;
-            h.msg_namelen = tellsSenders ? sizeof from[i].storage : 0;
+            if (reportsSenders) h.msg_name = &from[i].storage;
+            h.msg_namelen = reportsSenders ? sizeof from[i].storage : 0;
             if (plain) continue;
             h.msg_control = control[i].data();
             h.msg_controllen = control[i].size();
@@ -126,12 +126,12 @@ Result<UdpSocket> UdpSocket::openGroup(const SocketAddress& group, const Network
     UdpSocket socket(std::move(fd));
     socket.prepare(bufferBytes);
     set(socket.descriptor(), SOL_SOCKET, SO_REUSEADDR, 1);
-    SocketAddress place = group;
+    SocketAddress field = group;
     // A link-local IPv6 group exists once per interface.
-    if (auto* six = reinterpret_cast<sockaddr_in6*>(&place.storage);
-        place.family() == AF_INET6 && IN6_IS_ADDR_MC_LINKLOCAL(&six->sin6_addr))
+    if (auto* six = reinterpret_cast<sockaddr_in6*>(&field.storage);
+        field.family() == AF_INET6 && IN6_IS_ADDR_MC_LINKLOCAL(&six->sin6_addr))
         six->sin6_scope_id = interface.index;
-    if (bind(socket.descriptor(), place.get(), place.sizeBytes) != 0)
+    if (bind(socket.descriptor(), field.get(), field.sizeBytes) != 0)
         return failed("bind to the multicast group's port " + std::to_string(tcpPort(group)));
     if (auto r = joinGroup(socket.descriptor(), group, interface); !r) return r.error();
     // Receive from this interface only.
@@ -160,10 +160,10 @@ void UdpSocket::setLoop(bool loop) {
 void UdpSocket::ignoreMember(MemberId self) {
     // The datagram's head follows the UDP header (8 bytes), with the member id in its third and fourth byte. BPF loads
     // big-endian.
-    constexpr uint32_t place = 8 + 2;
+    constexpr uint32_t field = 8 + 2;
     const auto turned = static_cast<uint32_t>((self & 0xff) << 8 | self >> 8);
     std::array<sock_filter, 4> program{{
-        {BPF_LD | BPF_H | BPF_ABS, 0, 0, place},
+        {BPF_LD | BPF_H | BPF_ABS, 0, 0, field},
         {BPF_JMP | BPF_JEQ | BPF_K, 0, 1, turned},
         {BPF_RET | BPF_K, 0, 0, 0},
         {BPF_RET | BPF_K, 0, 0, UINT32_MAX},
@@ -184,10 +184,10 @@ uint32_t UdpSocket::capacity(size_t datagramBytes) const {
 
 // Queries the counter. Receiving it with each datagram (SO_RXQ_OVFL) costs a fiftieth of the receive path.
 uint32_t UdpSocket::dropped() const {
-    std::array<uint32_t, SK_MEMINFO_VARS> told{};
-    socklen_t size = sizeof told;
-    if (getsockopt(socket_.get(), SOL_SOCKET, SO_MEMINFO, told.data(), &size) != 0) return 0;
-    return told[SK_MEMINFO_DROPS];
+    std::array<uint32_t, SK_MEMINFO_VARS> counters{};
+    socklen_t size = sizeof counters;
+    if (getsockopt(socket_.get(), SOL_SOCKET, SO_MEMINFO, counters.data(), &size) != 0) return 0;
+    return counters[SK_MEMINFO_DROPS];
 }
 
 const char* UdpSocket::sendingBy() const {
@@ -283,7 +283,7 @@ std::span<const UdpSocket::Datagram> UdpSocket::fetch(const ReceiveBuffers& land
     if (!slots_) slots_.reset(new Slots); // not needed by sending-only sockets
     Slots& s = *slots_;
     // Coalesced datagrams need more room than a slot has.
-    s.prepare(tellsSenders_, joined_ == Joined::Never ? landing : ReceiveBuffers{});
+    s.prepare(reportsSenders_, joined_ == Joined::Never ? landing : ReceiveBuffers{});
     const int count = recvmmsg(socket_.get(), s.messages.data(), kMaxAtOnce, MSG_DONTWAIT, nullptr);
     const auto messages = static_cast<size_t>(std::max(0, count));
     mayBeMore_ = messages == kMaxAtOnce;
@@ -300,18 +300,18 @@ std::span<const UdpSocket::Datagram> UdpSocket::fetch(const ReceiveBuffers& land
             }
         }
         if ((h.msg_flags & MSG_TRUNC) != 0) continue;
-        if (tellsSenders_) s.from[i].sizeBytes = h.msg_namelen;
+        if (reportsSenders_) s.from[i].sizeBytes = h.msg_namelen;
         auto* const data = static_cast<std::byte*>(s.pieces[i].iov_base);
         for (size_t at = 0; at < bytes; at += segment)
             fetched_.push_back({{data + at, std::min(segment, bytes - at)}, &s.from[i]});
     }
-    if (joined_ == Joined::Unknown) lookForJoined(messages, fetched_.size(), !landing.places.empty());
+    if (joined_ == Joined::Unknown) detectCoalescing(messages, fetched_.size(), !landing.buffers.empty());
     return fetched_;
 }
 
 // Detects GRO from the first burst: with it, coalescing saves more than the copy costs; without it, datagrams are
 // received in place.
-void UdpSocket::lookForJoined(size_t messages, size_t datagrams, bool wantsLanding) {
+void UdpSocket::detectCoalescing(size_t messages, size_t datagrams, bool wantsLanding) {
     if (datagrams > messages)
         joined_ = Joined::Some;
     else if (messages >= kSeveral)

@@ -36,12 +36,12 @@ public:
     void ignoreNobody();
 
     // Omits sender addresses, which cost the kernel time per datagram.
-    void leaveOutSenders() { tellsSenders_ = false; }
+    void leaveOutSenders() { reportsSenders_ = false; }
 
     [[nodiscard]] int descriptor() const { return socket_.get(); }
     [[nodiscard]] SocketAddress localAddress() const;
 
-    // Sends datagrams of segmentBytes each (the last may be shorter), at most mostInSending(). Datagrams without room
+    // Sends datagrams of segmentBytes each (the last may be shorter), at most maxInSend(). Datagrams without room
     // in the network count as lost. Errors: the network is down; the datagrams are too long.
     Result<void> send(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes);
 
@@ -72,7 +72,7 @@ private:
     int sendSeveral(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const;
     int sendSingle(const SocketAddress& to, std::span<std::byte> datagrams, size_t segmentBytes) const;
 
-    void lookForJoined(size_t messages, size_t datagrams, bool wantsLanding);
+    void detectCoalescing(size_t messages, size_t datagrams, bool wantsLanding);
 
     struct Slots;
     struct FreeSlots {
@@ -81,7 +81,7 @@ private:
     FileDescriptor socket_;
     Sending sending_ = Sending::Segments;
     size_t bufferBytes_ = 0;
-    bool tellsSenders_ = true;
+    bool reportsSenders_ = true;
     bool mayBeMore_ = false;
     Joined joined_ = Joined::Unknown;
     size_t single_ = 0; // received among several and not coalesced

@@ -84,12 +84,12 @@ void GroupCore::touch(MemberId from) {
 }
 
 Receiver* GroupCore::ofMember(MemberId from) {
-    if (heard_.receiver && heard_.from == from) {
+    if (active_.receiver && active_.from == from) {
         touch(from);
-        return heard_.receiver;
+        return active_.receiver;
     }
     Receiver* const r = members_.contains(from) ? receiver(from) : nullptr;
-    heard_ = {from, r};
+    active_ = {from, r};
     return r;
 }
 
@@ -104,7 +104,7 @@ void GroupCore::begin() {
     join.uuid = settings_.uuid;
     join.udpPort = settings_.udpPort;
     join.socketDatagrams = settings_.socketDatagrams;
-    join.mostDatagramBytes = settings_.mostDatagramBytes;
+    join.maxDatagramBytes = settings_.maxDatagramBytes;
     join.seals = settings_.seals;
     join.multicast = settings_.multicast;
     out_.control(kHost, join);
@@ -145,7 +145,7 @@ void GroupCore::takeLate(int64_t nowNs) {
         std::visit([&, id = from](const auto& m) { take(id, m, nowNs); }, message);
 }
 
-ReceiveBuffers GroupCore::landing() { return heard_.receiver ? heard_.receiver->landing() : ReceiveBuffers{}; }
+ReceiveBuffers GroupCore::landing() { return active_.receiver ? active_.receiver->landing() : ReceiveBuffers{}; }
 
 // Returns true for a probe of full size. Members that lost multicast are tested by probes only, at growing intervals.
 bool GroupCore::showsMulticast(std::span<const std::byte> datagram) const {
@@ -204,15 +204,15 @@ int64_t GroupCore::tick(int64_t nowNs) {
 
 // Ticks only receivers with work: of many members most are idle, and visiting each costs more than the active one.
 int64_t GroupCore::tickReceivers(int64_t nowNs) {
-    const auto look = [&](MemberId id, Receiver& r) {
+    const auto tickReceiver = [&](MemberId id, Receiver& r) {
         if (members_.contains(id)) receiversDueNs_ = std::min(receiversDueNs_, r.tick(nowNs, *datagrams_));
     };
     if (nowNs >= receiversDueNs_) {
         receiversDueNs_ = INT64_MAX;
-        for (auto& [id, r] : receivers_) look(id, *r);
+        for (auto& [id, r] : receivers_) tickReceiver(id, *r);
     } else {
         for (const MemberId id : touched_) {
-            if (const auto found = receivers_.find(id); found != receivers_.end()) look(id, *found->second);
+            if (const auto found = receivers_.find(id); found != receivers_.end()) tickReceiver(id, *found->second);
         }
     }
     touched_.clear();
@@ -220,7 +220,7 @@ int64_t GroupCore::tickReceivers(int64_t nowNs) {
 }
 
 void GroupCore::membersChanged() {
-    heard_ = {};
+    active_ = {};
     anyTunnel_ = std::ranges::any_of(members_, [](const auto& m) { return !m.second.multicast; });
 }
 
@@ -236,7 +236,7 @@ void GroupCore::part(MemberId id, GoneReason reason) {
     out_.memberGone(id, reason);
 }
 
-void GroupCore::meet(MemberId id, MemberInfo info, int64_t nowNs) {
+void GroupCore::addPeer(MemberId id, MemberInfo info, int64_t nowNs) {
     info.fromByte = sender_->writtenBytes();
     members_[id] = info;
     membersChanged();

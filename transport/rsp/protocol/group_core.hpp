@@ -37,7 +37,7 @@ struct GroupSettings {
     bool multicast = true; // this member wants multicast
     uint16_t udpPort = 0;  // port of its unicast socket
     uint32_t socketDatagrams = 4096;
-    uint16_t mostDatagramBytes = 1472;
+    uint16_t maxDatagramBytes = 1472;
     uint8_t seals = 0xff; // supported by this member
     RateSettings rate;
     bool parity = true;
@@ -109,7 +109,7 @@ public:
     void socketDropped(uint32_t count);
     int64_t tick(int64_t nowNs);
     // Host: evicts the member and informs it.
-    void expel(MemberId id, GoneReason reason, const std::string& why);
+    void evict(MemberId id, GoneReason reason, const std::string& why);
 
     // This member's own stream; null before the member is accepted.
     [[nodiscard]] Sender* sender() { return sender_.get(); }
@@ -117,7 +117,7 @@ public:
     // stays readable. Reading may create feedback, which the next tick sends.
     [[nodiscard]] Receiver* receiver(MemberId from);
     void forget(MemberId from) {
-        heard_ = {};
+        active_ = {};
         receivers_.erase(from);
     }
     [[nodiscard]] const std::map<MemberId, MemberInfo>& members() const { return members_; }
@@ -158,7 +158,7 @@ private:
     void take(MemberId from, const Rerouted& m, int64_t nowNs);
 
     void admit(MemberId id, const MemberInfo& info, int64_t nowNs);
-    void meet(MemberId id, MemberInfo info, int64_t nowNs);
+    void addPeer(MemberId id, MemberInfo info, int64_t nowNs);
     void part(MemberId id, GoneReason reason);
     void remove(MemberId id, GoneReason reason);
     void makeSender();
@@ -193,7 +193,7 @@ private:
     struct {
         MemberId from = 0;
         Receiver* receiver = nullptr; // null: look it up
-    } heard_;
+    } active_;
     int64_t receiversDueNs_ = INT64_MIN;     // earliest due time of all receivers
     std::vector<MemberId> touched_;          // receivers with input since the last tick
     std::map<MemberId, MemberInfo> members_; // without this member

@@ -102,7 +102,7 @@ void GroupCore::sendProbe(uint32_t nonce) {
 void GroupCore::probeUnreached(int64_t nowNs) {
     for (auto& [id, u] : unreached_) {
         if (members_.at(id).multicast) continue;
-        if (u.silentSinceNs && sender_->members().at(id).heardNs > *u.silentSinceNs) {
+        if (u.silentSinceNs && sender_->members().at(id).receivedNs > *u.silentSinceNs) {
             u.silentSinceNs.reset();
             u.soonNs = kTrySoonNs;
             u.againNs = nowNs;
@@ -137,7 +137,7 @@ void GroupCore::admit(MemberId id, const MemberInfo& info, int64_t nowNs) {
         out_.control(id, MemberCame{other, m.uuid, m.address, m.udpPort, m.multicast});
         out_.control(other, came);
     }
-    meet(id, info, nowNs);
+    addPeer(id, info, nowNs);
 }
 
 // Runs at members.
@@ -148,7 +148,7 @@ void GroupCore::take(MemberId, const MemberCame& m, int64_t nowNs) {
         tunnelled_ = unshown_ = !m.multicast;
         return;
     }
-    if (live_) meet(m.id, {m.uuid, "", m.address, m.udpPort, m.multicast}, nowNs);
+    if (live_) addPeer(m.id, {m.uuid, "", m.address, m.udpPort, m.multicast}, nowNs);
 }
 
 void GroupCore::take(MemberId from, const StreamStart& m, int64_t) {
@@ -241,11 +241,11 @@ void GroupCore::reroute(MemberId id, bool multicast, uint32_t probeNonce) {
     out_.control(id, Rerouted{id, multicast, probeNonce});
     for (const auto& [other, m] : members_)
         if (other != id) out_.control(other, Rerouted{id, multicast, 0});
-    sender_->ask();
+    sender_->requestFeedback();
     out_.memberRerouted(id, multicast);
 }
 
-void GroupCore::expel(MemberId id, GoneReason reason, const std::string& why) {
+void GroupCore::evict(MemberId id, GoneReason reason, const std::string& why) {
     if (!settings_.host || !members_.contains(id)) return;
     out_.control(id, MemberGone{id, reason});
     out_.hangUp(id, why);
@@ -266,7 +266,7 @@ void GroupCore::watchMembers(int64_t nowNs) {
     std::vector<std::pair<MemberId, GoneReason>> hopeless;
     std::vector<std::pair<MemberId, bool>> unreached; // second: silent
     for (const auto& [id, m] : sender_->members()) {
-        const int64_t quietNs = nowNs - m.heardNs;
+        const int64_t quietNs = nowNs - m.receivedNs;
         const int64_t stillNs = sender_->waitsFor(m) ? nowNs - m.movedNs : 0;
         const bool lacks = sender_->lacks(m);
         if (quietNs > settings_.silentNs)
@@ -278,7 +278,7 @@ void GroupCore::watchMembers(int64_t nowNs) {
             unreached.emplace_back(id, quietNs > kSilentBeats * settings_.heartbeatNs);
     }
     for (const auto& [id, reason] : hopeless)
-        expel(id, reason,
+        evict(id, reason,
               reason == GoneReason::Silent ? "it sent nothing for too long" : "it stalled the group for too long");
     for (const auto& [id, silent] : unreached) toConnection(id, silent, nowNs);
 }

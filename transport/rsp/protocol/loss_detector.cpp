@@ -10,7 +10,7 @@ void LossDetector::arrived(Sequence s, int64_t nowNs) {
     highest_ = s + 1;
 }
 
-void LossDetector::cameLate(int64_t lateNs) {
+void LossDetector::onLateArrival(int64_t lateNs) {
     latenessNs_ = std::min(kMaxLatenessNs, std::max(latenessNs_, lateNs + lateNs / 4));
 }
 
@@ -21,7 +21,7 @@ void LossDetector::polled(Sequence next) {
     while (!gaps_.empty() && gaps_.front().end <= next) gaps_.pop_front();
 }
 
-bool LossDetector::look(int64_t nowNs) {
+bool LossDetector::expire(int64_t nowNs) {
     bool any = false;
     while (!gaps_.empty() && highest_ - gaps_.front().end >= kLater && nowNs - gaps_.front().noticedNs >= latenessNs_) {
         lostBefore_ = later(lostBefore_, gaps_.front().end);

@@ -17,11 +17,11 @@ public:
     // Reports the arrival of a datagram that is not a retransmission.
     void arrived(Sequence s, int64_t nowNs);
     // Reports a datagram that arrived after it had been declared lost, `lateNs` after its contemporaries.
-    void cameLate(int64_t lateNs);
+    void onLateArrival(int64_t lateNs);
     // Everything before `next` has been sent.
     void polled(Sequence next);
     // Declares expired gaps lost. Returns true if there are any.
-    bool look(int64_t nowNs);
+    bool expire(int64_t nowNs);
 
     [[nodiscard]] Sequence highest() const { return highest_; }       // one past the newest known sequence number
     [[nodiscard]] Sequence lostBefore() const { return lostBefore_; } // missing datagrams before it are lost

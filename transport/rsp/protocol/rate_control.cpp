@@ -21,10 +21,10 @@ constexpr double kBatchS = 0.001;
 } // namespace
 
 RateControl::RateControl(const RateSettings& settings)
-    : most_(settings.mostBytesPerS),
-      least_(most_ * settings.leastShare),
-      rate_(most_),
-      depth_(std::clamp(most_ * kBucketS, kMinBucketBytes, kMaxBucketBytes)) {}
+    : max_(settings.maxBytesPerS),
+      min_(max_ * settings.minShare),
+      rate_(max_),
+      depth_(std::clamp(max_ * kBucketS, kMinBucketBytes, kMaxBucketBytes)) {}
 
 int64_t RateControl::roundNs(int64_t roundTripNs) { return std::max<int64_t>(50'000'000, 4 * roundTripNs); }
 
@@ -37,11 +37,11 @@ void RateControl::decideAfterTrial(double lostShare, int64_t nowNs) {
 
 void RateControl::rise(int64_t elapsedNs) {
     const double elapsedS = static_cast<double>(std::min(elapsedNs, kMaxRiseNs)) * 1e-9;
-    rate_ = std::min(most_, rate_ + kIncreasePerS * most_ * elapsedS);
+    rate_ = std::min(max_, rate_ + kIncreasePerS * max_ * elapsedS);
 }
 
 void RateControl::roundEnded(double lostShare, int64_t datagrams, int64_t nowNs) {
-    if (most_ <= 0 || datagrams <= 0) return;
+    if (max_ <= 0 || datagrams <= 0) return;
     const int64_t elapsedNs = roundNs_ == INT64_MIN ? 0 : nowNs - roundNs_;
     roundNs_ = nowNs;
     if (trialRoundsLeft_ > 0) {
@@ -56,7 +56,7 @@ void RateControl::roundEnded(double lostShare, int64_t datagrams, int64_t nowNs)
         return;
     }
     if (crowding > kCrowded + chance)
-        rate_ = std::max(least_, rate_ * (1 - std::min(crowding, kMaxDecrease)));
+        rate_ = std::max(min_, rate_ * (1 - std::min(crowding, kMaxDecrease)));
     else
         rise(elapsedNs);
 }
@@ -71,7 +71,7 @@ void RateControl::refill(int64_t nowNs) {
 }
 
 bool RateControl::take(double bytes, int64_t nowNs) {
-    if (most_ <= 0) return true;
+    if (max_ <= 0) return true;
     refill(nowNs);
     if (tokens_ < bytes) return false;
     tokens_ -= bytes;
@@ -79,7 +79,7 @@ bool RateControl::take(double bytes, int64_t nowNs) {
 }
 
 bool RateControl::has(double bytes, int64_t nowNs) {
-    if (most_ <= 0) return true;
+    if (max_ <= 0) return true;
     refill(nowNs);
     return tokens_ >= std::min(bytes, depth_);
 }
@@ -87,7 +87,7 @@ bool RateControl::has(double bytes, int64_t nowNs) {
 double RateControl::batchBytes() const { return bytesPerS() * kBatchS; }
 
 int64_t RateControl::whenNs(double bytes, int64_t nowNs) const {
-    if (most_ <= 0 || tokens_ >= bytes) return nowNs;
+    if (max_ <= 0 || tokens_ >= bytes) return nowNs;
     const double waitNs = std::ceil((bytes - tokens_) / bytesPerS() * 1e9);
     return std::max(nowNs, refilledNs_) + static_cast<int64_t>(waitNs);
 }

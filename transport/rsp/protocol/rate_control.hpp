@@ -11,8 +11,8 @@
 namespace mural::rsp {
 
 struct RateSettings {
-    double mostBytesPerS = 0; // including all headers; 0: limited by the window only
-    double leastShare = 1.0 / 64;
+    double maxBytesPerS = 0; // including all headers; 0: limited by the window only
+    double minShare = 1.0 / 64;
 };
 
 class RateControl {
@@ -35,7 +35,7 @@ public:
     // Returns the number of bytes that justifies a wake-up: each costs CPU at all ends, as do single datagrams.
     [[nodiscard]] double batchBytes() const;
 
-    [[nodiscard]] bool limited() const { return most_ > 0; }
+    [[nodiscard]] bool limited() const { return max_ > 0; }
     [[nodiscard]] double bytesPerS() const;
     [[nodiscard]] double lossFloor() const { return floor_; }
 
@@ -48,8 +48,8 @@ private:
     static constexpr int64_t kBetweenTrialsNs = 2'000'000'000;
     static constexpr int kTrialRounds = 3; // the first round still reflects the previous rate
 
-    double most_;
-    double least_;
+    double max_;
+    double min_;
     double rate_;
     double tokens_ = 0;
     double depth_;

@@ -19,14 +19,14 @@ public:
     // Capacity of the socket in datagrams.
     explicit ReceiveModeration(uint32_t socketDatagrams) : roomDatagrams_(socketDatagrams) {}
 
-    struct Look {
+    struct PollResult {
         size_t datagrams = 0;
         bool urgent = false;    // one of them must be processed immediately
         bool mayBeMore = false; // the read reached its limit
     };
 
-    void looked(const Look& look, int64_t nowNs) {
-        const auto& [datagrams, urgent, mayBeMore] = look;
+    void onPolled(const PollResult& result, int64_t nowNs) {
+        const auto& [datagrams, urgent, mayBeMore] = result;
         mayBeMore_ = mayBeMore;
         if (urgent || (datagrams > 0 && nowNs - foundNs_ > kMaxSilenceNs)) beganNs_ = nowNs;
         if (datagrams > 0) foundNs_ = nowNs;

@@ -12,13 +12,13 @@ namespace mural::rsp {
 
 namespace {
 
-constexpr uint32_t kNoPlace = UINT32_MAX;
+constexpr uint32_t kNoSlot = UINT32_MAX;
 
 // Size of a slot: a whole datagram with any tag, rounded up to cache lines.
-constexpr size_t placeBytes(size_t payloadBytes) {
+constexpr size_t slotBytes(size_t payloadBytes) {
     constexpr size_t kLineBytes = 64;
-    const size_t most = kStreamHeadBytes + kLengthBytes + payloadBytes + kMaxTagBytes;
-    return (most + kLineBytes - 1) / kLineBytes * kLineBytes;
+    const size_t maximum = kStreamHeadBytes + kLengthBytes + payloadBytes + kMaxTagBytes;
+    return (maximum + kLineBytes - 1) / kLineBytes * kLineBytes;
 }
 
 } // namespace
@@ -26,8 +26,8 @@ constexpr size_t placeBytes(size_t payloadBytes) {
 ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
     : payloadBytes_(shape.payloadBytes),
       mask_(shape.windowDatagrams - 1),
-      payloads_(placeBytes(shape.payloadBytes), shape.windowDatagrams + kMaxAtOnce),
-      places_(shape.windowDatagrams),
+      payloads_(slotBytes(shape.payloadBytes), shape.windowDatagrams + kMaxAtOnce),
+      poolSlots_(shape.windowDatagrams),
       lengths_(shape.windowDatagrams),
       groupBases_(shape.windowDatagrams),
       groups_(shape.windowDatagrams),
@@ -35,7 +35,7 @@ ReceiveWindow::ReceiveWindow(const StreamShape& shape, Sequence first)
       cumulative_(first),
       reading_(first),
       forgotten_(first) {
-    landing_.fill(kNoPlace);
+    landing_.fill(kNoSlot);
 }
 
 // The group of `cumulative` is kept whole while its parity may be needed.
@@ -52,7 +52,7 @@ void ReceiveWindow::forget() {
 }
 
 void ReceiveWindow::forgetDatagram(size_t at) {
-    payloads_.giveBack(places_[at]); // everything before the oldest has been received
+    payloads_.giveBack(poolSlots_[at]); // everything before the oldest has been received
     lengths_[at] = 0;
     if (!known_[at]) return;
     known_[at] = false;
@@ -76,7 +76,7 @@ ReceiveWindow::Group* ReceiveWindow::groupAt(Sequence base) {
     return &g;
 }
 
-bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
+bool ReceiveWindow::setGroupSize(Group& g, uint8_t size) {
     if (size == 0 || size == g.size) return true;
     if (g.size != 0 || (size < kMaxInGroup && g.have >> size != 0)) return false;
     g.size = size;
@@ -85,34 +85,34 @@ bool ReceiveWindow::learnSize(Group& g, uint8_t size) {
 
 ReceiveBuffers ReceiveWindow::landing() {
     // Recycle the lowest slots: data read in the meantime has freed slots that are still in the processor's cache.
-    for (const uint32_t place : landing_)
-        if (place != kNoPlace) payloads_.giveBack(place);
+    for (const uint32_t poolSlot : landing_)
+        if (poolSlot != kNoSlot) payloads_.giveBack(poolSlot);
     for (size_t i = 0; i < kMaxAtOnce; ++i) {
         landing_[i] = payloads_.take();
         landingBytes_[i] = payloads_.at(landing_[i]);
     }
     landed_ = 0;
-    return {placeBytes(payloadBytes_), landingBytes_};
+    return {slotBytes(payloadBytes_), landingBytes_};
 }
 
 // Returns the slot that already contains the payload, otherwise a slot with a copy.
-uint32_t ReceiveWindow::placeFor(std::span<const std::byte> payload) {
+uint32_t ReceiveWindow::slotFor(std::span<const std::byte> payload) {
     const auto isAt = [&](size_t i) {
-        return landing_[i] != kNoPlace && landingBytes_[i] + kStreamHeadBytes == payload.data();
+        return landing_[i] != kNoSlot && landingBytes_[i] + kStreamHeadBytes == payload.data();
     };
     for (size_t k = 0; k < kMaxAtOnce; ++k) { // usually the next one
         const size_t i = (landed_ + k) % kMaxAtOnce;
         if (!isAt(i)) continue;
         landed_ = i + 1;
-        return std::exchange(landing_[i], kNoPlace);
+        return std::exchange(landing_[i], kNoSlot);
     }
-    const uint32_t place = payloads_.take();
-    std::memcpy(payloads_.at(place) + kStreamHeadBytes, payload.data(), payload.size());
-    return place;
+    const uint32_t poolSlot = payloads_.take();
+    std::memcpy(payloads_.at(poolSlot) + kStreamHeadBytes, payload.data(), payload.size());
+    return poolSlot;
 }
 
 void ReceiveWindow::store(Group& g, Sequence s, std::span<const std::byte> payload) {
-    places_[slot(s)] = placeFor(payload);
+    poolSlots_[slot(s)] = slotFor(payload);
     lengths_[slot(s)] = static_cast<uint16_t>(payload.size());
     groupBases_[slot(s)] = g.base;
     g.have |= 1u << (s - g.base);
@@ -122,7 +122,7 @@ ReceiveWindow::InsertResult ReceiveWindow::takeData(const StreamDatagram& d) {
     if (has(d.sequence)) {
         ++counters_.duplicates;
         // May reveal the size of an open group.
-        if (d.groupSize != 0) learnGroupSize(d.groupBase(), d.groupSize);
+        if (d.groupSize != 0) updateGroupSize(d.groupBase(), d.groupSize);
         return InsertResult::Known;
     }
     if (!inWindow(d.sequence)) {
@@ -130,7 +130,8 @@ ReceiveWindow::InsertResult ReceiveWindow::takeData(const StreamDatagram& d) {
         return InsertResult::Refused;
     }
     Group* g = groupAt(d.groupBase());
-    if (!g || d.payload.size() > payloadBytes_ || !learnSize(*g, d.groupSize) || (g->size != 0 && d.index >= g->size)) {
+    if (!g || d.payload.size() > payloadBytes_ || !setGroupSize(*g, d.groupSize) ||
+        (g->size != 0 && d.index >= g->size)) {
         ++counters_.refused;
         return InsertResult::Refused;
     }
@@ -148,7 +149,7 @@ ReceiveWindow::InsertResult ReceiveWindow::takeParity(const StreamDatagram& d) {
     }
     Group* g = groupAt(d.sequence);
     const size_t bytes = d.payload.size();
-    if (!g || bytes > payloadBytes_ + kLengthBytes || !learnSize(*g, d.groupSize)) {
+    if (!g || bytes > payloadBytes_ + kLengthBytes || !setGroupSize(*g, d.groupSize)) {
         ++(g ? counters_.refused : counters_.outside);
         return InsertResult::Refused;
     }
@@ -171,10 +172,10 @@ ReceiveWindow::InsertResult ReceiveWindow::takeParity(const StreamDatagram& d) {
     return InsertResult::New;
 }
 
-void ReceiveWindow::learnGroupSize(Sequence base, uint8_t size) {
+void ReceiveWindow::updateGroupSize(Sequence base, uint8_t size) {
     if (size == 0 || !inWindow(base)) return;
     Group* g = groupAt(base);
-    if (!g || !learnSize(*g, size)) {
+    if (!g || !setGroupSize(*g, size)) {
         ++counters_.refused;
         return;
     }
@@ -278,8 +279,8 @@ Missing ReceiveWindow::missingFrom(Sequence from, Sequence until) const {
     Missing m;
     const Group* g = findGroup(s);
     m.base = g ? g->base : s;
-    const int64_t most = std::min<int64_t>(kMaxInGroup, until - m.base);
-    int64_t span = g && g->size != 0 ? std::min<int64_t>(g->size, most) : most;
+    const int64_t maximum = std::min<int64_t>(kMaxInGroup, until - m.base);
+    int64_t span = g && g->size != 0 ? std::min<int64_t>(g->size, maximum) : maximum;
     for (int64_t i = s - m.base; i < span; ++i) {
         const Sequence at = m.base + i;
         // Another group begins here, so the unknown one ends.

@@ -37,7 +37,7 @@ public:
     InsertResult takeData(const StreamDatagram& d);
     InsertResult takeParity(const StreamDatagram& d);
     // Sets the size of the group that begins there, from a POLL.
-    void learnGroupSize(Sequence base, uint8_t size);
+    void updateGroupSize(Sequence base, uint8_t size);
 
     // Cumulative acknowledgement: everything before has been received.
     [[nodiscard]] Sequence cumulative() const { return cumulative_; }
@@ -73,9 +73,9 @@ private:
     [[nodiscard]] bool inWindow(Sequence s) const { return s >= forgotten_ && s - forgotten_ <= mask_; }
     Group* groupAt(Sequence base);
     [[nodiscard]] const Group* findGroup(Sequence s) const;
-    bool learnSize(Group& g, uint8_t size);
+    bool setGroupSize(Group& g, uint8_t size);
     void store(Group& g, Sequence s, std::span<const std::byte> payload);
-    uint32_t placeFor(std::span<const std::byte> payload);
+    uint32_t slotFor(std::span<const std::byte> payload);
     void tryToComplete(Group& g);
     void recover(Group& g, std::span<const int> missing);
     bool addPresent(const Group& g, Row& row) const;
@@ -85,7 +85,7 @@ private:
     void forget();
     void forgetDatagram(size_t at);
     [[nodiscard]] std::span<const std::byte> payload(Sequence s) const {
-        return {payloads_.at(places_[slot(s)]) + kStreamHeadBytes, lengths_[slot(s)]};
+        return {payloads_.at(poolSlots_[slot(s)]) + kStreamHeadBytes, lengths_[slot(s)]};
     }
 
     size_t payloadBytes_;
@@ -94,7 +94,7 @@ private:
     std::array<uint32_t, kMaxAtOnce> landing_{};        // slots for the next datagrams; kNoPlace: occupied
     std::array<std::byte*, kMaxAtOnce> landingBytes_{}; // address of each
     size_t landed_ = 0;                                 // one past the last occupied one
-    std::vector<uint32_t> places_;                      // slot per received datagram
+    std::vector<uint32_t> poolSlots_;                   // slot per received datagram
     std::vector<uint16_t> lengths_;                     // 0: missing
     std::vector<Sequence> groupBases_;                  // per received datagram
     std::vector<Group> groups_;                         // indexed by the group's first datagram

@@ -17,7 +17,7 @@ Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
       gaps_(first),
       ackEvery_(std::max(1u, std::min(settings.shape.windowDatagrams, settings.socketDatagrams) / 2)),
       sinceAck_(settings.self * 37u % ackEvery_),
-      toldEdge_(first),
+      reportedEdge_(first),
       countedLost_(first),
       repairNs_(kFirstRepairNs) {}
 
@@ -25,7 +25,7 @@ Receiver::Receiver(const ReceiverSettings& settings, Sequence first)
 Sequence Receiver::edgeNow() const {
     const Sequence ring = window_.oldest() + settings_.shape.windowDatagrams;
     const Sequence socket = later(gaps_.highest(), window_.cumulative()) + settings_.socketDatagrams;
-    return later(toldEdge_, earlier(ring, socket));
+    return later(reportedEdge_, earlier(ring, socket));
 }
 
 void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
@@ -37,7 +37,7 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
     }
     const bool repair = (d.flags & flag::kRepair) != 0;
     if (d.type == Type::Poll) {
-        window_.learnGroupSize(d.sequence, d.groupSize);
+        window_.updateGroupSize(d.sequence, d.groupSize);
         polled(d.next);
     } else if (d.type == Type::Parity) {
         if (window_.takeParity(d) == ReceiveWindow::InsertResult::New) ++sinceAck_;
@@ -45,14 +45,14 @@ void Receiver::input(const StreamDatagram& d, int64_t nowNs) {
         const auto took = window_.takeData(d);
         if (took == ReceiveWindow::InsertResult::Refused) return;
         if (took == ReceiveWindow::InsertResult::New) ++sinceAck_;
-        if (!repair && d.sequence < gaps_.lostBefore() && lateUs > 0) gaps_.cameLate(int64_t{lateUs} * 1000);
+        if (!repair && d.sequence < gaps_.lostBefore() && lateUs > 0) gaps_.onLateArrival(int64_t{lateUs} * 1000);
         // Datagrams before it are duplicates. Half of the number space further, the comparison wraps.
         if (d.sequence >= before) gaps_.arrived(d.sequence, nowNs);
         if (d.flags & flag::kPoll) polled(d.next);
     }
-    if (d.flags & flag::kPoll) tellNow_ = true;
-    if (repair && window_.cumulative() > before && askedNs_ != INT64_MIN) {
-        const int64_t tookNs = nowNs - askedNs_;
+    if (d.flags & flag::kPoll) reportNow_ = true;
+    if (repair && window_.cumulative() > before && requestedNs_ != INT64_MIN) {
+        const int64_t tookNs = nowNs - requestedNs_;
         repairNs_ = std::clamp(repairNs_ + (2 * tookNs - repairNs_) / 4, kMinRepairNs, kMaxRepairNs);
     }
 }
@@ -70,30 +70,30 @@ void Receiver::countLost(Sequence before) {
 }
 
 // Returns true if the writer has used most of its window and waits, or soon will.
-bool Receiver::roomIsNews() const {
-    const int64_t opened = edgeNow() - toldEdge_;
-    const int64_t left = toldEdge_ - gaps_.highest();
+bool Receiver::spaceIsUnreported() const {
+    const int64_t opened = edgeNow() - reportedEdge_;
+    const int64_t left = reportedEdge_ - gaps_.highest();
     const auto whole = static_cast<int64_t>(std::min(settings_.shape.windowDatagrams, settings_.socketDatagrams));
     return opened >= std::max<int64_t>(1, whole / 8) && left < whole / 2;
 }
 
 int64_t Receiver::dueNs() const {
-    if (tellNow_) return INT64_MIN;
-    int64_t due = toldNs_ + settings_.heartbeatNs;
-    if (newlyLost_ || sinceAck_ >= ackEvery_ || roomIsNews()) due = std::min(due, toldNs_ + kMinSpacingNs);
-    if (anyLost()) due = std::min(due, toldNs_ + repairNs_);
+    if (reportNow_) return INT64_MIN;
+    int64_t due = publishedNs_ + settings_.heartbeatNs;
+    if (newlyLost_ || sinceAck_ >= ackEvery_ || spaceIsUnreported()) due = std::min(due, publishedNs_ + kMinSpacingNs);
+    if (anyLost()) due = std::min(due, publishedNs_ + repairNs_);
     return due;
 }
 
 int64_t Receiver::tick(int64_t nowNs, DatagramSink& out) {
     if (newestNs_ == 0) newestNs_ = nowNs; // nothing received since then
-    if (gaps_.look(nowNs)) newlyLost_ = true;
+    if (gaps_.expire(nowNs)) newlyLost_ = true;
     countLost(gaps_.lostBefore());
-    if (nowNs >= dueNs()) tell(nowNs, out);
+    if (nowNs >= dueNs()) sendFeedback(nowNs, out);
     return std::min(dueNs(), gaps_.whenNs());
 }
 
-void Receiver::tell(int64_t nowNs, DatagramSink& out) {
+void Receiver::sendFeedback(int64_t nowNs, DatagramSink& out) {
     Feedback f;
     f.from = settings_.self;
     f.to = settings_.writer;
@@ -101,7 +101,7 @@ void Receiver::tell(int64_t nowNs, DatagramSink& out) {
     f.edge = edgeNow();
     f.highest = later(gaps_.highest(), f.cumulative);
     f.echoUs = newestUs_;
-    f.heldUs = static_cast<uint32_t>((nowNs - newestNs_) / 1000);
+    f.ackDelayUs = static_cast<uint32_t>((nowNs - newestNs_) / 1000);
     f.lost = lost_;
     f.dropped = dropped_;
     Sequence from = f.cumulative;
@@ -111,12 +111,12 @@ void Receiver::tell(int64_t nowNs, DatagramSink& out) {
         f.entries[f.entryCount++] = m;
         from = m.base + m.span;
     }
-    if (f.entryCount > 0) askedNs_ = nowNs;
+    if (f.entryCount > 0) requestedNs_ = nowNs;
     writeFeedback(f, out.datagram(settings_.writer, feedbackBytes(f)));
-    toldNs_ = nowNs;
-    toldEdge_ = f.edge;
+    publishedNs_ = nowNs;
+    reportedEdge_ = f.edge;
     sinceAck_ = 0;
-    tellNow_ = newlyLost_ = false;
+    reportNow_ = newlyLost_ = false;
     ++feedbackSent_;
 }
 

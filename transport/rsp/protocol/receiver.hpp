@@ -33,9 +33,10 @@ public:
     size_t readable(std::span<std::span<const std::byte>> into) const { return window_.readable(into); }
     void consume(size_t bytes) { window_.consume(bytes); }
     // Returns true if feedback is due after consumption.
-    [[nodiscard]] bool hasNews() const { return tellNow_ || roomIsNews(); }
+    [[nodiscard]] bool hasUnreported() const { return reportNow_ || spaceIsUnreported(); }
 
-    // Sends due feedback and returns the time of the next call. Call it also after input, and when hasNews() is true.
+    // Sends due feedback and returns the time of the next call. Call it also after input, and when hasUnreported() is
+    // true.
     int64_t tick(int64_t nowNs, DatagramSink& out);
 
     [[nodiscard]] Sequence cumulative() const { return window_.cumulative(); }
@@ -47,27 +48,27 @@ public:
 private:
     [[nodiscard]] Sequence edgeNow() const;
     [[nodiscard]] bool anyLost() const { return window_.cumulative() < gaps_.lostBefore(); }
-    [[nodiscard]] bool roomIsNews() const;
+    [[nodiscard]] bool spaceIsUnreported() const;
     [[nodiscard]] int64_t dueNs() const;
     void polled(Sequence next);
     void countLost(Sequence before);
-    void tell(int64_t nowNs, DatagramSink& out);
+    void sendFeedback(int64_t nowNs, DatagramSink& out);
 
     ReceiverSettings settings_;
     ReceiveWindow window_;
     LossDetector gaps_;
     uint32_t ackEvery_;
     uint32_t sinceAck_; // in datagrams
-    Sequence toldEdge_;
+    Sequence reportedEdge_;
     Sequence countedLost_;
     uint32_t lost_ = 0;
     uint32_t dropped_ = 0;
     uint32_t newestUs_ = 0; // send time of the newest datagram
     int64_t newestNs_ = 0;  // its arrival time
-    int64_t toldNs_ = INT64_MIN;
+    int64_t publishedNs_ = INT64_MIN;
     int64_t repairNs_; // expected delay of a repair
-    int64_t askedNs_ = INT64_MIN;
-    bool tellNow_ = true; // the first feedback advertises the window
+    int64_t requestedNs_ = INT64_MIN;
+    bool reportNow_ = true; // the first feedback advertises the window
     bool newlyLost_ = false;
     uint64_t feedbackSent_ = 0;
 };

@@ -53,8 +53,8 @@ void RetransmitPlanner::enqueue(State& s) {
     std::ranges::push_heap(queue_, kOldestFirst);
 }
 
-void RetransmitPlanner::want(const SendWindow::Group& group, uint32_t missing, int rowsHeld, uint32_t echoUs) {
-    const int lacking = std::popcount(missing) - rowsHeld;
+void RetransmitPlanner::want(const SendWindow::Group& group, uint32_t missing, int symbolsHeld, uint32_t echoUs) {
+    const int lacking = std::popcount(missing) - symbolsHeld;
     if (lacking <= 0) return;
     State& s = states_[group.base.value() & mask_];
     const int wanted = rowsSentBy(s, echoUs) + lacking;

@@ -21,7 +21,7 @@ public:
     // The group's first datagram is sent. No other group of the window has its index.
     void begin(Sequence base);
     // Reports one member's losses in a closed group. `missing`: bits from the group's base on.
-    void want(const SendWindow::Group& group, uint32_t missing, int rowsHeld, uint32_t echoUs);
+    void want(const SendWindow::Group& group, uint32_t missing, int symbolsHeld, uint32_t echoUs);
     // The same, with retransmission of the datagrams.
     void wantAgain(const SendWindow::Group& group, uint32_t missing, uint32_t echoUs);
     // Schedules parity in advance, without a request.
@@ -30,7 +30,7 @@ public:
     struct Repair {
         Sequence base; // of the group
         bool resend = false;
-        uint8_t place = 0; // retransmission: index in the group; otherwise index of the parity symbol
+        uint8_t index = 0; // retransmission: index in the group; otherwise index of the parity symbol
         uint8_t rowsSent = 0;
     };
     [[nodiscard]] bool empty() const { return queue_.empty(); }

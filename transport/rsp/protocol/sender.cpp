@@ -35,7 +35,7 @@ Sequence Sender::addMember(MemberId id, int64_t nowNs) {
     // Nothing counts for the member before its first feedback: the control connection announces the start of the
     // stream, and datagrams may overtake it. Earlier datagrams would count as losses and as congestion.
     m.cumulative = m.edge = window_.filled();
-    m.heardNs = m.movedNs = nowNs;
+    m.receivedNs = m.movedNs = nowNs;
     members_[id] = m;
     changed_ = true;
     updateEdge();
@@ -142,7 +142,7 @@ void Sender::sendRow(const RetransmitPlanner::Repair& r, const SendWindow::Group
     d.from = settings_.self;
     d.sequence = group.base;
     d.groupSize = group.size;
-    d.row = r.place;
+    d.row = r.index;
     d.rowsSent = r.rowsSent;
     d.sentUs = toUs(nowNs);
     d.next = next_;
@@ -150,7 +150,7 @@ void Sender::sendRow(const RetransmitPlanner::Repair& r, const SendWindow::Group
     writeStreamHead(d, to);
     const auto symbol = to.subspan(kStreamHeadBytes);
     std::ranges::fill(symbol, std::byte{0});
-    for (int i = 0; i < group.size; ++i) addSymbol(symbol, r.place, i, window_.payload(group.base + i));
+    for (int i = 0; i < group.size; ++i) addSymbol(symbol, r.index, i, window_.payload(group.base + i));
     sentNs_ = nowNs;
     ++counters_.rows;
 }
@@ -167,7 +167,7 @@ bool Sender::sendRepair(int64_t nowNs, DatagramSink& out) {
     --repairCredit_;
     const SendWindow::Group group = window_.groupOf(repair->base);
     if (repair->resend) {
-        sendDatagram(repair->base + repair->place, flag::kRepair, nowNs, out);
+        sendDatagram(repair->base + repair->index, flag::kRepair, nowNs, out);
         ++counters_.resent;
     } else {
         sendRow(*repair, group, nowNs, out);
@@ -213,8 +213,8 @@ int64_t Sender::pollWhenNeeded(int64_t nowNs, DatagramSink& out) {
 
 // Returns the number of datagrams that justifies a wake-up, here and at all receivers.
 int64_t Sender::worthSending(double wireBytes) const {
-    const auto most = static_cast<int64_t>(mostInSending(static_cast<size_t>(wireBytes) - kWireOverheadBytes));
-    return std::clamp(static_cast<int64_t>(rate_.batchBytes() / wireBytes), std::min(kMinBatch, most), most);
+    const auto maximum = static_cast<int64_t>(maxInSend(static_cast<size_t>(wireBytes) - kWireOverheadBytes));
+    return std::clamp(static_cast<int64_t>(rate_.batchBytes() / wireBytes), std::min(kMinBatch, maximum), maximum);
 }
 
 // The end of a flush does not wait for tokens beyond its own datagrams.

@@ -27,7 +27,7 @@ struct SenderSettings {
 struct MemberState {
     Sequence cumulative;
     Sequence edge;
-    int64_t heardNs = 0;     // last time that it is known to have received a datagram
+    int64_t receivedNs = 0;  // last time that it is known to have received a datagram
     int64_t movedNs = 0;     // last progress of cumulative or edge, or last time without unacknowledged data
     int64_t roundTripNs = 0; // smoothed; 0: unknown
     int64_t roundTripVarNs = 0;
@@ -58,7 +58,7 @@ public:
     [[nodiscard]] const std::map<MemberId, MemberState>& members() const { return members_; }
 
     // Requests immediate feedback from all members.
-    void ask() { pollNow_ = changed_ = true; }
+    void requestFeedback() { pollNow_ = changed_ = true; }
 
     // Copies as much as there is room for; returns the number of bytes. Without members all data is accepted and
     // discarded.
@@ -113,7 +113,7 @@ private:
     void updateEdge();
     void endRound(int64_t nowNs);
     void surviveJump(int64_t nowNs);
-    void learnNeed(Sequence from, Sequence to);
+    void updateDemand(Sequence from, Sequence to);
     [[nodiscard]] int rowsAheadFor(int groupSize) const;
 
     SenderSettings settings_;

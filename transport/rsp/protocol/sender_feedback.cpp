@@ -17,7 +17,7 @@ constexpr int64_t kSaneRoundTripNs = 10'000'000'000;
 } // namespace
 
 void Sender::measureRoundTrip(MemberState& m, const Feedback& f, int64_t nowNs) const {
-    const uint32_t elapsedUs = static_cast<uint32_t>(nowNs / 1000) - f.echoUs - f.heldUs;
+    const uint32_t elapsedUs = static_cast<uint32_t>(nowNs / 1000) - f.echoUs - f.ackDelayUs;
     const int64_t sampleNs = int64_t{elapsedUs} * 1000;
     if (f.echoUs == 0 || sampleNs > kSaneRoundTripNs) return;
     if (m.roundTripNs == 0) {
@@ -40,7 +40,7 @@ void Sender::input(const Feedback& f, int64_t nowNs) {
         return;
     }
     // A member that sends but does not receive counts as silent.
-    m.heardNs = std::max(m.heardNs, nowNs - int64_t{f.heldUs} * 1000);
+    m.receivedNs = std::max(m.receivedNs, nowNs - int64_t{f.ackDelayUs} * 1000);
     m.lost = f.lost;
     m.dropped = f.dropped;
     measureRoundTrip(m, f, nowNs);
@@ -99,23 +99,23 @@ void Sender::advance() {
     Sequence all = next_;
     for (const auto& [id, m] : members_) all = earlier(all, m.cumulative);
     if (all <= acknowledged_) return;
-    learnNeed(acknowledged_, all);
+    updateDemand(acknowledged_, all);
     acknowledged_ = all;
     window_.release(all);
 }
 
 // Learns how many parity symbols per datagram completed groups needed. The next short group receives as many in
 // advance.
-void Sender::learnNeed(Sequence from, Sequence to) {
+void Sender::updateDemand(Sequence from, Sequence to) {
     for (Sequence s = from; s < to;) {
         const SendWindow::Group group = window_.groupOf(s);
         const Sequence end = group.base + group.filled;
         if (end > to || group.size == 0) return;
-        const int asked = repairs_.rowsNeeded(group.base);
+        const int requested = repairs_.rowsNeeded(group.base);
         const int ahead = repairs_.rowsAhead(group.base);
         // Feedback does not reveal whether advance parity was needed: each group without requests lowers the estimate
         // by one.
-        const int rows = asked > 0 ? ahead + asked : std::max(0, ahead - 1);
+        const int rows = requested > 0 ? ahead + requested : std::max(0, ahead - 1);
         const double share = static_cast<double>(rows) / group.size;
         const double weight = kNeedSmoothing * group.size / kMaxInGroup;
         needShare_ += (share - needShare_) * std::max(weight, kNeedSmoothing / 4);
@@ -150,7 +150,7 @@ void Sender::surviveJump(int64_t nowNs) {
     tickedNs_ = nowNs;
     if (goneNs < kJumpNs) return;
     for (auto& [id, m] : members_) {
-        m.heardNs += goneNs;
+        m.receivedNs += goneNs;
         m.movedNs += goneNs;
     }
 }

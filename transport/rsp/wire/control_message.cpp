@@ -56,10 +56,10 @@ public:
         std::copy_n(left_.begin(), N, value.begin());
         left_ = left_.subspan(N);
     }
-    std::span<const std::byte> bytes(size_t most) {
+    std::span<const std::byte> bytes(size_t maximum) {
         uint32_t count = 0;
         number(count);
-        if (count > most || count > left_.size()) return fail(), std::span<const std::byte>{};
+        if (count > maximum || count > left_.size()) return fail(), std::span<const std::byte>{};
         const auto value = left_.first(count);
         left_ = left_.subspan(count);
         return value;
@@ -83,7 +83,7 @@ void put(Writer& w, const Join& m) {
     w.fixed(m.uuid);
     w.number(m.udpPort);
     w.number(m.socketDatagrams);
-    w.number(m.mostDatagramBytes);
+    w.number(m.maxDatagramBytes);
     w.number(m.seals);
     w.flag(m.multicast);
 }
@@ -91,7 +91,7 @@ void get(Reader& r, Join& m) {
     r.fixed(m.uuid);
     r.number(m.udpPort);
     r.number(m.socketDatagrams);
-    r.number(m.mostDatagramBytes);
+    r.number(m.maxDatagramBytes);
     r.number(m.seals);
     r.flag(m.multicast);
 }

@@ -19,11 +19,11 @@ namespace mural::rsp {
 // Member to host: first message.
 struct Join {
     Uuid uuid{};
-    uint16_t udpPort = 0;           // port of its unicast socket
-    uint32_t socketDatagrams = 0;   // capacity of its socket buffer
-    uint16_t mostDatagramBytes = 0; // largest UDP payload without fragmentation
-    uint8_t seals = 0;              // bit s: supports Seal(s)
-    bool multicast = true;          // wants multicast if it is reachable
+    uint16_t udpPort = 0;          // port of its unicast socket
+    uint32_t socketDatagrams = 0;  // capacity of its socket buffer
+    uint16_t maxDatagramBytes = 0; // largest UDP payload without fragmentation
+    uint8_t seals = 0;             // bit s: supports Seal(s)
+    bool multicast = true;         // wants multicast if it is reachable
 };
 // Host to member: accepted.
 struct Welcome {

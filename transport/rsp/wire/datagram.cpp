@@ -47,7 +47,7 @@ void writeFeedback(const Feedback& f, std::span<std::byte> into) {
     storeLittle(at + 20, f.edge.value());
     storeLittle(at + 24, f.highest.value());
     storeLittle(at + 28, f.echoUs);
-    storeLittle(at + 32, f.heldUs);
+    storeLittle(at + 32, f.ackDelayUs);
     storeLittle<uint16_t>(at + 36, f.to);
     storeLittle<uint16_t>(at + 38, f.entryCount);
     storeLittle(at + 40, f.lost);
@@ -98,7 +98,7 @@ std::optional<Feedback> readFeedback(std::span<const std::byte> d) {
     f.edge = Sequence(loadLittle<uint32_t>(d.data() + 20));
     f.highest = Sequence(loadLittle<uint32_t>(d.data() + 24));
     f.echoUs = loadLittle<uint32_t>(d.data() + 28);
-    f.heldUs = loadLittle<uint32_t>(d.data() + 32);
+    f.ackDelayUs = loadLittle<uint32_t>(d.data() + 32);
     f.to = loadLittle<uint16_t>(d.data() + 36);
     f.entryCount = loadLittle<uint16_t>(d.data() + 38);
     f.lost = loadLittle<uint32_t>(d.data() + 40);

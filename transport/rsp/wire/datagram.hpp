@@ -81,14 +81,14 @@ struct Missing {
 struct Feedback {
     MemberId from = 0;
     uint8_t flags = 0;
-    MemberId to = 0;      // writer of the stream
-    Sequence cumulative;  // cumulative acknowledgement: everything before has been received
-    Sequence edge;        // end of the receive window
-    Sequence highest;     // one past the newest received sequence number
-    uint32_t echoUs = 0;  // send time of the newest datagram
-    uint32_t heldUs = 0;  // time since its arrival
-    uint32_t lost = 0;    // total lost in the network
-    uint32_t dropped = 0; // total dropped by the receiver's socket
+    MemberId to = 0;         // writer of the stream
+    Sequence cumulative;     // cumulative acknowledgement: everything before has been received
+    Sequence edge;           // end of the receive window
+    Sequence highest;        // one past the newest received sequence number
+    uint32_t echoUs = 0;     // send time of the newest datagram
+    uint32_t ackDelayUs = 0; // time since its arrival
+    uint32_t lost = 0;       // total lost in the network
+    uint32_t dropped = 0;    // total dropped by the receiver's socket
     uint16_t entryCount = 0;
     std::array<Missing, kMaxEntries> entries{};
 };

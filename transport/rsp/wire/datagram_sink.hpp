@@ -14,7 +14,7 @@ constexpr size_t kMaxInSending = 64;
 constexpr size_t kMaxSendingBytes = 63'700;
 constexpr size_t kDatagramHeadsBytes = 42; // Ethernet, IPv4, UDP
 
-constexpr size_t mostInSending(size_t datagramBytes) {
+constexpr size_t maxInSend(size_t datagramBytes) {
     return std::clamp<size_t>(kMaxSendingBytes / (datagramBytes + kDatagramHeadsBytes), 1, kMaxInSending);
 }
 

@@ -14,13 +14,13 @@
 
 namespace {
 
-using mural::scenes::Look;
+using mural::scenes::View;
 
 struct Options {
     int width = 509, height = 383, frames = 6;
     std::string save; // folder; empty: nothing is saved
     int scene = -1;   // a single scene; -1: all in sequence
-    Look look;
+    View view;
 };
 
 const char* const kUsage =
@@ -29,13 +29,13 @@ const char* const kUsage =
 bool take(const std::string& name, const char* value, Options& o) {
     if (name == "--size") return std::sscanf(value, "%dx%d", &o.width, &o.height) == 2 && o.width > 0 && o.height > 0;
     if (name == "--frames") return std::sscanf(value, "%d", &o.frames) == 1 && o.frames > 0;
-    if (name == "--move") return std::sscanf(value, "%f,%f", &o.look.moveX, &o.look.moveY) == 2;
+    if (name == "--move") return std::sscanf(value, "%f,%f", &o.view.moveX, &o.view.moveY) == 2;
     if (name == "--scene") {
         const auto found = std::ranges::find(mural::scenes::kSceneNames, std::string(value));
         o.scene = static_cast<int>(found - mural::scenes::kSceneNames.begin());
         return found != mural::scenes::kSceneNames.end();
     }
-    if (name == "--eye") return std::sscanf(value, "%f,%f", &o.look.eye, &o.look.focus) == 2;
+    if (name == "--eye") return std::sscanf(value, "%f,%f", &o.view.eye, &o.view.focus) == 2;
     o.save = value;
     return name == "--save" && *value != '\0';
 }
@@ -61,7 +61,7 @@ int drawAll(const Options& o) {
     if (!window) throw std::runtime_error(why);
     std::printf("%s, %s\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
                 reinterpret_cast<const char*>(glGetString(GL_VERSION)));
-    const mural::scenes::Scenes scenes(o.width, o.height, o.look);
+    const mural::scenes::Scenes scenes(o.width, o.height, o.view);
     for (int frame = 0; frame < o.frames; ++frame) {
         scenes.draw(o.scene < 0 ? frame : frame * static_cast<int>(mural::scenes::kSceneNames.size()) + o.scene);
         if (const GLenum error = glGetError(); error != GL_NO_ERROR)

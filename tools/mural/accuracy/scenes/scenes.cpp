@@ -105,11 +105,11 @@ std::vector<float> triangleSoup() {
 
 } // namespace
 
-Scenes::Scenes(int width, int height, const Look& look)
-    : width_(width), height_(height), look_(look), soup_(triangleSoup()) {
+Scenes::Scenes(int width, int height, const View& view)
+    : width_(width), height_(height), view_(view), soup_(triangleSoup()) {
     int major = 0;
     if (const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION))) major = version[0] - '0';
-    if (major < 4 && (look.moveX != 0 || look.moveY != 0))
+    if (major < 4 && (view.moveX != 0 || view.moveY != 0))
         throw std::runtime_error("fractional viewports need OpenGL 4.1");
     program_ =
         programOf("#version 120\nattribute vec3 place; attribute vec3 tone; uniform mat4 whole; varying vec3 tint;\n"
@@ -120,20 +120,20 @@ Scenes::Scenes(int width, int height, const Look& look)
 
 // Integer coordinates if nothing is moved, as programs use them.
 void Scenes::useViewport() const {
-    if (look_.moveX == 0 && look_.moveY == 0)
+    if (view_.moveX == 0 && view_.moveY == 0)
         glViewport(0, 0, width_, height_);
     else
-        glViewportIndexedf(0, look_.moveX, look_.moveY, static_cast<float>(width_), static_cast<float>(height_));
+        glViewportIndexedf(0, view_.moveX, view_.moveY, static_cast<float>(width_), static_cast<float>(height_));
 }
 
 void Scenes::usePerspective(double nearPlane, double farPlane, int round) const {
     const double halfHeight = 0.6 * nearPlane, halfWidth = halfHeight * width_ / height_;
     // An off-centre eye looks through the same frame at its focus distance.
-    const double shift = -static_cast<double>(look_.eye) * nearPlane / static_cast<double>(look_.focus);
+    const double shift = -static_cast<double>(view_.eye) * nearPlane / static_cast<double>(view_.focus);
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();
     glFrustum(shift - halfWidth, shift + halfWidth, -halfHeight, halfHeight, nearPlane, farPlane);
-    glTranslatef(-look_.eye, 0, 0);
+    glTranslatef(-view_.eye, 0, 0);
     // For Mesa an equal reloaded matrix stays the same object, with properties derived by earlier draws, which changes
     // the rounding of lit colours (docs/measurements/accuracy.md). A distinct matrix is independent of earlier frames.
     glMatrixMode(GL_MODELVIEW);

@@ -6,7 +6,7 @@
 namespace mural::scenes {
 
 // Transformations of Mural's passes, done by the program itself as their reference.
-struct Look {
+struct View {
     float moveX = 0, moveY = 0; // of the viewport, in pixels
     float eye = 0;              // to the right of the centre, in scene units
     float focus = 6;            // distance at which all eyes converge
@@ -15,7 +15,7 @@ struct Look {
 class Scenes {
 public:
     // Requires a current context. Throws std::runtime_error, with one line, if a feature is missing.
-    Scenes(int width, int height, const Look& look);
+    Scenes(int width, int height, const View& view);
     void draw(int frame) const;
 
 private:
@@ -29,7 +29,7 @@ private:
     void drawDepths(int round) const;
 
     int width_, height_;
-    Look look_;
+    View view_;
     unsigned program_ = 0, texture_ = 0;
     std::vector<float> soup_; // triangle soup: x, y, z, r, g, b per corner
 };

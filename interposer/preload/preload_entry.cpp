@@ -1,4 +1,4 @@
-// The preloaded entry (libmural_front.so). It exports all names of GL, GLX and EGL before a GL library that does not
+// The preloaded entry (libmural_preload.so). It exports all names of GL, GLX and EGL before a GL library that does not
 // use GLVND. Its functions jump to the wrappers of libGLX_mural.so.0, which the vendor entry returns as well. `mural
 // run` preloads it only into programs with such a library. If GLVND's libraries are loaded as well, calls of their
 // names are passed on, because they arrive through the vendor entry.
@@ -26,7 +26,7 @@ Entry nextEntry(const char* name) {
         if (!handle) continue;
         void* found = loader::symbolIn(handle, name);
         loader::closeLibrary(handle);
-        if (found && !isOurs(found)) return reinterpret_cast<Entry>(found);
+        if (found && !isFromMural(found)) return reinterpret_cast<Entry>(found);
     }
     return nullptr;
 }
@@ -34,23 +34,23 @@ Entry nextEntry(const char* name) {
 bool isOwnGl(Entry entry) { return objectOf(reinterpret_cast<const void*>(entry)) == GlObject::Own; }
 
 // Returns functions of the wrapped library for the encoder: exported ones, or results of the library's own lookup.
-Entry behindUs(const char* name) {
+Entry nextAfterMural(const char* name) {
     const Entry exported = nextEntry(name);
     if (exported && isOwnGl(exported)) return exported;
     using Lookup = Entry(const char*);
     for (const char* lookup : {"glXGetProcAddressARB", "eglGetProcAddress"}) {
-        const Entry ask = nextEntry(lookup);
-        if (!ask || !isOwnGl(ask)) continue;
-        if (const Entry found = reinterpret_cast<Lookup*>(ask)(name)) return found;
+        const Entry lookupFunction = nextEntry(lookup);
+        if (!lookupFunction || !isOwnGl(lookupFunction)) continue;
+        if (const Entry found = reinterpret_cast<Lookup*>(lookupFunction)(name)) return found;
     }
     return nullptr;
 }
 
 // Returns the target of a program's call of `name`, for which the wrapped library has `next`.
-Entry frontOf(const char* name, Entry next) {
+Entry entryOf(const char* name, Entry next) {
     if (!isOwnGl(next)) return next;
-    const Entry ours = mural_front_entry(name, behindUs);
-    return ours ? ours : next;
+    const Entry replacement = mural_preload_entry(name, nextAfterMural);
+    return replacement ? replacement : next;
 }
 
 int thunkOf(const char* name) {
@@ -73,7 +73,7 @@ Entry resolveSlot(int number) {
     const char* name = thunkName(number);
     const Entry next = nextEntry(name);
     if (!next) return reinterpret_cast<Entry>(nothing);
-    const Entry entry = frontOf(name, next);
+    const Entry entry = entryOf(name, next);
     loader::keepLoaded(reinterpret_cast<const void*>(next)); // the slot must not outlive the library
     __atomic_store_n(&gSlots[number], entry, __ATOMIC_RELEASE);
     return entry;
@@ -82,8 +82,8 @@ Entry resolveSlot(int number) {
 void* replaceFound(const char* name, void* found) {
     if (thunkOf(name) < 0) return found;
     auto next = reinterpret_cast<Entry>(found);
-    if (isOurs(found)) next = nextEntry(name); // found only because we export it
-    return next ? reinterpret_cast<void*>(frontOf(name, next)) : nullptr;
+    if (isFromMural(found)) next = nextEntry(name); // found only because we export it
+    return next ? reinterpret_cast<void*>(entryOf(name, next)) : nullptr;
 }
 
 } // namespace mural

@@ -1,11 +1,11 @@
-#include "nodes/head/capture/life_mark.hpp"
+#include "nodes/head/capture/liveness_mark.hpp"
 
 #include <sys/syscall.h>
 #include <unistd.h>
 
 namespace mural {
 
-LifeMark::LifeMark(std::atomic<uint32_t>& word) : word_(word) {
+LivenessMark::LivenessMark(std::atomic<uint32_t>& word) : word_(word) {
     if (syscall(SYS_get_robust_list, 0, &before_, &beforeBytes_) != 0) return;
     entry_.next = &list_.list; // one entry, then the list's head again
     list_.list.next = &entry_;
@@ -14,7 +14,7 @@ LifeMark::LifeMark(std::atomic<uint32_t>& word) : word_(word) {
     if (held_) word_.store(static_cast<uint32_t>(gettid()), std::memory_order_release);
 }
 
-LifeMark::~LifeMark() {
+LivenessMark::~LivenessMark() {
     if (!held_) return;
     word_.store(FUTEX_OWNER_DIED, std::memory_order_release);
     syscall(SYS_set_robust_list, before_, beforeBytes_);

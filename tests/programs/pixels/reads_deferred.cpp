@@ -74,7 +74,7 @@ void severalReads() {
     done(buffer);
 }
 
-void lookByName() {
+void readByName() {
     std::vector<GLubyte> bytes(kBytes);
     GLuint buffer = readAt(16);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -221,7 +221,7 @@ void deleteEarly() {
     done(next);
 }
 
-void askBetween() {
+void queryBetween() {
     const GLuint buffer = readAt(0, 17), second = readAt(0, 18);
     std::vector<GLubyte> bytes(kBytes);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -392,9 +392,9 @@ int main(int argc, char** argv) {
     window = openGlxWindow({}, options.width, options.height);
     window->makeCurrent();
     setUp();
-    constexpr void (*kParts[])() = {severalReads, lookByName,  copyOut,    upload,     drawFrom,
-                                    writeOver,    deleteEarly, askBetween, readOthers, readOverOthers,
-                                    mistakes,     mapForGood,  many,       share};
+    constexpr void (*kParts[])() = {severalReads, readByName,  copyOut,      upload,     drawFrom,
+                                    writeOver,    deleteEarly, queryBetween, readOthers, readOverOthers,
+                                    mistakes,     mapForGood,  many,         share};
     for (int frame = 0; frame < options.frames; ++frame) {
         scene(frame);
         row = column = 0;

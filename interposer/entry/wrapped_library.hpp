@@ -18,10 +18,10 @@ template <class F> OwnEntry ownEntry(const char* name, F* function) {
     return {name, reinterpret_cast<Entry>(function)};
 }
 
-class Front {
+class WrappedLibrary {
 public:
     template <size_t N>
-    constexpr Front(const char* windowSystem, const OwnEntry (&own)[N])
+    constexpr WrappedLibrary(const char* windowSystem, const OwnEntry (&own)[N])
         : windowSystem_(windowSystem), own_(own), count_(N) {}
 
     // Sets the wrapped library, from which functions and GL commands are loaded.
@@ -42,8 +42,8 @@ private:
 
 // Both entries feed one encoder, but only the first one used is active. A library that the preloaded
 // entry wraps may itself call GLVND, and its calls would arrive twice.
-enum class Way : int { Open, Vendor, Preload };
-bool claimProgram(Way way);
+enum class EntryKind : int { Unclaimed, Vendor, Preload };
+bool claimProgram(EntryKind kind);
 
 // Forbids GLVND to patch its entry points, because patched ones would bypass the wrappers.
 template <class Imports> void forbidPatching(Imports& imports) {
@@ -56,7 +56,7 @@ template <class Imports> void forbidPatching(Imports& imports) {
 inline uint8_t clampByte(int v) { return static_cast<uint8_t>(v < 0 ? 0 : v > 255 ? 255 : v); }
 
 // The GLX and EGL entries. GLVND or the preloaded entry attaches them.
-Front& glxFront();
-Front& eglFront();
+WrappedLibrary& glxLibrary();
+WrappedLibrary& eglLibrary();
 
 } // namespace mural

@@ -11,12 +11,12 @@ namespace mural {
 
 // Held by the thread that creates it, until the same thread destroys it. A thread can hold only one. Any process may
 // write the word, because the kernel follows only pointers in this object.
-class LifeMark {
+class LivenessMark {
 public:
-    explicit LifeMark(std::atomic<uint32_t>& word);
-    ~LifeMark();
-    LifeMark(const LifeMark&) = delete;
-    LifeMark& operator=(const LifeMark&) = delete;
+    explicit LivenessMark(std::atomic<uint32_t>& word);
+    ~LivenessMark();
+    LivenessMark(const LivenessMark&) = delete;
+    LivenessMark& operator=(const LivenessMark&) = delete;
 
 private:
     std::atomic<uint32_t>& word_;
