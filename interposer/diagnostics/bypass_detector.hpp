@@ -1,6 +1,6 @@
 // Detects pictures that bypass the capture library, wholly or partly. If no GL call was captured, the program draws by
 // another path, or has not drawn yet. If calls were captured but do not draw locally, a changed local back buffer
-// proves another path (local_pixels.hpp).
+// proves another path (back_buffer_probe.hpp).
 #pragma once
 
 namespace mural {

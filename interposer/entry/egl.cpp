@@ -58,7 +58,7 @@ Window* addSurface(EGLDisplay dpy, EGLSurface surface, EGLConfig config, uint64_
     wire::WindowConfig c = configOf(dpy, config);
     c.isPbuffer = pbuffer;
     // Mesa gives windows two buffers, whatever EGL_RENDER_BUFFER says, and other surfaces one. Desktop GL is queried
-    // (learnBuffers).
+    // (readBufferFormats).
     c.doubleBuffer = !pbuffer;
     for (const EGLint* a = attributes; a && *a != EGL_NONE; a += 2) {
         if (a[0] == EGL_GL_COLORSPACE) c.srgb = a[1] == EGL_GL_COLORSPACE_SRGB;

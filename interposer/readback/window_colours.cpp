@@ -51,7 +51,7 @@ struct Floats {
         constexpr float kMax = 1 << 16; // largest half float
         if (std::memcmp(&a, &b, sizeof a) == 0 || a == b) return 0;
         const float distance = a < b ? b - a : a - b;
-        const float parts = (distance < kMax ? distance : kMax) * 255; // NaN gives kMost
+        const float parts = (distance < kMax ? distance : kMax) * 255; // NaN gives kMax
         const auto whole = static_cast<uint32_t>(parts);
         return parts > static_cast<float>(whole) ? whole + 1 : whole;
     }

@@ -18,7 +18,7 @@ public:
     // Does not wait for the receiver. Errors of send and receive: the peer is lost; no message before the deadline.
     // After an error the peer counts as lost, and later calls fail at once.
     virtual Result<void> send(int rank, std::vector<std::byte> message, Deadline deadline) = 0;
-    // Returns the next message of the rank. A message above mostBytes is an error.
+    // Returns the next message of the rank. A message above maxBytes is an error.
     virtual Result<std::vector<std::byte>> receive(int rank, size_t maxBytes, Deadline deadline) = 0;
     // The transfer to that rank since the last call.
     virtual LinkTransfer takeTransfer(int rank) = 0;

@@ -57,7 +57,7 @@ template <class Condition> bool PictureSender::await(std::unique_lock<std::mutex
     return true;
 }
 
-// A message larger than mostBytes waits until no other message is queued.
+// A message larger than maxBytes waits until no other message is queued.
 bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
     std::unique_lock lock(mutex_);
     const auto room = [&] {

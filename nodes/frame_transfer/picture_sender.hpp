@@ -26,7 +26,7 @@ namespace mural {
 struct PictureSenderConfig {
     std::string codec = "raw"; // a name for PlaneEncoder; raw: no encoding
     PictureAlpha alpha = PictureAlpha::Preserved;
-    Zoom transferScale; // reduction for the transfer (picture_way.hpp)
+    Zoom transferScale; // reduction for the transfer (transfer_scale.hpp)
     // nodes share cores: adds this thread's CPU time to the frame's work. Otherwise the longer of the two counts,
     // because both run in parallel
     bool addsCpu = false;

@@ -154,8 +154,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("pictureCodec", s.pictureCodec);
     visit("windowPixels", s.windowPixels);
     visit("deepPictures", s.deepPictures);
-    visit("wayX", s.transferScale.x);
-    visit("wayY", s.transferScale.y);
+    visit("transferScaleX", s.transferScale.x);
+    visit("transferScaleY", s.transferScale.y);
     visit("readback", s.readback);
     visit("partCodec", s.partCodec);
     visit("wallWindows", s.wallWindows);

@@ -11,7 +11,7 @@ struct DictionaryEntry {
     uint32_t where = 0; // short record: offset in the ring; page: slot in the store
     uint32_t sizeBytes : 13 = 0;
     uint32_t page : 1 = 0;
-    uint32_t model : 18 = 0; // predictor state of its words (word_models.hpp); 0: none
+    uint32_t model : 18 = 0; // predictor state of its words (streamcodec/delta/entropy/predictor_state.hpp); 0: none
     [[nodiscard]] bool like(DictionaryEntry other) const { return page == other.page && sizeBytes == other.sizeBytes; }
 };
 static_assert(sizeof(DictionaryEntry) == 8);

@@ -55,7 +55,7 @@ enum class Binding : uint8_t {
     TextureBuffer,
 };
 
-// Role of a record in frame matching (holder_frames.cpp), where a frame repeats the previous one.
+// Role of a record in frame matching (filter_frames.cpp), where a frame repeats the previous one.
 enum class FrameRole : uint8_t {
     Draws,     // changes no binding, independently of its arguments
     Binds,     // changes bindings or depends on them; its arguments have to match
@@ -75,8 +75,8 @@ struct CommandKind {
     trace::Family family = trace::Family::Unknown;
     uint8_t valueWord = kNoValue; // argument word in which the first value of variable size begins
     bool small = false;           // sets uniforms, which are examined together with redundant state
-    // Change of the glBegin nesting depth, for commands without another effect in a list that is compiled. kLooked: the
-    // command has to be examined.
+    // Change of the glBegin nesting depth, for commands without another effect in a list that is compiled. kExamined:
+    // the command has to be examined.
     int8_t deeper = kExamined;
     FrameRole frame = FrameRole::Ends;
     Binding binding = Binding::Nothing;

@@ -37,7 +37,7 @@ struct CommandFilterCounts {
 // Not thread-safe.
 class CommandFilter {
 public:
-    // mostBytes: limit of deferred data; above it the oldest is flushed.
+    // maxBytes: limit of deferred data; above it the oldest is flushed.
     CommandFilter(uint64_t maxBytes, Take take);
     CommandFilter(const CommandFilter&) = delete;
     CommandFilter& operator=(const CommandFilter&) = delete;

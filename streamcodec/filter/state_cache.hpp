@@ -25,8 +25,9 @@ template <size_t Words> class StateCache {
 public:
     static constexpr size_t kMaxBytes = Words * 4;
 
-    // If `mayWait`, the command is deferred until a command reads this cell; otherwise it is sent now unless redundant.
-    // A deferred command is replaced by a later one; the caller guarantees that both are valid or both invalid.
+    // If `deferrable`, the command is deferred until a command reads this cell; otherwise it is sent now unless
+    // redundant. A deferred command is replaced by a later one; the caller guarantees that both are valid or both
+    // invalid.
     SetResult set(size_t index, std::span<const std::byte> record, bool deferrable) {
         if (index >= cells_.size()) cells_.resize(index + 1);
         Cell& cell = cells_[index];

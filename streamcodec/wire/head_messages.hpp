@@ -7,7 +7,7 @@ namespace mural::wire {
 
 // First word of a packet of the head's own stream.
 enum class HeadCommand : uint32_t {
-    Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/render/setup.hpp)
+    Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/session/session_config.hpp)
     ClientGone = 2, // u32 client: frees its contexts and windows
     Finish = 3,     // the last packet: the node replies Goodbye and exits
     // json: {"pictures", "swaps"}: HOST:PORT of each node that composites pictures, or leads a swap barrier, by its

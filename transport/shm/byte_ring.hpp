@@ -2,9 +2,9 @@
 //
 // Positions are free-running 32-bit byte counts (capacity at most 1 GiB, so differences are unambiguous). They are
 // futex words too: the reader sleeps on `tail`, the writer on `head`. A sleeping side sets its waiting flag, so a
-// flowing stream costs no system call. Wake-ups are batched: after announceBytes, at announce(), and before a side goes
-// to sleep. A side must sleep in slices: the last bytes of a batch are visible immediately, but only announce() wakes
-// for them.
+// flowing stream costs no system call. Wake-ups are batched: after `announceBytes_`, at announce(), and before a side
+// goes to sleep. A side must sleep in slices: the last bytes of a batch are visible immediately, but only announce()
+// wakes for them.
 //
 // Each side keeps a private copy of its position, so a damaged or hostile peer cannot make it leave the ring; damaged()
 // becomes true instead.

@@ -55,7 +55,7 @@ public:
     [[nodiscard]] int livingCount() const;
     NodeConnection& link(int node) { return *links_[static_cast<size_t>(node)]; }
 
-    // ---- nodes that come again (node_set_joins.cpp)
+    // ---- nodes that come again (membership_join.cpp)
     // All that a node needs that comes now has been kept.
     [[nodiscard]] bool canJoin() const { return rejoinLog_ && rejoinLog_->complete(); }
     // Replaces a lost node whose end was fully reported. The new link receives nothing yet. Call from the adding

@@ -27,7 +27,7 @@ namespace mural {
 
 class RejoinLog {
 public:
-    // mostBytes: memory for the reduced log, and as much again for entries that the thread has not processed.
+    // maxBytes: memory for the reduced log, and as much again for entries that the thread has not processed.
     explicit RejoinLog(uint64_t maxBytes);
     RejoinLog(const RejoinLog&) = delete;
     RejoinLog& operator=(const RejoinLog&) = delete;

@@ -91,7 +91,7 @@ private:
     Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) override;
     void nodeLost(int node, const std::string& why) override;
 
-    // Restarts of nodes (head_session_returns.cpp).
+    // Restarts of nodes (head_session_restarts.cpp).
     NodeRestarter::Hooks returnHooks();
     void linkAgain(int node, StartingNode& starting);
     void introduceAgain(int node);

@@ -67,7 +67,7 @@ private:
     int wantedHeight_ = 0;
     std::string title_;
     OwnedPicture shown_;      // the shown picture
-    OwnedPicture shownRight_; // empty: both eyes show kept_
+    OwnedPicture shownRight_; // empty: both eyes show shown_
     bool stereo_ = false;
     std::unique_ptr<TextureBlit> blit_; // one of the two is set
     std::unique_ptr<AppWindow> painter_;

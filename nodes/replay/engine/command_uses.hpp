@@ -5,15 +5,15 @@
 
 namespace mural {
 
-// Sort-last (replay_range.cpp).
+// Sort-last (features/sort_last.cpp).
 enum class RangeUse : uint8_t { None, State, Clear, Draw, Begin, End, Vertex, Read, Memory, Feedback, Query };
 RangeUse rangeUseOf(uint16_t opcode);
 
-// Other eyes and screens (replay_eyes.cpp).
+// Other eyes and screens (features/stereo_view.cpp).
 enum class EyeUse : uint8_t { None, Matrix, Draw, List, Uniform, Buffer, Framebuffer };
 EyeUse eyeUseOf(uint16_t opcode);
 
-// Windows that a node draws whole although its pass shows part of the pixels (replay_whole_windows.cpp).
+// Windows that a node draws whole although its pass shows part of the pixels (features/whole_windows.cpp).
 enum class WholeUse : uint8_t {
     None,
     Copies,

@@ -1,4 +1,4 @@
-// Replays control records: contexts, windows, client memory. replay_swaps.cpp handles the records for frames.
+// Replays control records: contexts, windows, client memory. context/swaps.cpp handles the records for frames.
 #include <cstring>
 #include <utility>
 

@@ -78,7 +78,8 @@ public:
     void resetShares(bool itself, std::function<void()> returned);
     // Announces new shares. Each window adopts them with the first shared draw of its next frame.
     void moveShares(const RangeAssignment& shares);
-    // Requires ReplayConfig::areas. Applies new areas to each window at its next full clear (replay_areas.cpp).
+    // Requires ReplayConfig::areas. Applies new areas to each window at its next full clear
+    // (features/dynamic_tiles.cpp).
     void moveAreas(ViewportAssignment areas);
     // Returns the payload of a Turns message: the areas that divide this node's windows.
     [[nodiscard]] std::vector<std::byte> memberAreas() const;
@@ -156,7 +157,7 @@ private:
         uint64_t returns = 0;
         CompositeRule rule; // how the nodes' pictures are composited
     };
-    // This node's part of a window, where it may change (replay_areas.cpp).
+    // This node's part of a window, where it may change (features/dynamic_tiles.cpp).
     struct MovingPart {
         std::shared_ptr<const ViewportAssignment> areas;  // the current ones
         std::shared_ptr<const ViewportAssignment> wanted; // the ones to apply at the next full clear
@@ -184,7 +185,7 @@ private:
         PixelViewport region;                // `part` as it is drawn; empty while another node has the turn
         // pixels inside the scissor: the region, or the driver's bins that contain it (raster_bins.hpp)
         PixelViewport drawn;
-        int64_t frames = 0; // number of frames begun, and below of turns begun (replay_turns.cpp)
+        int64_t frames = 0; // number of frames begun, and below of turns begun (features/time_multiplex.cpp)
         int64_t turn = 0;
         bool turnOver = false;       // the frame is complete; the next drawing command begins another
         bool undecided = false;      // the frame has only cleared, and may begin the next node's turn
@@ -193,19 +194,20 @@ private:
         GLbitfield cleared = 0;      // buffers that were cleared whole since the frame began
         bool plain = true;           // drawn without the kernel of this pass; its pixels are selected at the end
         bool copied = true;          // pixels were read or copied, or selected texture levels: the next frame is plain
-        int levelChecks = 0;    // draws of this frame that were checked for texture levels (replay_whole_windows.cpp)
+        int levelChecks = 0;    // draws of this frame that were checked for texture levels (features/whole_windows.cpp)
         bool requested = false; // pixels or bytes were requested in this frame
         // draws the whole window: a copy must find this pass's own pixels, and other tiles deliver another pass's
         bool drawsAll = true;
         bool filled = true; // the frame had copies: the next one draws the whole window
         RangeFrame range;
         MovingPart moving;
-        bool keepsPicture = false;      // one node has the turn permanently
-        bool sceneElsewhere = false;    // this frame draws its scene into a framebuffer object (replay_scenes.cpp)
+        bool keepsPicture = false; // one node has the turn permanently
+        bool sceneElsewhere =
+            false; // this frame draws its scene into a framebuffer object (features/stereo_scenes.cpp)
         bool sceneWasElsewhere = false; // the previous frame drew its scene into a framebuffer object
         bool begun = false;             // something was drawn since the last swap
         ReadbackChoice readback;
-        bool skipped = false;             // its frames are not drawn (replay_catch_up.cpp)
+        bool skipped = false;             // its frames are not drawn (features/frame_skip.cpp)
         GLbitfield stale = 0;             // buffers with wrong content after skipped frames
         bool frontStaled = false;         // the front buffer is stale as well
         bool invalid = false;             // this frame depends on stale buffers
@@ -237,7 +239,7 @@ private:
         // by this node's shader name: contains a module that reads gl_FragCoord
         std::unordered_map<GLuint, bool> placedModules;
         bool listsContainBitmaps = false;              // at least one list contains a bitmap
-        bool texturesHaveLevels = false;               // at least one texture has (replay_whole_windows.cpp)
+        bool texturesHaveLevels = false;               // at least one texture has (features/whole_windows.cpp)
         bool testsDepth = false, testsStencil = false; // some command or list has enabled the test
         // every node draws everything: the program's side requested it, or a module reads gl_FragCoord
         bool allDrawn = false;
@@ -246,10 +248,10 @@ private:
         HandleTable handles;
         std::unordered_map<uint64_t, DealtHandle> dealt;            // by the program's texture handle
         bool handlesFreed = false;                                  // some texture with a handle was deleted
-        std::unordered_map<GLuint, ProjectionDetector> projections; // by the program's name (replay_eyes.cpp)
+        std::unordered_map<GLuint, ProjectionDetector> projections; // by the program's name (features/stereo_view.cpp)
         // by this node's program name: numbers primitives, so draws are not cut into pieces
         std::unordered_map<GLuint, bool> primitiveIds;
-        // by the program's name, after its first use (replay_left_out.cpp)
+        // by the program's name, after its first use (features/draw_skipping.cpp)
         std::unordered_map<GLuint, bool> memoryWriters;
         ProjectionDetector projection;        // the last one found in any buffer
         std::shared_ptr<AsyncReadback> later; // null: unavailable, or not requested yet
@@ -356,7 +358,7 @@ private:
         GLenum drawBuffer0 = 0, readBuffer0 = 0; // of the default framebuffer, as the program named them
         PixelUnpack unpack;
         std::array<GLint, 8> pack{};
-        bool gathersBitmaps = false; // the driver may have batched some (replay_bitmaps.cpp)
+        bool gathersBitmaps = false; // the driver may have batched some (features/bitmap_flush.cpp)
         bool packsBlocks = false;    // the program has set pack parameters of compressed blocks
         GLuint listBase = 0;
         GLuint compiling = 0; // name of the list, 0: none
@@ -375,11 +377,11 @@ private:
         bool pipelineBound = false;
         std::set<GLenum> openQueries; // active queries of other counts than samples
         bool feedsBack = false;       // transform feedback may be active
-        // The current draw target, as determined at the last draw (replay_scenes.cpp).
+        // The current draw target, as determined at the last draw (features/stereo_scenes.cpp).
         bool attachmentsKnown = false, depthAttached = false, sceneSized = false, depthTested = false;
-        // Fixed function for another eye: GL's projection differs from the program's (replay_eyes.cpp).
+        // Fixed function for another eye: GL's projection differs from the program's (features/stereo_view.cpp).
         bool projectionShifted = false;
-        // Sort-last: whether draws may be shared, valid until state changes (replay_range.cpp).
+        // Sort-last: whether draws may be shared, valid until state changes (features/sort_last.cpp).
         bool rangeKnown = false, mayShare = false;
         bool writesMemory = false;   // storage or images were bound; vertex shaders may write to them
         bool rangeFeedsBack = false; // transform feedback is active
@@ -424,7 +426,7 @@ private:
     bool splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const;
     void onPrimitive(uint16_t opcode, std::span<const std::byte> arguments);
     bool compileSplitting(uint16_t opcode, std::span<const std::byte> bytes, std::span<const std::byte> arguments);
-    // replay_own.cpp
+    // control_records.cpp
     bool own(uint16_t opcode, Args& in);
     [[nodiscard]] gl::SurfaceConfig surfaceConfig(const wire::WindowConfig& c, int width, int height) const;
     bool onBlobBegin(Args& in);
@@ -439,14 +441,14 @@ private:
     void copyIntoBuffer(GLenum target, uint64_t offset, std::span<const std::byte> bytes);
     bool onFillWindow(Args& in);
     void setArrayPointer(const client_arrays::ArrayRecord& a, const std::byte* first);
-    // replay_swaps.cpp
+    // context/swaps.cpp
     void waitUntilDrawn();
     [[nodiscard]] ContextState* contextFor(const Client& client, const Window& w) const;
     [[nodiscard]] bool mustBindForSwap(const Window& w, uint32_t frame, bool front) const;
     bool onSwap(Args& in, bool front);
     void swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t frame, bool front);
     void showWindow(Window* window, uint32_t id, uint32_t frame, bool front);
-    // replay_reads.cpp
+    // readback/query_replies.cpp
     bool onRequestPixels(Args& in);
     bool onRequestTexImage(Args& in);
     void readTexels(bool byName, GLuint which, GLint level, GLenum format, GLenum type);
@@ -466,7 +468,7 @@ private:
     void withPlainTransfer(const std::function<void()>& call);
     void withoutReadClamp(const std::function<void()>& call);
     void fillColor(const PixelViewport& r, const void* rgba, const ColourWords& words = kByteWords);
-    // replay_pictures.cpp
+    // readback/frame_readback.cpp
     [[nodiscard]] bool hasFences(const ContextState& c) const;
     std::shared_ptr<AsyncReadback> laterReads();
     [[nodiscard]] bool readsLater(const Window& w, const PixelViewport& region);
@@ -474,17 +476,17 @@ private:
     std::unique_ptr<PictureRead> readLater(Window& w, const PixelViewport& r, bool front);
     AsyncReadback* into_ = nullptr; // destination of readRegion(); null: pixels_
     std::shared_ptr<PictureMemory> memory_ = std::make_shared<PictureMemory>();
-    // replay_fill.cpp
+    // readback/window_fill.cpp
     const GLfloat* depthAsFloats(const Window& w, const PixelViewport& r, const void* pixels);
     std::vector<GLfloat> depths_;
     gl::Context* fillerOf(Window& w);
     void fillByOtherContext(const PixelViewport& r, GLbitfield plane, const void* pixels,
                             GLenum colourType = GL_UNSIGNED_BYTE);
-    // replay_images.cpp
+    // context/egl_images.cpp
     bool onCreateImage(Args& in);
     bool onDestroyImage(Args& in);
     void withImage(uint64_t image, const std::function<void(GLeglImageOES)>& call);
-    // replay_handles.cpp
+    // context/bindless_handles.cpp
     void dealtHandle(HandleTable::Of of, uint64_t appHandle, uint64_t nodeHandle);
     void requestTextureHandle(GLuint texture, GLuint sampler, uint64_t appHandle);
     uint64_t equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GLuint& made);
@@ -495,7 +497,7 @@ private:
     [[nodiscard]] HandleTable::Of handlesOfUniform(GLuint program, GLint location) const;
     [[nodiscard]] std::vector<GLuint64> handleValues(GLuint program, GLint location, const GLuint64* values,
                                                      GLsizei count) const;
-    // replay_sparse.cpp
+    // context/sparse_pages.cpp
     struct PageBox {
         GLint level, x, y, z;
         GLsizei width, height, depth;
@@ -507,7 +509,7 @@ private:
     void commitBuffer(uint64_t offset, uint64_t sizeBytes, bool commits, const std::function<uint64_t()>& bufferBytes,
                       const std::function<void(uint64_t, uint64_t)>& call);
     bool pagesReported_ = false;
-    // replay_news.cpp
+    // context/driver_messages.cpp
     void listenToDriver();
     static void APIENTRY onDriverMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                          const GLchar* text, const void* inbox);
@@ -517,12 +519,12 @@ private:
     bool errorReported();
     void reportDriverProblems();
     bool executeAllocating(ReplayFunction function, Args& in);
-    // replay_release.cpp
+    // context/release.cpp
     bool onDestroyContext(Args& in);
     bool onDestroyWindow(Args& in);
     void unbindPlatform();
     void freeDestroyed(Client& client);
-    // replay_queries.cpp
+    // readback/query_objects.cpp
     void withQueriesSuspended(const std::function<void()>& call);
     void beginPiece(GLenum target, GLuint query);
     bool onRequestQuery(Args& in);
@@ -538,7 +540,7 @@ private:
     void dropPieces(QueryInfo& query);
     uint64_t queryResult(GLuint nodeName);
     uint64_t readQuery(GLuint nodeName);
-    // replay_areas.cpp
+    // features/dynamic_tiles.cpp
     [[nodiscard]] bool moves() const { return areas_ != nullptr; }
     [[nodiscard]] bool isLearningAreas(const Window& w) const { return moves() && !knowsAreas_ && !w.skipped; }
     [[nodiscard]] PixelViewport partOf(const Window& w, const ViewportAssignment* areas) const;
@@ -553,7 +555,7 @@ private:
     [[nodiscard]] bool drawsOldFront() const;
     [[nodiscard]] PixelViewport regionOf(const Window& w, bool front) const;
     [[nodiscard]] bool readsFront() const;
-    // replay_widening.cpp
+    // context/line_widening.cpp
     void onModules(GLuint nodeName);
     [[nodiscard]] bool alone() const { // this node's part is the whole picture
         if (config_.area || moves()) return !moves() && config_.area->full() && !takesTurns();
@@ -563,7 +565,7 @@ private:
     [[nodiscard]] bool allDrawn() const { return c_->shared && c_->shared->allDrawn; }
     void widenToWindow(Window& w);
     void copyTile(const Window& w, gl::Surface& from);
-    // replay_turns.cpp
+    // features/time_multiplex.cpp
     [[nodiscard]] bool takesTurns() const { return config_.pass.period > 1; }
     [[nodiscard]] bool isLearningTurns(const Window& w) const;
     void turnsChanged();
@@ -581,12 +583,12 @@ private:
     void turnDrawn(Window& w, bool shownInFront);
     [[nodiscard]] GLbitfield clearsWhole(GLbitfield mask) const;
     [[nodiscard]] GLbitfield needsCleared() const;
-    // replay_catch_up.cpp
+    // features/frame_skip.cpp
     [[nodiscard]] bool maySkip() const;
     void onSkipped(uint16_t opcode, std::span<const std::byte> arguments);
     [[nodiscard]] bool isValid(const Window& w, bool front) const;
     [[nodiscard]] bool mayRead(const Window& w, bool deep) const;
-    // replay_passes.cpp
+    // features/pixel_compound.cpp
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
     // True if the pass does not draw exactly the pixels of this node's part of the window.
     [[nodiscard]] bool drawsOtherPixels() const {
@@ -607,20 +609,20 @@ private:
     [[nodiscard]] RenderPass passOfDraws() const;
     void applyMovedViewports();
     std::array<GLfloat, 20> moveOf(GLuint program) const;
-    // replay_whole_windows.cpp
+    // features/whole_windows.cpp
     void onWholeWindow(uint16_t opcode, std::span<const std::byte> arguments);
     [[nodiscard]] bool choosesOwnLevels() const;
-    // replay_scenes.cpp
+    // features/stereo_scenes.cpp
     [[nodiscard]] bool isSeen() const;
     [[nodiscard]] bool drawsScene() const;
     bool hasDepthAttached();
     void onScene();
-    // replay_left_out.cpp
+    // features/draw_skipping.cpp
     bool mayWriteMemory(GLuint program);
     bool shouldSkipDraw(uint16_t opcode);
     [[nodiscard]] bool stipplesLines() const;
     void swapDrawEntryPoints();
-    // replay_eyes.cpp
+    // features/stereo_view.cpp
     void onEye(uint16_t opcode, std::span<const std::byte> arguments);
     void onEyeAfter(uint16_t opcode);
     void onProjections(std::span<const std::byte> bytes);
@@ -632,7 +634,7 @@ private:
     [[nodiscard]] bool drawsFixed() const;
     void shiftProjection();
     void unshiftProjection();
-    // replay_range.cpp
+    // features/sort_last.cpp
     [[nodiscard]] bool takesRanges() const { return config_.pass.ranges > 1; }
     [[nodiscard]] bool collects() const { return config_.pass.range == 0; }
     std::span<const std::byte> onRange(uint16_t opcode, std::span<const std::byte> arguments);
@@ -667,17 +669,17 @@ private:
     void copySurface(gl::Surface& from, gl::Surface& to, GLbitfield planes);
     void depthForReading();
     void dropFront(Window& w);
-    // replay_bitmaps.cpp
+    // features/bitmap_flush.cpp
     void onBitmaps(uint16_t opcode);
     static bool leavesBitmaps(uint16_t opcode);
     void settleBitmaps();
-    // replay_color_masks.cpp
+    // context/color_masks.cpp
     [[nodiscard]] bool hidesAlpha() const;
     void applyColorMasks();
     void makeOpaque();
     bool alphaHides_ = false;  // some window hides its alpha
     std::string reportedBits_; // last logged difference between a window here and the program's
-    // replay_accum.cpp
+    // features/accumulation_buffer.cpp
     // x, y, z, width and height, in window coordinates.
     void drawTexture(const std::array<GLfloat, 5>& rectangle);
     bool accumulatesHere();
@@ -686,23 +688,23 @@ private:
     void accumulateColours(GLfloat value, bool add);
     void returnAccumulated(GLfloat value);
     bool accumulationReported_ = false;
-    // replay_binaries.cpp
+    // programs/program_binaries.cpp
     bool onRequestProgram(Args& in);
     bool onProgramRecipe(Args& in);
     void linkFrom(GLuint nodeName, ProgramSources recipe);
-    // replay_programs.cpp
+    // programs/programs.cpp
     void compileShader(GLuint nodeName);
     void linkProgram(GLuint nodeName);
     [[nodiscard]] ShaderRewrites rewrites() const;
     [[nodiscard]] bool esContext() const { return c_->api != wire::Api::Desktop; }
     void applyTileValues();
     void widen(GLfloat pixels);
-    // replay_copies.cpp
+    // readback/copy_gather.cpp
     void gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels, const ColourWords& words);
     void gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixels);
     void forgetGathered();
     void fromWindow(const PixelViewport& source, const std::function<void(GLint, GLint)>& call);
-    // replay_tiling.cpp
+    // context/tile_clipping.cpp
     [[nodiscard]] PixelViewport origin() const; // of this node's framebuffer in the window (lean)
     [[nodiscard]] bool drawsLean() const { return c_->draw ? c_->draw->lean : config_.lean; }
     [[nodiscard]] bool readsLean() const { return c_->read && c_->read->lean; }
@@ -712,7 +714,7 @@ private:
     void applyViewports();
     void restoreWindowState();
     [[nodiscard]] bool drawsWindow() const { return c_->drawFramebuffer == 0; }
-    // replay_framebuffers.cpp
+    // context/framebuffers.cpp
     [[nodiscard]] GLenum bufferOfEye(GLenum buffer, const Window* w) const;
     [[nodiscard]] GLenum readBufferOfEye(GLenum buffer, const Window* w) const;
     void drawBuffers(bool ofWindow, GLsizei n, const Data& bufs, const std::function<void(const GLenum*)>& call);
@@ -720,10 +722,10 @@ private:
     [[nodiscard]] GLenum windowBuffer(GLenum buffer, const Window* w) const;
     void bindFramebuffer(GLenum target, GLuint framebuffer, void (*bind)(GLenum, GLuint));
     void deleteFramebuffers(GLsizei n, const Data& framebuffers, void (*remove)(GLsizei, const GLuint*));
-    // replay_pixel_store.cpp
+    // context/pixel_store.cpp
     void setUnpack(bool tight);
     void pixelStore(GLenum pname, GLint value);
-    void arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call); // replay_objects.cpp
+    void arrayPointer(uint64_t pointer, const std::function<void(const void*)>& call); // object_commands.cpp
 
     std::unique_ptr<gl::Platform> platform_;
     ReplayConfig config_;

@@ -17,7 +17,7 @@ namespace mural {
 bool Replay::movesByShaders() const { return c_->api != wire::Api::Desktop || !gl.glViewportIndexedf; }
 
 // Returns the pass for the current draws. A window whose pixels were copied or read in the previous frame is drawn
-// without a kernel. A draw that only shows an already sampled scene is not sampled again (replay_scenes.cpp).
+// without a kernel. A draw that only shows an already sampled scene is not sampled again (stereo_scenes.cpp).
 RenderPass Replay::passOfDraws() const {
     RenderPass p = config_.pass;
     if (!drawsWindow() || !interleaves(c_->draw))

@@ -1,10 +1,10 @@
 // Draws the picture for another eye than the program's, or for a screen at another place in the room. Positions are
-// transformed in clip coordinates (view_move.hpp).
+// transformed in clip coordinates (clip_transform.hpp).
 //
 // Shaders receive the transformation as uniforms (nodes/shaders/moved_position). The program's view of its scene is
-// derived from the matrices that it passes to its shaders (seen_projection.hpp). For shaders without matrices the fixed
-// function's are assumed. The fixed function draws with a projection that the replay sets temporarily. Source: thesis,
-// "Stereo Rendering"; docs/architecture/passes.md.
+// derived from the matrices that it passes to its shaders (projection_detection.hpp). For shaders without matrices the
+// fixed function's are assumed. The fixed function draws with a projection that the replay sets temporarily. Source:
+// thesis, "Stereo Rendering"; docs/architecture/passes.md.
 #include <algorithm>
 #include <string_view>
 #include <utility>

@@ -1,5 +1,5 @@
 // The shader rewritings that a tiling needs, and the values of their uniforms. The only place where the tilings differ
-// for shaders. Pure; replay_tiling.cpp applies them.
+// for shaders. Pure; context/tile_clipping.cpp applies them.
 #pragma once
 
 #include <GL/gl.h>

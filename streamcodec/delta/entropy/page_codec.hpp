@@ -1,5 +1,5 @@
 // Codec of the section of new pages. LZ4 compresses it like other sections. Zstandard compresses pictures separately:
-// the number of filtered pieces (pixel_pieces.hpp), and if any, the compressed sizes of front and planes, then both;
+// the number of filtered pieces (pixel_filter.hpp), and if any, the compressed sizes of front and planes, then both;
 // then the rest, if any.
 #pragma once
 

@@ -13,7 +13,7 @@ namespace mural::delta {
 constexpr size_t kPieceWords = kPageBytes / 4, kPieceMaskBytes = kPieceWords / 8;
 constexpr size_t kPieceWordRoom = kPieceWords + 16; // words that differences() may write
 
-// Number of bytes of a piece that are sampled to estimate its bits for each of kPixelWays.
+// Number of bytes of a piece that are sampled to estimate its bits for each of kPixelFilters.
 constexpr size_t kSampledBytes = 256;
 using Roughness = std::array<uint32_t, kPixelFilters.size()>;
 Roughness roughness(const std::byte* piece);

@@ -21,7 +21,7 @@ public:
     // next call.
     bool split(std::span<const std::byte> pages);
 
-    // Per piece its filter (kPixelWays; 0: none), then the zero bits of each filtered piece.
+    // Per piece its filter (kPixelFilters; 0: none), then the zero bits of each filtered piece.
     [[nodiscard]] std::span<const std::byte> front() const { return front_; }
     [[nodiscard]] size_t pixelPieces() const { return pixelPieces_; }
     [[nodiscard]] std::span<const std::byte> planes() const { return std::span(planes_).first(planeBytes_); }

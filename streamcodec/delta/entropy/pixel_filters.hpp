@@ -9,7 +9,7 @@
 namespace mural::delta {
 
 // Values up to 8: distance in bytes to the reference byte (0: unfiltered), for pixels of that size, samples of 16 bits,
-// or alternating pairs of pixels. Larger values add green subtraction (pixel_colours.hpp).
+// or alternating pairs of pixels. Larger values add green subtraction (green_subtraction.hpp).
 // plus the number of bytes before the first whole pixel: 0, 1, 2
 constexpr uint8_t kColoursOfFour = 16, kColoursOfThree = 17;
 constexpr std::array<uint8_t, 10> kPixelFilters{

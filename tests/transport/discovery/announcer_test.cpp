@@ -11,7 +11,7 @@ constexpr int64_t kMs = 1'000'000;
 class AnnouncerRun {
 public:
     AnnouncerRun() : announcer_(Announcement{AnnouncementKind::Here, 4278, {}, "wall1", "0.1.0"}, 7) {}
-    // Runs until a time, as an event loop with timers; queries every askedEveryNs, 0: never.
+    // Runs until a time, as an event loop with timers; queries every questionEveryNs, 0: never.
     void run(int64_t untilNs, int64_t questionEveryNs) {
         int64_t questionNs = questionEveryNs;
         while (nowNs_ < untilNs) {

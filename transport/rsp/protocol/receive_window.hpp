@@ -91,7 +91,7 @@ private:
     size_t payloadBytes_;
     uint32_t mask_;
     SlotPool payloads_;
-    std::array<uint32_t, kMaxAtOnce> landing_{};        // slots for the next datagrams; kNoPlace: occupied
+    std::array<uint32_t, kMaxAtOnce> landing_{};        // slots for the next datagrams; kNoSlot: occupied
     std::array<std::byte*, kMaxAtOnce> landingBytes_{}; // address of each
     size_t landed_ = 0;                                 // one past the last occupied one
     std::vector<uint32_t> poolSlots_;                   // slot per received datagram

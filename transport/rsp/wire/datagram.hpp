@@ -9,7 +9,7 @@
 //               38 u16 entries  40 u32 lost  44 u32 dropped by the socket
 //               then 12 bytes per entry: u32 base, u32 missing, u8 rows held, u8 span, u16 0
 //
-// The authentication tag follows (datagram_seal.hpp, which also sets session and counter). The parser runs after
+// The authentication tag follows (datagram_cipher.hpp, which also sets session and counter). The parser runs after
 // authentication and still validates every field.
 #pragma once
 
