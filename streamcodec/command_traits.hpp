@@ -1,5 +1,5 @@
 // Traits of the GL commands: the one description that capture, replay, filters and recordings classify commands by.
-// Generated from the option `traits` of registry/semantics.txt. Any thread.
+// Generated from the option `traits` of api/semantics.txt. Any thread.
 #pragma once
 
 #include <array>
@@ -20,9 +20,16 @@ enum class Trait : uint8_t {
     SkippableDraw, // a Draw that changes only pixels, feedback, queries and shader memory
     Pixels,        // images, bitmaps, and copies from the read framebuffer
     AllPlanes,     // Pixels of colour, depth or stencil, selected by an argument
+    Bitmap,        // Pixels that drivers may batch
+    Accumulates,   // Pixels of the accumulation buffer
     Clear,         // glClear
     ClearBuffer,   // one buffer of the bound framebuffer
     ClearNamed,    // one buffer of a named framebuffer
+    // Values of a ClearBuffer's first argument that are valid for a window
+    ClearsColor,
+    ClearsDepth,
+    ClearsStencil,
+    ClearsDepthStencil,
     Begin,
     End,
     Vertex, // of the open primitive
@@ -40,9 +47,14 @@ enum class Trait : uint8_t {
     RasterPosition, // a raster position, transformed like a vertex
     UniformMatrix4, // square matrices of four rows
     FramebufferObject, // binds, changes or deletes framebuffers or attachments
+    AttachesLayer,     // attaches one layer of a texture
     BufferContents,    // uploads to a buffer
     ImageBinding,      // image units of shaders
     BufferBinding,     // indexed buffers
+    PixelTransfer,     // changes the transfer of images to textures and framebuffers
+    TurnsOff,          // disables what its counterpart enables
+    Indexed,           // applies to one buffer or stream: the second argument is its index
+    ArrayIndex,        // sets an array of a vertex attribute or binding: the first argument is its index
 
     // Sections of the stream
     FeedbackBegin,
@@ -55,12 +67,19 @@ enum class Trait : uint8_t {
     EnumAsNumber, // an enum is passed as a number
     StandsAlone,  // state that no other command sets in part
 
+    // Programs
+    SamplerUniform, // sets integers, which are texture units if the uniform is a sampler
+    LinkInput,      // takes effect when the program is linked
+
     // Textures and memory
     TextureLevel,     // defines the level that the second argument names
     TextureLevels,    // defines as many levels as the second argument says
     TextureAnyLevel,  // may define any level
     TextureParameter, // the second argument names the parameter
+    Multisample,      // the second argument is the number of samples
+    Immutable,        // defines storage that no later command replaces
     Allocates,        // may raise GL_OUT_OF_MEMORY
+    ImageHandle,      // handles of images, not of textures
 
     Count
 };
@@ -71,9 +90,11 @@ extern const std::array<uint64_t, op::kLimit> kCommandTraits;
 
 constexpr uint64_t bitOf(Trait trait) { return uint64_t{1} << static_cast<int>(trait); }
 
+inline uint64_t traitsOf(uint32_t opcode) { return opcode < op::kLimit ? kCommandTraits[opcode] : 0; }
+
 // Returns true if the command has at least one of the traits.
 template <class... Traits> bool hasTrait(uint32_t opcode, Traits... traits) {
-    return opcode < op::kLimit && (kCommandTraits[opcode] & (bitOf(traits) | ...)) != 0;
+    return (traitsOf(opcode) & (bitOf(traits) | ...)) != 0;
 }
 
 } // namespace mural

@@ -251,6 +251,50 @@ TEST(CommandClasses, excludeCommandsThatMayReadDeferredUploads) {
     expectAll(rules);
 }
 
+// The compiler evaluates the table. GCC 12 loses defaults other than 0 for elements that the table does not name.
+TEST(CommandEffects, haveDefaultsForCommandsThatAreNeverSent) {
+    for (uint16_t opcode = 0; opcode < op::kLimit; ++opcode) {
+        if (glOpcodeName(opcode) != nullptr) continue;
+        EXPECT_EQ(effectOf(opcode), CommandEffect{}) << opcode;
+    }
+    EXPECT_EQ(effectOf(op::kLimit), CommandEffect{});
+    EXPECT_EQ(traitsOf(op::kLimit), 0U);
+}
+
+TEST(CommandEffects, agreeWithCellsAndRoles) {
+    using enum EffectKind;
+    const Predicate hasCell = [](uint16_t opcode) { return effectOf(opcode).cell != StateCell::None; };
+    const Predicate isChecked = [](uint16_t opcode) { return effectOf(opcode).check != StateCheck::Any; };
+    const Predicate splits = [](uint16_t opcode) { return effectOf(opcode).list != ListRole::Native; };
+    const Predicate divides = [](uint16_t opcode) { return effectOf(opcode).draw.count > 0; };
+    const Predicate names = [](uint16_t opcode) { return effectOf(opcode).nameNumber > 0; };
+    const Rule rules[] = {
+        {"cells are state", hasCell, hasEffect({Cell, EffectKind::Limit, MatrixMode}), {}},
+        {"checks belong to cells", isChecked, hasCell, {}},
+        {"cells do not stand alone", hasCell, !has(StandsAlone), {}},
+        {"divisible draws are draws from arrays", divides, has(SkippableDraw), {}},
+        {"capabilities and calls of lists split lists", either(hasEffect({Cap}), has(Trait::CallList)), splits, {}},
+        {"accumulation splits lists", has(Accumulates), splits, {}},
+        {"bindings name an object", hasEffect({Bind, BindIndexed, UseProgram, FramebufferAttach}), names, {}},
+        {"bindings and attachments have a type",
+         hasEffect({Bind, BindIndexed, UseProgram, FramebufferAttach}),
+         [](uint16_t opcode) { return effectOf(opcode).object != ObjectType::None; },
+         {}},
+        {"layers are attached to framebuffers", has(AttachesLayer), has(FramebufferObject), {}},
+        {"clears of one plane",
+         has(ClearsColor, ClearsDepth, ClearsStencil, ClearsDepthStencil),
+         has(Trait::ClearBuffer),
+         {}},
+        {"bitmaps and accumulation are pixels of one kind",
+         has(Bitmap, Accumulates),
+         both(has(Pixels), !has(AllPlanes)),
+         {}},
+        {"inputs of links set programs", has(LinkInput), hasEffect({ProgramSet}), {}},
+        {"samplers are uniforms", has(SamplerUniform), hasEffect({Uniform, ProgramUniform}), {}},
+    };
+    expectAll(rules);
+}
+
 // Aliases share the opcode and the class of their canonical command.
 TEST(CommandTable, hasEverySentCommandWithOneClass) {
     for (const CommandInfo& c : commandTable()) {

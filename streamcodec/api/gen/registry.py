@@ -241,11 +241,13 @@ def load(gl_xml, semantics):
     return commands, extensions
 
 
+OF_RECORDS = {'traits', 'effect', 'deferral', 'cell', 'list', 'vertices'} # options that describe commands of the stream
+
+
 def check_traits(semantics, commands):
     """Fails for a line with traits or an effect that matches no command of the stream."""
     for pattern, options, number in read_semantics(semantics):
-        wanted = options.get('traits') or options.get('effect') or options.get('deferral')
-        if wanted and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
+        if OF_RECORDS & options.keys() and not any(c.sent and not c.alias and fnmatch.fnmatchcase(c.name, pattern) for c in commands.values()):
             raise SystemExit('%s:%d: %s has traits or an effect, and is in no record' % (semantics, number, pattern))
 
 

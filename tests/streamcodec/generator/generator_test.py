@@ -109,6 +109,20 @@ class TinyRegistry(unittest.TestCase):
         text = self.with_rules('glColor* - effect=Cell\n')
         self.assertIn('all[op::glColor3ubv] = {EffectKind::Cell, ObjectType::None, Deferral::ByEffect, 0};', text)
 
+    def test_details_of_effects_follow_the_effect(self):
+        text = self.with_rules('glColor3ubv - effect=Cell cell=ClearColor check=Rectangle list=Split\nglVertex2s - list=Split\n')
+        self.assertIn('all[op::glColor3ubv].cell = StateCell::ClearColor;', text)
+        self.assertIn('all[op::glColor3ubv].check = StateCheck::Rectangle;', text)
+        self.assertIn('all[op::glVertex2s].list = ListRole::Split;', text)
+
+    def test_positions_of_arguments_follow_from_the_registry(self):
+        text = self.with_rules('glGenTextures - effect=Gen object=Texture\nglUniform4fv - vertices=divisible\n')
+        self.assertIn('all[op::glGenTextures].nameNumber = 2;', text)
+        self.assertIn('all[op::glUniform4fv].draw = {.count = 1};', text)
+
+    def test_cell_of_command_that_is_never_sent_is_an_error(self):
+        self.assertIn('glGetFloatv has traits or an effect', self.rejected('glGetFloatv - cell=ClearColor\n'))
+
 
 @unittest.skipUnless(GL_XML, 'no gl.xml here: install khronos-api')
 class RealRegistry(unittest.TestCase):
