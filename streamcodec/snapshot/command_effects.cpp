@@ -1,5 +1,6 @@
 #include "streamcodec/snapshot/command_effects.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -34,6 +35,28 @@ void findSelectors(Rule& rule, uint16_t opcode) {
     }
 }
 
+bool isValue(const ParameterInfo& p) {
+    return p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts;
+}
+
+size_t wordsOf(const ParameterInfo& p) {
+    if (p.travel == Travel::Fixed) return (size_t{p.fixedBytes} + 3) / 4;
+    return p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
+}
+
+void findWords(Rule& rule, uint16_t opcode) {
+    const CommandParameters command = parametersOf(opcode);
+    size_t word = 0;
+    for (const ParameterInfo& p : command.parameters) {
+        if (isValue(p)) {
+            rule.valueWord = static_cast<uint8_t>(std::min<size_t>(word, kNoWord));
+            return; // words after it are not fixed
+        }
+        word += wordsOf(p);
+    }
+    if (command.resultBytes > 0) rule.resultWord = static_cast<uint8_t>(std::min<size_t>(word, kNoWord));
+}
+
 std::vector<Rule> allRules() {
     std::vector<Rule> rules(op::kLimit);
     for (uint16_t opcode = 0; opcode < rules.size(); ++opcode) {
@@ -42,7 +65,10 @@ std::vector<Rule> allRules() {
         rule.family = effect.kind;
         rule.type = effect.object;
         rule.attribBits = effect.attribBits;
+        if (effect.nameNumber > 0) rule.nameWord = effect.nameNumber - 1;
+        if (effect.dimensions > 0) rule.dimensions = effect.dimensions;
         findSelectors(rule, opcode);
+        findWords(rule, opcode);
     }
     return rules;
 }

@@ -12,6 +12,8 @@ using Family = EffectKind;
 using mural::kNoAttribBit;
 using mural::ObjectType;
 
+constexpr uint8_t kNoWord = 0xff;
+
 struct Rule {
     Family family = Family::Unknown;
     ObjectType type = ObjectType::None;
@@ -20,6 +22,10 @@ struct Rule {
     // value of variable size.
     uint8_t selectors = 0;
     std::array<uint8_t, 8> selectorWords{};
+    uint8_t nameWord = kNoWord;   // CommandEffect::nameNumber
+    uint8_t valueWord = kNoWord;  // the first value of variable size
+    uint8_t resultWord = kNoWord; // a name that the driver created, after the arguments
+    uint8_t dimensions = 1;       // of images
 };
 
 const Rule& ruleOf(uint16_t opcode);

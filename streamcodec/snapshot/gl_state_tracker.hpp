@@ -78,8 +78,13 @@ private:
     void use(At& at, Object* object);
     Object* bound(At& at, uint64_t binding) const;
     void bind(At& at, const Rule& rule, const RecordView& r);
+    void bindPlain(At& at, const Rule& rule, uint64_t slot, uint32_t name);
+    void bindTexture(At& at, const Rule& rule, uint32_t place, uint32_t name);
+    void bindBuffer(At& at, const Rule& rule, uint32_t target, uint32_t name);
+    void bindVertexArray(At& at, const Rule& rule, uint32_t name);
     void bindSlot(At& at, uint64_t slot, Key key, uint32_t attribBits, Object* object);
     void arrays(At& at, const Rule& rule, const RecordView& r);
+    void holdElsewhere(At& at, const Rule& rule, const RecordView& r, bool makes);
     void shaders(At& at, const Rule& rule, const RecordView& r);
     void buffers(At& at, const Rule& rule, const RecordView& r);
     void writeBuffer(At& at, Object* buffer, uint64_t offset, uint64_t sizeBytes);

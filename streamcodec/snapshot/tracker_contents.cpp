@@ -3,7 +3,7 @@
 #include <GL/glext.h>
 #include <string_view>
 
-#include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 
@@ -12,11 +12,13 @@ namespace {
 
 // An integer uniform may be a sampler; its value is a texture unit.
 void noteUnits(Object& program, const RecordView& r, size_t locationWord) {
-    const bool one = r.opcode == op::glUniform1i || r.opcode == op::glProgramUniform1i;
-    const bool several = r.opcode == op::glUniform1iv || r.opcode == op::glProgramUniform1iv;
-    if (one) program.units.insert(argumentWord(r, locationWord + 1));
+    if (!hasTrait(r.opcode, Trait::SamplerUniform)) return;
+    const uint8_t valueWord = ruleOf(r.opcode).valueWord;
     std::vector<uint32_t> values;
-    if (several && !namesAt(r, locationWord + 2, values)) program.anyUnit = true;
+    if (valueWord == kNoWord)
+        values.push_back(argumentWord(r, locationWord + 1));
+    else if (!namesAt(r, valueWord, values))
+        program.anyUnit = true;
     program.units.insert(values.begin(), values.end());
     constexpr size_t kMaxUnits = 256; // larger values are no units: all units count
     if (program.units.size() <= kMaxUnits) return;
@@ -140,8 +142,7 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
         }
         return at.effect.write(part(object->key, Part::Linked)); // a failed link replaces nothing
     case Family::PipelineSet: {
-        Object* const program =
-            find(at, ObjectType::Program, argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1));
+        Object* const program = find(at, ObjectType::Program, argumentWord(r, rule.nameWord));
         if (program != nullptr) {
             use(at, program);
             program->opaque = true; // lives as long as the pipeline refers to it
@@ -153,11 +154,11 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
         noteUnits(*object, r, 1);
         at.effect.read(part(object->key, Part::Linked));
         return at.effect.kill(cell(at, part(object->key, Part::Uniforms), r.opcode, rule, r));
-    case Family::ProgramSet: // names are texts: each is a separate cell
-        if (r.opcode == op::glBindAttribLocation || r.opcode == op::glBindFragDataLocation ||
-            r.opcode == op::glBindFragDataLocationIndexed || r.opcode == op::glTransformFeedbackVaryings)
+    case Family::ProgramSet:
+        if (!hasTrait(r.opcode, Trait::LinkInput))
+            at.effect.read(part(object->key, Part::Linked));
+        else if (rule.valueWord != kNoWord) // names are texts: each is a separate cell
             return at.effect.write(part(object->key, Part::Attachments));
-        if (r.opcode != op::glProgramParameteri) at.effect.read(part(object->key, Part::Linked));
         return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
     default: return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
     }
@@ -168,11 +169,11 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
 void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
-    const bool indexed = r.opcode == op::glBeginQueryIndexed || r.opcode == op::glEndQueryIndexed;
+    const bool indexed = hasTrait(r.opcode, Trait::Indexed);
     const uint64_t slot = uint64_t{first} << 32 | (indexed ? second : 0);
     switch (rule.family) {
     case Family::QueryBegin: {
-        const uint32_t name = argumentWord(r, indexed ? 2 : 1);
+        const uint32_t name = argumentWord(r, rule.nameWord);
         if (name == 0) return;
         Object* const query = findOrMake(at, ObjectType::Query, name);
         use(at, query);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 #include "streamcodec/wire/control_records.hpp"
@@ -207,14 +208,12 @@ void GlStateTracker::clear(At& at, const Rule& rule, const RecordView& r) {
     case Family::Barrier: return writeMemory(at);
     default: break;
     }
-    if (r.opcode == op::glBitmap) {
+    if (hasTrait(r.opcode, Trait::Bitmap)) {
         c.gathersBitmaps = true;
         return drawBitmap(at);
     }
-    if (r.opcode == op::glAccum) planes(at, GL_ACCUM_BUFFER_BIT, first == GL_LOAD);
-    if (r.opcode == op::glDrawPixels || r.opcode == op::glCopyPixels) { // may include depth or stencil
-        planes(at, kColor | kDepth | kStencil, false);
-    }
+    if (hasTrait(r.opcode, Trait::Accumulates)) planes(at, GL_ACCUM_BUFFER_BIT, first == GL_LOAD);
+    if (hasTrait(r.opcode, Trait::AllPlanes)) planes(at, kColor | kDepth | kStencil, false);
     if (r.opcode == op::glCopyPixels) readPicture(at);
     draw(at);
 }

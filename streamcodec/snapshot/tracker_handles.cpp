@@ -4,22 +4,11 @@
 #include <algorithm>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 
 namespace mural::trace {
-namespace {
-
-// Returns the word of a record after which its result follows.
-size_t resultWord(uint16_t opcode) {
-    switch (opcode) {
-    case op::glGetTextureSamplerHandleARB: return 2;
-    case op::glGetImageHandleARB: return 5;
-    default: return 1;
-    }
-}
-
-} // namespace
 
 // Returns null if the texture is deleted, and its handle with it.
 Object* GlStateTracker::textureOf(At& at, const HandleId& handle) {
@@ -31,19 +20,18 @@ Object* GlStateTracker::textureOf(At& at, const HandleId& handle) {
 
 void GlStateTracker::handles(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
-    const bool ofImage = r.opcode == op::glGetImageHandleARB || r.opcode == op::glMakeImageHandleResidentARB ||
-                         r.opcode == op::glMakeImageHandleNonResidentARB;
+    const bool ofImage = hasTrait(r.opcode, Trait::ImageHandle);
     if (rule.family == Family::HandleResident) {
         const HandleId handle{ofImage, argumentWide(r, 0)};
         const Key key = part(part(c.key, Part::Resident, ofImage), Part::Resident, handle.value);
-        if (r.opcode == op::glMakeTextureHandleNonResidentARB || r.opcode == op::glMakeImageHandleNonResidentARB)
+        if (hasTrait(r.opcode, Trait::TurnsOff))
             c.resident.erase(handle);
         else
             c.resident[handle] = ofImage && argumentWord(r, 2) != GL_READ_ONLY;
         return at.effect.kill(key);
     }
     const uint32_t name = argumentWord(r, 0);
-    const HandleId handle{ofImage, argumentWide(r, resultWord(r.opcode))};
+    const HandleId handle{ofImage, argumentWide(r, rule.resultWord)};
     Object* const texture = find(at, ObjectType::Texture, name);
     if (texture == nullptr) return unknown(at, false);
     if (texture->handles.contains(handle)) return; // repeated query

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 #include "streamcodec/snapshot/texture_targets.hpp"
@@ -13,36 +14,6 @@ namespace {
 
 uint64_t levelOf(uint32_t target, uint32_t level) {
     return uint64_t{isFace(target) ? target - GL_TEXTURE_CUBE_MAP_POSITIVE_X : 0} << 32 | level;
-}
-
-// Returns the number of size arguments, from the command's name.
-unsigned dimensionsOf(uint16_t opcode) {
-    switch (opcode) {
-    case op::glTexImage1D:
-    case op::glTexSubImage1D:
-    case op::glTexStorage1D:
-    case op::glTextureStorage1D:
-    case op::glTextureSubImage1D:
-    case op::glCompressedTexImage1D:
-    case op::glCompressedTexSubImage1D:
-    case op::glCopyTexImage1D:
-    case op::glCopyTexSubImage1D: return 1;
-    case op::glTexImage3D:
-    case op::glTexImage3DOES:
-    case op::glTexSubImage3D:
-    case op::glTexSubImage3DOES:
-    case op::glTexStorage3D:
-    case op::glTextureStorage3D:
-    case op::glTextureSubImage3D:
-    case op::glCompressedTexImage3D:
-    case op::glCompressedTexImage3DOES:
-    case op::glCompressedTexSubImage3D:
-    case op::glCompressedTexSubImage3DOES:
-    case op::glCopyTexSubImage3D:
-    case op::glTexImage3DMultisample:
-    case op::glTexStorage3DMultisample: return 3;
-    default: return 2;
-    }
 }
 
 Extent extentAt(const RecordView& r, size_t word, unsigned dimensions) {
@@ -80,7 +51,7 @@ void GlStateTracker::textures(At& at, const Rule& rule, const RecordView& r) {
     if (t->opaque) at.effect.always = true;
     const Key storage = part(t->images, Part::Storage), image = part(storage, Part::Level, levelOf(target, level)),
               data = part(image, Part::Data);
-    const unsigned dimensions = dimensionsOf(r.opcode);
+    const unsigned dimensions = rule.dimensions;
     Extent& extent = t->levels[levelOf(target, level)];
     // Images may come from a buffer, and pass through the pixel transfer.
     const bool fromBuffer = bound(at, slotOf(Slot::Buffer, GL_PIXEL_UNPACK_BUFFER)) != nullptr;
@@ -90,18 +61,18 @@ void GlStateTracker::textures(At& at, const Rule& rule, const RecordView& r) {
     switch (rule.family) {
     case Family::TexParameter: return set(at, cell(at, t->key, r.opcode, rule, r), 0);
     case Family::TexImage: { // target, level, format, sizes; multisample: target, samples, format, sizes
-        const bool samples = r.opcode == op::glTexImage2DMultisample || r.opcode == op::glTexImage3DMultisample;
+        const bool samples = hasTrait(r.opcode, Trait::Multisample);
         const uint64_t id = levelOf(target, samples ? 0 : level);
         t->levels[id] = extentAt(r, 3, dimensions);
         return at.effect.kill(samples ? storage : part(storage, Part::Level, id));
     }
     case Family::TexCopyImage: // target, level, format, x, y, sizes
-        extent = extentAt(r, dimensions == 1 ? 5 : 5, dimensions);
+        extent = extentAt(r, 5, dimensions);
         readPicture(at);
         return at.effect.kill(image);
     case Family::TexStorage: { // target, levels, format, sizes
         Extent e = extentAt(r, 3, dimensions);
-        const bool samples = r.opcode == op::glTexStorage2DMultisample || r.opcode == op::glTexStorage3DMultisample;
+        const bool samples = hasTrait(r.opcode, Trait::Multisample);
         const uint32_t kind = named ? t->target : target;
         const uint32_t faces = kind == GL_TEXTURE_CUBE_MAP ? 6 : 1;
         for (uint32_t l = 0; l < (samples ? 1 : std::min(level, 32u)); ++l) {
@@ -159,7 +130,7 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
         Object* const buffer = bound(at, slot);
         if (buffer == nullptr) return;
         use(at, buffer);
-        buffer->levels[0] = extentAt(r, r.opcode == op::glRenderbufferStorage ? 2 : 3, 2);
+        buffer->levels[0] = extentAt(r, hasTrait(r.opcode, Trait::Multisample) ? 3 : 2, 2);
         return at.effect.kill(part(buffer->images, Part::Storage));
     }
     case Family::FramebufferNamed: {
@@ -170,7 +141,7 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
     case Family::DrawBuffers: {
         Object* const target = framebuffer(at, GL_DRAW_FRAMEBUFFER);
         std::vector<uint32_t> buffers{first};
-        if (r.opcode == op::glDrawBuffers && !namesAt(r, 1, buffers)) return unknown(at, false);
+        if (rule.valueWord != kNoWord && !namesAt(r, rule.valueWord, buffers)) return unknown(at, false);
         if (target == nullptr) {
             c.limits.drawBuffer = buffers.size() == 1 ? buffers[0] : GL_FRONT_AND_BACK;
             c.usesFront = c.usesFront || (c.limits.drawBuffer != GL_BACK && c.limits.drawBuffer != GL_NONE);
@@ -192,21 +163,21 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
     }
     default: break;
     }
-    // Arguments of glFramebufferTexture... and glFramebufferRenderbuffer: target, attachment, ...
+    // Arguments of glFramebufferTexture... and glFramebufferRenderbuffer: target, attachment, [target,] name, [level]
     Object* const target = framebuffer(at, first);
     if (target == nullptr) return; // an error
     use(at, target);
     Attachment attachment;
-    const bool renderbuffer = r.opcode == op::glFramebufferRenderbuffer;
-    const bool layer = r.opcode == op::glFramebufferTextureLayer, all = r.opcode == op::glFramebufferTexture;
-    const uint32_t name = argumentWord(r, layer || all ? 2 : 3);
+    const uint32_t name = argumentWord(r, rule.nameWord);
     if (name != 0) {
-        attachment.object = find(at, renderbuffer ? ObjectType::Renderbuffer : ObjectType::Texture, name);
+        attachment.object = find(at, rule.type, name);
         if (attachment.object == nullptr) return unknown(at, false);
         use(at, attachment.object);
-        const uint32_t textureTarget = layer || all || renderbuffer ? 0 : argumentWord(r, 2);
-        if (!renderbuffer) attachment.level = levelOf(textureTarget, argumentWord(r, layer || all ? 3 : 4));
-        attachment.whole = !layer && r.opcode != op::glFramebufferTexture3D;
+        const bool hasTarget = rule.nameWord == 3; // a cube face may be attached by its target
+        if (rule.type == ObjectType::Texture)
+            attachment.level = levelOf(hasTarget ? argumentWord(r, 2) : 0, argumentWord(r, rule.nameWord + size_t{1}));
+        attachment.whole = !hasTrait(r.opcode, Trait::AttachesLayer);
+        const bool all = !hasTarget && attachment.whole;
         if (all && attachment.object->target == GL_TEXTURE_CUBE_MAP) attachment.object->opaque = true; // all faces
     }
     const auto attach = [&](uint32_t at1) {

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/context_capabilities.hpp"
 
@@ -94,7 +95,7 @@ bool setsAlone(const Rule& rule, const RecordView& r) {
 // Remembers the effects of a call as records; of repeated setters only the last.
 void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& r) {
     const bool repeats = draws(rule.family) || rule.family == Family::Attribute || rule.family == Family::Color;
-    const bool movesRaster = r.opcode == op::glBitmap;
+    const bool movesRaster = hasTrait(r.opcode, Trait::Bitmap);
     const uint16_t opcode = draws(rule.family) && !movesRaster ? uint16_t{op::glDrawArrays} : r.opcode;
     const bool whole = rule.family == Family::CallLists || rule.family == Family::DrawBuffers;
     const bool sets = setsAlone(rule, r);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 
@@ -106,8 +107,7 @@ void GlStateTracker::objects(At& at, const Rule& rule, const RecordView& r) {
     std::vector<uint32_t> names;
     switch (rule.family) {
     case Family::Gen: {
-        const size_t word = r.opcode == op::glCreateTextures || r.opcode == op::glCreateQueries ? 2 : 1;
-        if (!namesAt(r, word, names)) return unknown(at, true);
+        if (!namesAt(r, rule.nameWord, names)) return unknown(at, true);
         for (const uint32_t name : names) {
             if (name == 0) continue;
             Object* const object = make(at, rule.type, name);
@@ -116,12 +116,13 @@ void GlStateTracker::objects(At& at, const Rule& rule, const RecordView& r) {
         return;
     }
     case Family::Create: {
-        const uint32_t name = argumentWord(r, r.opcode == op::glCreateShader ? 1 : 0);
+        const uint32_t name = argumentWord(r, rule.resultWord);
         if (name != 0) make(at, rule.type, name)->anyUnit = r.opcode == op::glCreateShader; // until its source is known
         return;
     }
-    case Family::SyncMake: // condition, flags, result
-        at.effect.kill(part(at.context->group->key, Part::Object, idOf(ObjectType::Sync, 0), argumentWide(r, 2)));
+    case Family::SyncMake:
+        at.effect.kill(
+            part(at.context->group->key, Part::Object, idOf(ObjectType::Sync, 0), argumentWide(r, rule.resultWord)));
         return;
     case Family::SyncDelete: {
         const Key sync = part(at.context->group->key, Part::Object, idOf(ObjectType::Sync, 0), argumentWide(r, 0));
@@ -190,99 +191,106 @@ void GlStateTracker::bindSlot(At& at, uint64_t slot, Key key, uint32_t attribBit
     retain(at, at.context->bindings[slot], object);
 }
 
+void GlStateTracker::bindPlain(At& at, const Rule& rule, uint64_t slot, uint32_t name) {
+    Object* const object = name == 0 ? nullptr : findOrMake(at, rule.type, name);
+    bindSlot(at, slot, part(at.context->cells, Part::Binding, slot), rule.attribBits, object);
+}
+
 void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
-    ContextNames& c = *at.context;
-    const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
-    const auto keyOf = [&](uint64_t slot) { return part(c.cells, Part::Binding, slot); };
-    const auto objectOf = [&](uint32_t name) { return name == 0 ? nullptr : findOrMake(at, rule.type, name); };
-    const auto simple = [&](uint64_t slot, uint32_t name) {
-        bindSlot(at, slot, keyOf(slot), rule.attribBits, objectOf(name));
-    };
-    switch (r.opcode) {
-    case op::glBindTexture: {
-        Object* const object = objectOf(second);
-        if (object != nullptr && object->target == 0) object->target = first;
-        const uint64_t slot = slotOf(Slot::Texture, first, c.unit);
-        at.effect.read(part(c.cells, Part::ActiveUnit));
-        return bindSlot(at, slot, part(part(c.cells, Part::TextureUnit, c.unit), Part::Binding, slot), rule.attribBits,
-                        object);
-    }
-    case op::glBindTextureUnit: {
-        Object* const object = objectOf(second);
-        const Key unit = part(c.cells, Part::TextureUnit, first);
-        if (object == nullptr || object->target == 0) return unknown(at, true);
-        const uint64_t slot = slotOf(Slot::Texture, object->target, first);
-        return bindSlot(at, slot, part(unit, Part::Binding, slot), rule.attribBits, object);
-    }
-    case op::glBindBuffer: {
-        const uint64_t slot = slotOf(Slot::Buffer, first);
-        if (first != GL_ELEMENT_ARRAY_BUFFER) {
-            simple(slot, second);
-            if (!c.clientAttribs.empty()) setClient(at, keyOf(slot));
-            return;
-        }
-        // The element array binding belongs to the vertex array.
-        Object* const array =
-            findOrMake(at, ObjectType::VertexArray,
-                       bound(at, slotOf(Slot::VertexArray)) ? bound(at, slotOf(Slot::VertexArray))->name : 0);
-        Object* const buffer = objectOf(second);
-        if (buffer != nullptr) use(at, buffer);
-        at.effect.read(keyOf(slotOf(Slot::VertexArray)));
-        setClient(at, part(array->key, Part::Binding, slot));
-        retain(at, array->references[slot], buffer);
-        return retain(at, c.bindings[slot], buffer);
-    }
-    case op::glBindBufferBase:
-    case op::glBindBufferRange: {
-        const uint32_t name = argumentWord(r, 2);
+    const uint32_t first = argumentWord(r, 0), name = argumentWord(r, rule.nameWord);
+    switch (rule.type) {
+    case ObjectType::Texture:
+        if (hasTrait(r.opcode, Trait::ImageBinding)) return bindPlain(at, rule, slotOf(Slot::Image, 0, first), name);
+        return bindTexture(at, rule, first, name);
+    case ObjectType::Buffer:
+        if (rule.family == Family::Bind) return bindBuffer(at, rule, first, name);
         if (first == GL_TRANSFORM_FEEDBACK_BUFFER && bound(at, slotOf(Slot::Feedback)) != nullptr)
             return unknown(at, false);
-        simple(slotOf(Slot::IndexedBuffer, first, second), name);
-        return simple(slotOf(Slot::Buffer, first), name); // the generic binding too
-    }
-    case op::glBindVertexArray: {
-        simple(slotOf(Slot::VertexArray), first);
-        if (!c.clientAttribs.empty()) setClient(at, keyOf(slotOf(Slot::VertexArray)));
-        Object* const array = find(at, ObjectType::VertexArray, first);
-        const uint64_t indices = slotOf(Slot::Buffer, GL_ELEMENT_ARRAY_BUFFER);
-        const auto retained =
-            array == nullptr ? decltype(array->references)::iterator{} : array->references.find(indices);
-        return retain(at, c.bindings[indices],
-                      array == nullptr || retained == array->references.end() ? nullptr : retained->second);
-    }
-    case op::glBindSampler: return simple(slotOf(Slot::Sampler, 0, first), second);
-    case op::glBindImageTexture: return simple(slotOf(Slot::Image, 0, first), second);
-    case op::glUseProgram: return simple(slotOf(Slot::Program), first);
-    case op::glBindProgramPipeline: return simple(slotOf(Slot::Pipeline), first);
-    case op::glBindTransformFeedback: return simple(slotOf(Slot::Feedback), second);
-    case op::glBindProgramARB: return simple(slotOf(Slot::ArbProgram, first), second);
-    case op::glBindFramebuffer:
-    case op::glBindFramebufferEXT:
-    case op::glBindFramebufferOES:
-        if (first != GL_READ_FRAMEBUFFER) simple(slotOf(Slot::DrawFramebuffer), second);
-        if (first != GL_DRAW_FRAMEBUFFER) simple(slotOf(Slot::ReadFramebuffer), second);
+        bindPlain(at, rule, slotOf(Slot::IndexedBuffer, first, argumentWord(r, 1)), name);
+        return bindPlain(at, rule, slotOf(Slot::Buffer, first), name); // the generic binding too
+    case ObjectType::VertexArray: return bindVertexArray(at, rule, name);
+    case ObjectType::Framebuffer:
+        if (first != GL_READ_FRAMEBUFFER) bindPlain(at, rule, slotOf(Slot::DrawFramebuffer), name);
+        if (first != GL_DRAW_FRAMEBUFFER) bindPlain(at, rule, slotOf(Slot::ReadFramebuffer), name);
         return;
-    default: return simple(slotOf(Slot::Renderbuffer), second); // glBindRenderbuffer and similar
+    case ObjectType::Sampler: return bindPlain(at, rule, slotOf(Slot::Sampler, 0, first), name);
+    case ObjectType::Program: return bindPlain(at, rule, slotOf(Slot::Program), name);
+    case ObjectType::Pipeline: return bindPlain(at, rule, slotOf(Slot::Pipeline), name);
+    case ObjectType::Feedback: return bindPlain(at, rule, slotOf(Slot::Feedback), name);
+    case ObjectType::ArbProgram: return bindPlain(at, rule, slotOf(Slot::ArbProgram, first), name);
+    case ObjectType::Renderbuffer: return bindPlain(at, rule, slotOf(Slot::Renderbuffer), name);
+    default: return unknown(at, true); // no command binds other objects
     }
 }
 
+// place: the target of a Bind, which binds to the active unit; the unit of a BindIndexed.
+void GlStateTracker::bindTexture(At& at, const Rule& rule, uint32_t place, uint32_t name) {
+    ContextNames& c = *at.context;
+    Object* const object = name == 0 ? nullptr : findOrMake(at, ObjectType::Texture, name);
+    const bool toUnit = rule.family == Family::BindIndexed;
+    if (toUnit && (object == nullptr || object->target == 0)) return unknown(at, true);
+    if (!toUnit && object != nullptr && object->target == 0) object->target = place;
+    const uint32_t unit = toUnit ? place : c.unit;
+    const uint64_t slot = slotOf(Slot::Texture, toUnit ? object->target : place, unit);
+    if (!toUnit) at.effect.read(part(c.cells, Part::ActiveUnit));
+    bindSlot(at, slot, part(part(c.cells, Part::TextureUnit, unit), Part::Binding, slot), rule.attribBits, object);
+}
+
+void GlStateTracker::bindBuffer(At& at, const Rule& rule, uint32_t target, uint32_t name) {
+    ContextNames& c = *at.context;
+    const auto keyOf = [&](uint64_t slot) { return part(c.cells, Part::Binding, slot); };
+    const uint64_t slot = slotOf(Slot::Buffer, target);
+    if (target != GL_ELEMENT_ARRAY_BUFFER) {
+        bindPlain(at, rule, slot, name);
+        if (!c.clientAttribs.empty()) setClient(at, keyOf(slot));
+        return;
+    }
+    // The element array binding belongs to the vertex array.
+    const uint64_t arraySlot = slotOf(Slot::VertexArray);
+    Object* const current = bound(at, arraySlot);
+    Object* const array = findOrMake(at, ObjectType::VertexArray, current != nullptr ? current->name : 0);
+    Object* const buffer = name == 0 ? nullptr : findOrMake(at, ObjectType::Buffer, name);
+    if (buffer != nullptr) use(at, buffer);
+    at.effect.read(keyOf(arraySlot));
+    setClient(at, part(array->key, Part::Binding, slot));
+    retain(at, array->holds[slot], buffer);
+    retain(at, c.bindings[slot], buffer);
+}
+
+void GlStateTracker::bindVertexArray(At& at, const Rule& rule, uint32_t name) {
+    ContextNames& c = *at.context;
+    const uint64_t slot = slotOf(Slot::VertexArray), indices = slotOf(Slot::Buffer, GL_ELEMENT_ARRAY_BUFFER);
+    bindPlain(at, rule, slot, name);
+    if (!c.clientAttribs.empty()) setClient(at, part(c.cells, Part::Binding, slot));
+    Object* const array = find(at, ObjectType::VertexArray, name);
+    const auto held = array == nullptr ? decltype(array->holds)::iterator{} : array->holds.find(indices);
+    retain(at, c.bindings[indices], array == nullptr || held == array->holds.end() ? nullptr : held->second);
+}
+
 // ---- vertex arrays
+
+// Marks the buffers that the command names. Their holders are not tracked.
+void GlStateTracker::holdElsewhere(At& at, const Rule& rule, const RecordView& r, bool makes) {
+    std::vector<uint32_t> names;
+    if (rule.nameWord == kNoWord) return;
+    if (rule.nameWord != rule.valueWord)
+        names.push_back(argumentWord(r, rule.nameWord));
+    else if (!namesAt(r, rule.nameWord, names))
+        names.clear();
+    for (const uint32_t name : names) {
+        if (name == 0) continue;
+        Object* const buffer = makes ? findOrMake(at, ObjectType::Buffer, name) : find(at, ObjectType::Buffer, name);
+        if (buffer == nullptr) continue;
+        use(at, buffer);
+        buffer->opaque = true;
+    }
+}
 
 void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     if (rule.family == Family::ArrayNamedSet) {
         Object* const array = findOrMake(at, ObjectType::VertexArray, argumentWord(r, 0));
-        const uint32_t name = r.opcode == op::glVertexArrayElementBuffer  ? argumentWord(r, 1)
-                              : r.opcode == op::glVertexArrayVertexBuffer ? argumentWord(r, 2)
-                                                                          : 0;
-        std::vector<uint32_t> names{name};
-        if (r.opcode == op::glVertexArrayVertexBuffers && !namesAt(r, 3, names)) names.clear();
-        for (const uint32_t retained : names) {
-            Object* const buffer = retained == 0 ? nullptr : find(at, ObjectType::Buffer, retained);
-            if (buffer == nullptr) continue;
-            use(at, buffer);
-            buffer->opaque = true; // holders are not tracked
-        }
+        holdElsewhere(at, rule, r, false);
         use(at, array);
         return at.effect.kill(cell(at, array->key, r.opcode, rule, r));
     }
@@ -299,34 +307,27 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
     }
     if (rule.family == Family::ClientCap)
         return setClient(at, keys_.child(above, op::glEnableClientState, argumentWord(r, 0)));
-    if (r.opcode == op::glEnableVertexAttribArray || r.opcode == op::glDisableVertexAttribArray)
-        return setClient(at, keys_.child(above, op::glEnableVertexAttribArray, argumentWord(r, 0)));
-    const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer ||
-                         r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
-    const uint32_t index = generic || rule.family == Family::ArraySet ? argumentWord(r, 0) : 0;
-    if (r.opcode == op::glBindVertexBuffers) { // first, count, buffers, ...
-        std::vector<uint32_t> names;
-        if (!namesAt(r, 2, names)) names.clear();
-        for (const uint32_t name : names) {
-            Object* const retained = name == 0 ? nullptr : findOrMake(at, ObjectType::Buffer, name);
-            if (retained == nullptr) continue;
-            use(at, retained);
-            retained->opaque = true; // holders are not tracked
+    const bool numbered = rule.family == Family::ArraySet || hasTrait(r.opcode, Trait::ArrayIndex);
+    const uint32_t index = numbered ? argumentWord(r, 0) : 0;
+    if (rule.family == Family::ArraySet) {
+        if (rule.nameWord != kNoWord) { // first, count, buffers, ...
+            holdElsewhere(at, rule, r, true);
+            return setClient(at, keys_.child(above, r.opcode, index, argumentWord(r, 1)));
         }
-        return setClient(at, keys_.child(above, r.opcode, index, argumentWord(r, 1)));
+        // enabling and disabling set one cell
+        const uint32_t kind = hasTrait(r.opcode, Trait::TurnsOff) ? uint32_t{op::glEnableVertexAttribArray} : r.opcode;
+        return setClient(at, keys_.child(above, kind, index));
     }
-    const Key key = keys_.child(above, r.opcode, index);
-    if (rule.family == Family::ArraySet) return setClient(at, key);
     Object* buffer = bound(at, bufferSlot);
-    if (r.opcode == op::glBindVertexBuffer) {
-        const uint32_t name = argumentWord(r, 1);
+    if (rule.nameWord != kNoWord) {
+        const uint32_t name = argumentWord(r, rule.nameWord);
         buffer = name == 0 ? nullptr : findOrMake(at, ObjectType::Buffer, name);
     } else {
         at.effect.read(part(c.cells, Part::Binding, bufferSlot));
     }
     if (buffer != nullptr) use(at, buffer);
-    setClient(at, key);
-    retain(at, array->references[uint64_t{r.opcode} << 32 | (ofCoordinates ? c.clientUnit << 16 : 0) | index], buffer);
+    setClient(at, keys_.child(above, r.opcode, index));
+    retain(at, array->holds[uint64_t{r.opcode} << 32 | (ofCoordinates ? c.clientUnit << 16 : 0) | index], buffer);
 }
 
 } // namespace mural::trace

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/snapshot/context_capabilities.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
@@ -100,9 +101,7 @@ void GlStateTracker::state(At& at, const Rule& rule, const RecordView& r) {
         if (c.limits.colorMaterial) colorMaterial(at);
         return set(at, part(c.cells, Part::MaterialMode), rule.attribBits);
     }
-    if (r.opcode == op::glPixelTransferf || r.opcode == op::glPixelTransferi || r.opcode == op::glPixelMapfv ||
-        r.opcode == op::glPixelMapuiv || r.opcode == op::glPixelMapusv)
-        c.transfersPixels = true;
+    if (hasTrait(r.opcode, Trait::PixelTransfer)) c.transfersPixels = true;
     set(at, cell(at, c.cells, r.opcode, rule, r), rule.attribBits);
 }
 
@@ -118,8 +117,8 @@ void GlStateTracker::colorMaterial(At& at) {
 void GlStateTracker::cap(At& at, const Rule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t what = argumentWord(r, 0);
-    const bool on = r.opcode == op::glEnable || r.opcode == op::glEnablei;
-    const bool indexed = r.opcode == op::glEnablei || r.opcode == op::glDisablei;
+    const bool on = !hasTrait(r.opcode, Trait::TurnsOff);
+    const bool indexed = hasTrait(r.opcode, Trait::Indexed);
     const bool ofUnit = !indexed && !isContextCap(what);
     if (what == GL_SCISSOR_TEST && indexed) c.limits.unknown = true;
     if (what == GL_SCISSOR_TEST && !indexed) c.limits.scissor = on;
