@@ -1,6 +1,5 @@
 #include "streamcodec/filter/command_class.hpp"
 
-#include "streamcodec/command_parameters.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
@@ -163,19 +162,6 @@ bool requestsPictures(uint16_t opcode) {
 
 constexpr uint8_t kBufferBytesValue = 3; // after buffer and u64 offset
 
-uint8_t findValue(uint16_t opcode) {
-    size_t word = 0;
-    for (const ParameterInfo& p : parametersOf(opcode).parameters) {
-        if (p.travel == Travel::Value || p.travel == Travel::Text || p.travel == Travel::Texts)
-            return word < kNoValue ? static_cast<uint8_t>(word) : kNoValue;
-        if (p.travel == Travel::Fixed)
-            word += (size_t{p.fixedBytes} + 3) / 4;
-        else
-            word += p.travel == Travel::Wide || bytesOf(p.element) == 8 ? 2 : 1;
-    }
-    return kNoValue;
-}
-
 // While a list is compiled, a command that draws and sets no state only matters for the nesting of primitives.
 int8_t deeperOf(const CommandKind& kind) {
     if (kind.state != StateRole::None && kind.state != StateRole::Use) return kExamined;
@@ -229,9 +215,9 @@ CommandKinds::CommandKinds() {
         }
         const trace::Rule& rule = trace::ruleOf(opcode);
         kind.family = rule.family;
-        const Deferral deferral = kCommandEffects[opcode].deferral;
+        const Deferral deferral = effectOf(opcode).deferral;
         kind.about = deferral == Deferral::ByEffect ? ofFamily(rule) : ofDeferral(deferral);
-        kind.valueWord = findValue(opcode);
+        kind.valueWord = rule.valueWord;
     }
     kinds_[wire::kOpBufferBytes].valueWord = kBufferBytesValue;
     for (uint16_t opcode = 0; opcode <= op::kLimit; ++opcode) {

@@ -65,7 +65,7 @@ enum class FrameRole : uint8_t {
 };
 
 // Special value of CommandKind::valueWord: no value of variable size.
-constexpr uint8_t kNoValue = 0xff;
+constexpr uint8_t kNoValue = trace::kNoWord;
 
 constexpr int8_t kExamined = INT8_MAX;
 

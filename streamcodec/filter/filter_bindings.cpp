@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/filter/command_filter.hpp"
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/snapshot/texture_targets.hpp"
@@ -98,16 +99,15 @@ void CommandFilter::bind(At& at) {
     case Binding::Generate: return generate(at);
     case Binding::Delete: return deleteNames(at);
     case Binding::Attach: { // the object is a render target from now on
-        const bool texture = r.opcode != op::glFramebufferRenderbuffer;
-        const bool layer = r.opcode == op::glFramebufferTextureLayer || r.opcode == op::glFramebufferTexture;
-        return texture ? openNamed(at, Kind::Texture, layer ? 2 : 3) : void();
+        const trace::Rule& rule = trace::ruleOf(r.opcode);
+        return rule.type == trace::ObjectType::Texture ? openNamed(at, Kind::Texture, rule.nameWord) : void();
     }
     case Binding::AttachNamed:
         // any of these words may be the name
         for (size_t word = 1; word < 4; ++word) openNamed(at, Kind::Texture, word);
         return;
     case Binding::Pipeline: {
-        const uint32_t program = argumentWord(r, r.opcode == op::glUseProgramStages ? 2 : 1);
+        const uint32_t program = argumentWord(r, trace::ruleOf(r.opcode).nameWord);
         return program != 0 ? openUp(at, make(at.group, Kind::Program, program)) : void();
     }
     case Binding::TextureBuffer:
@@ -128,11 +128,10 @@ void CommandFilter::bindVertexArray(At& at, uint32_t name) {
 
 // Holders of these buffers are not tracked.
 void CommandFilter::arrayBuffers(At& at) {
-    const RecordView& r = at.r;
-    if (r.opcode == op::glVertexArrayElementBuffer) return openNamed(at, Kind::Buffer, 1);
-    if (r.opcode == op::glVertexArrayVertexBuffer) return openNamed(at, Kind::Buffer, 2);
+    const trace::Rule& rule = trace::ruleOf(at.r.opcode);
+    if (rule.nameWord != rule.valueWord) return openNamed(at, Kind::Buffer, rule.nameWord);
     std::vector<uint32_t> names;
-    if (!namesAt(r, r.opcode == op::glBindVertexBuffers ? 2 : 3, names)) return untrack(at);
+    if (!namesAt(at.r, rule.nameWord, names)) return untrack(at);
     for (const uint32_t name : names) openUp(at, find(at.group, Kind::Buffer, name));
 }
 
@@ -150,21 +149,18 @@ void CommandFilter::bindTexture(At& at, uint32_t target, uint32_t unit, Object* 
 }
 
 void CommandFilter::bindIndexed(At& at) {
-    const uint32_t first = argumentWord(at.r, 0), second = argumentWord(at.r, 1);
-    switch (at.r.opcode) {
-    case op::glBindTextureUnit: {
-        Object* const object = named(at, Kind::Texture, second);
-        if (at.group.untracked) return;
-        if (object == nullptr || object->target == 0) return untrack(at); // 0: all targets
-        return bindTexture(at, object->target, first, object);
+    const trace::Rule& rule = trace::ruleOf(at.r.opcode);
+    const uint32_t first = argumentWord(at.r, 0);
+    if (rule.type == trace::ObjectType::Buffer) { // shaders may read or write it there
+        openNamed(at, Kind::Buffer, rule.nameWord);
+        return at.group.untracked ? void() : bindBuffer(at, first, argumentWord(at.r, rule.nameWord));
     }
-    case op::glBindBufferBase:
-    case op::glBindBufferRange: // shaders may read or write it there
-        openNamed(at, Kind::Buffer, 2);
-        return at.group.untracked ? void() : bindBuffer(at, first, argumentWord(at.r, 2));
-    case op::glBindImageTexture: return openNamed(at, Kind::Texture, 1);
-    default: return; // samplers
-    }
+    if (rule.type != trace::ObjectType::Texture) return; // samplers
+    if (hasTrait(at.r.opcode, Trait::ImageBinding)) return openNamed(at, Kind::Texture, rule.nameWord);
+    Object* const object = named(at, Kind::Texture, argumentWord(at.r, rule.nameWord));
+    if (at.group.untracked) return;
+    if (object == nullptr || object->target == 0) return untrack(at); // 0: all targets
+    bindTexture(at, object->target, first, object);
 }
 
 void CommandFilter::bindBuffer(At& at, uint32_t target, uint32_t name) {
@@ -206,11 +202,11 @@ void CommandFilter::useProgram(At& at, uint32_t name) {
 void CommandFilter::arrayPointer(At& at) {
     Context& c = at.context;
     const RecordView& r = at.r;
-    const bool generic = r.opcode == op::glVertexAttribPointer || r.opcode == op::glVertexAttribIPointer ||
-                         r.opcode == op::glVertexAttribLPointer || r.opcode == op::glBindVertexBuffer;
+    const bool generic = hasTrait(r.opcode, Trait::ArrayIndex);
+    const uint8_t nameWord = trace::ruleOf(r.opcode).nameWord;
     Object* object = bufferAt(c, GL_ARRAY_BUFFER);
-    if (r.opcode == op::glBindVertexBuffer) {
-        object = named(at, Kind::Buffer, argumentWord(r, 1));
+    if (nameWord != trace::kNoWord) {
+        object = named(at, Kind::Buffer, argumentWord(r, nameWord));
         if (at.group.untracked) return;
     }
     const uint32_t index = generic ? argumentWord(r, 0) : r.opcode == op::glTexCoordPointer ? c.clientUnit : 0;

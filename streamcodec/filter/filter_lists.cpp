@@ -2,7 +2,6 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
-#include "gl_opcodes.hpp"
 #include "streamcodec/filter/command_filter.hpp"
 #include "streamcodec/snapshot/command_effects.hpp"
 
@@ -36,7 +35,7 @@ void CommandFilter::list(At& at) {
         stream.compiled.calls = true;
         return;
     }
-    bool binds = false, calls = at.r.opcode != op::glCallList;
+    bool binds = false, calls = at.kind.family != Family::CallList;
     if (!calls) {
         const auto found = at.group.lists.find(first);
         if (found != at.group.lists.end()) binds = found->second.binds, calls = found->second.calls;
@@ -79,7 +78,7 @@ void CommandFilter::compiled(At& at) {
         at.stream.compiled.binds = at.stream.compiled.binds || isDebugOutput(argumentWord(at.r, 0));
         return;
     case Family::Bind:
-        if (at.r.opcode == op::glBindBuffer || at.r.opcode == op::glBindVertexArray) return bind(at);
+        if (at.kind.binding == Binding::Buffer || at.kind.binding == Binding::VertexArray) return bind(at);
         [[fallthrough]];
     default: at.stream.compiled.binds = true;
     }

@@ -81,8 +81,9 @@ VertexArray* CommandFilter::makeArray(Context& c, uint32_t name) {
 void CommandFilter::generate(At& at) {
     const RecordView& r = at.r;
     Context& c = at.context;
-    if (r.opcode == op::glCreateProgram || r.opcode == op::glCreateShader) {
-        Object* const old = find(at.group, Kind::Program, argumentWord(r, r.opcode == op::glCreateShader ? 1 : 0));
+    const trace::Rule& rule = trace::ruleOf(r.opcode);
+    if (rule.family == trace::Family::Create) {
+        Object* const old = find(at.group, Kind::Program, argumentWord(r, rule.resultWord));
         if (old == nullptr) return;
         releaseOne(at, *old);
         old->forget();
@@ -90,10 +91,10 @@ void CommandFilter::generate(At& at) {
         old->open = false;
         return;
     }
-    const ObjectType type = trace::ruleOf(r.opcode).type;
+    const ObjectType type = rule.type;
     if (type != ObjectType::Texture && type != ObjectType::Buffer && type != ObjectType::VertexArray) return;
     std::vector<uint32_t>& names = names_;
-    if (!namesAt(r, r.opcode == op::glCreateTextures ? 2 : 1, names)) return untrack(at);
+    if (!namesAt(r, rule.nameWord, names)) return untrack(at);
     for (const uint32_t name : names) {
         if (type == ObjectType::VertexArray) {
             makeArray(c, name);

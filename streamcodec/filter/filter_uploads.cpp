@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/filter/command_filter.hpp"
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/trace/record_values.hpp"
@@ -28,13 +28,7 @@ constexpr size_t kMaxLocations = 1024; // of uniforms
 // rejected where its predecessor was not.
 bool refusedByNone(const trace::RecordView& r, size_t firstValueWord) {
     constexpr uint32_t kUnits = 16; // minimum that every GL supports
-    switch (r.opcode) {
-    case op::glUniform1i:
-    case op::glUniform1iv:
-    case op::glProgramUniform1i:
-    case op::glProgramUniform1iv: break;
-    default: return true;
-    }
+    if (!hasTrait(r.opcode, Trait::SamplerUniform)) return true;
     for (size_t word = firstValueWord; word < r.arguments.size() / 4; ++word)
         if (argumentWord(r, word) >= kUnits) return false;
     return true;
@@ -52,12 +46,11 @@ bool isOneUniform(const trace::RecordView& r, const CommandKind& kind, size_t lo
 // Returns the object of an upload, or of a command of class Object.
 Object* CommandFilter::objectOf(At& at) {
     const uint32_t first = argumentWord(at.r, 0);
-    if (at.r.opcode == wire::kOpBufferBytes || at.r.opcode == op::glInvalidateBufferData ||
-        at.r.opcode == op::glInvalidateBufferSubData)
-        return find(at.group, Kind::Buffer, first);
+    if (at.r.opcode == wire::kOpBufferBytes) return find(at.group, Kind::Buffer, first);
     if (at.kind.family == Family::Uniform) return at.context.programSure ? at.context.program : nullptr;
     const trace::Rule& rule = trace::ruleOf(at.r.opcode);
     switch (rule.family) {
+    case Family::Nothing: // invalidations of buffers
     case Family::BufferData:
     case Family::BufferSubData:
         return rule.type == trace::ObjectType::Buffer ? find(at.group, Kind::Buffer, first)

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <vector>
 
-#include "gl_opcodes.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/command_effects.hpp"
 #include "streamcodec/command_traits.hpp"
+#include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
@@ -19,157 +18,53 @@ using trace::argumentWord;
 using trace::Family;
 using trace::RecordView;
 
-enum Cell : uint8_t {
-    kDepthMask,
-    kDepthFunc,
-    kDepthRange,
-    kClearDepth,
-    kStencilMask,
-    kStencilFunc,
-    kStencilOp,
-    kClearStencil,
-    kColorMask,
-    kClearColor,
-    kAlphaFunc,
-    kBlendFunc,
-    kBlendEquation,
-    kBlendColor,
-    kLogicOp,
-    kViewport,
-    kScissor,
-    kCullFace,
-    kFrontFace,
-    kPolygonMode,
-    kPolygonOffset,
-    kShadeModel,
-    kProvokingVertex,
-    kPrimitiveRestartIndex,
-    kLineWidth,
-    kLineStipple,
-    kPointSize,
-    kPixelZoom,
-    kSampleCoverage,
-    kMinSampleShading,
-    kMatrixMode,
-    kFirstCap = 64,
-};
+constexpr uint32_t kFirstCap = 64; // after the cells of StateCell
 constexpr uint32_t kFirstUnitCap = 128, kCapsOfUnit = 16;
 constexpr uint32_t kUnitsWithCaps = 8; // fixed-function texture units, as many as drivers have
 
 // ---- checks that every GL accepts a value
 
-using Check = bool (*)(const RecordView& r);
-
-bool any(const RecordView&) { return true; }
-bool never(const RecordView&) { return false; } // sets a part of the cell, or one of several buffers, viewports, faces
 bool within(uint32_t value, uint32_t first, uint32_t last) { return value >= first && value <= last; }
-bool compares(const RecordView& r) { return within(argumentWord(r, 0), GL_NEVER, GL_ALWAYS); }
-bool blends(const RecordView& r) {
-    const size_t words = r.opcode == op::glBlendFunc ? 2 : 4;
-    for (size_t i = 0; i < words; ++i) {
-        const uint32_t factor = argumentWord(r, i);
-        const bool ofSource =
-            i % 2 == 0 && factor == GL_SRC_ALPHA_SATURATE; // not valid as a destination factor in every GL
-        if (factor > GL_ONE && !within(factor, GL_SRC_COLOR, GL_ONE_MINUS_DST_COLOR) &&
-            !within(factor, GL_CONSTANT_COLOR, GL_ONE_MINUS_CONSTANT_ALPHA) && !ofSource)
-            return false;
-    }
-    return true;
+bool isFactor(uint32_t factor, bool ofSource) {
+    return factor <= GL_ONE || within(factor, GL_SRC_COLOR, GL_ONE_MINUS_DST_COLOR) ||
+           within(factor, GL_CONSTANT_COLOR, GL_ONE_MINUS_CONSTANT_ALPHA) ||
+           (ofSource && factor == GL_SRC_ALPHA_SATURATE); // not valid as a destination factor in every GL
 }
 bool isEquation(uint32_t e) { return e == GL_FUNC_ADD || e == GL_FUNC_SUBTRACT || e == GL_FUNC_REVERSE_SUBTRACT; }
-bool equation(const RecordView& r) { return isEquation(argumentWord(r, 0)); }
-bool equations(const RecordView& r) { return isEquation(argumentWord(r, 0)) && isEquation(argumentWord(r, 1)); }
-bool stencilOps(const RecordView& r) {
+bool isStencilOperation(uint32_t operation) {
     constexpr std::array<uint32_t, 8> kAll{GL_ZERO, GL_KEEP,   GL_REPLACE,   GL_INCR,
                                            GL_DECR, GL_INVERT, GL_INCR_WRAP, GL_DECR_WRAP};
-    return std::ranges::count(kAll, argumentWord(r, 0)) && std::ranges::count(kAll, argumentWord(r, 1)) &&
-           std::ranges::count(kAll, argumentWord(r, 2));
+    return std::ranges::count(kAll, operation) > 0;
 }
-bool logicOp(const RecordView& r) { return within(argumentWord(r, 0), GL_CLEAR, GL_SET); }
-bool rectangle(const RecordView& r) {
-    return static_cast<int32_t>(argumentWord(r, 2)) >= 0 && static_cast<int32_t>(argumentWord(r, 3)) >= 0;
+template <class Check> bool allWords(const RecordView& r, Check check) {
+    for (size_t i = 0; i < r.arguments.size() / 4; ++i)
+        if (!check(argumentWord(r, i), i)) return false;
+    return true;
 }
-bool face(const RecordView& r) {
-    return within(argumentWord(r, 0), GL_FRONT, GL_BACK) || argumentWord(r, 0) == GL_FRONT_AND_BACK;
-}
-bool winding(const RecordView& r) { return within(argumentWord(r, 0), GL_CW, GL_CCW); }
-bool bothFaces(const RecordView& r) {
-    return argumentWord(r, 0) == GL_FRONT_AND_BACK && within(argumentWord(r, 1), GL_POINT, GL_FILL);
-}
-bool shading(const RecordView& r) { return within(argumentWord(r, 0), GL_FLAT, GL_SMOOTH); }
-bool convention(const RecordView& r) {
-    return within(argumentWord(r, 0), GL_FIRST_VERTEX_CONVENTION, GL_LAST_VERTEX_CONVENTION);
-}
-bool thinLine(const RecordView& r) { // forward-compatible contexts refuse wider lines
-    const auto width = std::bit_cast<float>(argumentWord(r, 0));
-    return width > 0 && width <= 1;
-}
-bool positive(const RecordView& r) { return std::bit_cast<float>(argumentWord(r, 0)) > 0; }
-bool matrixMode(const RecordView& r) { return within(argumentWord(r, 0), GL_MODELVIEW, GL_TEXTURE); }
 
-struct StateCommand {
-    uint16_t opcode;
-    Cell cell;
-    Check check;
-};
-constexpr StateCommand kCommands[] = {
-    {op::glDepthMask, kDepthMask, any},
-    {op::glDepthFunc, kDepthFunc, compares},
-    {op::glClearDepth, kClearDepth, any},
-    {op::glClearDepthf, kClearDepth, any},
-    {op::glDepthRange, kDepthRange, any},
-    {op::glDepthRangef, kDepthRange, any},
-    {op::glDepthRangeArrayv, kDepthRange, never},
-    {op::glDepthRangeIndexed, kDepthRange, never},
-    {op::glStencilMask, kStencilMask, any},
-    {op::glStencilMaskSeparate, kStencilMask, never},
-    {op::glStencilFunc, kStencilFunc, compares},
-    {op::glStencilFuncSeparate, kStencilFunc, never},
-    {op::glStencilOp, kStencilOp, stencilOps},
-    {op::glStencilOpSeparate, kStencilOp, never},
-    {op::glClearStencil, kClearStencil, any},
-    {op::glColorMask, kColorMask, any},
-    {op::glColorMaski, kColorMask, never},
-    {op::glClearColor, kClearColor, any},
-    {op::glAlphaFunc, kAlphaFunc, compares},
-    {op::glBlendFunc, kBlendFunc, blends},
-    {op::glBlendFuncSeparate, kBlendFunc, blends},
-    {op::glBlendFunci, kBlendFunc, never},
-    {op::glBlendFuncSeparatei, kBlendFunc, never},
-    {op::glBlendEquation, kBlendEquation, equation},
-    {op::glBlendEquationSeparate, kBlendEquation, equations},
-    {op::glBlendEquationi, kBlendEquation, never},
-    {op::glBlendEquationSeparatei, kBlendEquation, never},
-    {op::glBlendColor, kBlendColor, any},
-    {op::glLogicOp, kLogicOp, logicOp},
-    {op::glViewport, kViewport, rectangle},
-    {op::glViewportArrayv, kViewport, never},
-    {op::glViewportIndexedf, kViewport, never},
-    {op::glViewportIndexedfv, kViewport, never},
-    {op::glScissor, kScissor, rectangle},
-    {op::glScissorArrayv, kScissor, never},
-    {op::glScissorIndexed, kScissor, never},
-    {op::glScissorIndexedv, kScissor, never},
-    {op::glCullFace, kCullFace, face},
-    {op::glFrontFace, kFrontFace, winding},
-    {op::glPolygonMode, kPolygonMode, bothFaces},
-    {op::glPolygonOffset, kPolygonOffset, any},
-    {op::glPolygonOffsetClamp, kPolygonOffset, never},
-    {op::glShadeModel, kShadeModel, shading},
-    {op::glProvokingVertex, kProvokingVertex, convention},
-    {op::glPrimitiveRestartIndex, kPrimitiveRestartIndex, any},
-    {op::glLineWidth, kLineWidth, thinLine},
-    {op::glLineStipple, kLineStipple, any},
-    {op::glPointSize, kPointSize, positive},
-    {op::glPixelZoom, kPixelZoom, any},
-    {op::glSampleCoverage, kSampleCoverage, any},
-    {op::glMinSampleShading, kMinSampleShading, any},
-    {op::glMatrixMode, kMatrixMode, matrixMode},
-};
-
-const StateCommand* commandOf(uint16_t opcode) {
-    const auto* const found = std::ranges::find(kCommands, opcode, &StateCommand::opcode);
-    return found == std::end(kCommands) ? nullptr : found;
+bool accepts(StateCheck check, const RecordView& r) {
+    const uint32_t first = argumentWord(r, 0);
+    const auto value = std::bit_cast<float>(first);
+    switch (check) {
+    case StateCheck::Any: return true;
+    case StateCheck::Part: return false;
+    case StateCheck::Comparison: return within(first, GL_NEVER, GL_ALWAYS);
+    case StateCheck::BlendFactors: return allWords(r, [](uint32_t w, size_t i) { return isFactor(w, i % 2 == 0); });
+    case StateCheck::BlendEquations: return allWords(r, [](uint32_t w, size_t) { return isEquation(w); });
+    case StateCheck::StencilOperations: return allWords(r, [](uint32_t w, size_t) { return isStencilOperation(w); });
+    case StateCheck::LogicOperation: return within(first, GL_CLEAR, GL_SET);
+    case StateCheck::Rectangle:
+        return static_cast<int32_t>(argumentWord(r, 2)) >= 0 && static_cast<int32_t>(argumentWord(r, 3)) >= 0;
+    case StateCheck::Face: return within(first, GL_FRONT, GL_BACK) || first == GL_FRONT_AND_BACK;
+    case StateCheck::Winding: return within(first, GL_CW, GL_CCW);
+    case StateCheck::BothFaces: return first == GL_FRONT_AND_BACK && within(argumentWord(r, 1), GL_POINT, GL_FILL);
+    case StateCheck::ShadeModel: return within(first, GL_FLAT, GL_SMOOTH);
+    case StateCheck::VertexConvention: return within(first, GL_FIRST_VERTEX_CONVENTION, GL_LAST_VERTEX_CONVENTION);
+    case StateCheck::ThinLine: return value > 0 && value <= 1;
+    case StateCheck::Positive: return value > 0;
+    case StateCheck::MatrixMode: return within(first, GL_MODELVIEW, GL_TEXTURE);
+    }
+    return false;
 }
 
 // ---- capabilities
@@ -227,13 +122,12 @@ uint32_t unitCap(uint32_t what, uint32_t unit) {
                                : kFirstUnitCap + unit * kCapsOfUnit + static_cast<uint32_t>(found - kAll.begin());
 }
 
-bool isCap(uint16_t opcode) { return opcode == op::glEnable || opcode == op::glDisable; }
-bool isIndexedCap(uint16_t opcode) { return opcode == op::glEnablei || opcode == op::glDisablei; }
-
 // ---- roles
 
 StateRole ofFamily(uint16_t opcode) {
+    if (effectOf(opcode).cell != StateCell::None) return StateRole::Set;
     switch (trace::ruleOf(opcode).family) {
+    case Family::Cap: return StateRole::Set;
     case Family::Cell: return hasTrait(opcode, Trait::StandsAlone) ? StateRole::None : StateRole::Change;
     case Family::Nothing:
     case Family::CellOfMatrix:
@@ -332,32 +226,20 @@ StateRole ofOwn(uint16_t opcode) {
     }
 }
 
-// Indices into kCommands by opcode; kNone: a capability.
-constexpr uint8_t kNone = 0xff;
-std::vector<uint8_t> allPlaces() {
-    std::vector<uint8_t> places(op::kLimit, kNone);
-    for (size_t i = 0; i < std::size(kCommands); ++i) places[kCommands[i].opcode] = static_cast<uint8_t>(i);
-    return places;
-}
-
 } // namespace
 
-StateRole stateRoleOf(uint16_t opcode) {
-    if (opcode < wire::kFirstGlOpcode) return ofOwn(opcode);
-    return commandOf(opcode) != nullptr || isCap(opcode) || isIndexedCap(opcode) ? StateRole::Set : ofFamily(opcode);
-}
+StateRole stateRoleOf(uint16_t opcode) { return opcode < wire::kFirstGlOpcode ? ofOwn(opcode) : ofFamily(opcode); }
 
 StateSet stateSetOf(const RecordView& r, uint32_t unit) {
-    static const std::vector<uint8_t> kPlaces = allPlaces();
-    const uint8_t place = kPlaces[r.opcode];
-    if (place != kNone) {
-        const StateCommand& command = kCommands[place];
-        return {command.cell, command.check(r) && r.sizeBytes <= kStateWords * 4, command.cell == kMatrixMode};
-    }
+    const CommandEffect& effect = effectOf(r.opcode);
+    const bool fits = r.sizeBytes <= kStateWords * 4;
+    if (effect.cell != StateCell::None)
+        return {static_cast<uint32_t>(effect.cell), fits && accepts(effect.check, r),
+                effect.cell == StateCell::MatrixMode};
     const uint32_t what = argumentWord(r, 0), cap = contextCap(what);
-    if (cap != kNoCell || isIndexedCap(r.opcode))
-        return {cap, isCap(r.opcode) && r.sizeBytes <= kStateWords * 4, false};
-    return {unitCap(what, unit), r.sizeBytes <= kStateWords * 4, true};
+    const bool indexed = hasTrait(r.opcode, Trait::Indexed);
+    if (cap != kNoCell || indexed) return {cap, !indexed && fits, false};
+    return {unitCap(what, unit), fits, true};
 }
 
 } // namespace mural::filter

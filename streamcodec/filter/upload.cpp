@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <xxhash.h>
 
-#include "gl_opcodes.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/filter/command_class.hpp"
 #include "streamcodec/snapshot/command_effects.hpp"
 #include "streamcodec/wire/record.hpp"
@@ -24,11 +24,6 @@ uint64_t wideAt(const RecordView& r, size_t word) {
 
 bool isFace(uint32_t target) {
     return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
-}
-
-bool ofSamples(uint16_t opcode) {
-    return opcode == op::glTexImage2DMultisample || opcode == op::glTexImage3DMultisample ||
-           opcode == op::glTexStorage2DMultisample || opcode == op::glTexStorage3DMultisample;
 }
 
 } // namespace
@@ -76,8 +71,7 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
     }
     switch (family) {
     case Family::BufferData:
-        u.kind =
-            r.opcode == op::glBufferData || r.opcode == op::glNamedBufferData ? UploadKind::Whole : UploadKind::Storage;
+        u.kind = hasTrait(r.opcode, Trait::Immutable) ? UploadKind::Storage : UploadKind::Whole;
         return u;
     case Family::BufferSubData: // target, offset, size
         u.place = {0, 0, wideAt(r, 1), wideAt(r, 1) + u.shape.valueBytes};
@@ -89,7 +83,9 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
                    uint64_t{argumentWord(r, 0)} + (valueWord == kNoValue ? 1 : std::max(argumentWord(r, 1), 1u))};
         return u;
     case Family::TexStorage: u.kind = UploadKind::Storage; return u;
-    case Family::TexImage: u.kind = ofSamples(r.opcode) ? UploadKind::Storage : UploadKind::Whole; [[fallthrough]];
+    case Family::TexImage:
+        u.kind = hasTrait(r.opcode, Trait::Multisample) ? UploadKind::Storage : UploadKind::Whole;
+        [[fallthrough]];
     default: // glTexSubImage..., by target or name
         u.place = {isFace(argumentWord(r, 0)) ? argumentWord(r, 0) : 0, argumentWord(r, 1), 0, UINT64_MAX};
         return u;
