@@ -42,7 +42,7 @@ Object* GlStateTracker::make(At& at, ObjectType type, uint32_t name) {
     auto object = std::make_unique<Object>();
     object->type = type;
     object->name = name;
-    // A deleted but held object of that name keeps the plain key.
+    // A deleted but retained object of that name keeps the plain key.
     Group& group = *at.context->group;
     const bool taken =
         std::ranges::any_of(group.gone, [&](const auto& o) { return o->type == type && o->name == name; });
@@ -253,7 +253,7 @@ void GlStateTracker::bindBuffer(At& at, const Rule& rule, uint32_t target, uint3
     if (buffer != nullptr) use(at, buffer);
     at.effect.read(keyOf(arraySlot));
     setClient(at, part(array->key, Part::Binding, slot));
-    retain(at, array->holds[slot], buffer);
+    retain(at, array->references[slot], buffer);
     retain(at, c.bindings[slot], buffer);
 }
 
@@ -263,8 +263,8 @@ void GlStateTracker::bindVertexArray(At& at, const Rule& rule, uint32_t name) {
     bindPlain(at, rule, slot, name);
     if (!c.clientAttribs.empty()) setClient(at, part(c.cells, Part::Binding, slot));
     Object* const array = find(at, ObjectType::VertexArray, name);
-    const auto held = array == nullptr ? decltype(array->holds)::iterator{} : array->holds.find(indices);
-    retain(at, c.bindings[indices], array == nullptr || held == array->holds.end() ? nullptr : held->second);
+    const auto retained = array == nullptr ? decltype(array->references)::iterator{} : array->references.find(indices);
+    retain(at, c.bindings[indices], array == nullptr || retained == array->references.end() ? nullptr : retained->second);
 }
 
 // ---- vertex arrays
@@ -327,7 +327,7 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
     }
     if (buffer != nullptr) use(at, buffer);
     setClient(at, keys_.child(above, r.opcode, index));
-    retain(at, array->holds[uint64_t{r.opcode} << 32 | (ofCoordinates ? c.clientUnit << 16 : 0) | index], buffer);
+    retain(at, array->references[uint64_t{r.opcode} << 32 | (ofCoordinates ? c.clientUnit << 16 : 0) | index], buffer);
 }
 
 } // namespace mural::trace

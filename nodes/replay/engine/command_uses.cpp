@@ -6,7 +6,7 @@ namespace mural {
 
 RangeUse rangeUseOf(uint16_t opcode) {
     using enum Trait;
-    if (kCommandTraits[opcode] == 0) return RangeUse::None;
+    if (traitsOf(opcode) == 0) return RangeUse::None;
     if (hasTrait(opcode, FeedbackBegin, FeedbackEnd, FeedbackDraw)) return RangeUse::Feedback;
     if (hasTrait(opcode, Draw)) return RangeUse::Draw;
     if (hasTrait(opcode, Vertex)) return RangeUse::Vertex;
@@ -21,7 +21,7 @@ RangeUse rangeUseOf(uint16_t opcode) {
 
 EyeUse eyeUseOf(uint16_t opcode) {
     using enum Trait;
-    if (kCommandTraits[opcode] == 0) return EyeUse::None;
+    if (traitsOf(opcode) == 0) return EyeUse::None;
     // An image from client memory is part of the scene. Copies and bitmaps are not.
     const bool isImage = hasTrait(opcode, Pixels) && hasTrait(opcode, AllPlanes) && !hasTrait(opcode, ReadsFramebuffer);
     if (isImage || hasTrait(opcode, Draw, Begin, RasterPosition)) return EyeUse::Draw;
@@ -34,7 +34,7 @@ EyeUse eyeUseOf(uint16_t opcode) {
 
 WholeUse wholeUseOf(uint16_t opcode) {
     using enum Trait;
-    if (kCommandTraits[opcode] == 0) return WholeUse::None;
+    if (traitsOf(opcode) == 0) return WholeUse::None;
     if (hasTrait(opcode, Pixels, DrawRectangle)) return WholeUse::Copies;
     if (hasTrait(opcode, Draw, Begin, CallList)) return WholeUse::Draw;
     if (hasTrait(opcode, TextureLevel)) return WholeUse::Level;

@@ -2,8 +2,9 @@
 #include <cstring>
 #include <utility>
 
-#include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/command_effects.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/sizes/vertex_types.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
@@ -209,60 +210,26 @@ private:
 // executes these commands itself, because they depend on its tile or on the program's names.
 
 bool Replay::splitsLists(uint16_t opcode, std::span<const std::byte> arguments) const {
-    switch (opcode) {
-    case op::glEnable:
-    case op::glDisable: {
+    switch (effectOf(opcode).list) {
+    case ListRole::Native: return false;
+    case ListRole::Split: return true;
+    case ListRole::SplitForScissor: {
         uint32_t cap = 0;
         if (arguments.size() >= 4) std::memcpy(&cap, arguments.data(), 4);
         return cap == GL_SCISSOR_TEST;
     }
-    case op::glEnablei:
-    case op::glDisablei:
-    case op::glScissor:
-    case op::glScissorArrayv:
-    case op::glScissorIndexed:
-    case op::glScissorIndexedv:
-    case op::glPushAttrib:
-    case op::glPopAttrib:
-    case op::glDrawBuffer:
-    case op::glDrawBuffers:
-    case op::glReadBuffer:
-    case op::glCallList:
-    case op::glCallLists:
-    case op::glListBase:
-    case op::glClear:
-    case op::glDrawPixels:
-    case op::glCopyPixels:
-    case op::glAccum:
-    case op::glBeginQuery:
-    case op::glEndQuery:
-    case op::glBeginQueryIndexed:
-    case op::glEndQueryIndexed:
-    case op::glBeginConditionalRender:
-    case op::glEndConditionalRender:
-    case op::glUseProgram: return true;
-    case op::glColorMask:
-    case op::glColorMaski: return alphaHides_;
-    case op::glViewport:
-    case op::glViewportArrayv:
-    case op::glViewportIndexedf:
-    case op::glViewportIndexedfv: return config_.lean || movesPicture() || rewrites().any();
-    case op::glBlitFramebuffer:
-    case op::glCopyTexImage1D:
-    case op::glCopyTexImage2D:
-    case op::glCopyTexSubImage1D:
-    case op::glCopyTexSubImage2D:
-    case op::glCopyTexSubImage3D:
-    case op::glPolygonStipple: return config_.lean;
-    default: return false;
+    case ListRole::SplitForAlpha: return alphaHides_;
+    case ListRole::SplitForViewport: return config_.lean || movesPicture() || rewrites().any();
+    case ListRole::SplitForTile: return config_.lean;
     }
+    return false;
 }
 
 // Called during list compilation. An invalid glBegin starts no primitive.
 void Replay::onPrimitive(uint16_t opcode, std::span<const std::byte> arguments) {
-    if (opcode == op::glEnd) c_->compilesPrimitive = false;
+    if (hasTrait(opcode, Trait::End)) c_->compilesPrimitive = false;
     uint32_t mode = GL_PATCHES + 1;
-    if (opcode == op::glBegin && arguments.size() >= 4) std::memcpy(&mode, arguments.data(), 4);
+    if (hasTrait(opcode, Trait::Begin) && arguments.size() >= 4) std::memcpy(&mode, arguments.data(), 4);
     if (mode <= GL_PATCHES) c_->compilesPrimitive = true;
 }
 
@@ -271,7 +238,7 @@ void Replay::onPrimitive(uint16_t opcode, std::span<const std::byte> arguments) 
 // its primitive. A list cannot be ended during the execution of a primitive either, so lists that are called there are
 // called natively.
 bool Replay::compileSplitting(uint16_t opcode, std::span<const std::byte> bytes, std::span<const std::byte> arguments) {
-    const bool callsList = opcode == op::glCallList || opcode == op::glCallLists;
+    const bool callsList = hasTrait(opcode, Trait::CallList);
     if (c_->compilesPrimitive && !callsList) {
         for (bool found = true; found;) takeBlob(found);
         return true;

@@ -124,8 +124,7 @@ void Replay::offsetObjectNames() {
 
 // Plants a fault (MURAL_PLANT), which tests must detect. Returns true if the command must be skipped.
 bool Replay::planted(uint16_t opcode) {
-    const bool draws =
-        opcode == op::glBegin || opcode == op::glDrawArrays || opcode == op::glDrawElements || opcode == op::glCallList;
+    const bool draws = hasTrait(opcode, Trait::Begin, Trait::Draw, Trait::CallList);
 #ifdef __SANITIZE_ADDRESS__
     if (config_.plant == "overflow") readPastEnd(counts_.frames + 8);
 #endif

@@ -1,7 +1,7 @@
 // Draws batched bitmaps before the node changes state. Mesa batches glBitmap, and draws the batch with the state at the
 // next dependent command. That command must be the program's, not one that the node adds.
-#include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
 namespace mural {
@@ -9,10 +9,10 @@ namespace mural {
 // Calls of display lists count only if some list contains a bitmap. settleBitmaps() has a side effect: Mesa commits
 // pending materials, which a later colour would otherwise still change.
 void Replay::onBitmaps(uint16_t opcode) {
-    if (opcode == op::glBitmap && c_->compiling && c_->shared) c_->shared->listsContainBitmaps = true;
-    const bool listed =
-        (opcode == op::glCallList || opcode == op::glCallLists) && c_->shared && c_->shared->listsContainBitmaps;
-    if (opcode == op::glBitmap || listed) c_->gathersBitmaps = true;
+    if (!hasTrait(opcode, Trait::Bitmap, Trait::CallList)) return;
+    const bool bitmap = hasTrait(opcode, Trait::Bitmap);
+    if (bitmap && c_->compiling && c_->shared) c_->shared->listsContainBitmaps = true;
+    if (bitmap || (c_->shared && c_->shared->listsContainBitmaps)) c_->gathersBitmaps = true;
 }
 
 // Commands that neither draw nor change drawing state: the driver continues its batch, as it does natively.

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <utility>
 
-#include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
 #include "streamcodec/command_traits.hpp"
@@ -31,11 +30,14 @@ bool isFrontBuffer(GLenum buffer) {
 
 // Returns whether the command is a valid clear that addresses only the first colour buffer.
 bool clears(uint16_t opcode, GLuint first, GLuint second) {
-    switch (opcode) {
-    case op::glClear: return (first & ~kWindowBuffers) == 0;
-    case op::glClearBufferfv: return (first == GL_COLOR || first == GL_DEPTH) && second == 0;
-    case op::glClearBufferiv: return first == GL_STENCIL && second == 0;
-    case op::glClearBufferfi: return first == GL_DEPTH_STENCIL && second == 0;
+    using enum Trait;
+    if (hasTrait(opcode, Clear)) return (first & ~kWindowBuffers) == 0;
+    if (second != 0) return false;
+    switch (first) {
+    case GL_COLOR: return hasTrait(opcode, ClearsColor);
+    case GL_DEPTH: return hasTrait(opcode, ClearsDepth);
+    case GL_STENCIL: return hasTrait(opcode, ClearsStencil);
+    case GL_DEPTH_STENCIL: return hasTrait(opcode, ClearsDepthStencil);
     default: return false;
     }
 }
@@ -122,7 +124,7 @@ GLbitfield Replay::drawnBy(uint16_t opcode) const {
 // Called before any command that may change pixels of the window.
 void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
     const WindowUse use = useOf(opcode);
-    if ((opcode == op::glBegin || opcode == op::glEnd) && !c_->compiling) c_->inPrimitive = opcode == op::glBegin;
+    if (hasTrait(opcode, Trait::Begin, Trait::End) && !c_->compiling) c_->inPrimitive = hasTrait(opcode, Trait::Begin);
     if ((use != WindowUse::Clears && use != WindowUse::Draws) || !c_->shared) return;
     if (c_->compiling) {
         // lists may change depth and stencil
@@ -132,11 +134,11 @@ void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
         return;
     }
     // the items of lists are noted one by one
-    if (!drawsWindow() || !c_->draw || opcode == op::glCallList || opcode == op::glCallLists) return;
+    if (!drawsWindow() || !c_->draw || hasTrait(opcode, Trait::CallList)) return;
     Window& w = *c_->draw;
     MovingPart& m = w.moving;
     const GLbitfield cleared = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
-    const bool stays = opcode == op::glAccum || (cleared & GL_ACCUM_BUFFER_BIT) ||
+    const bool stays = hasTrait(opcode, Trait::Accumulates) || (cleared & GL_ACCUM_BUFFER_BIT) ||
                        (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0)) || w.config.stereo;
     if (stays && !m.fixed) {
         m.fixed = true;

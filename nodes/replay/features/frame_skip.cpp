@@ -4,9 +4,9 @@
 //
 // A window's buffers are stale until a full clear. Drawing over stale buffers, reading or showing them would differ
 // from the other nodes. The code here detects that beforehand and ends the node; the next incarnation draws all frames.
-#include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
@@ -44,9 +44,9 @@ void Replay::onSkipped(uint16_t opcode, std::span<const std::byte> arguments) {
     const GLbitfield whole = clearedBy(opcode, arguments);
     w.stale &= ~whole;
     if (whole & GL_COLOR_BUFFER_BIT) w.invalid = false;
-    const GLbitfield needed = use == WindowUse::Clears ? clears & ~whole
-                              : opcode == op::glAccum  ? GLbitfield{GL_ACCUM_BUFFER_BIT}
-                                                       : needsCleared();
+    const GLbitfield needed = use == WindowUse::Clears               ? clears & ~whole
+                              : hasTrait(opcode, Trait::Accumulates) ? GLbitfield{GL_ACCUM_BUFFER_BIT}
+                                                                     : needsCleared();
     if (needed & w.stale) w.invalid = true;
 }
 

@@ -17,9 +17,9 @@
 #include <cstring>
 #include <utility>
 
-#include "gl_opcodes.hpp"
 #include "nodes/replay/engine/command_uses.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/command_effects.hpp"
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -28,31 +28,13 @@ namespace mural {
 
 namespace {
 
-// Draws whose vertices can be cut into pieces. The members are the positions of count, first vertex, … among the
-// arguments; all arguments have four bytes.
-struct Cuttable {
-    int count = -1, first = -1, type = -1, indices = -1, instances = -1;
-};
-
-Cuttable cuttable(uint16_t opcode) {
-    switch (opcode) {
-    case op::glDrawArrays: return {.count = 2, .first = 1};
-    case op::glDrawArraysInstanced: return {.count = 2, .first = 1, .instances = 3};
-    case op::glDrawElements: return {.count = 1, .type = 2, .indices = 3};
-    case op::glDrawElementsBaseVertex: return {.count = 1, .type = 2, .indices = 3};
-    case op::glDrawRangeElements: return {.count = 3, .type = 4, .indices = 5};
-    default: return {};
-    }
-}
-
-uint32_t wordAt(std::span<const std::byte> bytes, int index) {
+uint32_t wordAt(std::span<const std::byte> bytes, size_t index) {
     uint32_t word = 0;
-    if (index >= 0 && bytes.size() >= 4 * (static_cast<size_t>(index) + 1))
-        std::memcpy(&word, bytes.data() + 4 * static_cast<size_t>(index), 4);
+    if (bytes.size() >= 4 * (index + 1)) std::memcpy(&word, bytes.data() + 4 * index, 4);
     return word;
 }
-void setWord(std::vector<std::byte>& bytes, int index, uint32_t word) {
-    std::memcpy(bytes.data() + 4 * static_cast<size_t>(index), &word, 4);
+void setWord(std::vector<std::byte>& bytes, size_t index, uint32_t word) {
+    std::memcpy(bytes.data() + 4 * index, &word, 4);
 }
 
 // Vertices of an independent primitive; 0: primitives share vertices.
@@ -139,10 +121,12 @@ void Replay::onCompiled(uint16_t opcode, std::span<const std::byte> arguments) {
     ListItem& item = c_->building.items.back();
     switch (rangeUseOf(opcode)) {
     case RangeUse::Vertex: ++item.vertices; break;
-    case RangeUse::Draw:
-        item.vertices += std::max<uint32_t>(1, cuttable(opcode).count >= 0 ? wordAt(arguments, cuttable(opcode).count)
-                                                                           : static_cast<uint32_t>(kUnknownCost));
+    case RangeUse::Draw: {
+        const size_t count = effectOf(opcode).draw.count;
+        item.vertices +=
+            std::max<uint32_t>(1, count > 0 ? wordAt(arguments, count) : static_cast<uint32_t>(kUnknownCost));
         break;
+    }
     case RangeUse::None:
     case RangeUse::Begin:
     case RangeUse::End: break;
@@ -225,20 +209,20 @@ void Replay::drawRest(Window& w) {
 }
 
 std::span<const std::byte> Replay::onRangeDraw(Window& w, uint16_t opcode, std::span<const std::byte> arguments) {
-    const Cuttable c = cuttable(opcode);
+    const DrawWords& c = effectOf(opcode).draw;
     const uint32_t count = wordAt(arguments, c.count), each = verticesOf(wordAt(arguments, 0));
-    const uint64_t instances = c.instances >= 0 ? wordAt(arguments, c.instances) : 1;
+    const uint64_t instances = c.instances > 0 ? wordAt(arguments, c.instances) : 1;
     const uint64_t cost =
-        c.count >= 0
+        c.count > 0
             ? std::max<uint64_t>(1, std::min<uint64_t>(count, INT32_MAX) * std::min<uint64_t>(instances, 1u << 20))
             : kUnknownCost;
     uint64_t first = 0, last = 0;
     if (!shares(w, cost, first, last)) return arguments;
     const auto numbers = c_->shared->primitiveIds.find(name(Kind::Program, c_->program));
-    bool cuts = c.count >= 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound &&
+    bool cuts = c.count > 0 && each > 0 && count <= INT32_MAX && instances == 1 && !c_->pipelineBound &&
                 !stipplesLines() &&
                 (c_->program == 0 || (numbers != c_->shared->primitiveIds.end() && !numbers->second));
-    if (cuts && c.indices >= 0)
+    if (cuts && c.indices > 0)
         cuts = wordAt(arguments, c.indices) == record::kTagOffset && !gl.glIsEnabled(GL_PRIMITIVE_RESTART) &&
                (c_->version < 43 || !gl.glIsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX));
     if (!cuts) { // the node whose range contains its first vertex draws it whole
@@ -253,12 +237,13 @@ std::span<const std::byte> Replay::onRangeDraw(Window& w, uint16_t opcode, std::
     if (from == 0 && to == count) return arguments;
     sliced_.assign(arguments.begin(), arguments.end());
     setWord(sliced_, c.count, to > from ? to - from : 0);
-    if (c.first >= 0) setWord(sliced_, c.first, wordAt(arguments, c.first) + from);
-    if (c.indices >= 0 && arguments.size() >= 4 * (static_cast<size_t>(c.indices) + 3)) {
+    if (c.first > 0) setWord(sliced_, c.first, wordAt(arguments, c.first) + from);
+    const size_t indices = c.indices; // a value: tag, u64 offset
+    if (indices > 0 && arguments.size() >= 4 * (indices + 3)) {
         uint64_t offset = 0;
-        std::memcpy(&offset, arguments.data() + 4 * (static_cast<size_t>(c.indices) + 1), 8);
+        std::memcpy(&offset, arguments.data() + 4 * (indices + 1), 8);
         offset += uint64_t{from} * indexBytes(wordAt(arguments, c.type));
-        std::memcpy(sliced_.data() + 4 * (static_cast<size_t>(c.indices) + 1), &offset, 8);
+        std::memcpy(sliced_.data() + 4 * (indices + 1), &offset, 8);
     }
     return sliced_;
 }

@@ -13,11 +13,11 @@
 #include <cstring>
 #include <utility>
 
-#include "gl_opcodes.hpp"
 #include "nodes/replay/features/pixel_mapping.hpp"
 #include "nodes/replay/context/raster_bins.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
+#include "streamcodec/command_traits.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
@@ -34,7 +34,7 @@ constexpr int64_t kDependentFrames = 8; // consecutive frames, after which the n
 GLbitfield Replay::clearsOf(uint16_t opcode, std::span<const std::byte> arguments) const {
     GLuint words[2] = {};
     std::memcpy(words, arguments.data(), std::min(arguments.size(), sizeof words));
-    if (opcode == op::glClear) return words[0];
+    if (hasTrait(opcode, Trait::Clear)) return words[0];
     switch (words[0]) { // glClearBuffer…
     case GL_COLOR: return GL_COLOR_BUFFER_BIT;
     case GL_DEPTH: return GL_DEPTH_BUFFER_BIT;
@@ -113,7 +113,7 @@ void Replay::onTurn(uint16_t opcode, std::span<const std::byte> arguments) {
     if (w.turnOver) beginTurn(w);
     if (w.keepsPicture) return;
     const GLbitfield clears = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
-    if (opcode == op::glAccum || (clears & GL_ACCUM_BUFFER_BIT)) return keepTurn(w);
+    if (hasTrait(opcode, Trait::Accumulates) || (clears & GL_ACCUM_BUFFER_BIT)) return keepTurn(w);
     const GLbitfield whole = clearedBy(opcode, arguments);
     w.cleared |= whole;
     if (use == WindowUse::Clears && (clears & kWindowBuffers & ~whole) == 0) return;
