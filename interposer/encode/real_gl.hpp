@@ -15,7 +15,7 @@ void setRealLoader(Loader loader);
 // The wrapper of `name`; null if the driver lacks the command or Mural does not support it. Loads the driver's entry
 // point.
 Entry wrapperFor(const char* name);
-// Loads all functions that the interposer itself calls.
+// Loads the functions that wrappers of other commands call: the option `loaded` of streamcodec/api/semantics.txt.
 void loadOwnNeeds();
 
 } // namespace mural

@@ -187,6 +187,14 @@ def unsupported(c):
         ret, c.name, prototype(c), c.name, c.reason.replace('"', "'"), 'return ' if ret != 'void' else '', c.name, names))
 
 
+def own_needs(m):
+    """Returns the function that loads what wrappers of other commands call."""
+    names = ''.join('        "%s",\n' % c.name for c in m.canonical if c.option('loaded') == 'always')
+    if not names:
+        return ''
+    return 'void loadOwnNeeds() {\n    static const char* const kNames[] = {\n%s    };\n    for (const char* name : kNames) wrapperFor(name);\n}\n' % names
+
+
 def emit(m):
     encoders = HEAD + '''#pragma once
 #include "gl_opcodes.hpp"
@@ -237,6 +245,6 @@ using namespace mural;
 } // namespace
 void (*wrapperAt(int index))() { return kWrappers[index]; }
 bool isSupportedAt(int index) { return kSupported[index]; }
-} // namespace mural
 '''
+    wrappers += own_needs(m) + '} // namespace mural\n'
     return {'encoders.hpp': encoders, 'custom_wrappers.hpp': declarations, 'wrappers.cpp': wrappers}

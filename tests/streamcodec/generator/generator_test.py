@@ -123,6 +123,11 @@ class TinyRegistry(unittest.TestCase):
     def test_cell_of_command_that_is_never_sent_is_an_error(self):
         self.assertIn('glGetFloatv has traits or an effect', self.rejected('glGetFloatv - cell=ClearColor\n'))
 
+    def test_functions_that_other_wrappers_call_are_loaded(self):
+        self.assertNotIn('loadOwnNeeds', generated())
+        text = self.with_rules('glGetFloatv - loaded=always\n')
+        self.assertIn('void loadOwnNeeds() {\n    static const char* const kNames[] = {\n        "glGetFloatv",\n    };', text)
+
 
 @unittest.skipUnless(GL_XML, 'no gl.xml here: install khronos-api')
 class RealRegistry(unittest.TestCase):
