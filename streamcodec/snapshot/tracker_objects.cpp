@@ -264,7 +264,8 @@ void GlStateTracker::bindVertexArray(At& at, const Rule& rule, uint32_t name) {
     if (!c.clientAttribs.empty()) setClient(at, part(c.cells, Part::Binding, slot));
     Object* const array = find(at, ObjectType::VertexArray, name);
     const auto retained = array == nullptr ? decltype(array->references)::iterator{} : array->references.find(indices);
-    retain(at, c.bindings[indices], array == nullptr || retained == array->references.end() ? nullptr : retained->second);
+    retain(at, c.bindings[indices],
+           array == nullptr || retained == array->references.end() ? nullptr : retained->second);
 }
 
 // ---- vertex arrays
