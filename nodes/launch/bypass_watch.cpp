@@ -176,7 +176,7 @@ std::string BypassWatch::describeUncaptured(const std::vector<pid_t>& processes)
     for (const pid_t pid : processes) {
         const UncapturedProgram program = runningProgram(pid);
         if (uncapturedReported_.contains(program.program)) continue;
-        if (std::string line = describeUncaptured(program); !line.empty()) {
+        if (std::string line = launch::describeUncaptured(program); !line.empty()) {
             uncapturedReported_.insert(program.program);
             return line;
         }

@@ -133,18 +133,18 @@ Result<void> addCapture(Environment& environment, const CaptureLibrary& library,
         return Error{"the folder " + folder +
                      " contains ':' or ';', which the loader does not accept; move Mural to another folder"};
     }
-    std::string place = folder + "/";
-    if (place.find_first_of(" \t\n") != std::string::npos) {
+    std::string prefix = folder + "/";
+    if (prefix.find_first_of(" \t\n") != std::string::npos) {
         // LD_PRELOAD cannot hold blanks: name the libraries alone and let the loader search their folder.
-        place.clear();
+        prefix.clear();
         const std::string searched = environment.get(kLibraryPath).value_or("");
         if (!(searched + ":").starts_with(folder + ":")) {
             environment.set(kLibraryPath, searched.empty() ? folder : folder + ":" + searched);
         }
     }
-    std::string entries = place + std::string(kCaptureLibraryName);
-    if (entries == CaptureEntries::VendorAndPreload) entries += " " + place + std::string(kPreloadLibraryName);
-    environment.set(kPreload, withCapture(environment.get(kPreload).value_or(""), entries));
+    std::string libraries = prefix + std::string(kCaptureLibraryName);
+    if (entries == CaptureEntries::VendorAndPreload) libraries += " " + prefix + std::string(kPreloadLibraryName);
+    environment.set(kPreload, withCapture(environment.get(kPreload).value_or(""), libraries));
     replaceVendor(environment, kGlxVendor, kRealGlxVendor, kOurVendor, environment.get(kGlxVendor) == kOurVendor);
     replaceVendor(environment, kEglVendors, kRealEglVendors, library.eglVendorFile,
                   isOurEglList(environment.get(kEglVendors).value_or("")));
