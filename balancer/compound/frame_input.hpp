@@ -28,6 +28,8 @@ struct CompoundState {
     std::optional<Range> range;
     std::optional<Zoom> zoom;
     bool active = true; // false: inactive together with its whole subtree
+    double usage = 1;   // resources of its channels that it may use: 1 is all; equalizers above set it for those below
+    double maxFps = 0;  // highest rate at which its channels begin frames, in Hz; 0: no limit
 };
 
 struct FrameInput {

@@ -1,0 +1,31 @@
+// Watches the times of parts that stay as they are: estimates their noise and detects changes of the load. Only the
+// distribution counts; a common factor of all times is no change.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace mural::balance {
+
+class ChangeWatch {
+public:
+    // Begins a new reference; the noise estimate stays.
+    void restart() { frames_ = 0; }
+    // Adds the times of one frame. Returns true if they differ from the reference by more than noise.
+    bool add(const std::vector<double>& seconds);
+
+    // Standard deviation of a time relative to its mean.
+    [[nodiscard]] double noise() const { return noise_; }
+    [[nodiscard]] int frames() const { return frames_; } // frames of the reference
+
+private:
+    void estimateNoise(const std::vector<double>& logs);
+
+    int frames_ = 0;
+    std::vector<double> mean_;             // of the logarithms of the times
+    std::vector<double> logs_, last_, last2_; // logarithms of this frame and of the two before
+    double noise_ = .03;
+    int noiseFrames_ = 0;
+};
+
+} // namespace mural::balance

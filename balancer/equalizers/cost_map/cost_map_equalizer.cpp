@@ -1,0 +1,213 @@
+#include "balancer/equalizers/cost_map/cost_map_equalizer.hpp"
+
+#include <cmath>
+
+namespace mural::balance {
+
+namespace {
+
+constexpr size_t kCellsPerChild = 64; // enough to place a cut within a few percent of a child's part
+constexpr size_t kLeastCells = 2048, kMostCells = 16384;
+constexpr double kLeastDensity = 1e-3;     // of the mean: a cell that was free can become dear
+constexpr double kAspectToTurn = 2;        // a cut turns to the other axis above this ratio of sides
+constexpr int kFirstPatience = 8, kMostPatience = 64;
+constexpr int kQuietFrames = 2;   // frames without a promised gain before a rest
+constexpr int kCalmFrames = 30;   // a longer rest means that the load changes rarely
+
+Axis axisOf(SplitMode mode) { return mode == SplitMode::Db ? Axis::Range : Axis::X; }
+
+bool isSame(const std::vector<Part>& a, const std::vector<Part>& b) {
+    constexpr double kNear = 1e-6;
+    const auto near = [](double x, double y) { return std::abs(x - y) < kNear; };
+    if (a.size() != b.size()) return false;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const Viewport &v = a[i].viewport, &w = b[i].viewport;
+        if (!near(v.x, w.x) || !near(v.y, w.y) || !near(v.w, w.w) || !near(v.h, w.h)) return false;
+        if (!near(a[i].range.start, b[i].range.start) || !near(a[i].range.end, b[i].range.end)) return false;
+    }
+    return true;
+}
+
+} // namespace
+
+CostMapEqualizer::CostMapEqualizer(std::string id, const ResolvedConfig& config, Index compound, SplitMode mode)
+    : SplitEqualizer(std::move(id), "cost_map", config, compound, mode), speeds_(children_.size(), 1),
+      residuals_(children_.size(), 0), patience_(kFirstPatience) {
+    addCutParameters(0, {}, {});
+    parameters_.addNumber("smoothing", .5, 0, 1);
+    parameters_.addNumber("gain", .02, 0, 1);
+    parameters_.addNumber("speed_learning", .05, 0, 1);
+}
+
+void CostMapEqualizer::makeMap() {
+    const size_t cells = std::clamp(kCellsPerChild * children_.size(), kLeastCells, kMostCells);
+    if (mode() == SplitMode::Db) {
+        map_ = DensityGrid(cells / 4, 1);
+        return;
+    }
+    const double aspect = area_.empty() ? 16. / 9 : double(area_.w) / area_.h;
+    const auto columns = std::clamp(std::sqrt(static_cast<double>(cells) * aspect), 8., static_cast<double>(cells) / 8);
+    map_ = DensityGrid(static_cast<size_t>(columns), std::max<size_t>(8, static_cast<size_t>(double(cells) / columns)));
+}
+
+// The destination assembles the others' pictures, so it draws less. Released helpers draw nothing.
+void CostMapEqualizer::setUsage(const States& states, std::vector<double>& usage) const {
+    SplitEqualizer::setUsage(states, usage);
+    size_t helpers = 0;
+    for (size_t i = 0; i < usage.size(); ++i) helpers += children_.channel(i) != children_.destination();
+    size_t released = helpers - helpers_.working(helpers);
+    double resources = 0, work = 0;
+    for (size_t i = usage.size(); i-- > 0;) {
+        if (released > 0 && children_.channel(i) != children_.destination()) {
+            usage[i] = 0;
+            --released;
+        }
+        usage[i] *= speeds_[i];
+        resources += usage[i];
+    }
+    for (const double s : seconds_) work += s;
+    const double assembly = children_.assemblySeconds();
+    for (size_t i = 0; i < usage.size(); ++i) {
+        if (children_.channel(i) != children_.destination() || work <= 0 || resources <= usage[i]) continue;
+        usage[i] = std::max(0., usage[i] - assembly * resources / (work + assembly));
+    }
+}
+
+void CostMapEqualizer::learn(const FrameStatistics&) {
+    if (map_.columns() == 0) makeMap();
+    watch();
+    correctMap();
+    learnSpeeds();
+    size_t helpers = 0, all = 0;
+    double work = 0;
+    bool drawsItself = false;
+    for (size_t i = 0; i < children_.size(); ++i) {
+        const bool isHelper = children_.channel(i) != children_.destination();
+        all += isHelper;
+        drawsItself |= !isHelper;
+        helpers += isHelper && children_.loads()[i].hasDrawn;
+        work += children_.loads()[i].seconds;
+    }
+    helpers_.observe(work, children_.assemblySeconds(), helpers);
+    helpers_.choose(all, drawsItself, std::max(.05, 2 * watch_.noise()));
+}
+
+void CostMapEqualizer::watch() {
+    std::vector<Part> parts;
+    seconds_.clear();
+    for (const ChildLoad& load : children_.loads()) {
+        const Part none{{0, 0, 0, 0}, {0, 0}};
+        parts.push_back(load.hasDrawn ? Part{load.area, load.range} : none);
+        if (load.hasDrawn) seconds_.push_back(load.seconds);
+    }
+    if (!isSame(parts, drawn_)) watch_.restart();
+    drawn_ = std::move(parts);
+    if (watch_.add(seconds_)) isChanged_ = true;
+    if (isResting_) ++restedFrames_;
+}
+
+void CostMapEqualizer::correctMap() {
+    const Axis axis = axisOf(mode());
+    if (!isResting_) map_.smooth(parameters_.number("smoothing"));
+    map_.raise(kLeastDensity);
+    map_.sum();
+    double measured = 0, predicted = 0;
+    for (size_t i = 0; i < drawn_.size(); ++i) {
+        if (drawn_[i].empty()) continue;
+        measured += children_.loads()[i].seconds;
+        predicted += map_.of(drawn_[i], axis) / speeds_[i];
+    }
+    map_.scaleAll(measured / predicted);
+    const double sure = 3 * watch_.noise(); // residuals above are no noise
+    for (size_t i = 0; i < drawn_.size(); ++i) {
+        if (drawn_[i].empty()) continue;
+        const double expected = map_.of(drawn_[i], axis) / speeds_[i] * measured / predicted;
+        const double residual = std::log(children_.loads()[i].seconds / std::max(expected, 1e-12));
+        const double share = std::min(1., std::abs(residual) / sure);
+        const double gain = .3 + .7 * share * share;
+        residuals_[i] = residual;
+        const Part& part = drawn_[i];
+        const Viewport cells = axis == Axis::Range
+                                   ? Viewport{part.range.start, 0, part.range.end - part.range.start, 1}
+                                   : part.viewport;
+        map_.scale(cells, std::exp(std::clamp(gain * residual, -8., 8.)));
+    }
+    map_.sum();
+}
+
+void CostMapEqualizer::learnSpeeds() {}
+
+void CostMapEqualizer::cut(SplitTree& tree, int index, const Part& part, const CutRules& rules) const {
+    SplitNode& node = tree.nodes()[static_cast<size_t>(index)];
+    if (node.isLeaf()) return;
+    if (mode() == SplitMode::TwoD) {
+        const double aspect = area_.empty() ? 16. / 9 : double(area_.w) / area_.h;
+        const double ratio = part.viewport.w * aspect / std::max(part.viewport.h, 1e-9);
+        if (ratio > kAspectToTurn) node.axis = Axis::X;
+        if (ratio < 1 / kAspectToTurn) node.axis = Axis::Y;
+    }
+    const double low = rules.usageOf(tree.low(node)), all = rules.usageOf(node);
+    const double wanted = all > 0 ? map_.cutOf(part, node.axis, low / all) : node.at;
+    tree.moveCut(node, part, wanted, rules);
+    const auto halves = cutPart(part, node.axis, node.at);
+    cut(tree, node.low, halves.first, rules);
+    cut(tree, node.high, halves.second, rules);
+}
+
+double CostMapEqualizer::longestOf(const std::vector<Part>& parts) const {
+    double longest = 0;
+    for (size_t i = 0; i < parts.size(); ++i)
+        if (!parts[i].empty()) longest = std::max(longest, map_.of(parts[i], axisOf(mode())) / speeds_[i]);
+    return longest;
+}
+
+double CostMapEqualizer::noiseGain() const {
+    // Noise of the map after correctMap(): the weight of the newest frame is .3.
+    const double noise = watch_.noise() * std::sqrt(.3 / 1.7);
+    return noise * std::sqrt(2 * std::log(std::max(2., static_cast<double>(seconds_.size()))));
+}
+
+void CostMapEqualizer::endRest() {
+    isResting_ = isChanged_ = false;
+    patience_ = restedFrames_ < kCalmFrames ? std::min(4 * patience_, kMostPatience) : kFirstPatience;
+    moves_ = quietFrames_ = 0;
+}
+
+void CostMapEqualizer::rest(const char* why) {
+    isResting_ = true;
+    isChanged_ = false;
+    restedFrames_ = 0;
+    decision_.what = why;
+}
+
+bool CostMapEqualizer::split(const FrameContext&, const CutRules& rules) {
+    if (isResting_ && isChanged_) endRest();
+    SplitTree other = tree_;
+    cut(other, 0, {}, rules);
+    const std::vector<Part> now = tree_.parts();
+    const double longest = longestOf(now), promised = longestOf(other.parts());
+    const double gain = longest > 0 ? 1 - promised / longest : 0;
+    const double least = std::max(parameters_.number("gain"), 1.5 * noiseGain());
+    decision_.inputs = {{"longest", longest}, {"promised", promised}, {"noise", watch_.noise()}, {"threshold", least}};
+    decision_.predictedGain = gain;
+    if (isResting_) {
+        decision_.what = "rests: the load is constant";
+        return false;
+    }
+    if (gain > least && moves_ < patience_) {
+        ++moves_;
+        quietFrames_ = 0;
+        tree_ = std::move(other);
+        decision_.what = "cuts moved to equal costs of the map";
+        return true;
+    }
+    decision_.what = "no sufficient gain";
+    if (moves_ >= patience_) {
+        rest("rests to see whether the load changes");
+    } else if (++quietFrames_ >= kQuietFrames) {
+        rest("rests: no sufficient gain");
+    }
+    return false;
+}
+
+} // namespace mural::balance

@@ -1,0 +1,119 @@
+#include "balancer/equalizers/cost_map/density_grid.hpp"
+
+#include <cmath>
+
+namespace mural::balance {
+
+DensityGrid::DensityGrid(size_t columns, size_t rows)
+    : columns_(columns), rows_(rows), cells_(columns * rows, 1), sums_((columns + 1) * (rows + 1), 0) {
+    sum();
+}
+
+void DensityGrid::setCells(const std::vector<float>& cells) {
+    cells_.assign(cells.begin(), cells.end());
+    sum();
+}
+
+void DensityGrid::sum() {
+    const size_t width = columns_ + 1;
+    for (size_t row = 0; row < rows_; ++row) {
+        double line = 0;
+        const double* cells = cells_.data() + row * columns_;
+        const double* under = sums_.data() + row * width;
+        double* out = sums_.data() + (row + 1) * width;
+        for (size_t column = 0; column < columns_; ++column) {
+            line += cells[column];
+            out[column + 1] = under[column + 1] + line;
+        }
+    }
+}
+
+double DensityGrid::below(double x, double y) const {
+    const double cx = std::clamp(x, 0., static_cast<double>(columns_));
+    const double cy = std::clamp(y, 0., static_cast<double>(rows_));
+    const size_t column = std::min(static_cast<size_t>(cx), columns_ - 1);
+    const size_t row = std::min(static_cast<size_t>(cy), rows_ - 1);
+    const double fx = cx - static_cast<double>(column), fy = cy - static_cast<double>(row);
+    const double* low = sums_.data() + row * (columns_ + 1) + column;
+    const double* high = low + columns_ + 1;
+    return (1 - fy) * ((1 - fx) * low[0] + fx * low[1]) + fy * ((1 - fx) * high[0] + fx * high[1]);
+}
+
+double DensityGrid::of(const Viewport& part) const {
+    const auto w = static_cast<double>(columns_), h = static_cast<double>(rows_);
+    return between(part.x * w, (part.x + part.w) * w, part.y * h, (part.y + part.h) * h);
+}
+
+double DensityGrid::cutOf(const Part& part, Axis axis, double share) const {
+    const bool isY = axis == Axis::Y;
+    const auto w = static_cast<double>(columns_), h = static_cast<double>(rows_);
+    Viewport v = part.viewport;
+    if (axis == Axis::Range) v = {part.range.start, 0, part.range.end - part.range.start, 1};
+    const double x0 = v.x * w, x1 = (v.x + v.w) * w, y0 = v.y * h, y1 = (v.y + v.h) * h;
+    const double from = isY ? y0 : x0, to = isY ? y1 : x1;
+    const auto until = [&](double place) {
+        return isY ? between(x0, x1, y0, place) : between(x0, place, y0, y1);
+    };
+    const double target = until(to) * share;
+    if (!(until(to) > 0) || !(to > from)) return share;
+    // The first edge of cells within the part at which the target is reached.
+    auto first = static_cast<long>(std::floor(from)) + 1, end = static_cast<long>(std::ceil(to));
+    while (first < end) {
+        const long middle = (first + end) / 2;
+        if (until(static_cast<double>(middle)) < target)
+            first = middle + 1;
+        else
+            end = middle;
+    }
+    const double low = std::max(from, static_cast<double>(first - 1)), high = std::min(to, static_cast<double>(first));
+    const double lowCost = until(low), highCost = until(high);
+    const double inside = highCost > lowCost ? (target - lowCost) / (highCost - lowCost) : .5;
+    return std::clamp((low + (high - low) * inside - from) / (to - from), 0., 1.);
+}
+
+void DensityGrid::scale(const Viewport& part, double factor) {
+    const auto w = static_cast<double>(columns_), h = static_cast<double>(rows_);
+    const double x0 = std::max(0., part.x * w), x1 = std::min(w, (part.x + part.w) * w);
+    const double y0 = std::max(0., part.y * h), y1 = std::min(h, (part.y + part.h) * h);
+    for (auto row = static_cast<size_t>(y0); static_cast<double>(row) < y1; ++row) {
+        const auto y = static_cast<double>(row);
+        const double inY = std::min(y1, y + 1) - std::max(y0, y);
+        double* cells = cells_.data() + row * columns_;
+        for (auto column = static_cast<size_t>(x0); static_cast<double>(column) < x1; ++column) {
+            const auto x = static_cast<double>(column);
+            cells[column] *= 1 + (factor - 1) * inY * (std::min(x1, x + 1) - std::max(x0, x));
+        }
+    }
+}
+
+void DensityGrid::scaleAll(double factor) {
+    for (double& cell : cells_) cell *= factor;
+}
+
+void DensityGrid::smooth(double weight) {
+    if (weight <= 0) return;
+    scratch_.resize(cells_.size());
+    const double side = weight / 4, middle = 1 - weight / 2; // 1 2 1 at weight 1, at the edges mirrored
+    for (size_t row = 0; row < rows_; ++row) {
+        const double* in = cells_.data() + row * columns_;
+        double* out = scratch_.data() + row * columns_;
+        for (size_t c = 0; c < columns_; ++c)
+            out[c] = middle * in[c] + side * (in[c > 0 ? c - 1 : 0] + in[c + 1 < columns_ ? c + 1 : c]);
+    }
+    for (size_t row = 0; row < rows_; ++row) {
+        const double* in = scratch_.data() + row * columns_;
+        const double* under = row > 0 ? in - columns_ : in;
+        const double* over = row + 1 < rows_ ? in + columns_ : in;
+        double* out = cells_.data() + row * columns_;
+        for (size_t c = 0; c < columns_; ++c) out[c] = middle * in[c] + side * (under[c] + over[c]);
+    }
+}
+
+void DensityGrid::raise(double fraction) {
+    double all = 0;
+    for (const double cell : cells_) all += cell;
+    const double least = all * fraction / static_cast<double>(cells_.size());
+    for (double& cell : cells_) cell = std::max(cell, least);
+}
+
+} // namespace mural::balance
