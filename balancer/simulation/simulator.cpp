@@ -10,6 +10,7 @@
 #include "balancer/simulation/exact_map_equalizer.hpp"
 
 namespace mural::simulation {
+void (*gTrace)(size_t, balance::FramePlanner&, const Outcome&) = nullptr; // DEBUG
 
 namespace {
 
@@ -52,6 +53,7 @@ public:
             planner_.next();
             setCosts(frame);
             pending_.push_back(draw(frame));
+            if (gTrace) gTrace(frame, planner_, outcome_); // DEBUG
             if (pending_.size() < static_cast<size_t>(conditions_.latency)) continue;
             planner_.addStatistics(pending_.front());
             pending_.pop_front();
@@ -130,8 +132,8 @@ private:
             if (j == last_.leaves.size()) return moved;
             const auto& old = last_.leaves[j];
             const Viewport &a = leaf.viewport, &b = old.viewport;
-            moved += std::abs(a.x - b.x) + std::abs(a.x + a.w - b.x - b.w) + std::abs(a.y - b.y) +
-                     std::abs(a.y + a.h - b.y - b.h) + std::abs(leaf.range.start - old.range.start) +
+            moved += std::abs(a.x - b.x) + std::abs((a.x + a.w) - (b.x + b.w)) + std::abs(a.y - b.y) +
+                     std::abs((a.y + a.h) - (b.y + b.h)) + std::abs(leaf.range.start - old.range.start) +
                      std::abs(leaf.range.end - old.range.end);
         }
         return moved;

@@ -1,5 +1,6 @@
-// Watches the times of parts that stay as they are: estimates their noise and detects changes of the load. Only the
-// distribution counts; a common factor of all times is no change.
+// Watches the times of parts that stay as they are: estimates their noise and detects changes of the load by cumulative
+// sums (E. S. Page, Continuous inspection schemes, 1954). Only the distribution counts; a common factor of all times is
+// no change.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +21,12 @@ public:
 
 private:
     void estimateNoise(const std::vector<double>& logs);
+    bool sumDeviations();
 
     int frames_ = 0;
-    std::vector<double> mean_;             // of the logarithms of the times
+    std::vector<double> mean_;               // of the logarithms of the times
+    std::vector<double> above_, below_;      // cumulative sums of deviations
+    std::vector<double> slowAbove_, slowBelow_;
     std::vector<double> logs_, last_, last2_; // logarithms of this frame and of the two before
     double noise_ = .03;
     int noiseFrames_ = 0;

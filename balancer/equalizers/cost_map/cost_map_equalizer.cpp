@@ -10,8 +10,14 @@ constexpr size_t kCellsPerChild = 64; // enough to place a cut within a few perc
 constexpr size_t kLeastCells = 2048, kMostCells = 16384;
 constexpr double kLeastDensity = 1e-3;     // of the mean: a cell that was free can become dear
 constexpr double kAspectToTurn = 2;        // a cut turns to the other axis above this ratio of sides
+constexpr double kSurpriseToSmooth = .4; // residual from which the map is smoothed completely
+constexpr int kSmoothings = 3;
+constexpr size_t kMemory = 6;  // frames with different parts that the map agrees with
+constexpr int kRecalls = 2;
 constexpr int kFirstPatience = 8, kMostPatience = 64;
-constexpr int kQuietFrames = 2;   // frames without a promised gain before a rest
+constexpr int kQuietFrames = 4;   // frames of the same parts without a promised gain before a rest
+constexpr double kGainToWake = .08; // a promised gain that ends a rest
+constexpr int kFramesToWake = 4;    // frames of the same parts that show it
 constexpr int kCalmFrames = 30;   // a longer rest means that the load changes rarely
 
 Axis axisOf(SplitMode mode) { return mode == SplitMode::Db ? Axis::Range : Axis::X; }
@@ -102,37 +108,123 @@ void CostMapEqualizer::watch() {
     }
     if (!isSame(parts, drawn_)) watch_.restart();
     drawn_ = std::move(parts);
-    if (watch_.add(seconds_)) isChanged_ = true;
+    if (watch_.add(seconds_)) {
+        isChanged_ = true;
+        watch_.restart();
+        (void)watch_.add(seconds_);
+    }
     if (isResting_) ++restedFrames_;
 }
 
+// Multiplies the density within each part by measured / predicted time. Residuals within the noise are averaged over the
+// frames of the same parts; larger ones count at once, and then the map is made to agree with earlier frames again.
 void CostMapEqualizer::correctMap() {
-    const Axis axis = axisOf(mode());
-    if (!isResting_) map_.smooth(parameters_.number("smoothing"));
+    findResiduals();
+    bool isSurprise = false;
+    for (int round = 0; round < kSmoothings && !isResting_; ++round) {
+        if (!smoothMap(round == 0)) break;
+        isSurprise = true;
+        findResiduals();
+    }
+    if (isSurprise) recall();
+    const double average = 1. / (std::min(watch_.frames(), isResting_ ? 64 : 4) + 1.);
+    for (size_t i = 0; i < drawn_.size(); ++i) {
+        if (drawn_[i].empty()) continue;
+        const double sure = std::clamp((std::abs(residuals_[i]) / watch_.noise() - sureDeviations()) / 2, 0., 1.);
+        const double gain = average + (1 - average) * sure;
+        map_.scale(cellsOf(drawn_[i]), std::exp(std::clamp(gain * residuals_[i], -8., 8.)));
+    }
+    map_.sum();
+    remember();
+}
+
+// Deviations that the noise of one frame hardly reaches.
+double CostMapEqualizer::sureDeviations() const {
+    return 1.5 + std::sqrt(2 * std::log(std::max(2., static_cast<double>(seconds_.size()))));
+}
+
+// Keeps the frames of the last few different parts. A load that varies makes them worthless.
+void CostMapEqualizer::remember() {
+    if (isVarying_) {
+        memory_.clear();
+        return;
+    }
+    if (!memory_.empty() && isSame(memory_.back().parts, drawn_)) memory_.pop_back();
+    if (memory_.size() >= kMemory) memory_.erase(memory_.begin());
+    Memory m;
+    m.parts = drawn_;
+    for (size_t i = 0; i < drawn_.size(); ++i)
+        m.costs.push_back(drawn_[i].empty() ? 0 : map_.of(drawn_[i], axisOf(mode())) / map_.total());
+    memory_.push_back(std::move(m));
+}
+
+void CostMapEqualizer::recall() {
+    for (int round = 0; round < kRecalls && !memory_.empty(); ++round) {
+        for (const Memory& m : memory_) {
+            const double total = map_.total();
+            costs_.clear();
+            for (const Part& part : m.parts) costs_.push_back(part.empty() ? 0 : map_.of(part, axisOf(mode())) / total);
+            for (size_t i = 0; i < m.parts.size(); ++i)
+                if (!m.parts[i].empty() && costs_[i] > 0)
+                    map_.scale(cellsOf(m.parts[i]), std::clamp(m.costs[i] / costs_[i], 1e-3, 1e3));
+            map_.sum();
+        }
+        findResiduals();
+        for (size_t i = 0; i < drawn_.size(); ++i)
+            if (!drawn_[i].empty()) map_.scale(cellsOf(drawn_[i]), std::exp(std::clamp(residuals_[i], -8., 8.)));
+        map_.sum();
+    }
+    findResiduals();
+}
+
+// Where the times surprise, the shape of the map is wrong, too: the neighbourhood tells more than the old shape.
+// Returns false if nothing surprises.
+bool CostMapEqualizer::smoothMap(bool isFirst) {
+    bool any = false;
+    if (isFirst) surprises_ = residuals_;
+    for (size_t i = 0; i < drawn_.size(); ++i) {
+        const double surprise = (std::abs(surprises_[i]) - sureDeviations() * watch_.noise()) / kSurpriseToSmooth;
+        if (drawn_[i].empty() || surprise <= 0) continue;
+        any = true;
+        if (!isFirst) map_.scale(cellsOf(drawn_[i]), std::exp(std::clamp(residuals_[i], -8., 8.)));
+    }
+    if (any && !isFirst) map_.sum();
+    for (size_t i = 0; i < drawn_.size() && any; ++i) {
+        const double surprise = (std::abs(surprises_[i]) - sureDeviations() * watch_.noise()) / kSurpriseToSmooth;
+        if (drawn_[i].empty() || surprise <= 0) continue;
+        map_.smooth(cellsOf(drawn_[i]), parameters_.number("smoothing") * std::min(1., surprise));
+    }
+    if (!any) return false;
     map_.raise(kLeastDensity);
     map_.sum();
+    return true;
+}
+
+Viewport CostMapEqualizer::cellsOf(const Part& part) const {
+    if (mode() != SplitMode::Db) return part.viewport;
+    return {part.range.start, 0, part.range.end - part.range.start, 1};
+}
+
+// Scales the map to the sum of the times. Sets the residuals and returns their root mean square.
+double CostMapEqualizer::findResiduals() {
+    const Axis axis = axisOf(mode());
+    std::fill(residuals_.begin(), residuals_.end(), 0);
     double measured = 0, predicted = 0;
     for (size_t i = 0; i < drawn_.size(); ++i) {
         if (drawn_[i].empty()) continue;
+        residuals_[i] = std::max(map_.of(drawn_[i], axis) / speeds_[i], 1e-12);
         measured += children_.loads()[i].seconds;
-        predicted += map_.of(drawn_[i], axis) / speeds_[i];
+        predicted += residuals_[i];
     }
-    map_.scaleAll(measured / predicted);
-    const double sure = 3 * watch_.noise(); // residuals above are no noise
+    const double factor = measured / predicted;
+    map_.scaleAll(factor);
+    double squares = 0;
     for (size_t i = 0; i < drawn_.size(); ++i) {
         if (drawn_[i].empty()) continue;
-        const double expected = map_.of(drawn_[i], axis) / speeds_[i] * measured / predicted;
-        const double residual = std::log(children_.loads()[i].seconds / std::max(expected, 1e-12));
-        const double share = std::min(1., std::abs(residual) / sure);
-        const double gain = .3 + .7 * share * share;
-        residuals_[i] = residual;
-        const Part& part = drawn_[i];
-        const Viewport cells = axis == Axis::Range
-                                   ? Viewport{part.range.start, 0, part.range.end - part.range.start, 1}
-                                   : part.viewport;
-        map_.scale(cells, std::exp(std::clamp(gain * residual, -8., 8.)));
+        residuals_[i] = std::log(children_.loads()[i].seconds / (residuals_[i] * factor));
+        squares += residuals_[i] * residuals_[i];
     }
-    map_.sum();
+    return std::sqrt(squares / static_cast<double>(seconds_.size()));
 }
 
 void CostMapEqualizer::learnSpeeds() {}
@@ -162,15 +254,16 @@ double CostMapEqualizer::longestOf(const std::vector<Part>& parts) const {
 }
 
 double CostMapEqualizer::noiseGain() const {
-    // Noise of the map after correctMap(): the weight of the newest frame is .3.
-    const double noise = watch_.noise() * std::sqrt(.3 / 1.7);
+    const double noise = watch_.noise() / std::sqrt(std::min(watch_.frames(), 4) + 1.5);
     return noise * std::sqrt(2 * std::log(std::max(2., static_cast<double>(seconds_.size()))));
 }
 
 void CostMapEqualizer::endRest() {
+    isVarying_ = restedFrames_ < kCalmFrames && (isChanged_ || isVarying_);
     isResting_ = isChanged_ = false;
-    patience_ = restedFrames_ < kCalmFrames ? std::min(4 * patience_, kMostPatience) : kFirstPatience;
-    moves_ = quietFrames_ = 0;
+    patience_ = isVarying_ ? std::min(4 * patience_, kMostPatience) : kFirstPatience;
+    followedFrames_ = 0;
+    memory_.clear();
 }
 
 void CostMapEqualizer::rest(const char* why) {
@@ -181,32 +274,31 @@ void CostMapEqualizer::rest(const char* why) {
 }
 
 bool CostMapEqualizer::split(const FrameContext&, const CutRules& rules) {
-    if (isResting_ && isChanged_) endRest();
     SplitTree other = tree_;
     cut(other, 0, {}, rules);
     const std::vector<Part> now = tree_.parts();
     const double longest = longestOf(now), promised = longestOf(other.parts());
     const double gain = longest > 0 ? 1 - promised / longest : 0;
-    const double least = std::max(parameters_.number("gain"), 1.5 * noiseGain());
+    const double least = isVarying_ ? .5 * noiseGain() : std::max(parameters_.number("gain"), 1.75 * noiseGain());
     decision_.inputs = {{"longest", longest}, {"promised", promised}, {"noise", watch_.noise()}, {"threshold", least}};
     decision_.predictedGain = gain;
+    const double lost = isVarying_ ? 1.25 * noiseGain() : std::max(kGainToWake, 2.5 * noiseGain());
+    if (isResting_ && (isChanged_ || (watch_.frames() >= kFramesToWake && gain > lost))) endRest();
     if (isResting_) {
         decision_.what = "rests: the load is constant";
         return false;
     }
-    if (gain > least && moves_ < patience_) {
-        ++moves_;
-        quietFrames_ = 0;
+    if (followedFrames_++ >= patience_) {
+        rest("rests to see whether the load changes");
+        return false;
+    }
+    if (gain > least) {
         tree_ = std::move(other);
         decision_.what = "cuts moved to equal costs of the map";
         return true;
     }
     decision_.what = "no sufficient gain";
-    if (moves_ >= patience_) {
-        rest("rests to see whether the load changes");
-    } else if (++quietFrames_ >= kQuietFrames) {
-        rest("rests: no sufficient gain");
-    }
+    if (watch_.frames() > kQuietFrames && isSame(drawn_, now)) rest("rests: no sufficient gain");
     return false;
 }
 

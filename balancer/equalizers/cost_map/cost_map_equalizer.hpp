@@ -30,7 +30,13 @@ private:
     void makeMap();
     void watch();
     void correctMap();
+    double findResiduals();
+    bool smoothMap(bool isFirst);
+    [[nodiscard]] Viewport cellsOf(const Part& part) const;
     void learnSpeeds();
+    void remember();
+    void recall();
+    [[nodiscard]] double sureDeviations() const;
     void cut(SplitTree& tree, int node, const Part& part, const CutRules& rules) const;
     // Returns the longest predicted time of the parts.
     [[nodiscard]] double longestOf(const std::vector<Part>& parts) const;
@@ -42,6 +48,12 @@ private:
     DensityGrid map_;               // in seconds of a child with speed 1
     std::vector<double> speeds_;    // per child
     std::vector<double> residuals_; // per child: logarithm of measured / predicted time in the last frame
+    std::vector<double> surprises_, costs_;
+    struct Memory {
+        std::vector<Part> parts;
+        std::vector<double> costs; // fractions of the total
+    };
+    std::vector<Memory> memory_;
     ChangeWatch watch_;
     HelperCount helpers_;
     std::vector<Part> drawn_;     // parts of the last measured frame
@@ -50,9 +62,9 @@ private:
     // Following: cuts move. Resting: cuts stay until the load changes.
     bool isResting_ = false;
     bool isChanged_ = false;  // the load has changed during the rest
-    int moves_ = 0;           // since the begin of following
-    int patience_ = 0;        // moves before a rest that shows whether the load itself changes
-    int quietFrames_ = 0;     // measured frames of the current parts without a promised gain
+    bool isVarying_ = false;  // the last rest was short
+    int followedFrames_ = 0;  // since the begin of following
+    int patience_ = 0;        // frames of following before a rest that shows whether the load itself changes
     int restedFrames_ = 0;
 };
 

@@ -90,22 +90,27 @@ void DensityGrid::scaleAll(double factor) {
     for (double& cell : cells_) cell *= factor;
 }
 
-void DensityGrid::smooth(double weight) {
-    if (weight <= 0) return;
-    scratch_.resize(cells_.size());
-    const double side = weight / 4, middle = 1 - weight / 2; // 1 2 1 at weight 1, at the edges mirrored
-    for (size_t row = 0; row < rows_; ++row) {
-        const double* in = cells_.data() + row * columns_;
-        double* out = scratch_.data() + row * columns_;
-        for (size_t c = 0; c < columns_; ++c)
-            out[c] = middle * in[c] + side * (in[c > 0 ? c - 1 : 0] + in[c + 1 < columns_ ? c + 1 : c]);
-    }
-    for (size_t row = 0; row < rows_; ++row) {
-        const double* in = scratch_.data() + row * columns_;
-        const double* under = row > 0 ? in - columns_ : in;
-        const double* over = row + 1 < rows_ ? in + columns_ : in;
-        double* out = cells_.data() + row * columns_;
-        for (size_t c = 0; c < columns_; ++c) out[c] = middle * in[c] + side * (under[c] + over[c]);
+void DensityGrid::smooth(const Viewport& part, double weight) {
+    const auto cellsOf = [](double from, double size, size_t count) {
+        const double most = static_cast<double>(count);
+        const auto first = static_cast<long>(std::clamp(std::round(from * most), 0., most));
+        return std::pair(first, static_cast<long>(std::clamp(std::round((from + size) * most), 0., most)));
+    };
+    const auto [x0, x1] = cellsOf(part.x, part.w, columns_);
+    const auto [y0, y1] = cellsOf(part.y, part.h, rows_);
+    const long reachX = (x1 - x0) / 2, reachY = (y1 - y0) / 2;
+    const auto columns = static_cast<long>(columns_), rows = static_cast<long>(rows_);
+    for (long y = y0; y < y1; ++y) {
+        const long low = std::max(0L, y - reachY), high = std::min(rows, y + reachY + 1);
+        const double* under = sums_.data() + low * (columns + 1);
+        const double* over = sums_.data() + high * (columns + 1);
+        double* cells = cells_.data() + y * columns;
+        for (long x = x0; x < x1; ++x) {
+            const long left = std::max(0L, x - reachX), right = std::min(columns, x + reachX + 1);
+            const double sum = over[right] - over[left] - under[right] + under[left];
+            const double mean = std::max(0., sum) / static_cast<double>((right - left) * (high - low));
+            cells[x] += weight * (mean - cells[x]);
+        }
     }
 }
 

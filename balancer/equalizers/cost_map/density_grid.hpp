@@ -31,8 +31,9 @@ public:
     // Multiplies the cost within the part.
     void scale(const Viewport& part, double factor);
     void scaleAll(double factor);
-    // Replaces each cost by a weighted mean of itself (1 - weight) and its neighbourhood (weight).
-    void smooth(double weight);
+    // Replaces each cost within the part by a weighted mean of itself (1 - weight) and of a rectangle of the part's size
+    // around it (weight). Uses the sums before the change.
+    void smooth(const Viewport& part, double weight);
     // Raises costs to a fraction of the mean, so that no part is free.
     void raise(double fraction);
     void sum();
@@ -46,7 +47,6 @@ private:
     size_t columns_ = 0, rows_ = 0;
     std::vector<double> cells_;
     std::vector<double> sums_; // summed-area table, one larger in each direction
-    std::vector<double> scratch_;
 };
 
 } // namespace mural::balance
