@@ -18,7 +18,7 @@ constexpr int kFirstPatience = 8, kMostPatience = 64;
 constexpr int kQuietFrames = 4;   // frames of the same parts without a promised gain before a rest
 constexpr double kGainToWake = .08; // a promised gain that ends a rest
 constexpr int kFramesToWake = 4;    // frames of the same parts that show it
-constexpr int kCalmFrames = 30;   // a longer rest means that the load changes rarely
+constexpr int kCalmFrames = 12;   // a longer rest means that the load changes rarely
 
 Axis axisOf(SplitMode mode) { return mode == SplitMode::Db ? Axis::Range : Axis::X; }
 
@@ -140,6 +140,7 @@ void CostMapEqualizer::correctMap() {
 
 // Deviations that the noise of one frame hardly reaches.
 double CostMapEqualizer::sureDeviations() const {
+    if (isVarying_) return 1;
     return 1.5 + std::sqrt(2 * std::log(std::max(2., static_cast<double>(seconds_.size()))));
 }
 
