@@ -127,7 +127,8 @@ void CostMapEqualizer::correctMap() {
         findResiduals();
     }
     if (isSurprise) recall();
-    const double average = 1. / (std::min(watch_.frames(), isResting_ ? 64 : 4) + 1.);
+    const int frames = isResting_ ? 64 : isVarying_ ? 1 : 4; // an old average lags behind a load that varies
+    const double average = 1. / (std::min(watch_.frames(), frames) + 1.);
     for (size_t i = 0; i < drawn_.size(); ++i) {
         if (drawn_[i].empty()) continue;
         const double sure = std::clamp((std::abs(residuals_[i]) / watch_.noise() - sureDeviations()) / 2, 0., 1.);
