@@ -10,7 +10,6 @@
 #include "balancer/simulation/exact_map_equalizer.hpp"
 
 namespace mural::simulation {
-void (*gTrace)(size_t, balance::FramePlanner&, const Outcome&) = nullptr; // DEBUG
 
 namespace {
 
@@ -53,7 +52,6 @@ public:
             planner_.next();
             setCosts(frame);
             pending_.push_back(draw(frame));
-            if (gTrace) gTrace(frame, planner_, outcome_); // DEBUG
             if (pending_.size() < static_cast<size_t>(conditions_.latency)) continue;
             planner_.addStatistics(pending_.front());
             pending_.pop_front();

@@ -63,8 +63,9 @@ void ChangeWatch::estimateNoise(const std::vector<double>& logs) {
         sum += second * second;
     }
     const double variance = sum / (6 * static_cast<double>(logs.size()));
-    noiseFrames_ = std::min(noiseFrames_ + 1, 16);
-    const double weight = std::max(1. / 16, .5 / noiseFrames_);
+    const auto count = static_cast<double>(logs.size());
+    const double weight = std::max(1. / 16, count / (samples_ + count));
+    samples_ += count;
     noise_ = std::sqrt((1 - weight) * noise_ * noise_ + weight * variance);
     noise_ = std::clamp(noise_, kLeastNoise, kMostNoise);
 }

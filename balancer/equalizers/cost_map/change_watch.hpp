@@ -17,6 +17,7 @@ public:
 
     // Standard deviation of a time relative to its mean.
     [[nodiscard]] double noise() const { return noise_; }
+    [[nodiscard]] bool isNoiseKnown() const { return samples_ > kInitialSamples; }
     [[nodiscard]] int frames() const { return frames_; } // frames of the reference
 
 private:
@@ -29,7 +30,8 @@ private:
     std::vector<double> slowAbove_, slowBelow_;
     std::vector<double> logs_, last_, last2_; // logarithms of this frame and of the two before
     double noise_ = .03;
-    int noiseFrames_ = 0;
+    static constexpr double kInitialSamples = 4; // weight of the initial estimate
+    double samples_ = kInitialSamples;
 };
 
 } // namespace mural::balance

@@ -16,8 +16,10 @@ constexpr size_t kMemory = 6;  // frames with different parts that the map agree
 constexpr int kRecalls = 2;
 constexpr int kFirstPatience = 8, kMostPatience = 64;
 constexpr int kQuietFrames = 4;   // frames of the same parts without a promised gain before a rest
-constexpr double kGainToWake = .08; // a promised gain that ends a rest
+constexpr double kGainToWake = .12; // a promised gain that ends a rest
 constexpr int kFramesToWake = 4;    // frames of the same parts that show it
+constexpr double kSlowest = .1; // speed relative to the mean
+constexpr double kMostNoise = .12; // assumed before the noise is known
 constexpr int kCalmFrames = 12;   // a longer rest means that the load changes rarely
 
 Axis axisOf(SplitMode mode) { return mode == SplitMode::Db ? Axis::Range : Axis::X; }
@@ -42,7 +44,7 @@ CostMapEqualizer::CostMapEqualizer(std::string id, const ResolvedConfig& config,
     addCutParameters(0, {}, {});
     parameters_.addNumber("smoothing", .5, 0, 1);
     parameters_.addNumber("gain", .02, 0, 1);
-    parameters_.addNumber("speed_learning", .05, 0, 1);
+    parameters_.addNumber("speed_learning", .1, 0, 1);
 }
 
 void CostMapEqualizer::makeMap() {
@@ -141,8 +143,7 @@ void CostMapEqualizer::correctMap() {
 
 // Deviations that the noise of one frame hardly reaches.
 double CostMapEqualizer::sureDeviations() const {
-    if (isVarying_) return 1;
-    return 1.5 + std::sqrt(2 * std::log(std::max(2., static_cast<double>(seconds_.size()))));
+    return isVarying_ ? 1 : 1.5 + noiseDeviations();
 }
 
 // Keeps the frames of the last few different parts. A load that varies makes them worthless.
@@ -229,7 +230,20 @@ double CostMapEqualizer::findResiduals() {
     return std::sqrt(squares / static_cast<double>(seconds_.size()));
 }
 
-void CostMapEqualizer::learnSpeeds() {}
+// A child whose parts take longer than the map expects, wherever they are, is slow. While cuts move, a small share of
+// each residual counts for the speed; the common factor of all speeds is 1.
+void CostMapEqualizer::learnSpeeds() {
+    const double rate = parameters_.number("speed_learning");
+    if (isResting_ || rate <= 0) return;
+    double sum = 0;
+    for (size_t i = 0; i < speeds_.size(); ++i) {
+        const double change = drawn_[i].empty() ? 0 : std::clamp(residuals_[i], -1., 1.);
+        speeds_[i] = std::clamp(speeds_[i] * std::exp(-rate * change), kSlowest, 1 / kSlowest);
+        sum += speeds_[i];
+    }
+    for (double& speed : speeds_) speed *= static_cast<double>(speeds_.size()) / sum;
+}
+
 
 void CostMapEqualizer::cut(SplitTree& tree, int index, const Part& part, const CutRules& rules) const {
     SplitNode& node = tree.nodes()[static_cast<size_t>(index)];
@@ -257,7 +271,11 @@ double CostMapEqualizer::longestOf(const std::vector<Part>& parts) const {
 
 double CostMapEqualizer::noiseGain() const {
     const double noise = watch_.noise() / std::sqrt(std::min(watch_.frames(), 4) + 1.5);
-    return noise * std::sqrt(2 * std::log(std::max(2., static_cast<double>(seconds_.size()))));
+    return noise * noiseDeviations();
+}
+
+double CostMapEqualizer::noiseDeviations() const {
+    return std::sqrt(2 * std::log(std::max(2., static_cast<double>(seconds_.size()))));
 }
 
 void CostMapEqualizer::endRest() {
@@ -292,6 +310,10 @@ bool CostMapEqualizer::split(const FrameContext&, const CutRules& rules) {
     }
     if (followedFrames_++ >= patience_) {
         rest("rests to see whether the load changes");
+        return false;
+    }
+    if (!watch_.isNoiseKnown() && gain < kMostNoise * noiseDeviations() && followedFrames_ <= kFirstPatience / 2) {
+        decision_.what = "waits for frames that show the noise";
         return false;
     }
     if (gain > least) {

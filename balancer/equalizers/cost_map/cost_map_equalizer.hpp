@@ -42,6 +42,8 @@ private:
     [[nodiscard]] double longestOf(const std::vector<Part>& parts) const;
     // Returns the gain that noise alone promises.
     [[nodiscard]] double noiseGain() const;
+    // Returns the expected largest deviation of the children's times, in standard deviations.
+    [[nodiscard]] double noiseDeviations() const;
     void endRest();
     void rest(const char* why);
 
