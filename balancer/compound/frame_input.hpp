@@ -22,6 +22,13 @@ struct ObserverState {
     Matrix4 head; // transform from head to room
 };
 
+// Place of an input frame of another destination, in pixels of the channel that shows it.
+struct InputPlacement {
+    int32_t x = 0;
+    int32_t y = 0;
+    Zoom zoom; // shown pixels per pixel of the producer's area
+};
+
 // Attributes of a compound that equalizers change from frame to frame.
 struct CompoundState {
     std::optional<Viewport> viewport;
@@ -29,7 +36,8 @@ struct CompoundState {
     std::optional<Zoom> zoom;
     bool active = true; // false: inactive together with its whole subtree
     double usage = 1;   // resources of its channels that it may use: 1 is all; equalizers above set it for those below
-    double maxFps = 0;  // highest rate at which its channels begin frames, in Hz; 0: no limit
+    std::vector<std::optional<InputPlacement>> inputs; // per input frame; missing ones fill the channel
+    double maxFps = 0; // highest rate at which its channels begin frames, in Hz; 0: no limit
 };
 
 struct FrameInput {

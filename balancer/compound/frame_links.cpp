@@ -30,6 +30,11 @@ double placeOf(const PixelAxis& giver, int32_t offset, const PixelAxis& taker) {
     return (destination - taker.origin) / (taker.scale * taker.step);
 }
 
+const CompoundState& changesOf(const FrameInput& input, Index compound) {
+    static const CompoundState kUnchanged;
+    return at(compound) < input.compounds.size() ? input.compounds[at(compound)] : kUnchanged;
+}
+
 } // namespace
 
 void Planner::linkFrames(Eye eye) {
@@ -133,6 +138,18 @@ void Planner::placeFrame(const ActiveCompound& taker, const config::ResolvedFram
     const RenderContext& from = plan_.contexts[at(giver.context)];
     use.clip = intersect(to.viewport, apply(to.viewport, wanted.viewport));
     if (giver.inherited.destination != taker.inherited.destination) {
+        const auto& placements = changesOf(input_, taker.compound).inputs;
+        const auto index = static_cast<size_t>(&wanted - config_.compounds[at(taker.compound)].inputFrames.data());
+        if (!wanted.zoom && index < placements.size() && placements[index]) {
+            const InputPlacement& place = *placements[index];
+            const PixelViewport& whole = from.viewport;
+            use.x =
+                to.viewport.x + place.x + static_cast<int32_t>(std::lround((frame.area.x - whole.x) * place.zoom.x));
+            use.y =
+                to.viewport.y + place.y + static_cast<int32_t>(std::lround((frame.area.y - whole.y) * place.zoom.y));
+            use.zoom = {place.zoom.x / frame.zoom.x, place.zoom.y / frame.zoom.y};
+            return;
+        }
         // A mirror of another channel: scaled to this channel's size.
         use.x = to.viewport.x;
         use.y = to.viewport.y;

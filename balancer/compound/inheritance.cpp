@@ -4,8 +4,9 @@ namespace mural::compound {
 
 namespace {
 
-CompoundState stateOf(const FrameInput& input, Index compound) {
-    return at(compound) < input.compounds.size() ? input.compounds[at(compound)] : CompoundState{};
+const CompoundState& stateOf(const FrameInput& input, Index compound) {
+    static const CompoundState kUnchanged;
+    return at(compound) < input.compounds.size() ? input.compounds[at(compound)] : kUnchanged;
 }
 
 ViewState stateOfView(const FrameInput& input, Index view) {
@@ -64,7 +65,7 @@ bool hasEye(const ResolvedConfig& config, const FrameInput& input, const config:
 
 Inherited inherit(const ResolvedConfig& config, const FrameInput& input, Index compound, const Inherited* above) {
     const config::ResolvedCompound& c = config.compounds[at(compound)];
-    const CompoundState state = stateOf(input, compound);
+    const CompoundState& state = stateOf(input, compound);
     const Viewport viewport = state.viewport.value_or(c.viewport);
     Inherited i = above != nullptr ? *above : Inherited{};
     if (c.channel != kNone) i.executing = c.channel;

@@ -12,8 +12,10 @@ Viewport around(const Viewport& a, const Viewport& b) {
 } // namespace
 
 ChildLoads::ChildLoads(const ResolvedConfig& config, Index compound)
-    : children_(config.compounds[at(compound)].children), destination_(config.compounds[at(compound)].destination),
-      childOf_(config.compounds.size(), -1), loads_(children_.size()) {
+    : children_(config.compounds[at(compound)].children),
+      destination_(config.compounds[at(compound)].destination),
+      childOf_(config.compounds.size(), -1),
+      loads_(children_.size()) {
     for (const Index child : children_) channels_.push_back(config.compounds[at(child)].executing);
     for (size_t c = 0; c < config.compounds.size(); ++c) {
         executing_.push_back(config.compounds[c].executing);
@@ -46,8 +48,8 @@ bool ChildLoads::read(const FrameStatistics& statistics) {
         if (found < 0 || leaf.viewport.empty() || leaf.range.empty()) continue;
         const auto child = static_cast<size_t>(found);
         ChildLoad& load = loads_[child];
-        const Viewport interest = leaf.regionOfInterest ? intersect(*leaf.regionOfInterest, leaf.viewport)
-                                                        : leaf.viewport;
+        const Viewport interest =
+            leaf.regionOfInterest ? intersect(*leaf.regionOfInterest, leaf.viewport) : leaf.viewport;
         if (load.hasDrawn) {
             load.area = around(load.area, leaf.viewport);
             load.interest = interest.empty()        ? load.interest
@@ -78,8 +80,7 @@ void ChildLoads::toOwnArea() {
     for (const ChildLoad& load : loads_) {
         if (!load.hasDrawn) continue;
         whole = first ? load.area : around(whole, load.area);
-        all = first ? load.range
-                    : Range{std::min(all.start, load.range.start), std::max(all.end, load.range.end)};
+        all = first ? load.range : Range{std::min(all.start, load.range.start), std::max(all.end, load.range.end)};
         first = false;
     }
     const double length = all.end - all.start;

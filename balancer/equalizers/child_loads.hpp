@@ -7,10 +7,10 @@ namespace mural::balance {
 
 struct ChildLoad {
     bool hasDrawn = false;
-    double seconds = 0;  // longest time of a channel below the child
-    Viewport area;       // drawn part, relative to the area of the equalizer's compound
-    Viewport interest;   // part of `area` with content
-    Range range;         // drawn range, relative to the range of the equalizer's compound
+    double seconds = 0; // longest time of a channel below the child
+    Viewport area;      // drawn part, relative to the area of the equalizer's compound
+    Viewport interest;  // part of `area` with content
+    Range range;        // drawn range, relative to the range of the equalizer's compound
 };
 
 class ChildLoads {
@@ -40,8 +40,8 @@ private:
 
     std::vector<Index> children_, channels_;
     Index destination_ = kNone;
-    std::vector<int> childOf_;      // per compound: its child here, or -1
-    std::vector<Index> executing_;  // per compound
+    std::vector<int> childOf_;     // per compound: its child here, or -1
+    std::vector<Index> executing_; // per compound
     std::vector<ChildLoad> loads_;
     std::vector<ChannelTime> times_;
     double assembly_ = 0;

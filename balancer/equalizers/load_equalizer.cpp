@@ -64,8 +64,8 @@ void LoadEqualizer::setUsage(const States& states, std::vector<double>& usage) c
         if (others >= parameters_.number("assemble_only_limit"))
             usage[i] = 0;
         else if (time > 0) // a resource's share of drawing and assembly together
-            usage[i] = std::max(0., usage[i] - children_.assemblySeconds() * resources /
-                                                   (time + children_.assemblySeconds()));
+            usage[i] =
+                std::max(0., usage[i] - children_.assemblySeconds() * resources / (time + children_.assemblySeconds()));
         return;
     }
 }

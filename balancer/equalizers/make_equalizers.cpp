@@ -1,8 +1,13 @@
 #include "balancer/equalizers/make_equalizers.hpp"
 
 #include "balancer/equalizers/cost_map/cost_map_equalizer.hpp"
+#include "balancer/equalizers/dfr_equalizer.hpp"
+#include "balancer/equalizers/framerate_equalizer.hpp"
 #include "balancer/equalizers/load_equalizer.hpp"
+#include "balancer/equalizers/monitor_equalizer.hpp"
+#include "balancer/equalizers/tile_equalizer.hpp"
 #include "balancer/equalizers/tree_equalizer.hpp"
+#include "balancer/equalizers/view_equalizer.hpp"
 
 namespace mural::balance {
 
@@ -22,6 +27,8 @@ private:
         const config::ResolvedCompound& c = config_.compounds[at(compound)];
         for (const config::Equalizer& e : c.equalizers)
             std::visit([&](const auto& fields) { add(compound, fields); }, e);
+        for (const config::ResolvedQueue& q : c.outputQueues) // tile_equalizer{} has become a queue
+            made_.push_back(std::make_unique<TileEqualizer>(idOf(compound, "queue"), config_, compound, q));
         for (const Index child : c.children) visit(child);
     }
 
@@ -37,7 +44,19 @@ private:
 
     void add(Index compound, const config::LoadEqualizer& fields) { addSplit(compound, fields, Balance::Load); }
     void add(Index compound, const config::TreeEqualizer& fields) { addSplit(compound, fields, Balance::Tree); }
-    template <class Fields> void add(Index, const Fields&) {}
+    void add(Index compound, const config::DfrEqualizer& fields) {
+        made_.push_back(std::make_unique<DfrEqualizer>(idOf(compound, "DFR"), config_, compound, fields));
+    }
+    void add(Index compound, const config::FramerateEqualizer&) {
+        made_.push_back(std::make_unique<FramerateEqualizer>(idOf(compound, "framerate"), config_, compound));
+    }
+    void add(Index compound, const config::MonitorEqualizer&) {
+        made_.push_back(std::make_unique<MonitorEqualizer>(idOf(compound, "monitor"), config_, compound));
+    }
+    void add(Index compound, const config::ViewEqualizer&) {
+        made_.push_back(std::make_unique<ViewEqualizer>(idOf(compound, "view"), config_, compound));
+    }
+    void add(Index, const config::TileEqualizer&) {} // the queue of the compound
 
     template <class Fields> void addSplit(Index compound, const Fields& fields, Balance kind) {
         switch (balance_ == Balance::AsInFile ? kind : balance_) {

@@ -50,10 +50,11 @@ void FramePlanner::compare() {
     std::vector<bool> found(before.size(), false);
     size_t hint = 0;
     for (size_t i = 0; i < now.size(); ++i) {
-        const auto isSame = [&](const RenderContext& c) { return c.compound == now[i].compound && c.eye == now[i].eye; };
-        auto at = hint < before.size() && isSame(before[hint])
-                      ? before.begin() + static_cast<ptrdiff_t>(hint)
-                      : std::find_if(before.begin(), before.end(), isSame);
+        const auto isSame = [&](const RenderContext& c) {
+            return c.compound == now[i].compound && c.eye == now[i].eye;
+        };
+        auto at = hint < before.size() && isSame(before[hint]) ? before.begin() + static_cast<ptrdiff_t>(hint)
+                                                               : std::find_if(before.begin(), before.end(), isSame);
         const auto index = static_cast<Index>(i);
         if (at == before.end()) {
             change_.changes.push_back({Kind::Appeared, now[i].compound, now[i].eye, index});

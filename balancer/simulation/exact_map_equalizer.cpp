@@ -6,7 +6,9 @@ using balance::Axis;
 
 ExactMapEqualizer::ExactMapEqualizer(std::string id, const config::ResolvedConfig& config, config::Index compound,
                                      config::SplitMode mode, const CostTrace& trace, std::vector<double> speeds)
-    : SplitEqualizer(std::move(id), "exact_map", config, compound, mode), trace_(trace), speeds_(std::move(speeds)),
+    : SplitEqualizer(std::move(id), "exact_map", config, compound, mode),
+      trace_(trace),
+      speeds_(std::move(speeds)),
       map_(mode == config::SplitMode::Db ? trace.ranges : trace.columns,
            mode == config::SplitMode::Db ? 1 : trace.rows) {
     addCutParameters(0, {}, {});

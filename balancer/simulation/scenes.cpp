@@ -11,15 +11,15 @@ namespace mural::simulation {
 
 namespace {
 
-constexpr size_t kColumns = 96, kRows = 54, kRanges = 512;
+constexpr size_t kSceneColumns = 96, kSceneRows = 54, kSceneRanges = 512;
 constexpr int kStepFrame = 40;
-constexpr double kGround = .08; // cost of a cell without a blob, relative to the middle of a blob
-constexpr double kWidth = .11;  // standard deviation of a blob, relative to the picture's height
+constexpr double kGround = .08;    // cost of a cell without a blob, relative to the middle of a blob
+constexpr double kBlobWidth = .11; // standard deviation of a blob, relative to the picture's height
 
 struct Blob {
     double x, y;
     double height = 1;
-    double width = kWidth;
+    double width = kBlobWidth;
 };
 
 struct Picture {
@@ -46,7 +46,8 @@ float cellCost(const Picture& p, double x, double y) {
 
 float rangeCost(const Picture& p, double at) {
     double cost = p.ground * 2;
-    for (const Blob& b : p.blobs) cost += b.height * std::exp(-square(at - (b.x + b.y) / 2) / (2 * square(b.width / 2)));
+    for (const Blob& b : p.blobs)
+        cost += b.height * std::exp(-square(at - (b.x + b.y) / 2) / (2 * square(b.width / 2)));
     if (at < .3) cost += p.lowest;
     if (at > .9) cost += p.box;
     return static_cast<float>(cost);
@@ -60,11 +61,12 @@ void normalize(std::vector<float>& values, double total) {
 
 CostFrame frameOf(const Picture& picture) {
     CostFrame frame;
-    for (size_t row = 0; row < kRows; ++row)
-        for (size_t column = 0; column < kColumns; ++column)
-            frame.cells.push_back(
-                cellCost(picture, (static_cast<double>(column) + .5) / kColumns, (static_cast<double>(row) + .5) / kRows));
-    for (size_t i = 0; i < kRanges; ++i) frame.ranges.push_back(rangeCost(picture, (static_cast<double>(i) + .5) / kRanges));
+    for (size_t row = 0; row < kSceneRows; ++row)
+        for (size_t column = 0; column < kSceneColumns; ++column)
+            frame.cells.push_back(cellCost(picture, (static_cast<double>(column) + .5) / kSceneColumns,
+                                           (static_cast<double>(row) + .5) / kSceneRows));
+    for (size_t i = 0; i < kSceneRanges; ++i)
+        frame.ranges.push_back(rangeCost(picture, (static_cast<double>(i) + .5) / kSceneRanges));
     normalize(frame.cells, picture.total);
     normalize(frame.ranges, picture.total);
     return frame;
@@ -174,7 +176,7 @@ const Scene* findScene(const std::string& name) {
 }
 
 CostTrace makeScene(const Scene& scene, size_t frames, uint32_t seed) {
-    CostTrace trace{scene.name, kColumns, kRows, kRanges, {}};
+    CostTrace trace{scene.name, kSceneColumns, kSceneRows, kSceneRanges, {}};
     const Course course = courseOf(scene.name, frames, seed);
     for (size_t f = 0; f < frames; ++f) {
         if (f > 0 && scene.isConstant)

@@ -35,9 +35,14 @@ double speedOf(const ResolvedConfig& config, const std::vector<double>& speeds, 
 class Simulator {
 public:
     Simulator(const ResolvedConfig& config, const CostTrace& trace, const Conditions& conditions, Strategy strategy)
-        : trace_(trace), conditions_(conditions), random_(conditions.seed), noise_(0, std::max(conditions.noise, 1e-12)),
+        : trace_(trace),
+          conditions_(conditions),
+          random_(conditions.seed),
+          noise_(0, std::max(conditions.noise, 1e-12)),
           planner_(config, compound::firstFrame(config), equalizersFor(strategy, config, trace, conditions.speeds)),
-          cells_(trace.columns, trace.rows), ranges_(trace.ranges, 1), isUsed_(config.channels.size(), false),
+          cells_(trace.columns, trace.rows),
+          ranges_(trace.ranges, 1),
+          isUsed_(config.channels.size(), false),
           times_(config.channels.size(), 0) {
         for (const config::ResolvedCompound& c : config.compounds) {
             if (!c.isLeaf() || c.executing == config::kNone) continue;
@@ -62,7 +67,8 @@ public:
 
 private:
     void setCosts(size_t frame) {
-        const size_t now = frame % trace_.frames.size(), before = (frame + trace_.frames.size() - 1) % trace_.frames.size();
+        const size_t now = frame % trace_.frames.size(),
+                     before = (frame + trace_.frames.size() - 1) % trace_.frames.size();
         const CostFrame &costs = trace_.frames[now], &old = trace_.frames[before];
         if (frame > 0 && costs.cells == old.cells && costs.ranges == old.ranges) return;
         cells_.setCells(costs.cells);
@@ -153,8 +159,10 @@ private:
 
 std::optional<config::SplitMode> splitModeOf(const config::ResolvedCompound& c) {
     for (const config::Equalizer& e : c.equalizers) {
-        if (const auto* load = std::get_if<config::LoadEqualizer>(&e)) return load->mode.value_or(config::SplitMode::TwoD);
-        if (const auto* tree = std::get_if<config::TreeEqualizer>(&e)) return tree->mode.value_or(config::SplitMode::TwoD);
+        if (const auto* load = std::get_if<config::LoadEqualizer>(&e))
+            return load->mode.value_or(config::SplitMode::TwoD);
+        if (const auto* tree = std::get_if<config::TreeEqualizer>(&e))
+            return tree->mode.value_or(config::SplitMode::TwoD);
     }
     return {};
 }

@@ -22,6 +22,7 @@
 #include "tools/mural/netperf/netperf.hpp"
 #include "tools/mural/network/network_doctor.hpp"
 #include "tools/mural/network/probe_member.hpp"
+#include "tools/mural/simulate/simulate_command.hpp"
 #include "tools/mural/trace/replay_command.hpp"
 #include "tools/mural/trace/trim_command.hpp"
 #include "tools/mural/daemon/waiting_commands.hpp"
@@ -325,6 +326,10 @@ private:
             "displays, machines and compounds as a picture\n\ndocs/reference/configuration.md describes the format. "
             "Exit status: 0, 1 if the output cannot be written, 2 for errors in the file.");
         mural::cli::describeConfig(config, config_);
+        CLI::App& simulate = add(
+            "simulate", "try how work is balanced among nodes, with recorded or made-up costs and without nodes",
+            [this] { return mural::cli::simulateCommand(simulate_); }, mural::cli::kSimulateFooter);
+        mural::cli::describeSimulate(simulate, simulate_);
     }
 
     void addDoctor() {
@@ -362,6 +367,7 @@ private:
     mural::cli::StatOptions stat_;
     mural::cli::BenchArguments bench_;
     mural::cli::ConfigArguments config_;
+    mural::cli::SimulateArguments simulate_;
     mural::cli::DiscoverArguments discover_;
     mural::cli::NetperfArguments netperf_;
     mural::cli::NetworkArguments networkArguments_;

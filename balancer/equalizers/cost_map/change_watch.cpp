@@ -12,7 +12,7 @@ constexpr double kLeastNoise = .003, kMostNoise = .25;
 // these limits once in some 10^4 frames of 64 parts; the second pair finds slow drifts.
 constexpr double kSlack = 1, kLimit = 8;
 constexpr double kSlowSlack = .5, kSlowLimit = 16;
-constexpr double kMeanDeviations = 2;  // error of a mean of one frame
+constexpr double kMeanDeviations = 2; // error of a mean of one frame
 constexpr double kMostDeviation = 15; // of one frame: a single outlier is a change, but not a lasting one
 
 } // namespace

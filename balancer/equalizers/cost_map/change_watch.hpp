@@ -25,8 +25,8 @@ private:
     bool sumDeviations();
 
     int frames_ = 0;
-    std::vector<double> mean_;               // of the logarithms of the times
-    std::vector<double> above_, below_;      // cumulative sums of deviations
+    std::vector<double> mean_;          // of the logarithms of the times
+    std::vector<double> above_, below_; // cumulative sums of deviations
     std::vector<double> slowAbove_, slowBelow_;
     std::vector<double> logs_, last_, last2_; // logarithms of this frame and of the two before
     double noise_ = .03;

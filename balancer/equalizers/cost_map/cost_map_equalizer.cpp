@@ -8,19 +8,19 @@ namespace {
 
 constexpr size_t kCellsPerChild = 64; // enough to place a cut within a few percent of a child's part
 constexpr size_t kLeastCells = 2048, kMostCells = 16384;
-constexpr double kLeastDensity = 1e-3;     // of the mean: a cell that was free can become dear
-constexpr double kAspectToTurn = 2;        // a cut turns to the other axis above this ratio of sides
+constexpr double kLeastDensity = 1e-3;   // of the mean: a cell that was free can become dear
+constexpr double kAspectToTurn = 2;      // a cut turns to the other axis above this ratio of sides
 constexpr double kSurpriseToSmooth = .4; // residual from which the map is smoothed completely
 constexpr int kSmoothings = 3;
-constexpr size_t kMemory = 6;  // frames with different parts that the map agrees with
+constexpr size_t kMemory = 6; // frames with different parts that the map agrees with
 constexpr int kRecalls = 2;
 constexpr int kFirstPatience = 8, kMostPatience = 64;
-constexpr int kQuietFrames = 4;   // frames of the same parts without a promised gain before a rest
-constexpr double kGainToWake = .12; // a promised gain that ends a rest
-constexpr int kFramesToWake = 4;    // frames of the same parts that show it
-constexpr double kSlowest = .1; // speed relative to the mean
-constexpr double kMostNoise = .12; // assumed before the noise is known
-constexpr int kCalmFrames = 12;   // a longer rest means that the load changes rarely
+constexpr int kQuietFrames = 4;       // frames of the same parts without a promised gain before a rest
+constexpr double kGainToWake = .12;   // a promised gain that ends a rest
+constexpr int kFramesToWake = 4;      // frames of the same parts that show it
+constexpr double kSlowest = .1;       // speed relative to the mean
+constexpr double kUnknownNoise = .12; // assumed before the noise is known
+constexpr int kCalmFrames = 12;       // a longer rest means that the load changes rarely
 
 Axis axisOf(SplitMode mode) { return mode == SplitMode::Db ? Axis::Range : Axis::X; }
 
@@ -39,8 +39,10 @@ bool isSame(const std::vector<Part>& a, const std::vector<Part>& b) {
 } // namespace
 
 CostMapEqualizer::CostMapEqualizer(std::string id, const ResolvedConfig& config, Index compound, SplitMode mode)
-    : SplitEqualizer(std::move(id), "cost_map", config, compound, mode), speeds_(children_.size(), 1),
-      residuals_(children_.size(), 0), patience_(kFirstPatience) {
+    : SplitEqualizer(std::move(id), "cost_map", config, compound, mode),
+      speeds_(children_.size(), 1),
+      residuals_(children_.size(), 0),
+      patience_(kFirstPatience) {
     addCutParameters(0, {}, {});
     parameters_.addNumber("smoothing", .5, 0, 1);
     parameters_.addNumber("gain", .02, 0, 1);
@@ -118,8 +120,8 @@ void CostMapEqualizer::watch() {
     if (isResting_) ++restedFrames_;
 }
 
-// Multiplies the density within each part by measured / predicted time. Residuals within the noise are averaged over the
-// frames of the same parts; larger ones count at once, and then the map is made to agree with earlier frames again.
+// Multiplies the density within each part by measured / predicted time. Residuals within the noise are averaged over
+// the frames of the same parts; larger ones count at once, and then the map is made to agree with earlier frames again.
 void CostMapEqualizer::correctMap() {
     findResiduals();
     bool isSurprise = false;
@@ -142,9 +144,7 @@ void CostMapEqualizer::correctMap() {
 }
 
 // Deviations that the noise of one frame hardly reaches.
-double CostMapEqualizer::sureDeviations() const {
-    return isVarying_ ? 1 : 1.5 + noiseDeviations();
-}
+double CostMapEqualizer::sureDeviations() const { return isVarying_ ? 1 : 1.5 + noiseDeviations(); }
 
 // Keeps the frames of the last few different parts. A load that varies makes them worthless.
 void CostMapEqualizer::remember() {
@@ -244,7 +244,6 @@ void CostMapEqualizer::learnSpeeds() {
     for (double& speed : speeds_) speed *= static_cast<double>(speeds_.size()) / sum;
 }
 
-
 void CostMapEqualizer::cut(SplitTree& tree, int index, const Part& part, const CutRules& rules) const {
     SplitNode& node = tree.nodes()[static_cast<size_t>(index)];
     if (node.isLeaf()) return;
@@ -312,7 +311,7 @@ bool CostMapEqualizer::split(const FrameContext&, const CutRules& rules) {
         rest("rests to see whether the load changes");
         return false;
     }
-    if (!watch_.isNoiseKnown() && gain < kMostNoise * noiseDeviations() && followedFrames_ <= kFirstPatience / 2) {
+    if (!watch_.isNoiseKnown() && gain < kUnknownNoise * noiseDeviations() && followedFrames_ <= kFirstPatience / 2) {
         decision_.what = "waits for frames that show the noise";
         return false;
     }

@@ -63,10 +63,10 @@ private:
 
     // Following: cuts move. Resting: cuts stay until the load changes.
     bool isResting_ = false;
-    bool isChanged_ = false;  // the load has changed during the rest
-    bool isVarying_ = false;  // the last rest was short
-    int followedFrames_ = 0;  // since the begin of following
-    int patience_ = 0;        // frames of following before a rest that shows whether the load itself changes
+    bool isChanged_ = false; // the load has changed during the rest
+    bool isVarying_ = false; // the last rest was short
+    int followedFrames_ = 0; // since the begin of following
+    int patience_ = 0;       // frames of following before a rest that shows whether the load itself changes
     int restedFrames_ = 0;
 };
 

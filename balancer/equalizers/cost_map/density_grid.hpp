@@ -31,8 +31,8 @@ public:
     // Multiplies the cost within the part.
     void scale(const Viewport& part, double factor);
     void scaleAll(double factor);
-    // Replaces each cost within the part by a weighted mean of itself (1 - weight) and of a rectangle of the part's size
-    // around it (weight). Uses the sums before the change.
+    // Replaces each cost within the part by a weighted mean of itself (1 - weight) and of a rectangle of the part's
+    // size around it (weight). Uses the sums before the change.
     void smooth(const Viewport& part, double weight);
     // Raises costs to a fraction of the mean, so that no part is free.
     void raise(double fraction);

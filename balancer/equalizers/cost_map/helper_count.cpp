@@ -7,17 +7,17 @@ namespace mural::balance {
 
 namespace {
 
-constexpr double kWeight = .2;      // of the newest frame in the means
+constexpr double kNewest = .2;      // of the newest frame in the means
 constexpr int kFramesToChange = 12; // between two changes; a change needs a few frames to show its effect
 
 } // namespace
 
 void HelperCount::observe(double work, double assembly, size_t helpers) {
     ++frames_;
-    work_ = work_ > 0 && std::abs(work - work_) < work_ ? (1 - kWeight) * work_ + kWeight * work : work;
+    work_ = work_ > 0 && std::abs(work - work_) < work_ ? (1 - kNewest) * work_ + kNewest * work : work;
     if (helpers == 0) return; // the last known time per helper stays
     const double each = assembly / static_cast<double>(helpers);
-    assemblyPerHelper_ = hasAssembly_ ? (1 - kWeight) * assemblyPerHelper_ + kWeight * each : each;
+    assemblyPerHelper_ = hasAssembly_ ? (1 - kNewest) * assemblyPerHelper_ + kNewest * each : each;
     hasAssembly_ = true;
 }
 
