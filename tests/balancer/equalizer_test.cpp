@@ -35,7 +35,7 @@ double heavy(const LeafStatistics& leaf) { return rightHeavy(leaf, 8); }
 TEST(SplitEqualizers, keepPartsInsideDisjointAndCoveringForAnyTimes) {
     std::mt19937 random(5);
     std::uniform_real_distribution<> any(0, 1);
-    for (uint64_t round = 0; round < testing::rounds(60); ++round) {
+    for (uint64_t round = 0; round < mural::testing::rounds(60); ++round) {
         const SplitMode mode = kModes[round % 4];
         DividedPicture picture(2 + random() % 40, mode);
         const auto equalizer = make(picture, kKinds[round / 4 % 3]);
@@ -250,7 +250,7 @@ TEST(DfrEqualizer, neverDrawsFewerThan128Pixels) {
 compound::LoadedConfig presetOf(const config::Preset& form) {
     const auto file = config::shortForm(form);
     EXPECT_TRUE(file.ok());
-    return compound::loadConfig(*file, "preset", [](const std::string&) { return std::nullopt; });
+    return compound::loadConfig(file.value(), "preset", [](const std::string&) { return std::nullopt; });
 }
 
 TEST(FramerateEqualizer, pacesTheSlowestOfFramesInTurn) {

@@ -30,7 +30,8 @@ FrameStatistics drawn(const FramePlanner& planner, FramePlanner& mutablePlanner,
 TEST(FramePlanner, reportsAllContextsFirstAndThenOnlyChanges) {
     const auto loaded = simulation::dividedConfig(6, config::SplitMode::TwoD);
     FramePlanner planner = plannerOf(loaded.resolved, Balance::Auto);
-    EXPECT_EQ(planner.next().changes.size(), planner.plan().contexts.size());
+    const size_t first = planner.next().changes.size();
+    EXPECT_EQ(first, planner.plan().contexts.size());
     EXPECT_TRUE(planner.next().empty());
     planner.addStatistics(drawn(planner, planner, 20));
     const FrameChange& change = planner.next();

@@ -105,7 +105,7 @@ TEST(CostTrace, isReadAsWritten) {
     const CostTrace trace = makeScene(*findScene("several"), 3, 1);
     std::stringstream text;
     writeCostTrace(trace, text);
-    const auto read = readCostTrace(text, "trace");
+    auto read = readCostTrace(text, "trace");
     ASSERT_TRUE(read.ok()) << read.error().message;
     ASSERT_EQ(read->frames.size(), 3u);
     for (size_t f = 0; f < 3; ++f) {

@@ -44,7 +44,7 @@ bool ChangeWatch::sumDeviations() {
     const double uncertain = kMeanDeviations / std::sqrt(frames_); // of the mean itself
     bool isChanged = false;
     for (size_t i = 0; i < logs_.size(); ++i) {
-        const double z = std::clamp((logs_[i] - mean_[i]) / noise_, -kMostDeviation, kMostDeviation);
+        const double z = std::clamp((logs_[i] - mean_[i]) / noise(), -kMostDeviation, kMostDeviation);
         above_[i] = std::max(0., above_[i] + z - uncertain - kSlack);
         below_[i] = std::max(0., below_[i] - z - uncertain - kSlack);
         slowAbove_[i] = std::max(0., slowAbove_[i] + z - uncertain - kSlowSlack);

@@ -3,6 +3,7 @@
 // no change.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -16,7 +17,7 @@ public:
     bool add(const std::vector<double>& seconds);
 
     // Standard deviation of a time relative to its mean.
-    [[nodiscard]] double noise() const { return noise_; }
+    [[nodiscard]] double noise() const { return samples_ < kSureSamples ? std::max(noise_, kInitialNoise) : noise_; }
     [[nodiscard]] bool isNoiseKnown() const { return samples_ > kInitialSamples; }
     [[nodiscard]] int frames() const { return frames_; } // frames of the reference
 
@@ -29,7 +30,9 @@ private:
     std::vector<double> above_, below_; // cumulative sums of deviations
     std::vector<double> slowAbove_, slowBelow_;
     std::vector<double> logs_, last_, last2_; // logarithms of this frame and of the two before
-    double noise_ = .03;
+    static constexpr double kInitialNoise = .03;
+    static constexpr double kSureSamples = 100; // fewer can show too little noise by chance
+    double noise_ = kInitialNoise;
     static constexpr double kInitialSamples = 4; // weight of the initial estimate
     double samples_ = kInitialSamples;
 };

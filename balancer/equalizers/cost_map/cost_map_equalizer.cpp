@@ -15,10 +15,11 @@ constexpr int kSmoothings = 3;
 constexpr size_t kMemory = 6; // frames with different parts that the map agrees with
 constexpr int kRecalls = 2;
 constexpr int kFirstPatience = 8, kMostPatience = 64;
-constexpr int kQuietFrames = 4;       // frames of the same parts without a promised gain before a rest
-constexpr double kGainToWake = .12;   // a promised gain that ends a rest
-constexpr int kFramesToWake = 4;      // frames of the same parts that show it
-constexpr double kSlowest = .1;       // speed relative to the mean
+constexpr int kQuietFrames = 4;     // frames of the same parts without a promised gain before a rest
+constexpr double kGainToWake = .10; // a promised gain that ends a rest
+constexpr int kFramesToWake = 4;    // frames of the same parts that show it
+constexpr double kSlowest = .1;     // speed relative to the mean
+constexpr double kOtherUsage = .25;
 constexpr double kUnknownNoise = .12; // assumed before the noise is known
 constexpr int kCalmFrames = 12;       // a longer rest means that the load changes rarely
 
@@ -292,15 +293,33 @@ void CostMapEqualizer::rest(const char* why) {
     decision_.what = why;
 }
 
+// Returns true if the resources differ from those of the current cuts by more than learning changes them.
+bool CostMapEqualizer::isOtherUsage(const std::vector<double>& usage) {
+    if (usage_.size() != usage.size()) usage_.assign(usage.size(), 1); // the even split
+    for (size_t i = 0; i < usage.size(); ++i)
+        if ((usage[i] > 0) != (usage_[i] > 0) || std::abs(usage[i] - usage_[i]) > kOtherUsage) return true;
+    return false;
+}
+
 bool CostMapEqualizer::split(const FrameContext&, const CutRules& rules) {
     SplitTree other = tree_;
     cut(other, 0, {}, rules);
     const std::vector<Part> now = tree_.parts();
     const double longest = longestOf(now), promised = longestOf(other.parts());
     const double gain = longest > 0 ? 1 - promised / longest : 0;
-    const double least = isVarying_ ? .5 * noiseGain() : std::max(parameters_.number("gain"), 1.75 * noiseGain());
+    const double least =
+        isVarying_ ? .5 * noiseGain()
+                   : std::max(parameters_.number("gain"), noiseGain() * (1.6 + noiseDeviations()) / noiseDeviations());
     decision_.inputs = {{"longest", longest}, {"promised", promised}, {"noise", watch_.noise()}, {"threshold", least}};
     decision_.predictedGain = gain;
+    if (isOtherUsage(rules.usage)) { // resources came, left or changed
+        endRest();
+        isVarying_ = false;
+        tree_ = std::move(other);
+        usage_ = rules.usage;
+        decision_.what = "cuts moved to other resources";
+        return true;
+    }
     const double lost = isVarying_ ? 1.25 * noiseGain() : std::max(kGainToWake, 2.5 * noiseGain());
     if (isResting_ && (isChanged_ || (watch_.frames() >= kFramesToWake && gain > lost))) endRest();
     if (isResting_) {
@@ -317,6 +336,7 @@ bool CostMapEqualizer::split(const FrameContext&, const CutRules& rules) {
     }
     if (gain > least) {
         tree_ = std::move(other);
+        usage_ = rules.usage;
         decision_.what = "cuts moved to equal costs of the map";
         return true;
     }

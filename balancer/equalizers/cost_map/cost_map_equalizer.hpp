@@ -44,6 +44,7 @@ private:
     [[nodiscard]] double noiseGain() const;
     // Returns the expected largest deviation of the children's times, in standard deviations.
     [[nodiscard]] double noiseDeviations() const;
+    bool isOtherUsage(const std::vector<double>& usage);
     void endRest();
     void rest(const char* why);
 
@@ -56,6 +57,7 @@ private:
         std::vector<double> costs; // fractions of the total
     };
     std::vector<Memory> memory_;
+    std::vector<double> usage_; // resources of the current cuts
     ChangeWatch watch_;
     HelperCount helpers_;
     std::vector<Part> drawn_;     // parts of the last measured frame

@@ -88,7 +88,7 @@ Result<std::vector<Row>> simulateScene(const SimulateArguments& a, const config:
     const simulation::Scene* synthetic = simulation::findScene(scene);
     for (int i = 0; i < a.seeds; ++i) {
         const uint32_t seed = a.seed + static_cast<uint32_t>(i);
-        const auto trace = traceOf(a, scene, seed);
+        auto trace = traceOf(a, scene, seed);
         if (!trace) return trace.error();
         const Conditions conditions = conditionsOf(a, seed);
         const std::string problem = simulation::problemOf(config, *trace, conditions);
@@ -178,7 +178,7 @@ Result<compound::LoadedConfig> configOf(const SimulateArguments& a) {
 }
 
 int writeTrace(const SimulateArguments& a) {
-    const auto trace = traceOf(a, a.cost, a.seed);
+    auto trace = traceOf(a, a.cost, a.seed);
     if (!trace) return fail(trace.error().message);
     std::ofstream out(a.write, std::ios::binary | std::ios::trunc);
     simulation::writeCostTrace(*trace, out);
@@ -243,9 +243,9 @@ int simulateCommand(const SimulateArguments& a) {
     }
     if (a.cost.empty()) return fail("--cost is needed: a trace, a scene of --list, or all (see mural simulate --help)");
     if (!a.write.empty()) return writeTrace(a);
-    const auto strategies = strategiesOf(a);
+    auto strategies = strategiesOf(a);
     if (!strategies) return fail(strategies.error().message);
-    const auto loaded = configOf(a);
+    auto loaded = configOf(a);
     if (!loaded) return fail(loaded.error().message);
     std::vector<Row> rows;
     for (const std::string& scene : sceneNames(a)) {
