@@ -238,7 +238,7 @@ bool Replay::onWindow(Args& in) {
 // between them, use the same bits.
 void Replay::takeBitsOfSurface(Window& w) {
     const gl::SurfaceConfig& there = w.surface->config();
-    const std::string differs = gl::whatDiffers(there, surfaceConfig(w.config, there.width, there.height));
+    const std::string differs = gl::describeDifference(there, surfaceConfig(w.config, there.width, there.height));
     if (differs.empty()) return;
     w.config.red = static_cast<uint8_t>(there.red);
     w.config.green = static_cast<uint8_t>(there.green);
