@@ -104,9 +104,9 @@ TEST(HeadSession, sendsEveryPacketToEveryNodeInOrder) {
 }
 
 TEST(HeadSession, givesCreditOnlyWhenAllNodesAreDone) {
-    std::atomic<bool> filterPacket{true};
+    std::atomic<bool> isPaused{true};
     SessionHarness head(2);
-    head.behaviours[1].filterPacket = nullptr;
+    head.behaviours[1].isPaused = nullptr;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
@@ -121,17 +121,17 @@ TEST(HeadSession, givesCreditOnlyWhenAllNodesAreDone) {
 }
 
 TEST(HeadSession, blocksTheProgramForASlowNode) {
-    std::atomic<bool> filterPacket{false};
+    std::atomic<bool> isPaused{false};
     SessionHarness head(2);
     head.pipeBytes = 4096;
-    head.behaviours[1].filterPacket = &filterPacket;
+    head.behaviours[1].isPaused = &isPaused;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 1));
     ASSERT_TRUE(program.waitFramesDone(1));
-    filterPacket = true;
+    isPaused = true;
     // More bytes than the pipe and all chunks hold: the publisher must block until the node reads again.
     std::atomic<bool> done{false};
     std::thread publisher([&] {
@@ -147,7 +147,7 @@ TEST(HeadSession, blocksTheProgramForASlowNode) {
     }
     EXPECT_FALSE(done);
     EXPECT_EQ(program.header()->framesDone.load(), 1u);
-    filterPacket = false;
+    isPaused = false;
     publisher.join();
     EXPECT_TRUE(done);
     ASSERT_TRUE(swapFrames(program, 2, 2));
@@ -157,19 +157,19 @@ TEST(HeadSession, blocksTheProgramForASlowNode) {
 
 // As after `kill -STOP`: the node's silence is the only sign.
 TEST(HeadSession, dropsASilentNodeAndContinues) {
-    std::atomic<bool> filterPacket{false};
+    std::atomic<bool> isPaused{false};
     SessionHarness head(2);
     head.options.silencePatienceMs = 1500;
     head.behaviours[0].alive = true; // idle nodes send a heartbeat
     head.behaviours[1].alive = true;
-    head.behaviours[1].filterPacket = &filterPacket;
+    head.behaviours[1].isPaused = &isPaused;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrames(program, 1, 1));
     ASSERT_TRUE(program.waitFramesDone(1));
-    filterPacket = true;
+    isPaused = true;
     ASSERT_TRUE(swapFrames(program, 2, 3));
     ASSERT_TRUE(program.publish(kFakeSum, {5}));
     FakeProgram::Answer answer;
@@ -180,7 +180,7 @@ TEST(HeadSession, dropsASilentNodeAndContinues) {
     const auto report = head.finish();
     EXPECT_EQ(report["nodes"][0]["lost"], false);
     EXPECT_EQ(report["nodes"][1]["lost"], true);
-    filterPacket = false;
+    isPaused = false;
 }
 
 TEST(HeadSession, endsWithTheReasonOfANodesRefusal) {
@@ -597,23 +597,23 @@ TEST(HeadSession, endsWithoutANodesFarewell) {
 }
 
 TEST(HeadSession, endsWhenANodeReadsNothing) {
-    std::atomic<bool> filterPacket{false};
+    std::atomic<bool> isPaused{false};
     SessionHarness head(2);
     head.pipeBytes = 4096;
-    head.behaviours[1].filterPacket = &filterPacket;
+    head.behaviours[1].isPaused = &isPaused;
     head.options.drainPatienceMs = 100;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
-    filterPacket = true;
+    isPaused = true;
     std::vector<uint32_t> words(4000, 0);
     words[0] = 4000;
     words[1] = kFakeNote;
     for (int i = 0; i < 10; ++i) ASSERT_TRUE(program.publishWords(words));
     const auto report = head.finish();
     EXPECT_EQ(report["nodes"][1]["lost"], true);
-    filterPacket = false;
+    isPaused = false;
 }
 
 TEST(HeadSession, endsWhenTheControlConnectionBreaks) {

@@ -141,9 +141,9 @@ TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
     makes(wire::streamOf(1, 0), 7);
     makes(wire::streamOf(2, 0), 8);
     makes(wire::streamOf(1, 1), 9);
-    const uint64_t first = log.filterPacket();
+    const uint64_t first = log.pause();
     makes(wire::streamOf(2, 0), 10); // after it
-    const uint64_t second = log.filterPacket();
+    const uint64_t second = log.pause();
     auto later = std::async(std::launch::async, [&] { return log.snapshot(second, Deadline::inMs(10'000)); });
     auto snapshot = log.snapshot(first, Deadline::inMs(10'000));
     ASSERT_TRUE(snapshot.ok());
@@ -155,14 +155,14 @@ TEST(RejoinLog, returnsAllEarlierPacketsAndForgetsEndedPrograms) {
     ASSERT_TRUE(all.ok());
     EXPECT_EQ(contextsIn(*all), 4u);
     log.programGone(1);
-    auto rest = log.snapshot(log.filterPacket(), Deadline::inMs(10'000));
+    auto rest = log.snapshot(log.pause(), Deadline::inMs(10'000));
     ASSERT_TRUE(rest.ok());
     EXPECT_EQ(contextsIn(*rest), 2u);
 }
 
 TEST(RejoinLog, reportsOverflowUntilTheProgramsAreGone) {
     RejoinLog log(1 << 20);
-    const auto fits = [&] { return log.snapshot(log.filterPacket(), Deadline::inMs(10'000)).ok(); };
+    const auto fits = [&] { return log.snapshot(log.pause(), Deadline::inMs(10'000)).ok(); };
     const std::vector<uint32_t> much(65536, 1); // a command without a rule: it stays in the log
     log.append(wire::streamOf(1, 0),
                trace::PacketBuilder().context(1).window(1, 9, 9).record(wire::kOpMakeCurrent, {1, 1, 1}).bytes());

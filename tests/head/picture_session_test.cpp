@@ -130,8 +130,8 @@ TEST(PictureSession, forgetsAProgramAfterItsLastPicture) {
     Shown shown;
     SessionHarness head(2);
     addSinks(head, shown);
-    std::atomic<bool> filterPacket{false};
-    head.behaviours[1].filterPacket = &filterPacket;
+    std::atomic<bool> isPaused{false};
+    head.behaviours[1].isPaused = &isPaused;
     head.start();
     head.waitFor("ready");
     {
@@ -140,12 +140,12 @@ TEST(PictureSession, forgetsAProgramAfterItsLastPicture) {
         ASSERT_TRUE(swapFrame(program, 1, 7, 64));
         ASSERT_TRUE(swapFrame(program, 2, 8, 64));
         ASSERT_TRUE(program.waitFramesDone(2));
-        filterPacket = true;
+        isPaused = true;
         ASSERT_TRUE(swapFrame(program, 3, 8, 64));
         program.disconnect();
     }
     while (head.waitFor("clients")["count"] != 0) {}
-    filterPacket = false;
+    isPaused = false;
     const auto report = head.finish();
     EXPECT_EQ(shown.frames["file"], (std::vector<int64_t>{1})) << "the other window's are none of the wall's";
     EXPECT_EQ(report["frames"], 1);

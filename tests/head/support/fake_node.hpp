@@ -35,7 +35,7 @@ struct FakeNodeBehaviour {
     bool halfAnswer = false;                   // sends the first part of an answer, then dies
     bool noBye = false;                        // hangs at the end
     bool alive = false;                        // sends heartbeats
-    std::atomic<bool>* filterPacket = nullptr; // reads nothing while true
+    std::atomic<bool>* isPaused = nullptr; // reads nothing while true
 };
 
 class FakeNode {
@@ -65,7 +65,7 @@ private:
 
     void work() {
         while (!stop_) {
-            if (behaviour_.filterPacket != nullptr && *behaviour_.filterPacket) {
+            if (behaviour_.isPaused != nullptr && *behaviour_.isPaused) {
                 std::this_thread::yield();
                 continue;
             }
@@ -79,7 +79,7 @@ private:
             if (!connection_->read(bytes, Deadline::inMs(kTestPatienceMs))) return;
             words.resize(header.sizeBytes / 4);
             // still requested
-            while (behaviour_.filterPacket != nullptr && *behaviour_.filterPacket && !stop_) std::this_thread::yield();
+            while (behaviour_.isPaused != nullptr && *behaviour_.isPaused && !stop_) std::this_thread::yield();
             note(header.stream, words);
             const bool goOn = header.stream == 0 ? command(words, bytes) : records(header.stream, words);
             connection_->flush();
