@@ -27,6 +27,7 @@ struct InputPlacement {
     int32_t x = 0;
     int32_t y = 0;
     Zoom zoom; // shown pixels per pixel of the producer's area
+    friend bool operator==(const InputPlacement&, const InputPlacement&) = default;
 };
 
 // Attributes of a compound that equalizers change from frame to frame.
@@ -38,6 +39,7 @@ struct CompoundState {
     double usage = 1;   // resources of its channels that it may use: 1 is all; equalizers above set it for those below
     std::vector<std::optional<InputPlacement>> inputs; // per input frame; missing ones fill the channel
     double maxFps = 0; // highest rate at which its channels begin frames, in Hz; 0: no limit
+    friend bool operator==(const CompoundState&, const CompoundState&) = default;
 };
 
 struct FrameInput {

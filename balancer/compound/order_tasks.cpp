@@ -3,6 +3,7 @@
 // both.
 #include <algorithm>
 #include <queue>
+#include <span>
 
 #include "balancer/compound/planner.hpp"
 
@@ -13,7 +14,6 @@ namespace {
 // Dependency graph of the tasks of all channels.
 struct TaskGraph {
     std::vector<PipeStep> steps;
-    std::vector<std::vector<size_t>> next;
     std::vector<size_t> missing; // number of unfinished predecessors
     std::vector<size_t> makerOf; // producing task of each frame
 
@@ -28,7 +28,6 @@ struct TaskGraph {
                 steps.push_back({c, t});
             }
         }
-        next.resize(steps.size());
         missing.resize(steps.size(), 0);
         for (size_t i = 0; i < steps.size(); ++i) {
             if (steps[i].task > 0) addEdge(i - 1, i);
@@ -38,6 +37,12 @@ struct TaskGraph {
         }
         for (const auto& [one, other] : overlaps)
             addEdge(first[one] + plan.channels[one].tasks.size() - 1, first[other]);
+        sortEdges();
+    }
+
+    // Returns the successors of a task.
+    [[nodiscard]] std::span<const size_t> next(size_t i) const {
+        return std::span(successors).subspan(begins[i], begins[i + 1] - begins[i]);
     }
 
     [[nodiscard]] const PlannedTask& taskOf(const FramePlan& plan, size_t i) const {
@@ -46,9 +51,21 @@ struct TaskGraph {
 
 private:
     void addEdge(size_t from, size_t to) {
-        next[from].push_back(to);
+        edges.emplace_back(from, to);
         ++missing[to];
     }
+
+    void sortEdges() {
+        begins.assign(steps.size() + 1, 0);
+        for (const auto& [from, to] : edges) ++begins[from + 1];
+        for (size_t i = 0; i < steps.size(); ++i) begins[i + 1] += begins[i];
+        successors.resize(edges.size());
+        std::vector<size_t> place(begins.begin(), begins.end() - 1);
+        for (const auto& [from, to] : edges) successors[place[from]++] = to;
+    }
+
+    std::vector<std::pair<size_t, size_t>> edges;
+    std::vector<size_t> begins, successors; // successors of task i: from begins[i] to begins[i + 1]
 };
 
 // Returns the frames of one cycle among the unfinished tasks.
@@ -56,7 +73,7 @@ std::vector<Index> circleOf(const FramePlan& plan, const TaskGraph& graph, const
     // Walk from any unfinished task to an unfinished predecessor until a task repeats.
     std::vector<size_t> before(graph.steps.size(), SIZE_MAX);
     for (size_t i = 0; i < graph.steps.size(); ++i) {
-        for (const size_t n : graph.next[i]) {
+        for (const size_t n : graph.next(i)) {
             if (!done[i] && !done[n]) before[n] = i;
         }
     }
@@ -81,9 +98,13 @@ std::vector<std::pair<size_t, size_t>> overlapsOf(const ResolvedConfig& config, 
                                                   const DisplaySizes& sizes) {
     std::vector<std::pair<size_t, size_t>> pairs;
     const auto channel = [&](size_t c) { return at(plan.channels[c].channel); };
-    for (size_t one = 0; one < plan.channels.size(); ++one) {
-        for (size_t other = one + 1; other < plan.channels.size(); ++other) {
-            if (config.channels[channel(one)].window != config.channels[channel(other)].window) continue;
+    std::vector<std::pair<Index, size_t>> byWindow;
+    byWindow.reserve(plan.channels.size());
+    for (size_t c = 0; c < plan.channels.size(); ++c) byWindow.emplace_back(config.channels[channel(c)].window, c);
+    std::sort(byWindow.begin(), byWindow.end());
+    for (size_t i = 0; i < byWindow.size(); ++i) {
+        for (size_t j = i + 1; j < byWindow.size() && byWindow[j].first == byWindow[i].first; ++j) {
+            const size_t one = byWindow[i].second, other = byWindow[j].second;
             if (!intersect(sizes.channels[channel(one)], sizes.channels[channel(other)]).empty())
                 pairs.emplace_back(one, other);
         }
@@ -110,7 +131,7 @@ bool order(const ResolvedConfig& config, FramePlan& plan, const std::vector<std:
         ++count;
         const Index channel = plan.channels[graph.steps[i].channel].channel;
         plan.pipes[at(config.windows[at(config.channels[at(channel)].window)].pipe)].push_back(graph.steps[i]);
-        for (const size_t n : graph.next[i]) {
+        for (const size_t n : graph.next(i)) {
             if (--graph.missing[n] == 0) ready.push(n);
         }
     }

@@ -142,7 +142,7 @@ Index Planner::contextOf(const ActiveCompound& active, Eye eye) {
 void Planner::emit(Index compound) {
     const size_t index = activeOf_[at(compound)];
     if (index == SIZE_MAX) return;
-    const ActiveCompound active = active_[index];
+    const ActiveCompound& active = active_[index]; // complete: emit() adds none
     if (active.tasks.has(Task::Clear)) add(active, Task::Clear);
     if (active.tasks.has(Task::Draw)) add(active, Task::Draw);
     for (const Index child : config_.compounds[at(compound)].children) emit(child);
@@ -173,6 +173,8 @@ void Planner::add(const ActiveCompound& active, Task kind) {
     plan_.channels[plan].tasks.push_back(std::move(task));
 }
 
-FramePlan planFrame(const ResolvedConfig& config, const FrameInput& input) { return Planner(config, input).run(); }
+FramePlan planFrame(const ResolvedConfig& config, const FrameInput& input, FramePlan old) {
+    return Planner(config, input, std::move(old)).run();
+}
 
 } // namespace mural::compound

@@ -6,6 +6,7 @@
 
 namespace mural::compound {
 
-FramePlan planFrame(const ResolvedConfig& config, const FrameInput& input);
+// The plan may reuse the memory of an old plan; the contents of `old` do not matter.
+FramePlan planFrame(const ResolvedConfig& config, const FrameInput& input, FramePlan old = {});
 
 } // namespace mural::compound

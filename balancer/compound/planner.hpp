@@ -2,6 +2,8 @@
 #pragma once
 
 #include <map>
+#include <string_view>
+#include <unordered_map>
 
 #include "balancer/compound/inheritance.hpp"
 #include "balancer/compound/plan_frame.hpp"
@@ -18,9 +20,19 @@ struct ActiveCompound {
 
 class Planner {
 public:
-    Planner(const ResolvedConfig& config, const FrameInput& input)
-        : config_(config), input_(input), channelPlans_(config.channels.size(), SIZE_MAX) {
+    // Reuses the memory of `old`.
+    Planner(const ResolvedConfig& config, const FrameInput& input, FramePlan old)
+        : config_(config), input_(input), plan_(std::move(old)), channelPlans_(config.channels.size(), SIZE_MAX) {
         plan_.frameNumber = input.frameNumber;
+        plan_.contexts.clear();
+        plan_.frames.clear();
+        plan_.queues.clear();
+        plan_.channels.clear();
+        plan_.barriers.clear();
+        plan_.pipes.clear();
+        plan_.interleaved = false;
+        plan_.deadlock.clear();
+        active_.reserve(config.compounds.size());
     }
     FramePlan run();
 
@@ -53,10 +65,10 @@ private:
     std::vector<size_t> channelPlans_; // per channel: index into plan_.channels
     // State of the current pass.
     std::vector<ActiveCompound> active_;
-    std::vector<size_t> activeOf_;            // per compound: index into active_, or SIZE_MAX
-    std::map<std::string, Offer> offers_;     // output frames by name
-    std::map<std::string, Index> queues_;     // indices into plan_.queues by name
-    std::vector<std::vector<Index>> outputs_; // per entry of active_: indices into plan_.frames
+    std::vector<size_t> activeOf_;                       // per compound: index into active_, or SIZE_MAX
+    std::unordered_map<std::string_view, Offer> offers_; // output frames by name
+    std::map<std::string, Index> queues_;                // indices into plan_.queues by name
+    std::vector<std::vector<Index>> outputs_;            // per entry of active_: indices into plan_.frames
     std::vector<std::vector<FrameUse>> inputs_;
 };
 

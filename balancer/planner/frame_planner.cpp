@@ -19,6 +19,7 @@ bool isSameWork(const RenderContext& a, const RenderContext& b) {
 FramePlanner::FramePlanner(ResolvedConfig config, compound::FrameInput first, Equalizers equalizers)
     : config_(std::move(config)), input_(std::move(first)), equalizers_(std::move(equalizers)) {
     input_.compounds.resize(config_.compounds.size());
+    for (const config::ResolvedCompound& c : config_.compounds) hasPeriods_ |= c.period.value_or(1) != 1;
 }
 
 Equalizer* FramePlanner::find(std::string_view id) const {
@@ -34,12 +35,23 @@ void FramePlanner::addStatistics(const FrameStatistics& statistics) {
 const FrameChange& FramePlanner::next() {
     const FrameContext context{config_, input_};
     for (const auto& e : equalizers_) e->update(context, input_.compounds);
+    change_.frame = input_.frameNumber;
+    if (isSamePlan()) {
+        plan_.frameNumber = input_.frameNumber++;
+        change_.changes.clear();
+        return change_;
+    }
+    isInputChanged_ = false;
+    plannedStates_ = input_.compounds;
     std::swap(plan_, previous_);
-    plan_ = compound::planFrame(config_, input_);
-    change_.frame = input_.frameNumber++;
+    plan_ = compound::planFrame(config_, input_, std::move(plan_));
+    ++input_.frameNumber;
     compare();
     return change_;
 }
+
+// A plan depends on the states and, with periods, on the frame number.
+bool FramePlanner::isSamePlan() const { return !isInputChanged_ && !hasPeriods_ && plannedStates_ == input_.compounds; }
 
 // Contexts of both plans have the same order: by root, eye, and place in the tree.
 void FramePlanner::compare() {

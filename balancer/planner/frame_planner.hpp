@@ -32,7 +32,11 @@ public:
     [[nodiscard]] const Equalizers& equalizers() const { return equalizers_; }
     [[nodiscard]] Equalizer* find(std::string_view id) const;
     // State of the next frame. Changes of layouts, views, observers and sizes apply to it.
-    [[nodiscard]] compound::FrameInput& input() { return input_; }
+    [[nodiscard]] compound::FrameInput& changeInput() {
+        isInputChanged_ = true;
+        return input_;
+    }
+    [[nodiscard]] const compound::FrameInput& input() const { return input_; }
 
     // Adds the measurements of a completed frame, in ascending order of frames.
     void addStatistics(const FrameStatistics& statistics);
@@ -42,12 +46,16 @@ public:
 
 private:
     void compare();
+    [[nodiscard]] bool isSamePlan() const;
 
     const ResolvedConfig config_;
     compound::FrameInput input_;
     Equalizers equalizers_;
     compound::FramePlan plan_, previous_;
     FrameChange change_;
+    States plannedStates_;       // states of the last plan
+    bool isInputChanged_ = true; // since the last plan
+    bool hasPeriods_ = false;    // plans depend on the frame number
 };
 
 } // namespace mural::balance

@@ -41,7 +41,7 @@ TEST(FramePlanner, reportsAllContextsFirstAndThenOnlyChanges) {
         EXPECT_EQ(c.kind, Kind::Changed);
         EXPECT_EQ(planner.plan().contexts[at(c.context)].compound, c.compound);
     }
-    planner.input().compounds[at(loaded.resolved.roots.front()) + 3].active = false;
+    planner.changeInput().compounds[at(loaded.resolved.roots.front()) + 3].active = false;
     bool hasVanished = false;
     for (const ContextChange& c : planner.next().changes) hasVanished |= c.kind == Kind::Vanished;
     EXPECT_TRUE(hasVanished);

@@ -7,11 +7,11 @@ namespace mural::balance {
 namespace {
 
 constexpr size_t kCellsPerChild = 64; // enough to place a cut within a few percent of a child's part
-constexpr size_t kLeastCells = 2048, kMostCells = 16384;
+constexpr size_t kLeastCells = 2048, kMostCells = 8192;
 constexpr double kLeastDensity = 1e-3;   // of the mean: a cell that was free can become dear
 constexpr double kAspectToTurn = 2;      // a cut turns to the other axis above this ratio of sides
 constexpr double kSurpriseToSmooth = .4; // residual from which the map is smoothed completely
-constexpr int kSmoothings = 3;
+constexpr int kSmoothings = 2;
 constexpr size_t kMemory = 6; // frames with different parts that the map agrees with
 constexpr int kRecalls = 2;
 constexpr int kFirstPatience = 8, kMostPatience = 64;
