@@ -28,7 +28,7 @@ std::string efficiencyPlot(const std::string& title, const std::vector<Efficienc
         return kArea.x + kArea.w * static_cast<double>(frame) / static_cast<double>(std::max<size_t>(1, frames - 1));
     };
     const auto yOf = [&](double value) { return kArea.bottom() - kArea.h * std::clamp(value, 0., 1.); };
-    const Style grid{"none", "#e4e7eb", 1};
+    const Style grid{.stroke = "#e4e7eb"};
     for (int tenth = 0; tenth <= 10; tenth += 2) {
         svg.line({kArea.x, yOf(tenth / 10.)}, {kArea.right(), yOf(tenth / 10.)}, grid);
         svg.text({kArea.x - 8, yOf(tenth / 10.) + 4}, fmt::format("{:.1f}", tenth / 10.),
@@ -42,7 +42,7 @@ std::string efficiencyPlot(const std::string& title, const std::vector<Efficienc
     double y = kArea.y + 10;
     for (size_t i = 0; i < curves.size(); ++i) {
         const EfficiencyCurve& c = curves[i];
-        const Style style{"none", kColors[i % std::size(kColors)], 1.6};
+        const Style style{.stroke = kColors[i % std::size(kColors)], .strokeWidth = 1.6};
         for (size_t f = 1; f < c.values.size(); ++f)
             svg.line({xOf(f - 1), yOf(c.values[f - 1])}, {xOf(f), yOf(c.values[f])}, style);
         svg.line({kArea.right() + 20, y}, {kArea.right() + 45, y}, style);
