@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "balancer/equalizers/child_loads.hpp"
+#include "balancer/equalizers/split/child_loads.hpp"
 #include "balancer/equalizers/equalizer.hpp"
 
 namespace mural::balance {

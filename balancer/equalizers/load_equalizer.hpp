@@ -4,7 +4,7 @@
 // transfer times count.
 #pragma once
 
-#include "balancer/equalizers/split_equalizer.hpp"
+#include "balancer/equalizers/split/split_equalizer.hpp"
 
 namespace mural::balance {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "balancer/compound/frusta.hpp"
-#include "balancer/equalizers/split_equalizer.hpp"
+#include "balancer/equalizers/split/split_equalizer.hpp"
 
 namespace mural::balance {
 

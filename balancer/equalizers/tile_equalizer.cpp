@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "balancer/equalizers/split_equalizer.hpp"
+#include "balancer/equalizers/split/split_equalizer.hpp"
 
 namespace mural::balance {
 

@@ -3,7 +3,7 @@
 // the resistance of horizontal cuts uses the height.
 #pragma once
 
-#include "balancer/equalizers/split_equalizer.hpp"
+#include "balancer/equalizers/split/split_equalizer.hpp"
 
 namespace mural::balance {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "balancer/equalizers/cost_map/density_grid.hpp"
-#include "balancer/equalizers/split_equalizer.hpp"
+#include "balancer/equalizers/split/split_equalizer.hpp"
 #include "balancer/simulation/cost_trace.hpp"
 
 namespace mural::simulation {

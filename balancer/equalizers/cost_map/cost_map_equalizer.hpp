@@ -9,7 +9,7 @@
 #include "balancer/equalizers/cost_map/change_watch.hpp"
 #include "balancer/equalizers/cost_map/density_grid.hpp"
 #include "balancer/equalizers/cost_map/helper_count.hpp"
-#include "balancer/equalizers/split_equalizer.hpp"
+#include "balancer/equalizers/split/split_equalizer.hpp"
 
 namespace mural::balance {
 

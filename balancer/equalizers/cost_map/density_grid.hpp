@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "balancer/equalizers/split_tree.hpp"
+#include "balancer/equalizers/split/split_tree.hpp"
 
 namespace mural::balance {
 

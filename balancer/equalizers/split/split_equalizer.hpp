@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "balancer/equalizers/child_loads.hpp"
-#include "balancer/equalizers/split_tree.hpp"
+#include "balancer/equalizers/split/child_loads.hpp"
+#include "balancer/equalizers/split/split_tree.hpp"
 
 namespace mural::balance {
 

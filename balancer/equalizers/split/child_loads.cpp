@@ -1,4 +1,4 @@
-#include "balancer/equalizers/child_loads.hpp"
+#include "balancer/equalizers/split/child_loads.hpp"
 
 namespace mural::balance {
 

@@ -1,4 +1,4 @@
-#include "balancer/equalizers/split_equalizer.hpp"
+#include "balancer/equalizers/split/split_equalizer.hpp"
 
 #include "balancer/compound/inheritance.hpp"
 

@@ -1,4 +1,4 @@
-#include "balancer/equalizers/split_tree.hpp"
+#include "balancer/equalizers/split/split_tree.hpp"
 
 #include <cmath>
 
