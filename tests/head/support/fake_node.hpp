@@ -23,18 +23,18 @@ namespace mural {
 
 struct FakeNodeBehaviour {
     bool pictures = false;
-    bool silentStart = false;                  // never ready
-    bool refuses = false;                      // reports this reason instead of being ready, and ends
-    bool drawsWhole = false;                   // reported with every frame
-    bool keepsAreas = false;                   // reported with every frame
-    uint64_t busyNs = 0;                       // reported with every frame
-    std::string driverMessage;                 // a driver event with every frame
-    uint32_t dieAtFrame = 0;                   // closes its connection instead of finishing this frame
-    uint32_t dieAtRequest = 0;                 // instead of answering
-    uint32_t garbageAtFrame = 0;               // sends a malformed message
-    bool halfAnswer = false;                   // sends the first part of an answer, then dies
-    bool noBye = false;                        // hangs at the end
-    bool alive = false;                        // sends heartbeats
+    bool silentStart = false;              // never ready
+    bool refuses = false;                  // reports this reason instead of being ready, and ends
+    bool drawsWhole = false;               // reported with every frame
+    bool keepsAreas = false;               // reported with every frame
+    uint64_t busyNs = 0;                   // reported with every frame
+    std::string driverMessage;             // a driver event with every frame
+    uint32_t dieAtFrame = 0;               // closes its connection instead of finishing this frame
+    uint32_t dieAtRequest = 0;             // instead of answering
+    uint32_t garbageAtFrame = 0;           // sends a malformed message
+    bool halfAnswer = false;               // sends the first part of an answer, then dies
+    bool noBye = false;                    // hangs at the end
+    bool alive = false;                    // sends heartbeats
     std::atomic<bool>* isPaused = nullptr; // reads nothing while true
 };
 
