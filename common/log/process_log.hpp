@@ -1,0 +1,45 @@
+// Settings of this process's log: levels, name, and the destination of lines.
+//
+// Lines for the user (Level::Info and above) go to the innermost Receiver, otherwise to standard error, as
+// "PREFIXtext". Diagnostics go to standard error with time (UTC), process, topic and level.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "common/log/levels.hpp"
+
+namespace mural::log {
+
+// Names the process and applies MURAL_LOG. Errors: MURAL_LOG is invalid.
+Result<void> start(const std::string& role, const std::string& prefix);
+// Changes the name in diagnostics, such as "node 3".
+void setRole(const std::string& role);
+void setLevels(const Levels& levels);
+[[nodiscard]] Levels currentLevels();
+// Returns the value of MURAL_LOG; empty: not set.
+[[nodiscard]] std::string environmentLevels();
+
+// Receives the lines of at least one level instead of standard error, while it lives. Receivers nest; they are
+// destroyed in any order.
+class Receiver {
+public:
+    // Called by the thread that logs, also by several at a time. Returns false if it could not deliver the line, which
+    // then goes to standard error. Lines that it logs itself go to standard error, too.
+    using Take = std::function<bool(Topic topic, Level level, std::string_view text)>;
+
+    Receiver(Level least, Take take);
+    ~Receiver(); // waits for calls in progress
+    Receiver(const Receiver&) = delete;
+    Receiver& operator=(const Receiver&) = delete;
+
+    [[nodiscard]] bool wants(Level level) const { return level >= least_; }
+    [[nodiscard]] bool take(Topic topic, Level level, std::string_view text) const { return take_(topic, level, text); }
+
+private:
+    const Level least_;
+    const Take take_;
+};
+
+} // namespace mural::log
