@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <thread>
 
+#include "common/log/log.hpp"
 #include "nodes/daemon/remote_command.hpp"
 #include "transport/tcp/socket_wait.hpp"
 #include "transport/system_error.hpp"
@@ -61,11 +62,6 @@ Result<std::unique_ptr<NodeDaemon>> NodeDaemon::open(const DaemonOptions& option
     return std::unique_ptr<NodeDaemon>(new NodeDaemon(options, std::move(*socket), port));
 }
 
-void NodeDaemon::say(const std::string& line) {
-    const std::lock_guard lock(mutex_);
-    if (options_.log) options_.log(line);
-}
-
 bool NodeDaemon::enter(const std::string& peer) {
     const std::lock_guard lock(mutex_);
     if (!heads_.empty() && !heads_.contains(peer)) return false;
@@ -84,22 +80,22 @@ void NodeDaemon::take(FileDescriptor socket, const std::string& peer) {
     ChannelSocket channel(std::move(socket),
                           SecureChannel::accepting([secret](const std::string&) { return std::optional(secret); }));
     if (auto r = channel.open(Deadline::inMs(kProofMs)); !r)
-        return say(peer + " was not accepted: " + r.error().message);
+        return log::warning(log::Topic::Daemon, peer, " was not accepted: ", r.error().message);
     const auto refuse = [&](const std::string& why) {
         (void)channel.send(textMessage(NodeMessageKind::Refused, why), Deadline::inMs(kAnswerMs));
-        say(peer + " was rejected: " + why);
+        log::warning(log::Topic::Daemon, peer, " was rejected: ", why);
     };
     auto order = channel.receive(Deadline::inMs(kProofMs));
-    if (!order) return say(peer + " sent no command: " + order.error().message);
+    if (!order) return log::warning(log::Topic::Daemon, peer, " sent no command: ", order.error().message);
     auto arguments = orderArguments(*order);
     if (!arguments || !isAllowedCommand(*arguments))
         return refuse("only render nodes can be started here; check that both run the same version");
     completeOrder(*arguments, peer);
     if (!enter(peer)) return refuse("another head uses this machine; try again after its session");
-    say(peer + " started a " + arguments->front() + " on this machine");
+    log::info(log::Topic::Daemon, peer, " started a ", arguments->front(), " on this machine");
     auto how = runOrdered(options_.executable, *arguments, channel, stop_);
     leave(peer);
-    say(peer + ": the " + arguments->front() + " ended: " + (how ? *how : how.error().message));
+    log::info(log::Topic::Daemon, peer, ": the ", arguments->front(), " ended: ", how ? *how : how.error().message);
 }
 
 Result<void> NodeDaemon::serve(int stopFd) {

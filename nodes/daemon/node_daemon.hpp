@@ -4,7 +4,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -20,7 +19,6 @@ struct DaemonOptions {
     std::string listen = ":4279"; // address (empty: all interfaces) and port (0: any)
     ChannelSecret secret{};
     std::string executable; // the executable of orders
-    std::function<void(const std::string&)> log;
 };
 
 class NodeDaemon {
@@ -37,7 +35,6 @@ private:
     void take(FileDescriptor socket, const std::string& peer);
     bool enter(const std::string& peer);
     void leave(const std::string& peer);
-    void say(const std::string& line);
 
     DaemonOptions options_;
     FileDescriptor socket_;

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/log/log.hpp"
+
 namespace mural {
 
 using compositor::Step;
 using compositor::Strategy;
 
-PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes, Log log)
-    : config_(std::move(config)), strategy_(config_.strategy), routes_(routes), log_(std::move(log)) {}
+PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes)
+    : config_(std::move(config)), strategy_(config_.strategy), routes_(routes) {}
 
 // Receives the collector's decision for this picture: one byte, 1 for the serial strategy.
 void PictureComposer::agree() {
@@ -31,6 +33,7 @@ void PictureComposer::sendNext() {
 void PictureComposer::serially() {
     strategy_ = Strategy::Serial;
     rows_ = -1;
+    log::debug(log::Topic::Exchange, "all ranges send to the collector from the next picture on");
 }
 
 void PictureComposer::returned(int rank, uint32_t incarnation, const std::set<int>& absent) {
@@ -43,6 +46,7 @@ void PictureComposer::returned(int rank, uint32_t incarnation, const std::set<in
     agreed_ = true;
     strategy_ = absent.empty() ? config_.strategy : Strategy::Serial;
     rows_ = -1;
+    log::debug(log::Topic::Exchange, "range ", rank + 1, " is back; strategy ", nameOf(strategy_));
 }
 
 PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& rule) {
@@ -120,7 +124,8 @@ void PictureComposer::put(PicturePart& part, const ArrivedPiece& piece, Step::Ki
 
 void PictureComposer::lost(int rank, const std::string& why) {
     incomplete_ = true;
-    if (lost_.insert(rank).second) log_("a range of the picture is missing until its node rejoins: " + why);
+    if (lost_.insert(rank).second)
+        log::warning(log::Topic::Exchange, "a range of the picture is missing until its node rejoins: ", why);
 }
 
 } // namespace mural

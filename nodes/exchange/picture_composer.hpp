@@ -8,7 +8,6 @@
 // present they use the initial strategy.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -31,8 +30,7 @@ struct ComposerConfig {
 
 class PictureComposer {
 public:
-    using Log = std::function<void(const std::string&)>;
-    PictureComposer(ComposerConfig config, PartRoutes& routes, Log log);
+    PictureComposer(ComposerConfig config, PartRoutes& routes);
 
     // Called by each node with its part. Afterwards the collector's part is the whole picture; other nodes' parts are
     // undefined. Returns the area that may have changed. Reports each lost node once; its range is missing.
@@ -53,7 +51,6 @@ private:
     const ComposerConfig config_;
     compositor::Strategy strategy_; // serial while nodes are lost
     PartRoutes& routes_;
-    const Log log_;
     int32_t rows_ = -1;
     std::vector<compositor::Step> steps_;  // of this rank, for the current number of rows
     std::map<int, PlaneEncoder> encoders_; // per link

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
 
 namespace mural {
@@ -20,12 +21,8 @@ std::unique_ptr<PicturePacker> packerFor(const PictureSenderConfig& config) {
 
 } // namespace
 
-PictureSender::PictureSender(PictureSenderConfig config, Send send, Log log)
-    : config_(std::move(config)),
-      send_(std::move(send)),
-      log_(std::move(log)),
-      packer_(packerFor(config_)),
-      thread_([this] { run(); }) {
+PictureSender::PictureSender(PictureSenderConfig config, Send send)
+    : config_(std::move(config)), send_(std::move(send)), packer_(packerFor(config_)), thread_([this] { run(); }) {
     if (pthread_getcpuclockid(thread_.native_handle(), &clock_) != 0) clock_ = CLOCK_THREAD_CPUTIME_ID;
 }
 
@@ -65,7 +62,8 @@ bool PictureSender::give(Job job, size_t bytes, bool isFrame) {
     };
     if (stuck_ || !await(lock, room)) {
         if (!std::exchange(stuck_, true))
-            log_("no picture could be sent for " + std::to_string(config_.roomMs / 1000) + " s; the node ends");
+            log::error(log::Topic::Picture, "no picture could be sent for ", config_.roomMs / 1000,
+                       " s; the node ends");
         return false;
     }
     frames_ += isFrame ? 1 : 0;
@@ -164,8 +162,9 @@ void PictureSender::sendFrame(Frame& frame) {
     const int64_t beganCpuNs = threadCpuNowNs();
     auto read = frame.picture->bytes(Deadline::inMs(config_.readMs));
     if (!read && !std::exchange(lossReported_, true))
-        log_("readback failed; this picture, and later ones after the same failure, are black: " +
-             read.error().message);
+        log::warning(
+            log::Topic::Picture,
+            "readback failed; this picture, and later ones after the same failure, are black: ", read.error().message);
     if (!read) black_.assign(static_cast<size_t>(h.w) * static_cast<size_t>(h.h) * 4, std::byte{0});
     std::span<const std::byte> pixels = read ? *read : black_;
     const int64_t beganNs = monotonicNowNs();

@@ -41,14 +41,13 @@ public:
     // Sends one message of up to two parts. Called by the caller's thread or the sender's, never by both at a time.
     // Blocks while the head reads nothing, and returns when the head ends.
     using Send = std::function<void(wire::NodeMessage, std::span<const std::byte>, std::span<const std::byte>)>;
-    using Log = std::function<void(const std::string&)>;
     struct Frame {
         wire::PictureHeader header{};
         std::unique_ptr<PictureRead> picture;
         wire::FrameDoneMessage done{}; // sent after the picture; the sender adds the time of readback and encoding
     };
 
-    PictureSender(PictureSenderConfig config, Send send, Log log);
+    PictureSender(PictureSenderConfig config, Send send);
     // Completes all queued jobs.
     ~PictureSender();
     PictureSender(const PictureSender&) = delete;
@@ -97,7 +96,6 @@ private:
 
     const PictureSenderConfig config_;
     const Send send_;
-    const Log log_;
     const std::unique_ptr<PicturePacker> packer_; // null: no encoding; used by thread_
     std::vector<std::byte> black_, inTransfer_;
     bool lossReported_ = false;

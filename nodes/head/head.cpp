@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "common/log/log.hpp"
 #include "common/memory/malloc_tuning.hpp"
 #include "common/ipc/window_mark.hpp"
 #include "common/base/pause_watch.hpp"
@@ -12,6 +13,7 @@
 #include "nodes/head/planning/composition_choice.hpp"
 #include "nodes/head/planning/config_plan.hpp"
 #include "nodes/head/session/head_session.hpp"
+#include "nodes/head/session/log_to_control.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/output/windows/app_window.hpp"
@@ -76,8 +78,7 @@ std::string outOfCanvas(const std::string& out, const std::string& name) {
     return out + (out.back() == '/' ? "" : "/") + "canvas." + plain;
 }
 
-Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, ControlChannel& control,
-                        HeadOptions& options) {
+Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, HeadOptions& options) {
     options.openWindow = [display = config.displayName,
                           key = window_mark::sessionKey(config.session.c_str())](const NativeWindow& window) {
         AppWindowConfig target;
@@ -88,27 +89,24 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, Co
         if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
         return Result<std::unique_ptr<PictureSink>>(std::move(*opened));
     };
-    options.openWall = [config, &control](int offsetX) {
+    options.openWall = [config](int offsetX) {
         WallWindowsConfig wall;
         wall.displayName = config.displayName;
         wall.positionX = config.windowX + offsetX;
         wall.positionY = config.windowY;
         wall.fullScreen = config.fullScreen;
         return Result<std::unique_ptr<PictureSink>>(
-            std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1},
-                                       [&control](const std::string& text) { control.say(text); }));
+            std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1}));
     };
     if (config.out.empty()) return {};
-    OutputOptions output;
-    output.say = [&control](const std::string& text) { control.say(text); };
-    auto file = openOutput(config.out, output);
+    auto file = openOutput(config.out);
     if (!file) return file.error();
     // The sink lives as long as the session, which calls lastPicture.
     const auto* pngs = dynamic_cast<const PngFiles*>(file->get());
     options.lastPicture = [pngs, out = config.out] { return pngs ? pngs->lastPath() : out; };
     options.file = std::move(*file);
     for (const CanvasPlan& canvas : plan.canvases) {
-        auto opened = openOutput(outOfCanvas(config.out, canvas.name), output);
+        auto opened = openOutput(outOfCanvas(config.out, canvas.name));
         if (!opened) return opened.error();
         options.canvasFiles.push_back(std::move(*opened));
     }
@@ -138,11 +136,10 @@ Result<int> runSession(ControlChannel& control) {
     HeadOptions options;
     options.registryDigest = registryDigest();
     options.interrupted = [] { return endRequested != 0; };
-    if (const auto outputs = addOutputs(*config, plan, control, options); !outputs) return outputs.error();
+    if (const auto outputs = addOutputs(*config, plan, options); !outputs) return outputs.error();
     if (!config->record.empty()) {
         trace::RecorderConfig recorder;
         recorder.lastFrame = config->frames;
-        recorder.say = [&control](const std::string& text) { control.say(text); };
         auto made = trace::StreamRecorder::create(config->record, std::move(recorder));
         if (!made) return made.error();
         options.recorder = std::move(*made);
@@ -166,6 +163,7 @@ int runHead(int controlFd) {
     setUpSignals();
     const PauseWatch pauseWatch;
     ControlChannel control{FileDescriptor(controlFd)};
+    const LogToControl lines(control);
     const Result<int> status = runSession(control);
     if (status) return status.value();
     control.error(status.error().message);

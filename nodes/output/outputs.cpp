@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/log/log.hpp"
 #include "nodes/output/files/png_files.hpp"
 #include "nodes/output/files/video_encoders.hpp"
 #include "nodes/output/files/video_file.hpp"
@@ -41,11 +42,11 @@ Result<OutputKind> outputKindOf(const std::string& out) {
 Result<std::unique_ptr<PictureSink>> openOutput(const std::string& out, const OutputOptions& options) {
     Result<OutputKind> kind = outputKindOf(out);
     if (!kind) return kind.error();
+    log::debug(log::Topic::Output, kind.value() == OutputKind::Folder ? "folder of pictures: " : "video: ", out);
     if (kind.value() == OutputKind::Folder) return asSink(PngFiles::open(out));
     VideoConfig config;
     config.path = out;
     config.framesPerSecond = options.framesPerSecond;
-    config.say = options.say;
     return asSink(VideoFile::open(std::move(config)));
 }
 

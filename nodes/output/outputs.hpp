@@ -1,7 +1,6 @@
 // Creates the sink for a value of --out.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -11,8 +10,7 @@
 namespace mural {
 
 struct OutputOptions {
-    int framesPerSecond = 30;                    // of videos
-    std::function<void(const std::string&)> say; // one line for the user; may be empty
+    int framesPerSecond = 30; // of videos
 };
 
 enum class OutputKind { Folder, Video };

@@ -12,12 +12,8 @@ namespace mural {
 
 class BarrierPart {
 public:
-    BarrierPart(const NodeSetup& setup, SwapBarrier::Log log)
-        : rank_(setup.swapRank),
-          members_(setup.swapMembers),
-          here_(setup.swapHere),
-          secretHex_(setup.exchangeSecret),
-          log_(std::move(log)) {}
+    explicit BarrierPart(const NodeSetup& setup)
+        : rank_(setup.swapRank), members_(setup.swapMembers), here_(setup.swapHere), secretHex_(setup.exchangeSecret) {}
 
     // Leader only: listens for the other members. Returns the port; 0: not the leader.
     Result<uint16_t> open();
@@ -30,7 +26,6 @@ private:
     const int rank_, members_;
     const bool here_;
     const std::string secretHex_;
-    const SwapBarrier::Log log_;
     std::unique_ptr<SwapBarrier> barrier_;
 };
 

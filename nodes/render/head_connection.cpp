@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "common/log/log.hpp"
 #include "nodes/session/session_secret.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/rsp/group_connection.hpp"
@@ -73,9 +74,9 @@ Result<void> HeadConnection::follow(const std::string& stream, const std::string
 }
 
 void HeadConnection::joinBeside(const std::string& stream, const std::string& secretHex, const std::string& name) {
-    const auto failed = [this](const std::string& why) {
-        sendText(wire::NodeMessage::Log,
-                 "its stream uses TCP instead of multicast: " + why + "; see mural doctor --network");
+    const auto failed = [](const std::string& why) {
+        log::warning(log::Topic::Stream, "its stream uses TCP instead of multicast: ", why,
+                     "; see mural doctor --network");
     };
     auto options = groupOptions(stream, secretHex, name);
     if (!options) return failed(options.error().message);
@@ -89,6 +90,7 @@ Result<void> HeadConnection::changeOver(uint64_t skipBytes) {
     late_.reset();
     if (!stream) return stream.error();
     stream_ = std::move(*stream);
+    log::debug(log::Topic::Stream, "receives by multicast from now on");
     if (unpacker_) {
         const auto had = readBatch();
         return had ? Result<void>() : had.error();
@@ -137,7 +139,7 @@ Result<wire::PacketHeader> HeadConnection::next(std::span<const std::byte>& payl
             if (const auto opened = openBatch(head.value()); !opened) more = opened.error();
         }
         if (more) continue;
-        sendText(wire::NodeMessage::Log, more.error().message);
+        log::error(log::Topic::Stream, more.error().message);
         return more.error();
     }
 }

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -16,6 +15,8 @@
 
 #include "common/base/clock.hpp"
 #include "common/base/pause_watch.hpp"
+#include "common/log/log.hpp"
+#include "common/log/process_log.hpp"
 #include "nodes/exchange/picture_composer.hpp"
 #include "nodes/exchange/picture_exchange.hpp"
 #include "nodes/gl/gl_probe.hpp"
@@ -133,7 +134,7 @@ private:
         callsBefore_ = replay_->counts().commands;
         clientInHand_ = wire::clientOf(header.stream);
         if (!replay_->packet(header.stream, payload))
-            line_->sendText(wire::NodeMessage::Log, "an invalid packet of a program's stream was dropped");
+            log::warning(log::Topic::Stream, "an invalid packet of a program's stream was dropped");
         calls_[clientInHand_] += replay_->counts().commands - callsBefore_;
         callsBefore_ = replay_->counts().commands;
         return !invalid_ && !stuck_;
@@ -172,6 +173,7 @@ private:
         case wire::HeadCommand::Exchange:
             return connectNodes(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::Finish:
+            log::debug(log::Topic::Node, "the session ends");
             sendGoodbye();
             finished_ = true;
             return true;
@@ -183,6 +185,7 @@ private:
         const auto setup = nodeSetupFromJson(json);
         if (!setup) return fail(setup.error().message);
         setup_ = setup.value();
+        openLog();
         catchesUp_ = setup_.isResyncing;
         if (setup_.build != streamBuild())
             return fail("the head uses another stream format (" + (setup_.build.empty() ? "unnamed" : setup_.build) +
@@ -252,16 +255,24 @@ private:
             outputs.composeParts = [this](PicturePart& part, const CompositeRule& rule) {
                 return composer_->compose(part, rule);
             };
-        outputs.log = [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, std::move(outputs));
         lastCpuNs_ = threadCpuNs();
+        log::debug(log::Topic::Node, setup_.isResyncing ? "restarted, " : "", "draws with ",
+                   ready.value("renderer", "no GL"));
+        log::debug(log::Topic::Affinity, "thread of the replay: ", ready.value("placement", ""));
         line_->sendText(wire::NodeMessage::Ready, ready.dump());
         return true;
     }
 
+    // MURAL_LOG of this machine precedes the head's.
+    void openLog() {
+        log::setRole("node " + std::to_string(setup_.node));
+        if (!log::environmentLevels().empty()) return;
+        if (const auto levels = log::parseLevels(setup_.log)) log::setLevels(levels.value());
+    }
+
     Result<void> openBarrier(nlohmann::json& ready) {
-        swaps_ = std::make_unique<BarrierPart>(
-            setup_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        swaps_ = std::make_unique<BarrierPart>(setup_);
         auto port = swaps_->open();
         if (!port) return port.error();
         if (*port != 0) ready["swapBarrier"] = endpointText(setup_.swapHere ? "127.0.0.1" : line_->ownAddress(), *port);
@@ -292,8 +303,7 @@ private:
         if (const char* plant = std::getenv("MURAL_PLANT")) composer.plant = plant;
         exchange_ =
             std::make_unique<PictureExchange>(PictureExchange::Name{composer.rank, setup_.incarnation}, secret.value());
-        composer_ = std::make_unique<PictureComposer>(
-            composer, *exchange_, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        composer_ = std::make_unique<PictureComposer>(composer, *exchange_);
         // Every node listens, even one without initial peers: a restarted node connects to those present.
         if (auto listening = exchange_->listen(setup_.exchangeHere); !listening)
             return Error{"cannot listen for pictures of other nodes: " + listening.error().message};
@@ -323,10 +333,9 @@ private:
             const auto connected =
                 exchange_->connectTo(rank, where->host, where->port, Deadline::inMs(kConnectNodesMs));
             if (!connected)
-                line_->sendText(wire::NodeMessage::Log,
-                                "cannot connect to the node with range " + std::to_string(rank + 1) + " at " +
-                                    endpointText(where->host, where->port) + ": " + connected.error().message +
-                                    "; their parts of the picture are missing");
+                log::warning(log::Topic::Exchange, "cannot connect to the node with range ", rank + 1, " at ",
+                             endpointText(where->host, where->port), ": ", connected.error().message,
+                             "; their parts of the picture are missing");
         }
         if (!swaps_ || setup_.swapRank == 0) return true;
         const auto leader = addressIn(json, "swaps", setup_.swapLeader);
@@ -347,9 +356,10 @@ private:
         return *where;
     }
 
+    // Sends the reason even if its level is off, because the head uses it.
     bool fail(const std::string& why) {
-        line_->sendText(wire::NodeMessage::Log, why); // the head prints it
-        if (line_->broken()) std::cerr << "mural node: " << why << '\n';
+        line_->sendText(wire::NodeMessage::Log, why);
+        if (line_->broken()) log::error(log::Topic::Node, why);
         return false;
     }
 
@@ -399,8 +409,8 @@ private:
     // Ends this node, because it has skipped frames that its pictures depend on. No picture of it is shown from now on.
     void invalid() {
         if (catchesUp_ || std::exchange(invalid_, true)) return;
-        line_->sendText(wire::NodeMessage::Log, "its frames depend on earlier frames that it skipped while it caught "
-                                                "up; it ends and is restarted to draw all frames");
+        log::warning(log::Topic::Node, "its frames depend on earlier frames that it skipped while it caught "
+                                       "up; it ends and is restarted to draw all frames");
     }
 
     // A node becomes a member. If it is this node, other nodes have sent all earlier messages.
@@ -417,6 +427,7 @@ private:
         shareWith(static_cast<int>(node), incarnation, arguments.subspan(sizeof words));
         if (catchesUp_ && !itself) return true;
         if (std::exchange(catchesUp_, false)) busyNs_ = 0; // the resync is no frame's work
+        log::debug(log::Topic::Node, "view ", view, ": node ", node, " is a member");
         std::vector<wire::ClientFrame> frames;
         for (const auto& [client, frame] : frames_) frames.push_back({client, frame});
         sendMessage(wire::NodeMessage::ViewReached, std::as_bytes(std::span(&view, 1)),
@@ -500,10 +511,8 @@ private:
         if (!shows || f.config.red <= 8 || f.format != PictureFormat::Bgra8 ||
             !eightBitsReported_.insert({f.client, f.window}).second)
             return;
-        line_->sendText(
-            wire::NodeMessage::Log,
-            "the program's window has " + std::to_string(f.config.red) +
-                " bits per channel; its picture is shown and saved with 8; replies to the program have all bits");
+        log::warning(log::Topic::Picture, "the program's window has ", f.config.red,
+                     " bits per channel; its picture is shown and saved with 8; replies to the program have all bits");
     }
 
     void frameDone(const ReplayOutputs::Frame& f) {
@@ -580,15 +589,14 @@ private:
         const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
             line_->send(type, a, b);
         };
-        sender_ = std::make_unique<PictureSender>(
-            config, send, [this](const std::string& text) { line_->sendText(wire::NodeMessage::Log, text); });
+        sender_ = std::make_unique<PictureSender>(config, send);
         beganNs_ = workNowNs(); // the sender's clock starts now
     }
 
     void showTiles(const ReplayOutputs::Frame& f) {
         const auto shown = windows_->show(f, swaps_ ? swaps_->barrier() : nullptr);
         if (!shown) {
-            line_->sendText(wire::NodeMessage::Log, "the wall windows are lost: " + shown.error().message);
+            log::warning(log::Topic::Output, "the wall windows are lost: ", shown.error().message);
             windows_.reset();
         }
     }
@@ -614,7 +622,15 @@ private:
         line_->sendText(wire::NodeMessage::Goodbye, bye.dump());
     }
 
+    // Sends log lines for the user to the head.
+    bool report(std::string_view text) {
+        line_->sendText(wire::NodeMessage::Log, std::string(text));
+        return !line_->broken();
+    }
+
     const std::unique_ptr<HeadConnection> line_;
+    const log::Receiver lines_{log::Level::Info,
+                               [this](log::Topic, log::Level, std::string_view text) { return report(text); }};
     const std::string name_; // identifies this node to the head
     NodeSetup setup_;
     std::unique_ptr<BarrierPart> swaps_; // null: no swap barrier
@@ -648,7 +664,7 @@ int runNode(const NodeOptions& options) {
     const PauseWatch pauseWatch;
     auto line = HeadConnection::open(options);
     if (!line) {
-        std::cerr << "mural node: " << line.error().message << '\n';
+        log::error(log::Topic::Node, line.error().message);
         return 1;
     }
     return Node(std::move(*line), options.name).run();

@@ -182,6 +182,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("swapLeader", s.swapLeader, 0);
     visit("swapHere", s.swapHere);
     visit("build", s.build);
+    visit("log", s.log);
 }
 
 // Area, edges, and the upper three rows of the matrix; null if there is no screen.

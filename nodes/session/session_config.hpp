@@ -127,6 +127,7 @@ struct NodeSetup {
     int swapLeader = 0;        // node number of the leader
     bool swapHere = false;     // all members run on this machine
     std::string build;         // streamBuild() of the head
+    std::string log;           // MURAL_LOG of the head; empty: not set
 };
 
 std::string toJson(const NodeSetup& setup);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/log/log.hpp"
 #include "nodes/swap_barrier/barrier_names.hpp"
 #include "transport/secure/secure_connection.hpp"
 
@@ -16,13 +17,14 @@ constexpr int64_t kAnswerMs = 4 * SwapBarrier::kPatienceMs; // longer than the l
 } // namespace
 
 Result<std::unique_ptr<SwapBarrier>> BarrierFollower::connect(int rank, const ChannelSecret& secret,
-                                                              const std::string& host, uint16_t port, Deadline deadline,
-                                                              Log log) {
+                                                              const std::string& host, uint16_t port,
+                                                              Deadline deadline) {
     auto connection = connectTcp(host, port, deadline);
     if (!connection) return connection.error();
     auto secure = SecureConnection::connecting(std::move(*connection), barrierNameOf(rank), secret, deadline);
     if (!secure) return secure.error();
-    return std::unique_ptr<SwapBarrier>(std::make_unique<BarrierFollower>(std::move(*secure), std::move(log)));
+    log::debug(log::Topic::Barrier, "connected to the leader at ", host, ":", port, " as member ", rank + 1);
+    return std::unique_ptr<SwapBarrier>(std::make_unique<BarrierFollower>(std::move(*secure)));
 }
 
 Result<BarrierGo> BarrierFollower::request(const SwapKey& key) {
@@ -45,8 +47,8 @@ int64_t BarrierFollower::await(const SwapKey& key) {
     auto go = request(key);
     if (go && go->showNs == 0) return 0; // released alone: there is no common time to wait for
     if (go) return std::min(go->showNs - clock_.offsetNs(), monotonicNowNs() + kMaxSleepNs);
-    log_("the swap barrier is disconnected: its leader is lost: " + go.error().message +
-         "; windows of this node show frames without the barrier");
+    log::warning(log::Topic::Barrier, "the swap barrier is disconnected: its leader is lost: ", go.error().message,
+                 "; windows of this node show frames without the barrier");
     leader_.reset();
     return 0;
 }

@@ -16,8 +16,8 @@ class BarrierFollower final : public SwapBarrier {
 public:
     // rank: from 1.
     static Result<std::unique_ptr<SwapBarrier>> connect(int rank, const ChannelSecret& secret, const std::string& host,
-                                                        uint16_t port, Deadline deadline, Log log);
-    BarrierFollower(std::unique_ptr<Connection> leader, Log log) : leader_(std::move(leader)), log_(std::move(log)) {}
+                                                        uint16_t port, Deadline deadline);
+    explicit BarrierFollower(std::unique_ptr<Connection> leader) : leader_(std::move(leader)) {}
 
     int64_t await(const SwapKey& key) override;
     void shown(const SwapKey& key, int64_t atNs) override;
@@ -26,7 +26,6 @@ private:
     Result<BarrierGo> request(const SwapKey& key);
 
     std::unique_ptr<Connection> leader_; // null: connection lost
-    const Log log_;
     ClockOffset clock_;
     SwapKey shownKey_;
     int64_t shownNs_ = 0; // by the leader's clock; 0: already reported, or nothing was shown

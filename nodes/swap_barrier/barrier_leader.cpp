@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "common/log/log.hpp"
 #include "nodes/swap_barrier/barrier_names.hpp"
 #include "transport/tcp/free_port.hpp"
 #include "transport/secure/secure_connection.hpp"
@@ -16,6 +17,7 @@ constexpr int64_t kProofPatienceMs = 5000;
 constexpr int64_t kSendMs = 1000;
 constexpr int64_t kRestMs = 1000; // for the rest of a message
 constexpr int64_t kWakeNs = 50'000;
+constexpr int64_t kReportNs = kNsPerS; // interval of diagnostics
 constexpr int64_t kMaxLeadNs =
     4 * kNsPerMs; // longest time from release to show; members with a higher latency show later
 
@@ -23,12 +25,8 @@ std::string memberText(int rank) { return "member " + std::to_string(rank + 1) +
 
 } // namespace
 
-BarrierLeader::BarrierLeader(int members, const ChannelSecret& secret, Log log, int64_t patienceMs)
-    : count_(members),
-      secret_(secret),
-      log_(std::move(log)),
-      patienceMs_(patienceMs),
-      rounds_(members, patienceMs * kNsPerMs) {}
+BarrierLeader::BarrierLeader(int members, const ChannelSecret& secret, int64_t patienceMs)
+    : count_(members), secret_(secret), patienceMs_(patienceMs), rounds_(members, patienceMs * kNsPerMs) {}
 
 BarrierLeader::~BarrierLeader() {
     stop_ = true;
@@ -63,6 +61,7 @@ void BarrierLeader::letIn() {
         const std::lock_guard lock(mutex_);
         if (members_.contains(rank)) continue; // the first connection wins
         Member& member = members_[rank];
+        log::debug(log::Topic::Barrier, memberText(rank), " has connected");
         member.connection = std::move(*shown);
         member.thread = std::thread([this, rank, &c = *member.connection] { follow(rank, c); });
     }
@@ -82,7 +81,7 @@ void BarrierLeader::follow(int rank, Connection& connection) {
         take(rank, decodeReady(bytes), nowNs);
     }
     if (stop_) return;
-    log_(memberText(rank) + " is lost: the others swap without it");
+    log::warning(log::Topic::Barrier, memberText(rank), " is lost: the others swap without it");
     const std::lock_guard lock(mutex_);
     apply(rounds_.gone(rank, monotonicNowNs()));
 }
@@ -108,8 +107,8 @@ int64_t BarrierLeader::worstClockNs(Members members) const {
 void BarrierLeader::apply(const BarrierRounds::Step& step) {
     for (const int rank : step.late) {
         const std::string member = rank == 0 ? "the leader of the swap barrier" : memberText(rank);
-        log_(member + " did not reply for " + std::to_string(patienceMs_) +
-             " ms: the others swap without it until it replies");
+        log::warning(log::Topic::Barrier, member, " did not reply for ", patienceMs_,
+                     " ms: the others swap without it until it replies");
     }
     for (const BarrierRounds::Release& release : step.releases) {
         skew_.released(release.key, release.members.size());
@@ -148,6 +147,18 @@ int64_t BarrierLeader::await(const SwapKey& key) {
 void BarrierLeader::shown(const SwapKey& key, int64_t atNs) {
     const std::lock_guard lock(mutex_);
     skew_.shown(key, atNs);
+    if (log::enabled(log::Topic::Barrier, log::Level::Debug)) reportSkew();
+}
+
+// Requires mutex_.
+void BarrierLeader::reportSkew() {
+    const int64_t nowNs = monotonicNowNs();
+    if (nowNs < reportNs_) return;
+    reportNs_ = nowNs + kReportNs;
+    const SkewNumbers skew = skew_.numbers();
+    log::debug(log::Topic::Barrier, skew.swaps, " swaps, skew ", skew.medianNs / 1000, " us (median), ",
+               skew.p99Ns / 1000, " us (99 %), ", skew.maxNs / 1000, " us at most; clocks known to ",
+               worstClockNs(Members::Waiting) / 1000, " us");
 }
 
 std::optional<SwapBarrierNumbers> BarrierLeader::numbers() const {

@@ -20,7 +20,7 @@ namespace mural {
 
 class BarrierLeader final : public SwapBarrier {
 public:
-    BarrierLeader(int members, const ChannelSecret& secret, Log log, int64_t patienceMs = kPatienceMs);
+    BarrierLeader(int members, const ChannelSecret& secret, int64_t patienceMs = kPatienceMs);
     ~BarrierLeader() override;
 
     // Listens on a free port, port(). loopbackOnly: all members run on this machine.
@@ -41,6 +41,7 @@ private:
     void follow(int rank, Connection& connection);
     void take(int rank, const BarrierReady& ready, int64_t arrivedNs);
     void apply(const BarrierRounds::Step& step); // call with the lock held
+    void reportSkew();
     // Selects members for a measurement. Waiting: those that a round waits for. All: also those that have left, as all
     // have when a run ends.
     enum class Members : uint8_t { Waiting, All };
@@ -48,7 +49,6 @@ private:
 
     const int count_;
     const ChannelSecret secret_;
-    const Log log_;
     const int64_t patienceMs_;
     std::unique_ptr<Listener> listener_;
     uint16_t port_ = 0;
@@ -62,6 +62,7 @@ private:
     std::map<int, Member> members_; // by rank; entries keep their addresses
     bool waiting_ = false;
     int64_t showNs_ = 0;
+    int64_t reportNs_ = 0; // time of the next diagnostic
 };
 
 } // namespace mural

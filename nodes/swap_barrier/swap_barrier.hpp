@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <string>
 
 #include "nodes/swap_barrier/skew_meter.hpp"
 #include "nodes/swap_barrier/swap_key.hpp"
@@ -18,8 +16,6 @@ struct SwapBarrierNumbers {
 
 class SwapBarrier {
 public:
-    using Log = std::function<void(const std::string&)>; // one line for the user; thread-safe
-
     // A member that exceeds this delay is ignored.
     static constexpr int64_t kPatienceMs = 5000;
 

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "common/log/log.hpp"
 #include "streamcodec/snapshot/packet_splitter.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -29,8 +30,9 @@ void StreamSnapshot::append(uint32_t stream, std::span<const std::byte> payload)
     overrun_ = true;
     const size_t logBytes = log_.sizeBytes();
     log_.clear();
-    say_("the snapshot for late nodes has grown to " + std::to_string(logBytes >> 20) +
-         " MiB: no node can join from now on; use a larger --cache-size");
+    // Only a diagnostic: the session reports a lost node to the user.
+    log::debug(log::Topic::Node, "the snapshot for late nodes has grown to ", logBytes >> 20,
+               " MiB: no node can join from now on; use a larger --cache-size");
 }
 
 void StreamSnapshot::event(const ClientEvent& event) {

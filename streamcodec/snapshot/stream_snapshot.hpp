@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,9 +15,8 @@ namespace mural::trace {
 
 class StreamSnapshot {
 public:
-    // boundBytes: memory limit. If the live state exceeds it, logging stops, and `say` reports it once.
-    StreamSnapshot(size_t boundBytes, std::function<void(const std::string&)> say)
-        : boundBytes_(boundBytes), say_(std::move(say)) {}
+    // boundBytes: memory limit. Recording of the live state stops when it exceeds the limit.
+    explicit StreamSnapshot(size_t boundBytes) : boundBytes_(boundBytes) {}
 
     void append(uint32_t stream, std::span<const std::byte> payload); // ignores the head's own stream
     void event(const ClientEvent& event);                             // ClientGone: removes everything of the program
@@ -32,7 +30,6 @@ public:
 
 private:
     const size_t boundBytes_;
-    const std::function<void(const std::string&)> say_;
     LiveCommandLog log_;
     bool overrun_ = false;
 };

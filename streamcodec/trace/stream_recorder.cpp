@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "common/log/log.hpp"
 #include "streamcodec/registry_digest.hpp"
 #include "streamcodec/wire/packet.hpp"
 
@@ -32,6 +33,7 @@ StreamRecorder::~StreamRecorder() {
 
 void StreamRecorder::begin(const About& about) {
     if (const auto begun = writer_->begin(about, wire::kVersion, registryDigest()); !begun) end(begun.error().message);
+    log::debug(log::Topic::Trace, path_, ": the recording begins");
     thread_ = std::thread([this] { work(); });
 }
 
@@ -61,7 +63,8 @@ void StreamRecorder::put(uint32_t stream, std::span<const std::byte> payload) {
 void StreamRecorder::end(const std::string& why) {
     if (ended_.exchange(true)) return;
     const std::string line = why.starts_with("trace ") ? why : "trace " + path_ + ": " + why;
-    config_.say(line + "; the trace ends after " + std::to_string(wholeFrames_) + " frames, the program continues");
+    log::warning(log::Topic::Trace, line, "; the trace ends after ", wholeFrames_.load(),
+                 " frames, the program continues");
 }
 
 void StreamRecorder::work() {
@@ -99,6 +102,7 @@ void StreamRecorder::work() {
     }
     lock.lock();
     totals_ = writer_->totals();
+    log::debug(log::Topic::Trace, path_, ": ", totals_.frames, " frames recorded");
     done_ = true;
     changed_.notify_all();
 }

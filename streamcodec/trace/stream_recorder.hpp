@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,7 +20,6 @@ struct RecorderConfig {
     int64_t patienceMs = 5'000;           // timeout without progress of a full queue; then the recording ends
     int64_t lastFrame = 0;                // wall frame after which nothing is recorded; 0: all frames
     int64_t wholeEveryMs = 1'000;         // older data is in the file even if the head dies
-    std::function<void(const std::string&)> say;
 };
 
 // Call begin() and finish() on one thread; the others may be called from any thread.

@@ -42,7 +42,7 @@ protected:
         std::ofstream(folder_ + "/mural") << kScript;
         ::chmod((folder_ + "/mural").c_str(), 0755);
         secret_[3] = std::byte{9};
-        auto node = NodeDaemon::open({"127.0.0.1:0", secret_, folder_ + "/mural", {}});
+        auto node = NodeDaemon::open({"127.0.0.1:0", secret_, folder_ + "/mural"});
         EXPECT_TRUE(node);
         node_ = std::move(*node);
         thread_ = std::thread([this] { EXPECT_TRUE(node_->serve(stop_.get())); });

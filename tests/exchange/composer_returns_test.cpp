@@ -68,8 +68,7 @@ private:
             if (node.incarnation > 0 && h.kind == kReturned) incarnations[h.rank] = incarnationAt(h);
         }
         FakeRoutes routes(network_, node, incarnations);
-        PictureComposer composer({strategy_, node.rank, ranks, kPartMs, 2 * kPartMs, 1000, ""}, routes,
-                                 [](const std::string&) {});
+        PictureComposer composer({strategy_, node.rank, ranks, kPartMs, 2 * kPartMs, 1000, ""}, routes);
         bool member = node.incarnation == 0;
         for (uint64_t picture = from; picture < pictures_.size(); ++picture) {
             for (const Happening& h : happenings_) {

@@ -7,6 +7,7 @@
 #include "nodes/exchange/picture_composer.hpp"
 #include "tests/exchange/fake_network.hpp"
 #include "tests/exchange/test_scenes.hpp"
+#include "tests/recorded_log.hpp"
 
 namespace mural::test {
 namespace {
@@ -25,7 +26,7 @@ Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant 
                 int64_t partMs = 20'000) {
     FakeNetwork network;
     Outcome outcome;
-    std::mutex mutex;
+    const RecordedLog log;
     std::vector<std::thread> nodes;
     const int ranks = static_cast<int>(scene.parts.size());
     if (lost >= 0 && partMs == 20'000) network.lose({lost, 0});
@@ -33,17 +34,14 @@ Outcome compose(const Scene& scene, Strategy strategy, const std::string& plant 
         if (rank == lost) continue;
         nodes.emplace_back([&, rank] {
             FakeRoutes routes(network, {rank, 0});
-            PictureComposer composer({strategy, rank, ranks, partMs, 60'000, 200, plant}, routes,
-                                     [&](const std::string& line) {
-                                         const std::lock_guard lock(mutex);
-                                         outcome.lines.push_back(line);
-                                     });
+            PictureComposer composer({strategy, rank, ranks, partMs, 60'000, 200, plant}, routes);
             PicturePart part = scene.parts[static_cast<size_t>(rank)];
             composer.compose(part, scene.rule);
             if (rank == 0) outcome.picture = std::move(part);
         });
     }
     for (std::thread& node : nodes) node.join();
+    outcome.lines = log.texts();
     return outcome;
 }
 
@@ -71,12 +69,12 @@ TEST(PictureComposer, composesConsecutivePictures) {
             for (PicturePart& part : scenes.back().parts) part.id.serial = static_cast<uint64_t>(i);
         }
         std::vector<std::thread> nodes;
+        const RecordedLog log;
         std::atomic<int> wrong{0};
         for (int rank = 0; rank < 5; ++rank)
             nodes.emplace_back([&, rank] {
                 FakeRoutes routes(network, {rank, 0});
-                PictureComposer composer({strategy, rank, 5, 20'000, 60'000, 5'000, ""}, routes,
-                                         [&](const std::string&) { ++wrong; });
+                PictureComposer composer({strategy, rank, 5, 20'000, 60'000, 5'000, ""}, routes);
                 for (const Scene& scene : scenes) {
                     PicturePart part = scene.parts[static_cast<size_t>(rank)];
                     composer.compose(part, scene.rule);
@@ -85,6 +83,7 @@ TEST(PictureComposer, composesConsecutivePictures) {
             });
         for (std::thread& node : nodes) node.join();
         EXPECT_EQ(wrong, 0) << nameOf(strategy);
+        EXPECT_EQ(log.text(), "") << nameOf(strategy);
     }
 }
 
@@ -127,8 +126,7 @@ PicturePart thirdPicture(const Scene& scene, Strategy strategy, int lost, std::p
         if (rank == lost) continue;
         nodes.emplace_back([&, rank] {
             FakeRoutes routes(network, {rank, 0});
-            PictureComposer composer({strategy, rank, ranks, 20'000, 60'000, 5'000, ""}, routes,
-                                     [](const std::string&) {});
+            PictureComposer composer({strategy, rank, ranks, 20'000, 60'000, 5'000, ""}, routes);
             for (uint64_t serial = 1; serial <= 3; ++serial) {
                 PicturePart part = scene.parts[static_cast<size_t>(rank)];
                 part.id.serial = serial;

@@ -10,6 +10,7 @@
 #include "nodes/frame_transfer/picture_unpacker.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
 #include "streamcodec/wire/node_messages.hpp"
+#include "tests/recorded_log.hpp"
 
 namespace mural {
 namespace {
@@ -89,16 +90,11 @@ class PictureSenderTest : public ::testing::Test {
 protected:
     void start(PictureSenderConfig config = {}) {
         sender_ = std::make_unique<PictureSender>(
-            std::move(config),
-            [this](NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+            std::move(config), [this](NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
                 Sent one{type, {a.begin(), a.end()}, std::this_thread::get_id()};
                 one.bytes.insert(one.bytes.end(), b.begin(), b.end());
                 const std::lock_guard lock(mutex_);
                 sent_.push_back(std::move(one));
-            },
-            [this](const std::string& text) {
-                const std::lock_guard lock(mutex_);
-                log_ += text + "\n";
             });
     }
     bool frame(uint32_t number, Gate* gate = nullptr, uint32_t window = 1, bool lost = false) {
@@ -123,7 +119,7 @@ protected:
 
     std::mutex mutex_;
     std::vector<Sent> sent_;
-    std::string log_;
+    RecordedLog log_;
     Gate gate_; // pictures wait here; the sender exists until all have passed
     std::unique_ptr<PictureSender> sender_;
 };
@@ -201,8 +197,8 @@ TEST_F(PictureSenderTest, sendsNothingAfterAFailedSend) {
     EXPECT_FALSE(frame(4)); // fails immediately, without another wait
     EXPECT_FALSE(enqueue(1));
     EXPECT_FALSE(sender_->finish());
-    EXPECT_EQ(std::ranges::count(log_, '\n'), 1) << log_;
-    EXPECT_NE(log_.find("no picture could be sent"), std::string::npos) << log_;
+    ASSERT_EQ(log_.texts().size(), 1u) << log_.text();
+    EXPECT_NE(log_.text().find("no picture could be sent"), std::string::npos) << log_.text();
     gate_.open();
 }
 
@@ -231,8 +227,8 @@ TEST_F(PictureSenderTest, sendsALostPictureAsBlackAndReportsItOnce) {
     const std::vector<std::byte> black(size_t{kWidth} * kHeight * 4);
     ASSERT_EQ(sent_[0].bytes.size(), sizeof(wire::PictureHeader) + black.size());
     EXPECT_EQ(std::memcmp(sent_[0].bytes.data() + sizeof(wire::PictureHeader), black.data(), black.size()), 0);
-    EXPECT_EQ(std::ranges::count(log_, '\n'), 1) << log_;
-    EXPECT_NE(log_.find("the card has gone"), std::string::npos) << log_;
+    ASSERT_EQ(log_.texts().size(), 1u) << log_.text();
+    EXPECT_NE(log_.text().find("the card has gone"), std::string::npos) << log_.text();
 }
 
 // Closed windows are forgotten in message order: the receiver does so at the message that follows.

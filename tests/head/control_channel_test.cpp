@@ -7,6 +7,9 @@
 #include <sys/socket.h>
 #include <thread>
 
+#include "common/log/log.hpp"
+#include "nodes/head/session/log_to_control.hpp"
+
 namespace mural {
 namespace {
 
@@ -58,6 +61,29 @@ TEST(ControlChannel, writesJsonForInvalidText) {
     const std::string line(bytes, static_cast<size_t>(n));
     EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1);
     EXPECT_TRUE(nlohmann::json::parse(line)["text"].is_string());
+}
+
+// Lines for the user arrive once, in order, between the head's other events; disabled lines and diagnostics do not.
+TEST(LogToControl, sendsLinesForTheUser) {
+    Ends ends;
+    const log::Levels before = log::currentLevels();
+    log::setLevels(log::parseLevels("output:warning").value());
+    {
+        const LogToControl lines(*ends.head);
+        log::warning(log::Topic::Node, "node ", 1, " was lost");
+        ends.head->send({{"event", "frame"}});
+        log::info(log::Topic::Output, "disabled");
+        log::debug(log::Topic::Node, "a diagnostic");
+        log::info(log::Topic::Node, "node ", 1, " is back");
+    }
+    log::setLevels(before);
+    ends.head.reset();
+    std::string all;
+    char bytes[4096];
+    for (ssize_t n = 0; (n = recv(ends.mine.get(), bytes, sizeof(bytes), 0)) > 0;)
+        all.append(bytes, static_cast<size_t>(n));
+    EXPECT_EQ(all, "{\"event\":\"say\",\"text\":\"node 1 was lost\"}\n{\"event\":\"frame\"}\n"
+                   "{\"event\":\"say\",\"text\":\"node 1 is back\"}\n");
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "nodes/head/frames/native_windows.hpp"
+#include "tests/recorded_log.hpp"
 
 namespace mural {
 namespace {
@@ -21,7 +22,6 @@ struct World {
     std::vector<std::pair<uint64_t, int64_t>> shown;   // window, frame
     std::multiset<std::pair<uint32_t, uint32_t>> done; // client, frame
     std::set<uint32_t> blocked;
-    int messages = 0;
 
     template <class Condition> bool wait(Condition condition) {
         std::unique_lock lock(mutex);
@@ -76,7 +76,6 @@ protected:
                           : static_cast<void>(world_.blocked.erase(client));
             });
         };
-        config.say = [this](const std::string&) { world_.change([&] { ++world_.messages; }); };
         return config;
     }
 
@@ -86,6 +85,7 @@ protected:
         windows_.show({client, 1, frame, client * 100, picture, {}});
     }
 
+    RecordedLog log_;
     World world_;
     NativeWindows windows_{config()};
 };
@@ -102,7 +102,7 @@ TEST_F(NativeWindowsTest, delaysOnlyTheProgramOfTheStoppedServer) {
     ASSERT_TRUE(world_.wait([&] { return world_.done.contains({1, 9}) && world_.blocked.empty(); }));
     EXPECT_EQ(world_.done.size(), 18u); // each once
     EXPECT_EQ(world_.shown.back(), (std::pair<uint64_t, int64_t>{100, 9}));
-    EXPECT_EQ(world_.messages, 1);
+    EXPECT_EQ(log_.texts().size(), 1u) << log_.text();
 }
 
 TEST_F(NativeWindowsTest, paintsNothingOverTheProgramsOwnOutput) {

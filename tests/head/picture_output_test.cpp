@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nodes/head/frames/picture_output.hpp"
+#include "tests/recorded_log.hpp"
 
 namespace mural {
 namespace {
@@ -69,7 +70,7 @@ TEST(PictureOutput, givesEachCanvasItsEyes) {
             canvas.file = std::make_shared<RecordingSink>(otherFile);
             canvas.openWall = wallInto(otherWall);
             config.done = [](uint32_t, uint32_t) {};
-            config.say = [](const std::string& text) { ADD_FAILURE() << text; };
+            const RecordedLog log;
             PictureOutput output(std::move(config), std::make_unique<RecordingSink>(file));
             output.add(
                 {1, 1, 1, 0, firstIsPair ? pairOfEyes() : filled(kLeft), {otherIsPair ? pairOfEyes() : filled(kLeft)}});
@@ -85,6 +86,7 @@ TEST(PictureOutput, givesEachCanvasItsEyes) {
             expectOne(wall, firstIsPair, "wall");
             expectOne(otherFile, otherIsPair, "file of the other canvas");
             expectOne(otherWall, otherIsPair, "wall of the other canvas");
+            EXPECT_EQ(log.text(), "");
         }
 }
 
@@ -103,14 +105,13 @@ TEST(PictureOutput, reducesDeepPicturesForSinksWithoutDepth) {
     };
     std::vector<Shown> file;
     std::vector<PictureFormat> window;
-    std::string messages;
+    const RecordedLog log;
     PictureOutputConfig config;
     config.toNativeWindows = true;
     config.openWindow = [&](const WindowPicture&) {
         return Result<std::unique_ptr<PictureSink>>(std::make_unique<DeepSink>(window));
     };
     config.done = [](uint32_t, uint32_t) {};
-    config.say = [&](const std::string& text) { messages += text; };
     PictureOutput output(std::move(config), std::make_unique<RecordingSink>(file));
     auto deep = std::make_shared<OwnedPicture>();
     deep->resize(kWidth, kHeight, PictureFormat::Bgr10A2);
@@ -121,23 +122,22 @@ TEST(PictureOutput, reducesDeepPicturesForSinksWithoutDepth) {
     ASSERT_EQ(file.size(), 2u);
     EXPECT_EQ(file[0].left, std::byte{201});
     EXPECT_EQ(window, (std::vector{PictureFormat::Bgr10A2, PictureFormat::Bgr10A2}));
-    EXPECT_EQ(messages, "the program's window has 10 bits per channel; --out saves 8 of them");
+    EXPECT_EQ(log.text(), "the program's window has 10 bits per channel; --out saves 8 of them\n");
 }
 
 TEST(PictureOutput, savesOnlyACompleteVideo) {
     for (const bool complete : {true, false}) {
         std::vector<Shown> file;
-        std::string messages;
+        const RecordedLog log;
         PictureOutputConfig config;
         config.done = [](uint32_t, uint32_t) {};
-        config.say = [&](const std::string& text) { messages += text; };
         PictureOutput output(std::move(config), std::make_unique<RecordingSink>(
                                                     file, complete ? Result<void>() : Error{"the disk is full"}));
         for (uint32_t frame = 1; frame <= 3; ++frame) output.add({1, 1, frame, 0, filled(kLeft), {}});
         ASSERT_TRUE(output.finish(Deadline::inMs(10'000)));
         EXPECT_EQ(file.size(), 3u);
         EXPECT_EQ(output.totals().savedPictures, complete ? 3 : 0);
-        EXPECT_EQ(messages, complete ? "" : "the disk is full");
+        EXPECT_EQ(log.text(), complete ? "" : "the disk is full\n");
     }
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/recorded_log.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/output/test_pictures.hpp"
 
@@ -76,8 +77,7 @@ INSTANTIATE_TEST_SUITE_P(All, VideoFormats, testing::Values("mp4", "mkv", "avi",
 TEST(VideoFile, startsANumberedFileForANewSize) {
     const TemporaryFolder folder;
     VideoConfig config = configFor(folder.at("run.mkv"));
-    std::vector<std::string> messages;
-    config.say = [&](const std::string& line) { messages.push_back(line); };
+    const RecordedLog log;
     auto video = VideoFile::open(std::move(config));
     ASSERT_TRUE(video) << video.error().message;
     const OwnedPicture small = noisePicture(32, 16, 1);
@@ -92,6 +92,7 @@ TEST(VideoFile, startsANumberedFileForANewSize) {
     ASSERT_EQ(second.size(), 2U);
     EXPECT_TRUE(samePictures(small.view(), first[0].view()));
     EXPECT_TRUE(samePictures(large.view(), second[1].view()));
+    const std::vector<std::string> messages = log.texts();
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_NE(messages[0].find("32x16 to 40x20 at frame 2"), std::string::npos) << messages[0];
     EXPECT_NE(messages[0].find("run-2.mkv"), std::string::npos) << messages[0];

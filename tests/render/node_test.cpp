@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "common/log/log.hpp"
+#include "common/log/process_log.hpp"
 #include "nodes/session/session_config.hpp"
 #include "nodes/session/stream_build.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -37,6 +39,19 @@ protected:
         if (node_.joinable()) node_.join();
     }
 
+    // Returns after the node has applied its setup and drawn nothing yet.
+    void awaitReady() {
+        wire::MessageHeader header{};
+        while (head_->read(std::as_writable_bytes(std::span(&header, 1)), Deadline::inMs(kAnswerMs))) {
+            std::vector<std::byte> bytes(header.sizeBytes);
+            if (!bytes.empty()) {
+                ASSERT_TRUE(head_->read(bytes, Deadline::inMs(kAnswerMs)));
+            }
+            if (header.type == static_cast<uint32_t>(wire::NodeMessage::Ready)) return;
+        }
+        FAIL() << "the node is not ready";
+    }
+
     void sendSetup(const NodeSetup& setup) {
         const std::string json = toJson(setup);
         const auto command = static_cast<uint32_t>(wire::HeadCommand::Setup);
@@ -54,7 +69,8 @@ protected:
             std::string text(header.sizeBytes, ' ');
             if (!text.empty() && !head_->read(std::as_writable_bytes(std::span(text)), Deadline::inMs(kAnswerMs)))
                 break;
-            if (header.type == static_cast<uint32_t>(wire::NodeMessage::Alive) ||
+            if (header.type == static_cast<uint32_t>(wire::NodeMessage::Goodbye) ||
+                header.type == static_cast<uint32_t>(wire::NodeMessage::Alive) ||
                 header.type == static_cast<uint32_t>(wire::NodeMessage::Ready))
                 continue;
             EXPECT_EQ(header.type, static_cast<uint32_t>(type)) << text;
@@ -114,6 +130,37 @@ TEST_F(NodeTest, endsWithOneLineAfterADamagedBatch) {
     EXPECT_NE(lines[0].find("a batch"), std::string::npos) << lines[0];
     EXPECT_NE(lines[0].find("install the same version of mural on all machines"), std::string::npos) << lines[0];
     EXPECT_EQ(status(), 1);
+}
+
+// Lines for the user go to the head while the node runs, and to its standard error otherwise. Diagnostics never go to
+// the head.
+TEST_F(NodeTest, sendsLogLinesForTheUserToTheHead) {
+    const log::Levels before = log::currentLevels();
+    NodeSetup setup;
+    setup.build = streamBuild();
+    setup.placeThreads = false;
+    setup.glBackend = "osmesa";
+    setup.log = "picture:error,exchange:debug";
+    sendSetup(setup);
+    awaitReady();
+    EXPECT_TRUE(log::enabled(log::Topic::Exchange, log::Level::Debug));
+    log::warning(log::Topic::Replay, "first of node ", 0);
+    log::warning(log::Topic::Picture, "disabled");
+    testing::internal::CaptureStderr();
+    log::debug(log::Topic::Exchange, "a diagnostic");
+    EXPECT_NE(testing::internal::GetCapturedStderr().find(" exchange debug: a diagnostic\n"), std::string::npos);
+    log::info(log::Topic::Output, "second");
+    const auto finish = static_cast<uint32_t>(wire::HeadCommand::Finish);
+    const wire::PacketHeader header{4, wire::streamOf(0, 0)};
+    ASSERT_TRUE(head_->write(std::as_bytes(std::span(&header, 1)), Deadline::inMs(kAnswerMs)));
+    ASSERT_TRUE(head_->write(std::as_bytes(std::span(&finish, 1)), Deadline::inMs(kAnswerMs)));
+    head_->flush();
+    EXPECT_EQ(texts(wire::NodeMessage::Log), (std::vector<std::string>{"first of node 0", "second"}));
+    EXPECT_EQ(status(), 0);
+    testing::internal::CaptureStderr();
+    log::info(log::Topic::Output, "the node has ended");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "mural: the node has ended\n");
+    log::setLevels(before);
 }
 
 TEST_F(NodeTest, endsWithItsHead) {

@@ -37,7 +37,6 @@ protected:
         config.isResyncing = isResyncing;
         ReplayOutputs out;
         out.frameDone = [this](const ReplayOutputs::Frame& f) { frame_ = f; };
-        out.log = [](const std::string&) {};
         out.answer = [this](const wire::ReplyPartHeader& h, std::span<const std::byte>) { answer_ = h; };
         fuzz::FakeGlOptions options;
         options.drew = [this](bool scissored, const std::array<int, 4>& box) {

@@ -16,6 +16,7 @@
 #include "streamcodec/wire/replies.hpp"
 #include "tests/fuzz/fake_gl.hpp"
 #include "tests/interposer/encoder_harness.hpp"
+#include "tests/recorded_log.hpp"
 
 namespace mural {
 namespace {
@@ -36,7 +37,6 @@ protected:
             frame_ = f;
             pictureBytes_ = f.pixels ? static_cast<int64_t>(f.pixels(f.region) != nullptr) * f.region.area() * 4 : -1;
         };
-        out.log = [this](const std::string& line) { log_ += line + "\n"; };
         out.driverEvent = [this](const wire::DriverEvent& n, const std::string& text) {
             EXPECT_EQ(n.client, 1u);
             EXPECT_EQ(n.context, 1u);
@@ -77,7 +77,7 @@ protected:
     int64_t pictureBytes_ = 0;
     size_t answerBytes_ = 0;
     int answers_ = 0;
-    std::string log_;
+    RecordedLog log_;
     std::vector<wire::DriverEvent> driverEvents_;
     std::string messageText_;
 };
@@ -146,7 +146,7 @@ TEST_F(ReplayTest, endsThePacketAtABrokenHeader) {
 TEST_F(ReplayTest, rejectsShortArgumentsWithTheCommandsName) {
     begin();
     EXPECT_FALSE(sendWords({head(op::glVertex3f, 3), 0, 0}));
-    EXPECT_NE(log_.find("glVertex3f"), std::string::npos) << log_;
+    EXPECT_NE(log_.text().find("glVertex3f"), std::string::npos) << log_.text();
     EXPECT_EQ(replay_->counts().malformed, 1u);
     EXPECT_TRUE(sendWords({head(op::glVertex3f, 4), 0, 0, 0}));
 }
@@ -270,7 +270,7 @@ TEST_F(ReplayTest, showsAWindowThatIsNotCurrent) {
     EXPECT_TRUE(send());
     EXPECT_EQ(frame_.window, 1u);
     EXPECT_EQ(pictureBytes_, 64 * 32 * 4);
-    EXPECT_EQ(log_, "");
+    EXPECT_EQ(log_.text(), "");
 }
 
 // The context that drew may be destroyed, and the swap may come from a thread that never had one.
@@ -414,7 +414,7 @@ TEST_F(ReplayTest, reportsALostContextOnce) {
     ASSERT_EQ(driverEvents_.size(), 1u);
     EXPECT_EQ(driverEvents_[0].kind, static_cast<uint32_t>(wire::DriverEventKind::ContextLost));
     EXPECT_EQ(driverEvents_[0].type, GLenum{GL_GUILTY_CONTEXT_RESET});
-    EXPECT_NE(log_.find("lost"), std::string::npos);
+    EXPECT_NE(log_.text().find("lost"), std::string::npos);
 }
 
 TEST_F(ReplayTest, reportsDriverMessagesWithDebugOutput) {
@@ -518,12 +518,12 @@ TEST_F(HandlesTest, reportsUnmappedMemoryInOneLine) {
     other.next = 7;
     encode_glGetTextureHandleARB(t_, 1, 7);
     EXPECT_TRUE(send());
-    EXPECT_EQ(log_, "");
+    EXPECT_EQ(log_.text(), "");
     encode_glGetTextureHandleARB(t_, 2, 9);
     encode_glGetTextureHandleARB(t_, 3, 10);
     EXPECT_TRUE(send());
-    EXPECT_EQ(std::count(log_.begin(), log_.end(), '\n'), 1) << log_;
-    EXPECT_NE(log_.find("0x8 for 0x9"), std::string::npos) << log_;
+    EXPECT_EQ(log_.texts().size(), 1u) << log_.text();
+    EXPECT_NE(log_.text().find("0x8 for 0x9"), std::string::npos) << log_.text();
 }
 
 TEST_F(HandlesTest, makesNoUnknownHandleResident) {
@@ -596,7 +596,7 @@ TEST_F(PagesTest, extendsCommitmentsToPagesAndReleasesNone) {
     commit(80, 0, 16, 16, GL_TRUE);
     commit(32, 96, 32, 32, GL_FALSE);
     EXPECT_EQ(pages.commits, (std::vector<std::array<GLint, 7>>{{0, 64, 2, 64, 64, 1, 1}, {64, 0, 2, 36, 64, 1, 1}}));
-    EXPECT_EQ(log_, "");
+    EXPECT_EQ(log_.text(), "");
 }
 
 TEST_F(PagesTest, reportsMissingPagesInOneLine) {
@@ -604,7 +604,7 @@ TEST_F(PagesTest, reportsMissingPagesInOneLine) {
     commit(32, 96, 32, 32, GL_TRUE);
     commit(32, 96, 32, 32, GL_TRUE);
     EXPECT_TRUE(pages.commits.empty());
-    EXPECT_EQ(std::count(log_.begin(), log_.end(), '\n'), 1) << log_;
+    EXPECT_EQ(log_.texts().size(), 1u) << log_.text();
 }
 
 TEST_F(PagesTest, supportsBuffers) {

@@ -14,6 +14,7 @@
 #include "streamcodec/wire/packet.hpp"
 #include "streamcodec/wire/replies.hpp"
 #include "tests/interposer/encoder_harness.hpp"
+#include "tests/recorded_log.hpp"
 
 namespace mural {
 namespace {
@@ -43,7 +44,6 @@ protected:
                 shown_.push_back({static_cast<uint8_t>(pixels[i * 4 + 2]), static_cast<uint8_t>(pixels[i * 4 + 1]),
                                   static_cast<uint8_t>(pixels[i * 4])});
         };
-        out.log = [this](const std::string& line) { log_ += line + "\n"; };
         replay_ = std::make_unique<Replay>(std::move(*platform), config, out);
         wire::WindowConfig c{};
         c.width = kWidth;
@@ -98,7 +98,7 @@ protected:
     std::unique_ptr<Replay> replay_;
     std::vector<Pixel> shown_;
     std::vector<std::byte> answered_;
-    std::string log_;
+    RecordedLog log_;
     uint32_t frame_ = 0;
 };
 
@@ -168,7 +168,7 @@ TEST_F(StereoWindows, keepTheProgramsOwnView) {
 TEST_F(StereoWindows, reportTheShownEyeInMonoSessions) {
     start(Eye::Cyclop);
     send();
-    EXPECT_NE(log_.find("--stereo"), std::string::npos) << log_;
+    EXPECT_NE(log_.text().find("--stereo"), std::string::npos) << log_.text();
 }
 
 } // namespace

@@ -29,7 +29,6 @@ protected:
         config.rastersInBins = rastersInBins;
         ReplayOutputs out;
         out.frameDone = [this](const ReplayOutputs::Frame& f) { shown_ = f.region; };
-        out.log = [](const std::string&) {};
         out.answer = [](const wire::ReplyPartHeader&, std::span<const std::byte>) {};
         fuzz::FakeGlOptions options;
         options.drew = [this](bool scissored, const std::array<int, 4>& box) {

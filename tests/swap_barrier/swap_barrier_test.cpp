@@ -4,11 +4,11 @@
 #include <atomic>
 #include <gtest/gtest.h>
 #include <latch>
-#include <mutex>
 #include <thread>
 
 #include "nodes/swap_barrier/barrier_follower.hpp"
 #include "nodes/swap_barrier/barrier_leader.hpp"
+#include "tests/recorded_log.hpp"
 
 namespace mural {
 namespace {
@@ -19,27 +19,8 @@ ChannelSecret secretOf(int number) {
     return secret;
 }
 
-class Lines {
-public:
-    SwapBarrier::Log log() {
-        return [this](const std::string& line) {
-            const std::lock_guard lock(mutex_);
-            lines_.push_back(line);
-        };
-    }
-    [[nodiscard]] std::vector<std::string> all() const {
-        const std::lock_guard lock(mutex_);
-        return lines_;
-    }
-
-private:
-    mutable std::mutex mutex_;
-    std::vector<std::string> lines_;
-};
-
-std::unique_ptr<SwapBarrier> followerOf(const BarrierLeader& leader, int rank, Lines& lines) {
-    auto follower =
-        BarrierFollower::connect(rank, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(5000), lines.log());
+std::unique_ptr<SwapBarrier> followerOf(const BarrierLeader& leader, int rank) {
+    auto follower = BarrierFollower::connect(rank, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(5000));
     EXPECT_TRUE(follower.ok()) << (follower ? "" : follower.error().message);
     return follower ? std::move(*follower) : nullptr;
 }
@@ -47,11 +28,11 @@ std::unique_ptr<SwapBarrier> followerOf(const BarrierLeader& leader, int rank, L
 TEST(SwapBarrier, showsAFrameOnAllMembersTogether) {
     constexpr int kMembers = 4;
     constexpr uint32_t kFrames = 50;
-    Lines lines;
-    BarrierLeader leader(kMembers, secretOf(1), lines.log());
+    const RecordedLog lines;
+    BarrierLeader leader(kMembers, secretOf(1));
     ASSERT_TRUE(leader.listen(true).ok());
     std::vector<std::unique_ptr<SwapBarrier>> followers;
-    for (int rank = 1; rank < kMembers; ++rank) followers.push_back(followerOf(leader, rank, lines));
+    for (int rank = 1; rank < kMembers; ++rank) followers.push_back(followerOf(leader, rank));
     std::vector<std::atomic<int>> drawn(kFrames + 1);
     std::atomic<int> early{0};
     const auto run = [&](SwapBarrier& barrier, int rank) {
@@ -72,7 +53,7 @@ TEST(SwapBarrier, showsAFrameOnAllMembersTogether) {
     run(leader, 0);
     for (auto& thread : threads) thread.join();
     EXPECT_EQ(early, 0);
-    EXPECT_TRUE(lines.all().empty());
+    EXPECT_TRUE(lines.texts().empty());
     const SwapBarrierNumbers n = *leader.numbers();
     EXPECT_EQ(n.skew.swaps, kFrames - 1); // the last swap would be reported with the next one
     EXPECT_GT(n.clockErrorNs, 0);
@@ -82,10 +63,10 @@ TEST(SwapBarrier, showsAFrameOnAllMembersTogether) {
 
 // At the end of a run members leave one by one, and the leader's numbers are read when it ends itself.
 TEST(SwapBarrier, keepsClocksOfMembersThatLeft) {
-    Lines lines;
-    BarrierLeader leader(2, secretOf(1), lines.log());
+    const RecordedLog lines;
+    BarrierLeader leader(2, secretOf(1));
     ASSERT_TRUE(leader.listen(true).ok());
-    auto follower = followerOf(leader, 1, lines);
+    auto follower = followerOf(leader, 1);
     std::thread other([&] {
         for (uint32_t f = 1; f <= 3; ++f) (void)follower->await({1, 1, f});
         follower.reset();
@@ -97,11 +78,11 @@ TEST(SwapBarrier, keepsClocksOfMembersThatLeft) {
 }
 
 TEST(SwapBarrier, reportsALostMemberAndContinues) {
-    Lines lines;
-    BarrierLeader leader(3, secretOf(1), lines.log());
+    const RecordedLog lines;
+    BarrierLeader leader(3, secretOf(1));
     ASSERT_TRUE(leader.listen(true).ok());
-    auto one = followerOf(leader, 1, lines);
-    auto two = followerOf(leader, 2, lines);
+    auto one = followerOf(leader, 1);
+    auto two = followerOf(leader, 2);
     std::thread other([&] { (void)one->await({1, 1, 1}); });
     std::thread dies([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -111,27 +92,27 @@ TEST(SwapBarrier, reportsALostMemberAndContinues) {
     (void)leader.await({1, 1, 1});
     EXPECT_LT(monotonicNowNs() - beganNs, 2 * kNsPerS); // far below the timeout
     other.join(), dies.join();
-    ASSERT_EQ(lines.all().size(), 1U);
-    EXPECT_NE(lines.all()[0].find("member 3"), std::string::npos) << lines.all()[0];
+    ASSERT_EQ(lines.texts().size(), 1U);
+    EXPECT_NE(lines.texts()[0].find("member 3"), std::string::npos) << lines.texts()[0];
 }
 
 TEST(SwapBarrier, waitsOnceForAMemberThatNeverArrives) {
-    Lines lines;
-    BarrierLeader leader(2, secretOf(1), lines.log(), 300);
+    const RecordedLog lines;
+    BarrierLeader leader(2, secretOf(1), 300);
     ASSERT_TRUE(leader.listen(true).ok());
     (void)leader.await({1, 1, 1});
     const int64_t beganNs = monotonicNowNs();
     for (uint32_t f = 2; f < 100; ++f) (void)leader.await({1, 1, f});
     EXPECT_LT(monotonicNowNs() - beganNs, kNsPerS);
-    ASSERT_EQ(lines.all().size(), 1U);
-    EXPECT_NE(lines.all()[0].find("300 ms"), std::string::npos) << lines.all()[0];
+    ASSERT_EQ(lines.texts().size(), 1U);
+    EXPECT_NE(lines.texts()[0].find("300 ms"), std::string::npos) << lines.texts()[0];
 }
 
 TEST(SwapBarrier, letsAFollowerShowFramesWithoutItsLeader) {
-    Lines lines;
-    auto leader = std::make_unique<BarrierLeader>(2, secretOf(1), lines.log());
+    const RecordedLog lines;
+    auto leader = std::make_unique<BarrierLeader>(2, secretOf(1));
     ASSERT_TRUE(leader->listen(true).ok());
-    auto follower = followerOf(*leader, 1, lines);
+    auto follower = followerOf(*leader, 1);
     std::thread ends([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         leader.reset();
@@ -139,19 +120,17 @@ TEST(SwapBarrier, letsAFollowerShowFramesWithoutItsLeader) {
     EXPECT_EQ(follower->await({1, 1, 1}), 0);
     ends.join();
     for (uint32_t f = 2; f < 1000; ++f) EXPECT_EQ(follower->await({1, 1, f}), 0);
-    ASSERT_EQ(lines.all().size(), 1U);
-    EXPECT_NE(lines.all()[0].find("leader is lost"), std::string::npos) << lines.all()[0];
+    ASSERT_EQ(lines.texts().size(), 1U);
+    EXPECT_NE(lines.texts()[0].find("leader is lost"), std::string::npos) << lines.texts()[0];
 }
 
 TEST(SwapBarrier, rejectsForeignConnections) {
-    Lines lines;
-    BarrierLeader leader(2, secretOf(1), lines.log());
+    const RecordedLog lines;
+    BarrierLeader leader(2, secretOf(1));
     ASSERT_TRUE(leader.listen(true).ok());
-    EXPECT_FALSE(
-        BarrierFollower::connect(1, secretOf(2), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
+    EXPECT_FALSE(BarrierFollower::connect(1, secretOf(2), "127.0.0.1", leader.port(), Deadline::inMs(3000)).ok());
     // an invalid rank
-    EXPECT_FALSE(
-        BarrierFollower::connect(2, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(3000), lines.log()).ok());
+    EXPECT_FALSE(BarrierFollower::connect(2, secretOf(1), "127.0.0.1", leader.port(), Deadline::inMs(3000)).ok());
 }
 
 } // namespace

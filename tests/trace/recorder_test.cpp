@@ -4,6 +4,7 @@
 
 #include "streamcodec/trace/stream_recorder.hpp"
 #include "streamcodec/wire/packet.hpp"
+#include "tests/recorded_log.hpp"
 #include "tests/trace/recorded.hpp"
 
 namespace mural::trace {
@@ -18,14 +19,13 @@ protected:
     ~Recorder() override { std::filesystem::remove(path_); }
 
     std::unique_ptr<StreamRecorder> recorder(RecorderConfig config = {}, const std::string& path = "") {
-        config.say = [this](const std::string& line) { messages_.push_back(line); };
         auto made = StreamRecorder::create(path.empty() ? path_ : path, std::move(config));
         EXPECT_TRUE(made);
         return made ? std::move(*made) : nullptr;
     }
 
     const std::string path_;
-    std::vector<std::string> messages_;
+    const RecordedLog log_;
 };
 
 TEST_F(Recorder, keepsOrderWithASmallQueue) {
@@ -49,7 +49,7 @@ TEST_F(Recorder, keepsOrderWithASmallQueue) {
         ASSERT_EQ(entries[i].stream, wire::streamOf(1, i % 3));
         ASSERT_GE(entries[i].timeNs, entries[i - 1].timeNs);
     }
-    EXPECT_TRUE(messages_.empty());
+    EXPECT_TRUE(log_.texts().empty());
 }
 
 TEST_F(Recorder, endsWithTheLastFrame) {
@@ -71,8 +71,8 @@ TEST_F(Recorder, stopsWithOneLineOnAFullDisk) {
     for (uint32_t i = 1; i <= 100; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
     r->finish(Deadline::inMs(20'000));
     r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, 101).bytes());
-    ASSERT_EQ(messages_.size(), 1u);
-    EXPECT_EQ(messages_[0],
+    ASSERT_EQ(log_.texts().size(), 1u);
+    EXPECT_EQ(log_.texts()[0],
               "trace /dev/full: cannot be written: No space left on device; free space, or choose another "
               "place; the trace ends after 0 frames, the program continues");
 }
@@ -83,8 +83,8 @@ TEST_F(Recorder, stopsWithOneLineOnABlockedDisk) {
     config.patienceMs = 50;
     auto r = recorder(config); // not started: nothing is written
     for (uint32_t i = 1; i <= 1000; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
-    ASSERT_EQ(messages_.size(), 1u);
-    EXPECT_NE(messages_[0].find("nothing was written for"), std::string::npos) << messages_[0];
+    ASSERT_EQ(log_.texts().size(), 1u);
+    EXPECT_NE(log_.texts()[0].find("nothing was written for"), std::string::npos) << log_.texts()[0];
 }
 
 TEST_F(Recorder, preservesDataOlderThanASecondWhenTheHeadIsKilled) {

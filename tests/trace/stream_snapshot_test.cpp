@@ -5,6 +5,7 @@
 #include "streamcodec/snapshot/stream_snapshot.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
+#include "tests/recorded_log.hpp"
 #include "tests/trace/recorded.hpp"
 
 #include <GL/gl.h>
@@ -42,8 +43,8 @@ protected:
                  .swap(1, ++frame_));
     }
 
-    std::vector<std::string> messages_;
-    StreamSnapshot stream_{size_t{1} << 20, [this](const std::string& line) { messages_.push_back(line); }};
+    const RecordedLog log_{"node:debug"};
+    StreamSnapshot stream_{size_t{1} << 20};
     uint32_t frame_ = 0;
 };
 
@@ -52,7 +53,7 @@ TEST_F(StreamSnapshotTest, staysAsLargeAsOneFrame) {
     EXPECT_EQ(left(op::glDrawArrays), 1u);
     EXPECT_EQ(left(op::glClear), 1u);
     EXPECT_EQ(left(wire::kOpSwap), 1u);
-    EXPECT_TRUE(messages_.empty());
+    EXPECT_TRUE(log_.texts().empty());
 }
 
 TEST_F(StreamSnapshotTest, dropsSwaps) {
@@ -164,8 +165,8 @@ TEST_F(StreamSnapshotTest, reportsOnceThatItIsTooLarge) {
     // without clears
     for (uint32_t i = 0; i < 40'000; ++i) give(PacketBuilder().record(op::glDrawArrays, {GL_TRIANGLES, i, 3}));
     EXPECT_FALSE(stream_.serves());
-    ASSERT_EQ(messages_.size(), 1u);
-    EXPECT_NE(messages_[0].find("use a larger --cache-size"), std::string::npos);
+    ASSERT_EQ(log_.texts().size(), 1u);
+    EXPECT_NE(log_.texts()[0].find("use a larger --cache-size"), std::string::npos);
     EXPECT_TRUE(stream_.snapshot().empty());
     EXPECT_LT(stream_.sizeBytes(), size_t{1} << 18);
 }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/log/process_log.hpp"
 #include "tools/bench/picture/benches.hpp"
 
 int main(int argc, char** argv) {
@@ -24,6 +25,10 @@ int main(int argc, char** argv) {
     if (options.quick) options.turns = 2;
     const auto wanted = [&](const char* part) { return only.empty() || std::ranges::find(only, part) != only.end(); };
 
+    if (const auto started = mural::log::start("compositing_bench", "compositing_bench: "); !started) {
+        fmt::print(stderr, "compositing_bench: {}\n", started.error().message);
+        return 1;
+    }
     auto planes = readPlanes(folder);
     if (!planes) {
         fmt::print(stderr, "compositing_bench: {}\n", planes.error().message);

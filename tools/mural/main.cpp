@@ -10,6 +10,7 @@
 #include <iostream>
 #include <system_error>
 
+#include "common/log/process_log.hpp"
 #include "nodes/head/head.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "nodes/render/node.hpp"
@@ -40,6 +41,12 @@ int usageError(const std::string& command, std::string text) {
     while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
     fmt::print(stderr, "{}: {} (see {} --help)\n", command, text, command);
     return kExitUsage;
+}
+
+// Returns the beginning of a command's lines for the user.
+std::string linePrefix(const std::string& command) {
+    if (command == "run" || command == "head" || command == "replay" || command == "play") return "mural: ";
+    return "mural " + command + (command == "bench" ? " accuracy: " : ": ");
 }
 
 // Everything after the first "--" is the program of `mural run`, unparsed.
@@ -126,6 +133,11 @@ public:
                               error.what());
         }
         if (!action_) return usageError("mural", "a command is required, such as run");
+        const std::string command = current().get_name();
+        if (const auto started = mural::log::start(command, linePrefix(command)); !started) {
+            fmt::print(stderr, "mural: {}\n", started.error().message);
+            return kExitUsage;
+        }
         return action_();
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <poll.h>
 
+#include "common/log/log.hpp"
 #include "nodes/head/frames/picture_replies.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -48,6 +49,7 @@ void ProgramTable::programWelcomed(uint32_t id, FileDescriptor socket) {
         admitted_.erase(found);
         if (!socket.valid()) return;                   // the program left before it was admitted
         if (headGone_) client->memory().setHeadGone(); // the nodes were lost before its admission
+        log::debug(log::Topic::Program, client->describe(), " has connected");
         events_.came(*client);
         started = client->start(std::move(socket));
         clients_[id] = client;
@@ -64,6 +66,7 @@ void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
         const std::lock_guard lock(mutex_);
         const auto found = clients_.find(id);
         if (found == clients_.end()) return;
+        log::debug(log::Topic::Program, found->second->describe(), " is gone, ", found->second->bytesSent(), " bytes");
         if (!problem.empty())
             line = found->second->describe() + " was disconnected: " + problem + "; it continues alone";
         addCounts(goneCounts_, found->second->memory().counts());
@@ -75,7 +78,8 @@ void ProgramTable::programEnded(uint32_t id, const std::string& problem) {
     }
     const uint32_t argument = id;
     nodes_.broadcast(wire::HeadCommand::ClientGone, std::as_bytes(std::span(&argument, 1)));
-    events_.gone(id, line);
+    events_.gone(id);
+    if (!line.empty()) log::warning(log::Topic::Program, line);
     events_.countChanged(count);
 }
 

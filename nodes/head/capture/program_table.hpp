@@ -32,7 +32,7 @@ public:
     struct Events {
         std::function<void(const CaptureClient& client)> came; // called before its first packet
         std::function<void(size_t count)> countChanged;
-        std::function<void(uint32_t client, const std::string& line)> gone; // line: for the user; may be empty
+        std::function<void(uint32_t client)> gone;
     };
 
     ProgramTable(ProgramTerms terms, StreamBroadcaster& nodes, Events events);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "common/log/log.hpp"
+
 namespace mural {
 
 namespace {
@@ -106,7 +108,8 @@ private:
             const auto shown = window->show(picture.frame, wholeOf(picture));
             const bool isBlocked = !shown && window->isBlocked();
             setBlocked(isBlocked);
-            if (!shown && complained_.insert(picture.window).second) config_.say(shown.error().message);
+            if (!shown && complained_.insert(picture.window).second)
+                log::warning(log::Topic::Output, shown.error().message);
             if (shown) complained_.erase(picture.window);
             if (!isBlocked || isSuperseded(picture.window)) return;
         }
@@ -117,7 +120,8 @@ private:
         if (found != windows_.end()) return found->second.get();
         if (windows_.size() >= kMaxWindows) windows_.clear(); // most of them are closed
         auto opened = config_.openWindow(picture);
-        if (!opened && complained_.insert(picture.window).second) config_.say(opened.error().message);
+        if (!opened && complained_.insert(picture.window).second)
+            log::warning(log::Topic::Output, opened.error().message);
         auto& window = windows_[picture.window];
         if (opened) window = std::move(*opened);
         return window.get();

@@ -10,7 +10,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -27,7 +26,6 @@ struct NativeWindowsConfig {
     std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram;
     std::function<void(uint32_t client, uint32_t frame)> done;    // the picture was shown or dropped
     std::function<void(uint32_t client, bool isBlocked)> blocked; // its X server stops or resumes to answer
-    std::function<void(const std::string&)> say;
 };
 
 // The threads of the programs call the functions of the config.

@@ -4,11 +4,15 @@
 #include <chrono>
 #include <utility>
 
+#include "common/log/log.hpp"
+
 namespace mural {
 namespace {
 
 constexpr size_t kQueuedPictures = 3;
 constexpr std::chrono::milliseconds kSlice{500};
+
+template <class... Parts> void warn(const Parts&... parts) { log::warning(log::Topic::Output, parts...); }
 
 } // namespace
 
@@ -17,8 +21,7 @@ PictureOutput::PictureOutput(PictureOutputConfig config, std::unique_ptr<Picture
       saveFrames_(config_.saveFrames.begin(), config_.saveFrames.end()),
       file_(std::move(file)),
       canvases_(config_.canvases.size()),
-      natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked,
-                config_.say}),
+      natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked}),
       thread_([this] { work(); }) {}
 
 PictureOutput::~PictureOutput() {
@@ -95,7 +98,7 @@ void PictureOutput::work() {
     canvases_.clear();
     for (const OtherCanvas& canvas : config_.canvases) {
         if (!canvas.file) continue;
-        if (const auto finished = canvas.file->finish(); !finished) config_.say(finished.error().message);
+        if (const auto finished = canvas.file->finish(); !finished) warn(finished.error().message);
     }
     lock.lock();
     ended_ = true;
@@ -106,7 +109,7 @@ void PictureOutput::work() {
 void PictureOutput::finishFile() {
     const auto finished = file_->finish();
     if (finished) return;
-    config_.say(finished.error().message);
+    warn(finished.error().message);
     const std::lock_guard lock(mutex_);
     totals_.savedPictures = 0;
 }
@@ -144,10 +147,10 @@ Result<void> PictureOutput::give(PictureSink& sink, int64_t frame, const Picture
 
 void PictureOutput::save(int64_t frame, const Picture& picture) {
     if (picture.format != PictureFormat::Bgra8 && !std::exchange(eightBitsReported_, true))
-        config_.say("the program's window has 10 bits per channel; --out saves 8 of them");
+        warn("the program's window has 10 bits per channel; --out saves 8 of them");
     const auto saved = give(*file_, frame, picture, config_.pairs);
     if (!saved) {
-        config_.say(saved.error().message + "; no further pictures are saved");
+        warn(saved.error().message, "; no further pictures are saved");
         fileFailed_ = true;
         return;
     }
@@ -163,10 +166,10 @@ void PictureOutput::showOnWall(int64_t frame, const Picture& picture) {
         if (opened)
             wall_ = std::move(*opened);
         else
-            config_.say(opened.error().message);
+            warn(opened.error().message);
     }
     const auto shown = wall_ ? give(*wall_, frame, picture, config_.pairs) : Result<void>();
-    if (!shown) config_.say(shown.error().message + "; the wall windows show no further pictures");
+    if (!shown) warn(shown.error().message, "; the wall windows show no further pictures");
     wallFailed_ = !wall_ || !shown;
 }
 
@@ -175,8 +178,7 @@ void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& pic
     Shown& shown = canvases_[index];
     if (canvas.file && saves && !shown.fileFailed) {
         if (const auto saved = give(*canvas.file, frame, picture, canvas.pairs); !saved) {
-            config_.say("canvas " + canvas.name + ": " + saved.error().message +
-                        "; no further pictures of it are saved");
+            warn("canvas ", canvas.name, ": ", saved.error().message, "; no further pictures of it are saved");
             shown.fileFailed = true;
         }
     }
@@ -186,11 +188,10 @@ void PictureOutput::showOnCanvas(size_t index, int64_t frame, const Picture& pic
         if (opened)
             shown.wall = std::move(*opened);
         else
-            config_.say("canvas " + canvas.name + ": " + opened.error().message);
+            warn("canvas ", canvas.name, ": ", opened.error().message);
     }
     const auto done = shown.wall ? give(*shown.wall, frame, picture, canvas.pairs) : Result<void>();
-    if (!done)
-        config_.say("canvas " + canvas.name + ": " + done.error().message + "; its windows show no further pictures");
+    if (!done) warn("canvas ", canvas.name, ": ", done.error().message, "; its windows show no further pictures");
     shown.wallFailed = !shown.wall || !done;
 }
 

@@ -48,7 +48,6 @@ struct PictureOutputConfig {
     std::vector<OtherCanvas> canvases; // in the order of WindowPicture::others
     // Called when a picture was passed to all its outputs, by any thread of the output.
     std::function<void(uint32_t client, uint32_t frame)> done;
-    std::function<void(const std::string&)> say;
 };
 
 struct OutputTotals {

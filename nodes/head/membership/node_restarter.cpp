@@ -6,6 +6,8 @@
 #include <poll.h>
 #include <utility>
 
+#include "common/log/log.hpp"
+
 namespace mural {
 namespace {
 
@@ -171,6 +173,7 @@ void NodeRestarter::start(int node, int64_t nowNs) {
         const std::lock_guard lock(mutex_);
         ++at(node).tries;
     }
+    log::debug(log::Topic::Node, "starts ", set_.link(node).describe(), " again");
     auto started = hooks_.start(node);
     if (!started) return fail(node, started.error().message, nowNs);
     const std::lock_guard lock(mutex_);
@@ -192,6 +195,7 @@ void NodeRestarter::pollStart(int node, int64_t nowNs) {
         at(node).phase = Phase::Readying;
         at(node).readyBy = Deadline::inMs(terms_.readyPatienceMs);
     }
+    log::debug(log::Topic::Node, "restarted node ", node, " has connected");
     hooks_.connected(node, starting);
     at(node).starting.reset();
 }
@@ -216,10 +220,8 @@ void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
             line +=
                 "after " + std::to_string(n.tries) + (n.tries == 1 ? " try, " : " tries, ") + hooks_.tilesOfLost(node);
     }
-    if (again)
-        hooks_.say(line);
-    else
-        hooks_.gaveUp(node, line);
+    log::warning(log::Topic::Node, line);
+    if (!again) hooks_.gaveUp(node);
 }
 
 bool NodeRestarter::settled() const {

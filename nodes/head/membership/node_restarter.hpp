@@ -34,10 +34,8 @@ public:
         // returns the consequence for the node's tiles while it is lost
         std::function<std::string(int node)> tilesOfLost;
         std::function<StreamBroadcaster::Admission(int node, uint32_t view)>
-            admitted; // called with the lock that orders packets
-        // Called when the node stays lost; the string is a line for the user.
-        std::function<void(int node, const std::string&)> gaveUp;
-        std::function<void(const std::string&)> say;
+            admitted;                         // called with the lock that orders packets
+        std::function<void(int node)> gaveUp; // called when the node stays lost
     };
 
     NodeRestarter(ReturnTerms terms, StreamBroadcaster& nodes, Hooks hooks);

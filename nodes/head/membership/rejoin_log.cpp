@@ -15,8 +15,7 @@ namespace {
 constexpr int64_t kSliceMs = 100;
 
 std::unique_ptr<trace::StreamSnapshot> emptyStream(uint64_t maxBytes) {
-    // Drops the message, because another component reports nodes that cannot return.
-    return std::make_unique<trace::StreamSnapshot>(static_cast<size_t>(maxBytes), [](const std::string&) {});
+    return std::make_unique<trace::StreamSnapshot>(static_cast<size_t>(maxBytes));
 }
 
 } // namespace

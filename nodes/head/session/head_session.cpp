@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <thread>
 
+#include "common/log/log.hpp"
 #include "nodes/head/frames/picture_place.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/node_messages.hpp"
@@ -101,7 +102,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
               nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(shares));
           },
           plantOf()),
-      advice_(config_, nodeCount_, control_),
+      advice_(config_, nodeCount_),
       absences_(absencesOf(nodes)),
       views_(nodes.size()),
       facts_(nodes.size()),
@@ -149,7 +150,6 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
         };
         return programs_->giveOwnPicture(picture.client, picture.frame, picture.nativeWindow, whole, done);
     };
-    output.say = [this](const std::string& text) { control_.say(text); };
     output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));
 }
 
@@ -187,7 +187,7 @@ bool HeadSession::finishRequested(Deadline deadline) {
     if (!line) return false;
     const Json command = Json::parse(*line, nullptr, false);
     const bool known = command.is_object() && command.value("command", Json()) == "finish";
-    if (!known) control_.say("unknown command to the head: " + line->substr(0, 60));
+    if (!known) log::warning(log::Topic::Session, "unknown command to the head: ", line->substr(0, 60));
     return known;
 }
 
@@ -197,9 +197,9 @@ void HeadSession::watchNodes(int64_t nowNs) {
             const std::lock_guard lock(mutex_);
             multicast ? rerouted_.erase(node) : static_cast<size_t>(rerouted_.insert(node).second);
         }
-        control_.say(nodes_.link(node).describe() +
-                     (multicast ? ": multicast works again"
-                                : ": no reply to multicast; its stream uses TCP; see mural doctor --network"));
+        log::line(log::Topic::Stream, multicast ? log::Level::Info : log::Level::Warning, nodes_.link(node).describe(),
+                  multicast ? ": multicast works again"
+                            : ": no reply to multicast; its stream uses TCP; see mural doctor --network");
     });
 }
 
@@ -240,8 +240,10 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
     if (ready_[index]) return Error{"it sent two ready messages"};
     if (!facts->ownStream.empty()) {
         nodes_.link(node).setByMulticast(false);
-        control_.say(nodes_.link(node).describe() + ": its stream uses TCP instead of multicast: " + facts->ownStream);
+        log::warning(log::Topic::Stream, nodes_.link(node).describe(),
+                     ": its stream uses TCP instead of multicast: ", facts->ownStream);
     }
+    log::debug(log::Topic::Node, "node ", node, " is ready: ", facts->renderer, ", pid ", facts->pid);
     facts_[index] = std::move(*facts);
     ready_[index] = true;
     return {};
@@ -323,7 +325,7 @@ Result<void> HeadSession::nodeLog(int node, const std::string& text) {
             return {};
         }
     }
-    control_.say("node " + std::to_string(node) + ": " + line);
+    log::info(log::Topic::Node, "node ", node, ": ", line);
     return {};
 }
 
@@ -347,17 +349,11 @@ void HeadSession::nodeLost(int node, const std::string& why) {
     if (!starting) loseMember(node, why);
 }
 
-void HeadSession::noNodeIsLeft() {
-    control_.say("all render nodes are lost: programs continue alone, without the wall; restart the session");
-    programs_->refuseFrom("all render nodes of this session are lost; restart it");
-    programs_->reportHeadGone();
-    control_.send({{"event", "wall-lost"}});
-}
-
 // ---- end
 
 void HeadSession::finish() {
     finishing_ = true;
+    log::debug(log::Topic::Session, "the session ends: drains programs, nodes and outputs");
     returns_->stop([this] { watchNodes(monotonicNowNs()); });
     programs_->refuseFrom("the session is ending");
     programs_->drainAll(Deadline::inMs(options_.drainPatienceMs), [this] { watchNodes(monotonicNowNs()); });
@@ -375,6 +371,7 @@ void HeadSession::finish() {
     tearingDown_ = true;
     if (output_) output_->drop();
     nodes_.end();
+    log::debug(log::Topic::Session, "the session has ended after ", frames_.totals().wallFrames, " frames");
 }
 
 void HeadSession::finishNodes() {
@@ -397,10 +394,11 @@ void HeadSession::finishOutput() {
     const Deadline deadline = Deadline::inMs(options_.outputPatienceMs);
     while (!output_->finish(Deadline::inMs(std::min(kOutputProgressMs, options_.outputPatienceMs)))) {
         if (deadline.passed()) {
-            control_.say("the last pictures could not be written in time; the output may be incomplete");
+            log::error(log::Topic::Output,
+                       "the last pictures could not be written in time; the output may be incomplete");
             return;
         }
-        control_.say("still writing the last pictures");
+        log::info(log::Topic::Output, "still writing the last pictures");
     }
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/log/log.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/node_messages.hpp"
@@ -51,12 +52,10 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
         return plan.queue >= 0 ? "other nodes take its tiles" : "its tiles keep their last picture";
     };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
-    hooks.gaveUp = [this](int, const std::string& line) {
-        control_.say(line);
+    hooks.gaveUp = [this](int) {
         const std::lock_guard membership(membership_);
         if (noneIsLeft()) noNodeIsLeft();
     };
-    hooks.say = [this](const std::string& line) { control_.say(line); };
     return hooks;
 }
 
@@ -119,6 +118,7 @@ Result<void> HeadSession::takeAgain(int node, NodeCapabilities facts) {
         if (facts.glVersion < promisedGlVersion_ || !missing.empty())
             return Error{"its GL lacks features that programs already use: " +
                          (missing.empty() ? "an older version" : "no " + missing)};
+        log::debug(log::Topic::Node, "restarted node ", node, " is ready: ", facts.renderer, ", pid ", facts.pid);
         facts_[index] = std::move(facts);
         ready_[index] = true;
     }
@@ -183,10 +183,10 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
         totals.secondsToRejoin = numbers.secondsToRejoin;
     }
     const bool first = absences_.contains(node) && joins == 1;
-    control_.say(
-        nodes_.link(node).describe() + (first ? " joined " : " rejoined ") + seconds(numbers.secondsToRejoin) +
-        (first ? " after the start of the session, with a snapshot of " : " after its loss, with a snapshot of ") +
-        std::to_string((numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20) + " MiB");
+    log::info(log::Topic::Node, nodes_.link(node).describe(), first ? " joined " : " rejoined ",
+              seconds(numbers.secondsToRejoin),
+              first ? " after the start of the session, with a snapshot of " : " after its loss, with a snapshot of ",
+              (numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20, " MiB");
     return {};
 }
 
@@ -198,7 +198,7 @@ void HeadSession::loseMember(int node, const std::string& why) {
     }
     if (returns_->lostWhileRestarting(node, refusal.empty() ? why : refusal)) return;
     const std::lock_guard membership(membership_);
-    control_.say(nodes_.link(node).describe() + " was lost: " + why + "; " + returns_->memberLost(node));
+    log::warning(log::Topic::Node, nodes_.link(node).describe(), " was lost: ", why, "; ", returns_->memberLost(node));
     goOnWithout(node);
 }
 
@@ -207,8 +207,8 @@ void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
         const bool taken = plan_.nodes[static_cast<size_t>(node)].queue >= 0;
-        control_.say(nodes_.link(node).describe() + " is not connected yet: it " + why +
-                     (taken ? "; other nodes take its tiles until it joins" : "; its tiles stay empty until it joins"));
+        log::warning(log::Topic::Node, nodes_.link(node).describe(), " is not connected yet: it ", why,
+                     taken ? "; other nodes take its tiles until it joins" : "; its tiles stay empty until it joins");
         returns_->notThere(node);
         goOnWithout(node);
     }
@@ -233,6 +233,14 @@ void HeadSession::goOnWithout(int node) {
     }
     for (const auto& window : waiting) windowGone(window, node);
     if (noneIsLeft()) noNodeIsLeft();
+}
+
+void HeadSession::noNodeIsLeft() {
+    log::error(log::Topic::Session,
+               "all render nodes are lost: programs continue alone, without the wall; restart the session");
+    programs_->refuseFrom("all render nodes of this session are lost; restart it");
+    programs_->reportHeadGone();
+    control_.send({{"event", "wall-lost"}});
 }
 
 // True if no node lives and none can be restarted.

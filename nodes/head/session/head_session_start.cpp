@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "common/log/log.hpp"
+#include "common/log/process_log.hpp"
 #include "nodes/head/planning/delta_plan.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "nodes/affinity/placement.hpp"
@@ -36,6 +38,8 @@ const char* whyOwnStreams(const std::string& stream) {
 } // namespace
 
 Result<void> HeadSession::bringUp() {
+    log::debug(log::Topic::Session, "session ", config_.session, " begins with ", nodeCount_, " nodes, wall ",
+               config_.columns, "x", config_.rows, ", display ", nameOf(config_.display));
     placement_ = placeOwnThreads(); // before its threads start, because they inherit the placement
     for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.transferScale);
     nodes_.startReading();
@@ -60,6 +64,7 @@ Result<void> HeadSession::bringUp() {
     if (!server) return server.error();
     server_ = std::move(*server);
     announceReady();
+    log::debug(log::Topic::Session, "programs may connect");
     return {};
 }
 
@@ -72,6 +77,7 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
     }
     setup.delta = nodes_.link(plan.node).inBatches();
     setup.cacheBytes = config_.cacheBytes;
+    setup.log = log::environmentLevels();
     return setup;
 }
 
@@ -96,11 +102,12 @@ void HeadSession::openMulticast() {
         streamLine_ =
             "the stream is sent to each node over its own connection: no multicast: " + multicast.error().message +
             "; see mural doctor --network";
-        if (!config_.explain) control_.say(streamLine_);
+        if (!config_.explain) log::warning(log::Topic::Stream, streamLine_);
         return;
     }
     streamLine_ = "the stream is sent to " + std::to_string(nodes.size()) +
                   " nodes at once, with reliable multicast: " + (*multicast)->describe();
+    log::debug(log::Topic::Stream, streamLine_);
     nodes_.multicastBy(std::move(*multicast));
     for (const int node : nodes) nodes_.link(node).setByMulticast(true);
 }
@@ -108,6 +115,7 @@ void HeadSession::openMulticast() {
 Result<void> HeadSession::openDeltaStream() {
     const DeltaPlan plan = planDelta(config_, plan_, [this](int node) { return nodes_.link(node).byMulticast(); });
     deltaLine_ = plan.explain;
+    log::debug(log::Topic::Stream, deltaLine_);
     if (plan.nodes.empty()) return {};
     delta::Limits limits;
     limits.cacheBytes = static_cast<uint64_t>(config_.cacheBytes);
@@ -199,10 +207,9 @@ void HeadSession::openTables() {
             options_.recorder->event({trace::Event::ClientCame, client.id(), client.pid(), client.name()});
     };
     events.countChanged = [this](size_t count) { control_.send({{"event", "clients"}, {"count", count}}); };
-    events.gone = [this](uint32_t client, const std::string& line) {
+    events.gone = [this](uint32_t client) {
         driverEvents_.programGone(client);
         if (options_.recorder) options_.recorder->event({trace::Event::ClientGone, client, 0, ""});
-        if (!line.empty()) control_.say(line);
     };
     programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
     serving_ = true;
@@ -226,7 +233,9 @@ void HeadSession::beginRecording() {
 std::string HeadSession::placeOwnThreads() const {
     if (!config_.placeThreads) return "not placed: --no-placement";
     if (config_.hosts.empty()) return "not placed: all nodes are on this machine";
-    return placeThread(DeviceKind::Network).description;
+    Placement placement = placeThread(DeviceKind::Network);
+    log::debug(log::Topic::Affinity, "threads of the head: ", placement.description);
+    return std::move(placement.description);
 }
 
 std::vector<std::string> HeadSession::explainLines() {
@@ -259,9 +268,10 @@ void HeadSession::announceReady() {
             nodes.push_back({{"node", plan.node}, {"where", plan.where}, {"pid", facts.pid}, {"gl", facts.renderer}});
         }
     }
-    for (const std::string& warning : plan_.warnings) control_.say(warning);
+    for (const std::string& warning : plan_.warnings) log::warning(log::Topic::Session, warning);
     if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
-        control_.say("both eyes are shown side by side, because only wall windows have a buffer for each eye; add "
+        log::warning(log::Topic::Session,
+                     "both eyes are shown side by side, because only wall windows have a buffer for each eye; add "
                      "--display windows");
     control_.send({{"event", "ready"}, {"explain", explainLines()}, {"nodes", nodes}});
 }

@@ -1,12 +1,18 @@
 #include "nodes/head/session/slowdown_advice.hpp"
 
+#include "common/log/log.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
+namespace {
+
+void advise(const char* text) { log::warning(log::Topic::Session, text); }
+
+} // namespace
 
 void SlowdownAdvice::frameDone(uint32_t flags, bool sharesDraws) {
     if (flags & wire::kDrawnWhole && !drawnWhole_.exchange(true))
-        control_.say(
+        advise(
             tiling_ == Tiling::Lean
                 ? "every node draws the whole picture, into framebuffers of the window's size, because fragment "
                   "shaders write to memory, SPIR-V modules read gl_FragCoord, display lists read the picture, or its "
@@ -14,11 +20,11 @@ void SlowdownAdvice::frameDone(uint32_t flags, bool sharesDraws) {
                 : "every node draws the whole picture, because fragment shaders write to memory, display lists read "
                   "the picture, or its samples are copied; more nodes do not make this program faster");
     if (flags & wire::kKeepsAreas && !keepsAreas_.exchange(true))
-        control_.say("tiles of a window stay with their nodes, because frames do not clear all of its buffers, draw "
-                     "into its front buffer, or accumulate; a tile queue does not make this program faster");
+        advise("tiles of a window stay with their nodes, because frames do not clear all of its buffers, draw "
+               "into its front buffer, or accumulate; a tile queue does not make this program faster");
     if (flags & wire::kKeepsPicture && !keepsPicture_.exchange(true))
-        control_.say("one node draws all frames, because they build on the previous picture (no clear, accumulation, "
-                     "or front buffer); --dplex does not make this program faster");
+        advise("one node draws all frames, because they build on the previous picture (no clear, accumulation, "
+               "or front buffer); --dplex does not make this program faster");
     if (sharesDraws) countUnshared(flags);
 }
 
@@ -28,7 +34,7 @@ void SlowdownAdvice::countUnshared(uint32_t flags) {
     if (!(flags & wire::kNotSplit))
         unsharedFrames_ = INT64_MIN / 2;
     else if (++unsharedFrames_ == kFrames * nodeCount_)
-        control_.say(
+        advise(
             "one node draws everything, because the first frames have no draws that nodes can share (opaque, with "
             "depth test, into the window, after a clear of colour and depth); --db does not make this program faster");
 }

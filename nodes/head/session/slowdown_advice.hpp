@@ -6,15 +6,13 @@
 #include <atomic>
 #include <cstdint>
 
-#include "nodes/head/session/control_channel.hpp"
 #include "nodes/session/session_config.hpp"
 
 namespace mural {
 
 class SlowdownAdvice {
 public:
-    SlowdownAdvice(const SessionConfig& config, int nodeCount, ControlChannel& control)
-        : tiling_(config.tiling), nodeCount_(nodeCount), control_(control) {}
+    SlowdownAdvice(const SessionConfig& config, int nodeCount) : tiling_(config.tiling), nodeCount_(nodeCount) {}
 
     // flags: FrameDoneMessage::flags. sharesDraws: the node draws one range of a database.
     void frameDone(uint32_t flags, bool sharesDraws);
@@ -26,7 +24,6 @@ private:
 
     const Tiling tiling_;
     const int nodeCount_;
-    ControlChannel& control_;
     std::atomic<int64_t> unsharedFrames_{0}; // sum over all nodes since the start
     std::atomic<bool> keepsPicture_{false};
     std::atomic<bool> keepsAreas_{false};

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "common/log/log.hpp"
+
 namespace mural {
 
 namespace {
@@ -74,11 +76,9 @@ Result<void> VideoFile::append(int64_t frame, const Picture& picture) {
     if (encoder_ && (picture.width != width_ || picture.height != height_)) {
         const std::string before = currentPath_;
         if (Result<void> ended = end(config_.finishTimeoutMs); !ended) return ended;
-        if (config_.say) {
-            config_.say(fmt::format("the picture changed from {}x{} to {}x{} at frame {}: {} is "
-                                    "complete, the video goes on in {}",
-                                    width_, height_, picture.width, picture.height, frame, before, numberedPath()));
-        }
+        log::info(log::Topic::Output, "the picture changed from ", width_, "x", height_, " to ", picture.width, "x",
+                  picture.height, " at frame ", frame, ": ", before, " is complete, the video goes on in ",
+                  numberedPath());
     }
     if (!encoder_) {
         if (Result<void> begun = begin(picture.width, picture.height); !begun) return begun;
@@ -125,6 +125,8 @@ Result<void> VideoFile::begin(int width, int height) {
     Result<std::unique_ptr<EncoderProcess>> started = EncoderProcess::start(arguments);
     if (!started) return started.error();
     encoder_ = std::move(started.value());
+    log::debug(log::Topic::Output, currentPath_, ": ", encoding_.encoder, " begins, ", width, "x", height, ", pid ",
+               encoder_->pid());
     return {};
 }
 
@@ -132,6 +134,8 @@ Result<void> VideoFile::end(int64_t timeoutMs) {
     if (!encoder_) return {};
     Result<void> finished = encoder_->finish(Deadline::inMs(timeoutMs));
     encoder_.reset();
+    log::debug(log::Topic::Output, currentPath_, finished ? " is complete, " : " is incomplete, ", framesWritten_,
+               " frames so far");
     if (finished) return {};
     return Error{fmt::format("the video {} is not complete: {}", currentPath_, finished.error().message)};
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,9 +18,8 @@ struct VideoConfig {
     std::string path; // suffix .mp4 .mkv .avi .webm or .mov
     int framesPerSecond = 30;
     std::string program = "ffmpeg";
-    int64_t frameTimeoutMs = 10'000;             // limit for the encoder to accept a frame
-    int64_t finishTimeoutMs = 120'000;           // encoders buffer frames
-    std::function<void(const std::string&)> say; // one line for the user; may be empty
+    int64_t frameTimeoutMs = 10'000;   // limit for the encoder to accept a frame
+    int64_t finishTimeoutMs = 120'000; // encoders buffer frames
 };
 
 class VideoFile : public PictureSink {

@@ -1,5 +1,6 @@
 #include "nodes/output/windows/wall_sink.hpp"
 
+#include "common/log/log.hpp"
 #include "nodes/output/windows/wall_layout.hpp"
 
 namespace mural {
@@ -46,8 +47,9 @@ Result<void> WallSink::showPair(int64_t frame, const EyePair& eyes) {
     if (windows_->stereo()) return showTiles(eyes.left, eyes.right);
     if (whyNot_.empty()) {
         whyNot_ = windows_->whyNotStereo();
-        say_("both eyes are shown side by side, because no window with a buffer for each eye can be opened (" +
-             whyNot_ + "); use a graphics card and display with quad-buffered stereo, or --stereo anaglyph");
+        log::warning(log::Topic::Output,
+                     "both eyes are shown side by side, because no window with a buffer for each eye can be opened (",
+                     whyNot_, "); use a graphics card and display with quad-buffered stereo, or --stereo anaglyph");
     }
     return PictureSink::showPair(frame, eyes);
 }

@@ -1,7 +1,6 @@
 // Shows whole pictures in wall windows, for sessions in which several passes compose each tile.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -13,9 +12,8 @@ namespace mural {
 
 class WallSink : public PictureSink {
 public:
-    // config: without tiles, which follow from the first picture's size. say: a line for the user.
-    WallSink(WallWindowsConfig config, const TileGrid& grid, std::function<void(const std::string&)> say)
-        : config_(std::move(config)), grid_(grid), say_(std::move(say)) {}
+    // config: without tiles, which follow from the first picture's size.
+    WallSink(WallWindowsConfig config, const TileGrid& grid) : config_(std::move(config)), grid_(grid) {}
 
     Result<void> show(int64_t frame, const Picture& picture) override;
     Result<void> showPair(int64_t frame, const EyePair& eyes) override;
@@ -29,7 +27,6 @@ private:
 
     WallWindowsConfig config_;
     const TileGrid grid_;
-    const std::function<void(const std::string&)> say_;
     std::string whyNot_; // reason for no buffer per eye; "": windows have one, or it is unknown yet
     std::unique_ptr<WallWindows> windows_;
     int width_ = 0, height_ = 0;

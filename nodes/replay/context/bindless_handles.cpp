@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/log/log.hpp"
 #include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
 
@@ -28,7 +29,7 @@ void Replay::dealtHandle(HandleTable::Of of, uint64_t appHandle, uint64_t nodeHa
              "): handles that shaders read from buffers, vertex arrays or integers may be wrong on this node's tiles; "
              "use the same driver for program and nodes",
              nodeHandle, appHandle);
-    out_.log(text);
+    log::warning(log::Topic::Replay, text);
 }
 
 // ---- reuse of handle numbers. A driver frees a number after the last command that used it. On this node that may be

@@ -2,6 +2,7 @@
 #include <string>
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/replies.hpp"
@@ -76,7 +77,7 @@ bool Replay::executeAllocating(ReplayFunction function, Args& in) {
     const bool ok = function(*this, in);
     if (takeErrors()) {
         sendDriverEvent(wire::DriverEventKind::OutOfMemory, {0, c_->errorsReported, 0, 0, {}});
-        out_.log("no memory for a GL object of the program; it receives GL_OUT_OF_MEMORY");
+        log::warning(log::Topic::Replay, "no memory for a GL object of the program; it receives GL_OUT_OF_MEMORY");
     }
     return ok;
 }
@@ -144,8 +145,10 @@ void Replay::reportDriverProblems() {
         c_->lost = status != GL_NO_ERROR;
         if (c_->lost) {
             sendDriverEvent(wire::DriverEventKind::ContextLost, {0, status, 0, 0, {}});
-            out_.log("the graphics driver lost a context (GPU reset): its drawings are missing on this node's tiles; "
-                     "restart the program");
+            log::warning(
+                log::Topic::Replay,
+                "the graphics driver lost a context (GPU reset): its drawings are missing on this node's tiles; "
+                "restart the program");
         }
     }
     sendDriverMessages();

@@ -2,6 +2,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include "common/log/log.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/packet.hpp"
 
@@ -22,7 +23,8 @@ bool Replay::onCreateImage(Args& in) {
     if (made)
         client.images[image] = std::move(*made);
     else
-        out_.log("an EGL image of the program is missing on this node's tiles: " + made.error().message);
+        log::warning(log::Topic::Replay,
+                     "an EGL image of the program is missing on this node's tiles: " + made.error().message);
     return true;
 }
 

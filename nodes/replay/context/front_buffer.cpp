@@ -3,6 +3,7 @@
 // current draw surface. Draws to both buffers go to the back, which is then copied to the front.
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
@@ -30,9 +31,11 @@ gl::Surface* Replay::surfaceOf(Window* w, GLenum buffer) {
     if (!w->front) {
         auto made = platform_->createSurface(surfaceConfig(w->config, w->surface->width(), w->surface->height()));
         if (!made) {
-            out_.log("cannot create a second framebuffer for the front buffer of a window; it is shown with the back "
-                     "buffer: " +
-                     made.error().message);
+            log::warning(
+                log::Topic::Replay,
+                "cannot create a second framebuffer for the front buffer of a window; it is shown with the back "
+                "buffer: " +
+                    made.error().message);
             return w->surface.get();
         }
         w->front = std::move(*made);
@@ -55,7 +58,7 @@ bool Replay::bindSurfaces(gl::PendingCommands pendingCommands) {
         made = bind();
     }
     if (!made) {
-        out_.log("cannot make a context current: " + made.error().message);
+        log::warning(log::Topic::Replay, "cannot make a context current: " + made.error().message);
         unbindPlatform(); // the current surfaces are undefined after a failure
         return false;
     }

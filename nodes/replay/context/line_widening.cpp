@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
@@ -16,9 +17,11 @@ void Replay::widenToWindow(Window& w) {
     const PixelViewport size = surfaceOf(w, false);
     auto made = platform_->createSurface(surfaceConfig(w.config, size.w, size.h));
     if (!made) {
-        out_.log("fragment shaders that write to memory need a framebuffer of the whole window (" +
-                 std::to_string(w.whole.w) + "x" + std::to_string(w.whole.h) +
-                 "), which cannot be created; their memory contains only this node's part: " + made.error().message);
+        log::warning(
+            log::Topic::Replay,
+            "fragment shaders that write to memory need a framebuffer of the whole window (" +
+                std::to_string(w.whole.w) + "x" + std::to_string(w.whole.h) +
+                "), which cannot be created; their memory contains only this node's part: " + made.error().message);
         return;
     }
     const std::unique_ptr<gl::Surface> tile = std::exchange(w.surface, std::move(*made));

@@ -2,6 +2,7 @@
 // program: with other page sizes it commits all overlapping pages and releases none. This costs memory only.
 #include <algorithm>
 
+#include "common/log/log.hpp"
 #include "gl_opcodes.hpp"
 #include "nodes/replay/engine/replay.hpp"
 
@@ -76,8 +77,10 @@ void Replay::commitPages(GLenum target, GLuint texture, const PageBox& box, bool
     if (known) call(aligned);
     if ((!isError() && known) || pagesReported_) return;
     pagesReported_ = true;
-    out_.log("this node's driver cannot commit pages of a sparse texture; their contents are missing on this node's "
-             "tiles; use the same driver for program and nodes");
+    log::warning(
+        log::Topic::Replay,
+        "this node's driver cannot commit pages of a sparse texture; their contents are missing on this node's "
+        "tiles; use the same driver for program and nodes");
 }
 
 void Replay::glTexPageCommitmentARB(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei w, GLsizei h,

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "nodes/gl/config_match.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/replay/features/window_use.hpp"
@@ -127,7 +128,7 @@ bool Replay::onCreateContext(Args& in) {
     contextConfig.surface = surfaceConfig(*config, 1, 1);
     auto made = platform_->createContext(contextConfig, with ? with->context.get() : nullptr);
     if (!made) {
-        out_.log("cannot create a context like the program's: " + made.error().message);
+        log::warning(log::Topic::Replay, "cannot create a context like the program's: " + made.error().message);
         return true;
     }
     c->client = wire::clientOf(stream_);
@@ -142,6 +143,8 @@ bool Replay::onCreateContext(Args& in) {
     c->unpack.values[5] = c->pack[5] = 4; // alignment
     c->drawBuffer0 = c->readBuffer0 = config->doubleBuffer || c->api != wire::Api::Desktop ? GL_BACK : GL_FRONT;
     client.contexts[id] = std::move(c);
+    log::debug(log::Topic::Replay, "client ", wire::clientOf(stream_), ": context ", id, ", api ", api, ", version ",
+               major, ".", minor, share != 0 ? ", shares with " : "", share != 0 ? std::to_string(share) : "");
     return true;
 }
 
@@ -191,8 +194,9 @@ bool Replay::onWindow(Args& in) {
     // An equal size means that the program's driver has destroyed the drawable and created it again.
     const bool renewed = w.surface && config->width == w.config.width && config->height == w.config.height;
     if (config->stereo && !w.config.stereo && config_.pass.eye == Eye::Cyclop && config_.answers && config_.node == 0)
-        out_.log("the program draws into a buffer for each eye, but only the left one is shown; --stereo quad, "
-                 "side-by-side or anaglyph shows both");
+        log::warning(log::Topic::Replay,
+                     "the program draws into a buffer for each eye, but only the left one is shown; --stereo quad, "
+                     "side-by-side or anaglyph shows both");
     w.config = *config;
     w.isFlat = config->depth == 0 && config->stencil == 0;
     w.wishedRed = config->red;
@@ -210,11 +214,14 @@ bool Replay::onWindow(Args& in) {
     }
     auto made = platform_->createSurface(surfaceConfig(*config, size.w, size.h));
     if (!made) {
-        out_.log("cannot create a framebuffer like the program's window (" + std::to_string(width) + "x" +
-                 std::to_string(height) + "): " + made.error().message +
-                 (config_.pass.zoom.x > 1 || config_.pass.zoom.y > 1 ? "; or reduce the compound's zoom" : ""));
+        log::warning(log::Topic::Replay,
+                     "cannot create a framebuffer like the program's window (" + std::to_string(width) + "x" +
+                         std::to_string(height) + "): " + made.error().message +
+                         (config_.pass.zoom.x > 1 || config_.pass.zoom.y > 1 ? "; or reduce the compound's zoom" : ""));
         return true;
     }
+    log::debug(log::Topic::Replay, "window ", id, " of ", width, "x", height, " pixels, framebuffer of ", size.w, "x",
+               size.h);
     alphaHides_ = alphaHides_ || (*made)->hiddenAlpha();
     const bool bound = &w == boundDraw_ || &w == boundRead_;
     std::unique_ptr<gl::Surface> old = std::move(w.surface);
@@ -248,8 +255,8 @@ void Replay::takeBitsOfSurface(Window& w) {
     w.config.stencil = static_cast<uint8_t>(there.stencil);
     w.config.samples = static_cast<uint8_t>(there.samples);
     if (differs == std::exchange(reportedBits_, differs)) return;
-    out_.log("its GL has no framebuffer like the program's window and draws it with " + differs +
-             "; pixels may differ from the native picture");
+    log::warning(log::Topic::Replay, "its GL has no framebuffer like the program's window and draws it with " +
+                                         differs + "; pixels may differ from the native picture");
 }
 
 bool Replay::onClientArrays(Args& in) {

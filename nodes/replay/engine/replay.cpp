@@ -3,6 +3,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "common/log/log.hpp"
 #include "gl_opcodes.hpp"
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/opcode_names.hpp"
@@ -59,8 +60,9 @@ bool Replay::record(std::span<const std::byte> bytes) {
     if (!ok) {
         ++counts_.malformed;
         const char* text = opcode >= wire::kFirstGlOpcode ? glOpcodeName(opcode) : nullptr;
-        out_.log("malformed record: opcode " + std::to_string(opcode) + (text ? std::string(" (") + text + ")" : "") +
-                 ", " + std::to_string(bytes.size()) + " bytes");
+        log::warning(log::Topic::Replay, "malformed record: opcode " + std::to_string(opcode) +
+                                             (text ? std::string(" (") + text + ")" : "") + ", " +
+                                             std::to_string(bytes.size()) + " bytes");
     }
     return ok;
 }
@@ -296,8 +298,8 @@ bool Replay::lacking(uint16_t opcode) {
     if (!lackingReported_[opcode]) {
         lackingReported_[opcode] = true;
         const char* text = glOpcodeName(opcode);
-        out_.log(std::string("this node's driver has no ") + (text ? text : "such command") +
-                 "; its effect is missing on this node's tiles");
+        log::warning(log::Topic::Replay, std::string("this node's driver has no ") + (text ? text : "such command") +
+                                             "; its effect is missing on this node's tiles");
     }
     return true;
 }

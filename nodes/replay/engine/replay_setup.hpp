@@ -83,7 +83,6 @@ struct ReplayOutputs {
     // Called when an answer about a window depends on skipped draws.
     std::function<void()> invalid;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
-    std::function<void(const std::string&)> log;
     // Sort-last (features/sort_last.cpp): composites the parts of all nodes of the picture. Afterwards the collector's
     // part is the whole picture. Returns the area of it that may have changed.
     std::function<PixelViewport(PicturePart&, const CompositeRule&)> composeParts;

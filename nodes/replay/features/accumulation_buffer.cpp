@@ -2,6 +2,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "nodes/replay/features/accumulation.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/control_records.hpp"
@@ -19,8 +20,10 @@ bool Replay::accumulatesHere() {
     if (!has || gl.glIsEnabled(GL_RASTERIZER_DISCARD)) return false;
     if (c_->draw->config.red == 8 && c_->draw->config.samples == 0) return true;
     if (!std::exchange(accumulationReported_, true))
-        out_.log("accumulation buffers of multisampled windows, and those with other than 8 bits per colour, are not "
-                 "supported here; use --gl glx");
+        log::warning(
+            log::Topic::Replay,
+            "accumulation buffers of multisampled windows, and those with other than 8 bits per colour, are not "
+            "supported here; use --gl glx");
     return false;
 }
 

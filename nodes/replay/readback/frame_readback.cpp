@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/log/log.hpp"
 #include "nodes/replay/readback/async_readback.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "streamcodec/wire/control_records.hpp"
@@ -26,7 +27,7 @@ std::shared_ptr<AsyncReadback> Replay::laterReads() {
         if (reader)
             shared.later = std::make_shared<AsyncReadback>(std::move(*reader), gl);
         else if (config_.readback == Readback::Buffer)
-            out_.log("asynchronous readback is off: " + reader.error().message);
+            log::warning(log::Topic::Replay, "asynchronous readback is off: " + reader.error().message);
     }
     return shared.later;
 }

@@ -1,6 +1,7 @@
 // Writes depth and stencil of other tiles into windows. This needs glDrawPixels, which core and ES contexts lack. In
 // the program's own context, it would also depend on bound programs, pipelines and discarding. The node therefore draws
 // into the same window with a context of its own. ES 1 contexts need it for colours too, because they lack blits.
+#include "common/log/log.hpp"
 #include "nodes/replay/engine/replay.hpp"
 
 namespace mural {
@@ -28,8 +29,9 @@ gl::Context* Replay::fillerOf(Window& w) {
     contextConfig.surface = surfaceConfig(w.config, 1, 1);
     auto made = platform_->createContext(contextConfig, nullptr);
     if (!made) {
-        out_.log("cannot combine the depth of other tiles; copies of depth across tiles are incomplete: " +
-                 made.error().message);
+        log::warning(log::Topic::Replay,
+                     "cannot combine the depth of other tiles; copies of depth across tiles are incomplete: " +
+                         made.error().message);
         return nullptr;
     }
     w.filler = std::move(*made);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "nodes/head/session/head_session.hpp"
+#include "nodes/head/session/log_to_control.hpp"
 #include "tests/head/support/fake_node.hpp"
 #include "tests/head/support/fake_program.hpp"
 
@@ -128,11 +129,13 @@ private:
         mine_ = FileDescriptor(ends[0]);
         control_ = std::make_unique<ControlChannel>(FileDescriptor(ends[1]));
         reader_ = std::make_unique<ControlChannel>(FileDescriptor(fcntl(ends[0], F_DUPFD_CLOEXEC, 3)));
+        lines_ = std::make_unique<LogToControl>(*control_);
     }
 
     FileDescriptor mine_;
     std::unique_ptr<ControlChannel> control_;
     std::unique_ptr<ControlChannel> reader_;
+    std::unique_ptr<LogToControl> lines_;
     std::vector<std::unique_ptr<FakeNode>> nodes_;
     std::atomic<int> status_{-1};
     std::thread thread_;

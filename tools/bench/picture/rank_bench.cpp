@@ -179,8 +179,7 @@ RankResult measure(RankLinks& links, const std::vector<Drawn>& drawn, int frames
 
 RankResult composeByMural(RankLinks& links, const std::vector<Drawn>& drawn, const ChosenFilter& filter, int frames) {
     LinkRoutes routes(links);
-    PictureComposer composer({filter.strategy, links.own(), links.ranks(), 60'000, 60'000, 5'000, ""}, routes,
-                             [](const std::string& line) { fmt::print(stderr, "compositing_bench: {}\n", line); });
+    PictureComposer composer({filter.strategy, links.own(), links.ranks(), 60'000, 60'000, 5'000, ""}, routes);
     PicturePart part;
     return measure(links, drawn, frames, true, [&](const uint32_t*& picture) {
         const uint64_t serial = part.id.serial;

@@ -11,6 +11,7 @@
 #include "tools/mural/accuracy/composition_rows.hpp"
 #include "tools/mural/accuracy/interruption.hpp"
 #include "tools/mural/accuracy/program_rows.hpp"
+#include "tools/mural/accuracy/progress.hpp"
 #include "tools/mural/accuracy/recording_rows.hpp"
 #include "tools/mural/accuracy/result_file.hpp"
 #include "tools/mural/accuracy/scene_rows.hpp"
@@ -23,11 +24,6 @@ namespace {
 // Avoids fmt::print, which throws if the reader of the pipe has gone.
 void printError(const std::string& what) { std::fputs(("mural bench accuracy: " + what + "\n").c_str(), stderr); }
 
-// Silent after an interruption.
-void say(const std::string& what) {
-    if (Interruption::signal() == 0) printError(what);
-}
-
 int complain(const Error& error) {
     printError(error.message);
     const int number = Interruption::signal();
@@ -39,7 +35,7 @@ Result<void> checkSubject(const BenchArguments& a) {
     if (!a.program.empty() && !a.recordings.empty())
         return Error{"--recording measures a trace, not a program; omit --recording or the program"};
     for (const std::string& recording : a.recordings)
-        if (auto r = checkRecording(recording, say); !r) return r;
+        if (auto r = checkRecording(recording); !r) return r;
     if (a.program.empty()) return {};
     const launch::ProgramCheck program =
         launch::checkProgram(a.program.front(), launch::Environment::current().get("PATH").value_or("/usr/bin:/bin"));
@@ -48,16 +44,16 @@ Result<void> checkSubject(const BenchArguments& a) {
 }
 
 Result<void> measureScenes(const AccuracyRuns& runs, bool quick, AccuracyReport& report) {
-    SceneRows scenes(runs, quick, say);
+    SceneRows scenes(runs, quick);
     if (auto r = scenes.prepare(); !r) return r;
     report.subject = scenes.subject();
     report.gl = scenes.gl();
     scenes.measure(report.rows);
     if (Interruption::signal() != 0) return {};
-    say("composition");
+    reportProgress("composition");
     measureComposition(report.rows);
     measureTransforms(report.rows);
-    say("codecs");
+    reportProgress("codecs");
     measureCodecs(scenes.nativePictures(), "Codecs, on the scenes", quick, report.rows);
     return {};
 }
@@ -68,12 +64,12 @@ Result<AccuracyReport> measureSubject(const BenchArguments& a) {
     AccuracyReport report;
     if (a.program.empty()) {
         if (auto r = measureScenes(*runs, a.quick, report); !r) return r.error();
-        for (const std::string& recording : a.recordings) measureRecording(*runs, recording, a.quick, say, report.rows);
+        for (const std::string& recording : a.recordings) measureRecording(*runs, recording, a.quick, report.rows);
         return report;
     }
     for (const std::string& word : a.program) report.subject += (report.subject.empty() ? "" : " ") + word;
     report.subject += fmt::format(", {} frames", a.frames);
-    measureProgram(*runs, a.program, a.frames, a.quick, say, report.rows);
+    measureProgram(*runs, a.program, a.frames, a.quick, report.rows);
     return report;
 }
 

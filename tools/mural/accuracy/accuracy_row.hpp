@@ -1,7 +1,6 @@
 // One row of the results of `mural bench accuracy`.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,7 +44,5 @@ struct AccuracyReport {
     // Returns 0: all bounds hold; 1: a bound is violated, or a measurement failed; 2: no measurement was possible.
     [[nodiscard]] int exitStatus() const;
 };
-
-using SayProgress = std::function<void(const std::string&)>;
 
 } // namespace mural::cli

@@ -1,4 +1,5 @@
 #include "tools/mural/accuracy/program_rows.hpp"
+#include "tools/mural/accuracy/progress.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -49,11 +50,11 @@ Result<MeasuredError> errorOfReport(const std::string& path) {
 
 } // namespace
 
-void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick, const SayProgress& say,
+void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick,
                     std::vector<AccuracyRow>& rows) {
     for (const Method& method : methods()) {
         if (quick && !method.quick) continue;
-        say(method.name);
+        reportProgress(method.name);
         AccuracyRow row{"Decompositions", method.name, "its own context", {}, method.bound, {}};
         auto folder = ScratchFolder::make();
         const std::string report = folder ? folder->path() + "/report.json" : "";

@@ -8,7 +8,7 @@ namespace mural::cli {
 
 // frames: number of compared frames. Decompositions that change the picture on purpose (eyes, samples) have no such
 // reference.
-void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick, const SayProgress& say,
+void measureProgram(const AccuracyRuns& runs, const Words& program, int64_t frames, bool quick,
                     std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

@@ -8,6 +8,7 @@
 
 #include "streamcodec/trace/trace_reader.hpp"
 #include "tools/mural/accuracy/composition_rows.hpp"
+#include "tools/mural/accuracy/progress.hpp"
 
 namespace mural::cli {
 
@@ -81,18 +82,18 @@ Result<Replayed> replayed(const AccuracyRuns& runs, const std::string& recording
 
 } // namespace
 
-Result<void> checkRecording(const std::string& recording, const SayProgress& say) {
+Result<void> checkRecording(const std::string& recording) {
     auto reader = trace::TraceReader::open(recording);
     if (!reader) return reader.error();
     if (auto whole = reader.value()->verify(); !whole) return whole.error();
     if (reader.value()->frames() == 0)
         return Error{"trace " + recording +
                      " has no frame, because the program showed no picture; mural dump prints its calls"};
-    if (!reader.value()->notice().empty()) say(reader.value()->notice());
+    if (!reader.value()->notice().empty()) reportProgress(reader.value()->notice());
     return {};
 }
 
-void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say,
+void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick,
                       std::vector<AccuracyRow>& rows) {
     const std::string name = std::filesystem::path(recording).stem().string(), group = "Recording: " + name;
     const auto one = replayed(runs, recording, {});
@@ -103,7 +104,7 @@ void measureRecording(const AccuracyRuns& runs, const std::string& recording, bo
     const auto many = replayed(runs, recording, {"--subpixel", std::to_string(kMaxSamples)});
     for (const Method& method : methods()) {
         if (quick && !method.quick) continue;
-        say(name + ": " + method.name);
+        reportProgress(name + ": " + method.name);
         const Result<Replayed>& wanted = method.manySamples ? many : one;
         AccuracyRow row{group, method.name,  method.manySamples ? fmt::format("{} samples", kMaxSamples) : "one node",
                         {},    method.bound, {},

@@ -7,9 +7,9 @@
 namespace mural::cli {
 
 // Validates the whole trace before replay.
-Result<void> checkRecording(const std::string& recording, const SayProgress& say);
+Result<void> checkRecording(const std::string& recording);
 
-void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick, const SayProgress& say,
+void measureRecording(const AccuracyRuns& runs, const std::string& recording, bool quick,
                       std::vector<AccuracyRow>& rows);
 
 } // namespace mural::cli

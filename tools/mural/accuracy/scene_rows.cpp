@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/geometry/jitter.hpp"
+#include "tools/mural/accuracy/progress.hpp"
 #include "tools/mural/accuracy/scenes/scene_names.hpp"
 
 namespace mural::cli {
@@ -218,7 +219,7 @@ Result<std::vector<OwnedPicture>> SceneRows::referenceOf(const Method& method) {
 void SceneRows::measure(std::vector<AccuracyRow>& rows) {
     for (const Method& method : methods()) {
         if (quick_ && !method.quick) continue;
-        say_(method.name);
+        reportProgress(method.name);
         if (method.otherPixels)
             measureEachScene(method, rows);
         else

@@ -8,8 +8,7 @@ namespace mural::cli {
 
 class SceneRows {
 public:
-    SceneRows(const AccuracyRuns& runs, bool quick, SayProgress say)
-        : runs_(runs), quick_(quick), say_(std::move(say)) {}
+    SceneRows(const AccuracyRuns& runs, bool quick) : runs_(runs), quick_(quick) {}
 
     // Draws the references. Errors: no scenes program, no GL.
     Result<void> prepare();
@@ -37,7 +36,6 @@ private:
 
     const AccuracyRuns& runs_;
     bool quick_;
-    SayProgress say_;
     std::string gl_;
     std::vector<OwnedPicture> native_;
 };

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "common/log/log.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/environment.hpp"
 #include "nodes/launch/program_check.hpp"
@@ -57,8 +58,6 @@ Result<FileDescriptor> endSignals() {
     return fd;
 }
 
-void log(const std::string& line) { fmt::print(stderr, "mural node: {}\n", line); }
-
 } // namespace
 
 void describeWait(CLI::App& node, WaitArguments& a) {
@@ -91,7 +90,7 @@ int waitCommand(const WaitArguments& a) {
     auto signals = endSignals();
     if (!signals) return failed("node", signals.error().message);
     std::signal(SIGPIPE, SIG_IGN);
-    auto node = NodeDaemon::open({a.listen, *secret, launch::ownBinary(), log});
+    auto node = NodeDaemon::open({a.listen, *secret, launch::ownBinary()});
     if (!node) return failed("node", node.error().message);
     std::unique_ptr<Announcing> announcing;
     if (a.discovery != "off") {
@@ -102,8 +101,8 @@ int waitCommand(const WaitArguments& a) {
         if (!started) return failed("node", started.error().message);
         announcing = std::move(*started);
     }
-    log(fmt::format("{} waits for heads on port {}{}", name, (*node)->port(),
-                    announcing ? "; mural discover finds it" : ""));
+    log::info(log::Topic::Daemon, name, " waits for heads on port ", (*node)->port(),
+              announcing ? "; mural discover finds it" : "");
     const auto r = (*node)->serve(signals->get());
     announcing.reset();
     return r ? 0 : failed("node", r.error().message);

@@ -48,7 +48,10 @@ Exit status: the program's own; 128 + n after signal n; 0 if --frames ended it.
   2    the session could not start: a bad argument, no display, no GL, or a program that
        cannot be captured (setuid, static, other word size)
   126  the program cannot be executed
-  127  the program was not found)";
+  127  the program was not found
+
+MURAL_LOG=rsp:debug,output:trace prints diagnostics of these topics; MURAL_LOG=debug prints those of all. Topics and
+levels are in docs/reference/logging.md.)";
 
 std::optional<int64_t> wholeNumber(std::string_view text, int64_t lowest, int64_t highest) {
     int64_t value = 0;

@@ -1,0 +1,12 @@
+#include "tools/mural/accuracy/progress.hpp"
+
+#include "common/log/log.hpp"
+#include "tools/mural/accuracy/interruption.hpp"
+
+namespace mural::cli {
+
+void reportProgress(const std::string& what) {
+    if (Interruption::signal() == 0) log::info(log::Topic::Tool, what);
+}
+
+} // namespace mural::cli
