@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/little_endian.hpp"
+#include "common/log/log.hpp"
 #include "transport/tcp/free_port.hpp"
 #include "transport/secure/secure_connection.hpp"
 
@@ -84,6 +85,8 @@ void PictureExchange::add(const Name& name, std::unique_ptr<Connection> connecti
     Peer& peer = peers_[name.rank];
     Link& link = !peer.link.connection && !peer.gone ? peer.link : peer.next[name.incarnation];
     if (link.connection) return; // the first connection wins
+    log::debug(log::Topic::Exchange, rangeText(name.rank), ", incarnation ", name.incarnation,
+               side == Side::Accepted ? ", has connected" : " is connected");
     link.connection = std::move(connection);
     link.sender = std::make_unique<PartSender>(*link.connection);
     link.incarnation = name.incarnation;
@@ -150,6 +153,7 @@ void PictureExchange::giveUp(int rank) {
     const std::lock_guard lock(mutex_);
     Peer& peer = peers_[rank];
     peer.gone = true;
+    log::debug(log::Topic::Exchange, "gives up ", rangeText(rank));
     if (peer.link.connection) peer.link.connection->close();
 }
 

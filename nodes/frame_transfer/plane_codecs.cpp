@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "common/base/clock.hpp"
+#include "common/log/log.hpp"
 #include "compositor/codecs/registry.hpp"
 
 namespace mural {
@@ -105,6 +107,7 @@ CodecNumber PlaneEncoder::encode(const PlaneView& plane, std::vector<std::byte>&
     const compositor::TileClass tile = compositor::classify(plane);
     const auto choice = selector.choose(tile, plane.sizeBytes());
     CodecNumber codec = numberOf(selector.name(choice.codec));
+    if (log::enabled(log::Topic::Picture, log::Level::Debug)) reportSwitch(tile, codec, selector.linkBytesPerSec());
     int64_t tookNs = 0;
     size_t size = tryCodec(codec, plane, tookNs);
     selector.encoded(tile, choice.codec, plane.sizeBytes(), size, tookNs);
@@ -115,6 +118,14 @@ CodecNumber PlaneEncoder::encode(const PlaneView& plane, std::vector<std::byte>&
     into.insert(into.end(), scratch_.begin(), scratch_.begin() + static_cast<ptrdiff_t>(size));
     if (choice.measure) measure(selector, *choice.measure, tile, plane);
     return codec;
+}
+
+void PlaneEncoder::reportSwitch(const compositor::TileClass& tile, CodecNumber codec, double linkBytesPerSec) {
+    const auto [last, isFirst] = reported_.try_emplace(tile, codec);
+    if (!isFirst && std::exchange(last->second, codec) == codec) return;
+    log::debug(log::Topic::Picture, isDepth(tile.format) ? "depth" : "colour", " tiles of class ",
+               static_cast<int>(tile.activity), ".", static_cast<int>(tile.change), " are encoded as ", kCodecs[codec],
+               "; the link carries ", linkBytesPerSec / 1e6, " MB/s");
 }
 
 void PlaneEncoder::measure(compositor::CodecSelector& selector, size_t index, const compositor::TileClass& tile,

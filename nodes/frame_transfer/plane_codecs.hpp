@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -46,6 +47,7 @@ public:
 private:
     CodecNumber encodeBy(CodecNumber codec, const compositor::PlaneView& plane, std::vector<std::byte>& into);
     size_t tryCodec(CodecNumber codec, const compositor::PlaneView& plane, int64_t& tookNs);
+    void reportSwitch(const compositor::TileClass& tile, CodecNumber codec, double linkBytesPerSec);
     void measure(compositor::CodecSelector& selector, size_t index, const compositor::TileClass& tile,
                  const compositor::PlaneView& plane);
 
@@ -54,7 +56,8 @@ private:
     uint32_t namedFormats_ = 0;
     compositor::CodecSelector colour_, depth_;
     std::vector<std::byte> scratch_;
-    compositor::Plane decoded_; // output of a codec under measurement
+    compositor::Plane decoded_;                             // output of a codec under measurement
+    std::map<compositor::TileClass, CodecNumber> reported_; // last codec in the log
 };
 
 class PlaneDecoder {

@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/log/log.hpp"
+
 namespace mural::launch {
 
 namespace {
@@ -89,6 +91,7 @@ Result<ChildProcess> ChildProcess::start(const SpawnRequest& request) {
     }
     const int reason = reasonFrom(report[0]);
     close(report[0]);
+    log::debug(log::Topic::Launch, reason != 0 ? "cannot start " : "started ", request.file, ", pid ", pid);
     if (reason != 0) {
         while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
         return Error{request.file + " cannot be executed: " + std::strerror(reason)};
@@ -117,6 +120,8 @@ bool ChildProcess::running() {
     } else if (got == pid_) {
         exitStatus_ = WEXITSTATUS(status);
     }
+    if (log::enabled(log::Topic::Launch, log::Level::Debug))
+        log::debug(log::Topic::Launch, "process ", pid_, " has ended: ", describeEnd());
     return false;
 }
 

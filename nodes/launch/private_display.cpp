@@ -10,6 +10,7 @@
 #include <utility>
 #include <xcb/xcb.h>
 
+#include "common/log/log.hpp"
 #include "nodes/launch/program_check.hpp"
 
 namespace mural::launch {
@@ -118,6 +119,7 @@ Result<std::unique_ptr<PrivateDisplay>> PrivateDisplay::start(int width, int hei
                      "; check free memory and /tmp/.X11-unix"};
     }
     display->name_ = ":" + text;
+    log::debug(log::Topic::Launch, "private display ", display->name_, " of ", width, "x", height, " pixels");
     return display;
 }
 

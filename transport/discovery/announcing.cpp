@@ -4,6 +4,7 @@
 #include <random>
 #include <sys/eventfd.h>
 
+#include "common/log/log.hpp"
 #include "transport/discovery/beacon_sockets.hpp"
 #include "transport/tcp/socket_wait.hpp"
 #include "transport/system_error.hpp"
@@ -52,6 +53,7 @@ void Announcing::run() {
         {
             const std::lock_guard lock(mutex_);
             trouble_ = sockets ? "" : sockets.error().message;
+            log::debug(log::Topic::Discovery, sockets ? "announces this node by beacon" : trouble_);
         }
         int64_t pollNs = monotonicNowNs() + kRescanCardsNs;
         if (!sockets) {

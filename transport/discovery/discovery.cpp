@@ -5,6 +5,7 @@
 #include <optional>
 #include <poll.h>
 
+#include "common/log/log.hpp"
 #include "transport/discovery/avahi_browser.hpp"
 #include "transport/discovery/beacon_sockets.hpp"
 
@@ -76,6 +77,8 @@ Discovered discoverNodes(const DiscoveryOptions& options, Deadline deadline,
         result.nodes = found->table.nodes();
     } while (!deadline.passed() && !(enough && enough(result.nodes)));
     if (browser) result.avahiTrouble = browser->trouble();
+    for (const FoundNode& node : result.nodes)
+        log::debug(log::Topic::Discovery, "found ", node.name, ", port ", node.port);
     return result;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "common/log/log.hpp"
 #include "transport/connection_error.hpp"
 #include "transport/flush_grace.hpp"
 
@@ -48,7 +49,10 @@ Result<std::unique_ptr<SecureConnection>> SecureConnection::shakeHands(std::uniq
             if (auto sent = c.over_->write(output, deadline); !sent) return sent.error();
             c.over_->flush();
         }
-        if (c.channel_.open()) return connection;
+        if (c.channel_.open()) {
+            log::debug(log::Topic::Transport, c.over_->describe(), ": encrypted, for \"", c.name(), "\"");
+            return connection;
+        }
         c.arrived_.resize(c.channel_.wantsBytes());
         const auto got = c.over_->read(c.arrived_, sooner(deadline, Deadline::inMs(kSliceMs)));
         if (!got && !c.over_->timedOut()) return got.error();

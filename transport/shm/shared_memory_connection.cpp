@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <sys/socket.h>
 
+#include "common/log/log.hpp"
 #include "transport/shm/ring_connection.hpp"
 #include "transport/system_error.hpp"
 
@@ -93,6 +94,8 @@ Result<SharedMemoryOffer> offerSharedMemory(size_t capacityBytes) {
     SharedMemoryOffer offer;
     offer.connection = std::make_unique<RingConnection>(*memory, 0, std::move(ownEnd), "shm:");
     offer.peerFd = peerEnd.release();
+    log::debug(log::Topic::Transport, "shared memory of ", capacityBytes, " bytes per direction, peer descriptor ",
+               offer.peerFd);
     return offer;
 }
 
@@ -108,6 +111,7 @@ Result<std::unique_ptr<Connection>> openSharedMemory(int fd) {
     if (!memfd) return memfd.error();
     auto memory = RingMemory::openShared(memfd->get());
     if (!memory) return memory.error();
+    log::debug(log::Topic::Transport, "shared memory opened from descriptor ", fd);
     return std::unique_ptr<Connection>(std::make_unique<RingConnection>(*memory, 1, std::move(socket), "shm:"));
 }
 

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "common/log/log.hpp"
 #include "transport/tcp/socket_wait.hpp"
 #include "transport/system_error.hpp"
 #include "transport/tcp/tcp_address.hpp"
@@ -41,6 +42,7 @@ Result<std::unique_ptr<Connection>> TcpListener::accept(Deadline deadline) {
         FileDescriptor socket(accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
         if (socket.valid()) {
             if (!prepareTcpSocket(socket.get())) continue; // the peer has already gone
+            log::debug(log::Topic::Transport, description_, ": ", tcpText(peerTcpAddress(socket.get())), " connected");
             return std::unique_ptr<Connection>(std::make_unique<TcpConnection>(std::move(socket)));
         }
         if (!passingTrouble(errno)) {
@@ -121,6 +123,7 @@ Result<std::unique_ptr<Listener>> listenTcp(const std::string& address, uint16_t
         auto socket = listenOn(candidates[i]);
         if (socket) {
             std::string text = listenerText(anyAddress, localTcpAddress(socket->get()));
+            log::debug(log::Topic::Transport, text, ": listens");
             return std::unique_ptr<Listener>(std::make_unique<TcpListener>(std::move(*socket), std::move(text)));
         }
         if (i == 0) first = socket.error();
@@ -139,8 +142,10 @@ Result<std::unique_ptr<Connection>> connectTcp(const std::string& host, uint16_t
         const int64_t shareMs = deadline.leftNs(3600 * kNsPerS) / kNsPerMs / remaining;
         auto socket = connectTo((*addresses)[i], remaining == 1 ? deadline : Deadline::inMs(shareMs));
         if (socket) {
+            log::debug(log::Topic::Transport, "connected to ", host, " at ", tcpText((*addresses)[i]));
             return std::unique_ptr<Connection>(std::make_unique<TcpConnection>(std::move(*socket)));
         }
+        log::debug(log::Topic::Transport, socket.error().message);
         last = socket.error();
     }
     return last;

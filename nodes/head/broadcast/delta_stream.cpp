@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/clock.hpp"
+#include "common/log/log.hpp"
 #include "common/memory/malloc_tuning.hpp"
 #include "common/base/quick_clock.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -163,6 +164,9 @@ Result<std::span<const std::byte>> DeltaStream::take() {
             small_.frame(filter_.counts().inBytes - measured_.programBytes, measured_.wireBytes,
                          timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
         timesFrame_ = transferScale.wantsTime() || small_.wantsTime();
+        if (transferScale.plain() != packer.plain())
+            log::debug(log::Topic::Stream, "delta coding ", transferScale.plain() ? "stops searching" : "searches",
+                       " for known data");
         packer.beginFrame(transferScale.plain(), frameGoesOn);
         measured_ = {0, 0, 0, 0, encodeNs_, filter_.counts().inBytes, 0};
     }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "common/log/log.hpp"
 #include "nodes/head/broadcast/head_command.hpp"
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -78,6 +79,8 @@ Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(ui
     arguments.insert(arguments.end(), admission.absent.begin(), admission.absent.end());
     sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Activate, std::as_bytes(std::span(arguments))));
     to.setMember(true);
+    log::debug(log::Topic::Node, "node ", node, " is a member from view ", view_, " on, incarnation ",
+               admission.incarnation);
     if (history) {
         // The last batch of the old dictionary announces the new one. This node receives batches from here on.
         const auto reset = commandBytes(wire::HeadCommand::ResetDictionary, {});
@@ -139,6 +142,8 @@ bool StreamBroadcaster::changesOver(const NodeMulticast::Change& came) {
     changingOver_ = nullptr;
     flushLinksLocked();
     to.setByMulticast(true);
+    log::debug(log::Topic::Stream, "node ", came.node, " receives by multicast from now on, ", skipBytes,
+               " bytes after it joined");
     return true;
 }
 

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "common/log/log.hpp"
+
 namespace mural {
 namespace {
 
@@ -100,6 +102,7 @@ void NodeConnection::lose(const std::string& why) {
         const std::lock_guard lock(reasonMutex_);
         if (reason_.empty()) reason_ = why;
     }
+    log::debug(log::Topic::Node, "gives up node ", location_.node, ": ", why);
     if (alive_.exchange(false)) connection_->close();
 }
 

@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "common/log/log.hpp"
 #include "nodes/launch/session_socket.hpp"
 
 namespace mural {
@@ -188,6 +189,7 @@ void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
     if (hello.magic == capture::kStatusMagic) return sendStatus(socket.get());
     auto admission = judge(socket.get(), hello);
     if (!admission) {
+        log::debug(log::Topic::Program, "a program was refused: ", admission.error().message);
         Welcome refusal{};
         refusal.refused = 1;
         sendWelcome(socket.get(), refusal, admission.error().message, -1);

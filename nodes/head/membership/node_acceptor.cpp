@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <string>
 
+#include "common/log/log.hpp"
 #include "transport/secure/secure_connection.hpp"
 
 namespace mural {
@@ -93,10 +94,11 @@ void NodeAcceptor::check(std::unique_ptr<Connection> connection) {
     auto shown = SecureConnection::accepting(
         std::move(connection), [this](const std::string& name) { return secretOf(name); },
         Deadline::inMs(kProofPatienceMs), [this] { return stop_.load(); });
-    if (!shown) return;
+    if (!shown) return log::debug(log::Topic::Node, "a connection was refused: ", shown.error().message);
     const std::lock_guard lock(mutex_);
     const auto found = expected_.find((*shown)->name());
     if (found == expected_.end()) return; // each secret admits one connection
+    log::debug(log::Topic::Node, "node ", found->second.first, " has connected");
     arrived_[found->second.first] = std::move(*shown);
     expected_.erase(found);
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <poll.h>
 
+#include "common/log/log.hpp"
 #include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/broadcast/head_command.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -60,12 +61,16 @@ void NodeResync::work() {
         sendSnapshot(*snapshot);
     else
         link_.lose(snapshot.error().message);
+    log::debug(log::Topic::Node, "resync of node ", node_, ": ", snapshotBytes_.load(), " bytes of snapshot");
     bool there = snapshot && synchronize() && sendTurns();
     for (int round = 0; there && round < kMaxRounds; ++round) {
         const int64_t beganNs = monotonicNowNs();
         sendQueue();
         there = synchronize();
-        if (monotonicNowNs() - beganNs <= kShortRoundNs) break;
+        const int64_t tookNs = monotonicNowNs() - beganNs;
+        log::debug(log::Topic::Node, "resync of node ", node_, ": round ", round + 1, " took ", tookNs / 1000, " us, ",
+                   queuedBytes_.load(), " bytes of later commands so far");
+        if (tookNs <= kShortRoundNs) break;
     }
     there = there && drawsAgain();
     if (there)
@@ -73,6 +78,7 @@ void NodeResync::work() {
     const Deadline deadline = Deadline::inMs(kDirectPatienceMs);
     while (there && link_.alive() && !nodes_.goDirect(node_, deadline.passed())) sendQueue();
     if (there && link_.alive()) nodes_.inviteToGroup(node_);
+    log::debug(log::Topic::Node, "resync of node ", node_, there && link_.alive() ? " is complete" : " has failed");
     done_ = true;
 }
 

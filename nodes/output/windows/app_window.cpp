@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "common/log/log.hpp"
+
 namespace mural {
 
 namespace {
@@ -37,6 +39,8 @@ Result<std::unique_ptr<AppWindow>> AppWindow::open(AppWindowConfig config) {
     Result<void> ready = window->connect(deadline);
     if (ready) ready = window->adopt(deadline);
     if (!ready && !window->isBlocked()) return ready.error();
+    log::debug(log::Topic::Output, "the program's window ", window->config_.window, " on display \"",
+               window->config_.displayName, "\"", ready ? "" : " does not answer yet");
     return window;
 }
 

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "common/base/clock.hpp"
+#include "common/log/log.hpp"
 #include "nodes/output/windows/wall_screen.hpp"
 
 namespace mural {
@@ -190,13 +191,17 @@ Result<std::unique_ptr<WallWindows>> WallWindows::open(const WallWindowsConfig& 
     }
     std::unique_ptr<WallWindows> windows(new WallWindows(std::move(shared)));
     if (!opened) return opened.error(); // the destructor ends the thread
+    log::debug(log::Topic::Output, config.tiles.size(), " wall windows on display \"", config.displayName, "\"");
     return windows;
 }
 
 WallWindows::WallWindows(std::shared_ptr<Shared> shared)
     : shared_(std::move(shared)), showTimeoutMs_(shared_->config.showTimeoutMs) {}
 
-WallWindows::~WallWindows() { shared_->end(); }
+WallWindows::~WallWindows() {
+    shared_->end();
+    log::debug(log::Topic::Output, "wall windows are closed");
+}
 
 Result<void> WallWindows::show(size_t tile, const Picture& picture) {
     const TilePicture one{tile, picture};

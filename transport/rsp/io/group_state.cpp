@@ -7,6 +7,7 @@
 
 #include <boost/asio/post.hpp>
 
+#include "common/log/log.hpp"
 #include "transport/tcp/tcp_address.hpp"
 #include "transport/tcp/tcp_race.hpp"
 
@@ -24,6 +25,19 @@ constexpr size_t kUdpOverIpv4Bytes = 28;
 constexpr size_t kUdpOverIpv6Bytes = 48;
 
 int64_t steadyNs() { return quickNowNs(); }
+
+const char* wayOf(bool multicast) { return multicast ? "multicast" : "its control connection"; }
+
+const char* textOf(GoneReason reason) {
+    switch (reason) {
+    case GoneReason::Left: return "it left";
+    case GoneReason::Cut: return "its control connection ended";
+    case GoneReason::Silent: return "silent";
+    case GoneReason::Stalled: return "stalled";
+    case GoneReason::Removed: break;
+    }
+    return "removed";
+}
 
 // Removes the mapping prefix: an IPv4 peer of an IPv6 socket appears as "::ffff:10.0.0.1".
 std::string withoutMapping(const std::string& address) {
@@ -105,6 +119,9 @@ Result<void> Group::State::openCore(bool isHost) {
     if (isHost) {
         outbox_->useKeys(s.keys, kHost);
         opener_.emplace(s.keys);
+        log::debug(log::Topic::Rsp, "host of ", s.group, " on ", interface_.name, ": datagrams of ", s.datagramBytes,
+                   " bytes, a window of ", s.windowDatagrams, ", at most ", s.rate.maxBytesPerS / 1e6, " MB/s, ",
+                   nameOf(options_.seal));
     }
     core = std::make_unique<GroupCore>(s, *this);
     return {};
@@ -148,6 +165,7 @@ Result<void> Group::State::openMember(Deadline deadline) {
     auto link =
         std::make_shared<ControlLink>(std::move(socket), SecureChannel::connecting(options_.name, options_.secret));
     hostAddress_ = link->peerAddress();
+    log::debug(log::Topic::Rsp, "joins the group at ", options_.control, " on ", interface_.name);
     asio::post(context_, [this, link] { startLink(kHost, link); });
     startThread();
     return {};
@@ -197,7 +215,10 @@ void Group::State::endAfterGoodbyes(Deadline deadline) {
 }
 
 void Group::State::fail(const std::string& why) {
-    if (failure.empty()) failure = why.empty() ? "the group's host has ended the group" : why;
+    if (failure.empty()) {
+        failure = why.empty() ? "the group's host has ended the group" : why;
+        log::debug(log::Topic::Rsp, "the group ends: ", failure);
+    }
     wakeAll();
 }
 
@@ -317,8 +338,10 @@ void Group::State::welcomed(const Welcome& w) {
     opener_.emplace(w.keys);
     opener_->addMember(kHost);
     // If joining fails, no probe arrives, and the host uses the connection.
-    if (!options_.multicast || !joinMulticast()) return;
-    ignoreOwn();
+    const auto joined = options_.multicast ? joinMulticast() : Result<void>(Error{"it is not wanted"});
+    log::debug(log::Topic::Rsp, "member ", w.self, " of ", w.group, ", window of ", w.windowDatagrams, " datagrams; ",
+               joined ? "listens to multicast" : "no multicast: " + joined.error().message);
+    if (joined) ignoreOwn();
 }
 
 void Group::State::memberCame(MemberId id, const MemberInfo& info) {
@@ -328,6 +351,8 @@ void Group::State::memberCame(MemberId id, const MemberInfo& info) {
         outbox_->setMember(id, *address);
     }
     known_[id] = info;
+    log::debug(log::Topic::Rsp, "member ", id, " (", info.name, ") at ", host, " came, reached by ",
+               wayOf(info.multicast));
     note({MemberEvent::Kind::Came, id, info, {}});
     updateLoop();
     changed.notify_all();
@@ -342,6 +367,7 @@ void Group::State::note(const MemberEvent& event) {
 
 void Group::State::memberRerouted(MemberId id, bool multicast) {
     known_[id].multicast = multicast;
+    log::debug(log::Topic::Rsp, "member ", id, " is reached by ", wayOf(multicast), " from now on");
     note({MemberEvent::Kind::Rerouted, id, known_[id], {}});
     if (!multicast) return;
     // Queued datagrams are outdated: a member that was stopped has them in its socket buffer, and others are repaired.
@@ -351,6 +377,7 @@ void Group::State::memberRerouted(MemberId id, bool multicast) {
 }
 
 void Group::State::memberGone(MemberId id, GoneReason reason) {
+    log::debug(log::Topic::Rsp, "member ", id, " (", known_[id].name, ") is gone: ", textOf(reason));
     note({MemberEvent::Kind::Gone, id, known_[id], reason});
     known_.erase(id);
     opener_->removeMember(id);

@@ -15,6 +15,7 @@
 #include "transport/rsp/io/socket_poller.hpp"
 #include "transport/rsp/io/send_batcher.hpp"
 #include "transport/rsp/io/control_link.hpp"
+#include "transport/rsp/io/group_diagnostics.hpp"
 #include "transport/rsp/group.hpp"
 #include "transport/rsp/protocol/receive_moderation.hpp"
 #include "transport/rsp/io/handover_timer.hpp"
@@ -135,6 +136,7 @@ private:
     bool loop_ = true;                   // multicast loopback is on
     int64_t timerNs_ = INT64_MAX;        // time of the next due work
     int64_t publishedNs_ = INT64_MAX;    // time set in arrivals_
+    GroupDiagnostics diagnostics_;
     std::thread thread_;
 };
 

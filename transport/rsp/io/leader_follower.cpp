@@ -175,6 +175,7 @@ void Group::State::pump(int64_t nowNs) {
     const int64_t next = core->tick(nowNs);
     outbox_->flush();
     armTimer(next);
+    diagnostics_.look(*core, nowNs);
     wakeWaiting();
 }
 
