@@ -110,7 +110,7 @@ def refused_before(folder):
         content = whole.read()
         middle = len(content) // 2
         f.write(content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1:])
-    for words, wanted in ((('--', 'mural-no-such-program'), 'was not found in PATH'), (('--', lost), 'No such file or directory'), (('--', kept), 'may not be executed'),
+    for words, wanted in ((('--', 'mural-no-such-program'), 'was not found in PATH'), (('--', lost), 'No such file or directory'), (('--', kept), 'is not executable'),
                           (('--recording', damaged, '--', 'true'), 'omit --recording or the program'), (('--recording', '/etc/passwd'), 'is not a trace of Mural'),
                           (('--recording', damaged), 'is damaged'), (('--recording', lost), "cannot be read"),
                           (('--json', lost), "--json %s cannot be written: No such file" % lost), (('--svg', folder), 'Is a directory'),

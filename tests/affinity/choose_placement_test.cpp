@@ -62,7 +62,7 @@ TEST(ChoosePlacement, keepsPlacementsThatCannotImprove) {
 TEST(ChoosePlacement, reportsThatThereIsNothingToChoose) {
     MachineView m = twoSockets();
     m.devices.clear();
-    EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).description, "not placed: no GPU was found");
+    EXPECT_EQ(choosePlacement(m, DeviceKind::Gpu).description, "not placed: no GPU found");
     EXPECT_EQ(choosePlacement(m, DeviceKind::Network).description, "not placed: no network interface that is up found");
     m = twoSockets();
     m.numaNodes = 1;

@@ -56,14 +56,14 @@ def bad():
         expect(status == 0 and out[0].startswith('warning: F:1:10: section config has no field latancy'), 'a warning: %s' % out)
         expect(lines('config { latancy 3 }', '--strict')[0] == 2, '--strict takes a warning for none')
         status, _, err = run('draw', path, '--out', folder)
-        expect(status == 1 and err.strip().split('\n')[-1].startswith('mural config: %s can\'t be written' % folder), 'an output that is a folder: %d %s' % (status, err))
+        expect(status == 1 and err.strip().split('\n')[-1].startswith('mural config: %s cannot be written' % folder), 'an output that is a folder: %d %s' % (status, err))
         status, _, err = run('print', path, '--resolved', '--layout', 'none')
         expect(status == 2 and 'no canvas has a layout none' in err, 'a layout that is not there: %s' % err)
     status, out, _ = run('check', '/nonexistent.eqc')
     expect(status == 2 and out.startswith("error: /nonexistent.eqc: cannot be read"), 'a file that is not there: %s' % out)
     expect(run('chek', '/nonexistent.eqc')[0] == 2, 'a verb that does not exist')
     for words, output in ((('print', files[0], '--resolved', '--frame', '-3'), '--frame'), (('print', files[0], '--frame', '2'), 'require print --resolved'),
-                        (('draw', files[0], '--resolved'), '--resolved is for print'), (('check', files[0], '--out', 'x'), '--out requires print or draw')):
+                        (('draw', files[0], '--resolved'), '--resolved requires print'), (('check', files[0], '--out', 'x'), '--out requires print or draw')):
         status, out, err = run(*words)
         expect(status == 2 and not out and output in err and err.count('\n') == 1, '%s: %d %s' % (' '.join(words), status, err))
     # Each word of a file that is no configuration causes a warning; the error must still be visible.

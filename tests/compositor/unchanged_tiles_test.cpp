@@ -53,7 +53,7 @@ TEST(UnchangedTiles, detectsAMissingPlaneAndRestarts) {
     plane.bytes()[8] ^= std::byte{1};
     const auto refused = link.decoder.decode(link.encoded(plane), *link.codec, there.view());
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("another plane"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("its previous plane is not the current one"), std::string::npos);
     EXPECT_FALSE(link.decoder.decode(link.encoded(plane), *link.codec, there.view())) << "still";
     link.encoder.restart();
     ASSERT_TRUE(link.decoder.decode(link.encoded(plane), *link.codec, there.view()));

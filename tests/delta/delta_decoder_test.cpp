@@ -28,7 +28,7 @@ std::string problemOf(const std::function<void(ControlWriter&)>& write, size_t l
 
 TEST(DeltaDecoder, describesErrors) {
     const auto has = [](const std::string& text, const char* part) {
-        return text.find(part) != std::string::npos && text.find("; head and nodes must be") != std::string::npos;
+        return text.find(part) != std::string::npos && text.find("; install the same version") != std::string::npos;
     };
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Run, 1); }), "a reference to an unknown entry"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Patch, 1); }), "a delta of an unknown entry"));
@@ -41,7 +41,7 @@ TEST(DeltaDecoder, describesErrors) {
     EXPECT_TRUE(
         has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 2), c.number(UINT32_MAX); }), "unknown page"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::ControlOp, 9); }), "unknown"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(ControlOp::Stream); }), "in the middle"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(ControlOp::Stream); }), "within a packet"));
     EXPECT_TRUE(
         has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 1), c.put(ControlOp::Stream), c.number(1); }, 4),
             "another stream"));
@@ -115,8 +115,8 @@ TEST(DeltaDecoder, describesErrors) {
                   1200),
               "");
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2), c.put(ControlOp::Done); }, 8),
-                    "in the middle of a packet"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 8), "in the middle of a packet"));
+                    "within a packet"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 8), "within a packet"));
 }
 
 // A few bytes must not make a node decode forever, or into more memory than a packet.

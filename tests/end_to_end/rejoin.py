@@ -647,7 +647,7 @@ def dies_again_and_again(context):
         differing = watch.differing(run)
         if isinstance(differing, str):
             return differing
-        if len(printed(run, "tiles stay as they were")) != 2:  # until the rejoin, after 2 tries
+        if len(printed(run, "its tiles keep their last picture")) != 2:  # until the rejoin, after 2 tries
             return "no message that it stays lost: " + " | ".join(run.standard_error[-6:])
         return judged(differing, [(frame - 3, range(half, WIDTH))], -1)
 

@@ -35,7 +35,7 @@ public:
         if (!changed_.wait_for(lock, std::chrono::nanoseconds(deadline.leftNs()),
                                [&] { return !coming.empty() || gone_.contains(from) || isCut(from.rank, to.rank); }) ||
             coming.empty())
-            return Error{"range " + std::to_string(from.rank + 1) + " is gone"};
+            return Error{"range " + std::to_string(from.rank + 1) + " is disconnected"};
         auto message = std::move(coming.front());
         coming.pop_front();
         return message;

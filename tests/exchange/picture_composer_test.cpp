@@ -110,7 +110,7 @@ TEST(PictureComposer, doesNotBlockOnALostNode) {
             ASSERT_FALSE(made.lines.empty());
             for (const std::string& line : made.lines)
                 EXPECT_EQ(line, "a range of the picture is missing until its node rejoins: range " +
-                                    std::to_string(lost + 1) + " is gone");
+                                    std::to_string(lost + 1) + " is disconnected");
         }
 }
 

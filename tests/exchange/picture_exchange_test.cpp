@@ -49,8 +49,8 @@ TEST(PictureExchange, rejectsAWrongSecret) {
     PictureExchange low({0, 0}, secretOf(1)), stranger({1, 0}, secretOf(2));
     ASSERT_TRUE(low.listen(true));
     EXPECT_FALSE(stranger.connectTo(0, "127.0.0.1", low.port(), Deadline::inMs(5000)));
-    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(300)).error().message, "no connection of range 2 came");
-    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(300)).error().message, "range 2 is gone");
+    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(300)).error().message, "no connection from range 2 came");
+    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(300)).error().message, "range 2 is disconnected");
 }
 
 TEST(PictureExchange, reportsALostPeerAtOnce) {
@@ -75,7 +75,7 @@ TEST(PictureExchange, closesTheConnectionAfterAnOversizedMessage) {
     ASSERT_TRUE(high.send(0, bytesOf(101, 7), Deadline::inMs(5000)));
     EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message,
               "range 2: the size of a picture, 101 bytes, exceeds the limit of 100");
-    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2 is gone");
+    EXPECT_EQ(low.receive(1, 100, Deadline::inMs(5000)).error().message, "range 2 is disconnected");
 }
 
 // The predecessor's state remains until the newcomer is announced as a participant.

@@ -262,7 +262,7 @@ TEST(ConfigPlan, createsChunkQueues) {
         EXPECT_EQ(n.pass.ranges, 3);
     }
     EXPECT_TRUE(plan.warnings.empty());
-    EXPECT_NE(plan.explain.back().find("of 0.01 of the draws"), std::string::npos) << plan.explain.back();
+    EXPECT_NE(plan.explain.back().find("each 0.01 of the draws"), std::string::npos) << plan.explain.back();
 }
 
 // The collector shows the picture of ranges. The head shows what several pictures compose, and both eyes on one screen.

@@ -206,7 +206,7 @@ TEST(HeadSession, reportsWindowsThatEveryNodeDrawsWholeOnce) {
     int line = 0;
     for (const auto& event : head.seen)
         line += event["event"] == "say" &&
-                event["text"].get<std::string>().find("every node draws all") != std::string::npos;
+                event["text"].get<std::string>().find("every node draws the whole picture") != std::string::npos;
     EXPECT_EQ(line, 1);
 }
 
@@ -261,8 +261,9 @@ TEST(HeadSession, sendsUnchangedAreasOnce) {
     head.finish();
     EXPECT_EQ(std::ranges::count_if(head.seen,
                                     [](const auto& e) {
-                                        return e["event"] == "say" && e["text"].template get<std::string>().find(
-                                                                          "its tiles stay") != std::string::npos;
+                                        return e["event"] == "say" &&
+                                               e["text"].template get<std::string>().find("tiles of a window stay") !=
+                                                   std::string::npos;
                                     }),
               1);
 }
@@ -472,7 +473,7 @@ TEST(HeadSession, continuesWhenANodeIsLostInMidFrame) {
         EXPECT_TRUE(program.waitFramesDone(20));
         const std::string line = head.waitForMessage("was lost");
         EXPECT_EQ(line.rfind("node 1 (local) was lost: ", 0), 0u) << line;
-        EXPECT_NE(line.find("its tiles stay as they were"), std::string::npos);
+        EXPECT_NE(line.find("its tiles keep their last picture"), std::string::npos);
         const auto report = head.finish();
         EXPECT_EQ(report["nodes"][1]["lost"], true);
         EXPECT_EQ(report["nodes"][0]["lost"], false);

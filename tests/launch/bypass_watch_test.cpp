@@ -23,7 +23,7 @@ protected:
 TEST_F(Bypass, namesAGlLibraryOfTheProgram) {
     const std::string own = library("libGL.so.1", {"libglapi.so.0"});
     const std::string line = describeBypass({{"/opt/app/bin/app", {library("libX11.so.6", {}), own}}});
-    EXPECT_NE(line.find("app draws by " + own), std::string::npos) << line;
+    EXPECT_NE(line.find("app uses " + own), std::string::npos) << line;
     EXPECT_NE(line.find("--capture-via preload"), std::string::npos) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos);
 }
@@ -53,7 +53,7 @@ TEST_F(Bypass, reportsTheProgramBesideALaunchersDialog) {
     const std::string own = library("libGL.so.1", {"libglapi.so.0"});
     for (const auto& programs : {std::vector<UncapturedProgram>{{"dialog", {x11}}, {"app", {own}}},
                                  std::vector<UncapturedProgram>{{"app", {own}}, {"dialog", {x11}}}}) {
-        EXPECT_EQ(describeBypass(programs).find("app draws by"), 0u);
+        EXPECT_EQ(describeBypass(programs).find("app uses "), 0u);
     }
 }
 

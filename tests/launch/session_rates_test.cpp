@@ -94,7 +94,7 @@ TEST(SessionRates, includeTransferredPictures) {
     session["nodes"][0]["pictureBytes"] = 2000.0;
     const auto lines = statLines(withRates({}, {session})[0]);
     EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) {
-        return line.find("100 frames, pictures of 3.0 kB came in 20 B per frame") != std::string::npos;
+        return line.find("100 frames, pictures of 3.0 kB compressed to 20 B per frame") != std::string::npos;
     })) << lines.back();
 }
 

@@ -288,7 +288,7 @@ TEST_F(OwnedWindows, paintsNothingInAnothersWindow) {
         openFor(other);
         const auto shown = output_->show(1, picture_.view());
         ASSERT_FALSE(shown);
-        EXPECT_NE(shown.error().message.find("is not the program's"), std::string::npos);
+        EXPECT_NE(shown.error().message.find("does not belong to the program"), std::string::npos);
         EXPECT_TRUE(output_->show(2, picture_.view())); // said once
         expectUntouched();
     }

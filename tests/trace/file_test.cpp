@@ -179,7 +179,7 @@ TEST_F(RecordingFile, rejectsOtherCommandTables) {
     ASSERT_TRUE((*writer)->finish());
     auto reader = TraceReader::open(path());
     ASSERT_FALSE(reader);
-    EXPECT_EQ(reader.error().message, "recording " + path() +
+    EXPECT_EQ(reader.error().message, "trace " + path() +
                                           " was recorded by a Mural with other commands (version 9.9); read it with "
                                           "that version, or record it again");
 }

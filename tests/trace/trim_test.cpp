@@ -223,7 +223,7 @@ TEST_F(Trim, reportsMissingFrames) {
 TEST_F(Trim, explainsTracesWithoutFrames) {
     draw();
     trimmed(2, 5);
-    EXPECT_EQ(error_, "recording " + (folder_ / "a").string() +
+    EXPECT_EQ(error_, "trace " + (folder_ / "a").string() +
                           " has no frame, because its program showed no picture; mural dump prints its calls");
 }
 

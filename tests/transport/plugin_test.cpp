@@ -28,7 +28,7 @@ TEST(Plugin, isRejectedWithAReason) {
     expectRefused("nobodyhas", "the plug-in is missing");
     expectRefused("noentry", "has no function mural_get_transport_plugin");
     expectRefused("older", "version 0");
-    expectRefused("short", "cut short");
+    expectRefused("short", "truncated");
     expectRefused("renamed", "implements the scheme \"other\"");
 }
 
@@ -69,7 +69,7 @@ TEST(Plugin, carriesBytesAndErrors) {
     (*a)->close();
     const auto end = (*b)->read(got, Deadline::inMs(5000));
     ASSERT_FALSE(end);
-    EXPECT_NE(end.error().message.find("the other end is gone"), std::string::npos) << end.error().message;
+    EXPECT_NE(end.error().message.find("the peer has closed the connection"), std::string::npos) << end.error().message;
     EXPECT_FALSE((*b)->alive());
     EXPECT_FALSE((*b)->timedOut());
 }

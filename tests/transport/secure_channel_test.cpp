@@ -100,7 +100,7 @@ TEST(SecureChannel, rejectsWrongSecretsAndStrangers) {
     Pair stranger;
     stranger.member = SecureChannel::connecting("node-2", secretOf(1));
     stranger.talk();
-    EXPECT_NE(stranger.error.find("stranger"), std::string::npos) << stranger.error;
+    EXPECT_NE(stranger.error.find("unknown peer name"), std::string::npos) << stranger.error;
 
     Pair other;
     std::vector<Bytes> none;
