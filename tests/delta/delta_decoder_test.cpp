@@ -41,7 +41,7 @@ TEST(DeltaDecoder, describesErrors) {
     EXPECT_TRUE(
         has(problemOf([](ControlWriter& c) { c.put(DeltaOp::Pages, 2), c.number(UINT32_MAX); }), "unknown page"));
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::ControlOp, 9); }), "unknown"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(ControlOp::Stream); }), "within a packet"));
+    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(ControlOp::Stream); }), "end in the middle of a packet"));
     EXPECT_TRUE(
         has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 1), c.put(ControlOp::Stream), c.number(1); }, 4),
             "another stream"));
@@ -116,7 +116,8 @@ TEST(DeltaDecoder, describesErrors) {
               "");
     EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2), c.put(ControlOp::Done); }, 8),
                     "within a packet"));
-    EXPECT_TRUE(has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 8), "within a packet"));
+    EXPECT_TRUE(
+        has(problemOf([](ControlWriter& c) { c.put(DeltaOp::NewText, 2); }, 8), "end in the middle of a packet"));
 }
 
 // A few bytes must not make a node decode forever, or into more memory than a packet.
