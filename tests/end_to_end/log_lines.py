@@ -47,7 +47,7 @@ def multicast_diagnostics_alone(context):
     run, wrong = drawn(context, "rsp:debug", BY_MULTICAST)
     found = diagnostics(run)
     foreign = [m[0] for m in found if (m["topic"], m["level"]) != ("rsp", "debug")]
-    return wrong or missing(found, [("head", "host of 239.255.77.9:4299"), ("head", "(node0) at "), ("head", "(node1) at "),
+    return wrong or missing(found, [("head", "host of 239.255.77.9:4299"), ("head", "(node0) at 127.0.0.1 joined"), ("head", "(node1) at 127.0.0.1 joined"),
                                     ("head", "(node1) is gone"), ("node 0", "joins the group"), ("node 1", "joins the group")]) or (
         "other diagnostics: %s" % foreign if foreign else "other lines: %s" % others(run) if others(run) else None)
 

@@ -28,6 +28,11 @@ int64_t steadyNs() { return quickNowNs(); }
 
 const char* wayOf(bool multicast) { return multicast ? "multicast" : "its control connection"; }
 
+// Members other than the host do not know the names of each other.
+std::string memberText(MemberId id, const MemberInfo& info) {
+    return "member " + std::to_string(id) + (info.name.empty() ? "" : " (" + info.name + ")");
+}
+
 const char* textOf(GoneReason reason) {
     switch (reason) {
     case GoneReason::Left: return "it left";
@@ -120,8 +125,8 @@ Result<void> Group::State::openCore(bool isHost) {
         outbox_->useKeys(s.keys, kHost);
         opener_.emplace(s.keys);
         log::debug(log::Topic::Rsp, "host of ", s.group, " on ", interface_.name, ": datagrams of ", s.datagramBytes,
-                   " bytes, a window of ", s.windowDatagrams, ", at most ", s.rate.maxBytesPerS / 1e6, " MB/s, ",
-                   nameOf(options_.seal));
+                   " bytes, a window of ", s.windowDatagrams, ", rate limit ", s.rate.maxBytesPerS / 1e6,
+                   " MB/s (0: none), ", nameOf(options_.seal));
     }
     core = std::make_unique<GroupCore>(s, *this);
     return {};
@@ -351,7 +356,7 @@ void Group::State::memberCame(MemberId id, const MemberInfo& info) {
         outbox_->setMember(id, *address);
     }
     known_[id] = info;
-    log::debug(log::Topic::Rsp, "member ", id, " (", info.name, ") at ", host, " came, reached by ",
+    log::debug(log::Topic::Rsp, memberText(id, info), " at ", withoutMapping(host), " joined; it receives by ",
                wayOf(info.multicast));
     note({MemberEvent::Kind::Came, id, info, {}});
     updateLoop();
@@ -367,7 +372,7 @@ void Group::State::note(const MemberEvent& event) {
 
 void Group::State::memberRerouted(MemberId id, bool multicast) {
     known_[id].multicast = multicast;
-    log::debug(log::Topic::Rsp, "member ", id, " is reached by ", wayOf(multicast), " from now on");
+    log::debug(log::Topic::Rsp, memberText(id, known_[id]), " receives by ", wayOf(multicast), " from now on");
     note({MemberEvent::Kind::Rerouted, id, known_[id], {}});
     if (!multicast) return;
     // Queued datagrams are outdated: a member that was stopped has them in its socket buffer, and others are repaired.
@@ -377,7 +382,7 @@ void Group::State::memberRerouted(MemberId id, bool multicast) {
 }
 
 void Group::State::memberGone(MemberId id, GoneReason reason) {
-    log::debug(log::Topic::Rsp, "member ", id, " (", known_[id].name, ") is gone: ", textOf(reason));
+    log::debug(log::Topic::Rsp, memberText(id, known_[id]), " is gone: ", textOf(reason));
     note({MemberEvent::Kind::Gone, id, known_[id], reason});
     known_.erase(id);
     opener_->removeMember(id);
