@@ -33,7 +33,7 @@ void GroupDiagnostics::compareSender(const Sender& sender) {
     else if (sent_.datagrams != before.datagrams)
         log::trace(log::Topic::Rsp, "sent ", sent_.datagrams - before.datagrams, " datagrams without repair");
     for (const auto& [id, member] : sender.members()) compareMember(id, member);
-    if (!sender.rate().limited()) return;
+    if (!sender.rate().limited() || sent_.datagrams == 0) return;
     const double rate = sender.rate().bytesPerS();
     if (std::abs(rate - bytesPerS_) <= kRateShare * rate) return;
     log::debug(log::Topic::Rsp, "rate ", bytesPerS_ / 1e6, " -> ", rate / 1e6, " MB/s; loss without congestion ",
