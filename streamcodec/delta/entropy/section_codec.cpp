@@ -168,8 +168,8 @@ struct SectionDecompressor::State {
                                                           static_cast<int>(size), static_cast<int>(piece.size()),
                                                           chars(last.data()), static_cast<int>(last.size()));
             if (got < 0 || static_cast<size_t>(got) != piece.size()) return false;
-            copyBytes(piece, window.add(piece.size(), [](std::byte* to, std::span<const std::byte> window) {
-                std::memmove(to, window.data(), window.size());
+            copyBytes(piece, window.add(piece.size(), [](std::byte* to, std::span<const std::byte> kept) {
+                std::memmove(to, kept.data(), kept.size());
             }));
             bytes = bytes.subspan(size);
             into = into.subspan(piece.size());
