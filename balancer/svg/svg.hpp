@@ -25,7 +25,7 @@ struct Style {
     std::string stroke = "none";
     double strokeWidth = 1;
     double rounding = 0;
-    std::string dash; // "4 3"
+    std::string dash = {}; // "4 3"
     double opacity = 1;
 };
 
