@@ -35,8 +35,9 @@ struct CompoundState {
     std::optional<Viewport> viewport;
     std::optional<Range> range;
     std::optional<Zoom> zoom;
-    bool active = true; // false: inactive together with its whole subtree
-    double usage = 1;   // resources of its channels that it may use: 1 is all; equalizers above set it for those below
+    bool active = true;      // false: inactive together with its whole subtree
+    bool isAvailable = true; // false: the render node of a leaf is lost; equalizers give it no work
+    double usage = 1; // resources of its channels that it may use: 1 is all; equalizers above set it for those below
     std::vector<std::optional<InputPlacement>> inputs; // per input frame; missing ones fill the channel
     double maxFps = 0; // highest rate at which its channels begin frames, in Hz; 0: no limit
     friend bool operator==(const CompoundState&, const CompoundState&) = default;

@@ -31,7 +31,7 @@ public:
     explicit Maker(const Preset& form) : form_(form) {
         for (const Level level : {Level{Level::Kind::Frames, form.frames},
                                   {Level::Kind::Ranges, form.ranges},
-                                  {Level::Kind::Pixels, form.pixels},
+                                  {Level::Kind::Pixels, form.pixelColumns * form.pixelRows},
                                   {Level::Kind::Samples, form.samples}}) {
             if (level.count > 1) levels_.push_back(level);
         }
@@ -43,8 +43,8 @@ public:
         if (form_.frames > 1) c.latency = static_cast<uint32_t>(form_.frames);
         for (const std::string& host : form_.nodes) {
             Node node;
-            node.name = host;
-            node.host = host;
+            node.name = host.empty() ? "local." + std::to_string(c.nodes.size()) : host;
+            if (!host.empty()) node.host = host;
             c.nodes.push_back(node);
         }
         c.observers.emplace_back();
@@ -140,7 +140,7 @@ private:
 
     // Draws each part on a channel of its own. The first range is drawn on the channel that composites the ranges.
     void divide(Compound& c, const std::string& channel, size_t depth) {
-        if (depth == levels_.size()) return queueTiles(c, channel);
+        if (depth == levels_.size()) return form_.tileWidth > 0 ? queueTiles(c, channel) : splitArea(c, channel);
         const Level& level = levels_[depth];
         static constexpr const char* kNames[] = {".frame.", ".range.", ".pixel.", ".sample."};
         for (int32_t i = 0; i < level.count; ++i) {
@@ -154,10 +154,13 @@ private:
             case Level::Kind::Ranges:
                 if (form_.chunks > 0)
                     part.inputTiles.push_back(chunksOf(channel));
-                else
+                else if (form_.split == SplitPreset::Fixed)
                     part.range = Range{edge(i, level.count), edge(i + 1, level.count)};
                 break;
-            case Level::Kind::Pixels: part.pixel = PixelKernel{i, 0, level.count, 1}; break;
+            case Level::Kind::Pixels:
+                part.pixel =
+                    PixelKernel{i % form_.pixelColumns, i / form_.pixelColumns, form_.pixelColumns, form_.pixelRows};
+                break;
             case Level::Kind::Samples: part.subPixel = SubPixel{i, level.count}; break;
             }
             if (i > 0 || level.kind != Level::Kind::Ranges) {
@@ -172,7 +175,9 @@ private:
             divide(part, name, depth + 1);
             c.children.push_back(std::move(part));
         }
-        if (level.kind != Level::Kind::Ranges || form_.chunks <= 0) return;
+        if (level.kind != Level::Kind::Ranges) return;
+        if (form_.split != SplitPreset::Fixed) return addEqualizer(c, SplitMode::Db);
+        if (form_.chunks <= 0) return;
         TileQueue queue = chunksOf(channel);
         queue.size.range = edge(1, form_.chunks);
         c.outputTiles.push_back(queue);
@@ -184,8 +189,41 @@ private:
         return queue;
     }
 
+    void addEqualizer(Compound& c, SplitMode mode) const {
+        LoadEqualizer load;
+        load.mode = mode;
+        TreeEqualizer tree;
+        tree.mode = mode;
+        if (form_.split == SplitPreset::Load)
+            c.equalizers.emplace_back(load);
+        else
+            c.equalizers.emplace_back(tree);
+    }
+
+    // The destination's channel draws the first part. Fixed parts are strips.
+    void splitArea(Compound& c, const std::string& channel) {
+        const int32_t n = form_.takers;
+        if (n < 2) return;
+        for (int32_t i = 0; i < n; ++i) {
+            Compound part;
+            if (form_.split == SplitPreset::Fixed)
+                part.viewport = Viewport{0, edge(i, n), 1, between(edge(i, n), edge(i + 1, n))};
+            if (i > 0) {
+                const std::string name = channel + ".part." + std::to_string(i);
+                addChannel(name, {0, 0, form_.width, form_.height}, false, {channelNamed(name)});
+                part.channel = name;
+                Frame frame;
+                frame.name = name;
+                part.outputFrames.push_back(frame);
+                c.inputFrames.push_back(frame);
+            }
+            c.children.push_back(std::move(part));
+        }
+        if (form_.split != SplitPreset::Fixed) addEqualizer(c, SplitMode::TwoD);
+    }
+
     void queueTiles(Compound& c, const std::string& channel) {
-        if (form_.tileWidth <= 0 || form_.takers < 2) return;
+        if (form_.takers < 2) return;
         TileQueue queue;
         queue.name = channel + ".queue";
         for (int32_t i = 0; i < form_.takers; ++i) {
@@ -217,7 +255,8 @@ Result<ConfigFile> shortForm(const Preset& form) {
     for (const Named n : {Named{"tiles", form.columns},
                           {"tiles", form.rows},
                           {"db", form.ranges},
-                          {"pixel", form.pixels},
+                          {"pixel", form.pixelColumns},
+                          {"pixel", form.pixelRows},
                           {"subpixel", form.samples},
                           {"dplex", form.frames},
                           {"local-nodes", form.takers}}) {
@@ -233,7 +272,7 @@ Result<ConfigFile> shortForm(const Preset& form) {
                      " pixels cannot be divided this way; choose another size"};
     }
     for (const std::string& host : form.nodes) {
-        if (host.empty() || host.find_first_of("\"\n") != std::string::npos)
+        if (host.find_first_of("\"\n") != std::string::npos)
             return Error{"\"" + host + "\" is not a host; use names or addresses"};
     }
     return Maker(form).make();

@@ -16,20 +16,27 @@ enum class StereoPreset : uint8_t {
     SideBySide, // left eye in the left half of each window, right eye in the right half
 };
 
+enum class SplitPreset : uint8_t {
+    Fixed, // equal parts
+    Load,  // divided by a load equalizer
+    Tree,  // divided by a tree equalizer
+};
+
 struct Preset {
     int32_t columns = 1; // tiles
     int32_t rows = 1;
-    std::vector<std::string> nodes; // host names; empty: this machine only
-    int32_t ranges = 1;             // --db
-    std::string composition;        // --composition of the ranges; empty: not stated
-    int32_t chunks = 0;             // --chunk-queue; 0: static ranges
-    int32_t pixels = 1;             // --pixel
-    int32_t samples = 1;            // --subpixel
-    int32_t frames = 1;             // --dplex
-    Zoom zoom;                      // --zoom
-    int32_t tileWidth = 0;          // --tile-queue, in pixels; 0: none
+    std::vector<std::string> nodes;          // host names; an empty name, or none at all: this machine
+    int32_t ranges = 1;                      // --db
+    std::string composition;                 // --composition of the ranges; empty: not stated
+    int32_t chunks = 0;                      // --chunk-queue; 0: static ranges
+    SplitPreset split = SplitPreset::Fixed;  // --balance: of ranges, and of areas among several channels
+    int32_t pixelColumns = 1, pixelRows = 1; // --pixel
+    int32_t samples = 1;                     // --subpixel
+    int32_t frames = 1;                      // --dplex
+    Zoom zoom;                               // --zoom
+    int32_t tileWidth = 0;                   // --tile-queue, in pixels; 0: none
     int32_t tileHeight = 0;
-    int32_t takers = 1; // channels that take tiles, per part of the picture
+    int32_t takers = 1; // channels that share each part of the picture, by tiles or by a split
     StereoPreset stereo = StereoPreset::None;
     int32_t width = 1920; // of the whole picture, in pixels
     int32_t height = 1080;

@@ -15,7 +15,7 @@ constexpr double kNearRate = .02;    // deviation from the target rate that chan
 
 DfrEqualizer::DfrEqualizer(std::string id, const ResolvedConfig& config, Index compound,
                            const config::DfrEqualizer& fields)
-    : Equalizer(std::move(id), "DFR_equalizer", compound),
+    : Equalizer(std::move(id), "DFR_equalizer", compound, Effect::Zooms),
       root_(compound),
       full_(config.compounds[at(compound)].zoom),
       isHere_(config.compounds.size(), false) {

@@ -15,12 +15,23 @@ LeafStatistics leafOf(const compound::RenderContext& c, const compound::DisplayS
     return leaf;
 }
 
+bool Equalizer::isAvailabilityChanged(const States& states) {
+    std::vector<bool> now(states.size());
+    for (size_t i = 0; i < states.size(); ++i) now[i] = states[i].isAvailable;
+    return std::exchange(frozenAvailability_, now) != now;
+}
+
+void Equalizer::freeze(bool frozen, const States& states) {
+    isFrozen_ = frozen;
+    if (frozen) (void)isAvailabilityChanged(states);
+}
+
 void Equalizer::update(const FrameContext& context, States& states) {
     decision_.frame = context.input.frameNumber;
     decision_.moved = false;
     decision_.predictedGain = 0;
     decision_.inputs.clear();
-    if (isFrozen_) {
+    if (isFrozen_ && !isAvailabilityChanged(states)) {
         decision_.what = "frozen";
         return;
     }

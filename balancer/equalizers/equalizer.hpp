@@ -30,11 +30,14 @@ struct Decision {
     std::vector<std::pair<const char*, double>> inputs;
 };
 
+// The members of CompoundState that an equalizer sets.
+enum class Effect : uint8_t { Viewports, Ranges, Usage, Zooms, FrameRates, Inputs };
+
 class Equalizer {
 public:
     // id: unique within a configuration. kind: the keyword of the format.
-    Equalizer(std::string id, const char* kind, Index compound)
-        : id_(std::move(id)), kind_(kind), compound_(compound) {}
+    Equalizer(std::string id, const char* kind, Index compound, Effect effect)
+        : id_(std::move(id)), kind_(kind), compound_(compound), effect_(effect) {}
     virtual ~Equalizer() = default;
     Equalizer(const Equalizer&) = delete;
     Equalizer& operator=(const Equalizer&) = delete;
@@ -42,12 +45,17 @@ public:
     [[nodiscard]] const std::string& id() const { return id_; }
     [[nodiscard]] const char* kind() const { return kind_; }
     [[nodiscard]] Index compound() const { return compound_; }
+    [[nodiscard]] Effect effect() const { return effect_; }
+    // The compounds whose states the equalizer sets, in the order of its decisions.
+    [[nodiscard]] virtual std::vector<Index> targets(const ResolvedConfig& config) const {
+        return config.compounds[at(compound_)].children;
+    }
     [[nodiscard]] const Decision& lastDecision() const { return decision_; }
     [[nodiscard]] const Parameters& parameters() const { return parameters_; }
     Result<void> set(std::string_view parameter, std::string_view value) { return parameters_.set(parameter, value); }
 
-    // A frozen equalizer observes, but leaves all states as they are.
-    void freeze(bool frozen) { isFrozen_ = frozen; }
+    // A frozen equalizer observes, but leaves all states as they are, unless nodes are lost or return.
+    void freeze(bool frozen, const States& states);
     [[nodiscard]] bool isFrozen() const { return isFrozen_; }
 
     // Receives the frames in ascending order.
@@ -62,10 +70,14 @@ protected:
     Decision decision_;
 
 private:
+    bool isAvailabilityChanged(const States& states);
+
     const std::string id_;
     const char* const kind_;
     const Index compound_;
+    const Effect effect_;
     bool isFrozen_ = false;
+    std::vector<bool> frozenAvailability_; // per compound, at the last update of a frozen equalizer
 };
 
 } // namespace mural::balance

@@ -11,7 +11,7 @@ constexpr double kMostFps = 60;    // faster frames need no pace
 } // namespace
 
 FramerateEqualizer::FramerateEqualizer(std::string id, const ResolvedConfig& config, Index compound)
-    : Equalizer(std::move(id), "framerate_equalizer", compound), children_(config, compound) {
+    : Equalizer(std::move(id), "framerate_equalizer", compound, Effect::FrameRates), children_(config, compound) {
     for (const Index child : children_.children())
         periods_.push_back(std::max(1u, config.compounds[at(child)].period.value_or(1)));
     seconds_.resize(periods_.size(), 0);

@@ -21,7 +21,7 @@ Index producerOf(const ResolvedConfig& config, Index compound, const std::string
 } // namespace
 
 MonitorEqualizer::MonitorEqualizer(std::string id, const ResolvedConfig& config, Index compound)
-    : Equalizer(std::move(id), "monitor_equalizer", compound) {
+    : Equalizer(std::move(id), "monitor_equalizer", compound, Effect::Inputs) {
     Index root = compound;
     while (config.compounds[at(root)].parent != kNone) root = config.compounds[at(root)].parent;
     const config::ResolvedCompound& own = config.compounds[at(compound)];

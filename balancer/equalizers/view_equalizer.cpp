@@ -14,7 +14,7 @@ constexpr double kHysteresis = .15; // smaller changes of a need, in pipes, chan
 } // namespace
 
 ViewEqualizer::ViewEqualizer(std::string id, const ResolvedConfig& config, Index compound)
-    : Equalizer(std::move(id), "view_equalizer", compound),
+    : Equalizer(std::move(id), "view_equalizer", compound, Effect::Usage),
       usage_(config.compounds.size(), 0),
       before_(config.compounds.size(), 0) {
     free_.resize(config.pipes.size());

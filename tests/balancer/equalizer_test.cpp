@@ -63,13 +63,13 @@ TEST(SplitEqualizers, holdExactlyWhenFrozen) {
         DividedPicture picture(8, SplitMode::TwoD);
         const auto equalizer = make(picture, kind);
         picture.run(*equalizer, heavy, 3);
-        equalizer->freeze(true);
+        equalizer->freeze(true, picture.states());
         const States held = picture.states();
         picture.run(
             *equalizer, [](const LeafStatistics& leaf) { return 1 / heavy(leaf); }, 10);
         for (size_t i = 0; i < held.size(); ++i) EXPECT_EQ(picture.states()[i].viewport, held[i].viewport);
         EXPECT_FALSE(equalizer->lastDecision().moved);
-        equalizer->freeze(false);
+        equalizer->freeze(false, picture.states());
         picture.run(*equalizer, heavy, 20);
         EXPECT_GT(balanceOf(picture.draw(heavy), 8), .93);
     }

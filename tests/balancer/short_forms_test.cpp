@@ -69,7 +69,7 @@ TEST(ShortForms, supportZoom) {
 TEST(ShortForms, workInCombination) {
     for (const auto stereo : {StereoPreset::None, StereoPreset::Anaglyph, StereoPreset::Passive}) {
         Preset form;
-        form.columns = form.ranges = form.pixels = form.samples = form.frames = 2;
+        form.columns = form.ranges = form.pixelColumns = form.samples = form.frames = 2;
         form.nodes = {"a", "b", "c"};
         form.stereo = stereo;
         expectWhole(form);

@@ -1,5 +1,7 @@
 #include "balancer/equalizers/split/split_equalizer.hpp"
 
+#include <algorithm>
+
 #include "balancer/compound/inheritance.hpp"
 
 namespace mural::balance {
@@ -13,6 +15,12 @@ compound::Inherited inheritedOf(const FrameContext& context, Index compound) {
     return compound::inherit(context.config, context.input, compound, &above);
 }
 
+void collectLeaves(const ResolvedConfig& config, Index compound, std::vector<Index>& leaves) {
+    const config::ResolvedCompound& c = config.compounds[at(compound)];
+    if (c.isLeaf()) leaves.push_back(compound);
+    for (const Index child : c.children) collectLeaves(config, child, leaves);
+}
+
 } // namespace
 
 PixelViewport areaOf(const FrameContext& context, Index compound) {
@@ -22,7 +30,12 @@ PixelViewport areaOf(const FrameContext& context, Index compound) {
 
 SplitEqualizer::SplitEqualizer(std::string id, const char* kind, const ResolvedConfig& config, Index compound,
                                SplitMode mode)
-    : Equalizer(std::move(id), kind, compound), children_(config, compound), mode_(mode) {}
+    : Equalizer(std::move(id), kind, compound, mode == SplitMode::Db ? Effect::Ranges : Effect::Viewports),
+      children_(config, compound),
+      mode_(mode),
+      leaves_(children_.size()) {
+    for (size_t i = 0; i < children_.size(); ++i) collectLeaves(config, children_.children()[i], leaves_[i]);
+}
 
 void SplitEqualizer::addCutParameters(double damping, const config::PixelsOrRange& boundary,
                                       const config::PixelsOrRange& resistance) {
@@ -71,8 +84,14 @@ CutRules SplitEqualizer::rules(const FrameContext& context, const States& states
     return rules;
 }
 
+// A child of several leaves loses the share of its lost leaves.
 void SplitEqualizer::setUsage(const States& states, std::vector<double>& usage) const {
-    for (const Index child : children_.children()) usage.push_back(std::max(0., states[at(child)].usage));
+    for (size_t i = 0; i < children_.size(); ++i) {
+        const auto available =
+            std::ranges::count_if(leaves_[i], [&](Index leaf) { return states[at(leaf)].isAvailable; });
+        const double share = leaves_[i].empty() ? 1 : static_cast<double>(available) / double(leaves_[i].size());
+        usage.push_back(share * std::max(0., states[at(children_.children()[i])].usage));
+    }
 }
 
 void SplitEqualizer::decide(const FrameContext& context, States& states) {
@@ -89,13 +108,24 @@ void SplitEqualizer::decide(const FrameContext& context, States& states) {
     const CutRules now = rules(context, states);
     const bool isChanged = std::exchange(lastUsage_, now.usage) != now.usage ||
                            std::exchange(lastVersion_, parameters_.version()) != parameters_.version();
-    if (!hasMeasurement_ && !isChanged) return;
     if (!std::exchange(isNew_, false) && !isChanged) {
-        decision_.what = "no new measurements";
+        if (hasMeasurement_) decision_.what = "no new measurements";
         return;
     }
-    if (hasMeasurement_ && split(context, now))
+    if (!hasMeasurement_ && !divideUnmeasured(now)) return;
+    if (!hasMeasurement_ || split(context, now))
         decision_.moved = assignParts(children_.children(), mode_, tree_.parts(), states);
+}
+
+// Divides in proportion to the resources if any child has lost or regained its own. Returns false to keep the parts of
+// the first frame.
+bool SplitEqualizer::divideUnmeasured(const CutRules& rules) {
+    const bool isWhole = std::ranges::all_of(rules.usage, [](double u) { return u == 1; });
+    if (isWhole && !isReduced_) return false;
+    isReduced_ = !isWhole;
+    tree_.divideByUsage(rules);
+    decision_.what = "cuts moved to other resources";
+    return true;
 }
 
 } // namespace mural::balance

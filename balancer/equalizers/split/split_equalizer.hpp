@@ -25,7 +25,7 @@ protected:
     virtual void learn(const FrameStatistics&) {}
     // Moves the cuts of tree_. Called only after a measurement. Returns false to keep the parts.
     virtual bool split(const FrameContext& context, const CutRules& rules) = 0;
-    // Number of resources of each child; by default the usage of its state, less the assembly of the destination.
+    // Number of resources of each child; by default the usage of its state, without lost leaves.
     virtual void setUsage(const States& states, std::vector<double>& usage) const;
 
     [[nodiscard]] SplitMode mode() const { return mode_; }
@@ -37,9 +37,12 @@ protected:
 
 private:
     [[nodiscard]] CutRules rules(const FrameContext& context, const States& states) const;
+    bool divideUnmeasured(const CutRules& rules);
 
     SplitMode mode_;
-    bool isNew_ = false; // measurements arrived after the last decision
+    std::vector<std::vector<Index>> leaves_; // per child
+    bool isNew_ = false;                     // measurements arrived after the last decision
+    bool isReduced_ = false;                 // the parts of the first frame were replaced before any measurement
     std::vector<double> lastUsage_;
     uint32_t lastVersion_ = 0; // of the parameters
 };

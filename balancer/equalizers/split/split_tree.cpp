@@ -114,6 +114,14 @@ void SplitTree::moveCut(SplitNode& node, const Part& part, double wanted, const 
     node.at = cut / extent;
 }
 
+void SplitTree::divideByUsage(const CutRules& rules) {
+    for (SplitNode& node : nodes_) {
+        if (node.isLeaf()) continue;
+        const double below = rules.usageOf(low(node)), above = rules.usageOf(high(node));
+        if (below + above > 0) node.at = below / (below + above);
+    }
+}
+
 void SplitTree::collect(int index, const Part& part, std::vector<Part>& parts) const {
     const SplitNode& node = nodes_[static_cast<size_t>(index)];
     if (node.isLeaf()) {

@@ -68,6 +68,8 @@ public:
 
     // Moves the cut of a node with this part to `wanted` as far as the rules permit.
     void moveCut(SplitNode& node, const Part& part, double wanted, const CutRules& rules) const;
+    // Moves each cut to the ratio of the resources on its sides.
+    void divideByUsage(const CutRules& rules);
     // Returns the part of each child.
     [[nodiscard]] std::vector<Part> parts() const;
 
