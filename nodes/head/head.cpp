@@ -9,9 +9,7 @@
 #include "common/memory/malloc_tuning.hpp"
 #include "common/ipc/window_mark.hpp"
 #include "common/base/pause_watch.hpp"
-#include "nodes/head/planning/codec_choice.hpp"
-#include "nodes/head/planning/composition_choice.hpp"
-#include "nodes/head/planning/config_plan.hpp"
+#include "nodes/head/planning/make_plan.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "nodes/head/session/log_to_control.hpp"
 #include "nodes/launch/child_process.hpp"
@@ -111,18 +109,6 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, He
         options.canvasFiles.push_back(std::move(*opened));
     }
     return {};
-}
-
-Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& host) {
-    if (config.configFile.empty()) return planSession(config, host);
-    const auto loaded = compound::loadConfig(config.configFile, compound::processEnvironment);
-    if (!loaded.ok()) return Error{loaded.diagnostics.firstError()};
-    auto plan = planOf(loaded, {host, config.allLocal, config.canvas, config.layouts, config.projection,
-                                config.modelUnit, config.width});
-    if (plan) chooseComposition(*plan, config.composition);
-    if (plan) chooseCodecs(*plan, config.codec);
-    if (plan) settleQueues(*plan, config);
-    return plan;
 }
 
 Result<int> runSession(ControlChannel& control) {

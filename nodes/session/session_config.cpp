@@ -33,6 +33,7 @@ template <> struct EnumNames<DeltaMode> {
     static constexpr std::pair<DeltaMode, const char*> kAll[] = {
         {DeltaMode::Auto, "auto"}, {DeltaMode::On, "on"}, {DeltaMode::Off, "off"}};
 };
+template <> struct EnumNames<balance::Balance> { static constexpr auto& kAll = balance::kBalanceNames; };
 template <> struct EnumNames<Readback> {
     static constexpr std::pair<Readback, const char*> kAll[] = {
         {Readback::Auto, "auto"}, {Readback::Direct, "direct"}, {Readback::Buffer, "buffer"}};
@@ -59,6 +60,7 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("columns", c.columns, 1);
     visit("rows", c.rows, 1);
     visit("chunks", c.chunks, 0);
+    visit("balance", c.balance);
     visit("tileWidth", c.tileWidth, 0);
     visit("tileHeight", c.tileHeight, 0);
     visit("localNodes", c.localNodes, 0);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "balancer/equalizers/balance.hpp"
 #include "common/base/result.hpp"
 #include "common/geometry/viewport.hpp"
 #include "nodes/session/readback.hpp"
@@ -32,9 +33,10 @@ struct SessionConfig {
     int columns = 1;        // --tiles CxR
     int rows = 1;
     int tileWidth = 0, tileHeight = 0; // --tile-queue: tile size in pixels, replaces columns and rows; 0: no queue
-    int chunks = 0;     // --chunk-queue: number of chunks of a picture's draws, for nodes of --db; 0: fixed shares
-    int localNodes = 0; // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
-    std::vector<std::string> hosts;                     // --nodes
+    int chunks = 0; // --chunk-queue: number of chunks of a picture's draws, for nodes of --db; 0: fixed shares
+    balance::Balance balance = balance::Balance::AsInFile; // --balance: the equalizers of areas and ranges
+    int localNodes = 0;             // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
+    std::vector<std::string> hosts; // --nodes
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
     std::string stream = "auto";                        // --stream: transport to other machines: auto, tcp, rsp://…
     DeltaMode delta = DeltaMode::Auto;                  // --delta: delta coding

@@ -1,4 +1,5 @@
 // Node setups that follow from a configuration file.
+#include "nodes/head/planning/balance_plan.hpp"
 #include "nodes/head/planning/config_plan.hpp"
 
 #include <algorithm>
@@ -225,44 +226,39 @@ TEST(ConfigPlan, showsChannelsOnTheirNodes) {
 }
 
 TEST(ConfigPlan, createsTileQueues) {
-    SessionPlan plan = planOfFile("tile-queue.eqc");
-    ASSERT_EQ(plan.nodes.size(), 3u);
-    ASSERT_EQ(plan.queues.size(), 1u);
-    EXPECT_EQ(plan.queues[0].name, "queue");
-    EXPECT_EQ(plan.queues[0].width, 64);
-    EXPECT_EQ(plan.queues[0].height, 64);
-    EXPECT_EQ(plan.queues[0].area, Viewport{});
-    for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.queue, 0);
-    settleQueues(plan, {});
-    for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.queue, 0);
+    const SessionPlan planned = planOfFile("tile-queue.eqc");
+    ASSERT_EQ(planned.nodes.size(), 3u);
+    SessionPlan plan = planned;
+    settleBalance(plan, {});
+    for (const NodePlan& n : plan.nodes) EXPECT_TRUE(n.movesArea);
     EXPECT_TRUE(plan.warnings.empty());
+    EXPECT_EQ(plan.balance->equalizers.size(), 1u);
     SessionConfig lean;
     lean.tiling = Tiling::Lean;
-    settleQueues(plan, lean);
-    for (const NodePlan& n : plan.nodes) EXPECT_EQ(n.queue, -1);
+    plan = planned;
+    settleBalance(plan, lean);
+    for (const NodePlan& n : plan.nodes) EXPECT_FALSE(n.movesArea);
     EXPECT_EQ(plan.warnings.size(), 1u);
-    const SessionPlan projector = planOfFile("tiles-copy.eqc");
-    EXPECT_FALSE(projector.queues.empty()) << "by a tile_equalizer";
+    EXPECT_TRUE(plan.balance->equalizers.empty());
+    SessionPlan projector = planOfFile("tiles-copy.eqc");
+    settleBalance(projector, {});
+    EXPECT_FALSE(projector.balance->equalizers.empty()) << "by a tile_equalizer";
 }
 
 TEST(ConfigPlan, createsChunkQueues) {
     SessionPlan plan = planOfFile("chunk-queue.eqc");
     ASSERT_EQ(plan.nodes.size(), 3u);
-    ASSERT_EQ(plan.chunkQueues.size(), 1u);
-    EXPECT_TRUE(plan.queues.empty());
-    EXPECT_EQ(plan.chunkQueues[0].name, "queue");
-    EXPECT_NEAR(plan.chunkQueues[0].part, 0.01, 1e-9);
-    EXPECT_EQ(plan.chunkQueues[0].range, Range{});
-    settleQueues(plan, {});
+    settleBalance(plan, {});
     int range = 0;
     for (const NodePlan& n : plan.nodes) {
-        EXPECT_EQ(n.chunkQueue, 0);
-        EXPECT_EQ(n.queue, -1);
+        EXPECT_TRUE(n.movesRange);
+        EXPECT_FALSE(n.movesArea);
         EXPECT_EQ(n.pass.range, range++);
         EXPECT_EQ(n.pass.ranges, 3);
     }
     EXPECT_TRUE(plan.warnings.empty());
-    EXPECT_NE(plan.explain.back().find("each 0.01 of the draws"), std::string::npos) << plan.explain.back();
+    EXPECT_NE(plan.explain.back().find("divides the draws among nodes 0, 1 and 2"), std::string::npos)
+        << plan.explain.back();
 }
 
 // The collector shows the picture of ranges. The head shows what several pictures compose, and both eyes on one screen.
@@ -334,11 +330,11 @@ TEST(ConfigPlan, reportsUnsupportedZooms) {
 
 // Fields without effect are reported with position and remedy.
 TEST(ConfigPlan, reportsFieldsWithoutEffect) {
-    auto plan = planOfText("load_equalizer { mode 2D } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" "
+    auto plan = planOfText("monitor_equalizer { } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" "
                            "viewport [ .5 0 .5 1 ] framerate_equalizer { } outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
-    EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: load_equalizer has no effect"), std::string::npos)
+    EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: monitor_equalizer has no effect"), std::string::npos)
         << plan->warnings[0];
     EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: framerate_equalizer has no effect"), std::string::npos)
         << plan->warnings[1];
@@ -400,7 +396,7 @@ TEST(ConfigPlan, showsFramesOfQueuesWhereTheyAreDrawn) {
     EXPECT_NE(plan->warnings[0].find("queue \"q\""), std::string::npos) << plan->warnings[0];
     ASSERT_EQ(plan->nodes.size(), 2u);
     for (const NodePlan& n : plan->nodes) {
-        EXPECT_EQ(n.queue, 0);
+        EXPECT_TRUE(n.task.has_value());
         EXPECT_TRUE(n.transferScale.none());
     }
     auto plain = planOfText(

@@ -226,11 +226,11 @@ TEST(HeadSession, movesQueuedTilesOnAllNodesAtOnce) {
         ASSERT_TRUE(program.waitFramesDone(frame));
     }
     const auto report = head.finish();
-    ASSERT_EQ(report["queues"].size(), 1u);
-    EXPECT_GT(report["queues"][0]["moves"], 0);
-    EXPECT_EQ(report["queues"][0]["columns"], 16);
-    EXPECT_EQ(report["queues"][0]["rows"], 12);
-    EXPECT_LT(report["queues"][0]["nodes"][0]["tiles"], report["queues"][0]["nodes"][1]["tiles"]);
+    ASSERT_EQ(report["equalizers"].size(), 1u);
+    const auto& queue = report["equalizers"][0];
+    EXPECT_EQ(queue["kind"], "tile_queue");
+    EXPECT_GT(queue["moves"], 0);
+    EXPECT_LT(queue["nodes"][0]["part"], queue["nodes"][1]["part"]);
     int announced = 0;
     std::vector<std::pair<uint32_t, std::vector<uint32_t>>> first; // all commands except setups
     for (int node = 0; node < 3; ++node) {

@@ -1,7 +1,9 @@
 // The nodes, regions and setups that follow from the options of a session.
-#include "nodes/head/planning/node_plan.hpp"
+#include "nodes/head/planning/make_plan.hpp"
 
 #include <gtest/gtest.h>
+#include <set>
+#include <tuple>
 
 namespace mural {
 namespace {
@@ -117,22 +119,22 @@ TEST(NodePlan, usesDeepPicturesWhereNothingComputesWithPixels) {
     EXPECT_FALSE(deep(other));
 }
 
-// ---- queues
+// ---- equalizers
 
 TEST(NodePlan, startsQueuesWithEvenPartsThatMove) {
     SessionConfig config;
     config.tileWidth = config.tileHeight = 32;
-    EXPECT_EQ(planSession(config, "me").nodes.size(), 4u);
+    EXPECT_EQ(makePlan(config, "me")->nodes.size(), 4u);
     config.localNodes = 5;
     config.display = Display::Windows;
-    const SessionPlan plan = planSession(config, "me");
+    const SessionPlan plan = makePlan(config, "me").value();
     ASSERT_EQ(plan.nodes.size(), 5u);
-    ASSERT_EQ(plan.queues.size(), 1u);
     EXPECT_TRUE(plan.warnings.empty());
     EXPECT_TRUE(headShowsWall(config, plan)) << "windows of nodes could not move";
     int64_t pixels = 0;
     for (const NodePlan& node : plan.nodes) {
-        EXPECT_EQ(node.queue, 0);
+        EXPECT_TRUE(node.movesArea);
+        EXPECT_FALSE(node.movesRange);
         pixels += apply({0, 0, 1000, 777}, *node.area).area();
         const NodeSetup setup = setupOf(config, plan, node);
         ASSERT_EQ(setup.areas.size(), 20u);
@@ -143,27 +145,60 @@ TEST(NodePlan, startsQueuesWithEvenPartsThatMove) {
     EXPECT_EQ(pixels, 777'000);
 }
 
-TEST(NodePlan, keepsQueuesThatCannotMove) {
+TEST(NodePlan, keepsAreasThatCannotMove) {
     const auto planned = [](const auto& change) {
         SessionConfig config;
         config.tileWidth = config.tileHeight = 32;
         config.localNodes = 4;
         change(config);
-        const SessionPlan plan = planSession(config, "me");
-        for (const NodePlan& node : plan.nodes) EXPECT_EQ(node.queue >= 0, !setupOf(config, plan, node).areas.empty());
-        return std::pair(plan.nodes.front().queue >= 0, plan.warnings.empty() ? "" : plan.warnings.front());
+        const SessionPlan plan = makePlan(config, "me").value();
+        for (const NodePlan& node : plan.nodes) EXPECT_EQ(node.movesArea, !setupOf(config, plan, node).areas.empty());
+        return std::pair(plan.nodes.front().movesArea, plan.warnings.empty() ? "" : plan.warnings.front());
     };
     EXPECT_TRUE(planned([](SessionConfig&) {}).first);
     EXPECT_TRUE(planned([](SessionConfig& c) { c.passes.stereo = StereoMode::Anaglyph; }).first);
     EXPECT_TRUE(planned([](SessionConfig& c) { c.passes.samples = 2; }).first);
-    const std::string stays = "queue \"tiles\": its tiles of 32x32 pixels are distributed evenly and fixed: ";
     const auto lean = planned([](SessionConfig& c) { c.tiling = Tiling::Lean; });
-    EXPECT_EQ(lean, (std::pair(false, stays + "--tiling lean gives each node a framebuffer of its first tiles' size")));
-    EXPECT_EQ(planned([](SessionConfig& c) { c.passes.ranges = 2; }),
-              (std::pair(false, stays + "its nodes draw ranges (--db)")));
+    EXPECT_EQ(lean.second,
+              "equalizer \"0.queue\": areas stay fixed: --tiling lean gives each node a framebuffer of its "
+              "first tiles' size");
+    EXPECT_FALSE(lean.first);
+    const auto ranges = planned([](SessionConfig& c) { c.passes.ranges = 2; });
+    EXPECT_FALSE(ranges.first);
+    EXPECT_NE(ranges.second.find("areas stay fixed: its nodes draw ranges (--db)"), std::string::npos) << ranges.second;
     EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.period = 2; }).first);
     EXPECT_FALSE(planned([](SessionConfig& c) { c.passes.kernelWidth = 2; }).first);
     EXPECT_EQ(planned([](SessionConfig& c) { c.localNodes = 1; }), (std::pair(false, std::string())));
+}
+
+TEST(NodePlan, sharesEachPassAmongTheNodesOfABalancedSession) {
+    const auto nodesOf = [](const auto& change) {
+        SessionConfig config;
+        config.balance = balance::Balance::Auto;
+        change(config);
+        const SessionPlan plan = makePlan(config, "me").value();
+        int areas = 0, ranges = 0;
+        for (const NodePlan& node : plan.nodes) areas += node.movesArea, ranges += node.movesRange;
+        return std::tuple(plan.nodes.size(), areas, ranges);
+    };
+    EXPECT_EQ(nodesOf([](SessionConfig&) {}), std::tuple(4u, 4, 0));
+    EXPECT_EQ(nodesOf([](SessionConfig& c) { c.columns = 3; }), std::tuple(3u, 3, 0));
+    EXPECT_EQ(nodesOf([](SessionConfig& c) { c.localNodes = 7; }), std::tuple(7u, 7, 0));
+    EXPECT_EQ(nodesOf([](SessionConfig& c) { c.passes.ranges = 5; }), std::tuple(5u, 0, 5));
+    EXPECT_EQ(nodesOf([](SessionConfig& c) { c.passes.stereo = StereoMode::SideBySide; }), std::tuple(4u, 4, 0));
+    EXPECT_EQ(nodesOf([](SessionConfig& c) {
+                  c.passes.ranges = 2;
+                  c.localNodes = 4;
+              }),
+              std::tuple(4u, 0, 4));
+    SessionConfig hosts;
+    hosts.balance = balance::Balance::Load;
+    hosts.hosts = {"a", "b"};
+    hosts.localNodes = 1;
+    const SessionPlan plan = makePlan(hosts, "me").value();
+    std::multiset<std::string> places;
+    for (const NodePlan& node : plan.nodes) places.insert(node.where);
+    EXPECT_EQ(places, (std::multiset<std::string>{"a", "b", "local"}));
 }
 
 // ---- passes

@@ -69,18 +69,16 @@ TEST(Report, showsWhatDeltaCodingSaved) {
     EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"delta":null})").report).size(), 1u);
 }
 
-TEST(Report, showsHowTilesWereTaken) {
+TEST(Report, showsEqualizers) {
     const HeadEvent e = event(
-        R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"queues":[)"
-        R"({"name":"tiles","of":"tiles","columns":25,"rows":19,"tileWidth":32,"tileHeight":32,"frames":8,"moves":2,"tilesMoved":60,"taken":2,"nodes":[{"node":0,"tiles":95},{"node":1,"tiles":380}]},)"
-        R"({"name":"draws","of":"chunks","columns":60,"rows":1,"frames":1,"moves":1,"tilesMoved":6,"nodes":[{"node":0,"tiles":20},{"node":1,"tiles":40}]},)"
-        R"({"name":"of nothing","columns":0},7]})");
-    ASSERT_EQ(reportLines(e.report).size(), 3u);
-    EXPECT_EQ(reportLines(e.report)[2], "queue \"draws\": 60 chunks moved after 1 of 1 frame, 6.00 chunks per frame; "
-                                        "at the end node 0 has 20, node 1 has 40");
-    EXPECT_EQ(reportLines(e.report)[1], "queue \"tiles\": 25x19 tiles of 32x32 pixels moved after 2 of 8 frames, 7.50 "
-                                        "tiles per frame; at the end node 0 has 95, node 1 has 380");
-    EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"queues":null})").report).size(), 1u);
+        R"({"event":"report","frames":10,"seconds":1,"framesPerSecond":9,"bytesPerFrame":120,"equalizers":[)"
+        R"({"name":"wall.queue","kind":"tile_queue","divides":"picture","frames":8,"moves":2,"efficiency":0.91,"nodes":[{"node":0,"part":0.2},{"node":1,"part":0.8}]},)"
+        R"({"name":"of nothing","frames":0},7]})");
+    ASSERT_EQ(reportLines(e.report).size(), 2u);
+    EXPECT_EQ(reportLines(e.report)[1],
+              "equalizer \"wall.queue\": parts of the picture moved after 2 of 8 frames; at the "
+              "end node 0 20 %, node 1 80 %; nodes were busy for 91 % of the longest time");
+    EXPECT_EQ(reportLines(event(R"({"event":"report","frames":10,"equalizers":null})").report).size(), 1u);
 }
 
 TEST(Report, showsCommandsThatCauseRoundTrips) {

@@ -98,32 +98,28 @@ TEST(SessionRates, includeTransferredPictures) {
     })) << lines.back();
 }
 
-TEST(SessionRates, includeQueues) {
+TEST(SessionRates, includeEqualizers) {
     auto session = stateAt(10, 100, 1000, 5000, 4, 1.0);
-    session["queues"] = {{{"name", "tiles"},
-                          {"of", "tiles"},
-                          {"columns", 25},
-                          {"rows", 19},
-                          {"tileWidth", 32},
-                          {"tileHeight", 16},
-                          {"frames", 8},
-                          {"moves", 2},
-                          {"tilesMoved", 60},
-                          {"nodes", {{{"node", 0}, {"tiles", 95}}, {{"node", 1}, {"tiles", 380}}}}}};
-    session["queues"].push_back({{"name", "draws"},
-                                 {"of", "chunks"},
-                                 {"columns", 60},
-                                 {"rows", 1},
-                                 {"frames", 4},
-                                 {"moves", 1},
-                                 {"tilesMoved", 6},
-                                 {"nodes", {{{"node", 0}, {"tiles", 20}}, {{"node", 1}, {"tiles", 40}}}}});
+    session["equalizers"] = {{{"name", "wall.load"},
+                              {"kind", "load_equalizer"},
+                              {"divides", "picture"},
+                              {"frozen", false},
+                              {"decision", "cuts moved towards equal times"},
+                              {"frames", 8},
+                              {"moves", 2},
+                              {"efficiency", .9},
+                              {"nodes", {{{"node", 0}, {"part", .2}}, {{"node", 1}, {"part", .8}}}}}};
+    session["equalizers"].push_back(session["equalizers"][0]);
+    session["equalizers"][1]["name"] = "draws";
+    session["equalizers"][1]["divides"] = "draws";
+    session["equalizers"][1]["frozen"] = true;
     const auto lines = statLines(withRates({}, {session})[0]);
-    EXPECT_NE(std::ranges::find(lines, "  queue \"draws\"  60 chunks: node 0 has 20, node 1 has 40; moved after 1 of 4 "
-                                       "frames, 1.50 chunks per frame"),
+    EXPECT_NE(std::ranges::find(lines,
+                                "  equalizer \"wall.load\"  picture: node 0 20 %, node 1 80 %; moved after 2 of 8 "
+                                "frames; busy 90 % of the longest time; cuts moved towards equal times"),
               lines.end());
-    EXPECT_NE(std::ranges::find(lines, "  queue \"tiles\"  25x19 tiles of 32x16 pixels: node 0 has 95, node 1 has 380; "
-                                       "moved after 2 of 8 frames, 7.50 tiles per frame"),
+    EXPECT_NE(std::ranges::find(lines, "  equalizer \"draws\"  draws: node 0 20 %, node 1 80 %; moved after 2 of 8 "
+                                       "frames; busy 90 % of the longest time; frozen"),
               lines.end());
 }
 

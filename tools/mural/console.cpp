@@ -110,18 +110,14 @@ std::vector<std::string> reportLines(const SessionReport& r) {
         lines.push_back(fmt::format("pictures: {} per frame, compressed to {}",
                                     sizeText(raw / static_cast<double>(r.frames)),
                                     sizeText(packed / static_cast<double>(r.frames))));
-    for (const QueueReport& q : r.queues) {
-        if (q.columns == 0) continue;
+    for (const EqualizerReport& e : r.equalizers) {
+        if (e.frames == 0) continue;
         std::string nodes;
-        for (const auto& [node, tiles] : q.nodes)
-            nodes += fmt::format("{}node {} has {}", nodes.empty() ? "" : ", ", node, tiles);
-        const std::string pieces =
-            q.of == "chunks" ? fmt::format("{} chunks", q.columns)
-                             : fmt::format("{}x{} tiles of {}x{} pixels", q.columns, q.rows, q.tileWidth, q.tileHeight);
-        lines.push_back(fmt::format(
-            "queue \"{}\": {} moved after {} of {} frame{}, {:.2f} {} per frame; at the end {}", q.name, pieces,
-            q.moves, q.frames, plural(q.frames),
-            q.frames > 0 ? static_cast<double>(q.tilesMoved) / static_cast<double>(q.frames) : 0.0, q.of, nodes));
+        for (const auto& [node, part] : e.nodes)
+            nodes += fmt::format("{}node {} {:.0f} %", nodes.empty() ? "" : ", ", node, 100 * part);
+        lines.push_back(fmt::format("equalizer \"{}\": parts of the {} moved after {} of {} frame{}; at the end {}; "
+                                    "nodes were busy for {:.0f} % of the longest time",
+                                    e.name, e.divides, e.moves, e.frames, plural(e.frames), nodes, 100 * e.efficiency));
     }
     if (r.verifiedFrames > 0) {
         std::string line = fmt::format("verified {} frame{}, {} pixels: {} differ", r.verifiedFrames,

@@ -54,27 +54,24 @@ DeltaReport deltaFrom(const Json& j) {
             real(j, "droppedBytes")};
 }
 
-std::vector<QueueReport> queuesFrom(const Json& list) {
-    std::vector<QueueReport> queues;
-    if (!list.is_array()) return queues;
-    for (const Json& q : list) {
-        if (!q.is_object()) continue;
-        queues.push_back({text(q, "name"),
-                          text(q, "of"),
-                          whole(q, "columns"),
-                          whole(q, "rows"),
-                          whole(q, "tileWidth"),
-                          whole(q, "tileHeight"),
-                          whole(q, "frames"),
-                          whole(q, "moves"),
-                          whole(q, "tilesMoved"),
-                          {}});
-        const auto nodes = q.find("nodes");
-        if (nodes == q.end() || !nodes->is_array()) continue;
+std::vector<EqualizerReport> equalizersFrom(const Json& list) {
+    std::vector<EqualizerReport> equalizers;
+    if (!list.is_array()) return equalizers;
+    for (const Json& e : list) {
+        if (!e.is_object()) continue;
+        equalizers.push_back({text(e, "name"),
+                              text(e, "kind"),
+                              text(e, "divides"),
+                              whole(e, "frames"),
+                              whole(e, "moves"),
+                              real(e, "efficiency"),
+                              {}});
+        const auto nodes = e.find("nodes");
+        if (nodes == e.end() || !nodes->is_array()) continue;
         for (const Json& n : *nodes)
-            if (n.is_object()) queues.back().nodes.emplace_back(whole(n, "node"), whole(n, "tiles"));
+            if (n.is_object()) equalizers.back().nodes.emplace_back(whole(n, "node"), real(n, "part"));
     }
-    return queues;
+    return equalizers;
 }
 
 SwapReport swapsFrom(const Json& j) {
@@ -114,7 +111,7 @@ SessionReport reportFrom(const Json& j) {
     r.recordedFrames = whole(j, "recordedFrames");
     r.recordedBytes = whole(j, "recordedBytes");
     if (const auto delta = j.find("delta"); delta != j.end()) r.delta = deltaFrom(*delta);
-    if (const auto queues = j.find("queues"); queues != j.end()) r.queues = queuesFrom(*queues);
+    if (const auto e = j.find("equalizers"); e != j.end()) r.equalizers = equalizersFrom(*e);
     if (const auto nodes = j.find("nodes"); nodes != j.end() && nodes->is_array()) {
         for (const Json& n : *nodes) {
             if (!n.is_object()) continue;

@@ -41,14 +41,13 @@ struct DeltaReport {
     double droppedRecords = 0, droppedBytes = 0; // deferred records that were never needed
 };
 
-// Numbers of one tile or chunk queue.
-struct QueueReport {
-    std::string name;
-    std::string of;                        // "tiles" or "chunks"
-    int64_t columns = 0, rows = 0;         // 0: no tile was assigned
-    int64_t tileWidth = 0, tileHeight = 0; // pixels
-    int64_t frames = 0, moves = 0, tilesMoved = 0;
-    std::vector<std::pair<int64_t, int64_t>> nodes; // node, and its number of tiles
+// Numbers of one equalizer.
+struct EqualizerReport {
+    std::string name, kind;
+    std::string divides; // "picture" or "draws"
+    int64_t frames = 0, moves = 0;
+    double efficiency = 0;                         // 1: all nodes were busy for the same time
+    std::vector<std::pair<int64_t, double>> nodes; // node, and its part of the picture or the draws
 };
 
 struct SessionReport {
@@ -72,7 +71,7 @@ struct SessionReport {
     int64_t recordedFrames = 0;
     int64_t recordedBytes = 0;
     DeltaReport delta;
-    std::vector<QueueReport> queues;
+    std::vector<EqualizerReport> equalizers;
     std::vector<NodeReport> nodes;
     std::string json; // the complete report of the head
 };

@@ -34,11 +34,10 @@ constexpr uint32_t kMaxTurns = 64; // bounds periods without a small common mult
 // One draw task of the compound tree.
 struct Draw {
     RenderContext context;
-    Viewport area;                   // on the canvas
-    int queue = -1, chunkQueue = -1; // indices into the plan's queues
-    compound::Flow flow;             // the path of its frames
-    std::optional<Viewport> shown;   // on the canvas, if different from area
-    Zoom transferScale;              // scale of its picture in transfer
+    Viewport area;                 // on the canvas
+    compound::Flow flow;           // the path of its frames
+    std::optional<Viewport> shown; // on the canvas, if different from area
+    Zoom transferScale;            // scale of its picture in transfer
     [[nodiscard]] const Viewport& onWall() const { return shown ? *shown : area; }
 };
 
@@ -70,6 +69,9 @@ public:
         placeWindows();
         takeObserver();
         addExplanations();
+        input_.frameNumber = 0;
+        plan_.balance =
+            std::make_shared<BalancePlan>(BalancePlan{config_, input_, sizeOf(canvas_), options_.balance, {}});
         return std::move(plan_);
     }
 
@@ -143,13 +145,8 @@ private:
                     if (task.kind != config::Task::Draw || task.context == kNone) continue;
                     const RenderContext& c = plan.contexts[at(task.context)];
                     if (c.view == kNone || !seen.emplace(c.compound, c.destination, c.view, c.eye).second) continue;
-                    draws_.push_back({c,
-                                      compose(config_.views[at(c.view)].viewport, c.part),
-                                      -1,
-                                      -1,
-                                      flows[at(task.context)],
-                                      {},
-                                      {}});
+                    draws_.push_back(
+                        {c, compose(config_.views[at(c.view)].viewport, c.part), flows[at(task.context)], {}, {}});
                     if (task.queue != kNone) workers[task.queue].push_back(draws_.size() - 1);
                 }
             }
@@ -283,9 +280,10 @@ private:
         }
     }
 
-    // Divides the picture or the range into equal strips, one per worker of the queue. Later, idle nodes take over
-    // tiles or chunks.
-    void dealOut(const FramePlan& plan, const compound::PlannedQueue& queue, const std::vector<size_t>& draws) {
+    // Divides the picture or the range into equal strips, one per worker of the queue, in the order of the tree. The
+    // queue's equalizer divides in this order, too: the ranks of ranges never change.
+    void dealOut(const FramePlan& plan, const compound::PlannedQueue& queue, std::vector<size_t> draws) {
+        std::ranges::sort(draws, {}, [&](size_t d) { return draws_[d].context.compound; });
         const RenderContext& divided = plan.contexts[at(queue.context)];
         const bool chunks = !queue.tiles.empty() &&
                             std::any_of(queue.tiles.begin(), queue.tiles.end(),
@@ -304,19 +302,6 @@ private:
                                      queue.name +
                                      "\" are shown at their drawn position and size; viewport and zoom of its frames "
                                      "are ignored; remove them, or divide the picture without a queue");
-        if (chunks) {
-            for (const size_t d : draws) draws_[d].chunkQueue = static_cast<int>(plan_.chunkQueues.size());
-            plan_.chunkQueues.push_back(
-                {queue.name, divided.range, queue.tiles.front().range.end - queue.tiles.front().range.start});
-            return;
-        }
-        TileQueuePlan planned{queue.name, compose(config_.views[at(divided.view)].viewport, divided.part), 0, 0};
-        for (const compound::PlannedTile& tile : queue.tiles) {
-            planned.width = std::max(planned.width, tile.area.w);
-            planned.height = std::max(planned.height, tile.area.h);
-        }
-        for (const size_t d : draws) draws_[d].queue = static_cast<int>(plan_.queues.size());
-        plan_.queues.push_back(planned);
     }
 
     // Determines the destinations, their eyes, and the pictures that each is composed of.
@@ -409,8 +394,8 @@ private:
                 node.area = draws_[i].area;
                 node.shown = draws_[i].shown;
                 node.transferScale = draws_[i].transferScale;
-                node.queue = draws_[i].queue;
-                node.chunkQueue = draws_[i].chunkQueue;
+                node.task = DrawTask{c.compound, c.destination, c.view, c.eye};
+                node.isPlacedByFrames = draws_[i].flow.steered;
                 node.screen = screenOf(c);
                 node.collector = collector;
                 if (auto named = takeComposition(node, config_.compounds[at(c.compound)]); !named) return named;
@@ -657,8 +642,7 @@ std::string nameOf(const ResolvedConfig& config, Index canvas) {
 
 // Appends the plan of another canvas. Its nodes draw the program's picture at its own resolution.
 void add(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
-    const auto nodes = static_cast<int>(plan.nodes.size()), queues = static_cast<int>(plan.queues.size()),
-               chunkQueues = static_cast<int>(plan.chunkQueues.size());
+    const auto nodes = static_cast<int>(plan.nodes.size());
     int pictures = picturesOf(plan.wall);
     for (const CanvasPlan& c : plan.canvases) pictures = std::max(pictures, picturesOf(c.wall));
     canvas.wall = std::move(other.wall);
@@ -670,16 +654,12 @@ void add(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
         node.canvas = static_cast<int>(plan.canvases.size()) + 1;
         node.picture += pictures;
         node.answers = false;
-        if (node.queue >= 0) node.queue += queues;
-        if (node.chunkQueue >= 0) node.chunkQueue += chunkQueues;
         node.pass.zoom = compose(node.pass.zoom, canvas.shown);
         node.pass.zoom = {std::min(node.pass.zoom.x, kMaxZoom), std::min(node.pass.zoom.y, kMaxZoom)};
         node.pass.shown = canvas.shown;
         if (node.window && node.window->asOnWall) node.window->x += canvas.offsetX;
         plan.nodes.push_back(std::move(node));
     }
-    std::ranges::move(other.queues, std::back_inserter(plan.queues));
-    std::ranges::move(other.chunkQueues, std::back_inserter(plan.chunkQueues));
     std::ranges::move(other.explain, std::back_inserter(plan.explain));
     std::ranges::move(other.warnings, std::back_inserter(plan.warnings));
     if (!plan.eyeBase) plan.eyeBase = other.eyeBase, plan.focusDistance = other.focusDistance;

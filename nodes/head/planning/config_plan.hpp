@@ -21,6 +21,7 @@ struct PlanOptions {
     ProjectionChoice projection = ProjectionChoice::Auto;
     double modelUnit = 1; // units of the program per metre of the file
     int width = 0;        // of the program's picture in pixels; 0: as in the file
+    balance::Balance balance = balance::Balance::AsInFile;
 };
 
 // Plans every canvas that shows something, unless one is named. Each canvas has its own nodes, which draw the program's

@@ -12,58 +12,16 @@ namespace mural {
 namespace {
 
 constexpr int kMaxLocalByDefault = 4;
-constexpr int kMaxNodes = 1 << 20;
 
 std::string countOf(int count, const char* one) { return std::to_string(count) + " " + one + (count == 1 ? "" : "s"); }
 
 std::string describeRegion(const NodePlan& plan) {
     const TileRegion& r = plan.region;
     const std::string pass = describe(plan.pass);
-    if (plan.area) {
-        char area[96];
-        std::snprintf(area, sizeof area, "%.4g %.4g %.4g %.4g", plan.area->x, plan.area->y, plan.area->w, plan.area->h);
-        return "node " + std::to_string(plan.node) + " (" + plan.where + ") begins with " +
-               (pass.empty() ? "" : pass + ": ") + "the part [ " + area + " ] of the picture";
-    }
     return "node " + std::to_string(plan.node) + " (" + plan.where + ") draws " + (pass.empty() ? "" : pass + ": ") +
            countOf(r.columns * r.rows, "tile") + ": columns " + std::to_string(r.column) + " to " +
            std::to_string(r.column + r.columns - 1) + ", rows " + std::to_string(r.row) + " to " +
            std::to_string(r.row + r.rows - 1) + " (row 0 is the lowest)";
-}
-
-// Divides the whole picture into n parts of about equal size.
-std::vector<Viewport> evenParts(int n) {
-    std::vector<Viewport> parts;
-    const auto edge = [n](int i) { return static_cast<double>(i) / n; };
-    for (const TileRegion& r : splitGrid(n, n, n))
-        parts.push_back({edge(r.column), edge(r.row), edge(r.column + r.columns) - edge(r.column),
-                         edge(r.row + r.rows) - edge(r.row)});
-    return parts;
-}
-
-std::string queueName(RenderPass pass) {
-    pass.range = 0;
-    pass.ranges = 1; // all ranges have the same tiles
-    const std::string of = describe(pass);
-    return of.empty() ? "tiles" : "tiles of " + of;
-}
-
-std::string chunksName(const NodePlan& collector, int ranges) {
-    return "draws of nodes " + std::to_string(collector.node) + " to " + std::to_string(collector.node + ranges - 1);
-}
-
-// Returns why the tiles of a queue can't move. Empty: they can.
-std::string whyTilesStay(const SessionPlan& plan, const SessionConfig& config, int queue) {
-    if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its first tiles' size";
-    for (const NodePlan& node : plan.nodes) {
-        if (node.queue != queue) continue;
-        const RenderPass& p = node.pass;
-        if (showsWall(config, plan, node)) return "nodes show their tiles in their own windows (--display windows)";
-        if (p.ranges > 1) return "its nodes draw ranges (--db)";
-        if (p.period > 1) return "its nodes draw whole frames in turn (--dplex)";
-        if (p.kernelWidth * p.kernelHeight > 1 || !p.zoom.none()) return "its nodes draw kernels or zoomed parts";
-    }
-    return {};
 }
 
 // Returns the number of node processes of a pass. The first passes get one more if the division has a remainder.
@@ -77,9 +35,7 @@ NodeReach reachOf(const std::string& host, const std::string& ownHost) {
 }
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost) {
-    const bool queues = config.tileWidth > 0;
-    // the number of tiles of a queue is unknown yet
-    const int tiles = queues ? kMaxNodes : config.columns * config.rows;
+    const int tiles = config.columns * config.rows;
     const int ranges = config.passes.ranges;
     const std::vector<RenderPass> passes = passesOf(config.passes);
     const auto passCount = static_cast<int>(passes.size());
@@ -92,16 +48,10 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
 
     SessionPlan plan;
     plan.wall = compositionOf(config.passes);
-    plan.nodesShowWall = passCount == 1 && !queues; // windows of nodes can't move, unlike tiles of a queue
+    plan.nodesShowWall = passCount == 1;
     for (int p = 0; p < passCount; ++p) {
         const int parts = std::max(1, nodesOfPass(count / ranges, passCount, p));
-        const std::vector<TileRegion> regions = queues ? std::vector<TileRegion>(static_cast<size_t>(parts))
-                                                       : splitGrid(config.columns, config.rows, parts);
-        const std::vector<Viewport> areas = queues ? evenParts(parts) : std::vector<Viewport>();
-        if (queues && parts > 1)
-            plan.queues.push_back({queueName(passes[static_cast<size_t>(p)]), {}, config.tileWidth, config.tileHeight});
-        for (size_t part = 0; part < regions.size(); ++part) {
-            const TileRegion& region = regions[part];
+        for (const TileRegion& region : splitGrid(config.columns, config.rows, parts)) {
             const auto collector = static_cast<int>(plan.nodes.size());
             for (int range = 0; range < ranges; ++range) {
                 NodePlan node;
@@ -113,10 +63,7 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 node.picture = pictureOf(config.passes, node.pass);
                 node.answers = node.picture == 0 && range == 0;
                 node.region = region;
-                if (queues) node.area = areas[part];
-                if (queues && parts > 1) node.queue = static_cast<int>(plan.queues.size()) - 1;
                 node.collector = collector;
-                if (config.chunks > 0 && ranges > 1) node.chunkQueue = static_cast<int>(plan.chunkQueues.size());
                 if (plan.nodesShowWall) node.swapBarrier = "barrier";
                 const int machine = node.node % requested; // with more passes than nodes, each machine runs several
                 if (machine >= localNodes) {
@@ -126,14 +73,10 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                 plan.explain.push_back(describeRegion(node));
                 plan.nodes.push_back(node);
             }
-            if (config.chunks > 0 && ranges > 1)
-                plan.chunkQueues.push_back(
-                    {chunksName(plan.nodes[static_cast<size_t>(collector)], ranges), {}, 1.0 / config.chunks});
         }
     }
     chooseComposition(plan, config.composition);
     chooseCodecs(plan, config.codec);
-    settleQueues(plan, config);
     const auto started = static_cast<int>(plan.nodes.size());
     if (wanted > started) {
         plan.warnings.push_back(countOf(wanted, "render node") + " requested, but there " +
@@ -141,54 +84,6 @@ SessionPlan planSession(const SessionConfig& config, const std::string& ownHost)
                                 countOf(started, "node") + " started; choose more --tiles");
     }
     return plan;
-}
-
-namespace {
-
-void settleChunkQueues(SessionPlan& plan) {
-    for (size_t q = 0; q < plan.chunkQueues.size(); ++q) {
-        const auto queue = static_cast<int>(q);
-        const auto takes = [queue](const NodePlan& node) { return node.chunkQueue == queue; };
-        const auto nodes = std::ranges::count_if(plan.nodes, takes);
-        const bool turns =
-            std::ranges::any_of(plan.nodes, [&](const NodePlan& node) { return takes(node) && node.pass.period > 1; });
-        char part[32];
-        std::snprintf(part, sizeof part, "%.3g", plan.chunkQueues[q].part);
-        const std::string chunks =
-            "queue \"" + plan.chunkQueues[q].name + "\": its chunks, each " + part + " of the draws, ";
-        if (nodes > 1 && !turns) {
-            plan.explain.push_back(chunks + "are distributed over " + std::to_string(nodes) +
-                                   " nodes by their times for the last frames");
-            continue;
-        }
-        (nodes < 2 ? plan.explain : plan.warnings)
-            .push_back(chunks + "are distributed evenly and fixed: " +
-                       (nodes < 2 ? "one node draws all of them" : "its nodes draw whole frames in turn (--dplex)"));
-        for (NodePlan& node : plan.nodes)
-            if (takes(node)) node.chunkQueue = -1;
-    }
-}
-
-} // namespace
-
-void settleQueues(SessionPlan& plan, const SessionConfig& config) {
-    settleChunkQueues(plan);
-    for (size_t q = 0; q < plan.queues.size(); ++q) {
-        const auto queue = static_cast<int>(q);
-        const auto nodes = std::ranges::count(plan.nodes, queue, &NodePlan::queue);
-        const TileQueuePlan& planned = plan.queues[q];
-        const std::string tiles = "queue \"" + planned.name + "\": its tiles of " + std::to_string(planned.width) +
-                                  "x" + std::to_string(planned.height) + " pixels ";
-        const std::string why = nodes < 2 ? "one node draws all of them" : whyTilesStay(plan, config, queue);
-        if (why.empty()) {
-            plan.explain.push_back(tiles + "are distributed over " + std::to_string(nodes) +
-                                   " nodes by their times for the last frames");
-            continue;
-        }
-        (nodes < 2 ? plan.explain : plan.warnings).push_back(tiles + "are distributed evenly and fixed: " + why);
-        for (NodePlan& node : plan.nodes)
-            if (node.queue == queue) node.queue = -1;
-    }
 }
 
 bool headShowsWall(const SessionConfig& config, const SessionPlan& plan) {
@@ -243,7 +138,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.regionRows = node.region.rows;
     setup.hasArea = node.area.has_value();
     setup.area = node.area.value_or(Viewport{});
-    if (node.queue >= 0)
+    if (node.movesArea)
         for (const NodePlan& other : plan.nodes) {
             const Viewport area = other.area.value_or(Viewport{});
             setup.areas.insert(setup.areas.end(), {area.x, area.y, area.w, area.h});

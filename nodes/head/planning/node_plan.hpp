@@ -1,10 +1,13 @@
 // The plan of a session: its nodes, their places, and the task of each node. Pure.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "balancer/compound/frame_input.hpp"
+#include "balancer/equalizers/balance.hpp"
 #include "common/geometry/tile_grid.hpp"
 #include "compositor/strategies/strategy.hpp"
 #include "nodes/head/frames/wall_composition.hpp"
@@ -27,18 +30,19 @@ struct NodeWindow {
     bool fullScreen = false;
 };
 
-// A queue of tiles of one picture, or a part of it, for idle nodes.
-struct TileQueuePlan {
-    std::string name;
-    Viewport area;             // the part of the picture that is divided into tiles
-    int width = 0, height = 0; // of a tile in pixels; the last tile of a row or column may be smaller
+// The draw task of a node in the compound tree: the key of its render context.
+struct DrawTask {
+    compound::Index compound = config::kNone, destination = config::kNone, view = config::kNone;
+    Eye eye = Eye::Cyclop;
 };
 
-// A queue of consecutive runs of a picture's draws, for idle nodes.
-struct ChunkQueuePlan {
-    std::string name;
-    Range range;     // the part of all draws that is divided into chunks
-    double part = 1; // size of a chunk, as a fraction of the range
+// The configuration of a session and the equalizers that run in it.
+struct BalancePlan {
+    config::ResolvedConfig config;
+    compound::FrameInput input;     // of the first frame
+    compound::PixelSize wall{0, 0}; // size of the first canvas in `input`; 0 x 0: unknown
+    balance::Balance choice = balance::Balance::AsInFile;
+    std::vector<std::string> equalizers; // ids of those that nodes can follow; set by settleBalance()
 };
 
 // A canvas beside the first: the same picture at its own resolution.
@@ -61,12 +65,13 @@ struct NodePlan {
     TileRegion region;
     std::optional<Viewport> area;  // on the picture, instead of tiles
     std::optional<Viewport> shown; // place on the wall, if different from area
-    Zoom transferScale;  // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
-    int chunkQueue = -1; // index into SessionPlan::chunkQueues; -1: its range is fixed
-    int queue = -1;      // index into SessionPlan::queues; -1: its area is fixed
-    std::optional<ScreenView> screen; // for a screen in a room
-    std::optional<NodeWindow> window; // replaces the windows of tiles
-    std::string swapBarrier;          // swap barrier of the node's windows; empty: none
+    Zoom transferScale; // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
+    std::optional<DrawTask> task;               // empty: a node of options without equalizers
+    bool isPlacedByFrames = false;              // frames of the file crop, move or scale its picture
+    bool movesArea = false, movesRange = false; // equalizers change its area or range; set by settleBalance()
+    std::optional<ScreenView> screen;           // for a screen in a room
+    std::optional<NodeWindow> window;           // replaces the windows of tiles
+    std::string swapBarrier;                    // swap barrier of the node's windows; empty: none
     // the node with the composited picture of all ranges, which has range 0; range r is node collector + r
     int collector = 0;
     std::string codec = "auto";       // codec of its pictures to other nodes; before chooseCodecs: the file's
@@ -76,8 +81,7 @@ struct NodePlan {
 
 struct SessionPlan {
     std::vector<NodePlan> nodes;
-    std::vector<TileQueuePlan> queues;
-    std::vector<ChunkQueuePlan> chunkQueues;
+    std::shared_ptr<const BalancePlan> balance; // null: nothing moves
     WallComposition wall;
     bool nodesShowWall = true;                    // each node draws an unscaled part of the wall
     std::vector<CanvasPlan> canvases;             // canvases beside the first
@@ -90,10 +94,6 @@ struct SessionPlan {
 NodeReach reachOf(const std::string& host, const std::string& ownHost);
 
 SessionPlan planSession(const SessionConfig& config, const std::string& ownHost);
-
-// Fixes the areas of queues in sessions that cannot move them, and adds a line with the reason to the plan. Call after
-// planSession() or planOf().
-void settleQueues(SessionPlan& plan, const SessionConfig& config);
 
 // True if --display windows needs a window of the head, because several pictures compose the wall.
 [[nodiscard]] bool headShowsWall(const SessionConfig& config, const SessionPlan& plan);

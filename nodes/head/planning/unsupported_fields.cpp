@@ -16,8 +16,6 @@ struct Gap {
 
 constexpr std::string_view kNoTransport = "the host name selects the transport; remove it";
 constexpr std::string_view kNoCounts = "mural stat shows the nodes' statistics";
-constexpr std::string_view kNoBalance =
-    "areas and ranges are divided evenly; set viewport or range in compounds with uneven cost";
 constexpr std::string_view kAsProgram =
     "nodes draw with the format of the program's windows; change the program's settings";
 
@@ -54,9 +52,6 @@ constexpr std::array kGaps = {
     Gap{"", "robustness", "the session always continues without lost nodes; remove it"},
     Gap{"", "NV_group", "barriers use the network, without hardware; remove it"},
     Gap{"", "NV_barrier", "barriers use the network, without hardware; remove it"},
-    Gap{"compound", "load_equalizer", kNoBalance},
-    Gap{"compound", "tree_equalizer", kNoBalance},
-    Gap{"compound", "view_equalizer", "all channels of a view draw it; remove it"},
     Gap{"compound", "DFR_equalizer", "the size of pictures is fixed; set a zoom in the compound"},
     Gap{"compound", "framerate_equalizer", "frames are shown as soon as they are complete; remove it"},
     Gap{"compound", "monitor_equalizer", "mural_copy_to in a segment shows its picture on another one, too"},

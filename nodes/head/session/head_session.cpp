@@ -90,18 +90,14 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
               output_->add(std::move(picture));
           },
           composeOthersBy(plan_), sizesOf(plan_)),
-      dealer_(
-          plan_,
-          [this](const ViewportAssignment& areas) {
-              nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas));
-          },
-          plantOf()),
-      chunks_(
-          plan_,
-          [this](const RangeAssignment& shares) {
-              nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(shares));
-          },
-          plantOf()),
+      balancer_(plan_,
+                {[this](const ViewportAssignment& areas) {
+                     nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas));
+                 },
+                 [this](const RangeAssignment& ranges) {
+                     nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(ranges));
+                 }},
+                plantOf()),
       advice_(config_, nodeCount_),
       absences_(absencesOf(nodes)),
       views_(nodes.size()),
@@ -250,7 +246,7 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
 }
 
 Result<void> HeadSession::nodeAnswer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes) {
-    dealer_.answered();
+    balancer_.answered();
     return answers_.answer(node, header, std::move(bytes));
 }
 
@@ -266,8 +262,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // the node's Bye replaces this value
     }
-    dealer_.frameDone(node, message);
-    chunks_.frameDone(node, message);
+    balancer_.frameDone(node, message, monotonicNowNs());
     advice_.frameDone(message.flags, plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1);
     return frames_.frameDone(node, message, monotonicNowNs());
 }
@@ -298,8 +293,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
         gone_.erase(entry);
     }
     const auto [client, id] = window;
-    dealer_.windowGone(client, id);
-    chunks_.windowGone(client, id);
+    balancer_.windowGone(client, id);
     if (id != wire::kAllWindows) {
         frames_.windowGone(client, id);
         if (output_) output_->windowGone(client, id);
@@ -443,11 +437,7 @@ SessionStatus HeadSession::status() {
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.delta = nodes_.deltaCounts();
-    result.queues = queues();
-    if (!result.queues.empty() && !result.queues.front().chunks && result.queues.front().columns > 0) {
-        result.columns = result.queues.front().columns;
-        result.rows = result.queues.front().rows;
-    }
+    result.equalizers = balancer_.totals();
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);
@@ -468,18 +458,12 @@ SessionStatus HeadSession::status() {
     return result;
 }
 
-std::vector<QueueTotals> HeadSession::queues() const {
-    std::vector<QueueTotals> all = dealer_.totals();
-    for (QueueTotals& queue : chunks_.totals()) all.push_back(std::move(queue));
-    return all;
-}
-
 SessionNumbers HeadSession::numbers() {
     SessionNumbers result;
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.delta = nodes_.deltaCounts();
-    result.queues = queues();
+    result.equalizers = balancer_.totals();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = advice_.drawnWhole();

@@ -18,7 +18,7 @@
 
 #include "nodes/head/results/reply_assembler.hpp"
 #include "nodes/head/capture/capture_server.hpp"
-#include "nodes/head/balancing/chunk_equalizer.hpp"
+#include "nodes/head/balancing/load_balancer.hpp"
 #include "nodes/head/session/control_channel.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
@@ -32,7 +32,6 @@
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
 #include "nodes/head/session/slowdown_advice.hpp"
-#include "nodes/head/balancing/tile_equalizer.hpp"
 #include "nodes/session/session_config.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/replies.hpp"
@@ -131,7 +130,6 @@ private:
     bool allReadersEnded();
     SessionNumbers numbers();
     SessionStatus status();
-    [[nodiscard]] std::vector<QueueTotals> queues() const;
     std::vector<int> waitsFor(const ProgramStatus& program);
     std::string streamOf(const NodePlan& plan); // requires mutex_
     void noNodeIsLeft();
@@ -152,8 +150,7 @@ private:
     DriverEventMerger driverEvents_;
     std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
     PictureAssembler pictures_;
-    TileEqualizer dealer_;
-    ChunkEqualizer chunks_;
+    LoadBalancer balancer_;
     SlowdownAdvice advice_;
     StreamBroadcaster nodes_;
     std::unique_ptr<NodeRestarter> returns_;

@@ -43,13 +43,13 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
     hooks.turns = [this](int node) {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
         return plan.pass.period > 1 ? StreamBroadcaster::Turns::OfFrames
-               : plan.queue >= 0    ? StreamBroadcaster::Turns::OfAreas
+               : plan.movesArea     ? StreamBroadcaster::Turns::OfAreas
                                     : StreamBroadcaster::Turns::None;
     };
     hooks.tilesOfLost = [this](int node) -> std::string {
         const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
-        if (plan.pass.range > 0) return plan.chunkQueue >= 0 ? "other nodes take its chunks" : "its draws are missing";
-        return plan.queue >= 0 ? "other nodes take its tiles" : "its tiles keep their last picture";
+        if (plan.pass.range > 0) return plan.movesRange ? "other nodes take its draws" : "its draws are missing";
+        return plan.movesArea ? "other nodes take its tiles" : "its tiles keep their last picture";
     };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
     hooks.gaveUp = [this](int) {
@@ -141,8 +141,8 @@ StreamBroadcaster::Admission HeadSession::admit(int node, uint32_t view) {
     admission.incarnation = incarnations_[static_cast<size_t>(node)];
     admission.first = true; // of time-multiplexed nodes or nodes with moving areas
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
-        admission.first = admission.first &&
-                          (totals_[other].lost || (plan_.nodes[other].pass.period < 2 && plan_.nodes[other].queue < 0));
+        admission.first = admission.first && (totals_[other].lost ||
+                                              (plan_.nodes[other].pass.period < 2 && !plan_.nodes[other].movesArea));
     totals_[static_cast<size_t>(node)].lost = false;
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
         if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive())
@@ -172,8 +172,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     const NodeRestarter::Numbers numbers = returns_->numbers(node);
     frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // plus the frames that it has drawn itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
-    dealer_.nodeJoined(node);
-    chunks_.nodeJoined(node);
+    balancer_.nodeJoined(node);
     int64_t joins = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -206,7 +205,7 @@ void HeadSession::loseMember(int node, const std::string& why) {
 void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
-        const bool taken = plan_.nodes[static_cast<size_t>(node)].queue >= 0;
+        const bool taken = plan_.nodes[static_cast<size_t>(node)].movesArea;
         log::warning(log::Topic::Node, nodes_.link(node).describe(), " is not connected yet: it ", why,
                      taken ? "; other nodes take its tiles until it joins" : "; its tiles stay empty until it joins");
         returns_->notThere(node);
@@ -224,8 +223,7 @@ void HeadSession::goOnWithout(int node) {
     answers_.nodeLost(node);
     pictures_.nodeLost(node);
     frames_.nodeLost(node, monotonicNowNs());
-    dealer_.nodeLost(node);
-    chunks_.nodeLost(node);
+    balancer_.nodeLost(node);
     std::vector<std::pair<uint32_t, uint32_t>> waiting; // requests that wait for this node
     {
         const std::lock_guard lock(mutex_);

@@ -79,22 +79,24 @@ Json uncomparedJson(const CaptureCounts& counts) {
     return reasons;
 }
 
-Json queuesJson(const std::vector<QueueTotals>& queues) {
-    if (queues.empty()) return nullptr;
+Json equalizersJson(const std::vector<EqualizerTotals>& equalizers) {
+    if (equalizers.empty()) return nullptr;
     Json list = Json::array();
-    for (const QueueTotals& q : queues) {
+    for (const EqualizerTotals& e : equalizers) {
         Json nodes = Json::array();
-        for (const auto& [node, tiles] : q.nodes) nodes.push_back({{"node", node}, {"tiles", tiles}});
-        list.push_back({{"name", q.name},
-                        {"of", q.chunks ? "chunks" : "tiles"},
-                        {"columns", q.columns},
-                        {"rows", q.rows},
-                        {"tileWidth", q.width},
-                        {"tileHeight", q.height},
-                        {"frames", q.frames},
-                        {"moves", q.moves},
-                        {"tilesMoved", q.tilesMoved},
-                        {"taken", q.taken},
+        for (const auto& [node, part] : e.nodes) nodes.push_back({{"node", node}, {"part", part}});
+        Json parameters = Json::object();
+        for (const auto& [name, value] : e.parameters) parameters[name] = value;
+        list.push_back({{"name", e.id},
+                        {"parameters", parameters},
+                        {"kind", e.kind},
+                        {"divides", e.ranges ? "draws" : "picture"},
+                        {"frozen", e.frozen},
+                        {"decision", e.decision},
+                        {"frames", e.frames},
+                        {"moves", e.moves},
+                        {"taken", e.taken},
+                        {"efficiency", e.efficiency},
                         {"nodes", nodes}});
     }
     return list;
@@ -147,7 +149,7 @@ Json reportOf(const SessionNumbers& n) {
         {"framesPerSecond", seconds > 0 ? static_cast<double>(frames - 1) / seconds : 0.0},
         {"bytesPerFrame", frames > 0 ? n.bytesSent / static_cast<uint64_t>(frames) : 0},
         {"delta", deltaJson(n.delta)},
-        {"queues", queuesJson(n.queues)},
+        {"equalizers", equalizersJson(n.equalizers)},
         {"calls", calls},
         {"roundTrips", n.programs.roundTrips},
         {"roundTripsBy", n.programs.tripsBy},

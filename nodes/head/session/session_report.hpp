@@ -10,7 +10,7 @@
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/frames/picture_output.hpp"
 #include "nodes/head/broadcast/delta_stream.hpp"
-#include "nodes/head/balancing/queue_totals.hpp"
+#include "nodes/head/balancing/equalizer_totals.hpp"
 #include "streamcodec/trace/trace_writer.hpp"
 
 namespace mural {
@@ -46,7 +46,7 @@ struct SessionNumbers {
     FrameTotals frames;
     uint64_t bytesSent = 0; // to each node
     DeltaCounts delta;
-    std::vector<QueueTotals> queues;
+    std::vector<EqualizerTotals> equalizers;
     CaptureCounts programs;
     OutputTotals output;
     std::string lastPicture; // path
@@ -57,7 +57,7 @@ struct SessionNumbers {
 };
 
 // Returns [{"name": …}]. Null: no tiles move.
-nlohmann::json queuesJson(const std::vector<QueueTotals>& queues);
+nlohmann::json equalizersJson(const std::vector<EqualizerTotals>& equalizers);
 
 // Returns {"records": …, "rawBytes": …}. Null: delta coding is off.
 nlohmann::json deltaJson(const DeltaCounts& counts);

@@ -67,7 +67,7 @@ Json statusOf(const SessionStatus& status) {
         {"display", status.display},
         {"frames", status.wallFrames},
         {"delta", deltaJson(status.delta)},
-        {"queues", queuesJson(status.queues)},
+        {"equalizers", equalizersJson(status.equalizers)},
         {"programs", programs},
         {"nodes", nodes},
     };

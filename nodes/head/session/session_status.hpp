@@ -42,7 +42,7 @@ struct SessionStatus {
     std::string display; // app, windows, none
     int64_t wallFrames = 0;
     DeltaCounts delta;
-    std::vector<QueueTotals> queues;
+    std::vector<EqualizerTotals> equalizers;
     std::vector<ProgramStatus> programs;
     std::vector<NodeStatus> nodes;
 };

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "nodes/head/planning/make_plan.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "nodes/head/session/log_to_control.hpp"
 #include "tests/head/support/fake_node.hpp"
@@ -41,7 +42,7 @@ public:
 
     void start() {
         connectControl();
-        SessionPlan plan = planSession(config, "here");
+        SessionPlan plan = makePlan(config, "here").value();
         std::vector<LaunchedNode> launched;
         for (const NodePlan& node : plan.nodes) {
             auto pipe = makePipe(pipeBytes);
@@ -59,7 +60,7 @@ public:
     // Starts the nodes as processes: `executable node …`.
     void startProcesses(const std::string& executable) {
         connectControl();
-        const SessionPlan plan = planSession(config, "here");
+        const SessionPlan plan = makePlan(config, "here").value();
         // The session's own thread launches the nodes, which live as long as that thread.
         thread_ = std::thread([this, plan, executable] {
             auto nodes =

@@ -14,6 +14,7 @@
 #include "balancer/config/eqc/writer.hpp"
 #include "compositor/strategies/strategy.hpp"
 #include "nodes/head/planning/config_plan.hpp"
+#include "nodes/head/planning/preset_plan.hpp"
 #include "nodes/launch/private_display.hpp"
 #include "nodes/frame_transfer/plane_codecs.hpp"
 #include "tools/mural/byte_size.hpp"
@@ -210,7 +211,7 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
     if (requested > 0 && !a.tiles && !a.tileQueue)
         std::tie(c.columns, c.rows) = gridFor(std::max(1, requested / passes));
-    if (!a.tileQueue && requested > c.columns * c.rows * passes) {
+    if (!sharesParts(c) && requested > c.columns * c.rows * passes) {
         return Error{
             fmt::format("{} render nodes for {} tiles{}: each node needs a tile; give more --tiles or fewer nodes",
                         requested, c.columns * c.rows, passes > 1 ? fmt::format(" in {} passes", passes) : "")};
@@ -282,6 +283,18 @@ Result<void> readZoom(const RunArguments& a, Zoom& zoom) {
 }
 
 // Reads the options for frames in several passes.
+Result<void> readBalance(const RunArguments& a, SessionConfig& c) {
+    using balance::Balance;
+    const Choice<Balance> kinds[] = {
+        {"auto", Balance::Auto}, {"load", Balance::Load}, {"tree", Balance::Tree}, {"off", Balance::Off}};
+    if (auto r = choose("--balance", a.balance, kinds, c.balance); !r) return r;
+    if (!a.balance || a.config) return {};
+    for (const auto& [option, given] :
+         {std::pair("--tile-queue", a.tileQueue.has_value()), std::pair("--chunk-queue", a.chunkQueue.has_value())})
+        if (given) return Error{fmt::format("{} and --balance both distribute the work; omit one of them", option)};
+    return {};
+}
+
 Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
     const Choice<StereoMode> modes[] = {{"off", StereoMode::Off},
                                         {"anaglyph", StereoMode::Anaglyph},
@@ -320,6 +333,7 @@ Result<void> readPasses(const RunArguments& a, SessionConfig& c) {
             return Error{"--chunk-queue requires sort-last nodes; add --db N, such as --db 4"};
         c.chunks = static_cast<int>(*chunks);
     }
+    if (auto r = readBalance(a, c); !r) return r;
     if (a.codec) {
         if (auto wanted = wantedCodec(*a.codec); !wanted)
             return badValue("--codec", *a.codec,
@@ -426,40 +440,9 @@ Result<std::string> configTextOf(const RunArguments& a, const SessionConfig& c) 
         config::Diagnostics ignored(*a.config);
         return config::writeConfig(config::readConfigFile(*a.config, ignored));
     }
-    config::Preset form;
-    form.columns = c.columns;
-    form.rows = c.rows;
-    form.nodes = c.hosts;
-    form.ranges = c.passes.ranges;
-    if (c.composition != "auto") form.composition = c.composition;
-    form.chunks = c.chunks;
-    form.pixels = c.passes.kernelWidth;
-    form.samples = c.passes.samples;
-    form.frames = c.passes.period;
-    form.zoom = c.passes.zoom;
-    if (c.passes.kernelHeight > 1)
-        return Error{"--print-config: no preset has a pixel kernel with several rows; write it into a file as pixel [ "
-                     "x y width height ]"};
-    if (c.tileWidth > 0) {
-        constexpr int kTakers = 4; // default number of nodes, as in planSession()
-        const int nodes = c.localNodes + static_cast<int>(c.hosts.size());
-        form.tileWidth = c.tileWidth;
-        form.tileHeight = c.tileHeight;
-        form.takers = nodes == 0 ? kTakers
-                                 : std::max(1, nodes / static_cast<int>(passesOf(c.passes).size() *
-                                                                        static_cast<size_t>(c.passes.ranges)));
-    }
-    switch (c.passes.stereo) {
-    case StereoMode::Off: break;
-    case StereoMode::Anaglyph: form.stereo = config::StereoPreset::Anaglyph; break;
-    case StereoMode::SideBySide: form.stereo = config::StereoPreset::SideBySide; break;
-    case StereoMode::Quad: form.stereo = config::StereoPreset::Quad; break;
-    default:
-        return Error{"--print-config: configurations have no such stereo mode; use anaglyph, side-by-side or quad"};
-    }
-    if (c.width > 0) form.width = c.width;
-    if (c.height > 0) form.height = c.height;
-    auto file = config::shortForm(form);
+    auto form = presetOf(c);
+    if (!form) return Error{"--print-config: " + form.error().message};
+    auto file = config::shortForm(*form);
     if (!file) return file.error();
     return config::writeConfig(*file);
 }
@@ -519,6 +502,11 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
             "--chunk-queue", a.chunkQueue,
             "with --db: draws in N chunks; nodes with less work take more of them (none: nodes have equal ranges)")
         ->type_name("N");
+    command
+        .add_option("--balance", a.balance,
+                    "areas of nodes, or ranges with --db, follow their times: auto (a map of the cost), load or tree "
+                    "(equalizers of the file format), off (equal parts; as in the file)")
+        ->type_name("KIND");
     command.add_option("--nodes", a.nodes, "render nodes on these hosts, separated by commas")->type_name("H1,H2");
     command.add_option("--local-nodes", a.localNodes, "render nodes on this machine (one per tile, at most 4)")
         ->type_name("N");

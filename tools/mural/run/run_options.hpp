@@ -32,8 +32,8 @@ struct RunOptions {
 // Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
     using Text = std::optional<std::string>;
-    Text tiles, tileQueue, chunkQueue, size, position, nodes, out, save, display, tiling, localRendering, gl, launch,
-        stream, remoteMural, captureVia, restartNodes, minNodes;
+    Text tiles, tileQueue, chunkQueue, balance, size, position, nodes, out, save, display, tiling, localRendering, gl,
+        launch, stream, remoteMural, captureVia, restartNodes, minNodes;
     Text config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
     bool allLocal = false, printConfig = false;

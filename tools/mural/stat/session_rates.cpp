@@ -154,21 +154,18 @@ void addDelta(const Json& delta, std::vector<std::string>& lines) {
             number(recent, "droppedRecordsPerFrame"), sizeText(number(delta, "deferredBytes"))));
 }
 
-void addQueue(const Json& queue, std::vector<std::string>& lines) {
-    if (number(queue, "columns") == 0) return;
+void addEqualizer(const Json& equalizer, std::vector<std::string>& lines) {
     std::string nodes;
-    for (const Json& node : entries(queue, "nodes"))
-        nodes += fmt::format("{}node {:.0f} has {:.0f}", nodes.empty() ? "" : ", ", number(node, "node"),
-                             number(node, "tiles"));
-    const double frames = number(queue, "frames");
-    const std::string of = memberText(queue, "of");
-    const std::string pieces =
-        of == "chunks" ? fmt::format("{:.0f} chunks", number(queue, "columns"))
-                       : fmt::format("{:.0f}x{:.0f} tiles of {:.0f}x{:.0f} pixels", number(queue, "columns"),
-                                     number(queue, "rows"), number(queue, "tileWidth"), number(queue, "tileHeight"));
-    lines.push_back(fmt::format("  queue \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames, {:.2f} {} per frame",
-                                memberText(queue, "name"), pieces, nodes, number(queue, "moves"), frames,
-                                frames > 0 ? number(queue, "tilesMoved") / frames : 0, of));
+    for (const Json& node : entries(equalizer, "nodes"))
+        nodes += fmt::format("{}node {:.0f} {:.0f} %", nodes.empty() ? "" : ", ", number(node, "node"),
+                             100 * number(node, "part"));
+    const bool frozen = equalizer.value("frozen", false);
+    lines.push_back(fmt::format("  equalizer \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames; busy {:.0f} % of the "
+                                "longest time; {}",
+                                memberText(equalizer, "name"), memberText(equalizer, "divides"), nodes,
+                                number(equalizer, "moves"), number(equalizer, "frames"),
+                                100 * number(equalizer, "efficiency"),
+                                frozen ? "frozen" : memberText(equalizer, "decision")));
 }
 
 void addNode(const Json& node, std::vector<std::string>& lines) {
@@ -220,7 +217,7 @@ std::vector<std::string> statLines(const Json& session) {
     for (const Json& program : programs) addProgram(program, lines);
     if (programs.empty()) lines.emplace_back("  no program draws at the moment");
     addDelta(part(session, "delta"), lines);
-    for (const Json& queue : entries(session, "queues")) addQueue(queue, lines);
+    for (const Json& e : entries(session, "equalizers")) addEqualizer(e, lines);
     for (const Json& node : entries(session, "nodes")) addNode(node, lines);
     return lines;
 }

@@ -1,0 +1,346 @@
+#include "nodes/head/balancing/load_balancer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "balancer/equalizers/make_equalizers.hpp"
+#include "balancer/equalizers/random_equalizer.hpp"
+#include "nodes/head/planning/balance_plan.hpp"
+
+namespace mural {
+namespace {
+
+using balance::Effect;
+using balance::LeafStatistics;
+using compound::RenderContext;
+using config::at;
+using config::Index;
+using config::kNone;
+
+// Assignments that no frame was drawn with yet. A window that is never cleared keeps its areas, so more of them would
+// have no effect either.
+constexpr size_t kMaxIssues = 64;
+constexpr size_t kRatedFrames = 32;
+constexpr uint32_t kSeed = 20261123;
+
+bool plantsAreas(const std::string& plant) { return plant == "areas" || plant == "early" || plant == "uncleared"; }
+bool plantsRanges(const std::string& plant) { return plant == "shares" || plant == "lateshare"; }
+
+// Returns the equalizers that take effect in the session.
+balance::FramePlanner::Equalizers equalizersOf(const BalancePlan& plan, const std::string& plant) {
+    auto all = balance::makeEqualizers(plan.config, plan.choice);
+    std::erase_if(all,
+                  [&](const auto& e) { return std::ranges::find(plan.equalizers, e->id()) == plan.equalizers.end(); });
+    for (auto& e : all) {
+        const bool planted = (e->effect() == Effect::Viewports && plantsAreas(plant)) ||
+                             (e->effect() == Effect::Ranges && plantsRanges(plant));
+        if (planted) e = std::make_unique<balance::RandomEqualizer>(*e, plan.config, kSeed);
+    }
+    return all;
+}
+
+compound::DisplaySizes scaled(compound::DisplaySizes sizes, double x, double y) {
+    for (PixelViewport& c : sizes.channels) {
+        const auto edge = [](int at, double scale) { return static_cast<int>(std::lround(at * scale)); };
+        const int x0 = edge(c.x, x), y0 = edge(c.y, y);
+        c = {x0, y0, edge(c.right(), x) - x0, edge(c.top(), y) - y0};
+    }
+    return sizes;
+}
+
+double partOf(const Viewport& area) { return area.w * area.h; }
+double partOf(const Range& range) { return range.end - range.start; }
+
+} // namespace
+
+LoadBalancer::LoadBalancer(const SessionPlan& plan, Announce announce, const std::string& plant)
+    : announce_(std::move(announce)),
+      nodes_(plan.nodes),
+      times_(plan.nodes.size()),
+      isRandom_(plantsAreas(plant) || plantsRanges(plant)) {
+    for (const NodePlan& node : nodes_) {
+        areas_.ofNodes.push_back(node.area.value_or(Viewport{}));
+        ranges_.ofNodes.push_back(node.pass.share);
+    }
+    if (!plan.balance || plan.balance->equalizers.empty()) return;
+    fileSizes_ = plan.balance->input.sizes;
+    wall_ = plan.balance->wall;
+    planner_ = std::make_unique<balance::FramePlanner>(plan.balance->config, plan.balance->input,
+                                                       equalizersOf(*plan.balance, plant));
+    for (const auto& e : planner_->equalizers()) {
+        if (e->effect() != Effect::Viewports && e->effect() != Effect::Ranges) continue;
+        Watched& w = watched_.emplace_back();
+        w.equalizer = e.get();
+        w.nodes = nodesOf(plan, *e);
+        w.totals.id = e->id();
+        w.totals.kind = e->kind();
+        w.totals.ranges = e->effect() == Effect::Ranges;
+    }
+}
+
+void LoadBalancer::frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs) {
+    if (!isActive()) return;
+    const std::lock_guard lock(mutex_);
+    if (times_.follow(message)) {
+        resize();
+        issues_.clear();
+        advance(false);
+    }
+    times_.worked(node, message.busyNs);
+    if (isRandom_) advance(false);
+    if (!times_.follows(message)) return;
+    for (Watched& w : watched_) {
+        const auto first = std::ranges::find_if(w.nodes, [&](int n) { return times_.isAlive(n); });
+        const uint32_t number = w.totals.ranges ? message.shares : message.areas;
+        if (first != w.nodes.end() && *first == node && number != std::exchange(w.drawn, number)) ++w.totals.taken;
+    }
+    if (isRandom_) return;
+    const auto frame = times_.finished(node, message);
+    if (!frame) return;
+    observe(*frame, nowNs);
+    if (issues_.size() < kMaxIssues) advance(false);
+}
+
+void LoadBalancer::answered() {
+    if (!isActive() || !isRandom_) return;
+    const std::lock_guard lock(mutex_);
+    if (times_.known()) advance(false);
+}
+
+// The program's picture has the place of the first canvas, whose size in the file may differ.
+void LoadBalancer::resize() {
+    if (wall_.w <= 0 || wall_.h <= 0) return;
+    planner_->changeInput().sizes =
+        scaled(fileSizes_, double(times_.width()) / wall_.w, double(times_.height()) / wall_.h);
+}
+
+// Plans the next frame and announces what changed. `repeats` announces unchanged parts, too: after a loss or a return
+// nodes may have reset theirs.
+void LoadBalancer::advance(bool repeats) {
+    planner_->next();
+    ViewportAssignment areas = areas_;
+    RangeAssignment ranges = ranges_;
+    findParts(areas, ranges);
+    const bool movesAreas = std::ranges::any_of(nodes_, &NodePlan::movesArea);
+    const bool movesRanges = std::ranges::any_of(nodes_, &NodePlan::movesRange);
+    // without a window the areas have no pixels to align to
+    const bool hasAreas = movesAreas && times_.known() && (repeats || areas.ofNodes != areas_.ofNodes);
+    const bool hasRanges = movesRanges && (repeats || ranges.ofNodes != ranges_.ofNodes);
+    for (Watched& w : watched_) {
+        const auto moved = [&](int n) {
+            const auto i = static_cast<size_t>(n);
+            return w.totals.ranges ? ranges.ofNodes[i] != ranges_.ofNodes[i] : areas.ofNodes[i] != areas_.ofNodes[i];
+        };
+        if (!repeats && !issues_.empty() && std::ranges::any_of(w.nodes, moved)) ++w.totals.moves;
+    }
+    if (hasAreas) {
+        ++areas.number;
+        areas_ = std::move(areas);
+        announce_.viewports(areas_);
+    }
+    if (hasRanges) {
+        ++ranges.number;
+        ranges_ = std::move(ranges);
+        announce_.ranges(ranges_);
+    }
+    if (!isRandom_ && (hasAreas || hasRanges || issues_.empty()))
+        issues_.push_back({areas_.number, ranges_.number, leavesOfPlan()});
+}
+
+// Sets the areas and ranges of the nodes that move. A task without a context draws nothing.
+void LoadBalancer::findParts(ViewportAssignment& areas, RangeAssignment& ranges) const {
+    constexpr size_t kEyeCount = 3;
+    const auto& contexts = planner_->plan().contexts;
+    std::vector<const RenderContext*> found(planner_->config().compounds.size() * kEyeCount);
+    const auto key = [](Index compound, Eye eye) { return at(compound) * kEyeCount + static_cast<size_t>(eye); };
+    for (const RenderContext& c : contexts) found[key(c.compound, c.eye)] = &c;
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+        const NodePlan& node = nodes_[i];
+        if (!node.task || (!node.movesArea && !node.movesRange)) continue;
+        const RenderContext* c = found[key(node.task->compound, node.task->eye)];
+        const bool draws = c != nullptr && c->view != kNone && !c->part.empty() && !c->range.empty();
+        if (node.movesArea) {
+            areas.ofNodes[i] =
+                draws ? compose(planner_->config().views[at(c->view)].viewport, c->part) : Viewport{0, 0, 0, 0};
+            snap(areas.ofNodes[i]);
+        }
+        if (node.movesRange) {
+            const double end = node.pass.share.start;
+            ranges.ofNodes[i] = draws ? Range{c->range.start, std::min(1., c->range.end)} : Range{end, end};
+        }
+    }
+}
+
+// Moves edges onto pixels of the followed window, so that neighbours agree exactly.
+void LoadBalancer::snap(Viewport& area) const {
+    if (!times_.known() || area.empty()) return;
+    const PixelViewport window{0, 0, times_.width(), times_.height()};
+    const PixelViewport pixels = intersect(apply(window, area), window);
+    area = pixels.empty() ? Viewport{0, 0, 0, 0} : relativeTo(pixels, window);
+}
+
+std::vector<LeafStatistics> LoadBalancer::leavesOfPlan() const {
+    std::vector<LeafStatistics> leaves;
+    for (const compound::ChannelPlan& channel : planner_->plan().channels)
+        for (const compound::PlannedTask& task : channel.tasks) {
+            if (task.kind != config::Task::Draw || task.context == kNone) continue;
+            const RenderContext& c = planner_->plan().contexts[at(task.context)];
+            const bool isKnown =
+                std::ranges::any_of(leaves, [&](const LeafStatistics& l) { return l.compound == c.compound; });
+            if (!isKnown) leaves.push_back(balance::leafOf(c, planner_->input().sizes)); // both eyes have one part
+        }
+    return leaves;
+}
+
+// Returns the parts that the nodes drew in this frame; null if they drew different or older ones.
+const LoadBalancer::Issue* LoadBalancer::issueOf(const FrameTimes::Frame& frame) const {
+    std::optional<uint32_t> viewports, ranges;
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+        if (frame.busyNs[i] < 0) continue;
+        const wire::FrameDoneMessage& done = frame.done[i];
+        if (nodes_[i].movesArea && viewports.value_or(done.areas) != done.areas) return nullptr;
+        if (nodes_[i].movesRange && ranges.value_or(done.shares) != done.shares) return nullptr;
+        if (nodes_[i].movesArea) viewports = done.areas;
+        if (nodes_[i].movesRange) ranges = done.shares;
+    }
+    const auto issue = std::ranges::find_if(issues_, [&](const Issue& i) {
+        return viewports.value_or(i.viewports) == i.viewports && ranges.value_or(i.ranges) == i.ranges;
+    });
+    return issue == issues_.end() ? nullptr : &*issue;
+}
+
+// Returns the busy time in ns of the nodes of each compound, summed over the eyes; negative: none of them counts.
+std::vector<double> LoadBalancer::busyByCompound(const FrameTimes::Frame& frame) const {
+    std::vector<double> busy(planner_->config().compounds.size(), -1);
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+        if (!nodes_[i].task || frame.busyNs[i] < 0) continue;
+        // a frame without divided draws tells nothing about ranges
+        if (nodes_[i].movesRange && (frame.done[i].flags & wire::kNotSplit)) continue;
+        double& sum = busy[at(nodes_[i].task->compound)];
+        sum = std::max(0., sum) + frame.busyNs[i];
+    }
+    return busy;
+}
+
+void LoadBalancer::observe(const FrameTimes::Frame& frame, int64_t nowNs) {
+    const Issue* const issue = issueOf(frame);
+    const int64_t frameNs = nowNs - std::exchange(lastFrameNs_, nowNs);
+    if (issue == nullptr) return;
+    const std::vector<double> busy = busyByCompound(frame);
+    balance::FrameStatistics statistics;
+    statistics.frameNumber = measured_++;
+    for (LeafStatistics leaf : issue->leaves) {
+        if (busy[at(leaf.compound)] < 0) continue;
+        leaf.busySeconds = leaf.end = 1e-9 * busy[at(leaf.compound)];
+        statistics.leaves.push_back(leaf);
+    }
+    for (const Index root : planner_->config().roots)
+        statistics.roots.push_back({root, 1e-9 * static_cast<double>(frameNs), false});
+    while (&issues_.front() != issue) issues_.pop_front();
+    if (statistics.leaves.empty()) return;
+    countFrame(frame);
+    planner_->addStatistics(statistics);
+}
+
+void LoadBalancer::countFrame(const FrameTimes::Frame& frame) {
+    for (Watched& w : watched_) {
+        double sum = 0, longest = 0, alive = 0;
+        for (const int node : w.nodes) {
+            const double busy = frame.busyNs[static_cast<size_t>(node)];
+            if (busy < 0) continue;
+            sum += busy;
+            longest = std::max(longest, busy);
+            ++alive;
+        }
+        if (longest <= 0) continue;
+        ++w.totals.frames;
+        w.efficiencies.push_back(sum / (alive * longest));
+        if (w.efficiencies.size() > kRatedFrames) w.efficiencies.pop_front();
+    }
+}
+
+void LoadBalancer::windowGone(uint32_t client, uint32_t window) {
+    const std::lock_guard lock(mutex_);
+    times_.windowGone(client, window);
+}
+
+// The nodes of both eyes draw one part, so both must live.
+void LoadBalancer::setAvailable(int node, bool isAvailable) {
+    if (!planOf(node).task) return;
+    const Index compound = planOf(node).task->compound;
+    for (size_t i = 0; i < nodes_.size(); ++i)
+        if (nodes_[i].task && nodes_[i].task->compound == compound)
+            isAvailable = isAvailable && times_.isAlive(static_cast<int>(i));
+    planner_->changeInput().compounds[at(compound)].isAvailable = isAvailable;
+}
+
+void LoadBalancer::nodeLost(int node) {
+    const std::lock_guard lock(mutex_);
+    times_.lost(node);
+    if (!isActive()) return;
+    setAvailable(node, false);
+    advance(true);
+}
+
+void LoadBalancer::nodeJoined(int node) {
+    const std::lock_guard lock(mutex_);
+    if (!times_.joined(node) || !isActive()) return;
+    setAvailable(node, true);
+    advance(true);
+}
+
+void LoadBalancer::count(Watched& w) const {
+    w.totals.frozen = w.equalizer->isFrozen();
+    w.totals.decision = w.equalizer->lastDecision().what;
+    w.totals.efficiency = w.efficiencies.empty() ? 0
+                                                 : std::accumulate(w.efficiencies.begin(), w.efficiencies.end(), 0.) /
+                                                       static_cast<double>(w.efficiencies.size());
+    w.totals.parameters.clear();
+    for (const balance::Parameter& p : w.equalizer->parameters().all())
+        w.totals.parameters.emplace_back(p.name, balance::textOf(p.value));
+    w.totals.nodes.clear();
+    double whole = 0;
+    for (const int node : w.nodes) {
+        const auto i = static_cast<size_t>(node);
+        const double part = w.totals.ranges ? partOf(ranges_.ofNodes[i]) : partOf(areas_.ofNodes[i]);
+        w.totals.nodes.emplace_back(node, part);
+        whole += part;
+    }
+    for (auto& [node, part] : w.totals.nodes) part = whole > 0 ? part / whole : 0;
+}
+
+Result<balance::Equalizer*> LoadBalancer::find(const std::string& name) const {
+    if (!isActive()) return Error{"this session has no equalizers; start it with --balance"};
+    if (balance::Equalizer* const found = planner_->find(name)) return found;
+    std::string names;
+    for (const auto& e : planner_->equalizers()) names += (names.empty() ? "" : ", ") + e->id();
+    return Error{"equalizer \"" + name + "\" does not exist; the names are " + names};
+}
+
+Result<void> LoadBalancer::set(const std::string& name, const std::string& parameter, const std::string& value) {
+    const std::lock_guard lock(mutex_);
+    const auto found = find(name);
+    if (!found) return found.error();
+    return found.value()->set(parameter, value);
+}
+
+Result<void> LoadBalancer::freeze(const std::string& name, bool isFrozen) {
+    const std::lock_guard lock(mutex_);
+    const auto found = find(name);
+    if (!found) return found.error();
+    found.value()->freeze(isFrozen, planner_->input().compounds);
+    return {};
+}
+
+std::vector<EqualizerTotals> LoadBalancer::totals() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<EqualizerTotals> totals;
+    for (Watched w : watched_) {
+        count(w);
+        totals.push_back(std::move(w.totals));
+    }
+    return totals;
+}
+
+} // namespace mural

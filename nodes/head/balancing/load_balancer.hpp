@@ -1,0 +1,97 @@
+// Runs the planner of a session (balancer/planner): measured times of nodes → equalizers → areas and ranges of nodes.
+//
+// FrameTimes selects the window whose times count. A frame counts after all living nodes have finished it. Nodes take
+// an assignment over at a frame of their own (nodes/replay/features/dynamic_tiles.cpp, sort_last.cpp) and report its
+// number with each frame, so each measurement belongs to the parts that were drawn. The other nodes take over the work
+// of a lost node until it returns.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "balancer/planner/frame_planner.hpp"
+#include "nodes/head/balancing/equalizer_totals.hpp"
+#include "nodes/head/frames/frame_times.hpp"
+#include "nodes/head/planning/node_plan.hpp"
+#include "nodes/session/range_assignment.hpp"
+#include "nodes/session/viewport_assignment.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+
+namespace mural {
+
+// Thread-safe.
+class LoadBalancer {
+public:
+    // Called with the balancer's lock held; must not block.
+    struct Announce {
+        std::function<void(const ViewportAssignment&)> viewports;
+        std::function<void(const RangeAssignment&)> ranges;
+    };
+
+    // plant: fault injection for tests. "areas" and "shares" divide at random after each frame and reply of each node;
+    // the picture must stay exact. "early", "uncleared" and "lateshare" do so, too, and are faults of nodes.
+    LoadBalancer(const SessionPlan& plan, Announce announce, const std::string& plant = {});
+
+    // nowNs: time at which the node's message arrived, on the monotonic clock.
+    void frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs);
+    void answered();                                   // a reply within a frame; relevant to fault injection only
+    void windowGone(uint32_t client, uint32_t window); // or wire::kAllWindows
+    void nodeLost(int node);
+    void nodeJoined(int node);
+
+    [[nodiscard]] bool isActive() const { return planner_ != nullptr; }
+    [[nodiscard]] std::vector<EqualizerTotals> totals() const;
+    // Changes of a running session, from the next decision on. name: as in totals(). Errors name the known names.
+    Result<void> set(const std::string& name, const std::string& parameter, const std::string& value);
+    Result<void> freeze(const std::string& name, bool isFrozen);
+
+private:
+    // The parts that one pair of assignments made the nodes draw. The times of the leaves are 0.
+    struct Issue {
+        uint32_t viewports = 0, ranges = 0; // numbers of the assignments; 0: the parts of Setup
+        std::vector<balance::LeafStatistics> leaves;
+    };
+    struct Watched { // one equalizer of areas or ranges
+        balance::Equalizer* equalizer;
+        std::vector<int> nodes;
+        EqualizerTotals totals;
+        std::deque<double> efficiencies; // of the latest frames
+        uint32_t drawn = 0;              // number of the assignment of the last frame
+    };
+
+    void resize();
+    void advance(bool repeats = false);
+    void findParts(ViewportAssignment& areas, RangeAssignment& ranges) const;
+    void snap(Viewport& area) const;
+    [[nodiscard]] std::vector<balance::LeafStatistics> leavesOfPlan() const;
+    void observe(const FrameTimes::Frame& frame, int64_t nowNs);
+    [[nodiscard]] const Issue* issueOf(const FrameTimes::Frame& frame) const;
+    [[nodiscard]] std::vector<double> busyByCompound(const FrameTimes::Frame& frame) const;
+    void countFrame(const FrameTimes::Frame& frame);
+    void count(Watched& watched) const;
+    [[nodiscard]] Result<balance::Equalizer*> find(const std::string& name) const;
+    void setAvailable(int node, bool isAvailable);
+    [[nodiscard]] const NodePlan& planOf(int node) const { return nodes_[static_cast<size_t>(node)]; }
+
+    mutable std::mutex mutex_;
+    const Announce announce_;
+    const std::vector<NodePlan> nodes_;
+    FrameTimes times_;
+    std::unique_ptr<balance::FramePlanner> planner_; // null: nothing moves
+    compound::DisplaySizes fileSizes_;               // of the configuration, for a picture of the size wall_
+    compound::PixelSize wall_{0, 0};
+    std::vector<Watched> watched_;
+    ViewportAssignment areas_; // the latest ones, per node
+    RangeAssignment ranges_;
+    std::deque<Issue> issues_; // oldest first; those that frames may still be drawn with
+    uint64_t measured_ = 0;    // frames
+    int64_t lastFrameNs_ = 0;
+    bool isRandom_ = false;
+};
+
+} // namespace mural

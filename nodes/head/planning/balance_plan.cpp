@@ -1,0 +1,112 @@
+#include "nodes/head/planning/balance_plan.hpp"
+
+#include <algorithm>
+
+#include "balancer/equalizers/make_equalizers.hpp"
+
+namespace mural {
+
+namespace {
+
+using balance::Effect;
+using compound::Index;
+using config::at;
+using config::kNone;
+
+bool isBelow(const config::ResolvedConfig& config, Index compound, Index root) {
+    for (; compound != kNone; compound = config.compounds[at(compound)].parent)
+        if (compound == root) return true;
+    return false;
+}
+
+bool drawsUnscaled(const NodePlan& node) {
+    const RenderPass& p = node.pass;
+    return p.kernelWidth * p.kernelHeight == 1 && p.zoom.none() && !node.shown && node.transferScale.none() &&
+           !node.isPlacedByFrames;
+}
+
+// Returns why the areas of these nodes cannot move. Empty: they can.
+std::string whyAreasAreFixed(const SessionPlan& plan, const SessionConfig& config, const std::vector<int>& nodes) {
+    if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its first tiles' size";
+    for (const int n : nodes) {
+        const NodePlan& node = plan.nodes[static_cast<size_t>(n)];
+        if (showsWall(config, plan, node)) return "nodes show their tiles in their own windows (--display windows)";
+        if (node.pass.ranges > 1) return "its nodes draw ranges (--db)";
+        if (node.pass.period > 1) return "its nodes draw whole frames in turn (--dplex)";
+        if (!drawsUnscaled(node)) return "its nodes draw kernels, or zoomed or cropped parts";
+    }
+    return {};
+}
+
+std::string whyRangesAreFixed(const SessionPlan& plan, const std::vector<int>& nodes) {
+    for (const int n : nodes) {
+        const NodePlan& node = plan.nodes[static_cast<size_t>(n)];
+        if (node.pass.period > 1) return "its nodes draw whole frames in turn (--dplex)";
+        if (node.pass.ranges < 2) return "the ranges of its nodes have different areas";
+    }
+    return {};
+}
+
+std::string listOf(const std::vector<int>& nodes) {
+    std::string list;
+    for (size_t i = 0; i < nodes.size(); ++i)
+        list += (i == 0 ? "" : i + 1 == nodes.size() ? " and " : ", ") + std::to_string(nodes[i]);
+    return list;
+}
+
+// Equalizers of usage act through equalizers of areas and ranges below them.
+bool dividesBelow(const BalancePlan& balance, const std::vector<std::unique_ptr<balance::Equalizer>>& all, Index root) {
+    return std::ranges::any_of(all, [&](const auto& e) {
+        const bool runs = std::ranges::find(balance.equalizers, e->id()) != balance.equalizers.end();
+        return runs && e->compound() != root && isBelow(balance.config, e->compound(), root);
+    });
+}
+
+void settleDivision(SessionPlan& plan, const SessionConfig& config, const balance::Equalizer& e, BalancePlan& into) {
+    const std::vector<int> nodes = nodesOf(plan, e);
+    const bool ranges = e.effect() == Effect::Ranges;
+    const std::string name = "equalizer \"" + e.id() + "\"";
+    if (nodes.size() < 2) {
+        plan.explain.push_back(name + " has no effect: " + (nodes.empty() ? "no node" : "one node") +
+                               " of this session draws its part");
+        return;
+    }
+    const std::string why = ranges ? whyRangesAreFixed(plan, nodes) : whyAreasAreFixed(plan, config, nodes);
+    if (!why.empty()) {
+        plan.warnings.push_back(name + ": " + (ranges ? "ranges" : "areas") + " stay fixed: " + why);
+        return;
+    }
+    for (const int node : nodes)
+        (ranges ? plan.nodes[static_cast<size_t>(node)].movesRange : plan.nodes[static_cast<size_t>(node)].movesArea) =
+            true;
+    into.equalizers.push_back(e.id());
+    plan.explain.push_back(name + " (" + e.kind() + ") divides the " + (ranges ? "draws" : "picture") +
+                           " among nodes " + listOf(nodes) + " by their times for the last frames");
+}
+
+} // namespace
+
+std::vector<int> nodesOf(const SessionPlan& plan, const balance::Equalizer& equalizer) {
+    std::vector<int> nodes;
+    if (!plan.balance) return nodes;
+    const config::ResolvedConfig& config = plan.balance->config;
+    for (const Index target : equalizer.targets(config))
+        for (const NodePlan& node : plan.nodes)
+            if (node.task && isBelow(config, node.task->compound, target)) nodes.push_back(node.node);
+    return nodes;
+}
+
+void settleBalance(SessionPlan& plan, const SessionConfig& config) {
+    if (!plan.balance) return;
+    auto settled = std::make_shared<BalancePlan>(*plan.balance);
+    const auto all = balance::makeEqualizers(settled->config, settled->choice);
+    for (const auto& e : all)
+        if (e->effect() == Effect::Viewports || e->effect() == Effect::Ranges)
+            settleDivision(plan, config, *e, *settled);
+    for (const auto& e : all)
+        if (e->effect() == Effect::Usage && dividesBelow(*settled, all, e->compound()))
+            settled->equalizers.push_back(e->id());
+    plan.balance = std::move(settled);
+}
+
+} // namespace mural

@@ -1,0 +1,469 @@
+// The areas and ranges that the head announces, from the reports of nodes.
+#include "nodes/head/balancing/load_balancer.hpp"
+
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "nodes/head/planning/make_plan.hpp"
+#include "streamcodec/wire/node_messages.hpp"
+
+namespace mural {
+namespace {
+
+constexpr uint32_t kWidth = 640, kHeight = 320;
+constexpr int kSamples = 128; // points per direction at which costs are taken
+
+class BalancerTest : public ::testing::Test {
+protected:
+    void begin(const SessionConfig& config, const std::string& plant = {}) {
+        auto plan = makePlan(config, "me");
+        ASSERT_TRUE(plan.ok()) << plan.error().message;
+        plan_ = std::move(*plan);
+        areas_.clear();
+        ranges_.clear();
+        balancer_ = std::make_unique<LoadBalancer>(
+            plan_,
+            LoadBalancer::Announce{[this](const ViewportAssignment& areas) { areas_.push_back(areas); },
+                                   [this](const RangeAssignment& ranges) { ranges_.push_back(ranges); }},
+            plant);
+        alive_.assign(plan_.nodes.size(), true);
+        frames_ = 0;
+    }
+
+    [[nodiscard]] Viewport areaOf(size_t node) const {
+        return areas_.empty() ? plan_.nodes[node].area.value_or(Viewport{}) : areas_.back().ofNodes[node];
+    }
+    [[nodiscard]] Range rangeOf(size_t node) const {
+        return ranges_.empty() ? plan_.nodes[node].pass.share : ranges_.back().ofNodes[node];
+    }
+    [[nodiscard]] int64_t pixelsOf(size_t node) const { return apply({0, 0, kWidth, kHeight}, areaOf(node)).area(); }
+
+    // All living nodes finish a frame with these busy times.
+    void finish(const std::vector<double>& busy, wire::FrameDoneMessage m = {}) {
+        m.client = client_;
+        m.window = 1;
+        m.frame = ++frames_;
+        if (m.width == 0) m.width = kWidth, m.height = kHeight;
+        if (m.areas == 0 && !areas_.empty()) m.areas = areas_.back().number;
+        if (m.shares == 0 && !ranges_.empty()) m.shares = ranges_.back().number;
+        if (m.areas == kOld) m.areas = 0;
+        if (m.shares == kOld) m.shares = 0;
+        for (size_t node = 0; node < alive_.size(); ++node) {
+            if (!alive_[node]) continue;
+            m.busyNs = static_cast<uint64_t>(1e4 * busy[node]);
+            balancer_->frameDone(static_cast<int>(node), m, int64_t{frames_} * 16'000'000);
+        }
+    }
+
+    // A pixel costs `cost` of its position, from 0 to 1.
+    void drawAreas(const std::function<double(double x, double y)>& cost, wire::FrameDoneMessage m = {},
+                   const std::vector<double>& speeds = {}) {
+        std::vector<double> busy(alive_.size(), 0);
+        for (size_t node = 0; node < alive_.size(); ++node) {
+            const Viewport v = areaOf(node);
+            for (int y = 0; y < kSamples; ++y)
+                for (int x = 0; x < kSamples; ++x) {
+                    const double px = (x + .5) / kSamples, py = (y + .5) / kSamples;
+                    if (px >= v.x && px < v.x + v.w && py >= v.y && py < v.y + v.h) busy[node] += cost(px, py);
+                }
+            if (!speeds.empty()) busy[node] /= speeds[node];
+        }
+        efficiency_ = efficiencyOf(busy);
+        finish(busy, m);
+    }
+
+    // A draw costs `cost` of its place in the frame, from 0 to 1; the collector has `more` additional work.
+    void drawRanges(const std::function<double(double)>& cost, double more = 0, wire::FrameDoneMessage m = {}) {
+        std::vector<double> busy(alive_.size(), 0);
+        busy[0] = more;
+        for (size_t node = 0; node < alive_.size(); ++node) {
+            const Range range = rangeOf(node);
+            for (int i = 0; i < 1000; ++i)
+                if (const double at = (i + .5) / 1000; at >= range.start && at < range.end) busy[node] += cost(at);
+        }
+        efficiency_ = efficiencyOf(busy);
+        finish(busy, m);
+    }
+
+    static double efficiencyOf(const std::vector<double>& busy) {
+        double sum = 0, longest = 0;
+        for (const double b : busy) sum += b, longest = std::max(longest, b);
+        return sum / (static_cast<double>(busy.size()) * longest);
+    }
+
+    // Checks that each pixel of the picture belongs to one area, and that all edges lie on the grid.
+    void expectWholePicture(int width = kWidth, int height = kHeight, int stepX = 1, int stepY = 1) const {
+        const PixelViewport whole{0, 0, width, height};
+        int64_t covered = 0;
+        ASSERT_FALSE(areas_.empty());
+        for (const Viewport& area : areas_.back().ofNodes) {
+            const PixelViewport pixels = apply(whole, area);
+            if (pixels.empty()) continue;
+            covered += pixels.area();
+            for (const int edge : {pixels.x, pixels.right()}) EXPECT_TRUE(edge % stepX == 0 || edge == width) << edge;
+            for (const int edge : {pixels.y, pixels.top()}) EXPECT_TRUE(edge % stepY == 0 || edge == height) << edge;
+            for (const Viewport& other : areas_.back().ofNodes) {
+                if (&other != &area) {
+                    EXPECT_TRUE(intersect(pixels, apply(whole, other)).empty());
+                }
+            }
+        }
+        EXPECT_EQ(covered, whole.area());
+    }
+
+    // Checks that each draw belongs to one living node, in the order of their ranges.
+    void expectAllDraws() const {
+        double at = 0;
+        for (size_t node = 0; node < alive_.size(); ++node) {
+            const Range range = rangeOf(node);
+            if (!alive_[node]) {
+                EXPECT_TRUE(range.empty()) << node;
+                continue;
+            }
+            EXPECT_EQ(range.start, at) << node;
+            EXPECT_FALSE(range.empty()) << node;
+            at = range.end;
+        }
+        EXPECT_EQ(at, 1);
+    }
+
+    static double even(double, double) { return 1; }
+    static double corner(double x, double y) { return x < 0.2 && y < 0.3 ? 30 : 1; }
+    static double evenDraws(double) { return 1; }
+    static double costlyFirst(double at) { return at < 0.2 ? 10 : 1; }
+
+    static constexpr uint32_t kOld = UINT32_MAX; // the number of the first assignment
+
+    SessionPlan plan_;
+    std::unique_ptr<LoadBalancer> balancer_;
+    std::vector<ViewportAssignment> areas_;
+    std::vector<RangeAssignment> ranges_;
+    std::vector<bool> alive_;
+    uint32_t frames_ = 0, client_ = 1;
+    double efficiency_ = 0; // of the last frame
+};
+
+// ---- tile queues
+
+SessionConfig tilesOf(int nodes, int width = 32, int height = 32) {
+    SessionConfig config;
+    config.tileWidth = width;
+    config.tileHeight = height;
+    config.localNodes = nodes;
+    return config;
+}
+
+TEST_F(BalancerTest, alignsTilesToTheGridOfTheWindow) {
+    begin(tilesOf(3));
+    drawAreas(even);
+    ASSERT_EQ(areas_.size(), 1u);
+    EXPECT_EQ(areas_.back().number, 1u);
+    expectWholePicture(kWidth, kHeight, 32, 32);
+    for (int i = 0; i < 50; ++i) drawAreas(even);
+    EXPECT_LE(areas_.size(), 3u) << "an even load";
+}
+
+TEST_F(BalancerTest, assignsFewerTilesToABusierNode) {
+    begin(tilesOf(2));
+    for (int i = 0; i < 100; ++i) {
+        drawAreas(corner);
+        expectWholePicture(kWidth, kHeight, 32, 32);
+    }
+    const double first = static_cast<double>(pixelsOf(0)), second = static_cast<double>(pixelsOf(1));
+    EXPECT_GT(std::max(first, second) / std::min(first, second), 3);
+    const auto totals = balancer_->totals();
+    ASSERT_EQ(totals.size(), 1u);
+    EXPECT_EQ(totals[0].kind, "tile_queue");
+    EXPECT_GT(totals[0].moves, 0);
+    EXPECT_GT(totals[0].efficiency, .9);
+    EXPECT_NEAR(totals[0].nodes[0].second + totals[0].nodes[1].second, 1, 1e-9);
+    EXPECT_EQ(areas_.size(), static_cast<size_t>(totals[0].moves) + 1);
+}
+
+TEST_F(BalancerTest, ignoresFramesOfOlderAreas) {
+    begin(tilesOf(2));
+    drawAreas(even);
+    wire::FrameDoneMessage m{};
+    m.areas = kOld;
+    for (int i = 0; i < 20; ++i) drawAreas(corner, m);
+    EXPECT_EQ(areas_.size(), 1u);
+    EXPECT_EQ(balancer_->totals()[0].frames, 0);
+}
+
+TEST_F(BalancerTest, supportsUnevenSizesAndSmallWindows) {
+    begin(tilesOf(4, 50, 70));
+    wire::FrameDoneMessage m{};
+    m.width = 333, m.height = 217;
+    drawAreas(even, m);
+    expectWholePicture(333, 217, 50, 70);
+    m.width = 500, m.height = 300; // larger
+    drawAreas(even, m);
+    expectWholePicture(500, 300, 50, 70);
+    begin(tilesOf(4, 500, 500)); // one tile would serve a single node
+    m.width = m.height = 300;
+    drawAreas(even, m);
+    for (const Viewport& area : areas_.back().ofNodes) EXPECT_FALSE(area.empty());
+}
+
+TEST_F(BalancerTest, reassignsTheTilesOfALostNode) {
+    begin(tilesOf(3));
+    for (int i = 0; i < 5; ++i) drawAreas(even);
+    alive_[1] = false;
+    balancer_->nodeLost(1);
+    expectWholePicture();
+    EXPECT_TRUE(areaOf(1).empty());
+    for (int i = 0; i < 30; ++i) drawAreas(corner);
+    expectWholePicture();
+    alive_[1] = true;
+    balancer_->nodeJoined(1);
+    expectWholePicture();
+    EXPECT_FALSE(areaOf(1).empty());
+    const size_t before = areas_.size();
+    balancer_->nodeJoined(1);
+    EXPECT_EQ(areas_.size(), before) << "it is there already";
+}
+
+TEST_F(BalancerTest, followsAnotherProgramAfterTheFirstHasEnded) {
+    begin(tilesOf(2));
+    drawAreas(even);
+    balancer_->windowGone(1, wire::kAllWindows);
+    client_ = 2;
+    wire::FrameDoneMessage m{};
+    m.width = 320, m.height = 160;
+    drawAreas(even, m);
+    expectWholePicture(320, 160);
+    client_ = 3;
+    const size_t before = areas_.size();
+    m.width = m.height = 64;
+    drawAreas(even, m);
+    EXPECT_EQ(areas_.size(), before) << "a smaller window beside it";
+}
+
+// ---- chunk queues
+
+SessionConfig rangesOf(int nodes) {
+    SessionConfig config;
+    config.passes.ranges = nodes;
+    config.localNodes = nodes;
+    return config;
+}
+
+SessionConfig chunksOf(int nodes, int chunks) {
+    SessionConfig config = rangesOf(nodes);
+    config.chunks = chunks;
+    return config;
+}
+
+TEST_F(BalancerTest, movesNoChunksForEqualCosts) {
+    begin(chunksOf(4, 64));
+    for (int i = 0; i < 20; ++i) drawRanges(evenDraws);
+    EXPECT_LE(ranges_.size(), 1u);
+    EXPECT_GT(balancer_->totals()[0].frames, 10);
+}
+
+TEST_F(BalancerTest, assignsFewerExpensiveChunks) {
+    begin(chunksOf(3, 90));
+    for (int i = 0; i < 60; ++i) drawRanges(costlyFirst);
+    ASSERT_FALSE(ranges_.empty());
+    expectAllDraws();
+    // Total cost 2.8: a third is 0.93, within the first fifth of the draws.
+    EXPECT_LT(rangeOf(0).end, 0.14);
+    EXPECT_LT(rangeOf(1).end, 0.3);
+    const EqualizerTotals totals = balancer_->totals()[0];
+    EXPECT_TRUE(totals.ranges);
+    EXPECT_EQ(totals.kind, "chunk_queue");
+    EXPECT_GT(totals.moves, 0);
+    EXPECT_LT(totals.moves, 20) << "it settles";
+}
+
+TEST_F(BalancerTest, countsOtherWorkOfTheCollector) {
+    begin(chunksOf(2, 100));
+    for (int i = 0; i < 60; ++i) drawRanges(evenDraws, 500);
+    expectAllDraws();
+    EXPECT_LT(rangeOf(0).end, 0.32);
+    EXPECT_GT(rangeOf(0).end, 0.18);
+}
+
+TEST_F(BalancerTest, ignoresFramesOfOlderRangesOrWithoutDividedDraws) {
+    begin(chunksOf(3, 30));
+    drawRanges(evenDraws);
+    const size_t before = ranges_.size();
+    wire::FrameDoneMessage undivided{}, other{};
+    undivided.flags = wire::kNotSplit;
+    other.shares = 77;
+    for (int i = 0; i < 20; ++i) drawRanges(costlyFirst, 0, undivided);
+    for (int i = 0; i < 20; ++i) drawRanges(costlyFirst, 0, other);
+    EXPECT_EQ(ranges_.size(), before);
+}
+
+TEST_F(BalancerTest, reassignsTheChunksOfALostNode) {
+    begin(chunksOf(3, 30));
+    for (int i = 0; i < 4; ++i) drawRanges(evenDraws);
+    alive_[1] = false;
+    balancer_->nodeLost(1);
+    expectAllDraws();
+    EXPECT_EQ(balancer_->totals()[0].nodes[1].second, 0);
+    for (int i = 0; i < 30; ++i) drawRanges(costlyFirst);
+    expectAllDraws();
+    alive_[1] = true;
+    balancer_->nodeJoined(1);
+    expectAllDraws();
+    const size_t announced = ranges_.size();
+    balancer_->nodeJoined(1); // it is alive
+    EXPECT_EQ(ranges_.size(), announced);
+}
+
+TEST_F(BalancerTest, givesEachNodeAChunk) {
+    begin(chunksOf(5, 2));
+    balancer_->nodeLost(4);
+    alive_[4] = false;
+    expectAllDraws();
+}
+
+TEST_F(BalancerTest, keepsRandomDivisionsComplete) {
+    begin(chunksOf(4, 16), "shares");
+    for (int i = 0; i < 50; ++i) {
+        drawRanges(evenDraws);
+        expectAllDraws();
+    }
+    EXPECT_GE(ranges_.size(), 150u);
+    begin(tilesOf(5), "areas");
+    for (int i = 0; i < 50; ++i) {
+        drawAreas(even);
+        expectWholePicture();
+    }
+    EXPECT_GE(areas_.size(), 150u);
+}
+
+// ---- equalizers
+
+class SplitTest : public BalancerTest, public ::testing::WithParamInterface<balance::Balance> {
+protected:
+    [[nodiscard]] SessionConfig balanced(int nodes, int ranges = 1) const {
+        SessionConfig config;
+        config.localNodes = nodes;
+        config.passes.ranges = ranges;
+        config.balance = GetParam();
+        return config;
+    }
+};
+
+TEST_P(SplitTest, balancesAnUnevenPicture) {
+    begin(balanced(4));
+    ASSERT_EQ(plan_.nodes.size(), 4u);
+    drawAreas(corner);
+    EXPECT_LT(efficiency_, .5) << "the even split";
+    for (int i = 0; i < 40; ++i) {
+        drawAreas(corner);
+        expectWholePicture();
+    }
+    EXPECT_GT(efficiency_, .85);
+    EXPECT_GT(balancer_->totals()[0].efficiency, .85);
+}
+
+TEST_P(SplitTest, givesSlowNodesLess) {
+    begin(balanced(4));
+    for (int i = 0; i < 60; ++i) drawAreas(even, {}, {1, 1, .5, 1});
+    expectWholePicture();
+    EXPECT_GT(efficiency_, .9);
+    EXPECT_NEAR(static_cast<double>(pixelsOf(2)) / (kWidth * kHeight), 1. / 7, .04);
+}
+
+TEST_P(SplitTest, balancesRanges) {
+    begin(balanced(3, 3));
+    ASSERT_EQ(plan_.nodes.size(), 3u);
+    for (int i = 0; i < 40; ++i) {
+        drawRanges(costlyFirst);
+        expectAllDraws();
+    }
+    EXPECT_GT(efficiency_, .9);
+}
+
+TEST_P(SplitTest, reassignsThePartOfALostNode) {
+    begin(balanced(4));
+    alive_[2] = false;
+    balancer_->nodeLost(2); // before the first frame
+    for (int i = 0; i < 20; ++i) {
+        drawAreas(corner);
+        expectWholePicture();
+        EXPECT_TRUE(areaOf(2).empty());
+    }
+    alive_[2] = true;
+    balancer_->nodeJoined(2);
+    for (int i = 0; i < 40; ++i) drawAreas(corner);
+    expectWholePicture();
+    EXPECT_FALSE(areaOf(2).empty());
+    EXPECT_GT(efficiency_, .8);
+    for (const int lost : {0, 1, 3}) {
+        alive_[static_cast<size_t>(lost)] = false;
+        balancer_->nodeLost(lost);
+        expectWholePicture();
+    }
+    EXPECT_EQ(pixelsOf(2), int64_t{kWidth} * kHeight);
+}
+
+TEST_P(SplitTest, reassignsTheRangeOfALostNode) {
+    begin(balanced(3, 3));
+    for (int i = 0; i < 5; ++i) drawRanges(costlyFirst);
+    alive_[1] = false;
+    balancer_->nodeLost(1);
+    expectAllDraws();
+    for (int i = 0; i < 20; ++i) drawRanges(costlyFirst);
+    expectAllDraws();
+    alive_[1] = true;
+    balancer_->nodeJoined(1);
+    for (int i = 0; i < 20; ++i) drawRanges(costlyFirst);
+    expectAllDraws();
+}
+
+TEST_P(SplitTest, keepsAnEvenLoad) {
+    begin(balanced(4));
+    for (int i = 0; i < 30; ++i) drawAreas(even);
+    EXPECT_GT(efficiency_, .95);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SplitTest,
+                         ::testing::Values(balance::Balance::Auto, balance::Balance::Load, balance::Balance::Tree),
+                         [](const auto& kind) {
+                             return kind.param == balance::Balance::Auto   ? "CostMap"
+                                    : kind.param == balance::Balance::Load ? "Load"
+                                                                           : "Tree";
+                         });
+
+TEST_F(BalancerTest, doesNothingWithoutEqualizers) {
+    SessionConfig config;
+    config.columns = 2;
+    begin(config);
+    EXPECT_FALSE(balancer_->isActive());
+    for (int i = 0; i < 5; ++i) drawAreas(corner);
+    balancer_->nodeLost(0);
+    EXPECT_TRUE(balancer_->totals().empty());
+    EXPECT_TRUE(areas_.empty());
+    EXPECT_TRUE(ranges_.empty());
+}
+
+TEST_F(BalancerTest, doesNothingForTimeMultiplexedNodes) {
+    SessionConfig turns = chunksOf(2, 20);
+    turns.passes.period = 2;
+    turns.localNodes = 4;
+    begin(turns);
+    EXPECT_FALSE(balancer_->isActive());
+    ASSERT_FALSE(plan_.warnings.empty());
+    EXPECT_NE(plan_.warnings[0].find("in turn"), std::string::npos) << plan_.warnings[0];
+}
+
+TEST(RangeAssignment, roundTripsAndRejectsInvalidOnes) {
+    const RangeAssignment ranges{3, {{0, .25}, {.25, .25}, {.25, 1}}};
+    const auto bytes = bytesOf(ranges);
+    EXPECT_EQ(sharesOf(bytes), ranges);
+    for (size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(sharesOf(std::span(bytes).first(size))) << size;
+    for (const Range wrong :
+         {Range{.5, .25}, Range{-.1, 1}, Range{0, 1.1}, Range{std::numeric_limits<double>::quiet_NaN(), 1},
+          Range{0, std::numeric_limits<double>::quiet_NaN()}})
+        EXPECT_FALSE(sharesOf(bytesOf(RangeAssignment{1, {wrong}})));
+}
+
+} // namespace
+} // namespace mural
