@@ -112,7 +112,9 @@ class Watch:
 
 
 def divided(tiles):
-    """2x1 tiles, or two nodes that take tiles of 32x32 pixels: "queue 32x32"."""
+    """2x1 tiles, or two nodes whose areas move: "queue 32x32", "balance auto"."""
+    if tiles.startswith("balance"):
+        return ["--balance", tiles.split()[1], "--local-nodes", "2"]
     return ["--tile-queue", tiles.split()[1], "--local-nodes", "2"] if tiles.startswith("queue") else ["--tiles", tiles]
 
 
@@ -175,7 +177,7 @@ def kill_and_compare(context, frames=MAX_FRAMES, options=(), environment=None, v
         if isinstance(differing, str):
             return differing
         wrong = judged(differing, spans, max(EXACT, 3 * every), every)
-        if wrong is None and every == 1 and not any(differing) and not tiles.startswith("queue"):
+        if wrong is None and every == 1 and not any(differing) and not tiles.startswith(("queue", "balance")):
             wrong = "no picture was incomplete; check that a process was killed"
         if wrong is None and maximum is not None and sum(map(bool, differing)) > maximum:
             wrong = "%d frames lack something, not %d at most" % (sum(map(bool, differing)), maximum)
@@ -317,6 +319,13 @@ def turns_over_earlier_frames(context):
 def tiles_of_a_queue(context):
     """The other node takes the tiles at its next full clear, long before the rejoin."""
     return kill_and_compare(context, tiles="queue 32x32", missing_columns=range(WIDTH), victims=(1, 0), maximum=24)
+
+
+@case
+def areas_that_are_balanced(context):
+    """The other node takes the whole picture at its next full clear."""
+    return (kill_and_compare(context, tiles="balance auto", missing_columns=range(WIDTH), victims=(1, 0), maximum=24) or
+            kill_and_compare(context, tiles="balance load", missing_columns=range(WIDTH), victims=(0, 1), maximum=24))
 
 
 @case
@@ -486,6 +495,12 @@ def chunks_come_back(context):
 
 
 @case
+def chunks_that_are_balanced(context):
+    """Ranges that equalizers move."""
+    return ranges_come_back(context, ((1,), (0, 2)), 3, by_ranges("direct-send", 3) + ("--balance", "auto"))
+
+
+@case
 def chunks_of_a_lost_node(context):
     """A node that does not rejoin: the others take its chunks, and from then on nothing is missing."""
     watch = Watch(context, MAX_FRAMES, by_ranges("binary-swap", 3) + ("--chunk-queue", "60", "--restart-nodes", "0"), {"SCENE_SHARES": "1"}, tiles="1x1")
@@ -493,7 +508,7 @@ def chunks_of_a_lost_node(context):
         if not run.wait_for_line("frame 40 "):
             return "the program did not start: " + " | ".join(run.standard_error[-3:])
         os.kill(node_pid(run, 1), signal.SIGKILL)
-        if not run.wait_for_line("other nodes take its chunks", 20):
+        if not run.wait_for_line("other nodes take its draws", 20):
             return "no message about its chunks: " + " | ".join(run.standard_error[-4:])
         begin = latest_frame(run) + UNDER_WAY
         watch.enough(run, UNDER_WAY + 60)

@@ -112,13 +112,14 @@ class Comparison:
         return self.report_of(label).get("frames", 0)
 
     def moves(self, label):
-        """Returns how often areas or shares of the nodes changed from one frame to the next, according to the last
+        """Returns how often areas or ranges of the nodes changed from one frame to the next, according to the last
         report."""
-        if not self.arguments.tile_queue and "--chunk-queue" not in self.arguments.options:
+        equalizers = self.report_of(label).get("equalizers")
+        if not equalizers:
             return ""
-        taken = sum(queue["taken"] for queue in self.report_of(label).get("queues") or [])
+        taken = sum(equalizer["taken"] for equalizer in equalizers)
         self.taken += taken
-        return ", %s changed %d times" % ("areas" if self.arguments.tile_queue else "shares", taken)
+        return ", parts changed %d times, busy %.0f %%" % (taken, 100 * equalizers[0]["efficiency"])
 
     def run_alone(self, name, label, launcher):
         # In the second native run new memory is not zero, which reveals reads of uninitialised memory.
@@ -265,7 +266,7 @@ def main(description=__doc__, add_arguments=lambda parser: None, comparison_clas
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
     if comparison.taken < arguments.min_changes:
-        print("WRONG: areas or shares changed %d times, not %d at least" % (comparison.taken, arguments.min_changes))
+        print("WRONG: areas or ranges changed %d times, not %d at least" % (comparison.taken, arguments.min_changes))
         comparison.failures += 1
     print("%d programs, %d comparisons wrong, %d known to differ, %d skipped" % (len(names), comparison.failures, comparison.known, comparison.skipped))
     for name in comparison.healed:
