@@ -21,7 +21,7 @@ bool isImageType(GLint type) { return type >= GL_IMAGE_1D && type <= GL_UNSIGNED
 
 // ---- created handles
 
-void Replay::dealtHandle(HandleTable::Of of, uint64_t appHandle, uint64_t nodeHandle) {
+void Replay::addHandle(HandleTable::Of of, uint64_t appHandle, uint64_t nodeHandle) {
     if (!c_->shared || c_->shared->handles.set(of, appHandle, nodeHandle)) return;
     char text[512];
     snprintf(text, sizeof text,
@@ -115,23 +115,24 @@ uint64_t Replay::equalHandle(GLuint texture, GLuint sampler, uint64_t wanted, GL
 // order.
 void Replay::requestTextureHandle(GLuint texture, GLuint sampler, uint64_t appHandle) {
     if (!c_->shared) return;
-    const auto known = c_->shared->dealt.find(appHandle);
+    const auto known = c_->shared->textureHandles.find(appHandle);
     // a repeated request
-    if (known != c_->shared->dealt.end() && known->second.texture == texture && known->second.sampler == sampler)
+    if (known != c_->shared->textureHandles.end() && known->second.texture == texture &&
+        known->second.sampler == sampler)
         return;
-    DealtHandle dealt{texture, sampler, 0};
-    uint64_t nodeHandle = c_->shared->handlesFreed ? equalHandle(texture, sampler, appHandle, dealt.made) : 0;
+    replay::ObtainedHandle obtained{texture, sampler, 0};
+    uint64_t nodeHandle = c_->shared->handlesFreed ? equalHandle(texture, sampler, appHandle, obtained.made) : 0;
     if (!nodeHandle)
         nodeHandle = sampler ? gl.glGetTextureSamplerHandleARB(texture, sampler) : gl.glGetTextureHandleARB(texture);
-    c_->shared->dealt[appHandle] = dealt;
-    dealtHandle(HandleTable::Of::Texture, appHandle, nodeHandle);
+    c_->shared->textureHandles[appHandle] = obtained;
+    addHandle(HandleTable::Of::Texture, appHandle, nodeHandle);
 }
 
 // Deleting a texture or a sampler ends its handles.
 void Replay::handlesGone(Kind kind, GLuint nodeName) {
-    if (!c_->shared || c_->shared->dealt.empty()) return;
-    std::erase_if(c_->shared->dealt, [&](const auto& d) {
-        const DealtHandle& handle = d.second;
+    if (!c_->shared || c_->shared->textureHandles.empty()) return;
+    std::erase_if(c_->shared->textureHandles, [&](const auto& entry) {
+        const replay::ObtainedHandle& handle = entry.second;
         if ((kind == Kind::Texture ? handle.texture : handle.sampler) != nodeName) return false;
         if (handle.made) gl.glDeleteSamplers(1, &handle.made);
         c_->shared->handlesFreed = true;
@@ -150,8 +151,8 @@ void Replay::glGetTextureSamplerHandleARB(GLuint texture, GLuint sampler, uint64
 void Replay::glGetImageHandleARB(GLuint texture, GLint level, GLboolean layered, GLint layer, GLenum format,
                                  uint64_t result) {
     if (!gl.glGetImageHandleARB) return (void)lacking(op::glGetImageHandleARB);
-    dealtHandle(HandleTable::Of::Image, result,
-                gl.glGetImageHandleARB(name(Kind::Texture, texture), level, layered, layer, format));
+    addHandle(HandleTable::Of::Image, result,
+              gl.glGetImageHandleARB(name(Kind::Texture, texture), level, layered, layer, format));
 }
 
 // ---- residency. An unknown handle is an error, which the program's own GL has reported.

@@ -11,7 +11,7 @@ bool Replay::hidesAlpha() const {
 // Called after a change of framebuffer or window, and after the program's masks are popped.
 void Replay::applyColorMasks() {
     if (!bound_ || !alphaHides_ || !gl.glColorMask) return;
-    const ColorMasks& masks = c_->colorMasks;
+    const replay::ColorMasks& masks = c_->colorMasks;
     const GLboolean alpha = hidesAlpha() ? GL_FALSE : GL_TRUE;
     const auto& first = masks.buffers[0];
     if (!masks.differ || !gl.glColorMaski) return gl.glColorMask(first[0], first[1], first[2], first[3] && alpha);

@@ -23,7 +23,7 @@ void Replay::listenToDriver() {
 void APIENTRY Replay::onDriverMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                       const GLchar* text, const void* inbox) {
     if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_THIRD_PARTY || !text) return;
-    auto& box = *static_cast<DebugInbox*>(const_cast<void*>(inbox));
+    auto& box = *static_cast<replay::DebugInbox*>(const_cast<void*>(inbox));
     const std::lock_guard lock(box.mutex);
     if (box.messages.size() >= kMaxMessages) return;
     box.messages.push_back(
@@ -31,7 +31,7 @@ void APIENTRY Replay::onDriverMessage(GLenum source, GLenum type, GLuint id, GLe
     box.any.store(true, std::memory_order_release);
 }
 
-void Replay::sendDriverEvent(wire::DriverEventKind kind, const DebugInbox::Message& m) {
+void Replay::sendDriverEvent(wire::DriverEventKind kind, const replay::DebugInbox::Message& m) {
     if (!out_.driverEvent) return;
     out_.driverEvent({c_->client, c_->id, static_cast<uint32_t>(kind), m.source, m.type, m.id, m.severity,
                       static_cast<uint32_t>(m.text.size())},
@@ -40,7 +40,7 @@ void Replay::sendDriverEvent(wire::DriverEventKind kind, const DebugInbox::Messa
 
 void Replay::sendDriverMessages() {
     if (!c_ || !c_->debug.any.load(std::memory_order_acquire)) return;
-    std::vector<DebugInbox::Message> messages;
+    std::vector<replay::DebugInbox::Message> messages;
     {
         const std::lock_guard lock(c_->debug.mutex);
         messages.swap(c_->debug.messages);

@@ -104,7 +104,7 @@ void Replay::clientStateDefault(GLbitfield mask) {
 void Replay::glPopClientAttrib() {
     gl.glPopClientAttrib();
     if (c_->clientAttributes.empty()) return;
-    const ClientState saved = c_->clientAttributes.back();
+    const replay::SavedClientState saved = c_->clientAttributes.back();
     c_->clientAttributes.pop_back();
     if (saved.mask & GL_CLIENT_PIXEL_STORE_BIT) {
         c_->unpack = saved.unpack; // `tight` too: GL has restored its value as well

@@ -34,7 +34,7 @@ PixelViewport Replay::origin() const {
 }
 
 void Replay::applyScissor(int index, bool all) {
-    const Scissor& app = c_->scissors[static_cast<size_t>(index)];
+    const replay::Scissor& app = c_->scissors[static_cast<size_t>(index)];
     bool enabled = app.enabled;
     PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inPass(config_.pass, app.box) : app.box;
     if (!isReplicatedDraw() && c_->draw) {
@@ -61,7 +61,7 @@ void Replay::applyScissors() {
     if (!bound_ || !gl.glScissor) return;
     splitQueries();
     if (!c_->scissorsDiffer || !gl.glScissorIndexed || !gl.glEnablei) return applyScissor(0, true);
-    for (int i = 0; i < kViewports; ++i) applyScissor(i, false);
+    for (int i = 0; i < replay::kViewports; ++i) applyScissor(i, false);
 }
 
 void Replay::withoutTile(const std::function<void()>& call) {
@@ -83,7 +83,7 @@ void Replay::applyViewports() {
         gl.glViewport(moved(toInt(v[0]), o.x), moved(toInt(v[1]), o.y), toInt(v[2]), toInt(v[3]));
         return;
     }
-    for (GLuint i = 0; i < kViewports; ++i) {
+    for (GLuint i = 0; i < replay::kViewports; ++i) {
         const auto& r = c_->viewports[i];
         gl.glViewportIndexedf(i, r[0] - static_cast<GLfloat>(o.x), r[1] - static_cast<GLfloat>(o.y), r[2], r[3]);
     }
@@ -115,11 +115,11 @@ void Replay::glViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     applyTileValues();
 }
 void Replay::glViewportArrayv(GLuint first, GLsizei count, const Data& v) {
-    if (!areBoxes(kViewports, first, count, v.as<GLfloat>())) return;
+    if (!areBoxes(replay::kViewports, first, count, v.as<GLfloat>())) return;
     for (GLsizei i = 0; i < count; ++i) glViewportIndexedfv(first + static_cast<GLuint>(i), v.as<GLfloat>() + 4 * i);
 }
 void Replay::glViewportIndexedf(GLuint index, GLfloat x, GLfloat y, GLfloat w, GLfloat h) {
-    if (index >= kViewports || w < 0 || h < 0 || !gl.glViewportIndexedf) return;
+    if (index >= replay::kViewports || w < 0 || h < 0 || !gl.glViewportIndexedf) return;
     c_->viewports[index] = {x, y, w, h};
     c_->viewportsDiffer = true;
     if (movesPicture()) {
@@ -138,11 +138,11 @@ void Replay::glScissor(GLint x, GLint y, GLsizei width, GLsizei height) {
     applyScissors();
 }
 void Replay::glScissorArrayv(GLuint first, GLsizei count, const Data& v) {
-    if (!areBoxes(kViewports, first, count, v.as<GLint>())) return;
+    if (!areBoxes(replay::kViewports, first, count, v.as<GLint>())) return;
     for (GLsizei i = 0; i < count; ++i) glScissorIndexedv(first + static_cast<GLuint>(i), v.as<GLint>() + 4 * i);
 }
 void Replay::glScissorIndexed(GLuint index, GLint left, GLint bottom, GLsizei width, GLsizei height) {
-    if (index >= kViewports || width < 0 || height < 0) return;
+    if (index >= replay::kViewports || width < 0 || height < 0) return;
     c_->scissors[index].box = {left, bottom, width, height};
     c_->scissorsDiffer = true;
     applyScissors();
@@ -167,14 +167,14 @@ void Replay::glDisable(GLenum cap) {
 }
 void Replay::glEnablei(GLenum target, GLuint index) {
     if (target != GL_SCISSOR_TEST) return gl.glEnablei ? gl.glEnablei(target, index) : void();
-    if (index >= kViewports) return;
+    if (index >= replay::kViewports) return;
     c_->scissors[index].enabled = true;
     c_->scissorsDiffer = true;
     applyScissors();
 }
 void Replay::glDisablei(GLenum target, GLuint index) {
     if (target != GL_SCISSOR_TEST) return gl.glDisablei ? gl.glDisablei(target, index) : void();
-    if (index >= kViewports) return;
+    if (index >= replay::kViewports) return;
     c_->scissors[index].enabled = false;
     c_->scissorsDiffer = true;
     applyScissors();
@@ -191,9 +191,9 @@ void Replay::glPushAttrib(GLbitfield mask) {
 void Replay::glPopAttrib() {
     gl.glPopAttrib();
     if (c_->attributes.empty()) return;
-    const SavedAttributes saved = c_->attributes.back();
+    const replay::SavedAttributes saved = c_->attributes.back();
     c_->attributes.pop_back();
-    for (size_t i = 0; i < kViewports; ++i) {
+    for (size_t i = 0; i < replay::kViewports; ++i) {
         if (saved.mask & (GL_SCISSOR_BIT | GL_ENABLE_BIT)) c_->scissors[i].enabled = saved.scissors[i].enabled;
         if (saved.mask & GL_SCISSOR_BIT) c_->scissors[i].box = saved.scissors[i].box;
     }

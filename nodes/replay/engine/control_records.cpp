@@ -135,7 +135,7 @@ bool Replay::onCreateContext(Args& in) {
     c->id = id;
     c->context = std::move(*made);
     c->contextConfig = contextConfig;
-    c->shared = with ? with->shared : std::make_shared<Shared>();
+    c->shared = with ? with->shared : std::make_shared<ShareGroup>();
     c->api = static_cast<wire::Api>(api);
     c->version = static_cast<int>(major * 10 + minor);
     c->core = contextConfig.core;
@@ -332,7 +332,7 @@ bool Replay::onProgramLayout(Args& in) {
     if (c_ == none_.get()) return true;
     uint32_t count = 0;
     std::memcpy(&count, bytes.data(), 4);
-    ProgramInfo info;
+    replay::ProgramInfo info;
     const GLuint nodeName = name(Kind::Program, program);
     size_t at = 4;
     for (uint32_t i = 0; i < count; ++i) {

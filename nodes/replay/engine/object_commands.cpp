@@ -265,8 +265,8 @@ void Replay::glEndList() {
     const GLuint list = c_->compiling;
     c_->compiling = 0;
     applyTileValues(); // the values may have changed during compilation
-    List& slot = c_->shared->lists[list];
-    for (const ListItem& item : slot.items) {
+    DisplayList& slot = c_->shared->lists[list];
+    for (const DisplayListItem& item : slot.items) {
         if (item.record.empty()) gl.glDeleteLists(item.native, 1);
     }
     slot = std::move(c_->building);
@@ -276,7 +276,7 @@ void Replay::glEndList() {
 // Stores a command that a native list cannot contain between two native lists. Its blobs are stored with it, because
 // the list may be called repeatedly.
 void Replay::compileSplit(std::span<const std::byte> bytes) {
-    ListItem item{.record = {bytes.begin(), bytes.end()}, .blobs = {}};
+    DisplayListItem item{.record = {bytes.begin(), bytes.end()}, .blobs = {}};
     for (bool found = true; found;) {
         takeBlob(found);
         if (found) item.blobs.push_back(std::move(taken_.back()));
@@ -310,7 +310,7 @@ void Replay::glCallList(GLuint list) {
 void Replay::runList(GLuint list) {
     const auto it = c_->shared->lists.find(list);
     if (it == c_->shared->lists.end()) return;
-    for (const ListItem& item : it->second.items) {
+    for (const DisplayListItem& item : it->second.items) {
         if (++listCommands_ > config_.limits.listCommands) return;
         if (item.record.empty()) {
             if (takesRanges() && !c_->compiling && !onRangeList(item)) c_->rangeKnown = false;
@@ -323,7 +323,7 @@ void Replay::runList(GLuint list) {
 }
 
 // Executes a list command that is not in a native list.
-void Replay::runItem(const ListItem& item) {
+void Replay::runItem(const DisplayListItem& item) {
     uint32_t header = 0;
     std::memcpy(&header, item.record.data(), 4);
     const std::span<const std::byte> bytes = item.record;
@@ -369,7 +369,7 @@ void Replay::glDeleteLists(GLuint list, GLsizei range) {
             if (range > 1 << 16 && i > 1 << 16) break; // an implausible range: deletes existing lists only
             continue;
         }
-        for (const ListItem& item : it->second.items) {
+        for (const DisplayListItem& item : it->second.items) {
             if (item.record.empty()) gl.glDeleteLists(item.native, 1);
         }
         lists.erase(it);

@@ -67,12 +67,12 @@ struct ReplayOutputs {
         PixelViewport region;  // this node's part of the picture
         PictureFormat format;  // of `pixels` and `read`
         PixelViewport picture; // the complete picture: the window's size, or every nth pixel of it
-        bool drawnWhole;       // every node drew the whole window (Shared::allDrawn)
+        bool drawnWhole;       // every node drew the whole window (ShareGroup::allDrawn)
         bool keepsPicture;     // each frame builds on its predecessor, so one node draws all of them
         bool valid;            // does not depend on skipped draws (ReplayConfig::skips)
         bool notSplit;         // several ranges exist, but no draws were shared
-        uint32_t areas;        // number of the Areas that divide the picture
-        uint32_t shares;       // number of the Shares that divided the draws; 0: the initial ones, or no shared draws
+        uint32_t areas;        // number of the ViewportAssignment that divides the picture
+        uint32_t shares;       // number of the RangeAssignment that divided the draws; 0: the initial ones, or no shared draws
         bool keepsAreas;       // newer areas have waited too long for a full clear
         std::function<const std::byte*(const PixelViewport&)> pixels;
         // Reads `region` once, for another thread, which may have to wait for its drawing. Set where `pixels` is.

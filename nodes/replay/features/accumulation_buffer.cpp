@@ -41,7 +41,7 @@ void Replay::forAccumulatedRows(const std::function<void(int16_t*, const PixelVi
 }
 
 PixelViewport Replay::accumulatedBox() const {
-    const Scissor& app = c_->scissors[0];
+    const replay::Scissor& app = c_->scissors[0];
     const PixelViewport box = app.enabled ? intersect(c_->draw->drawn, app.box) : c_->draw->drawn;
     return box.empty() ? PixelViewport{} : box;
 }

@@ -112,7 +112,7 @@ GLbitfield Replay::clearedBy(uint16_t opcode, std::span<const std::byte> argumen
 // Returns the window's buffers that a draw may change.
 GLbitfield Replay::drawnBy(uint16_t opcode) const {
     if (hasTrait(opcode, Trait::AllPlanes)) return kWindowBuffers;
-    const Shared& shared = *c_->shared;
+    const ShareGroup& shared = *c_->shared;
     const GLbitfield known = c_->draw->moving.drawn; // avoids queries to the driver
     const auto tests = [&](GLbitfield buffer, bool ever, GLenum cap) {
         return !(known & buffer) && ever && gl.glIsEnabled(cap) ? buffer : 0;
@@ -136,7 +136,7 @@ void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
     // the items of lists are noted one by one
     if (!drawsWindow() || !c_->draw || hasTrait(opcode, Trait::CallList)) return;
     Window& w = *c_->draw;
-    MovingPart& m = w.moving;
+    replay::MovingPart& m = w.moving;
     const GLbitfield cleared = use == WindowUse::Clears ? clearsOf(opcode, arguments) : 0;
     const bool stays = hasTrait(opcode, Trait::Accumulates) || (cleared & GL_ACCUM_BUFFER_BIT) ||
                        (w.config.doubleBuffer && isFrontBuffer(c_->drawBuffer0)) || w.config.stereo;
@@ -176,7 +176,7 @@ std::vector<std::byte> Replay::memberAreas() const {
     std::vector<wire::WindowAreas> windows;
     for (const auto& [client, its] : clients_)
         for (const auto& [id, w] : its.windows) {
-            const MovingPart& m = w->moving;
+            const replay::MovingPart& m = w->moving;
             if (!m.areas) continue;
             windows.push_back(
                 {client, id, m.areas->number, m.wanted->number, m.front->number, m.drawn, m.fixed ? 1U : 0U});
@@ -216,7 +216,7 @@ bool Replay::takeMemberAreas(std::span<const std::byte> bytes) {
         if (client == clients_.end() || !client->second.windows.contains(member.window)) continue;
         if (!named.contains(member.areas) || !named.contains(member.wanted) || !named.contains(member.front))
             return false;
-        MovingPart& m = client->second.windows[member.window]->moving;
+        replay::MovingPart& m = client->second.windows[member.window]->moving;
         m.areas = named[member.areas];
         m.wanted = named[member.wanted];
         m.front = named[member.front];

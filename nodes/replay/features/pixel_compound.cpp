@@ -96,7 +96,7 @@ const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, 
 
 void Replay::applyMovedViewports() {
     const RenderPass p = passOfDraws();
-    for (GLuint i = 0; i < kViewports; ++i) {
+    for (GLuint i = 0; i < replay::kViewports; ++i) {
         const auto& v = c_->viewports[i];
         const auto at = placeInPass(p, v[0], v[1]);
         gl.glViewportIndexedf(i, static_cast<GLfloat>(at[0]), static_cast<GLfloat>(at[1]),

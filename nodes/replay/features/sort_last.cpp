@@ -118,7 +118,7 @@ void Replay::notePrimitiveIds(GLuint nodeName) {
 // Records the content of a native list during its compilation.
 void Replay::onCompiled(uint16_t opcode, std::span<const std::byte> arguments) {
     if (c_->building.items.empty()) return;
-    ListItem& item = c_->building.items.back();
+    DisplayListItem& item = c_->building.items.back();
     switch (rangeUseOf(opcode)) {
     case RangeUse::Vertex: ++item.vertices; break;
     case RangeUse::Draw: {
@@ -286,7 +286,7 @@ std::span<const std::byte> Replay::onRange(uint16_t opcode, std::span<const std:
 }
 
 // A native list is one piece. Returns false if the list changes state that decides about later draws.
-bool Replay::onRangeList(const ListItem& item) {
+bool Replay::onRangeList(const DisplayListItem& item) {
     if (!bound_ || !drawsWindow() || !c_->draw || c_->inPrimitive) return item.plain;
     Window& w = *c_->draw;
     if (!item.plain) {

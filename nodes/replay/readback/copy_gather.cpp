@@ -13,7 +13,7 @@ namespace mural {
 // ---- gathered pixels (lean)
 
 void Replay::forgetGathered() {
-    Gathered& g = c_->gathered;
+    replay::Gathered& g = c_->gathered;
     if (g.framebuffer) gl.glDeleteFramebuffers(1, &g.framebuffer);
     if (g.color) gl.glDeleteTextures(1, &g.color);
     if (g.depthStencil) gl.glDeleteTextures(1, &g.depthStencil);
@@ -21,7 +21,7 @@ void Replay::forgetGathered() {
 }
 
 void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void* pixels, const ColourWords& words) {
-    Gathered& g = c_->gathered;
+    replay::Gathered& g = c_->gathered;
     const bool separate = c_->version >= 30 || c_->api == wire::Api::Desktop;
     const GLenum target = separate ? GL_READ_FRAMEBUFFER : GL_FRAMEBUFFER;
     if (g.box != r) {
@@ -58,7 +58,7 @@ void Replay::gatherForCopy(const PixelViewport& r, GLbitfield plane, const void*
 }
 
 // Depth arrives as 32 bits that contain the window's 24; stencil follows.
-void Replay::gatherDepthStencil(Gathered& g, GLbitfield plane, const void* pixels) {
+void Replay::gatherDepthStencil(replay::Gathered& g, GLbitfield plane, const void* pixels) {
     const auto count = static_cast<size_t>(g.box.area());
     g.depth.resize(count, 0);
     if (plane == GL_DEPTH_BUFFER_BIT) {

@@ -21,7 +21,7 @@ bool Replay::hasFences(const ContextState& c) const {
 
 // Creates the object for the first frame that wants it. A share group without support is not tried again.
 std::shared_ptr<AsyncReadback> Replay::laterReads() {
-    Shared& shared = *bound_->shared;
+    ShareGroup& shared = *bound_->shared;
     if (!std::exchange(shared.asyncTried, true)) {
         auto reader = platform_->createReader(bound_->contextConfig, *bound_->context);
         if (reader)

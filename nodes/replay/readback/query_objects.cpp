@@ -67,7 +67,7 @@ void Replay::glBeginQuery(GLenum target, GLuint id) {
     const GLuint nodeName = name(Kind::Query, id);
     QueryInfo& query = c_->queries[id];
     // their results are obsolete
-    std::erase_if(c_->prefetches, [&](const Prefetch& prefetch) { return prefetch.query == id; });
+    std::erase_if(c_->prefetches, [&](const replay::Prefetch& prefetch) { return prefetch.query == id; });
     dropPieces(query);
     query.target = target;
     query.skipped = c_->draw && c_->draw->skipped;
@@ -116,7 +116,7 @@ void Replay::glDeleteQueries(GLsizei n, const Data& ids) {
         const auto query = c_->queries.find(app[i]);
         if (query == c_->queries.end()) continue;
         std::erase_if(c_->counting, [&](const auto& active) { return active.second == app[i]; });
-        std::erase_if(c_->prefetches, [&](const Prefetch& prefetch) { return prefetch.query == app[i]; });
+        std::erase_if(c_->prefetches, [&](const replay::Prefetch& prefetch) { return prefetch.query == app[i]; });
         dropPieces(query->second);
         c_->queries.erase(query);
     }
@@ -157,7 +157,8 @@ bool Replay::onRequestQuery(Args& in) {
 void Replay::sendPrefetched() {
     if (!bound_ || bound_->prefetches.empty()) return;
     ContextState* const own = std::exchange(c_, bound_);
-    for (const Prefetch& prefetch : std::exchange(c_->prefetches, {})) answerQuery(prefetch.request, prefetch.query);
+    for (const replay::Prefetch& prefetch : std::exchange(c_->prefetches, {}))
+        answerQuery(prefetch.request, prefetch.query);
     c_ = own;
 }
 
@@ -166,11 +167,11 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
     bool added = false;
     const auto info = bound_ ? c_->queries.find(query) : c_->queries.end();
     if (info != c_->queries.end()) {
-        const std::vector<QueryPiece>& pieces = info->second.pieces;
+        const std::vector<replay::QueryPiece>& pieces = info->second.pieces;
         added = countsSamples(info->second.target) &&
-                std::any_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return !p.whole; });
+                std::any_of(pieces.begin(), pieces.end(), [](const replay::QueryPiece& p) { return !p.whole; });
         if (added && info->second.skipped) out_.invalid();
-        for (const QueryPiece& piece : pieces) {
+        for (const replay::QueryPiece& piece : pieces) {
             if (!added || (piece.whole ? config_.node == 0 : config_.answers)) value += queryResult(piece.nodeName);
         }
     } else if (bound_) {
@@ -201,11 +202,11 @@ bool Replay::onQueryKnown(Args& in) {
 void Replay::glBeginConditionalRender(GLuint id, GLenum mode) {
     const auto info = c_->queries.find(id);
     if (info == c_->queries.end()) return queryDriver(name(Kind::Query, id), mode); // never begun: GL handles that case
-    const std::vector<QueryPiece>& pieces = info->second.pieces;
+    const std::vector<replay::QueryPiece>& pieces = info->second.pieces;
     bool passed = info->second.passed;
-    if (alone() || std::all_of(pieces.begin(), pieces.end(), [](const QueryPiece& p) { return p.whole; }))
+    if (alone() || std::all_of(pieces.begin(), pieces.end(), [](const replay::QueryPiece& p) { return p.whole; }))
         passed = std::any_of(pieces.begin(), pieces.end(),
-                             [&](const QueryPiece& p) { return queryResult(p.nodeName) != 0; });
+                             [&](const replay::QueryPiece& p) { return queryResult(p.nodeName) != 0; });
     beginConditional(passed != isInverted(mode));
 }
 

@@ -7,6 +7,7 @@
 #include "nodes/frame_transfer/bgra_swizzle.hpp"
 #include "nodes/replay/readback/async_readback.hpp"
 #include "nodes/replay/engine/replay.hpp"
+#include "streamcodec/sizes/pixel_format.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 #include "streamcodec/wire/replies.hpp"
