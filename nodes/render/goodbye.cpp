@@ -1,0 +1,46 @@
+#include "nodes/render/goodbye.hpp"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sys/resource.h>
+
+#include "nodes/frame_transfer/picture_sender.hpp"
+#include "nodes/render/barrier_part.hpp"
+#include "nodes/render/exchange_part.hpp"
+#include "nodes/replay/engine/replay.hpp"
+
+namespace mural {
+
+namespace {
+
+double processCpuSeconds() {
+    rusage r{};
+    getrusage(RUSAGE_SELF, &r);
+    return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) +
+           1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
+}
+
+} // namespace
+
+nlohmann::json goodbyeOf(const GoodbyeParts& parts) {
+    const auto& [replay, exchange, sender, barrier, members] = parts;
+    nlohmann::json bye;
+    const ReplayCounts counts = replay ? replay->counts() : ReplayCounts{};
+    bye["commands"] = counts.commands;
+    bye["malformed"] = counts.malformed;
+    bye["lacking"] = counts.lacking;
+    bye["frames"] = counts.frames;
+    bye["cpuSeconds"] = processCpuSeconds();
+    if (exchange) bye["exchangeBytes"] = exchange->bytesSent();
+    if (sender && sender->packs()) {
+        bye["pictureBytes"] = sender->packedBytes();
+        bye["pictureRawBytes"] = sender->rawBytes();
+    }
+    if (const auto numbers = barrier && barrier->barrier() ? barrier->barrier()->numbers() : std::nullopt)
+        bye["swapBarrier"] = {
+            {"members", members},           {"swaps", numbers->skew.swaps}, {"medianNs", numbers->skew.medianNs},
+            {"p99Ns", numbers->skew.p99Ns}, {"maxNs", numbers->skew.maxNs}, {"clockErrorNs", numbers->clockErrorNs}};
+    return bye;
+}
+
+} // namespace mural

@@ -1,0 +1,24 @@
+// The last message of a node: totals of the session for the head's report.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace mural {
+
+class BarrierPart;
+class ExchangePart;
+class PictureSender;
+class Replay;
+
+// Parts of the node that have totals; null: the node has no such part.
+struct GoodbyeParts {
+    const Replay* replay = nullptr;
+    const ExchangePart* exchange = nullptr;
+    const PictureSender* sender = nullptr;
+    const BarrierPart* barrier = nullptr;
+    int barrierMembers = 0;
+};
+
+[[nodiscard]] nlohmann::json goodbyeOf(const GoodbyeParts& parts);
+
+} // namespace mural

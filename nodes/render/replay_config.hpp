@@ -1,0 +1,14 @@
+// The replay's configuration, from the head's Setup message and this node's GL.
+#pragma once
+
+#include <string>
+
+#include "nodes/replay/engine/replay_setup.hpp"
+#include "nodes/session/session_config.hpp"
+
+namespace mural {
+
+// `renderer`: name of this node's GL; software renderers draw and read differently.
+[[nodiscard]] ReplayConfig replayConfigOf(const NodeSetup& setup, const std::string& renderer);
+
+} // namespace mural
