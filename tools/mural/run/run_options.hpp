@@ -1,12 +1,12 @@
 // The command line of `mural run` as a value.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/result.hpp"
 #include "nodes/session/session_config.hpp"
+#include "tools/mural/run/option_values.hpp"
 
 namespace CLI {
 class App;
@@ -31,14 +31,13 @@ struct RunOptions {
 
 // Raw texts of the command line, validated by runOptionsFrom().
 struct RunArguments {
-    using Text = std::optional<std::string>;
-    Text tiles, tileQueue, chunkQueue, balance, size, position, nodes, out, save, display, tiling, localRendering, gl,
-        launch, stream, remoteMural, captureVia, restartNodes, minNodes;
-    Text config, canvas, projection, modelUnit, delta, cacheSize;
+    OptionText tiles, tileQueue, chunkQueue, balance, size, position, nodes, out, save, display, tiling, localRendering,
+        gl, launch, stream, remoteMural, captureVia, restartNodes, minNodes;
+    OptionText config, canvas, projection, modelUnit, delta, cacheSize;
     std::vector<std::string> layouts;
     bool allLocal = false, printConfig = false;
-    Text stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
-    Text localNodes, frames, latency, report, record;
+    OptionText stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
+    OptionText localNodes, frames, latency, report, record;
     std::string verify; // empty: not given
     bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;
     std::vector<std::string> program;

@@ -1,0 +1,32 @@
+// Options of `mural run` for the files that the session writes.
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "tools/mural/run/option_values.hpp"
+#include "tools/mural/run/run_option_readers.hpp"
+
+namespace mural::cli {
+
+Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
+    if (a.out && a.out->empty()) return badValue("--out", "", "must be a folder or a video file, such as --out shots");
+    c.out = a.out.value_or("");
+    if (a.record && a.record->empty()) return badValue("--record", "", "must be a file, such as --record app.mural");
+    c.record = a.record.value_or("");
+    if (!a.save) return {};
+    if (!a.out) return Error{"--save requires --out; add a destination, such as --out shots"};
+    for (const std::string& part : listOf(*a.save)) {
+        const auto frame = wholeNumber(part, 1, INT64_MAX);
+        if (!frame)
+            return badValue("--save", *a.save,
+                            "must be frame numbers, at least 1, separated by commas, such as 1,30,90");
+        c.saveFrames.push_back(*frame);
+    }
+    std::sort(c.saveFrames.begin(), c.saveFrames.end());
+    c.saveFrames.erase(std::unique(c.saveFrames.begin(), c.saveFrames.end()), c.saveFrames.end());
+    if (c.frames > 0 && c.saveFrames.back() > c.frames)
+        return badValue("--save", *a.save,
+                        fmt::format("must have no frame after the last one, {} (--frames)", c.frames));
+    return {};
+}
+
+} // namespace mural::cli
