@@ -24,7 +24,7 @@ uint32_t opcodeOf(std::span<const std::byte> record) {
 } // namespace
 
 DeltaDecoder::DeltaDecoder(const Limits& limits)
-    : history_(limits),
+    : dictionary_(limits),
       packet_(std::make_unique_for_overwrite<std::byte[]>(wire::kMaxPacketBytes)),
       words_(limits.modelWords) {}
 
@@ -58,7 +58,7 @@ Result<bool> DeltaDecoder::next(uint32_t& stream, std::span<const std::byte>& pa
 
 DeltaDecoder::Problem DeltaDecoder::step(DeltaOp what, uint32_t n) {
     if (what == DeltaOp::ControlOp) return other(n);
-    if (!log_) log_ = &history_.log(history_.open(stream_).logIndex);
+    if (!log_) log_ = &dictionary_.log(dictionary_.open(stream_).logIndex);
     switch (what) {
     case DeltaOp::Run: return run(n);
     case DeltaOp::Patch: return patch(n);
@@ -81,19 +81,19 @@ DeltaDecoder::Problem DeltaDecoder::step(DeltaOp what, uint32_t n) {
 DeltaDecoder::Problem DeltaDecoder::run(uint32_t n) {
     while (n > 0) {
         if (!log_->contains(log_->cursor)) return "a reference to an unknown entry";
-        if (const Dictionary::Stretch s = history_.stretch(*log_, n); s.items > 0) {
+        if (const Dictionary::Stretch s = dictionary_.stretch(*log_, n); s.items > 0) {
             if (!room(s.bytes.size())) return "the packet or batch is too large";
             put(s.bytes);
-            history_.againAll(*log_, s.items);
+            dictionary_.againAll(*log_, s.items);
             n -= static_cast<uint32_t>(s.items);
             continue;
         }
         --n;
         const DictionaryEntry item = log_->at(log_->cursor);
         if (!room(item.sizeBytes)) return "the packet or batch is too large";
-        put(history_.bytesOf(item));
+        put(dictionary_.bytesOf(item));
         ++log_->cursor;
-        log_->append(history_.again(item));
+        log_->append(dictionary_.again(item));
     }
     return nullptr;
 }
@@ -102,13 +102,13 @@ DeltaDecoder::Problem DeltaDecoder::patch(uint32_t spans) {
     if (!log_->contains(log_->cursor)) return "a delta of an unknown entry";
     DictionaryEntry item = log_->at(log_->cursor);
     if (!room(item.sizeBytes)) return "the packet or batch is too large";
-    const auto bytes = put(history_.bytesOf(item));
+    const auto bytes = put(dictionary_.bytesOf(item));
     std::vector<std::byte> old;
     if (loseWords_ && opcodeOf(bytes) >= wire::kFirstGlOpcode) old.assign(bytes.begin(), bytes.end());
     if (const Problem problem = item.page != 0 ? changeSpans(bytes, spans) : changeItem(item, bytes, spans))
         return problem;
     ++log_->cursor;
-    log_->append(item.page != 0 ? history_.addPage(history_.pages().changed(item.where), bytes)
+    log_->append(item.page != 0 ? dictionary_.addPage(dictionary_.pages().changed(item.where), bytes)
                                 : keep(bytes, false, item.model));
     copyBytes(old, bytes);
     return nullptr;
@@ -165,13 +165,13 @@ DeltaDecoder::Problem DeltaDecoder::pages(uint32_t n) {
     const uint32_t from = control_.number();
     for (uint32_t i = 0; i < n; ++i) {
         const uint64_t slot = uint64_t{from} + i;
-        const auto page = slot < history_.pages().slots() ? history_.pages().at(static_cast<uint32_t>(slot))
-                                                          : std::span<const std::byte>();
+        const auto page = slot < dictionary_.pages().slots() ? dictionary_.pages().at(static_cast<uint32_t>(slot))
+                                                             : std::span<const std::byte>();
         if (page.empty()) return "a reference to an unknown page";
         if (!room(page.size())) return "the packet or batch is too large";
         put(page);
         const DictionaryEntry item =
-            history_.fromStore(static_cast<uint32_t>(slot), static_cast<uint32_t>(page.size()));
+            dictionary_.fromStore(static_cast<uint32_t>(slot), static_cast<uint32_t>(page.size()));
         log_->replaces(item);
         log_->append(item);
     }
@@ -181,7 +181,7 @@ DeltaDecoder::Problem DeltaDecoder::pages(uint32_t n) {
 DeltaDecoder::Problem DeltaDecoder::other(uint32_t n) {
     switch (static_cast<ControlOp>(n)) {
     case ControlOp::End:
-        if (!log_) (void)history_.open(stream_); // same order as in the encoder
+        if (!log_) (void)dictionary_.open(stream_); // same order as in the encoder
         ended_ = true;
         return nullptr;
     case ControlOp::Done:
@@ -207,13 +207,13 @@ DeltaDecoder::Problem DeltaDecoder::plain(std::optional<uint32_t> slot) {
     put(bytes);
     if (!slot) return nullptr;
     if (*slot >= RawRunCache::kSlots || sizeBytes > RawRunCache::kMaxBytes) return "a run of records without its owner";
-    history_.runs().keep(*slot, bytes);
+    dictionary_.runs().keep(*slot, bytes);
     return nullptr;
 }
 
 DeltaDecoder::Problem DeltaDecoder::changedRun(uint32_t slot) {
     const uint32_t spans = control_.number();
-    const auto unchanged = slot < RawRunCache::kSlots ? history_.runs().at(slot) : std::span<std::byte>();
+    const auto unchanged = slot < RawRunCache::kSlots ? dictionary_.runs().at(slot) : std::span<std::byte>();
     if (unchanged.empty()) return "a delta of an unknown run of records";
     if (!room(unchanged.size())) return "the packet or batch is too large";
     std::vector<std::byte> old;
@@ -247,7 +247,7 @@ DeltaDecoder::Problem DeltaDecoder::changeSpans(std::span<std::byte> bytes, uint
 }
 
 DictionaryEntry DeltaDecoder::keep(std::span<const std::byte> bytes, bool page, uint32_t model) {
-    return page ? history_.addPage(history_.pages().take(), bytes) : history_.addText(bytes, model);
+    return page ? dictionary_.addPage(dictionary_.pages().take(), bytes) : dictionary_.addText(bytes, model);
 }
 
 bool DeltaDecoder::take(Section section, size_t sizeBytes, std::span<const std::byte>& into) {

@@ -21,7 +21,7 @@ public:
     explicit DeltaDecoder(const Limits& limits);
 
     // Returns false if there was no memory for the store.
-    [[nodiscard]] bool ready() const { return history_.ready(); }
+    [[nodiscard]] bool ready() const { return dictionary_.ready(); }
 
     // Begins a batch, which must stay valid until its last packet is taken.
     void begin(const SectionBytes& sections);
@@ -52,7 +52,7 @@ private:
     [[nodiscard]] bool room(size_t sizeBytes);
     std::span<std::byte> put(std::span<const std::byte> bytes);
 
-    Dictionary history_;
+    Dictionary dictionary_;
     const std::unique_ptr<std::byte[]> packet_; // of the largest packet size
     size_t packetBytes_ = 0;
     SectionBytes sections_;

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <xxhash.h>
 
-#include "streamcodec/delta/entropy/pixel_filter.hpp"
+#include "streamcodec/delta/word_compare.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
 namespace mural::delta {
@@ -12,42 +12,15 @@ namespace mural::delta {
 namespace {
 
 // Size of a patch that is cheaper than a search for a better position.
-constexpr size_t kCheapPatchBytes = 8, kCheapPagePatchBytes = 512;
+constexpr size_t kCheapPatchBytes = 8;
 // Number of omitted entries that are tried before the index is searched.
 constexpr size_t kMaxSkipped = 4;
-size_t maxPatchOf(const Piece& piece) { return size_t{piece.sizeBytes} * 3 / 4; }
 constexpr uint32_t kIndexedOfRun = 2;
 // A run is patched if spans and changed words take at most 1/kFewOf of its bytes.
 constexpr size_t kFewOf = 4;
 constexpr size_t kLongPacketBytes = 4096;
 // Number of short records in the log that may be skipped when records are sent plain.
-constexpr size_t kMaxLeftOut = 1024;
-
-// Compares words inline. Most entries are too short for a call of memcmp to pay off. Requires a multiple of 4 bytes.
-inline bool sameWords(const std::byte* a, const std::byte* b, size_t sizeBytes) {
-    if (sizeBytes > 64) return std::memcmp(a, b, sizeBytes) == 0;
-    for (; sizeBytes >= 8; sizeBytes -= 8, a += 8, b += 8) {
-        uint64_t wordsOfA = 0, wordsOfB = 0;
-        std::memcpy(&wordsOfA, a, 8);
-        std::memcpy(&wordsOfB, b, 8);
-        if (wordsOfA != wordsOfB) return false;
-    }
-    return sizeBytes == 0 || std::memcmp(a, b, 4) == 0;
-}
-
-// Returns the length of the common prefix in whole words.
-inline size_t equalBytes(const std::byte* a, const std::byte* b, size_t sizeBytes) {
-    constexpr size_t kBlock = 1024; // memcmp is fast but does not return the position
-    size_t at = 0;
-    while (sizeBytes - at >= kBlock && std::memcmp(a + at, b + at, kBlock) == 0) at += kBlock;
-    for (; sizeBytes - at >= 8; at += 8) {
-        uint64_t wordsOfA = 0, wordsOfB = 0;
-        std::memcpy(&wordsOfA, a + at, 8);
-        std::memcpy(&wordsOfB, b + at, 8);
-        if (wordsOfA != wordsOfB) break;
-    }
-    return at < sizeBytes && std::memcmp(a + at, b + at, 4) == 0 ? at + 4 : at;
-}
+constexpr size_t kMaxSkippedRecords = 1024;
 
 } // namespace
 
@@ -63,7 +36,7 @@ bool DeltaEncoder::next() {
             passWalkedRecords();
         else
             cut_.passShort();
-        if (!plain_) batchLeftOutBytes_ += cut_.at() - from;
+        if (!plain_) batchDroppedBytes_ += cut_.at() - from;
         asBytes(from, cut_.at());
     }
     return cut_.next(piece_);
@@ -85,12 +58,12 @@ void DeltaEncoder::add(uint32_t stream, std::span<const std::byte> packet, const
         control_.number(stream);
         lastStream_ = stream;
     }
-    const Dictionary::Opened opened = history_.open(stream);
+    const Dictionary::Opened opened = dictionary_.open(stream);
     if (opened.logIndex == streams_.size()) streams_.emplace_back();
     if (opened.fresh)
         streams_[opened.logIndex] =
             firstIndex_ ? std::move(firstIndex_) : std::make_unique<StreamIndex>(limits_.logItems);
-    log_ = &history_.log(opened.logIndex);
+    log_ = &dictionary_.log(opened.logIndex);
     index_ = &streams_[opened.logIndex]->items;
     runs_ = &streams_[opened.logIndex]->runs;
     novelty_ = &streams_[opened.logIndex]->novelty;
@@ -146,10 +119,10 @@ bool DeltaEncoder::runOn() {
         counts_.pageHits += item.page;
         index_->appendAgain(log.end(), log.cursor, item.sizeBytes);
         ++log.cursor;
-        log.append(history_.again(item));
+        log.append(dictionary_.again(item));
     }
     if (!record) return true;
-    const uint64_t text = history_.text().writtenBefore(log.at(log.end() - 1).where);
+    const uint64_t text = dictionary_.text().writtenBefore(log.at(log.end() - 1).where);
     if (open_.items == 0) {
         open_ = {log.end() - 1, 0, text, 0, 0};
         openBytesAt_ = piece_.at;
@@ -166,7 +139,7 @@ bool DeltaEncoder::runKnown() {
     if (!cut_.atRecord() || piece_.page()) return false;
     EntryLog& log = *log_;
     RunCache::Run run = runs_->fromCursor(log);
-    if (run.items < RunCache::kMinItems || history_.text().oldSince(run.oldestText)) return false;
+    if (run.items < RunCache::kMinItems || dictionary_.text().oldSince(run.oldestText)) return false;
     const size_t maximum = std::min<size_t>(run.sizeBytes, packet_.size() - piece_.at);
     const size_t equal = equalBytes(runs_->bytesOf(run), packet_.data() + piece_.at, maximum);
     if (equal < run.sizeBytes) {
@@ -185,7 +158,7 @@ bool DeltaEncoder::runKnown() {
     for (; done < run.items && indexed(); ++done) this->run();
     index_->appendAllAgain(log.end(), from + done, run.items - done,
                            [&](size_t i) { return uint32_t{log.at(from + done + i).sizeBytes}; });
-    history_.againAll(log, run.items - done);
+    dictionary_.againAll(log, run.items - done);
     run_ += run.items - done;
     novelty_->found(from, run.items - done);
     cut_.passed(run.items - 1, run.sizeBytes - piece_.sizeBytes, log.at(log.end() - 1).sizeBytes);
@@ -237,22 +210,9 @@ void DeltaEncoder::count(bool isNew) {
         novelty_->found(log_->cursor - 1, 1);
 }
 
-// New pixels take fewer bytes than changed pixels.
-size_t DeltaEncoder::maxPatchOfPage(const Piece& piece) const {
-    if (piece.sizeBytes != kPageBytes) return maxPatchOf(piece);
-    return std::clamp(leftOfPixels(packet_.data() + piece.at), kCheapPagePatchBytes, maxPatchOf(piece));
-}
-
-// A page that changes every time is not searched for.
-size_t DeltaEncoder::cheapPatchOfPage(const Piece& piece) {
-    if (!log_->contains(log_->cursor)) return 0;
-    const DictionaryEntry expected = log_->at(log_->cursor);
-    return expected.page && history_.pages().changesInPlace(expected.where) ? maxPatchOf(piece) : kCheapPagePatchBytes;
-}
-
 bool DeltaEncoder::same(DictionaryEntry item, const Piece& piece) const {
     return item.sizeBytes == piece.sizeBytes &&
-           sameWords(history_.bytesOf(item).data(), packet_.data() + piece.at, piece.sizeBytes);
+           sameWords(dictionary_.bytesOf(item).data(), packet_.data() + piece.at, piece.sizeBytes);
 }
 
 bool DeltaEncoder::expects(size_t ahead, const Piece& piece) const {
@@ -275,7 +235,7 @@ bool DeltaEncoder::skipTo(const Piece& piece) {
 // Between long records the log may contain short ones from frames that were not plain.
 void DeltaEncoder::skipToLike(const Piece& piece) {
     const DictionaryEntry now{0, piece.sizeBytes, static_cast<uint32_t>(piece.page())};
-    for (size_t ahead = 0; ahead <= kMaxLeftOut && log_->contains(log_->cursor + ahead); ++ahead) {
+    for (size_t ahead = 0; ahead <= kMaxSkippedRecords && log_->contains(log_->cursor + ahead); ++ahead) {
         const DictionaryEntry there = log_->at(log_->cursor + ahead);
         if (!there.like(now) && !there.page) continue;
         if (ahead == 0 || !there.like(now)) return;
@@ -291,7 +251,7 @@ bool DeltaEncoder::patch(const Piece& piece, size_t maxBytes) {
     if (!log_->contains(log_->cursor)) return false;
     const DictionaryEntry expected = log_->at(log_->cursor);
     if (expected.sizeBytes != piece.sizeBytes || expected.page != static_cast<uint32_t>(piece.page())) return false;
-    const auto old = history_.bytesOf(expected), now = bytesOf(piece);
+    const auto old = dictionary_.bytesOf(expected), now = bytesOf(piece);
     if (!piece.page() && std::memcmp(old.data(), now.data(), 4) != 0) return false;
     if (!patch_.find(old, now, maxBytes)) return false;
     settle();
@@ -339,15 +299,6 @@ void DeltaEncoder::putPatch(std::span<const std::byte> now) {
     }
 }
 
-// Appends the new contents of the page in this slot. A page that stays in its slot changes every time and needs no
-// hash.
-void DeltaEncoder::appendChangedPage(uint32_t slotBefore, const Piece& piece) {
-    const uint32_t slot = history_.pages().changed(slotBefore);
-    if (slot != slotBefore) return append(putPage(slot, piece), static_cast<uint32_t>(hashOf(piece)));
-    pageIndex_.forget(slot);
-    appendUnfound(history_.addPage(slot, bytesOf(piece)), MatchIndex::kNothing);
-}
-
 void DeltaEncoder::codeWords(size_t at, std::span<const std::byte> old, std::span<const std::byte> now) {
     for (size_t i = 0; i < old.size(); i += 4) {
         uint32_t before = 0, word = 0;
@@ -386,35 +337,6 @@ bool DeltaEncoder::seekAt(uint32_t hash, uint64_t position) {
     return true;
 }
 
-// In place: the next expected page follows the replaced one.
-bool DeltaEncoder::fromStore(bool inPlace) {
-    const Piece piece = piece_;
-    if (inPlace) {
-        PacketCut ahead = cut_;
-        Piece behind;
-        if (!(ahead.next(behind) && log_->contains(log_->cursor) &&
-              log_->at(log_->cursor).sizeBytes == piece.sizeBytes && expects(1, behind)))
-            return false;
-    }
-    PageStore& pages = history_.pages();
-    const uint32_t slot = pageIndex_.find(hashOf(piece), [&](uint32_t s) {
-        const auto page = pages.at(s);
-        return page.size() == piece.sizeBytes &&
-               std::memcmp(page.data(), packet_.data() + piece.at, piece.sizeBytes) == 0;
-    });
-    if (slot == PageIndex::kNone) return false;
-    if (run_ != 0 || pagesRun_ == 0 || slot != pagesFrom_ + pagesRun_) {
-        settle();
-        pagesFrom_ = slot;
-    }
-    ++pagesRun_;
-    ++counts_.pageHits;
-    const DictionaryEntry item = history_.fromStore(slot, piece.sizeBytes);
-    log_->replaces(item);
-    append(item, static_cast<uint32_t>(hashOf(piece)));
-    return true;
-}
-
 void DeltaEncoder::send(const Piece& piece) {
     settle();
     const uint32_t words = piece.sizeBytes / 4;
@@ -433,7 +355,7 @@ void DeltaEncoder::run() {
     ++run_;
     const DictionaryEntry item = log_->at(log_->cursor);
     if (item.page) ++counts_.pageHits;
-    append(history_.again(item), index_->hashAt(log_->cursor++));
+    append(dictionary_.again(item), index_->hashAt(log_->cursor++));
 }
 
 void DeltaEncoder::append(DictionaryEntry item, uint32_t hash) {
@@ -449,14 +371,8 @@ void DeltaEncoder::appendUnfound(DictionaryEntry item, uint32_t hash) {
 }
 
 DictionaryEntry DeltaEncoder::keep(const Piece& piece, uint32_t model) {
-    if (!piece.page()) return history_.addText(bytesOf(piece), model);
-    return putPage(history_.pages().take(), piece);
-}
-
-DictionaryEntry DeltaEncoder::putPage(uint32_t slot, const Piece& piece) {
-    pageIndex_.set(slot, hashOf(piece));
-    ++counts_.newPages;
-    return history_.addPage(slot, bytesOf(piece));
+    if (!piece.page()) return dictionary_.addText(bytesOf(piece), model);
+    return putPage(dictionary_.pages().take(), piece);
 }
 
 void DeltaEncoder::settle() {
@@ -472,13 +388,13 @@ void DeltaEncoder::asBytes(size_t from, size_t to) {
     if (from == to) return;
     settle();
     const auto bytes = packet_.subspan(from, to - from);
-    const RawRunSlots::SlotAdvice advised = runPlaces_.expect(lastStream_, bytes.size(), frames_);
+    const RawRunSlots::SlotAdvice advised = rawRunSlots_.expect(lastStream_, bytes.size(), frames_);
     if (advised.advice == RawRunSlots::Advice::Compare && asChanged(advised.slot, bytes)) return;
     const bool keeps = advised.advice == RawRunSlots::Advice::Keep;
     control_.put(keeps ? ControlOp::CachedBytes : ControlOp::Bytes);
     if (keeps) {
         control_.number(advised.slot);
-        history_.runs().keep(advised.slot, bytes);
+        dictionary_.runs().keep(advised.slot, bytes);
     }
     control_.number(static_cast<uint32_t>(bytes.size()));
     literals_[static_cast<size_t>(Section::Texts)].lend(bytes);
@@ -486,9 +402,9 @@ void DeltaEncoder::asBytes(size_t from, size_t to) {
 
 // Codes the bytes as changed words of the slot, if few have changed.
 bool DeltaEncoder::asChanged(uint32_t slot, std::span<const std::byte> bytes) {
-    const auto unchanged = history_.runs().at(slot);
+    const auto unchanged = dictionary_.runs().at(slot);
     const bool few = patch_.find(unchanged, bytes, bytes.size() / kFewOf) || patch_.spans.empty();
-    runPlaces_.changed(slot, few);
+    rawRunSlots_.changed(slot, few);
     if (!few) return false;
     ++counts_.patches;
     control_.put(ControlOp::ChangedBytes);
@@ -518,7 +434,7 @@ uint64_t DeltaEncoder::stagedBytes() const {
 
 void DeltaEncoder::clear() {
     counts_.stagedBytes += stagedBytes();
-    batchRawBytes_ = batchPageBytes_ = batchLeftOutBytes_ = 0;
+    batchRawBytes_ = batchPageBytes_ = batchDroppedBytes_ = 0;
     coder_.clear();
     for (auto& literal : literals_) literal.clear();
 }

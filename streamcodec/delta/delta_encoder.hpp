@@ -39,12 +39,12 @@ class DeltaEncoder {
 public:
     explicit DeltaEncoder(const Limits& limits)
         : limits_(limits),
-          history_(limits),
+          dictionary_(limits),
           firstIndex_(std::make_unique<StreamIndex>(limits.logItems)),
           words_(limits.modelWords) {}
 
     // Returns false if there was no memory for the store.
-    [[nodiscard]] bool ready() const { return history_.ready(); }
+    [[nodiscard]] bool ready() const { return dictionary_.ready(); }
 
     // Adds a packet, which must stay valid until clear() or ownBytes(). walked: record offsets of the packet, if known;
     // they save a second walk over plain records.
@@ -65,7 +65,7 @@ public:
     [[nodiscard]] uint64_t rawBytes() const { return batchRawBytes_; }
     [[nodiscard]] uint64_t pageBytes() const { return batchPageBytes_; } // in pages of long records
     // Bytes in short records that were sent plain because they followed many new ones.
-    [[nodiscard]] uint64_t droppedBytes() const { return batchLeftOutBytes_; }
+    [[nodiscard]] uint64_t droppedBytes() const { return batchDroppedBytes_; }
     void clear();
     // Returns true if the last packet ends within a blob. Nodes cannot act on an incomplete blob.
     [[nodiscard]] bool endsInValue() const { return endsInValue_; }
@@ -111,7 +111,7 @@ private:
     }
 
     const Limits limits_;
-    Dictionary history_;
+    Dictionary dictionary_;
     PageIndex pageIndex_;
     struct StreamIndex {
         explicit StreamIndex(uint32_t logItems) : items(logItems) {}
@@ -126,12 +126,12 @@ private:
     ControlWriter control_{coder_};
     WordPredictor words_;
     std::array<SectionBuffer, kSections> literals_; // Control is in coder_
-    uint64_t batchRawBytes_ = 0, batchPageBytes_ = 0, batchLeftOutBytes_ = 0;
+    uint64_t batchRawBytes_ = 0, batchPageBytes_ = 0, batchDroppedBytes_ = 0;
     uint32_t lastStream_ = 0;
     bool endsInValue_ = false;
     bool plain_ = false;
     uint64_t frames_ = 0;
-    RawRunSlots runPlaces_;
+    RawRunSlots rawRunSlots_;
     uint32_t run_ = 0;                      // expected entries that are not in control_ yet
     uint32_t pagesFrom_ = 0, pagesRun_ = 0; // stored pages that are not in control_ yet
 
