@@ -1,4 +1,4 @@
-// Traits of the GL commands: the one description that capture, replay, filters and recordings classify commands by.
+// Traits of the GL commands: the one description by which capture, replay, filters and traces classify commands.
 // Generated from the option `traits` of api/semantics.txt. Any thread.
 #pragma once
 

@@ -12,14 +12,14 @@
 #include "nodes/trace_player/capture_link.hpp"
 #include "nodes/trace_player/player_windows.hpp"
 #include "streamcodec/trace/trace_reader.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 
 namespace mural {
 namespace {
 
-using trace::RecordView;
+using wire::RecordView;
 
 constexpr int64_t kWelcomePatienceMs = 30'000;
 constexpr int64_t kRoomPatienceMs = 60'000;
@@ -152,12 +152,12 @@ private:
     // shows; unchanged if there is none.
     Result<void> prepare(CaptureLink& link, uint32_t stream, std::span<const std::byte> packet, uint32_t& frame) {
         packet_.assign(packet.begin(), packet.end());
-        trace::RecordWalk walk(packet);
+        wire::RecordWalk walk(packet);
         RecordView r;
         while (walk.next(r)) {
-            const uint32_t first = trace::argumentWord(r, 0);
+            const uint32_t first = wire::argumentWord(r, 0);
             if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
-                frame = std::max(frame, trace::argumentWord(r, 1));
+                frame = std::max(frame, wire::argumentWord(r, 1));
             else if (requestsReply(r.opcode) && !(first & capture::kPrefetched))
                 link.requested();
             else if (!link.welcome().displayApp)
@@ -175,7 +175,7 @@ private:
         if (r.arguments.size() < 4 + sizeof config) return {};
         std::memcpy(&config, r.arguments.data() + 4, sizeof config);
         if ((config.nativeLow == 0 && config.nativeHigh == 0) || config.isPbuffer) return {};
-        auto shown = windows_.show(wire::clientOf(stream), link.welcome().clientId, trace::argumentWord(r, 0),
+        auto shown = windows_.show(wire::clientOf(stream), link.welcome().clientId, wire::argumentWord(r, 0),
                                    config.width, config.height);
         if (!shown) return shown.error();
         config.nativeLow = *shown;

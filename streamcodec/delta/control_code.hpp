@@ -43,7 +43,7 @@ inline void putSpan(uint32_t unchanged, uint32_t changed, auto&& byte) {
     if (low == 15) number(changed - 1 - 15);
 }
 
-// Writes an operation with its count: three bits of Do, five bits of the count; 31: the rest follows as a varint.
+// Writes an operation with its count: three bits of DeltaOp, five bits of the count; 31: the rest follows as a varint.
 class ControlWriter {
 public:
     explicit ControlWriter(RangeWriter& coder) : coder_(coder) {}

@@ -27,7 +27,7 @@ constexpr size_t kMaxSkippedRecords = 1024;
 bool DeltaEncoder::next() {
     if (!restPlain_ && novelty_->many() && cut_.atRecord()) {
         keepRun();
-        novelty_->leaveOut(log_->end());
+        novelty_->sendRestPlain(log_->end());
         restPlain_ = true;
     }
     if (restPlain_) {

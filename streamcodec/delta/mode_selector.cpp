@@ -91,7 +91,7 @@ bool ModeSelector::isDearAtOnce(uint64_t rawBytes, int64_t ns) const {
            static_cast<double>(ns) > static_cast<double>(rawBytes) * firstNsPerByte_ * kDear;
 }
 
-void ModeSelector::leftOut() {
+void ModeSelector::mostlyPlain() {
     if (std::exchange(isFirst_, false)) return; // everything is new
     until_ = trying_ ? std::min(std::max(until_ * 2, kMinBetween), kMaxBetween) : kMinBetween;
     isByLeftOut_ = !trying_;

@@ -24,7 +24,7 @@ public:
     }
     // Reports a delta-coded batch whose short records were mostly sent plain after many new ones (NoveltyDetector). It
     // does not reveal the cost of delta mode.
-    void leftOut();
+    void mostlyPlain();
     // Reports a batch. pageBytes: the part of rawBytes in long records, which are coded in either mode.
     void measured(uint64_t rawBytes, uint64_t pageBytes, uint64_t wireBytes, int64_t ns, double linkNsPerByte);
 

@@ -45,14 +45,14 @@ public:
     // Reports a record that differs from the log at `cursor`. Detects whether records were sent plain there in an
     // earlier frame.
     void another(uint64_t cursor) {
-        again_ = again_ ||
-                 (next_ != 0 && cursor <= frameBegan_ && std::ranges::find(leftOutAt_, cursor) != leftOutAt_.end());
+        again_ =
+            again_ || (next_ != 0 && cursor <= frameBegan_ && std::ranges::find(plainAt_, cursor) != plainAt_.end());
     }
 
     [[nodiscard]] bool many() const { return late_ >= kMany && !again_; }
     // The rest is sent plain; `position`: where it would have been in the log.
-    void leaveOut(uint64_t position) {
-        if (!isFirstFrame_) leftOutAt_[next_++ % leftOutAt_.size()] = position;
+    void sendRestPlain(uint64_t position) {
+        if (!isFirstFrame_) plainAt_[next_++ % plainAt_.size()] = position;
         isLeftOut_ = true;
     }
 
@@ -71,7 +71,7 @@ private:
     bool again_ = false;     // a record that was sent plain before has repeated in this frame
     uint64_t frame_ = kNever, frameBegan_ = kNever;
     bool isFirstFrame_ = true;
-    std::array<uint64_t, kSlots> leftOutAt_ = nowhere();
+    std::array<uint64_t, kSlots> plainAt_ = nowhere();
     size_t next_ = 0;
 
     static constexpr std::array<uint64_t, kSlots> nowhere() {

@@ -5,9 +5,6 @@
 namespace mural::filter {
 namespace {
 
-using trace::Family;
-using trace::ObjectType;
-
 CommandClass ofDeferral(Deferral deferral) {
     switch (deferral) {
     case Deferral::Bind: return CommandClass::Bind;
@@ -17,91 +14,91 @@ CommandClass ofDeferral(Deferral deferral) {
     }
 }
 
-CommandClass ofFamily(const trace::Rule& rule) {
-    switch (rule.family) {
-    case Family::Nothing:
-    case Family::Cell:
-    case Family::CellOfMatrix:
-    case Family::UnitCell:
-    case Family::UnitCellOfMatrix:
-    case Family::Cap:
-    case Family::ClientCap:
-    case Family::ClientCell:
-    case Family::Attribute:
-    case Family::Color:
-    case Family::Limit:
-    case Family::PatternedCell: // data in a buffer is in a pixel buffer, whose uploads are not deferred
-    case Family::MatrixMode:
-    case Family::ListBase:
-    case Family::ArraySet: // except the exceptions of the registry (ofDeferral)
-    case Family::ArrayNamedSet:
-    case Family::MatrixLoad:
-    case Family::MatrixChange:
-    case Family::MatrixPush:
-    case Family::MatrixPop:
-    case Family::GenLists:
-    case Family::DeleteList: // a later list with the same name replaces it
-    case Family::FramebufferSet:
-    case Family::DrawBuffers:
-    case Family::RenderbufferStorage:
-    case Family::ShaderSet:
-    case Family::ShaderCompile:
-    case Family::ArbProgram:
-    case Family::SyncMake:
-    case Family::SyncDelete:
-    case Family::Clear: // render targets: uploads to textures that are render targets are not deferred
-    case Family::ClearBuffer:
-    case Family::Blit:
-    case Family::Barrier:
-    case Family::Vertex: // within a glBegin, which has flushed already
-    case Family::QueryBegin:
-    case Family::QueryEnd:
-    case Family::QueryCounter:
-    case Family::ConditionalEnd: return CommandClass::Pass;
-    case Family::CellOfAll: // the raster position passes through shaders
-    case Family::Draw:
-    case Family::Compute: return CommandClass::Use;
-    case Family::Begin: return CommandClass::Begin;
-    case Family::End: return CommandClass::End;
-    case Family::ActiveTexture:
-    case Family::ClientActiveTexture:
-    case Family::AttribPush:
-    case Family::AttribPop:
-    case Family::ClientPush:
-    case Family::ClientPop:
-    case Family::Bind:
-    case Family::BindIndexed:
-    case Family::UseProgram:
-    case Family::ArrayPointer:
-    case Family::Gen:
-    case Family::Create:
-    case Family::Delete:
-    case Family::ProgramDelete:
-    case Family::FramebufferAttach:
-    case Family::FramebufferNamed:
-    case Family::PipelineSet:
-    case Family::TexBuffer: return CommandClass::Bind;
-    case Family::NamedSet: return rule.type == ObjectType::Texture ? CommandClass::Object : CommandClass::Pass;
-    case Family::TexParameter:
-    case Family::TexMipmaps:
-    case Family::TexCopyImage:
-    case Family::TexCopySubImage:
-    case Family::ShaderDelete:
-    case Family::ProgramAttach:
-    case Family::ProgramDetach:
-    case Family::ProgramSet:
-    case Family::ProgramLink:
-    case Family::ProgramUniform: return CommandClass::Object;
-    case Family::TexImage:
-    case Family::TexStorage:
-    case Family::TexSubImage:
-    case Family::BufferData:
-    case Family::BufferSubData:
-    case Family::Uniform: return CommandClass::Upload;
-    case Family::NewList:
-    case Family::EndList:
-    case Family::CallList:
-    case Family::CallLists: return CommandClass::List;
+CommandClass ofFamily(const EffectRule& rule) {
+    switch (rule.kind) {
+    case EffectKind::Nothing:
+    case EffectKind::Cell:
+    case EffectKind::CellOfMatrix:
+    case EffectKind::UnitCell:
+    case EffectKind::UnitCellOfMatrix:
+    case EffectKind::Cap:
+    case EffectKind::ClientCap:
+    case EffectKind::ClientCell:
+    case EffectKind::Attribute:
+    case EffectKind::Color:
+    case EffectKind::Limit:
+    case EffectKind::PatternedCell: // data in a buffer is in a pixel buffer, whose uploads are not deferred
+    case EffectKind::MatrixMode:
+    case EffectKind::ListBase:
+    case EffectKind::ArraySet: // except the exceptions of the registry (ofDeferral)
+    case EffectKind::ArrayNamedSet:
+    case EffectKind::MatrixLoad:
+    case EffectKind::MatrixChange:
+    case EffectKind::MatrixPush:
+    case EffectKind::MatrixPop:
+    case EffectKind::GenLists:
+    case EffectKind::DeleteList: // a later list with the same name replaces it
+    case EffectKind::FramebufferSet:
+    case EffectKind::DrawBuffers:
+    case EffectKind::RenderbufferStorage:
+    case EffectKind::ShaderSet:
+    case EffectKind::ShaderCompile:
+    case EffectKind::ArbProgram:
+    case EffectKind::SyncMake:
+    case EffectKind::SyncDelete:
+    case EffectKind::Clear: // render targets: uploads to textures that are render targets are not deferred
+    case EffectKind::ClearBuffer:
+    case EffectKind::Blit:
+    case EffectKind::Barrier:
+    case EffectKind::Vertex: // within a glBegin, which has flushed already
+    case EffectKind::QueryBegin:
+    case EffectKind::QueryEnd:
+    case EffectKind::QueryCounter:
+    case EffectKind::ConditionalEnd: return CommandClass::Pass;
+    case EffectKind::CellOfAll: // the raster position passes through shaders
+    case EffectKind::Draw:
+    case EffectKind::Compute: return CommandClass::Use;
+    case EffectKind::Begin: return CommandClass::Begin;
+    case EffectKind::End: return CommandClass::End;
+    case EffectKind::ActiveTexture:
+    case EffectKind::ClientActiveTexture:
+    case EffectKind::AttribPush:
+    case EffectKind::AttribPop:
+    case EffectKind::ClientPush:
+    case EffectKind::ClientPop:
+    case EffectKind::Bind:
+    case EffectKind::BindIndexed:
+    case EffectKind::UseProgram:
+    case EffectKind::ArrayPointer:
+    case EffectKind::Gen:
+    case EffectKind::Create:
+    case EffectKind::Delete:
+    case EffectKind::ProgramDelete:
+    case EffectKind::FramebufferAttach:
+    case EffectKind::FramebufferNamed:
+    case EffectKind::PipelineSet:
+    case EffectKind::TexBuffer: return CommandClass::Bind;
+    case EffectKind::NamedSet: return rule.type == ObjectType::Texture ? CommandClass::Object : CommandClass::Pass;
+    case EffectKind::TexParameter:
+    case EffectKind::TexMipmaps:
+    case EffectKind::TexCopyImage:
+    case EffectKind::TexCopySubImage:
+    case EffectKind::ShaderDelete:
+    case EffectKind::ProgramAttach:
+    case EffectKind::ProgramDetach:
+    case EffectKind::ProgramSet:
+    case EffectKind::ProgramLink:
+    case EffectKind::ProgramUniform: return CommandClass::Object;
+    case EffectKind::TexImage:
+    case EffectKind::TexStorage:
+    case EffectKind::TexSubImage:
+    case EffectKind::BufferData:
+    case EffectKind::BufferSubData:
+    case EffectKind::Uniform: return CommandClass::Upload;
+    case EffectKind::NewList:
+    case EffectKind::EndList:
+    case EffectKind::CallList:
+    case EffectKind::CallLists: return CommandClass::List;
     default: return CommandClass::Unknown; // transform feedback, images of other objects, commands without an effect
     }
 }
@@ -116,29 +113,29 @@ Binding bindingOf(ObjectType type) {
     }
 }
 
-Binding bindingOf(Family family, ObjectType type) {
-    switch (family) {
-    case Family::Cap: return Binding::Cap;
-    case Family::ActiveTexture: return Binding::Unit;
-    case Family::ClientActiveTexture: return Binding::ClientUnit;
-    case Family::AttribPush: return Binding::PushAttribs;
-    case Family::AttribPop: return Binding::PopAttribs;
-    case Family::ClientPush: return Binding::PushClientAttribs;
-    case Family::ClientPop: return Binding::PopClientAttribs;
-    case Family::UseProgram: return Binding::Program;
-    case Family::BindIndexed: return Binding::Indexed;
-    case Family::ArrayPointer: return Binding::Pointer;
-    case Family::ArraySet:
-    case Family::ArrayNamedSet: return Binding::ArrayBuffers;
-    case Family::Gen:
-    case Family::Create: return Binding::Generate;
-    case Family::Delete:
-    case Family::ProgramDelete: return Binding::Delete;
-    case Family::FramebufferAttach: return Binding::Attach;
-    case Family::FramebufferNamed: return Binding::AttachNamed;
-    case Family::PipelineSet: return Binding::Pipeline;
-    case Family::TexBuffer: return Binding::TextureBuffer;
-    case Family::Bind: return bindingOf(type);
+Binding bindingOf(EffectKind effect, ObjectType type) {
+    switch (effect) {
+    case EffectKind::Cap: return Binding::Cap;
+    case EffectKind::ActiveTexture: return Binding::Unit;
+    case EffectKind::ClientActiveTexture: return Binding::ClientUnit;
+    case EffectKind::AttribPush: return Binding::PushAttribs;
+    case EffectKind::AttribPop: return Binding::PopAttribs;
+    case EffectKind::ClientPush: return Binding::PushClientAttribs;
+    case EffectKind::ClientPop: return Binding::PopClientAttribs;
+    case EffectKind::UseProgram: return Binding::Program;
+    case EffectKind::BindIndexed: return Binding::Indexed;
+    case EffectKind::ArrayPointer: return Binding::Pointer;
+    case EffectKind::ArraySet:
+    case EffectKind::ArrayNamedSet: return Binding::ArrayBuffers;
+    case EffectKind::Gen:
+    case EffectKind::Create: return Binding::Generate;
+    case EffectKind::Delete:
+    case EffectKind::ProgramDelete: return Binding::Delete;
+    case EffectKind::FramebufferAttach: return Binding::Attach;
+    case EffectKind::FramebufferNamed: return Binding::AttachNamed;
+    case EffectKind::PipelineSet: return Binding::Pipeline;
+    case EffectKind::TexBuffer: return Binding::TextureBuffer;
+    case EffectKind::Bind: return bindingOf(type);
     default: return Binding::Nothing;
     }
 }
@@ -183,17 +180,18 @@ FrameRole frameRoleOf(const CommandKind& kind) {
     case CommandClass::Begin:
     case CommandClass::End: return FrameRole::Binds;
     case CommandClass::Bind:
-        if (kind.family == Family::UseProgram) return FrameRole::Draws;
-        return kind.family == Family::Gen || kind.family == Family::Create || kind.family == Family::Delete ||
-                       kind.family == Family::ProgramDelete
+        if (kind.effect == EffectKind::UseProgram) return FrameRole::Draws;
+        return kind.effect == EffectKind::Gen || kind.effect == EffectKind::Create ||
+                       kind.effect == EffectKind::Delete || kind.effect == EffectKind::ProgramDelete
                    ? FrameRole::Ends
                    : FrameRole::Binds;
     case CommandClass::List:
-        return kind.family == Family::CallList || kind.family == Family::CallLists ? FrameRole::Binds : FrameRole::Ends;
+        return kind.effect == EffectKind::CallList || kind.effect == EffectKind::CallLists ? FrameRole::Binds
+                                                                                           : FrameRole::Ends;
     case CommandClass::Object: // on an object without deferred uploads
         if (kind.small) return FrameRole::Draws;
-        return kind.family == Family::TexParameter || kind.family == Family::NamedSet ? FrameRole::Binds
-                                                                                      : FrameRole::SeenBound;
+        return kind.effect == EffectKind::TexParameter || kind.effect == EffectKind::NamedSet ? FrameRole::Binds
+                                                                                              : FrameRole::SeenBound;
     case CommandClass::Upload: return kind.small ? FrameRole::Draws : FrameRole::SeenBound;
     case CommandClass::Blob:
     case CommandClass::Own:
@@ -213,8 +211,8 @@ CommandKinds::CommandKinds() {
             kind.about = ownClass(opcode);
             continue;
         }
-        const trace::Rule& rule = trace::ruleOf(opcode);
-        kind.family = rule.family;
+        const EffectRule& rule = effectRuleOf(opcode);
+        kind.effect = rule.kind;
         const Deferral deferral = effectOf(opcode).deferral;
         kind.about = deferral == Deferral::ByEffect ? ofFamily(rule) : ofDeferral(deferral);
         kind.valueWord = rule.valueWord;
@@ -222,18 +220,18 @@ CommandKinds::CommandKinds() {
     kinds_[wire::kOpBufferBytes].valueWord = kBufferBytesValue;
     for (uint16_t opcode = 0; opcode <= op::kLimit; ++opcode) {
         CommandKind& kind = kinds_[opcode];
-        kind.binding = bindingOf(kind.family, trace::ruleOf(opcode).type);
-        kind.small = kind.family == Family::Uniform || kind.family == Family::ProgramUniform;
+        kind.binding = bindingOf(kind.effect, effectRuleOf(opcode).type);
+        kind.small = kind.effect == EffectKind::Uniform || kind.effect == EffectKind::ProgramUniform;
         kind.deeper = deeperOf(kind);
         kind.frame = requestsPictures(opcode) ? FrameRole::Seen : frameRoleOf(kind);
         const bool passes = kind.about == CommandClass::Pass;
         const bool examined = kind.about == CommandClass::Bind || kind.about == CommandClass::Use ||
-                              kind.family == Family::CallList || kind.family == Family::CallLists;
+                              kind.effect == EffectKind::CallList || kind.effect == EffectKind::CallLists;
         const auto of = [&](Walk walk) -> Interest& { return interests_[static_cast<size_t>(walk)][opcode]; };
         of(Walk::State) = passes && kind.state == StateRole::None ? Interest::None : Interest::Stop;
-        of(Walk::Bindings) = passes || kind.small || kind.family == Family::UseProgram ? Interest::None
-                             : examined                                                ? Interest::Examine
-                                                                                       : Interest::Stop;
+        of(Walk::Bindings) = passes || kind.small || kind.effect == EffectKind::UseProgram ? Interest::None
+                             : examined                                                    ? Interest::Examine
+                                                                                           : Interest::Stop;
         of(Walk::Untracked) =
             kind.about == CommandClass::Own || kind.about == CommandClass::Blob ? Interest::Stop : Interest::None;
     }

@@ -1,5 +1,5 @@
 // Classes of commands for the command filter: one table entry per opcode, so most records pass without examination.
-// Derived from the effects of commands (streamcodec/snapshot/command_effects.hpp). A command without an effect ends the
+// Derived from the effects of commands (streamcodec/effect_rules.hpp). A command without an effect ends the
 // deferral of its share group.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 #include "gl_opcodes.hpp"
 #include "streamcodec/filter/state_setters.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/effect_rules.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 
 namespace mural::filter {
 
@@ -65,14 +65,14 @@ enum class FrameRole : uint8_t {
 };
 
 // Special value of CommandKind::valueWord: no value of variable size.
-constexpr uint8_t kNoValue = trace::kNoWord;
+constexpr uint8_t kNoValue = kNoArgumentWord;
 
 constexpr int8_t kExamined = INT8_MAX;
 
 struct CommandKind {
     CommandClass about = CommandClass::Unknown;
     StateRole state = StateRole::Change;
-    trace::Family family = trace::Family::Unknown;
+    EffectKind effect = EffectKind::Unknown;
     uint8_t valueWord = kNoValue; // argument word in which the first value of variable size begins
     bool small = false;           // sets uniforms, which are examined together with redundant state
     // Change of the glBegin nesting depth, for commands without another effect in a list that is compiled. kExamined:
@@ -82,7 +82,7 @@ struct CommandKind {
     Binding binding = Binding::Nothing;
 };
 
-// Table of all commands. Every record is looked up, so loops over records keep a reference to the table.
+// Table of all commands. A loop over records keeps a reference to it, because it looks up every record.
 class CommandKinds {
 public:
     static const CommandKinds& all();
@@ -93,7 +93,7 @@ public:
     //   Untracked  deferral is disabled
     enum class Walk : uint8_t { State, Bindings, Untracked };
     // Records that a walk may pass. Separate tables, because most records need no other lookup.
-    using Interest = trace::RecordWalk::Interest;
+    using Interest = wire::RecordWalk::Interest;
     using Interests = std::array<Interest, op::kLimit + 1>;
     [[nodiscard]] const Interests& interests(Walk walk) const { return interests_[static_cast<size_t>(walk)]; }
     static size_t placeOf(uint16_t opcode) { return opcode < op::kLimit ? opcode : op::kLimit; }

@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "gl_opcodes.hpp"
-#include "streamcodec/trace/record_values.hpp"
+#include "streamcodec/wire/record_blobs.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 
 namespace mural::filter {
 
-using trace::argumentWord;
+using wire::argumentWord;
 
 namespace {
 
@@ -37,13 +37,13 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
     counts_.inBytes += payload.size();
     releaseElsewhere(stream);
     Output output(streamId, payload, scratch_, take_);
-    trace::RecordWalk walk(payload);
+    wire::RecordWalk walk(payload);
     RecordView r;
     constexpr size_t kNone = SIZE_MAX;
     size_t valueFrom = stream.values > 0 ? 0 : kNone; // start of the blob's pieces in this packet
     while (true) {
-        const bool tracksState = leavesOutSmall_ || stream.list != 0;
-        if (valueFrom == kNone && stream.same.now == FrameMatcher::Now::Following) passSame(stream, walk, payload);
+        const bool tracksState = dropsRedundant_ || stream.list != 0;
+        if (valueFrom == kNone && stream.same.now == FrameMatcher::Now::Matching) passSame(stream, walk, payload);
         if (valueFrom == kNone && compilesList(stream)) {
             int depth = 0;
             walk.skip([&](uint16_t opcode, size_t times) {
@@ -56,7 +56,7 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
         if (valueFrom == kNone) passOthers(stream, output, walk, payload, tracksState);
         if (!walk.next(r)) break;
         const CommandKind& kind = kinds_[r.opcode];
-        if (stream.same.now == FrameMatcher::Now::Following) seeSame(stream, r, kind);
+        if (stream.same.now == FrameMatcher::Now::Matching) seeSame(stream, r, kind);
         if (kind.about == CommandClass::Blob) {
             if (valueFrom == kNone) valueFrom = r.offset;
             ++stream.pendingRecords;
@@ -86,9 +86,9 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
     output.finish(walk.whole());
 }
 
-// Skips records of no interest. In most programs these are nearly all records but bindings, which are followed here,
+// Skips records of no interest. In most programs these are nearly all records but bindings, which are tracked here,
 // and draws, most of which need nothing deferred.
-void CommandFilter::passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet,
+void CommandFilter::passOthers(Stream& stream, Output& output, wire::RecordWalk& walk, const Packet& packet,
                                bool tracksState) {
     using Walk = CommandKinds::Walk;
     const bool isUntracked = stream.context != nullptr && stream.context->group->untracked;
@@ -96,7 +96,7 @@ void CommandFilter::passOthers(Stream& stream, Output& output, trace::RecordWalk
                                                                 : isUntracked ? Walk::Untracked
                                                                               : Walk::Bindings);
     const auto interestOf = [&](uint16_t opcode) { return interests[CommandKinds::placeOf(opcode)]; };
-    const bool examines = !tracksState && stream.same.now != FrameMatcher::Now::Following && bindsHere(stream);
+    const bool examines = !tracksState && stream.same.now != FrameMatcher::Now::Matching && bindsHere(stream);
     if (!examines)
         return walk.skip([&](uint16_t opcode, size_t) { return interestOf(opcode) == CommandKinds::Interest::None; });
     walk.pass(interestOf, [&](const RecordView& r) {
@@ -125,7 +125,7 @@ void CommandFilter::keepPending(Stream& stream, Output& output, size_t from, con
         stream.pending.reserve(stream.valueBytes + stream.valueBytes / 1024 + rest.size());
         stream.pending.insert(stream.pending.end(), rest.begin(), rest.end());
         pendingBytes_ += rest.size();
-        return output.leaveOut(from, packet.size());
+        return output.drop(from, packet.size());
     }
     // Nothing can be inserted before the record from here on, because blobs are consumed in order.
     if (holds && !stream.inPrimitive) releaseGroup(stream, output, from);
@@ -184,7 +184,7 @@ void CommandFilter::gl(At& at) {
 // Nothing can be inserted between these records and their draw, so its inputs are flushed before.
 void CommandFilter::arrays(At& at) {
     if (at.group.deferred.empty()) return;
-    trace::RecordWalk behind(at.packet.subspan(at.r.offset + at.r.sizeBytes));
+    wire::RecordWalk behind(at.packet.subspan(at.r.offset + at.r.sizeBytes));
     RecordView next;
     const bool draws =
         at.r.opcode == wire::kOpClientArrays && behind.next(next) && kinds_[next.opcode].about == CommandClass::Use;

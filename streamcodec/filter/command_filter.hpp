@@ -7,7 +7,7 @@
 // - a draw while the object is bound,
 // - a command whose reads are unknown,
 // - any command of another context of the share group.
-// A flush binds the object, sends the queue, and restores the previous binding. The filter follows bindings only. A
+// A flush binds the object, sends the queue, and restores the previous binding. The filter tracks bindings only. A
 // command without an effect rule (streamcodec/snapshot) disables deferral for its share group.
 //
 // Assumption: calls that bind something are valid. A rejected upload is rejected at any position.
@@ -31,7 +31,7 @@ struct CommandFilterCounts {
     uint64_t droppedRecords = 0;  // dropped: overwritten, redundant, or deleted with their object
     uint64_t droppedBytes = 0;
     uint64_t deferredBytes = 0; // currently deferred
-    uint64_t alikeRecords = 0;  // equal to the previous frame, and therefore not followed
+    uint64_t alikeRecords = 0;  // equal to the previous frame, and therefore not tracked
 };
 
 // Not thread-safe.
@@ -46,12 +46,12 @@ public:
     void releaseAll();                // flushes everything
     void clientGone(uint32_t client); // drops everything of the program
     // Sets whether redundant state setters, bindings and uniforms are dropped. Initially off. Call between packets.
-    void leaveOutSmall(bool leavesOut);
+    void setDropsRedundant(bool dropsRedundant);
     void losesDeferredUploads() { loses_ = true; } // fault injection
     [[nodiscard]] const CommandFilterCounts& counts() const { return counts_; }
 
 private:
-    using RecordView = trace::RecordView;
+    using RecordView = wire::RecordView;
     // passed by reference: copying the span would stall on store forwarding per record
     using Packet = std::span<const std::byte>;
     struct At { // context of one record
@@ -67,7 +67,7 @@ private:
 
     void record(Stream& stream, Output& output, const RecordView& r, const CommandKind& kind, size_t from,
                 const Packet& packet);
-    void passOthers(Stream& stream, Output& output, trace::RecordWalk& walk, const Packet& packet, bool tracksState);
+    void passOthers(Stream& stream, Output& output, wire::RecordWalk& walk, const Packet& packet, bool tracksState);
     void keepPending(Stream& stream, Output& output, size_t from, const Packet& packet);
     void sendPending(Stream& stream, Output& output, size_t from);
     static bool bindsHere(const Stream& stream) {
@@ -75,7 +75,7 @@ private:
     }
     static bool compilesList(const Stream& stream) {
         return stream.list != 0 && stream.context != nullptr && !stream.context->group->untracked &&
-               stream.same.now != FrameMatcher::Now::Following;
+               stream.same.now != FrameMatcher::Now::Matching;
     }
     void gl(At& at);
     void arrays(At& at);
@@ -83,10 +83,10 @@ private:
     // Frames that repeat the previous one.
     [[nodiscard]] bool mayRepeat(const Stream& stream) const;
     [[nodiscard]] bool repeats(const Stream& stream) const;
-    void passSame(Stream& stream, trace::RecordWalk& walk, const Packet& packet);
+    void passSame(Stream& stream, wire::RecordWalk& walk, const Packet& packet);
     void seeSame(Stream& stream, const RecordView& r, const CommandKind& kind);
-    void followSame(Stream& stream);
-    void followSameTo(Stream& stream, size_t to);
+    void trackSame(Stream& stream);
+    void trackSameTo(Stream& stream, size_t to);
     void leaveSame(Stream& stream);
     void leaveSameOf(const Group& group);
     void keepSame(Stream& stream, const RecordView& r, const Packet& packet);
@@ -181,13 +181,13 @@ private:
     std::vector<Object*> used_;   // objects that the draw uses
     std::vector<uint32_t> names_; // names in the current record
     uint64_t pendingBytes_ = 0;
-    bool leavesOutSmall_ = false;
+    bool dropsRedundant_ = false;
     bool loses_ = false;
     CommandFilterCounts counts_;
 };
 
 // Reads names from the record's arguments at that word. Returns false if they travel as a blob.
-bool namesAt(const trace::RecordView& r, size_t word, std::vector<uint32_t>& names);
+bool namesAt(const wire::RecordView& r, size_t word, std::vector<uint32_t>& names);
 // Index into TextureUnit; kTextureTargets: unknown. Faces of a cube map to the cube.
 size_t targetIndex(uint32_t target);
 // Returns true for capabilities that enable driver messages per command.

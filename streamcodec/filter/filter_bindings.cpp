@@ -6,12 +6,12 @@
 #include "gl_opcodes.hpp"
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/filter/command_filter.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 #include "streamcodec/snapshot/texture_targets.hpp"
 
 namespace mural::filter {
 
-using trace::argumentWord;
+using wire::argumentWord;
 
 namespace {
 
@@ -45,15 +45,15 @@ size_t targetIndex(uint32_t target) {
     case GL_TEXTURE_2D_MULTISAMPLE: return 9;
     case GL_TEXTURE_2D_MULTISAMPLE_ARRAY: return 10;
     case kExternal: return 11;
-    default: return trace::isFace(target) ? 3 : kTextureTargets;
+    default: return snapshot::isFace(target) ? 3 : kTextureTargets;
     }
 }
 
 // Not in a group of several contexts: there, binding again makes changes by other contexts visible.
 void CommandFilter::isRedundantBind(At& at) {
-    if (!leavesOutSmall_ || at.context.group.use_count() > 1 || at.stream.values > 0) return;
+    if (!dropsRedundant_ || at.context.group.use_count() > 1 || at.stream.values > 0) return;
     countLeftOut(1, at.r.sizeBytes);
-    at.output.leaveOut(at.r.offset, at.r.offset + at.r.sizeBytes);
+    at.output.drop(at.r.offset, at.r.offset + at.r.sizeBytes);
 }
 
 bool isDebugOutput(uint32_t cap) { return cap == GL_DEBUG_OUTPUT || cap == GL_DEBUG_OUTPUT_SYNCHRONOUS; }
@@ -99,15 +99,15 @@ void CommandFilter::bind(At& at) {
     case Binding::Generate: return generate(at);
     case Binding::Delete: return deleteNames(at);
     case Binding::Attach: { // the object is a render target from now on
-        const trace::Rule& rule = trace::ruleOf(r.opcode);
-        return rule.type == trace::ObjectType::Texture ? openNamed(at, Kind::Texture, rule.nameWord) : void();
+        const EffectRule& rule = effectRuleOf(r.opcode);
+        return rule.type == ObjectType::Texture ? openNamed(at, Kind::Texture, rule.nameWord) : void();
     }
     case Binding::AttachNamed:
         // any of these words may be the name
         for (size_t word = 1; word < 4; ++word) openNamed(at, Kind::Texture, word);
         return;
     case Binding::Pipeline: {
-        const uint32_t program = argumentWord(r, trace::ruleOf(r.opcode).nameWord);
+        const uint32_t program = argumentWord(r, effectRuleOf(r.opcode).nameWord);
         return program != 0 ? openUp(at, make(at.group, Kind::Program, program)) : void();
     }
     case Binding::TextureBuffer:
@@ -126,9 +126,9 @@ void CommandFilter::bindVertexArray(At& at, uint32_t name) {
     c.needs = c.needs || needs(*c.array);
 }
 
-// Holders of these buffers are not tracked.
+// The objects that refer to these buffers are not tracked.
 void CommandFilter::arrayBuffers(At& at) {
-    const trace::Rule& rule = trace::ruleOf(at.r.opcode);
+    const EffectRule& rule = effectRuleOf(at.r.opcode);
     if (rule.nameWord != rule.valueWord) return openNamed(at, Kind::Buffer, rule.nameWord);
     std::vector<uint32_t> names;
     if (!namesAt(at.r, rule.nameWord, names)) return untrack(at);
@@ -149,13 +149,13 @@ void CommandFilter::bindTexture(At& at, uint32_t target, uint32_t unit, Object* 
 }
 
 void CommandFilter::bindIndexed(At& at) {
-    const trace::Rule& rule = trace::ruleOf(at.r.opcode);
+    const EffectRule& rule = effectRuleOf(at.r.opcode);
     const uint32_t first = argumentWord(at.r, 0);
-    if (rule.type == trace::ObjectType::Buffer) { // shaders may read or write it there
+    if (rule.type == ObjectType::Buffer) { // shaders may read or write it there
         openNamed(at, Kind::Buffer, rule.nameWord);
         return at.group.untracked ? void() : bindBuffer(at, first, argumentWord(at.r, rule.nameWord));
     }
-    if (rule.type != trace::ObjectType::Texture) return; // samplers
+    if (rule.type != ObjectType::Texture) return; // samplers
     if (hasTrait(at.r.opcode, Trait::ImageBinding)) return openNamed(at, Kind::Texture, rule.nameWord);
     Object* const object = named(at, Kind::Texture, argumentWord(at.r, rule.nameWord));
     if (at.group.untracked) return;
@@ -203,9 +203,9 @@ void CommandFilter::arrayPointer(At& at) {
     Context& c = at.context;
     const RecordView& r = at.r;
     const bool generic = hasTrait(r.opcode, Trait::ArrayIndex);
-    const uint8_t nameWord = trace::ruleOf(r.opcode).nameWord;
+    const uint8_t nameWord = effectRuleOf(r.opcode).nameWord;
     Object* object = bufferAt(c, GL_ARRAY_BUFFER);
-    if (nameWord != trace::kNoWord) {
+    if (nameWord != kNoArgumentWord) {
         object = named(at, Kind::Buffer, argumentWord(r, nameWord));
         if (at.group.untracked) return;
     }

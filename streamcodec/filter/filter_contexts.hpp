@@ -106,12 +106,13 @@ struct Context : Bindings {
 // Detects frames of a stream with the bindings of the previous frame.
 struct FrameMatcher {
     enum class Now : uint8_t {
-        Apart,     // every record is followed
+        Apart,     // every record is tracked
         Recording, // the same, and a template is built
-        Following, // matching records are skipped: the bindings are those of the frame's start, or of layout.follow()
+        Matching,  // matching records are skipped: the bindings are those of the frame's start, or of
+                   // frameTemplate.track()
     };
     Now now = Now::Apart;
-    FrameTemplate layout;
+    FrameTemplate frameTemplate;
     size_t templateBytes = 0;         // bytes of the packet in the template that is being built
     bool inValue = false;             // the last record in the template was a piece of a blob
     const Context* context = nullptr; // context of the template
@@ -121,7 +122,7 @@ struct FrameMatcher {
     Bindings begins, ends;
     std::vector<TextureUnit> began; // at the start of this frame
     struct Mark {                   // bindings within the template, slightly before the usual point of difference
-        size_t followed = 0;        // number of records before it; 0: no mark
+        size_t tracked = 0;         // number of records before it; 0: no mark
         uint32_t frame = 0;         // frame in which it was made
         std::vector<TextureUnit> began;
         Bindings bound;

@@ -1,9 +1,9 @@
-// Frame matching: a frame that binds the same objects as the previous one is not followed record by record.
+// Frame matching: a frame that binds the same objects as the previous one is not tracked record by record.
 //
 // The effect of a record on bindings depends only on its bytes, the current bindings, and the existing objects. A
 // template (FrameTemplate) is kept of a frame that ends with the bindings it began with, except for textures. A next
 // frame with the same records, and equal bytes of those that bind, ends with the same bindings. At a different record,
-// the records before it are followed at once. Commands deferred throughout the template frame stay deferred: the same
+// the records before it are tracked at once. Commands deferred throughout the template frame stay deferred: the same
 // draws need them no more than before.
 #include "gl_opcodes.hpp"
 #include "streamcodec/filter/command_filter.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kMaxCompared = 1024; // vertex arrays and their bindings, which are compared or copied once per frame
 constexpr double kLike = 0.9, kUnlike = 0.5;
-constexpr size_t kWorthAMark = 64;   // records that would be followed in every frame
+constexpr size_t kWorthAMark = 64;   // records that would be tracked in every frame
 constexpr uint32_t kMarkFrames = 16; // frames between two marks
 
 bool fewEnough(const Bindings& b) {
@@ -59,7 +59,7 @@ bool nothingSaved(const Context& c) { return c.attribs.empty() && c.clientAttrib
 // Returns true if the next records of this stream can match the template.
 bool CommandFilter::mayRepeat(const Stream& stream) const {
     const Context* const c = stream.context;
-    return !leavesOutSmall_ && c != nullptr && c->group.use_count() == 1 && !c->group->untracked && stream.list == 0;
+    return !dropsRedundant_ && c != nullptr && c->group.use_count() == 1 && !c->group->untracked && stream.list == 0;
 }
 
 // Returns true if the template is still valid for this context.
@@ -71,10 +71,10 @@ bool CommandFilter::repeats(const Stream& stream) const {
 }
 
 // Skips records that match the template.
-void CommandFilter::passSame(Stream& stream, trace::RecordWalk& walk, const Packet& packet) {
+void CommandFilter::passSame(Stream& stream, wire::RecordWalk& walk, const Packet& packet) {
     size_t at = walk.at();
     RecordOffsets walked;
-    const FrameTemplate::Stop stop = stream.same.layout.pass(packet, at, walked);
+    const FrameTemplate::Stop stop = stream.same.frameTemplate.pass(packet, at, walked);
     walk.goTo(at, walked);
     counts_.alikeRecords += walked.records;
     if (stop == FrameTemplate::Stop::Differs || stop == FrameTemplate::Stop::End) leaveSame(stream);
@@ -82,14 +82,14 @@ void CommandFilter::passSame(Stream& stream, trace::RecordWalk& walk, const Pack
 
 // Handles a record that passSame() did not skip.
 void CommandFilter::seeSame(Stream& stream, const RecordView& r, const CommandKind& kind) {
-    if (!stream.same.layout.passSeen(r.opcode)) return leaveSame(stream);
-    if (kind.frame != FrameRole::Seen) followSame(stream);
+    if (!stream.same.frameTemplate.passSeen(r.opcode)) return leaveSame(stream);
+    if (kind.frame != FrameRole::Seen) trackSame(stream);
 }
 
-void CommandFilter::followSameTo(Stream& stream, size_t to) {
+void CommandFilter::trackSameTo(Stream& stream, size_t to) {
     Output nothing(stream.id, {}, otherScratch_, take_);
-    stream.same.layout.follow(to, [&](std::span<const std::byte> bytes) {
-        trace::RecordWalk one(bytes);
+    stream.same.frameTemplate.track(to, [&](std::span<const std::byte> bytes) {
+        wire::RecordWalk one(bytes);
         RecordView r;
         if (one.next(r)) record(stream, nothing, r, kinds_[r.opcode], 0, bytes);
     });
@@ -97,32 +97,32 @@ void CommandFilter::followSameTo(Stream& stream, size_t to) {
 }
 
 // Follows all skipped records, from the mark on if it was passed.
-void CommandFilter::followSame(Stream& stream) {
+void CommandFilter::trackSame(Stream& stream) {
     FrameMatcher& same = stream.same;
-    const size_t passed = same.layout.passed();
+    const size_t passed = same.frameTemplate.passed();
     FrameMatcher::Mark& mark = same.mark;
-    if (mark.followed > same.layout.followed() && mark.followed <= passed &&
+    if (mark.tracked > same.frameTemplate.tracked() && mark.tracked <= passed &&
         leadsTo(same.began, mark.began, mark.bound.units)) {
         stream.context->takeOver(mark.bound);
         stream.inPrimitive = mark.inPrimitive;
-        same.layout.followFrom(mark.followed);
+        same.frameTemplate.trackFrom(mark.tracked);
     }
     // The next frame may differ a little earlier.
     const size_t marked = passed - passed / 16;
-    if (marked >= same.layout.followed() + kWorthAMark &&
-        (mark.followed == 0 || same.frames - mark.frame >= kMarkFrames)) {
-        followSameTo(stream, marked);
+    if (marked >= same.frameTemplate.tracked() + kWorthAMark &&
+        (mark.tracked == 0 || same.frames - mark.frame >= kMarkFrames)) {
+        trackSameTo(stream, marked);
         if (nothingSaved(*stream.context))
             mark = {marked, same.frames, same.began, *stream.context, stream.inPrimitive};
     }
-    followSameTo(stream, passed);
+    trackSameTo(stream, passed);
 }
 
 // Returns to following each record.
 void CommandFilter::leaveSame(Stream& stream) {
     FrameMatcher& same = stream.same;
-    if (same.now != FrameMatcher::Now::Following) return;
-    followSame(stream);
+    if (same.now != FrameMatcher::Now::Matching) return;
+    trackSame(stream);
     same.now = FrameMatcher::Now::Apart;
     if (stream.context != nullptr) stream.context->needs = true; // skipped draws were not examined
 }
@@ -134,15 +134,15 @@ void CommandFilter::leaveSameOf(const Group& group) {
 
 // Called after an examined record.
 void CommandFilter::keepSame(Stream& stream, const RecordView& r, const Packet& packet) {
-    if (stream.same.now == FrameMatcher::Now::Following && !repeats(stream)) leaveSame(stream);
+    if (stream.same.now == FrameMatcher::Now::Matching && !repeats(stream)) leaveSame(stream);
     if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
         endSame(stream, packet.first(r.offset + r.sizeBytes));
 }
 
-// Appends records to the template that is being built. They have been followed.
+// Appends records to the template that is being built. They have been tracked.
 void CommandFilter::keepRecords(Stream& stream, const Packet& packet) {
     FrameMatcher& same = stream.same;
-    trace::RecordWalk walk(packet.subspan(same.templateBytes));
+    wire::RecordWalk walk(packet.subspan(same.templateBytes));
     RecordView r;
     bool keeps = repeats(stream);
     while (keeps && walk.next(r)) {
@@ -150,18 +150,18 @@ void CommandFilter::keepRecords(Stream& stream, const Packet& packet) {
         const bool takesValue = same.inValue && kind.about != CommandClass::Blob;
         same.inValue = kind.about == CommandClass::Blob;
         const FrameRole role = kind.frame == FrameRole::Ends || (r.opcode == wire::kOpMakeCurrent &&
-                                                                 trace::argumentWord(r, 0) != stream.context->id)
+                                                                 wire::argumentWord(r, 0) != stream.context->id)
                                    ? FrameRole::Ends
                                : takesValue ? FrameRole::SeenBound
                                             : kind.frame;
         const Same how = role == FrameRole::Draws ? Same::Head : role == FrameRole::Binds ? Same::All : Same::Seen;
-        keeps =
-            role != FrameRole::Ends && same.layout.add(how, packet.subspan(same.templateBytes + r.offset, r.sizeBytes));
+        keeps = role != FrameRole::Ends &&
+                same.frameTemplate.add(how, packet.subspan(same.templateBytes + r.offset, r.sizeBytes));
     }
     same.templateBytes = packet.size();
     if (keeps) return;
     same.now = FrameMatcher::Now::Apart;
-    same.layout.clear();
+    same.frameTemplate.clear();
 }
 
 // The frame ends with this packet.
@@ -169,15 +169,15 @@ void CommandFilter::endSame(Stream& stream, const Packet& packet) {
     using Now = FrameMatcher::Now;
     FrameMatcher& same = stream.same;
     if (same.now == Now::Recording) keepRecords(stream, packet);
-    if (same.now == Now::Following && !same.layout.atEnd()) leaveSame(stream);
+    if (same.now == Now::Matching && !same.frameTemplate.atEnd()) leaveSame(stream);
     const bool returns = same.begins.units == same.ends.units;
-    if (same.now == Now::Following && (same.layout.followed() > 0 || !returns)) {
+    if (same.now == Now::Matching && (same.frameTemplate.tracked() > 0 || !returns)) {
         stream.context->takeOver(same.ends);
         stream.context->needs = true;
         stream.inPrimitive = false;
     }
     if (!mayRepeat(stream) || stream.inPrimitive || !nothingSaved(*stream.context) ||
-        (same.now != Now::Following && !fewEnough(*stream.context))) {
+        (same.now != Now::Matching && !fewEnough(*stream.context))) {
         same.now = Now::Apart;
         return;
     }
@@ -185,18 +185,18 @@ void CommandFilter::endSame(Stream& stream, const Packet& packet) {
     Group& group = *stream.context->group;
     if (same.now == Now::Recording) {
         same.ends = bound;
-        if (!bound.equalButTextures(same.begins)) same.layout.clear();
+        if (!bound.equalButTextures(same.begins)) same.frameTemplate.clear();
     }
-    const double share = same.layout.share();
+    const double share = same.frameTemplate.share();
     ++same.frames;
     same.shares += share;
     if (group.deferred.empty()) same.deferredChanges = group.deferredChanges; // no draw can need anything deferred
-    const bool isLike = same.now == Now::Following ||
-                        (!same.layout.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
+    const bool isLike = same.now == Now::Matching ||
+                        (!same.frameTemplate.empty() && repeats(stream) && (share >= kLike || same.frames < same.wait));
     const bool goesOn = isLike && mayBegin(same, bound);
-    same.now = goesOn ? Now::Following : Now::Apart;
+    same.now = goesOn ? Now::Matching : Now::Apart;
     if (goesOn) same.began = bound.units;
-    same.layout.begin();
+    same.frameTemplate.begin();
     if (goesOn || same.frames < same.wait) return;
     // Builds a new template; at growing intervals if templates did not match before.
     same.wait =
@@ -204,8 +204,8 @@ void CommandFilter::endSame(Stream& stream, const Packet& packet) {
     same.now = Now::Recording;
     same.templateBytes = packet.size();
     same.inValue = false;
-    same.layout.clear();
-    same.mark.followed = 0;
+    same.frameTemplate.clear();
+    same.mark.tracked = 0;
     same.context = stream.context;
     same.deferredChanges = group.deferredChanges;
     same.objectChanges = group.objectChanges;

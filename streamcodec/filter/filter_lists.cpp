@@ -3,18 +3,17 @@
 #include <GL/glext.h>
 
 #include "streamcodec/filter/command_filter.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 
 namespace mural::filter {
 
-using trace::argumentWord;
-using trace::Family;
+using wire::argumentWord;
 
 void CommandFilter::list(At& at) {
     Stream& stream = at.stream;
     const uint32_t first = argumentWord(at.r, 0);
-    switch (at.kind.family) {
-    case Family::NewList:
+    switch (at.kind.effect) {
+    case EffectKind::NewList:
         if (stream.inPrimitive || stream.list != 0) return; // an error
         releaseGroup(stream, at.output, at.from);
         if (argumentWord(at.r, 1) != GL_COMPILE) return untrack(at);
@@ -22,7 +21,7 @@ void CommandFilter::list(At& at) {
         stream.compiled = {};
         stream.depth = 0;
         return;
-    case Family::EndList:
+    case EffectKind::EndList:
         if (stream.list == 0) return;
         stream.compiled.binds = stream.compiled.binds || stream.depth != 0;
         at.group.lists[stream.list] = stream.compiled;
@@ -35,7 +34,7 @@ void CommandFilter::list(At& at) {
         stream.compiled.calls = true;
         return;
     }
-    bool binds = false, calls = at.kind.family != Family::CallList;
+    bool binds = false, calls = at.kind.effect != EffectKind::CallList;
     if (!calls) {
         const auto found = at.group.lists.find(first);
         if (found != at.group.lists.end()) binds = found->second.binds, calls = found->second.calls;
@@ -54,7 +53,7 @@ void CommandFilter::compiled(At& at) {
     case CommandClass::Arrays: return;
     case CommandClass::Bind: break;
     case CommandClass::Unknown:
-        if (at.kind.family == Family::Handle) return untrack(at); // not part of lists: executed immediately
+        if (at.kind.effect == EffectKind::Handle) return untrack(at); // not part of lists: executed immediately
         at.stream.compiled.binds = true;
         return;
     case CommandClass::Upload:
@@ -64,20 +63,20 @@ void CommandFilter::compiled(At& at) {
         [[fallthrough]];
     default: at.stream.compiled.binds = true; return;
     }
-    switch (at.kind.family) {
-    case Family::Gen: // not part of lists
-    case Family::Create:
-    case Family::Delete:
-    case Family::ProgramDelete:
-    case Family::ArrayPointer:
-    case Family::ArraySet:
-    case Family::ClientActiveTexture:
-    case Family::ClientPush:
-    case Family::ClientPop: return bind(at);
-    case Family::Cap:
+    switch (at.kind.effect) {
+    case EffectKind::Gen: // not part of lists
+    case EffectKind::Create:
+    case EffectKind::Delete:
+    case EffectKind::ProgramDelete:
+    case EffectKind::ArrayPointer:
+    case EffectKind::ArraySet:
+    case EffectKind::ClientActiveTexture:
+    case EffectKind::ClientPush:
+    case EffectKind::ClientPop: return bind(at);
+    case EffectKind::Cap:
         at.stream.compiled.binds = at.stream.compiled.binds || isDebugOutput(argumentWord(at.r, 0));
         return;
-    case Family::Bind:
+    case EffectKind::Bind:
         if (at.kind.binding == Binding::Buffer || at.kind.binding == Binding::VertexArray) return bind(at);
         [[fallthrough]];
     default: at.stream.compiled.binds = true;

@@ -1,4 +1,4 @@
-// Objects of the command filter: creation, deletion and holders.
+// Objects of the command filter: creation, deletion, and bindings that keep them alive.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -6,20 +6,19 @@
 
 #include "gl_opcodes.hpp"
 #include "streamcodec/filter/command_filter.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 #include "streamcodec/wire/record.hpp"
 #include "streamcodec/wire/packet.hpp"
 
 namespace mural::filter {
 
-using trace::argumentWord;
-using trace::ObjectType;
+using wire::argumentWord;
 
 namespace {
 constexpr size_t kMaxSpared = 16;
 } // namespace
 
-bool namesAt(const trace::RecordView& r, size_t word, std::vector<uint32_t>& names) {
+bool namesAt(const wire::RecordView& r, size_t word, std::vector<uint32_t>& names) {
     const uint32_t sizeBytes = argumentWord(r, word);
     if (sizeBytes > record::kInlineBytes || (word + 1) * 4 + sizeBytes > r.arguments.size()) return false;
     names.resize(sizeBytes / 4);
@@ -81,8 +80,8 @@ VertexArray* CommandFilter::makeArray(Context& c, uint32_t name) {
 void CommandFilter::generate(At& at) {
     const RecordView& r = at.r;
     Context& c = at.context;
-    const trace::Rule& rule = trace::ruleOf(r.opcode);
-    if (rule.family == trace::Family::Create) {
+    const EffectRule& rule = effectRuleOf(r.opcode);
+    if (rule.kind == EffectKind::Create) {
         Object* const old = find(at.group, Kind::Program, argumentWord(r, rule.resultWord));
         if (old == nullptr) return;
         releaseOne(at, *old);
@@ -109,9 +108,9 @@ void CommandFilter::generate(At& at) {
 
 void CommandFilter::deleteNames(At& at) {
     const RecordView& r = at.r;
-    const trace::Rule& rule = trace::ruleOf(r.opcode);
+    const EffectRule& rule = effectRuleOf(r.opcode);
     Context& c = at.context;
-    if (rule.family == trace::Family::ProgramDelete) {
+    if (rule.kind == EffectKind::ProgramDelete) {
         // A program lives while it is current anywhere.
         Object* const program = find(at.group, Kind::Program, argumentWord(r, 0));
         return program != nullptr ? releaseOne(at, *program) : void();

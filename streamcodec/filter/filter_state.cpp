@@ -8,8 +8,8 @@
 
 namespace mural::filter {
 
-void CommandFilter::leaveOutSmall(bool leavesOut) {
-    if (leavesOut == leavesOutSmall_) return;
+void CommandFilter::setDropsRedundant(bool dropsRedundant) {
+    if (dropsRedundant == dropsRedundant_) return;
     for (auto& [id, stream] : streams_) leaveSame(stream);
     // Nothing can be inserted within glBegin and glEnd: postponed.
     if (std::ranges::any_of(streams_, [](const auto& s) { return s.second.inPrimitive; })) return;
@@ -23,7 +23,7 @@ void CommandFilter::leaveOutSmall(bool leavesOut) {
             context->programSure = false;
             for (auto& [name, program] : context->group->objects[static_cast<size_t>(Kind::Program)]) program->forget();
         }
-    leavesOutSmall_ = leavesOut;
+    dropsRedundant_ = dropsRedundant;
 }
 
 // Called between two packets of the stream that owns the uniforms.
@@ -47,14 +47,14 @@ bool CommandFilter::smallState(Stream& stream, Output& output, const RecordView&
         stream.compiled.sets = stream.compiled.sets || changes;
         return false;
     }
-    if (!leavesOutSmall_) return false; // then nothing is deferred
+    if (!dropsRedundant_) return false; // then nothing is deferred
     if (stream.inPrimitive) {           // an error, unless glBegin was rejected
         if (changes) c.state.forgetAll();
         return false;
     }
     if (!sets) {
         sendState(stream, output, from);
-        if (changes && !(r.opcode == op::glCallList && setsNothing(*c.group, trace::argumentWord(r, 0))))
+        if (changes && !(r.opcode == op::glCallList && setsNothing(*c.group, wire::argumentWord(r, 0))))
             c.state.forgetAll();
         return false;
     }
@@ -68,7 +68,7 @@ bool CommandFilter::smallState(Stream& stream, Output& output, const RecordView&
     const auto outcome = c.state.set(set.cell, packet.subspan(r.offset, r.sizeBytes), !set.atOnce);
     countFate(outcome, r.sizeBytes);
     if (outcome.fate == Disposition::Goes) return false;
-    output.leaveOut(r.offset, r.offset + r.sizeBytes);
+    output.drop(r.offset, r.offset + r.sizeBytes);
     if (counts_.deferredBytes + pendingBytes_ > maxBytes_) sendState(stream, output, r.offset + r.sizeBytes);
     return true;
 }

@@ -7,15 +7,14 @@
 
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/filter/command_filter.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
-#include "streamcodec/trace/record_values.hpp"
+#include "streamcodec/effect_rules.hpp"
+#include "streamcodec/wire/record_blobs.hpp"
 #include "streamcodec/wire/record.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 
-using trace::argumentWord;
-using trace::Family;
+using wire::argumentWord;
 
 namespace {
 
@@ -26,7 +25,7 @@ constexpr size_t kMaxLocations = 1024; // of uniforms
 
 // Returns true if no uniform type can reject these values. Samplers accept unit numbers only, so a larger value may be
 // rejected where its predecessor was not.
-bool refusedByNone(const trace::RecordView& r, size_t firstValueWord) {
+bool refusedByNone(const wire::RecordView& r, size_t firstValueWord) {
     constexpr uint32_t kUnits = 16; // minimum that every GL supports
     if (!hasTrait(r.opcode, Trait::SamplerUniform)) return true;
     for (size_t word = firstValueWord; word < r.arguments.size() / 4; ++word)
@@ -35,7 +34,7 @@ bool refusedByNone(const trace::RecordView& r, size_t firstValueWord) {
 }
 
 // Returns true if the record sets one whole uniform at that location, with the value inline.
-bool isOneUniform(const trace::RecordView& r, const CommandKind& kind, size_t locationWord) {
+bool isOneUniform(const wire::RecordView& r, const CommandKind& kind, size_t locationWord) {
     const bool counted = kind.valueWord != kNoValue;
     return argumentWord(r, locationWord) < kMaxLocations && r.sizeBytes <= StateCache<kUniformWords>::kMaxBytes &&
            (!counted || argumentWord(r, locationWord + 1) == 1);
@@ -47,31 +46,29 @@ bool isOneUniform(const trace::RecordView& r, const CommandKind& kind, size_t lo
 Object* CommandFilter::objectOf(At& at) {
     const uint32_t first = argumentWord(at.r, 0);
     if (at.r.opcode == wire::kOpBufferBytes) return find(at.group, Kind::Buffer, first);
-    if (at.kind.family == Family::Uniform) return at.context.programSure ? at.context.program : nullptr;
-    const trace::Rule& rule = trace::ruleOf(at.r.opcode);
-    switch (rule.family) {
-    case Family::Nothing: // invalidations of buffers
-    case Family::BufferData:
-    case Family::BufferSubData:
-        return rule.type == trace::ObjectType::Buffer ? find(at.group, Kind::Buffer, first)
-                                                      : bufferAt(at.context, first);
-    case Family::ShaderDelete:
-    case Family::ProgramAttach:
-    case Family::ProgramDetach:
-    case Family::ProgramSet:
-    case Family::ProgramLink:
-    case Family::ProgramUniform: return find(at.group, Kind::Program, first);
-    default:
-        return rule.type == trace::ObjectType::Texture ? find(at.group, Kind::Texture, first) : textureAt(at, first);
+    if (at.kind.effect == EffectKind::Uniform) return at.context.programSure ? at.context.program : nullptr;
+    const EffectRule& rule = effectRuleOf(at.r.opcode);
+    switch (rule.kind) {
+    case EffectKind::Nothing: // invalidations of buffers
+    case EffectKind::BufferData:
+    case EffectKind::BufferSubData:
+        return rule.type == ObjectType::Buffer ? find(at.group, Kind::Buffer, first) : bufferAt(at.context, first);
+    case EffectKind::ShaderDelete:
+    case EffectKind::ProgramAttach:
+    case EffectKind::ProgramDetach:
+    case EffectKind::ProgramSet:
+    case EffectKind::ProgramLink:
+    case EffectKind::ProgramUniform: return find(at.group, Kind::Program, first);
+    default: return rule.type == ObjectType::Texture ? find(at.group, Kind::Texture, first) : textureAt(at, first);
     }
 }
 
 void CommandFilter::upload(At& at) {
     Object* const object = objectOf(at);
-    const Family family = at.kind.family;
+    const EffectKind effect = at.kind.effect;
     if (object == nullptr || object->open) return; // never deferred, contents unknown
-    if (at.kind.small && !leavesOutSmall_) return;
-    const bool uniform = family == Family::Uniform;
+    if (at.kind.small && !dropsRedundant_) return;
+    const bool uniform = effect == EffectKind::Uniform;
     if (uniform) {
         if (at.stream.values == 0 && isOneUniform(at.r, at.kind, 0)) return oneUniform(at, *object, 0);
         // Elements of an array may be any of these.
@@ -80,7 +77,7 @@ void CommandFilter::upload(At& at) {
         object->uniforms.forgetAll();
         if (!certain) return;
     }
-    const uint64_t blobBytes = at.stream.values == 1 && trace::blobsTakenBy(at.r) == 1 ? at.stream.firstValueBytes : 0;
+    const uint64_t blobBytes = at.stream.values == 1 && wire::blobsTakenBy(at.r) == 1 ? at.stream.firstValueBytes : 0;
     const size_t sizeBytes = at.r.sizeBytes + at.stream.valueBytes;
     const bool small = sizeBytes < kMinBytes && !uniform;
     if (small && object->queue.empty() && object->known.empty()) return;
@@ -90,8 +87,7 @@ void CommandFilter::upload(At& at) {
     // waiting for its blob would be in vain
     const bool inVain = (object->deferral.vain() || at.group.soonUsed.vain()) && (object->comparing.vain() || first);
     // For a texture addressed by name, the cube face is one of the arguments.
-    const bool anyFace =
-        trace::ruleOf(at.r.opcode).type == trace::ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
+    const bool anyFace = effectRuleOf(at.r.opcode).type == ObjectType::Texture && object->target == GL_TEXTURE_CUBE_MAP;
     const bool fromBuffer = object->kind == Kind::Texture && bufferAt(at.context, GL_PIXEL_UNPACK_BUFFER) != nullptr;
     if (!u || at.stream.passing || fromBuffer || anyFace || (at.stream.values > 0 && blobBytes == 0)) {
         releaseOne(at, *object);
@@ -110,7 +106,7 @@ void CommandFilter::upload(At& at) {
                          at.r.sizeBytes + (at.r.offset - at.from) + at.stream.pending.size());
             pendingBytes_ -= at.stream.pending.size();
             std::vector<std::byte>().swap(at.stream.pending);
-            return at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
+            return at.output.drop(at.from, at.r.offset + at.r.sizeBytes);
         }
         if (comparison == Object::Comparison::Changed) object->comparing.lost();
     } else {
@@ -143,12 +139,12 @@ void CommandFilter::oneUniform(At& at, Object& program, size_t locationWord) {
         return program.uniforms.forget(location);
     }
     const bool deferrable = program.waits() || program.deferral.tries();
-    if (!leavesOutSmall_ && !deferrable) return program.uniforms.forget(location);
+    if (!dropsRedundant_ && !deferrable) return program.uniforms.forget(location);
     const SetResult outcome = program.uniforms.set(location, record, deferrable);
     countFate(outcome, at.r.sizeBytes);
     if (outcome.fate == Disposition::Goes) return;
     program.gained = program.gained || outcome.gone > 0;
-    at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
+    at.output.drop(at.from, at.r.offset + at.r.sizeBytes);
     if (outcome.fate == Disposition::Waits) return waitsFor(at, program);
     if (!program.waits()) emptyQueue(at.group, program);
 }
@@ -163,9 +159,9 @@ void CommandFilter::deferUpload(At& at, Object& object, const Upload* upload, bo
     item.recordAt = static_cast<uint32_t>(item.bytes.size() + at.r.offset - at.from);
     item.bytes.insert(item.bytes.end(), here.begin(), here.end());
     item.records = 1 + at.stream.pendingRecords;
-    const trace::Rule& rule = trace::ruleOf(at.r.opcode);
-    const bool named = at.r.opcode == wire::kOpBufferBytes || rule.type == trace::ObjectType::Texture ||
-                       rule.type == trace::ObjectType::Buffer;
+    const EffectRule& rule = effectRuleOf(at.r.opcode);
+    const bool named =
+        at.r.opcode == wire::kOpBufferBytes || rule.type == ObjectType::Texture || rule.type == ObjectType::Buffer;
     item.target = named ? 0 : 1;
     item.barrier = barrier;
     if (upload != nullptr) {
@@ -174,7 +170,7 @@ void CommandFilter::deferUpload(At& at, Object& object, const Upload* upload, bo
         item.place = upload->place;
         item.shape = upload->shape;
     }
-    at.output.leaveOut(at.from, at.r.offset + at.r.sizeBytes);
+    at.output.drop(at.from, at.r.offset + at.r.sizeBytes);
     counts_.deferredRecords += item.records;
     counts_.deferredBytes += item.bytes.size();
     object.deferredBytes += item.bytes.size();
@@ -203,26 +199,26 @@ void CommandFilter::waitsFor(At& at, Object& object) {
 
 // Handles a command on an object after its uploads.
 void CommandFilter::objectCommand(At& at) {
-    const trace::Rule& rule = trace::ruleOf(at.r.opcode);
-    if (rule.family == Family::ProgramLink || rule.family == Family::ProgramSet ||
-        rule.family == Family::ProgramUniform || rule.family == Family::ProgramAttach ||
-        rule.family == Family::ProgramDetach || rule.family == Family::ShaderDelete) {
+    const EffectRule& rule = effectRuleOf(at.r.opcode);
+    if (rule.kind == EffectKind::ProgramLink || rule.kind == EffectKind::ProgramSet ||
+        rule.kind == EffectKind::ProgramUniform || rule.kind == EffectKind::ProgramAttach ||
+        rule.kind == EffectKind::ProgramDetach || rule.kind == EffectKind::ShaderDelete) {
         Object* const program = objectOf(at);
-        if (program == nullptr || (at.kind.small && !leavesOutSmall_)) return;
-        if (rule.family == Family::ProgramUniform && !program->open && at.stream.values == 0 &&
+        if (program == nullptr || (at.kind.small && !dropsRedundant_)) return;
+        if (rule.kind == EffectKind::ProgramUniform && !program->open && at.stream.values == 0 &&
             isOneUniform(at.r, at.kind, 1))
             return oneUniform(at, *program, 1);
         releaseOne(at, *program);
         program->forget();
-        if (rule.family == Family::ProgramLink) program->target = 0; // until the link is known to have succeeded
+        if (rule.kind == EffectKind::ProgramLink) program->target = 0; // until the link is known to have succeeded
         return;
     }
     Object* const object = objectOf(at);
     if (object == nullptr) return;
-    const bool parameter = rule.family == Family::TexParameter || rule.family == Family::NamedSet;
+    const bool parameter = rule.kind == EffectKind::TexParameter || rule.kind == EffectKind::NamedSet;
     // uploads have a side effect from now on
     if (parameter && argumentWord(at.r, 1) == GL_GENERATE_MIPMAP) return openUp(at, object);
-    const bool mipmaps = rule.family == Family::TexMipmaps;
+    const bool mipmaps = rule.kind == EffectKind::TexMipmaps;
     if (mipmaps) std::erase_if(object->known, [](const Object::Known& k) { return k.place.level != 0; });
     if (!parameter && !mipmaps) { // a copy, or an invalidation
         releaseOne(at, *object);
@@ -242,7 +238,7 @@ Sum CommandFilter::sumOfValue(At& at, const Upload& upload) {
     // independent of the division into pieces
     for (const auto pieces :
          {std::span<const std::byte>(at.stream.pending), at.packet.subspan(at.from, at.r.offset - at.from)}) {
-        trace::RecordWalk walk(pieces);
+        wire::RecordWalk walk(pieces);
         RecordView piece;
         while (walk.next(piece))
             if (piece.opcode == wire::kOpBlobData && piece.arguments.size() > 4)

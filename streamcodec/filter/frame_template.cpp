@@ -45,7 +45,7 @@ void FrameTemplate::clear() {
 }
 
 void FrameTemplate::begin() {
-    record_ = range_ = doneBytes_ = sameAt_ = seenAt_ = followed_ = 0;
+    record_ = range_ = doneBytes_ = sameAt_ = seenAt_ = tracked_ = 0;
     at_ = 0;
 }
 
@@ -167,8 +167,7 @@ bool FrameTemplate::passSeen(uint16_t opcode) {
 }
 
 size_t FrameTemplate::passed() const {
-    if (atEnd() || followed_ == whole_.size() || whole_[followed_].at >= at_)
-        return atEnd() ? whole_.size() : followed_;
+    if (atEnd() || tracked_ == whole_.size() || whole_[tracked_].at >= at_) return atEnd() ? whole_.size() : tracked_;
     return static_cast<size_t>(std::ranges::lower_bound(whole_, at_, {}, &Whole::at) - whole_.begin());
 }
 

@@ -40,13 +40,13 @@ public:
     [[nodiscard]] bool empty() const { return ranges_.empty(); }
     // Passes the matched records of Same::All that were not passed yet, and returns their number.
     [[nodiscard]] size_t passed() const;
-    [[nodiscard]] size_t followed() const { return followed_; }
-    template <typename Give> void follow(size_t to, const Give& give) {
-        for (; followed_ < to; ++followed_)
+    [[nodiscard]] size_t tracked() const { return tracked_; }
+    template <typename Give> void track(size_t to, const Give& give) {
+        for (; tracked_ < to; ++tracked_)
             give(std::as_bytes(std::span(same_))
-                     .subspan(whole_[followed_].sameAt * size_t{4}, whole_[followed_].sizeBytes));
+                     .subspan(whole_[tracked_].sameAt * size_t{4}, whole_[tracked_].sizeBytes));
     }
-    void followFrom(size_t count) { followed_ = count; } // earlier ones were followed in another way
+    void trackFrom(size_t count) { tracked_ = count; } // the caller has tracked the earlier ones
 
 private:
     static constexpr uint32_t kSeen = UINT32_MAX;
@@ -79,7 +79,7 @@ private:
     std::vector<uint32_t> long_; // starts of records longer than kMaxShortRecordBytes
     // State of the current comparison.
     size_t record_ = 0; // index of the next record in starts_
-    size_t range_ = 0, doneBytes_ = 0, sameAt_ = 0, seenAt_ = 0, followed_ = 0;
+    size_t range_ = 0, doneBytes_ = 0, sameAt_ = 0, seenAt_ = 0, tracked_ = 0;
     uint64_t at_ = 0;
 };
 

@@ -69,7 +69,7 @@ struct Object {
     bool open = false;       // other commands than draws may read or change it: never deferred
     std::vector<Item> queue; // deferred commands in order
     StateCache<kUniformWords>
-        uniforms; // program: uniforms that are not arrays, by location; deferred ones follow the queue
+        uniforms; // program: uniforms that are not arrays, by location; a flush sends them after the queue
     size_t deferredBytes = 0;
     uint64_t deferredSince = 0; // frame of the first deferred command
     bool filled = false;        // has been uploaded to

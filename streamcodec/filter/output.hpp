@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/packet.hpp"
 
 namespace mural::filter {
@@ -23,7 +23,7 @@ public:
     }
 
     // Removes the bytes from `from` to `to`. Requires ascending positions.
-    void leaveOut(size_t from, size_t to) {
+    void drop(size_t from, size_t to) {
         copyTo(from);
         copied_ = to;
     }
@@ -33,8 +33,8 @@ public:
         if (records.size() < kCopiedBytes) return append(records);
         flush();
         size_t from = 0, to = 0;
-        trace::RecordWalk walk(records);
-        trace::RecordView r;
+        wire::RecordWalk walk(records);
+        wire::RecordView r;
         while (walk.next(r)) {
             if (to - from + r.sizeBytes > kWantedBytes && to > from) {
                 take_(stream_, records.subspan(from, to - from), nullptr);

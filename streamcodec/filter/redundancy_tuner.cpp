@@ -36,10 +36,10 @@ void RedundancyTuner::frame(uint64_t programBytes, uint64_t wireBytes, double co
         // a few loading frames do not count
         large_ += wireBytes >= std::max(kMinWireBytes, programBytes / kMinPart);
         if (frames_ < until_) return;
-        return next(leavesOut_ || large_ * 2 >= frames_ ? Phase::Before : Phase::Waiting);
+        return next(drops_ || large_ * 2 >= frames_ ? Phase::Before : Phase::Waiting);
     case Phase::Before:
         if (frames_ < kCompared) return;
-        leavesOut_ = !leavesOut_;
+        drops_ = !drops_;
         return next(Phase::Settling);
     case Phase::Settling:
         if (frames_ >= kSettling) next(Phase::Trying);
@@ -50,7 +50,7 @@ void RedundancyTuner::frame(uint64_t programBytes, uint64_t wireBytes, double co
 }
 
 void RedundancyTuner::disturbed() {
-    if (phase_ == Phase::Settling || phase_ == Phase::Trying) leavesOut_ = !leavesOut_;
+    if (phase_ == Phase::Settling || phase_ == Phase::Trying) drops_ = !drops_;
     next(Phase::Waiting);
 }
 
@@ -62,8 +62,8 @@ bool RedundancyTuner::hopeless() const {
 
 void RedundancyTuner::decide() {
     const double before = median(costs_[0]), tried = median(costs_[1]);
-    const bool better = frames_ >= kCompared && (leavesOut_ ? tried * kClearly <= before : tried <= before * kClearly);
-    if (!better) leavesOut_ = !leavesOut_;
+    const bool better = frames_ >= kCompared && (drops_ ? tried * kClearly <= before : tried <= before * kClearly);
+    if (!better) drops_ = !drops_;
     until_ = better ? kAfterChange : std::min(until_ * 2, kMaxBetween);
     next(Phase::Waiting);
 }

@@ -11,7 +11,7 @@ namespace mural::filter {
 
 class RedundancyTuner {
 public:
-    [[nodiscard]] bool leavesOut() const { return leavesOut_; }
+    [[nodiscard]] bool dropsRedundant() const { return drops_; }
     // Returns true if the next frame must be timed.
     [[nodiscard]] bool wantsTime() const;
     // Reports a frame. costNs: transfer time of wireBytes plus CPU time; negative: unknown.
@@ -30,7 +30,7 @@ private:
     [[nodiscard]] bool hopeless() const;
     void decide();
 
-    bool leavesOut_ = false;
+    bool drops_ = false;
     Phase phase_ = Phase::Waiting;
     uint32_t frames_ = 0; // in this phase
     uint32_t until_ = kFirst;

@@ -8,15 +8,14 @@
 
 #include "streamcodec/command_effects.hpp"
 #include "streamcodec/command_traits.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 namespace {
 
-using trace::argumentWord;
-using trace::Family;
-using trace::RecordView;
+using wire::argumentWord;
+using wire::RecordView;
 
 constexpr uint32_t kFirstCap = 64; // after the cells of StateCell
 constexpr uint32_t kFirstUnitCap = 128, kCapsOfUnit = 16;
@@ -126,88 +125,88 @@ uint32_t unitCap(uint32_t what, uint32_t unit) {
 
 StateRole ofFamily(uint16_t opcode) {
     if (effectOf(opcode).cell != StateCell::None) return StateRole::Set;
-    switch (trace::ruleOf(opcode).family) {
-    case Family::Cap: return StateRole::Set;
-    case Family::Cell: return hasTrait(opcode, Trait::StandsAlone) ? StateRole::None : StateRole::Change;
-    case Family::Nothing:
-    case Family::CellOfMatrix:
-    case Family::UnitCell:
-    case Family::UnitCellOfMatrix:
-    case Family::ClientCap:
-    case Family::ClientCell:
-    case Family::Attribute:
-    case Family::Color:
-    case Family::PatternedCell:
-    case Family::ActiveTexture:
-    case Family::ClientActiveTexture:
-    case Family::ListBase:
-    case Family::MatrixLoad:
-    case Family::MatrixChange:
-    case Family::MatrixPush:
-    case Family::MatrixPop:
-    case Family::ClientPush:
-    case Family::ClientPop:
-    case Family::Gen:
-    case Family::Create:
-    case Family::GenLists:
-    case Family::Delete:
-    case Family::DeleteList:
-    case Family::Bind:
-    case Family::BindIndexed:
-    case Family::UseProgram:
-    case Family::ArrayPointer:
-    case Family::ArraySet:
-    case Family::ArrayNamedSet:
-    case Family::BufferData:
-    case Family::BufferSubData:
-    case Family::TexParameter:
-    case Family::TexImage:
-    case Family::TexStorage:
-    case Family::TexSubImage:
-    case Family::TexMipmaps:
-    case Family::TexBuffer:
-    case Family::RenderbufferStorage:
-    case Family::NamedSet:
-    case Family::FramebufferAttach:
-    case Family::FramebufferSet:
-    case Family::FramebufferNamed:
-    case Family::DrawBuffers:
-    case Family::ShaderSet:
-    case Family::ShaderCompile:
-    case Family::ProgramAttach:
-    case Family::ProgramDetach:
-    case Family::ProgramSet:
-    case Family::ProgramLink:
-    case Family::ProgramDelete:
-    case Family::ShaderDelete:
-    case Family::Uniform:
-    case Family::ProgramUniform:
-    case Family::PipelineSet:
-    case Family::ArbProgram:
-    case Family::SyncMake:
-    case Family::SyncDelete:
-    case Family::Barrier:
-    case Family::Vertex:
-    case Family::End:
-    case Family::EndList:
-    case Family::QueryBegin:
-    case Family::QueryEnd:
-    case Family::QueryCounter: return StateRole::None;
-    case Family::CellOfAll:
-    case Family::Draw:
-    case Family::Compute:
-    case Family::ReadsPicture:
-    case Family::Clear:
-    case Family::ClearBuffer:
-    case Family::Blit:
-    case Family::TexCopyImage:
-    case Family::TexCopySubImage:
-    case Family::Begin:
-    case Family::NewList:
-    case Family::AttribPush:
-    case Family::FeedbackBegin:
-    case Family::FeedbackEnd:
-    case Family::ConditionalEnd: return StateRole::Use;
+    switch (effectRuleOf(opcode).kind) {
+    case EffectKind::Cap: return StateRole::Set;
+    case EffectKind::Cell: return hasTrait(opcode, Trait::StandsAlone) ? StateRole::None : StateRole::Change;
+    case EffectKind::Nothing:
+    case EffectKind::CellOfMatrix:
+    case EffectKind::UnitCell:
+    case EffectKind::UnitCellOfMatrix:
+    case EffectKind::ClientCap:
+    case EffectKind::ClientCell:
+    case EffectKind::Attribute:
+    case EffectKind::Color:
+    case EffectKind::PatternedCell:
+    case EffectKind::ActiveTexture:
+    case EffectKind::ClientActiveTexture:
+    case EffectKind::ListBase:
+    case EffectKind::MatrixLoad:
+    case EffectKind::MatrixChange:
+    case EffectKind::MatrixPush:
+    case EffectKind::MatrixPop:
+    case EffectKind::ClientPush:
+    case EffectKind::ClientPop:
+    case EffectKind::Gen:
+    case EffectKind::Create:
+    case EffectKind::GenLists:
+    case EffectKind::Delete:
+    case EffectKind::DeleteList:
+    case EffectKind::Bind:
+    case EffectKind::BindIndexed:
+    case EffectKind::UseProgram:
+    case EffectKind::ArrayPointer:
+    case EffectKind::ArraySet:
+    case EffectKind::ArrayNamedSet:
+    case EffectKind::BufferData:
+    case EffectKind::BufferSubData:
+    case EffectKind::TexParameter:
+    case EffectKind::TexImage:
+    case EffectKind::TexStorage:
+    case EffectKind::TexSubImage:
+    case EffectKind::TexMipmaps:
+    case EffectKind::TexBuffer:
+    case EffectKind::RenderbufferStorage:
+    case EffectKind::NamedSet:
+    case EffectKind::FramebufferAttach:
+    case EffectKind::FramebufferSet:
+    case EffectKind::FramebufferNamed:
+    case EffectKind::DrawBuffers:
+    case EffectKind::ShaderSet:
+    case EffectKind::ShaderCompile:
+    case EffectKind::ProgramAttach:
+    case EffectKind::ProgramDetach:
+    case EffectKind::ProgramSet:
+    case EffectKind::ProgramLink:
+    case EffectKind::ProgramDelete:
+    case EffectKind::ShaderDelete:
+    case EffectKind::Uniform:
+    case EffectKind::ProgramUniform:
+    case EffectKind::PipelineSet:
+    case EffectKind::ArbProgram:
+    case EffectKind::SyncMake:
+    case EffectKind::SyncDelete:
+    case EffectKind::Barrier:
+    case EffectKind::Vertex:
+    case EffectKind::End:
+    case EffectKind::EndList:
+    case EffectKind::QueryBegin:
+    case EffectKind::QueryEnd:
+    case EffectKind::QueryCounter: return StateRole::None;
+    case EffectKind::CellOfAll:
+    case EffectKind::Draw:
+    case EffectKind::Compute:
+    case EffectKind::ReadsPicture:
+    case EffectKind::Clear:
+    case EffectKind::ClearBuffer:
+    case EffectKind::Blit:
+    case EffectKind::TexCopyImage:
+    case EffectKind::TexCopySubImage:
+    case EffectKind::Begin:
+    case EffectKind::NewList:
+    case EffectKind::AttribPush:
+    case EffectKind::FeedbackBegin:
+    case EffectKind::FeedbackEnd:
+    case EffectKind::ConditionalEnd: return StateRole::Use;
     default: return StateRole::Change; // glPopAttrib, lists, limits of single buffers, commands without an effect
     }
 }

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 
 namespace mural::filter {
 
@@ -27,6 +27,6 @@ struct StateSet {
 };
 
 // Returns the cell that a command of role Set sets. unit: the active texture unit, to which some capabilities belong.
-StateSet stateSetOf(const trace::RecordView& r, uint32_t unit);
+StateSet stateSetOf(const wire::RecordView& r, uint32_t unit);
 
 } // namespace mural::filter

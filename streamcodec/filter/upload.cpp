@@ -7,16 +7,15 @@
 
 #include "streamcodec/command_traits.hpp"
 #include "streamcodec/filter/command_class.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 #include "streamcodec/wire/record.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
 namespace mural::filter {
 namespace {
 
-using trace::argumentWord;
-using trace::Family;
-using trace::RecordView;
+using wire::argumentWord;
+using wire::RecordView;
 
 uint64_t wideAt(const RecordView& r, size_t word) {
     return argumentWord(r, word) | uint64_t{argumentWord(r, word + 1)} << 32;
@@ -30,7 +29,7 @@ bool isFace(uint32_t target) {
 
 std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
     Upload u;
-    const Family family = trace::ruleOf(r.opcode).family;
+    const EffectKind effect = effectRuleOf(r.opcode).kind;
     const size_t words = r.arguments.size() / 4;
     size_t shapeEnd = words, valueEnd = words; // the words between are the value
     const uint8_t valueWord = valueWordOf(r.opcode);
@@ -49,7 +48,7 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
             u.shape.valueBytes = blobBytes;
             u.given = true;
         }
-    } else if (family == Family::Uniform) { // scalars after the location
+    } else if (effect == EffectKind::Uniform) { // scalars after the location
         shapeEnd = 1;
         if (words < 2) return std::nullopt;
         u.inlineValue = r.arguments.subspan(4);
@@ -69,21 +68,21 @@ std::optional<Upload> uploadOf(const RecordView& r, uint64_t blobBytes) {
         u.place = {0, 0, wideAt(r, 1), wideAt(r, 1) + u.shape.valueBytes};
         return u;
     }
-    switch (family) {
-    case Family::BufferData:
+    switch (effect) {
+    case EffectKind::BufferData:
         u.kind = hasTrait(r.opcode, Trait::Immutable) ? UploadKind::Storage : UploadKind::Whole;
         return u;
-    case Family::BufferSubData: // target, offset, size
+    case EffectKind::BufferSubData: // target, offset, size
         u.place = {0, 0, wideAt(r, 1), wideAt(r, 1) + u.shape.valueBytes};
         return u;
-    case Family::Uniform:
+    case EffectKind::Uniform:
         if (static_cast<int32_t>(argumentWord(r, 0)) < 0) return std::nullopt;
         // array elements are consecutive
         u.place = {0, 0, argumentWord(r, 0),
                    uint64_t{argumentWord(r, 0)} + (valueWord == kNoValue ? 1 : std::max(argumentWord(r, 1), 1u))};
         return u;
-    case Family::TexStorage: u.kind = UploadKind::Storage; return u;
-    case Family::TexImage:
+    case EffectKind::TexStorage: u.kind = UploadKind::Storage; return u;
+    case EffectKind::TexImage:
         u.kind = hasTrait(r.opcode, Trait::Multisample) ? UploadKind::Storage : UploadKind::Whole;
         [[fallthrough]];
     default: // glTexSubImage..., by target or name

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 
 struct XXH3_state_s;
 
@@ -45,7 +45,7 @@ struct Upload {
 };
 
 // Parses a record of class Upload. blobBytes: size of its blob, 0: none. Returns an empty value for unknown forms.
-std::optional<Upload> uploadOf(const trace::RecordView& r, uint64_t blobBytes);
+std::optional<Upload> uploadOf(const wire::RecordView& r, uint64_t blobBytes);
 
 // XXH3, 128 bits, over consecutive pieces. Equal sums count as equal data: among 10^9 different pieces the probability
 // of a collision is below 2^-64.

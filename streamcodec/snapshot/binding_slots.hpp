@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 enum class Slot : uint8_t {
     Texture = 1,
@@ -47,4 +47,4 @@ constexpr ObjectType typeOf(Slot kind) {
     }
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

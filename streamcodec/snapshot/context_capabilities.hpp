@@ -5,7 +5,7 @@
 #include <GL/glext.h>
 #include <cstdint>
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 // Returns true for capabilities of the context. Others count as per texture unit, which is safe but keeps more
 // commands.
@@ -44,4 +44,4 @@ inline bool isContextCap(uint32_t what) {
     }
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -5,7 +5,7 @@
 
 #include "streamcodec/snapshot/key_tree.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 enum class Mode : uint8_t {
     Write,   // changes a part; the previous value still counts
@@ -14,7 +14,7 @@ enum class Mode : uint8_t {
     Forget,  // as Kill, without a new value: the object is deleted
     Close,   // ends an earlier command's effect: needed if any of it is kept
     Open,    // glPushAttrib: values that Restores of its glPopAttrib bring back
-    Restore, // glPopAttrib: restores the value at the Open of the closed key
+    Restore, // glPopAttrib: restores the value that the key had at the Open of the same level
 };
 
 struct EffectEntry {
@@ -39,4 +39,4 @@ struct Effect {
     }
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -6,22 +6,22 @@
 #include <cstring>
 
 #include "gl_opcodes.hpp"
-#include "streamcodec/trace/record_values.hpp"
+#include "streamcodec/wire/record_blobs.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 bool takesArrays(uint16_t opcode) {
-    switch (ruleOf(opcode).family) {
-    case Family::Draw:
-    case Family::Vertex:
-    case Family::Blit:
-    case Family::TexCopyImage:
-    case Family::TexCopySubImage:
-    case Family::CallList:
-    case Family::CallLists: return true;
+    switch (effectRuleOf(opcode).kind) {
+    case EffectKind::Draw:
+    case EffectKind::Vertex:
+    case EffectKind::Blit:
+    case EffectKind::TexCopyImage:
+    case EffectKind::TexCopySubImage:
+    case EffectKind::CallList:
+    case EffectKind::CallLists: return true;
     default: return false;
     }
 }
@@ -82,7 +82,7 @@ bool GlStateTracker::record(uint32_t stream, const RecordView& r, Effect& effect
     uint64_t blobBytes = 0;
     if (!thread.blobBytes.empty()) {
         blobBytes = thread.blobBytes.front();
-        const size_t taken = std::min(thread.blobBytes.size(), blobsTakenBy(r));
+        const size_t taken = std::min(thread.blobBytes.size(), wire::blobsTakenBy(r));
         thread.blobBytes.erase(thread.blobBytes.begin(), thread.blobBytes.begin() + static_cast<std::ptrdiff_t>(taken));
         if (!thread.blobBytes.empty()) effect.always = true; // they are another's
     }
@@ -304,8 +304,8 @@ void GlStateTracker::gl(At& at, const RecordView& r) {
     execute(at, r);
     // Moves reads after the keys that the command replaces: the new values do not depend on the old ones. Calls of
     // lists are sequences of commands and keep their order.
-    const Family family = ruleOf(r.opcode).family;
-    if (family != Family::CallList && family != Family::CallLists)
+    const EffectKind kind = effectRuleOf(r.opcode).kind;
+    if (kind != EffectKind::CallList && kind != EffectKind::CallLists)
         std::stable_partition(at.effect.entries.begin() + static_cast<std::ptrdiff_t>(before), at.effect.entries.end(),
                               [](const EffectEntry& e) { return e.mode != Mode::Read; });
     // Any effect depends on the current context of the stream.
@@ -313,90 +313,90 @@ void GlStateTracker::gl(At& at, const RecordView& r) {
 }
 
 void GlStateTracker::execute(At& at, const RecordView& r) {
-    const Rule& rule = ruleOf(r.opcode);
+    const EffectRule& rule = effectRuleOf(r.opcode);
     if (at.context->unknown) return unknown(at, true);
-    if (at.thread.list != 0 && rule.family != Family::EndList) return compiled(at, r);
+    if (at.thread.list != 0 && rule.kind != EffectKind::EndList) return compiled(at, r);
     if (hasSideEffects(at, rule, r)) return;
-    switch (rule.family) {
-    case Family::Unknown: return unknown(at, false);
-    case Family::UnknownNames: return unknown(at, true);
-    case Family::Nothing: return;
-    case Family::NewList:
-    case Family::EndList:
-    case Family::GenLists:
-    case Family::DeleteList:
-    case Family::CallList:
-    case Family::CallLists: return lists(at, rule, r);
-    case Family::Begin: at.thread.inPrimitive = at.context->callDepth == 0; return draw(at);
-    case Family::End: at.thread.inPrimitive = false; return;
-    case Family::Vertex:
+    switch (rule.kind) {
+    case EffectKind::Unknown: return unknown(at, false);
+    case EffectKind::UnknownNames: return unknown(at, true);
+    case EffectKind::Nothing: return;
+    case EffectKind::NewList:
+    case EffectKind::EndList:
+    case EffectKind::GenLists:
+    case EffectKind::DeleteList:
+    case EffectKind::CallList:
+    case EffectKind::CallLists: return lists(at, rule, r);
+    case EffectKind::Begin: at.thread.inPrimitive = at.context->callDepth == 0; return draw(at);
+    case EffectKind::End: at.thread.inPrimitive = false; return;
+    case EffectKind::Vertex:
         if (!at.thread.inPrimitive) draw(at);
         return;
-    case Family::Draw:
-    case Family::Compute:
-    case Family::Barrier:
-    case Family::ReadsPicture:
-    case Family::Clear:
-    case Family::ClearBuffer:
-    case Family::Blit: return clear(at, rule, r);
-    case Family::QueryBegin:
-    case Family::QueryEnd:
-    case Family::QueryCounter:
-    case Family::FeedbackBegin:
-    case Family::FeedbackEnd:
-    case Family::ConditionalEnd: return queries(at, rule, r);
-    case Family::Gen:
-    case Family::Create:
-    case Family::Delete:
-    case Family::SyncMake:
-    case Family::SyncDelete: return objects(at, rule, r);
-    case Family::Bind:
-    case Family::BindIndexed:
-    case Family::UseProgram: return bind(at, rule, r);
-    case Family::ArrayPointer:
-    case Family::ArraySet:
-    case Family::ArrayNamedSet:
-    case Family::ClientCap: return arrays(at, rule, r);
-    case Family::BufferData:
-    case Family::BufferSubData:
-    case Family::BufferOther: return buffers(at, rule, r);
-    case Family::TexParameter:
-    case Family::TexImage:
-    case Family::TexStorage:
-    case Family::TexSubImage:
-    case Family::TexCopyImage:
-    case Family::TexCopySubImage:
-    case Family::TexMipmaps:
-    case Family::TexBuffer:
-    case Family::TexView: return textures(at, rule, r);
-    case Family::Handle:
-    case Family::HandleResident: return handles(at, rule, r);
-    case Family::TexPages:
-    case Family::BufferPages: return pages(at, rule, r);
-    case Family::RenderbufferStorage:
-    case Family::FramebufferAttach:
-    case Family::FramebufferSet:
-    case Family::FramebufferNamed:
-    case Family::DrawBuffers: return framebuffers(at, rule, r);
-    case Family::NamedSet:
-    case Family::PipelineSet:
-    case Family::ShaderSet:
-    case Family::ShaderCompile:
-    case Family::ProgramAttach:
-    case Family::ProgramDetach:
-    case Family::ProgramSet:
-    case Family::ProgramLink:
-    case Family::ProgramDelete:
-    case Family::ShaderDelete:
-    case Family::Uniform:
-    case Family::ProgramUniform:
-    case Family::ArbProgram: return shaders(at, rule, r);
-    case Family::MatrixLoad:
-    case Family::MatrixChange:
-    case Family::MatrixPush:
-    case Family::MatrixPop: return matrix(at, rule, r);
+    case EffectKind::Draw:
+    case EffectKind::Compute:
+    case EffectKind::Barrier:
+    case EffectKind::ReadsPicture:
+    case EffectKind::Clear:
+    case EffectKind::ClearBuffer:
+    case EffectKind::Blit: return clear(at, rule, r);
+    case EffectKind::QueryBegin:
+    case EffectKind::QueryEnd:
+    case EffectKind::QueryCounter:
+    case EffectKind::FeedbackBegin:
+    case EffectKind::FeedbackEnd:
+    case EffectKind::ConditionalEnd: return queries(at, rule, r);
+    case EffectKind::Gen:
+    case EffectKind::Create:
+    case EffectKind::Delete:
+    case EffectKind::SyncMake:
+    case EffectKind::SyncDelete: return objects(at, rule, r);
+    case EffectKind::Bind:
+    case EffectKind::BindIndexed:
+    case EffectKind::UseProgram: return bind(at, rule, r);
+    case EffectKind::ArrayPointer:
+    case EffectKind::ArraySet:
+    case EffectKind::ArrayNamedSet:
+    case EffectKind::ClientCap: return arrays(at, rule, r);
+    case EffectKind::BufferData:
+    case EffectKind::BufferSubData:
+    case EffectKind::BufferOther: return buffers(at, rule, r);
+    case EffectKind::TexParameter:
+    case EffectKind::TexImage:
+    case EffectKind::TexStorage:
+    case EffectKind::TexSubImage:
+    case EffectKind::TexCopyImage:
+    case EffectKind::TexCopySubImage:
+    case EffectKind::TexMipmaps:
+    case EffectKind::TexBuffer:
+    case EffectKind::TexView: return textures(at, rule, r);
+    case EffectKind::Handle:
+    case EffectKind::HandleResident: return handles(at, rule, r);
+    case EffectKind::TexPages:
+    case EffectKind::BufferPages: return pages(at, rule, r);
+    case EffectKind::RenderbufferStorage:
+    case EffectKind::FramebufferAttach:
+    case EffectKind::FramebufferSet:
+    case EffectKind::FramebufferNamed:
+    case EffectKind::DrawBuffers: return framebuffers(at, rule, r);
+    case EffectKind::NamedSet:
+    case EffectKind::PipelineSet:
+    case EffectKind::ShaderSet:
+    case EffectKind::ShaderCompile:
+    case EffectKind::ProgramAttach:
+    case EffectKind::ProgramDetach:
+    case EffectKind::ProgramSet:
+    case EffectKind::ProgramLink:
+    case EffectKind::ProgramDelete:
+    case EffectKind::ShaderDelete:
+    case EffectKind::Uniform:
+    case EffectKind::ProgramUniform:
+    case EffectKind::ArbProgram: return shaders(at, rule, r);
+    case EffectKind::MatrixLoad:
+    case EffectKind::MatrixChange:
+    case EffectKind::MatrixPush:
+    case EffectKind::MatrixPop: return matrix(at, rule, r);
     default: return state(at, rule, r);
     }
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

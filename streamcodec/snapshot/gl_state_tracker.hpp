@@ -11,9 +11,13 @@
 
 #include "streamcodec/snapshot/effect.hpp"
 #include "streamcodec/snapshot/tracked_state.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
+
+using wire::argumentWord;
+using wire::RecordView;
+using wire::RecordWalk;
 
 class GlStateTracker {
 public:
@@ -24,7 +28,7 @@ public:
     bool record(uint32_t stream, const RecordView& r, Effect& effect);
     // Returns the side effects of the last command on context state, other than its drawing, as records that set that
     // state. If they are replayed, the command itself matters only for its pixels.
-    std::vector<std::byte> takeSideEffects(uint32_t stream) { return std::exchange(streams_[stream].rest, {}); }
+    std::vector<std::byte> takeSideEffects(uint32_t stream) { return std::exchange(streams_[stream].sideEffects, {}); }
     void clientGone(uint32_t client);
     // Visits all tracked keys.
     void forEachKey(const std::function<void(Key)>& take) const;
@@ -45,22 +49,22 @@ private:
     void compiled(At& at, const RecordView& r);
     void callList(At& at, uint32_t name);
     void callLists(At& at, const RecordView& r);
-    void lists(At& at, const Rule& rule, const RecordView& r);
-    bool hasSideEffects(At& at, const Rule& rule, const RecordView& r);
+    void lists(At& at, const EffectRule& rule, const RecordView& r);
+    bool hasSideEffects(At& at, const EffectRule& rule, const RecordView& r);
     void readState(At& at);
     void readAll(At& at);
     void readPicture(At& at);
     void readTextures(At& at);
 
     // State.
-    Key cell(const At& at, Key above, uint32_t kind, const Rule& rule, const RecordView& r);
+    Key cell(const At& at, Key above, uint32_t kind, const EffectRule& rule, const RecordView& r);
     void set(At& at, Key key, uint32_t attribBits);
     void setClient(At& at, Key key);
-    void state(At& at, const Rule& rule, const RecordView& r);
-    void cap(At& at, const Rule& rule, const RecordView& r);
+    void state(At& at, const EffectRule& rule, const RecordView& r);
+    void cap(At& at, const EffectRule& rule, const RecordView& r);
     void colorMaterial(At& at);
     void limit(At& at, const RecordView& r);
-    void matrix(At& at, const Rule& rule, const RecordView& r);
+    void matrix(At& at, const EffectRule& rule, const RecordView& r);
     void pushAttribs(At& at, std::vector<SavedAttribs>& stack, Part part, uint32_t mask);
     void popAttribs(At& at, std::vector<SavedAttribs>& stack, Part part);
 
@@ -72,30 +76,30 @@ private:
     void retain(At& at, Object*& slot, Object* next);
     void release(At& at, Object* object);
     void erase(At& at, Object* object);
-    void objects(At& at, const Rule& rule, const RecordView& r);
+    void objects(At& at, const EffectRule& rule, const RecordView& r);
     void deleteNames(At& at, ObjectType type, const RecordView& r);
     void deleteOne(At& at, ObjectType type, uint32_t name);
     void use(At& at, Object* object);
     Object* bound(At& at, uint64_t binding) const;
-    void bind(At& at, const Rule& rule, const RecordView& r);
-    void bindPlain(At& at, const Rule& rule, uint64_t slot, uint32_t name);
-    void bindTexture(At& at, const Rule& rule, uint32_t place, uint32_t name);
-    void bindBuffer(At& at, const Rule& rule, uint32_t target, uint32_t name);
-    void bindVertexArray(At& at, const Rule& rule, uint32_t name);
+    void bind(At& at, const EffectRule& rule, const RecordView& r);
+    void bindPlain(At& at, const EffectRule& rule, uint64_t slot, uint32_t name);
+    void bindTexture(At& at, const EffectRule& rule, uint32_t place, uint32_t name);
+    void bindBuffer(At& at, const EffectRule& rule, uint32_t target, uint32_t name);
+    void bindVertexArray(At& at, const EffectRule& rule, uint32_t name);
     void bindSlot(At& at, uint64_t slot, Key key, uint32_t attribBits, Object* object);
-    void arrays(At& at, const Rule& rule, const RecordView& r);
-    void holdElsewhere(At& at, const Rule& rule, const RecordView& r, bool makes);
-    void shaders(At& at, const Rule& rule, const RecordView& r);
-    void buffers(At& at, const Rule& rule, const RecordView& r);
+    void arrays(At& at, const EffectRule& rule, const RecordView& r);
+    void useUntracked(At& at, const EffectRule& rule, const RecordView& r, bool makes);
+    void shaders(At& at, const EffectRule& rule, const RecordView& r);
+    void buffers(At& at, const EffectRule& rule, const RecordView& r);
     void writeBuffer(At& at, Object* buffer, uint64_t offset, uint64_t sizeBytes);
-    void queries(At& at, const Rule& rule, const RecordView& r);
-    void textures(At& at, const Rule& rule, const RecordView& r);
+    void queries(At& at, const EffectRule& rule, const RecordView& r);
+    void textures(At& at, const EffectRule& rule, const RecordView& r);
     Object* texture(At& at, uint32_t target, bool readsBinding);
-    void framebuffers(At& at, const Rule& rule, const RecordView& r);
+    void framebuffers(At& at, const EffectRule& rule, const RecordView& r);
     Object* framebuffer(At& at, uint32_t target);
-    void handles(At& at, const Rule& rule, const RecordView& r);
+    void handles(At& at, const EffectRule& rule, const RecordView& r);
     Object* textureOf(At& at, const HandleId& handle);
-    void pages(At& at, const Rule& rule, const RecordView& r);
+    void pages(At& at, const EffectRule& rule, const RecordView& r);
 
     // Pictures.
     void draw(At& at);
@@ -105,7 +109,7 @@ private:
     void windowPlanes(At& at, uint32_t mask, bool covers);
     void framebufferPlanes(At& at, Object& target, uint32_t mask, bool covers);
     void writeMemory(At& at);
-    void clear(At& at, const Rule& rule, const RecordView& r);
+    void clear(At& at, const EffectRule& rule, const RecordView& r);
 
     [[nodiscard]] Key part(Key above, Part kind, uint64_t a = 0, uint64_t b = 0) {
         return keys_.child(above, static_cast<uint32_t>(kind), a, b);
@@ -131,4 +135,4 @@ struct GlStateTracker::At {
     uint64_t blobBytes = 0; // size of the first pending blob
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 constexpr size_t kFirstSlots = 1024;
@@ -72,4 +72,4 @@ void KeyTree::keepOnly(std::vector<bool> marked) {
     rehash(slots);
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 using Key = uint32_t;
 constexpr Key kNoKey = 0; // the root, above all clients
@@ -37,4 +37,4 @@ private:
     std::vector<Key> slots_; // open addressing; kNoKey: empty
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -6,7 +6,7 @@
 #include "streamcodec/snapshot/liveness_sweep.hpp"
 #include "streamcodec/wire/packet.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 constexpr size_t kLargeBytes = 4096; // larger entries have memory of their own and are not moved
@@ -24,7 +24,7 @@ void LiveCommandLog::append(uint32_t stream, std::span<const std::byte> payload,
 
 void LiveCommandLog::record(uint32_t stream, const RecordView& r, std::span<const std::byte> bytes, bool pinned) {
     Pending& pending = pending_[stream];
-    const bool whole = follower_.record(stream, r, pending.effect);
+    const bool whole = tracker_.record(stream, r, pending.effect);
     const bool alone = pending.bytes.empty();
     if (!alone || !whole) {
         if (!pinned) pending.bytes.insert(pending.bytes.end(), bytes.begin(), bytes.end());
@@ -36,13 +36,13 @@ void LiveCommandLog::record(uint32_t stream, const RecordView& r, std::span<cons
     if (pending.bytes.capacity() > size_t{1} << 20) pending.bytes.shrink_to_fit();
     pending.effect.clear();
     // Side effects become a command of their own.
-    const std::vector<std::byte> rest = follower_.takeSideEffects(stream);
+    const std::vector<std::byte> rest = tracker_.takeSideEffects(stream);
     RecordWalk walk(rest);
     RecordView left;
     Effect effect;
     while (walk.next(left)) {
         effect.clear();
-        (void)follower_.record(stream, left, effect);
+        (void)tracker_.record(stream, left, effect);
         put(stream, std::span(rest).subspan(left.offset, left.sizeBytes), effect, pinned);
     }
 }
@@ -78,7 +78,7 @@ void LiveCommandLog::settlePending() {
 }
 
 void LiveCommandLog::clientGone(uint32_t client) {
-    follower_.clientGone(client);
+    tracker_.clientGone(client);
     std::erase_if(pending_, [client](const auto& p) { return wire::clientOf(p.first) == client; });
     for (Item& item : items_)
         if (wire::clientOf(item.stream) == client) item.effects = 0, item.always = item.pinned = false;
@@ -135,7 +135,7 @@ void LiveCommandLog::forgetKeys() {
     for (const EffectEntry& e : effects_) used[e.key] = true;
     for (const auto& [stream, pending] : pending_)
         for (const EffectEntry& e : pending.effect.entries) used[e.key] = true;
-    follower_.forEachKey([&](Key key) { used[key] = true; });
+    tracker_.forEachKey([&](Key key) { used[key] = true; });
     keys_.keepOnly(std::move(used));
     grownKeys_ = 2 * keys_.used();
 }
@@ -165,4 +165,4 @@ void LiveCommandLog::clear() {
     largeBytes_ = 0;
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -13,15 +13,15 @@
 #include "streamcodec/snapshot/effect.hpp"
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 class LiveCommandLog {
 public:
-    LiveCommandLog() : follower_(keys_) {}
+    LiveCommandLog() : tracker_(keys_) {}
 
     // pinned: everything the records need is kept, but the caller stores the records themselves.
     void append(uint32_t stream, std::span<const std::byte> payload, bool pinned = false);
-    void record(uint32_t stream, const RecordView& r, std::span<const std::byte> bytes, bool pinned);
+    void record(uint32_t stream, const wire::RecordView& r, std::span<const std::byte> bytes, bool pinned);
     void clientGone(uint32_t client); // removes everything of the program
     // Removes dead commands. append() calls it from time to time.
     void compact();
@@ -51,7 +51,7 @@ private:
     void forgetKeys();
 
     KeyTree keys_;
-    GlStateTracker follower_;
+    GlStateTracker tracker_;
     std::vector<Item> items_;
     std::vector<EffectEntry> effects_;
     std::vector<std::byte> bytes_; // small entries
@@ -60,4 +60,4 @@ private:
     size_t grownItems_ = 0, grownBytes_ = 0, grownKeys_ = 0; // thresholds of the next sweep
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

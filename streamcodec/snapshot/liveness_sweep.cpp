@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 // Unmarked keys are live: the final state includes them.
 bool LivenessSweep::needed(Key key) const {
@@ -86,4 +86,4 @@ bool LivenessSweep::command(uint32_t number, std::span<const EffectEntry> effect
     return stays;
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -13,7 +13,7 @@
 
 #include "streamcodec/snapshot/effect.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 class LivenessSweep {
 public:
@@ -49,4 +49,4 @@ private:
     uint64_t step_ = 1;
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

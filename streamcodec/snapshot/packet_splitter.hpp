@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/packet.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 class PacketSplitter {
 public:
@@ -20,8 +20,8 @@ public:
     void add(uint32_t stream, std::span<const std::byte> records) {
         if (stream != stream_) flush();
         stream_ = stream;
-        RecordWalk walk(records);
-        RecordView r;
+        wire::RecordWalk walk(records);
+        wire::RecordView r;
         while (walk.next(r)) {
             if (payload_.size() + r.sizeBytes > kWantedBytes) flush();
             const auto record = records.subspan(r.offset, r.sizeBytes);
@@ -41,4 +41,4 @@ private:
     std::vector<std::byte> payload_;
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 struct SnapshotPacket {
     uint32_t stream = 0;
     std::vector<std::byte> payload;
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

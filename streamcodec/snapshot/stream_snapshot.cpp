@@ -7,7 +7,7 @@
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 void hideFrames(std::span<std::byte> records) {
     RecordWalk walk(records);
@@ -35,8 +35,8 @@ void StreamSnapshot::append(uint32_t stream, std::span<const std::byte> payload)
                " MiB: no node can join from now on; use a larger --cache-size");
 }
 
-void StreamSnapshot::event(const ClientEvent& event) {
-    if (event.kind == Event::ClientGone && !overrun_) log_.clientGone(event.client);
+void StreamSnapshot::clientGone(uint32_t client) {
+    if (!overrun_) log_.clientGone(client);
 }
 
 std::vector<SnapshotPacket> StreamSnapshot::snapshot() {
@@ -52,4 +52,4 @@ std::vector<SnapshotPacket> StreamSnapshot::snapshot() {
     return packets;
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

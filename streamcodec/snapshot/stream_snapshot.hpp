@@ -1,17 +1,16 @@
 // Produces snapshots for restarted nodes: the stream of all programs so far, without commands that have no remaining
-// effect. Receives every packet in broadcast order. Requires the broadcaster's lock.
+// effect. Receives every packet in broadcast order. Not thread-safe.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <map>
-#include <string>
+#include <span>
 #include <vector>
 
-#include "streamcodec/trace/entry.hpp"
 #include "streamcodec/snapshot/live_command_log.hpp"
 #include "streamcodec/snapshot/snapshot_packet.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 class StreamSnapshot {
 public:
@@ -19,7 +18,7 @@ public:
     explicit StreamSnapshot(size_t boundBytes) : boundBytes_(boundBytes) {}
 
     void append(uint32_t stream, std::span<const std::byte> payload); // ignores the head's own stream
-    void event(const ClientEvent& event);                             // ClientGone: removes everything of the program
+    void clientGone(uint32_t client);                                 // removes everything of the program
 
     [[nodiscard]] bool serves() const { return !overrun_; } // false: nodes can no longer resynchronize
     // Returns packets that bring a fresh node to the current state. Swaps in them are unseen (frame 0), and they
@@ -37,4 +36,4 @@ private:
 // Turns swaps and front pictures into unseen frames.
 void hideFrames(std::span<std::byte> records);
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -5,7 +5,7 @@
 #include <GL/glext.h>
 #include <cstdint>
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 constexpr bool isFace(uint32_t target) {
     return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
@@ -27,4 +27,4 @@ constexpr bool isProxy(uint32_t target) {
     }
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 #include "streamcodec/snapshot/key_tree.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 // Kinds of keys. Kinds of state cells are opcodes, which are larger.
 enum class Part : uint32_t {
@@ -100,7 +100,7 @@ struct Object {
     bool made = false;                          // created by a command that stays in the log
     bool deleted = false;                       // its name is free, but other objects hold it
     bool opaque = false;                        // its contents, or the objects that share it, are not known
-    uint32_t holders = 0;                       // bindings and objects that keep it alive
+    uint32_t refCount = 0;                      // bindings and objects that keep it alive
     uint32_t target = 0;                        // texture
     std::map<uint64_t, Extent> levels;          // texture, by face << 32 | level; renderbuffer: 0
     uint64_t sizeBytes = 0;                     // buffer
@@ -185,8 +185,8 @@ struct StreamNames {
     bool listExecutes = false;
     std::vector<std::byte> listRecords;
     bool listStacks = false;
-    std::vector<std::byte> rest;     // side effects to set after the command
-    std::vector<uint64_t> blobBytes; // sizes of blobs that no record has consumed yet
+    std::vector<std::byte> sideEffects; // side effects to set after the command
+    std::vector<uint64_t> blobBytes;    // sizes of blobs that no record has consumed yet
 };
 
 struct ClientNames {
@@ -198,4 +198,4 @@ struct ClientNames {
     uint32_t incarnations = 0;
 };
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -7,15 +7,15 @@
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 // An integer uniform may be a sampler; its value is a texture unit.
 void noteUnits(Object& program, const RecordView& r, size_t locationWord) {
     if (!hasTrait(r.opcode, Trait::SamplerUniform)) return;
-    const uint8_t valueWord = ruleOf(r.opcode).valueWord;
+    const uint8_t valueWord = effectRuleOf(r.opcode).valueWord;
     std::vector<uint32_t> values;
-    if (valueWord == kNoWord)
+    if (valueWord == kNoArgumentWord)
         values.push_back(argumentWord(r, locationWord + 1));
     else if (!namesAt(r, valueWord, values))
         program.anyUnit = true;
@@ -47,7 +47,7 @@ void GlStateTracker::writeBuffer(At& at, Object* buffer, uint64_t offset, uint64
         at.effect.kill(part(data, Part::Box, offset, sizeBytes)); // an upload of the same range replaces it
 }
 
-void GlStateTracker::buffers(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::buffers(At& at, const EffectRule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0);
     const bool named = rule.type == ObjectType::Buffer;
     const uint64_t slot = slotOf(Slot::Buffer, first);
@@ -63,7 +63,7 @@ void GlStateTracker::buffers(At& at, const Rule& rule, const RecordView& r) {
     } else if (!named) {
         at.effect.read(part(at.context->cells, Part::Binding, slot));
     }
-    if (rule.family == Family::BufferData) {
+    if (rule.kind == EffectKind::BufferData) {
         buffer->sizeBytes = argumentWide(r, 1);
         return at.effect.kill(part(buffer->key, Part::Storage));
     }
@@ -85,10 +85,10 @@ void GlStateTracker::bufferBytes(At& at, const RecordView& r) {
 
 // ---- shaders and programs
 
-void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::shaders(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
-    if (rule.family == Family::Uniform) {
+    if (rule.kind == EffectKind::Uniform) {
         Object* const program = bound(at, slotOf(Slot::Program));
         if (program == nullptr) { // of a pipeline's program, or an error
             if (bound(at, slotOf(Slot::Pipeline)) == nullptr) return;
@@ -101,29 +101,29 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
         noteUnits(*program, r, 0);
         return at.effect.kill(cell(at, part(program->key, Part::Uniforms), r.opcode, rule, r));
     }
-    if (rule.family == Family::ArbProgram) {
+    if (rule.kind == EffectKind::ArbProgram) {
         Object* const program = bound(at, slotOf(Slot::ArbProgram, first));
         at.effect.read(part(c.cells, Part::Binding, slotOf(Slot::ArbProgram, first)));
         const Key above =
             program != nullptr ? program->key : part(c.cells, Part::Binding, slotOf(Slot::ArbProgram, first, 1));
         return at.effect.kill(cell(at, above, r.opcode, rule, r));
     }
-    if (rule.family == Family::ProgramDelete || rule.family == Family::ShaderDelete) {
+    if (rule.kind == EffectKind::ProgramDelete || rule.kind == EffectKind::ShaderDelete) {
         return deleteOne(at, ObjectType::Program, first);
     }
-    const ObjectType type = rule.family == Family::NamedSet      ? rule.type
-                            : rule.family == Family::PipelineSet ? ObjectType::Pipeline
-                                                                 : ObjectType::Program;
+    const ObjectType type = rule.kind == EffectKind::NamedSet      ? rule.type
+                            : rule.kind == EffectKind::PipelineSet ? ObjectType::Pipeline
+                                                                   : ObjectType::Program;
     Object* const object = find(at, type, first);
     if (object == nullptr) return unknown(at, false);
     use(at, object);
-    switch (rule.family) {
-    case Family::ShaderSet: object->anyUnit = namesUnits(r); return at.effect.kill(part(object->key, Part::Data));
-    case Family::ShaderCompile:
+    switch (rule.kind) {
+    case EffectKind::ShaderSet: object->anyUnit = namesUnits(r); return at.effect.kill(part(object->key, Part::Data));
+    case EffectKind::ShaderCompile:
         at.effect.read(part(object->key, Part::Data));
         return at.effect.write(part(object->key, Part::Compiled));
-    case Family::ProgramAttach:
-    case Family::ProgramDetach: {
+    case EffectKind::ProgramAttach:
+    case EffectKind::ProgramDetach: {
         Object* const shader = find(at, ObjectType::Program, second);
         Object* const known = shader != nullptr                     ? shader
                               : object->references.contains(second) ? object->references[second]
@@ -131,9 +131,9 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
         if (known == nullptr) return unknown(at, false);
         use(at, known);
         at.effect.write(part(object->key, Part::Attachments));
-        return retain(at, object->references[second], rule.family == Family::ProgramAttach ? known : nullptr);
+        return retain(at, object->references[second], rule.kind == EffectKind::ProgramAttach ? known : nullptr);
     }
-    case Family::ProgramLink:
+    case EffectKind::ProgramLink:
         at.effect.read(object->key);
         for (const auto& [name, shader] : object->references) {
             if (shader == nullptr) continue;
@@ -141,7 +141,7 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
             object->anyUnit = object->anyUnit || shader->anyUnit;
         }
         return at.effect.write(part(object->key, Part::Linked)); // a failed link replaces nothing
-    case Family::PipelineSet: {
+    case EffectKind::PipelineSet: {
         Object* const program = find(at, ObjectType::Program, argumentWord(r, rule.nameWord));
         if (program != nullptr) {
             use(at, program);
@@ -150,14 +150,14 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
         }
         return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
     }
-    case Family::ProgramUniform:
+    case EffectKind::ProgramUniform:
         noteUnits(*object, r, 1);
         at.effect.read(part(object->key, Part::Linked));
         return at.effect.kill(cell(at, part(object->key, Part::Uniforms), r.opcode, rule, r));
-    case Family::ProgramSet:
+    case EffectKind::ProgramSet:
         if (!hasTrait(r.opcode, Trait::LinkInput))
             at.effect.read(part(object->key, Part::Linked));
-        else if (rule.valueWord != kNoWord) // names are texts: each is a separate cell
+        else if (rule.valueWord != kNoArgumentWord) // names are texts: each is a separate cell
             return at.effect.write(part(object->key, Part::Attachments));
         return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
     default: return at.effect.kill(cell(at, object->key, r.opcode, rule, r));
@@ -166,13 +166,13 @@ void GlStateTracker::shaders(At& at, const Rule& rule, const RecordView& r) {
 
 // ---- queries, feedback, conditional rendering
 
-void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::queries(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
     const bool indexed = hasTrait(r.opcode, Trait::Indexed);
     const uint64_t slot = uint64_t{first} << 32 | (indexed ? second : 0);
-    switch (rule.family) {
-    case Family::QueryBegin: {
+    switch (rule.kind) {
+    case EffectKind::QueryBegin: {
         const uint32_t name = argumentWord(r, rule.nameWord);
         if (name == 0) return;
         Object* const query = findOrMake(at, ObjectType::Query, name);
@@ -180,7 +180,7 @@ void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
         at.effect.kill(query->images);
         return retain(at, c.queries[slot], query);
     }
-    case Family::QueryEnd: {
+    case EffectKind::QueryEnd: {
         const auto found = c.queries.find(slot);
         if (found == c.queries.end() || found->second == nullptr) return;
         const Key data = found->second->images;
@@ -188,16 +188,16 @@ void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
         at.effect.add(data, Mode::Close);
         return retain(at, found->second, nullptr);
     }
-    case Family::QueryCounter: {
+    case EffectKind::QueryCounter: {
         Object* const query = findOrMake(at, ObjectType::Query, first);
         use(at, query);
         return at.effect.kill(query->images);
     }
-    case Family::FeedbackBegin:
+    case EffectKind::FeedbackBegin:
         c.feedback = true;
         at.effect.kill(part(c.key, Part::Feedback));
         return readState(at);
-    case Family::FeedbackEnd:
+    case EffectKind::FeedbackEnd:
         c.feedback = false;
         at.effect.write(part(c.key, Part::Feedback));
         return at.effect.add(part(c.key, Part::Feedback), Mode::Close);
@@ -208,4 +208,4 @@ void GlStateTracker::queries(At& at, const Rule& rule, const RecordView& r) {
     }
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

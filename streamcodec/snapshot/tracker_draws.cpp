@@ -11,7 +11,7 @@
 #include "streamcodec/snapshot/binding_slots.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 constexpr uint32_t kColor = GL_COLOR_BUFFER_BIT, kDepth = GL_DEPTH_BUFFER_BIT, kStencil = GL_STENCIL_BUFFER_BIT;
@@ -175,13 +175,13 @@ void GlStateTracker::readPicture(At& at) {
     }
 }
 
-void GlStateTracker::clear(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::clear(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t first = argumentWord(r, 0);
-    switch (rule.family) {
-    case Family::Clear:
-    case Family::ClearBuffer: {
-        const bool buffer = rule.family == Family::ClearBuffer;
+    switch (rule.kind) {
+    case EffectKind::Clear:
+    case EffectKind::ClearBuffer: {
+        const bool buffer = rule.kind == EffectKind::ClearBuffer;
         const uint32_t mask = buffer ? planesOf(first) : first;
         at.effect.read(c.key);
         if (c.limits.conditional) readState(at);
@@ -192,7 +192,7 @@ void GlStateTracker::clear(At& at, const Rule& rule, const RecordView& r) {
         });
         return planes(at, mask, !buffer || mask != kColor || (colors == 1 && argumentWord(r, 1) == 0));
     }
-    case Family::Blit: { // source, x0, y0, x1, y1 of the destination, mask
+    case EffectKind::Blit: { // source, x0, y0, x1, y1 of the destination, mask
         readPicture(at);
         const auto window = at.client.windows.find(at.thread.draw);
         const bool covers = bound(at, slotOf(Slot::DrawFramebuffer)) == nullptr && window != at.client.windows.end() &&
@@ -201,11 +201,11 @@ void GlStateTracker::clear(At& at, const Rule& rule, const RecordView& r) {
                             argumentWord(r, 7) == window->second.config.height;
         return planes(at, argumentWord(r, 8), covers);
     }
-    case Family::Compute:
+    case EffectKind::Compute:
         readState(at);
         readTextures(at);
         return writeMemory(at);
-    case Family::Barrier: return writeMemory(at);
+    case EffectKind::Barrier: return writeMemory(at);
     default: break;
     }
     if (hasTrait(r.opcode, Trait::Bitmap)) {
@@ -218,4 +218,4 @@ void GlStateTracker::clear(At& at, const Rule& rule, const RecordView& r) {
     draw(at);
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -8,7 +8,7 @@
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 
 // Returns null if the texture is deleted, and its handle with it.
 Object* GlStateTracker::textureOf(At& at, const HandleId& handle) {
@@ -18,10 +18,10 @@ Object* GlStateTracker::textureOf(At& at, const HandleId& handle) {
     return object != nullptr && object->handles.contains(handle) ? object : nullptr;
 }
 
-void GlStateTracker::handles(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::handles(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const bool ofImage = hasTrait(r.opcode, Trait::ImageHandle);
-    if (rule.family == Family::HandleResident) {
+    if (rule.kind == EffectKind::HandleResident) {
         const HandleId handle{ofImage, argumentWide(r, 0)};
         const Key key = part(part(c.key, Part::Resident, ofImage), Part::Resident, handle.value);
         if (hasTrait(r.opcode, Trait::TurnsOff))
@@ -55,9 +55,9 @@ void GlStateTracker::handles(At& at, const Rule& rule, const RecordView& r) {
 }
 
 // A repeated commitment replaces the earlier one. Writes in between depend on the earlier one.
-void GlStateTracker::pages(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::pages(At& at, const EffectRule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0);
-    if (rule.family == Family::TexPages) { // target or texture, level, offsets, sizes, commit
+    if (rule.kind == EffectKind::TexPages) { // target or texture, level, offsets, sizes, commit
         Object* const t =
             rule.type == ObjectType::Texture ? find(at, ObjectType::Texture, first) : texture(at, first, true);
         if (t == nullptr) return unknown(at, false);
@@ -82,4 +82,4 @@ void GlStateTracker::pages(At& at, const Rule& rule, const RecordView& r) {
     at.effect.kill(part(part(storage, Part::Pages), Part::Box, argumentWide(r, 1), argumentWide(r, 3)));
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

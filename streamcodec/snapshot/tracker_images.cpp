@@ -9,7 +9,7 @@
 #include "streamcodec/snapshot/binding_slots.hpp"
 #include "streamcodec/snapshot/texture_targets.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 uint64_t levelOf(uint32_t target, uint32_t level) {
@@ -40,7 +40,7 @@ Object* GlStateTracker::texture(At& at, uint32_t target, bool readsBinding) {
     return unnamed;
 }
 
-void GlStateTracker::textures(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::textures(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t target = argumentWord(r, 0), level = argumentWord(r, 1);
     if (isProxy(target)) return; // a query only
@@ -58,19 +58,19 @@ void GlStateTracker::textures(At& at, const Rule& rule, const RecordView& r) {
     if (fromBuffer) readState(at);
     if (c.transfersPixels) at.effect.read(c.cells);
     if (t->sparse) at.effect.read(part(storage, Part::Pages));
-    switch (rule.family) {
-    case Family::TexParameter: return set(at, cell(at, t->key, r.opcode, rule, r), 0);
-    case Family::TexImage: { // target, level, format, sizes; multisample: target, samples, format, sizes
+    switch (rule.kind) {
+    case EffectKind::TexParameter: return set(at, cell(at, t->key, r.opcode, rule, r), 0);
+    case EffectKind::TexImage: { // target, level, format, sizes; multisample: target, samples, format, sizes
         const bool samples = hasTrait(r.opcode, Trait::Multisample);
         const uint64_t id = levelOf(target, samples ? 0 : level);
         t->levels[id] = extentAt(r, 3, dimensions);
         return at.effect.kill(samples ? storage : part(storage, Part::Level, id));
     }
-    case Family::TexCopyImage: // target, level, format, x, y, sizes
+    case EffectKind::TexCopyImage: // target, level, format, x, y, sizes
         extent = extentAt(r, 5, dimensions);
         readPicture(at);
         return at.effect.kill(image);
-    case Family::TexStorage: { // target, levels, format, sizes
+    case EffectKind::TexStorage: { // target, levels, format, sizes
         Extent e = extentAt(r, 3, dimensions);
         const bool samples = hasTrait(r.opcode, Trait::Multisample);
         const uint32_t kind = named ? t->target : target;
@@ -83,9 +83,9 @@ void GlStateTracker::textures(At& at, const Rule& rule, const RecordView& r) {
         }
         return at.effect.kill(storage);
     }
-    case Family::TexSubImage:
-    case Family::TexCopySubImage: { // target, level, offsets, [copies: x, y,] sizes
-        const bool copies = rule.family == Family::TexCopySubImage;
+    case EffectKind::TexSubImage:
+    case EffectKind::TexCopySubImage: { // target, level, offsets, [copies: x, y,] sizes
+        const bool copies = rule.kind == EffectKind::TexCopySubImage;
         if (copies) readPicture(at);
         const Extent offset = extentAt(r, 2, dimensions);
         Extent size = extentAt(r, 2 + dimensions + (copies ? 2 : 0), copies ? std::min(dimensions, 2u) : dimensions);
@@ -94,11 +94,11 @@ void GlStateTracker::textures(At& at, const Rule& rule, const RecordView& r) {
         const Key slice = part(data, Part::Level, z, size.depth);
         return at.effect.kill(part(slice, Part::Box, x << 32 | y, uint64_t{size.width} << 32 | size.height));
     }
-    case Family::TexMipmaps:
+    case EffectKind::TexMipmaps:
         at.effect.read(t->key);
         at.effect.read(t->images);
         return at.effect.kill(part(storage, Part::Mipmaps));
-    case Family::TexBuffer: {
+    case EffectKind::TexBuffer: {
         Object* const buffer = find(at, ObjectType::Buffer, argumentWord(r, 2));
         if (buffer != nullptr) {
             use(at, buffer);
@@ -120,11 +120,11 @@ Object* GlStateTracker::framebuffer(At& at, uint32_t target) {
     return bound(at, slot);
 }
 
-void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::framebuffers(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t first = argumentWord(r, 0), point = argumentWord(r, 1);
-    switch (rule.family) {
-    case Family::RenderbufferStorage: { // target, [samples,] format, width, height
+    switch (rule.kind) {
+    case EffectKind::RenderbufferStorage: { // target, [samples,] format, width, height
         const uint64_t slot = slotOf(Slot::Renderbuffer);
         at.effect.read(part(c.cells, Part::Binding, slot));
         Object* const buffer = bound(at, slot);
@@ -133,15 +133,15 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
         buffer->levels[0] = extentAt(r, hasTrait(r.opcode, Trait::Multisample) ? 3 : 2, 2);
         return at.effect.kill(part(buffer->images, Part::Storage));
     }
-    case Family::FramebufferNamed: {
+    case EffectKind::FramebufferNamed: {
         Object* const target = find(at, ObjectType::Framebuffer, first);
         if (target != nullptr) target->opaque = true;
         return unknown(at, first == 0);
     }
-    case Family::DrawBuffers: {
+    case EffectKind::DrawBuffers: {
         Object* const target = framebuffer(at, GL_DRAW_FRAMEBUFFER);
         std::vector<uint32_t> buffers{first};
-        if (rule.valueWord != kNoWord && !namesAt(r, rule.valueWord, buffers)) return unknown(at, false);
+        if (rule.valueWord != kNoArgumentWord && !namesAt(r, rule.valueWord, buffers)) return unknown(at, false);
         if (target == nullptr) {
             c.limits.drawBuffer = buffers.size() == 1 ? buffers[0] : GL_FRONT_AND_BACK;
             c.usesFront = c.usesFront || (c.limits.drawBuffer != GL_BACK && c.limits.drawBuffer != GL_NONE);
@@ -152,7 +152,7 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
         if (!c.attribs.empty()) target->opaque = true; // glPopAttrib restores the previous binding
         return set(at, part(target->key, Part::Data), 0);
     }
-    case Family::FramebufferSet: {
+    case EffectKind::FramebufferSet: {
         const bool readBuffer = r.opcode == op::glReadBuffer;
         Object* const target = framebuffer(at, readBuffer ? GL_READ_FRAMEBUFFER : first);
         if (target == nullptr && readBuffer && first != GL_BACK && first != GL_NONE) c.usesFront = true;
@@ -195,4 +195,4 @@ void GlStateTracker::framebuffers(At& at, const Rule& rule, const RecordView& r)
     at.effect.kill(part(target->key, Part::Attachments, point));
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

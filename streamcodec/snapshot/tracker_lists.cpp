@@ -9,7 +9,7 @@
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/context_capabilities.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 constexpr uint32_t kMaxNesting = 64;              // GL's limit
@@ -18,105 +18,106 @@ constexpr size_t kRememberedWords = 16;           // remembered arguments of one
 
 enum class Compiles : uint8_t { Compiled, Executed, Unsure };
 
-Compiles compiles(const Rule& rule) {
-    switch (rule.family) {
-    case Family::Gen:
-    case Family::Create:
-    case Family::GenLists:
-    case Family::Delete:
-    case Family::DeleteList:
-    case Family::ClientCap:
-    case Family::ClientCell:
-    case Family::ClientActiveTexture:
-    case Family::ClientPush:
-    case Family::ClientPop:
-    case Family::ArrayPointer:
-    case Family::BufferData:
-    case Family::BufferSubData: return Compiles::Executed;
-    case Family::Bind:
+Compiles compiles(const EffectRule& rule) {
+    switch (rule.kind) {
+    case EffectKind::Gen:
+    case EffectKind::Create:
+    case EffectKind::GenLists:
+    case EffectKind::Delete:
+    case EffectKind::DeleteList:
+    case EffectKind::ClientCap:
+    case EffectKind::ClientCell:
+    case EffectKind::ClientActiveTexture:
+    case EffectKind::ClientPush:
+    case EffectKind::ClientPop:
+    case EffectKind::ArrayPointer:
+    case EffectKind::BufferData:
+    case EffectKind::BufferSubData: return Compiles::Executed;
+    case EffectKind::Bind:
         if (rule.type == ObjectType::Buffer || rule.type == ObjectType::VertexArray) return Compiles::Executed;
         return rule.type == ObjectType::Texture || rule.type == ObjectType::ArbProgram ? Compiles::Compiled
                                                                                        : Compiles::Unsure;
-    case Family::Nothing:
-    case Family::Cell:
-    case Family::CellOfMatrix:
-    case Family::CellOfAll:
-    case Family::UnitCell:
-    case Family::UnitCellOfMatrix:
-    case Family::PatternedCell:
-    case Family::Cap:
-    case Family::Attribute:
-    case Family::Color:
-    case Family::Limit:
-    case Family::ActiveTexture:
-    case Family::MatrixMode:
-    case Family::ListBase:
-    case Family::MatrixLoad:
-    case Family::MatrixChange:
-    case Family::MatrixPush:
-    case Family::MatrixPop:
-    case Family::AttribPush:
-    case Family::AttribPop:
-    case Family::UseProgram:
-    case Family::Uniform:
-    case Family::TexParameter:
-    case Family::TexImage:
-    case Family::TexSubImage:
-    case Family::TexCopyImage:
-    case Family::TexCopySubImage:
-    case Family::Draw:
-    case Family::Clear:
-    case Family::Begin:
-    case Family::Vertex:
-    case Family::End:
-    case Family::CallList:
-    case Family::CallLists:
-    case Family::DrawBuffers: return Compiles::Compiled;
+    case EffectKind::Nothing:
+    case EffectKind::Cell:
+    case EffectKind::CellOfMatrix:
+    case EffectKind::CellOfAll:
+    case EffectKind::UnitCell:
+    case EffectKind::UnitCellOfMatrix:
+    case EffectKind::PatternedCell:
+    case EffectKind::Cap:
+    case EffectKind::Attribute:
+    case EffectKind::Color:
+    case EffectKind::Limit:
+    case EffectKind::ActiveTexture:
+    case EffectKind::MatrixMode:
+    case EffectKind::ListBase:
+    case EffectKind::MatrixLoad:
+    case EffectKind::MatrixChange:
+    case EffectKind::MatrixPush:
+    case EffectKind::MatrixPop:
+    case EffectKind::AttribPush:
+    case EffectKind::AttribPop:
+    case EffectKind::UseProgram:
+    case EffectKind::Uniform:
+    case EffectKind::TexParameter:
+    case EffectKind::TexImage:
+    case EffectKind::TexSubImage:
+    case EffectKind::TexCopyImage:
+    case EffectKind::TexCopySubImage:
+    case EffectKind::Draw:
+    case EffectKind::Clear:
+    case EffectKind::Begin:
+    case EffectKind::Vertex:
+    case EffectKind::End:
+    case EffectKind::CallList:
+    case EffectKind::CallLists:
+    case EffectKind::DrawBuffers: return Compiles::Compiled;
     default: return Compiles::Unsure;
     }
 }
 
-bool draws(Family family) {
-    return family == Family::Draw || family == Family::Begin || family == Family::Vertex || family == Family::End;
+bool draws(EffectKind kind) {
+    return kind == EffectKind::Draw || kind == EffectKind::Begin || kind == EffectKind::Vertex ||
+           kind == EffectKind::End;
 }
 
 // Returns true if the command sets one part of the context's state, independent of other state.
-bool setsAlone(const Rule& rule, const RecordView& r) {
-    switch (rule.family) {
-    case Family::Attribute:
-    case Family::Color:
-    case Family::Cell:
-    case Family::Limit: return true;
-    case Family::Cap: return isContextCap(argumentWord(r, 0)) && argumentWord(r, 0) != GL_COLOR_MATERIAL;
+bool setsAlone(const EffectRule& rule, const RecordView& r) {
+    switch (rule.kind) {
+    case EffectKind::Attribute:
+    case EffectKind::Color:
+    case EffectKind::Cell:
+    case EffectKind::Limit: return true;
+    case EffectKind::Cap: return isContextCap(argumentWord(r, 0)) && argumentWord(r, 0) != GL_COLOR_MATERIAL;
     default: return false;
     }
 }
 
 // Remembers the effects of a call as records; of repeated setters only the last.
-void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& r) {
-    const bool repeats = draws(rule.family) || rule.family == Family::Attribute || rule.family == Family::Color;
+void remember(std::vector<std::byte>& into, const EffectRule& rule, const RecordView& r) {
+    const bool repeats = draws(rule.kind) || rule.kind == EffectKind::Attribute || rule.kind == EffectKind::Color;
     const bool movesRaster = hasTrait(r.opcode, Trait::Bitmap);
-    const uint16_t opcode = draws(rule.family) && !movesRaster ? uint16_t{op::glDrawArrays} : r.opcode;
-    const bool whole = rule.family == Family::CallLists || rule.family == Family::DrawBuffers;
+    const uint16_t opcode = draws(rule.kind) && !movesRaster ? uint16_t{op::glDrawArrays} : r.opcode;
+    const bool whole = rule.kind == EffectKind::CallLists || rule.kind == EffectKind::DrawBuffers;
     const bool sets = setsAlone(rule, r);
     size_t words = whole || sets ? r.arguments.size() / 4 : std::min(r.arguments.size() / 4, kRememberedWords);
-    if (draws(rule.family)) words = 0;
+    if (draws(rule.kind)) words = 0;
     if (repeats) {
         RecordWalk walk(into);
         RecordView known;
         bool drawn = false; // with the current bindings and state
         while (walk.next(known)) {
             bool same = known.opcode == opcode;
-            for (size_t i = 0; same && !draws(rule.family) && i < rule.selectors; ++i)
+            for (size_t i = 0; same && !draws(rule.kind) && i < rule.selectors; ++i)
                 same = argumentWord(known, rule.selectorWords[i]) == argumentWord(r, rule.selectorWords[i]);
-            const Family before = ruleOf(known.opcode).family;
-            if (!draws(rule.family) || (before != Family::Attribute && before != Family::Color)) drawn = same;
-            if (!same || draws(rule.family)) continue;
+            const EffectKind before = effectRuleOf(known.opcode).kind;
+            if (!draws(rule.kind) || (before != EffectKind::Attribute && before != EffectKind::Color)) drawn = same;
+            if (!same || draws(rule.kind)) continue;
             into.erase(into.begin() + static_cast<std::ptrdiff_t>(known.offset),
                        into.begin() + static_cast<std::ptrdiff_t>(known.offset + known.sizeBytes));
             break;
         }
-        if (draws(rule.family) && drawn) return;
+        if (draws(rule.kind) && drawn) return;
     }
     const uint32_t header[2] = {opcode | record::kLongForm << 16, static_cast<uint32_t>(words + 2)};
     const auto* const bytes = reinterpret_cast<const std::byte*>(header);
@@ -128,7 +129,7 @@ void remember(std::vector<std::byte>& into, const Rule& rule, const RecordView& 
 
 // State setters within a primitive or a list are repeated after it as side effects, so the state does not depend on the
 // whole command.
-bool GlStateTracker::hasSideEffects(At& at, const Rule& rule, const RecordView& r) {
+bool GlStateTracker::hasSideEffects(At& at, const EffectRule& rule, const RecordView& r) {
     if ((!at.thread.inPrimitive && at.context->callDepth == 0) || at.context->restUnsafe || !setsAlone(rule, r))
         return false;
     if (at.context->callDepth > 0) { // later clears in the list depend on it
@@ -136,21 +137,21 @@ bool GlStateTracker::hasSideEffects(At& at, const Rule& rule, const RecordView& 
         At of{at.stream, at.client, at.thread, at.context, none, 0};
         state(of, rule, r);
     }
-    remember(at.thread.rest, rule, r);
+    remember(at.thread.sideEffects, rule, r);
     return true;
 }
 
 void GlStateTracker::compiled(At& at, const RecordView& r) {
-    const Rule& rule = ruleOf(r.opcode);
+    const EffectRule& rule = effectRuleOf(r.opcode);
     const Compiles how = compiles(rule);
     if (how == Compiles::Unsure) return unknown(at, true);
     const bool executes = how == Compiles::Executed || at.thread.listExecutes;
-    if (rule.family == Family::AttribPush || rule.family == Family::AttribPop || rule.family == Family::CallList ||
-        rule.family == Family::CallLists || r.opcode == op::glColorMaterial ||
-        (rule.family == Family::Cap && argumentWord(r, 0) == GL_COLOR_MATERIAL))
+    if (rule.kind == EffectKind::AttribPush || rule.kind == EffectKind::AttribPop ||
+        rule.kind == EffectKind::CallList || rule.kind == EffectKind::CallLists || r.opcode == op::glColorMaterial ||
+        (rule.kind == EffectKind::Cap && argumentWord(r, 0) == GL_COLOR_MATERIAL))
         at.thread.listStacks = true;
-    if (how == Compiles::Compiled && rule.family != Family::Nothing) remember(at.thread.listRecords, rule, r);
-    if (rule.family == Family::Draw) readState(at); // arrays are read from buffers at compile time
+    if (how == Compiles::Compiled && rule.kind != EffectKind::Nothing) remember(at.thread.listRecords, rule, r);
+    if (rule.kind == EffectKind::Draw) readState(at); // arrays are read from buffers at compile time
     if (!executes) return;
     const uint32_t list = std::exchange(at.thread.list, 0);
     gl(at, r);
@@ -158,19 +159,19 @@ void GlStateTracker::compiled(At& at, const RecordView& r) {
     at.thread.inPrimitive = false; // the list is one command
 }
 
-void GlStateTracker::lists(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::lists(At& at, const EffectRule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0), second = argumentWord(r, 1);
     std::vector<uint32_t> names;
-    switch (rule.family) {
-    case Family::GenLists: // range, result
+    switch (rule.kind) {
+    case EffectKind::GenLists: // range, result
         for (uint32_t i = 0; i < first && second != 0 && i < 1u << 20; ++i)
             (void)make(at, ObjectType::List, second + i);
         return;
-    case Family::DeleteList:
+    case EffectKind::DeleteList:
         if (second > 1u << 20) return unknown(at, false);
         for (uint32_t i = 0; i < second; ++i) deleteOne(at, ObjectType::List, first + i);
         return;
-    case Family::NewList: {
+    case EffectKind::NewList: {
         Object* const list = findOrMake(at, ObjectType::List, first);
         at.thread.list = first;
         at.thread.listExecutes = second == GL_COMPILE_AND_EXECUTE; // may call its own previous definition
@@ -181,7 +182,7 @@ void GlStateTracker::lists(At& at, const Rule& rule, const RecordView& r) {
         use(at, list);
         return;
     }
-    case Family::EndList: {
+    case EffectKind::EndList: {
         Object* const list = find(at, ObjectType::List, at.thread.list);
         at.thread.list = 0;
         if (list == nullptr) return;
@@ -191,7 +192,7 @@ void GlStateTracker::lists(At& at, const Rule& rule, const RecordView& r) {
         at.thread.listRecords.clear();
         return;
     }
-    case Family::CallList: return callList(at, first);
+    case EffectKind::CallList: return callList(at, first);
     default: return callLists(at, r);
     }
 }
@@ -235,4 +236,4 @@ void GlStateTracker::callLists(At& at, const RecordView& r) {
     for (const uint32_t name : called) callList(at, name);
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

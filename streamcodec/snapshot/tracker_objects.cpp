@@ -1,4 +1,4 @@
-// Objects: names, holders, bindings.
+// Objects: names, references, bindings.
 #include <GL/gl.h>
 #include <GL/glext.h>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 constexpr uint64_t idOf(ObjectType type, uint32_t name) { return uint64_t{static_cast<uint8_t>(type)} << 32 | name; }
@@ -74,14 +74,14 @@ Object* GlStateTracker::findOrMake(At& at, ObjectType type, uint32_t name) {
 
 void GlStateTracker::retain(At& at, Object*& slot, Object* next) {
     if (slot == next) return;
-    if (next != nullptr) ++next->holders;
+    if (next != nullptr) ++next->refCount;
     Object* const old = std::exchange(slot, next);
     if (old != nullptr) release(at, old);
 }
 
 void GlStateTracker::release(At& at, Object* object) {
-    if (object->holders > 0) --object->holders;
-    if (object->deleted && object->holders == 0) erase(at, object);
+    if (object->refCount > 0) --object->refCount;
+    if (object->deleted && object->refCount == 0) erase(at, object);
 }
 
 // Removes an object that can no longer be used.
@@ -103,10 +103,10 @@ void GlStateTracker::use(At& at, Object* object) {
     at.effect.read(name);
 }
 
-void GlStateTracker::objects(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::objects(At& at, const EffectRule& rule, const RecordView& r) {
     std::vector<uint32_t> names;
-    switch (rule.family) {
-    case Family::Gen: {
+    switch (rule.kind) {
+    case EffectKind::Gen: {
         if (!namesAt(r, rule.nameWord, names)) return unknown(at, true);
         for (const uint32_t name : names) {
             if (name == 0) continue;
@@ -115,16 +115,16 @@ void GlStateTracker::objects(At& at, const Rule& rule, const RecordView& r) {
         }
         return;
     }
-    case Family::Create: {
+    case EffectKind::Create: {
         const uint32_t name = argumentWord(r, rule.resultWord);
         if (name != 0) make(at, rule.type, name)->anyUnit = r.opcode == op::glCreateShader; // until its source is known
         return;
     }
-    case Family::SyncMake:
+    case EffectKind::SyncMake:
         at.effect.kill(
             part(at.context->group->key, Part::Object, idOf(ObjectType::Sync, 0), argumentWide(r, rule.resultWord)));
         return;
-    case Family::SyncDelete: {
+    case EffectKind::SyncDelete: {
         const Key sync = part(at.context->group->key, Part::Object, idOf(ObjectType::Sync, 0), argumentWide(r, 0));
         at.effect.add(sync, Mode::Forget);
         at.effect.add(sync, Mode::Close);
@@ -161,7 +161,7 @@ void GlStateTracker::deleteOne(At& at, ObjectType type, uint32_t name) {
     object->deleted = true;
     at.context->group->gone.push_back(std::move(found->second));
     table.erase(found);
-    ++object->holders; // keeps the object alive while its bindings are removed
+    ++object->refCount; // keeps the object alive while its bindings are removed
     if (type != ObjectType::Program && type != ObjectType::Pipeline) {
         for (auto& [slot, there] : at.context->bindings)
             if (there == object) retain(at, there, nullptr);
@@ -191,19 +191,19 @@ void GlStateTracker::bindSlot(At& at, uint64_t slot, Key key, uint32_t attribBit
     retain(at, at.context->bindings[slot], object);
 }
 
-void GlStateTracker::bindPlain(At& at, const Rule& rule, uint64_t slot, uint32_t name) {
+void GlStateTracker::bindPlain(At& at, const EffectRule& rule, uint64_t slot, uint32_t name) {
     Object* const object = name == 0 ? nullptr : findOrMake(at, rule.type, name);
     bindSlot(at, slot, part(at.context->cells, Part::Binding, slot), rule.attribBits, object);
 }
 
-void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::bind(At& at, const EffectRule& rule, const RecordView& r) {
     const uint32_t first = argumentWord(r, 0), name = argumentWord(r, rule.nameWord);
     switch (rule.type) {
     case ObjectType::Texture:
         if (hasTrait(r.opcode, Trait::ImageBinding)) return bindPlain(at, rule, slotOf(Slot::Image, 0, first), name);
         return bindTexture(at, rule, first, name);
     case ObjectType::Buffer:
-        if (rule.family == Family::Bind) return bindBuffer(at, rule, first, name);
+        if (rule.kind == EffectKind::Bind) return bindBuffer(at, rule, first, name);
         if (first == GL_TRANSFORM_FEEDBACK_BUFFER && bound(at, slotOf(Slot::Feedback)) != nullptr)
             return unknown(at, false);
         bindPlain(at, rule, slotOf(Slot::IndexedBuffer, first, argumentWord(r, 1)), name);
@@ -224,10 +224,10 @@ void GlStateTracker::bind(At& at, const Rule& rule, const RecordView& r) {
 }
 
 // place: the target of a Bind, which binds to the active unit; the unit of a BindIndexed.
-void GlStateTracker::bindTexture(At& at, const Rule& rule, uint32_t place, uint32_t name) {
+void GlStateTracker::bindTexture(At& at, const EffectRule& rule, uint32_t place, uint32_t name) {
     ContextNames& c = *at.context;
     Object* const object = name == 0 ? nullptr : findOrMake(at, ObjectType::Texture, name);
-    const bool toUnit = rule.family == Family::BindIndexed;
+    const bool toUnit = rule.kind == EffectKind::BindIndexed;
     if (toUnit && (object == nullptr || object->target == 0)) return unknown(at, true);
     if (!toUnit && object != nullptr && object->target == 0) object->target = place;
     const uint32_t unit = toUnit ? place : c.unit;
@@ -236,7 +236,7 @@ void GlStateTracker::bindTexture(At& at, const Rule& rule, uint32_t place, uint3
     bindSlot(at, slot, part(part(c.cells, Part::TextureUnit, unit), Part::Binding, slot), rule.attribBits, object);
 }
 
-void GlStateTracker::bindBuffer(At& at, const Rule& rule, uint32_t target, uint32_t name) {
+void GlStateTracker::bindBuffer(At& at, const EffectRule& rule, uint32_t target, uint32_t name) {
     ContextNames& c = *at.context;
     const auto keyOf = [&](uint64_t slot) { return part(c.cells, Part::Binding, slot); };
     const uint64_t slot = slotOf(Slot::Buffer, target);
@@ -257,7 +257,7 @@ void GlStateTracker::bindBuffer(At& at, const Rule& rule, uint32_t target, uint3
     retain(at, c.bindings[slot], buffer);
 }
 
-void GlStateTracker::bindVertexArray(At& at, const Rule& rule, uint32_t name) {
+void GlStateTracker::bindVertexArray(At& at, const EffectRule& rule, uint32_t name) {
     ContextNames& c = *at.context;
     const uint64_t slot = slotOf(Slot::VertexArray), indices = slotOf(Slot::Buffer, GL_ELEMENT_ARRAY_BUFFER);
     bindPlain(at, rule, slot, name);
@@ -270,10 +270,10 @@ void GlStateTracker::bindVertexArray(At& at, const Rule& rule, uint32_t name) {
 
 // ---- vertex arrays
 
-// Marks the buffers that the command names. Their holders are not tracked.
-void GlStateTracker::holdElsewhere(At& at, const Rule& rule, const RecordView& r, bool makes) {
+// Marks the buffers that the command names. Bindings of this kind are not tracked.
+void GlStateTracker::useUntracked(At& at, const EffectRule& rule, const RecordView& r, bool makes) {
     std::vector<uint32_t> names;
-    if (rule.nameWord == kNoWord) return;
+    if (rule.nameWord == kNoArgumentWord) return;
     if (rule.nameWord != rule.valueWord)
         names.push_back(argumentWord(r, rule.nameWord));
     else if (!namesAt(r, rule.nameWord, names))
@@ -287,11 +287,11 @@ void GlStateTracker::holdElsewhere(At& at, const Rule& rule, const RecordView& r
     }
 }
 
-void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::arrays(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
-    if (rule.family == Family::ArrayNamedSet) {
+    if (rule.kind == EffectKind::ArrayNamedSet) {
         Object* const array = findOrMake(at, ObjectType::VertexArray, argumentWord(r, 0));
-        holdElsewhere(at, rule, r, false);
+        useUntracked(at, rule, r, false);
         use(at, array);
         return at.effect.kill(cell(at, array->key, r.opcode, rule, r));
     }
@@ -301,18 +301,18 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
     at.effect.read(part(c.cells, Part::Binding, arraySlot));
     if (array->name != 0) use(at, array);
     Key above = array->key;
-    const bool ofCoordinates = r.opcode == op::glTexCoordPointer || rule.family == Family::ClientCap;
+    const bool ofCoordinates = r.opcode == op::glTexCoordPointer || rule.kind == EffectKind::ClientCap;
     if (ofCoordinates) {
         at.effect.read(part(c.cells, Part::ClientUnit));
         above = part(above, Part::TextureUnit, c.clientUnit);
     }
-    if (rule.family == Family::ClientCap)
+    if (rule.kind == EffectKind::ClientCap)
         return setClient(at, keys_.child(above, op::glEnableClientState, argumentWord(r, 0)));
-    const bool numbered = rule.family == Family::ArraySet || hasTrait(r.opcode, Trait::ArrayIndex);
+    const bool numbered = rule.kind == EffectKind::ArraySet || hasTrait(r.opcode, Trait::ArrayIndex);
     const uint32_t index = numbered ? argumentWord(r, 0) : 0;
-    if (rule.family == Family::ArraySet) {
-        if (rule.nameWord != kNoWord) { // first, count, buffers, ...
-            holdElsewhere(at, rule, r, true);
+    if (rule.kind == EffectKind::ArraySet) {
+        if (rule.nameWord != kNoArgumentWord) { // first, count, buffers, ...
+            useUntracked(at, rule, r, true);
             return setClient(at, keys_.child(above, r.opcode, index, argumentWord(r, 1)));
         }
         // enabling and disabling set one cell
@@ -320,7 +320,7 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
         return setClient(at, keys_.child(above, kind, index));
     }
     Object* buffer = bound(at, bufferSlot);
-    if (rule.nameWord != kNoWord) {
+    if (rule.nameWord != kNoArgumentWord) {
         const uint32_t name = argumentWord(r, rule.nameWord);
         buffer = name == 0 ? nullptr : findOrMake(at, ObjectType::Buffer, name);
     } else {
@@ -331,4 +331,4 @@ void GlStateTracker::arrays(At& at, const Rule& rule, const RecordView& r) {
     retain(at, array->references[uint64_t{r.opcode} << 32 | (ofCoordinates ? c.clientUnit << 16 : 0) | index], buffer);
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -9,7 +9,7 @@
 #include "streamcodec/snapshot/gl_state_tracker.hpp"
 #include "streamcodec/snapshot/binding_slots.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 namespace {
 
 constexpr uint32_t kMaybe = 0x40000000; // other bits may save it too
@@ -27,7 +27,7 @@ bool savesBinding(Part stack, uint32_t mask, uint64_t slot) {
 } // namespace
 
 // Returns the key of the state that the command sets: its opcode, and the selecting arguments.
-Key GlStateTracker::cell(const At&, Key above, uint32_t kind, const Rule& rule, const RecordView& r) {
+Key GlStateTracker::cell(const At&, Key above, uint32_t kind, const EffectRule& rule, const RecordView& r) {
     Key key = above;
     uint64_t words[4] = {};
     size_t n = 0;
@@ -62,35 +62,35 @@ void GlStateTracker::setClient(At& at, Key key) {
         saved.touched.emplace_back(key, 0);
 }
 
-void GlStateTracker::state(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::state(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t first = argumentWord(r, 0);
     const Key unit = part(c.cells, Part::ActiveUnit);
-    switch (rule.family) {
-    case Family::Cap: return cap(at, rule, r);
-    case Family::Limit: limit(at, r); break;
-    case Family::ActiveTexture: c.unit = first - GL_TEXTURE0; return set(at, unit, rule.attribBits);
-    case Family::MatrixMode: c.matrixMode = first; return set(at, part(c.cells, Part::MatrixMode), rule.attribBits);
-    case Family::ListBase: c.listBase = first; return set(at, part(c.cells, Part::ListBase), rule.attribBits);
-    case Family::ClientActiveTexture:
+    switch (rule.kind) {
+    case EffectKind::Cap: return cap(at, rule, r);
+    case EffectKind::Limit: limit(at, r); break;
+    case EffectKind::ActiveTexture: c.unit = first - GL_TEXTURE0; return set(at, unit, rule.attribBits);
+    case EffectKind::MatrixMode: c.matrixMode = first; return set(at, part(c.cells, Part::MatrixMode), rule.attribBits);
+    case EffectKind::ListBase: c.listBase = first; return set(at, part(c.cells, Part::ListBase), rule.attribBits);
+    case EffectKind::ClientActiveTexture:
         c.clientUnit = first - GL_TEXTURE0;
         return setClient(at, part(c.cells, Part::ClientUnit));
-    case Family::ClientCell: return setClient(at, cell(at, c.cells, r.opcode, rule, r));
-    case Family::AttribPush: return pushAttribs(at, c.attribs, Part::AttribLevel, first);
-    case Family::AttribPop: return popAttribs(at, c.attribs, Part::AttribLevel);
-    case Family::ClientPush: return pushAttribs(at, c.clientAttribs, Part::ClientAttribLevel, first);
-    case Family::ClientPop: return popAttribs(at, c.clientAttribs, Part::ClientAttribLevel);
-    case Family::UnitCell:
-    case Family::UnitCellOfMatrix:
+    case EffectKind::ClientCell: return setClient(at, cell(at, c.cells, r.opcode, rule, r));
+    case EffectKind::AttribPush: return pushAttribs(at, c.attribs, Part::AttribLevel, first);
+    case EffectKind::AttribPop: return popAttribs(at, c.attribs, Part::AttribLevel);
+    case EffectKind::ClientPush: return pushAttribs(at, c.clientAttribs, Part::ClientAttribLevel, first);
+    case EffectKind::ClientPop: return popAttribs(at, c.clientAttribs, Part::ClientAttribLevel);
+    case EffectKind::UnitCell:
+    case EffectKind::UnitCellOfMatrix:
         at.effect.read(unit);
-        if (rule.family == Family::UnitCellOfMatrix) at.effect.read(part(c.key, Part::Matrices));
+        if (rule.kind == EffectKind::UnitCellOfMatrix) at.effect.read(part(c.key, Part::Matrices));
         return set(at, cell(at, part(c.cells, Part::TextureUnit, c.unit), r.opcode, rule, r), rule.attribBits);
-    case Family::CellOfAll: // the raster position depends on all vertex state and has several setters
+    case EffectKind::CellOfAll: // the raster position depends on all vertex state and has several setters
         readState(at);
         return set(at, part(c.cells, Part::Config), rule.attribBits);
-    case Family::CellOfMatrix: at.effect.read(part(c.key, Part::Matrices)); break;
-    case Family::PatternedCell: readState(at); break; // the pattern may be in a buffer
-    case Family::Color:
+    case EffectKind::CellOfMatrix: at.effect.read(part(c.key, Part::Matrices)); break;
+    case EffectKind::PatternedCell: readState(at); break; // the pattern may be in a buffer
+    case EffectKind::Color:
         // With GL_COLOR_MATERIAL it also sets the material, which stays after glDisable even if the colour is replaced.
         if (c.limits.colorMaterial) colorMaterial(at);
         return set(at, part(c.cells, Part::Color), rule.attribBits); // one cell for all setters
@@ -114,7 +114,7 @@ void GlStateTracker::colorMaterial(At& at) {
     set(at, part(c.cells, Part::ColorMaterial, c.colorMaterialMode), GL_LIGHTING_BIT | kMaybe);
 }
 
-void GlStateTracker::cap(At& at, const Rule& rule, const RecordView& r) {
+void GlStateTracker::cap(At& at, const EffectRule& rule, const RecordView& r) {
     ContextNames& c = *at.context;
     const uint32_t what = argumentWord(r, 0);
     const bool on = !hasTrait(r.opcode, Trait::TurnsOff);
@@ -156,7 +156,7 @@ void GlStateTracker::limit(At& at, const RecordView& r) {
 
 // ---- matrices
 
-void GlStateTracker::matrix(At& at, const Rule& rule, const RecordView&) {
+void GlStateTracker::matrix(At& at, const EffectRule& rule, const RecordView&) {
     ContextNames& c = *at.context;
     const bool ofUnit = c.matrixMode == GL_TEXTURE;
     const uint64_t id = uint64_t{c.matrixMode} << 32 | (ofUnit ? c.unit : 0);
@@ -168,10 +168,10 @@ void GlStateTracker::matrix(At& at, const Rule& rule, const RecordView&) {
         if (ofUnit) at.effect.read(part(c.cells, Part::ActiveUnit));
         at.effect.read(part(level, Part::Made)); // depends on the pushes so far
     };
-    switch (rule.family) {
-    case Family::MatrixLoad: at.effect.kill(value); return readPlace();
-    case Family::MatrixChange: at.effect.write(value); return readPlace();
-    case Family::MatrixPush:
+    switch (rule.kind) {
+    case EffectKind::MatrixLoad: at.effect.kill(value); return readPlace();
+    case EffectKind::MatrixChange: at.effect.write(value); return readPlace();
+    case EffectKind::MatrixPush:
         ++depth;
         at.effect.kill(part(stack, Part::MatrixLevel, depth));
         at.effect.read(value);
@@ -262,4 +262,4 @@ void GlStateTracker::popAttribs(At& at, std::vector<SavedAttribs>& stack, Part k
     c.limits.unknown = now.unknown || saved.limits.unknown || now.discard != saved.limits.discard;
 }
 
-} // namespace mural::trace
+} // namespace mural::snapshot

@@ -5,7 +5,7 @@
 #include <deque>
 #include <vector>
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/args.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
@@ -14,7 +14,7 @@ namespace mural::trace {
 class StreamBlobs : public BlobQueue {
 public:
     // Returns true if the record was a part of a blob, and false, with malformed(), if it was invalid.
-    bool take(const RecordView& r) {
+    bool take(const wire::RecordView& r) {
         taken_.clear();
         Args in(r.arguments, *this);
         if (r.opcode == wire::kOpBlobBegin) {

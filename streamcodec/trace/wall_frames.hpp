@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/main_window.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 
@@ -16,12 +16,12 @@ namespace mural::trace {
 class WallFrames {
 public:
     // Returns the number of the frame that the record ends; 0: none.
-    int64_t record(uint32_t stream, const RecordView& r) {
-        const uint32_t client = wire::clientOf(stream), window = argumentWord(r, 0);
+    int64_t record(uint32_t stream, const wire::RecordView& r) {
+        const uint32_t client = wire::clientOf(stream), window = wire::argumentWord(r, 0);
         switch (r.opcode) {
         case wire::kOpWindow:
-            windows_[{client, window}] = {argumentWord(r, 1), argumentWord(r, 2),
-                                          uint64_t{argumentWord(r, 7)} << 32 | argumentWord(r, 6)};
+            windows_[{client, window}] = {wire::argumentWord(r, 1), wire::argumentWord(r, 2),
+                                          uint64_t{wire::argumentWord(r, 7)} << 32 | wire::argumentWord(r, 6)};
             return 0;
         case wire::kOpDestroyWindow:
             windows_.erase({client, window});
@@ -31,7 +31,7 @@ public:
         case wire::kOpFrontPicture: break;
         default: return 0;
         }
-        if (argumentWord(r, 1) == wire::kUnseenFrame) return 0;
+        if (wire::argumentWord(r, 1) == wire::kUnseenFrame) return 0;
         const auto found = windows_.find({client, window});
         const Window at = found == windows_.end() ? Window{} : found->second;
         const int64_t frame = mainWindow_.swapped(client, window, at.width, at.height, at.native);
@@ -40,8 +40,8 @@ public:
     }
     // Processes all records of a packet; returns the number of frames that it ends.
     uint32_t packet(uint32_t stream, std::span<const std::byte> payload) {
-        RecordWalk walk(payload);
-        RecordView r;
+        wire::RecordWalk walk(payload);
+        wire::RecordView r;
         uint32_t ended = 0;
         while (walk.next(r)) ended += record(stream, r) > 0;
         return ended;

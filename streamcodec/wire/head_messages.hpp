@@ -13,11 +13,11 @@ enum class HeadCommand : uint32_t {
     // json: {"pictures", "swaps"}: HOST:PORT of each node that composites pictures, or leads a swap barrier, by its
     // number.
     Exchange = 4,
-    // u32 view, u32 node, u32 first, u32 life, u32 absent*: the restarted node, which has received everything before,
-    // is a member from here on. All members reply ViewReached.
-    //   first    1: no other member has phases; the phases restart
-    //   life     incarnation of the node
-    //   absent   nodes that are no members; the node's picture is composited without them
+    // u32 view, u32 node, u32 first, u32 incarnation, u32 absent*: the restarted node, which has received everything
+    // before, is a member from here on. All members reply ViewReached.
+    //   first        1: no other member has phases; the phases restart
+    //   incarnation  of the node
+    //   absent       nodes that are no members; the node's picture is composited without them
     Activate = 5,
     // u32 number, u32 draws: to a node in resync, which replies Synchronized. draws = 1: it draws each window from its
     // next frame on.

@@ -7,19 +7,19 @@ namespace mural::wire {
 
 // Node → head.
 enum class NodeMessage : uint32_t {
-    Ready = 1,         // json: host, pid, renderer, glVersion, extensions, threads
-    ReplyPart = 2,     // ReplyPartHeader + bytes
-    FrameDone = 3,     // FrameDoneMessage
-    Picture = 4,       // PictureHeader + rows, if the picture store is not shared memory
-    Log = 5,           // text: one line for the user
-    Goodbye = 6,       // json: totals (commands, GL errors, replay time)
+    Ready = 1,     // json: host, pid, renderer, glVersion, maxPixels, extensions, placement, addresses of its listeners
+    ReplyPart = 2, // ReplyPartHeader + bytes
+    FrameDone = 3, // FrameDoneMessage
+    Picture = 4,   // PictureHeader + rows of 4 bytes per pixel; with a codec PackedPicture instead
+    Log = 5,       // text: one line for the user
+    Goodbye = 6,   // json: totals (commands, GL errors, replay time)
     WindowGone = 7,    // WindowGoneMessage: the program has destroyed the window, or ended; after its last FrameDone
     Alive = 8,         // no contents: heartbeat every few seconds, also while the replay is busy
     DriverEvent = 9,   // DriverEvent + text: a driver event
     ViewReached = 10,  // u32 view, ClientFrame*: later messages were sent after this Activate
     Synchronized = 11, // SynchronizedMessage: the node has reached that Synchronize
     // u32 number of the RequestPhase, then the state of all windows there: WindowTurn*, or, of nodes whose areas move,
-    // u32 windows, WindowAreas of each, Areas*: the latest first, then all that the windows refer to.
+    // u32 windows, WindowAreas of each, ViewportAssignment*: the latest first, then all that the windows refer to.
     Turns = 12,
     PackedPicture = 13, // PictureHeader + the rows as encoded by PicturePacker
 };
@@ -37,8 +37,8 @@ struct FrameDoneMessage {
     uint32_t width; // of the window, pixels
     uint32_t height;
     uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
-    uint32_t areas;    // number of the Areas that divide its picture; 0: those of Setup
-    uint32_t shares;   // number of the Shares that divide its draws; 0: those of Setup
+    uint32_t areas;    // number of the ViewportAssignment that divides its picture; 0: of Setup
+    uint32_t shares;   // number of the RangeAssignment that divides its draws; 0: of Setup
     uint64_t busyNs;   // work since the previous frame, without waits and sending; CPU time where nodes share cores
     uint64_t replayNs; // CPU time of the replay thread since the previous frame
     uint64_t readbackNs;
@@ -53,7 +53,7 @@ constexpr uint32_t kDrawnWhole = 1;
 constexpr uint32_t kKeepsPicture = 2;
 // No draw of the frame was divided between the nodes that draw ranges.
 constexpr uint32_t kNotSplit = 4;
-// The window has not been cleared completely since Areas were announced long ago.
+// The window has not been cleared completely since a ViewportAssignment was announced long ago.
 constexpr uint32_t kKeepsAreas = 8;
 
 // Progress of a program when a node became a member.
@@ -76,7 +76,7 @@ struct WindowTurn {
 static_assert(sizeof(WindowTurn) == 40);
 constexpr uint32_t kTurnOver = 1, kTurnUndecided = 2, kTurnFresh = 4, kTurnForGood = 8;
 
-// Numbers of the Areas that divide a window (nodes/replay/features/dynamic_tiles.cpp).
+// Numbers of the viewport assignments that divide a window (nodes/replay/features/dynamic_tiles.cpp).
 struct WindowAreas {
     uint32_t client;
     uint32_t window;

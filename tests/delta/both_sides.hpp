@@ -29,34 +29,34 @@ inline Limits tinyLimits() {
 class BothSides {
 public:
     explicit BothSides(const Limits& limits)
-        : packer(limits), unpacker(limits), encoder_([](size_t) { return int64_t{0}; }) {}
+        : encoder(limits), decoder(limits), batchEncoder_([](size_t) { return int64_t{0}; }) {}
 
     // Sends one batch as a frame and returns its encoded size.
     size_t send(const std::vector<Packet>& packets) {
-        for (const Packet& p : packets) packer.add(p.stream, p.bytes, walked);
-        staged = packer.stagedBytes();
-        auto batch = encoder_.encode(packer.finish(), 8, packer.plain());
+        for (const Packet& p : packets) encoder.add(p.stream, p.bytes, walked);
+        staged = encoder.stagedBytes();
+        auto batch = batchEncoder_.encode(encoder.finish(), 8, encoder.plain());
         if (!batch) {
             ADD_FAILURE() << batch.error().message;
             return 0;
         }
         const Bytes wire(batch->begin(), batch->end());
-        packer.clear();
-        packer.beginFrame(packer.plain(), goesOn);
+        encoder.clear();
+        encoder.beginFrame(encoder.plain(), goesOn);
         BatchHeadReader head;
         size_t at = 0;
         while (at < wire.size() && !head.add(wire[at++])) {}
         EXPECT_EQ(head.head().sizeBytes, wire.size() - at);
-        auto sections = decoder_.decode(head.head(), std::span(wire).subspan(at));
+        auto sections = batchDecoder_.decode(head.head(), std::span(wire).subspan(at));
         if (!sections) {
             ADD_FAILURE() << sections.error().message;
             return 0;
         }
-        unpacker.begin(*sections);
+        decoder.begin(*sections);
         for (const Packet& sent : packets) {
             Packet got;
             std::span<const std::byte> bytes;
-            auto more = unpacker.next(got.stream, bytes);
+            auto more = decoder.next(got.stream, bytes);
             if (!more || !*more) {
                 ADD_FAILURE() << (more ? "a packet is missing" : more.error().message);
                 return 0;
@@ -66,7 +66,7 @@ public:
         }
         Packet none;
         std::span<const std::byte> bytes;
-        auto more = unpacker.next(none.stream, bytes);
+        auto more = decoder.next(none.stream, bytes);
         EXPECT_TRUE(more && !*more) << "more than was sent";
         return wire.size();
     }
@@ -74,13 +74,13 @@ public:
     bool goesOn = false;                   // continues the previous frame
     size_t send(Bytes packet) { return send({Packet{0x10000, std::move(packet)}}); }
 
-    DeltaEncoder packer;
-    DeltaDecoder unpacker;
+    DeltaEncoder encoder;
+    DeltaDecoder decoder;
     uint64_t staged = 0; // of the last batch
 
 private:
-    BatchEncoder encoder_;
-    BatchDecoder decoder_;
+    BatchEncoder batchEncoder_;
+    BatchDecoder batchDecoder_;
 };
 
 // A record of `words` words including the header; `fill` generates the others.

@@ -4,17 +4,17 @@
 namespace mural::delta::testing {
 namespace {
 
-std::string problemOf(DeltaDecoder& unpacker, const std::function<void(ControlWriter&)>& write,
+std::string problemOf(DeltaDecoder& decoder, const std::function<void(ControlWriter&)>& write,
                       size_t literalBytes = 0) {
     RangeWriter coder;
     ControlWriter control(coder);
     write(control);
     const Bytes literals(literalBytes);
-    unpacker.begin({coder.finish(), literals, literals, literals, literals}); // spans of zeros: one word each
+    decoder.begin({coder.finish(), literals, literals, literals, literals}); // spans of zeros: one word each
     for (int packets = 0; packets < 1000; ++packets) {
         uint32_t stream = 0;
         std::span<const std::byte> bytes;
-        auto more = unpacker.next(stream, bytes);
+        auto more = decoder.next(stream, bytes);
         if (!more) return more.error().message;
         if (!*more) return "";
     }
@@ -22,8 +22,8 @@ std::string problemOf(DeltaDecoder& unpacker, const std::function<void(ControlWr
 }
 
 std::string problemOf(const std::function<void(ControlWriter&)>& write, size_t literalBytes = 0) {
-    DeltaDecoder unpacker(tinyLimits());
-    return problemOf(unpacker, write, literalBytes);
+    DeltaDecoder decoder(tinyLimits());
+    return problemOf(decoder, write, literalBytes);
 }
 
 TEST(DeltaDecoder, describesErrors) {
@@ -133,12 +133,12 @@ TEST(DeltaDecoder, limitsPacketsAndBatches) {
         problemOf([](ControlWriter& c) { c.put(ControlOp::Bytes), c.number(UINT32_MAX); }, 1024).find("too large"),
         std::string::npos);
     Limits limits = tinyLimits();
-    DeltaDecoder unpacker(limits);
+    DeltaDecoder decoder(limits);
     const auto many = [](ControlWriter& c) {
         c.put(DeltaOp::NewText, 256);
         for (int i = 0; i < 100; ++i) c.put(DeltaOp::Seek, 1), c.put(DeltaOp::Run, 1000), c.put(ControlOp::End);
     };
-    EXPECT_NE(problemOf(unpacker, many, 1024).find("too large"), std::string::npos);
+    EXPECT_NE(problemOf(decoder, many, 1024).find("too large"), std::string::npos);
 }
 
 } // namespace

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "tests/delta/both_sides.hpp"
 
 namespace mural::delta::testing {
@@ -134,9 +134,9 @@ TEST(DeltaEncoder, sendsChangedWordsOnly) {
         return bytes;
     };
     sides.send(frame(1));
-    const uint64_t before = sides.packer.counts().patches;
+    const uint64_t before = sides.encoder.counts().patches;
     sides.send(frame(2));
-    EXPECT_EQ(sides.packer.counts().patches - before, 99u); // object 0 is unchanged
+    EXPECT_EQ(sides.encoder.counts().patches - before, 99u); // object 0 is unchanged
     EXPECT_LE(sides.staged, 99u * 6 + 12);
 }
 
@@ -210,7 +210,7 @@ TEST(DeltaEncoder, findsPagesWhileShortRecordsArePlain) {
         return sides.send(packetsOf(frame));
     };
     for (uint32_t number = 0; number < 3; ++number) send(number);
-    sides.packer.beginFrame(true);
+    sides.encoder.beginFrame(true);
     send(3);
     EXPECT_LE(send(4), 6000u);
     EXPECT_LE(send(5), 6000u);
@@ -234,7 +234,7 @@ TEST(DeltaEncoder, sendsChangesOfPlainRunsOfOneSize) {
                 packet.bytes[random() % (packet.bytes.size() / 20) * 20 + 8] ^= std::byte{1};
     };
     const auto send = [&] {
-        sides.packer.beginFrame(true);
+        sides.encoder.beginFrame(true);
         return sides.send(frame);
     };
     EXPECT_GE(send(), 20'000u);
@@ -265,7 +265,7 @@ TEST(DeltaEncoder, preservesPlainRunsOfManySizes) {
     Bytes all;
     for (int i = 0; i < 3000; ++i) addRecord(all, 99, 6, [&] { return static_cast<uint32_t>(random()); });
     for (int frame = 0; frame < 60; ++frame) {
-        sides.packer.beginFrame(true);
+        sides.encoder.beginFrame(true);
         std::vector<Packet> packets;
         for (int i = 0; i < 50; ++i) {
             const size_t records = 20 + random() % (frame % 2 == 0 ? 40 : 3000);
@@ -299,10 +299,10 @@ TEST(DeltaEncoder, preservesPlainRecordsWithAnyWalkResult) {
           RecordOffsets{50, 12, {size - 12}}, RecordOffsets{50, 12, {0, 24, 60}}}) {
         BothSides sides(Limits{.cacheBytes = 1 << 20});
         sides.walked = &offsets;
-        sides.packer.beginFrame(true);
+        sides.encoder.beginFrame(true);
         for (int i = 0; i < 3; ++i) sides.send(packet);
-        EXPECT_EQ(sides.packer.counts().records, 150u);
-        EXPECT_FALSE(sides.packer.endsInValue());
+        EXPECT_EQ(sides.encoder.counts().records, 150u);
+        EXPECT_FALSE(sides.encoder.endsInValue());
     }
 }
 
@@ -316,18 +316,18 @@ TEST(DeltaEncoder, findsLongRecordsAmongPlainOnesByTheWalkResult) {
         return bytes;
     };
     RecordOffsets offsets{};
-    trace::RecordView r;
+    wire::RecordView r;
     const Bytes first = frame(1);
-    for (trace::RecordWalk walk(first); walk.next(r) || (offsets = *walk.whole(), false);) {}
+    for (wire::RecordWalk walk(first); walk.next(r) || (offsets = *walk.whole(), false);) {}
     ASSERT_EQ(offsets.longAt.size(), 1u);
-    BothSides untold{Limits{}}, sides{Limits{}};
+    BothSides withoutOffsets{Limits{}}, sides{Limits{}};
     sides.walked = &offsets;
-    for (BothSides* each : {&untold, &sides}) each->packer.beginFrame(true);
+    for (BothSides* each : {&withoutOffsets, &sides}) each->encoder.beginFrame(true);
     for (uint32_t number = 1; number < 6; ++number)
-        EXPECT_EQ(sides.send(frame(number)), untold.send(frame(number))) << number;
-    EXPECT_EQ(sides.packer.counts().pageHits, 4 * 3u);
-    EXPECT_EQ(sides.packer.counts().pageHits, untold.packer.counts().pageHits);
-    EXPECT_EQ(sides.packer.counts().records, untold.packer.counts().records);
+        EXPECT_EQ(sides.send(frame(number)), withoutOffsets.send(frame(number))) << number;
+    EXPECT_EQ(sides.encoder.counts().pageHits, 4 * 3u);
+    EXPECT_EQ(sides.encoder.counts().pageHits, withoutOffsets.encoder.counts().pageHits);
+    EXPECT_EQ(sides.encoder.counts().records, withoutOffsets.encoder.counts().records);
 }
 
 // A part of the page changes in each frame, or in some of them. It keeps its slot, and the store keeps other pages.
@@ -344,9 +344,9 @@ TEST(DeltaEncoder, usesNoMemoryForAPageThatChangesConstantly) {
             std::memcpy(changing.data() + 2 * kPageBytes, &state, sizeof state);
             sides.send({{0x20000, textureOf(changing)}});
         }
-        const uint64_t before = sides.packer.counts().newPages;
+        const uint64_t before = sides.encoder.counts().newPages;
         sides.send({{0x10000, other}});
-        EXPECT_EQ(sides.packer.counts().newPages, before) << framesAsItIs;
+        EXPECT_EQ(sides.encoder.counts().newPages, before) << framesAsItIs;
     }
 }
 

@@ -29,7 +29,7 @@ Bytes apartOf(const Bytes& piece, uint8_t filter) {
     return apart;
 }
 
-TEST(PixelColours, subtractsTheSecondOfFourBytesFromTheFirstAndThird) {
+TEST(GreenSubtraction, subtractsTheSecondOfFourBytesFromTheFirstAndThird) {
     const Bytes piece = noise(1), apart = apartOf(piece, kColoursOfFour);
     for (size_t i = 0; i < kPageBytes; i += 4) {
         ASSERT_EQ(at(apart, i), static_cast<uint8_t>(at(piece, i) - at(piece, i + 1))) << i;
@@ -39,7 +39,7 @@ TEST(PixelColours, subtractsTheSecondOfFourBytesFromTheFirstAndThird) {
     }
 }
 
-TEST(PixelColours, groupsEachChannelOfThreeBytes) {
+TEST(GreenSubtraction, groupsEachChannelOfThreeBytes) {
     test::forEachTarget([](const char* target) {
         for (size_t before = 0; before < 3; ++before) {
             const Bytes piece = noise(2), apart = apartOf(piece, static_cast<uint8_t>(kColoursOfThree + before));
@@ -58,7 +58,7 @@ TEST(PixelColours, groupsEachChannelOfThreeBytes) {
     });
 }
 
-TEST(PixelColours, invertsAllTransforms) {
+TEST(GreenSubtraction, invertsAllTransforms) {
     test::forEachTarget([](const char* target) {
         for (uint32_t seed = 0; seed < 20; ++seed) {
             const Bytes piece = noise(seed);

@@ -26,7 +26,7 @@ Bytes repeated(const Bytes& bytes, size_t sizeBytes) {
     return all;
 }
 
-TEST(CountedCodec, roundTripsAllData) {
+TEST(HuffmanCodec, roundTripsAllData) {
     HuffmanCompressor compressor;
     HuffmanDecompressor decompressor;
     for (const Bytes& bytes : {Bytes{}, left(1, 1), left(300, 2), left(5000, 3), left(700'000, 4),
@@ -42,14 +42,14 @@ TEST(CountedCodec, roundTripsAllData) {
 }
 
 // The codes are within 1 % of the entropy plus the table: 4.63 bits for each of these.
-TEST(CountedCodec, approachesTheEntropy) {
+TEST(HuffmanCodec, approachesTheEntropy) {
     HuffmanCompressor compressor;
     Bytes coded;
     ASSERT_TRUE(compressor.compress(left(100'000, 6), coded));
     EXPECT_NEAR(static_cast<double>(coded.size()), 100'000 * 4.63 / 8, 900);
 }
 
-TEST(CountedCodec, suitsUnevenFrequenciesWithoutRepetitions) {
+TEST(HuffmanCodec, suitsUnevenFrequenciesWithoutRepetitions) {
     HuffmanCompressor compressor;
     EXPECT_TRUE(compressor.suits(left(100'000, 7)));
     EXPECT_TRUE(compressor.suits(left(4096, 7)));

@@ -83,7 +83,7 @@ void compare(const Limits& limits, uint32_t seed, uint32_t streams, int frames) 
             packets.push_back({stream, Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(cut))});
             packets.push_back({stream, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(cut), bytes.end())});
         }
-        if (frame % 8 == 0) sides.packer.beginFrame(random() % 3 == 0);
+        if (frame % 8 == 0) sides.encoder.beginFrame(random() % 3 == 0);
         sides.send(packets);
     }
 }

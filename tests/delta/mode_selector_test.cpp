@@ -132,28 +132,28 @@ TEST(ModeSelector, becomesPlainAtOnceAfterAnExpensiveSecondFrame) {
 }
 
 // In `batches` batches, most records became plain after many new ones.
-void leftOutOf(ModeSelector& choice, int batches) {
-    for (int i = 0; i < batches; ++i) choice.leftOut();
+void addMostlyPlain(ModeSelector& choice, int batches) {
+    for (int i = 0; i < batches; ++i) choice.mostlyPlain();
 }
 
 TEST(ModeSelector, becomesPlainWhereAllIsNewAfterTheFirstFrame) {
     ModeSelector choice;
-    choice.leftOut();
+    choice.mostlyPlain();
     EXPECT_FALSE(choice.plain()) << "all of the first is new";
-    choice.leftOut();
+    choice.mostlyPlain();
     EXPECT_TRUE(choice.plain());
     ModeSelector other;
     plainOf(other, {3000, 40'000}, {5000, 50'000}, 1, 1);
-    other.leftOut();
+    other.mostlyPlain();
     EXPECT_TRUE(other.plain());
 }
 
 TEST(ModeSelector, triesSoonWhereNewRecordsRepeat) {
     ModeSelector choice;
-    leftOutOf(choice, 2);
+    addMostlyPlain(choice, 2);
     EXPECT_LE(plainOf(choice, {10, 40'000}, {300, 100'000}, 60, 20), 0);
     ModeSelector other; // otherwise not soon
-    leftOutOf(other, 2);
+    addMostlyPlain(other, 2);
     EXPECT_EQ(plainOf(other, {3000, 450'000}, {8000, 110'000}, 120, 120), 120);
 }
 
@@ -165,7 +165,7 @@ TEST(ModeSelector, endsATrialWithOmittedRecords) {
         if (choice.plain())
             choice.measured(kRawBytes, 0, 5000, 110'000, kLinkNsPerByte);
         else
-            ++tries, choice.leftOut();
+            ++tries, choice.mostlyPlain();
     }
     EXPECT_GE(tries, 1);
     EXPECT_LE(tries, 16);

@@ -20,7 +20,7 @@ TEST(NoveltyDetector, decreasesTheLimitAfterEachPlainRest) {
     novelty.packetBegins(1, 0, kLong);
     EXPECT_EQ(examinedRecords(novelty), 64);
     for (const int expected : {2, 1, 0, 0}) {
-        novelty.leaveOut(100);
+        novelty.sendRestPlain(100);
         novelty.packetBegins(1, 100, kLong);
         EXPECT_EQ(examinedRecords(novelty), expected);
     }
@@ -32,7 +32,7 @@ TEST(NoveltyDetector, decreasesTheLimitAfterEachPlainRest) {
     novelty.packetBegins(1, 100, kLong);
     EXPECT_EQ(examinedRecords(novelty), 32);
     for (const int expected : {16, 8, 4, 4}) {
-        novelty.leaveOut(100);
+        novelty.sendRestPlain(100);
         novelty.packetBegins(1, 100, kLong);
         EXPECT_EQ(examinedRecords(novelty), expected);
     }
@@ -44,11 +44,11 @@ TEST(NoveltyDetector, examinesSomeInEachFrame) {
     novelty.packetBegins(1, 0, kLong);
     for (int packet = 0; packet < 10; ++packet) {
         (void)examinedRecords(novelty);
-        novelty.leaveOut(70);
+        novelty.sendRestPlain(70);
         novelty.packetBegins(1, 70, kLong);
     }
     ASSERT_EQ(examinedRecords(novelty), 0);
-    novelty.leaveOut(70);
+    novelty.sendRestPlain(70);
     novelty.packetBegins(2, 70, kLong);
     EXPECT_EQ(examinedRecords(novelty), 4);
 }
@@ -57,12 +57,12 @@ TEST(NoveltyDetector, examinesAllWhenOmittedRecordsRepeat) {
     NoveltyDetector novelty;
     novelty.packetBegins(1, 0, kLong);
     (void)examinedRecords(novelty);
-    novelty.leaveOut(64);
+    novelty.sendRestPlain(64);
     novelty.packetBegins(2, 64, kLong);
     novelty.found(0, 64); // as in the log
     novelty.another(64);
     EXPECT_EQ(examinedRecords(novelty), 64); // the first frame loads what others draw
-    novelty.leaveOut(128);
+    novelty.sendRestPlain(128);
     novelty.packetBegins(3, 128, kLong);
     novelty.found(64, 64);
     novelty.another(128);

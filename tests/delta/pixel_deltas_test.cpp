@@ -35,7 +35,7 @@ uint8_t behind(const Bytes& piece, size_t i, size_t pixelBytes) {
                                 (i < pixelBytes ? 0 : static_cast<uint8_t>(piece[i - pixelBytes])));
 }
 
-TEST(PixelWords, computesAndInvertsByteDifferences) {
+TEST(PixelDeltas, computesAndInvertsByteDifferences) {
     test::forEachTarget([](const char* target) {
         for (uint32_t seed = 0; seed < 40; ++seed) {
             const Bytes piece = pieceOf(seed);
@@ -61,7 +61,7 @@ TEST(PixelWords, computesAndInvertsByteDifferences) {
     });
 }
 
-TEST(PixelWords, measuresEqualRoughnessWithAllInstructionSets) {
+TEST(PixelDeltas, measuresEqualRoughnessWithAllInstructionSets) {
     for (uint32_t seed = 0; seed < 40; ++seed) {
         const Bytes piece = pieceOf(seed);
         const auto first = roughness(piece.data());
@@ -70,7 +70,7 @@ TEST(PixelWords, measuresEqualRoughnessWithAllInstructionSets) {
     }
 }
 
-TEST(PixelWords, findsThePixelSizeOfASlope) {
+TEST(PixelDeltas, findsThePixelSizeOfASlope) {
     for (size_t k = 1; k < kByteFilters; ++k) {
         const size_t pixelBytes = kPixelFilters[k];
         Bytes piece(kPageBytes);
@@ -83,7 +83,7 @@ TEST(PixelWords, findsThePixelSizeOfASlope) {
 }
 
 // Random brightness of one hue: only the common part of the channels changes.
-TEST(PixelWords, subtractsTheCommonPartForPixelsOfOneHue) {
+TEST(PixelDeltas, subtractsTheCommonPartForPixelsOfOneHue) {
     for (size_t k = kByteFilters; k < kPixelFilters.size(); ++k) {
         const size_t pixelBytes = kPixelFilters[k] == kColoursOfFour ? 4 : 3,
                      before = pixelBytes == 4 ? 0 : k - kByteFilters - 1;
@@ -103,7 +103,7 @@ TEST(PixelWords, subtractsTheCommonPartForPixelsOfOneHue) {
     }
 }
 
-TEST(PixelWords, roundTripsPlanesOfAnyLength) {
+TEST(PixelDeltas, roundTripsPlanesOfAnyLength) {
     test::forEachTarget([](const char* target) {
         std::mt19937 random(7);
         for (size_t count = 0; count < 300; ++count) {

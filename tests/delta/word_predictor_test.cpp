@@ -11,7 +11,7 @@ namespace {
 
 using Words = std::vector<uint32_t>;
 
-// Encodes and decodes frames of one item; returns the size of each.
+// Encodes and decodes frames of one entry; returns the size of each.
 class OneItem {
 public:
     explicit OneItem(uint32_t modelWords = 4096) : writing_(modelWords), reading_(modelWords) {}

@@ -21,7 +21,7 @@ class CommandFilterTest : public testing::Test {
 protected:
     void send(const PacketBuilder& p, uint32_t stream = kStream) { filter_.add(stream, p.bytes()); }
     void begin() {
-        filter_.leaveOutSmall(true);
+        filter_.setDropsRedundant(true);
         send(PacketBuilder()
                  .context(1)
                  .window(1, 20, 10)
@@ -50,8 +50,8 @@ protected:
     CommandFilter filter_{kBound, [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets*) {
                               seen_.packet(stream, payload);
                               streams_.push_back(stream);
-                              trace::RecordWalk walk(payload);
-                              for (trace::RecordView r; walk.next(r);) opcodes_.push_back(r.opcode);
+                              wire::RecordWalk walk(payload);
+                              for (wire::RecordView r; walk.next(r);) opcodes_.push_back(r.opcode);
                           }};
 };
 
@@ -169,10 +169,10 @@ TEST_F(CommandFilterTest, releasesEverythingForAnUnknownCommand) {
     EXPECT_EQ(seen_.uploads(), 2u) << "from then on all goes at once";
 }
 
-// Records of a group that is no longer followed are skipped at once, except those that leave the group.
+// Records of a group that is no longer tracked are skipped at once, except those that leave the group.
 TEST_F(CommandFilterTest, defersAgainInAContextWithoutSharing) {
     begin();
-    filter_.leaveOutSmall(false);
+    filter_.setDropsRedundant(false);
     send(PacketBuilder().record(op::glClearTexImage, {1, 0, GL_RGBA, GL_UNSIGNED_BYTE, record::kTagNull}));
     send(draw()
              .record(op::glBindTexture, {GL_TEXTURE_2D, 1})
@@ -380,7 +380,7 @@ TEST_F(CommandFilterTest, dropsNoSmallStateWhereContextsShare) {
 // Called lists set state and bind nothing. The first frame ends with other bindings than the second starts with.
 TEST_F(CommandFilterTest, followsFramesThatEndDifferently) {
     begin();
-    filter_.leaveOutSmall(false);
+    filter_.setDropsRedundant(false);
     SeenModel whole;
     const auto give = [&](const PacketBuilder& p) {
         whole.packet(kStream, p.bytes());
@@ -414,7 +414,7 @@ TEST_F(CommandFilterTest, followsFramesThatEndDifferently) {
 
 TEST_F(CommandFilterTest, skipsRepeatedFrames) {
     begin();
-    filter_.leaveOutSmall(false);
+    filter_.setDropsRedundant(false);
     const auto frame = [&](uint32_t number, uint32_t texture) {
         PacketBuilder p;
         for (uint32_t i = 0; i < 50; ++i)
@@ -441,7 +441,7 @@ TEST_F(CommandFilterTest, skipsRepeatedFrames) {
 // Each frame ends with another texture bound, as in programs that move one object; the next frame binds its own first.
 TEST_F(CommandFilterTest, skipsFramesThatLeaveOtherTexturesBound) {
     begin();
-    filter_.leaveOutSmall(false);
+    filter_.setDropsRedundant(false);
     constexpr uint32_t kEnds = 3, kFirst = 10;
     PacketBuilder made = PacketBuilder().record(op::glGenTextures, {kEnds, 4 * kEnds, kFirst, kFirst + 1, kFirst + 2});
     for (uint32_t i = 0; i < kEnds; ++i) made.record(op::glBindTexture, {GL_TEXTURE_2D, kFirst + i});
@@ -474,7 +474,7 @@ TEST_F(CommandFilterTest, skipsFramesThatLeaveOtherTexturesBound) {
 // Nodes reject them; the head continues.
 TEST_F(CommandFilterTest, survivesDamagedPackets) {
     begin();
-    filter_.leaveOutSmall(false);
+    filter_.setDropsRedundant(false);
     const auto frame = [](uint32_t number) {
         PacketBuilder p;
         for (uint32_t i = 0; i < 20; ++i)
@@ -540,12 +540,12 @@ TEST_F(CommandFilterTest, examinesUniformsOnlyWithSmallState) {
     const auto sets = [&](uint32_t value) { send(PacketBuilder().record(op::glUniform1f, {0, value})); };
     sets(1);
     EXPECT_EQ(countOf(op::glUniform1f), 0u) << "it waits";
-    filter_.leaveOutSmall(false);
+    filter_.setDropsRedundant(false);
     EXPECT_EQ(countOf(op::glUniform1f), 1u) << "the next one will not";
     sets(2);
     sets(2);
     EXPECT_EQ(countOf(op::glUniform1f), 3u);
-    filter_.leaveOutSmall(true);
+    filter_.setDropsRedundant(true);
     sets(1);
     send(PacketBuilder().record(op::glUseProgram, {5}).record(op::glUniform1f, {0, 1}).append(draw()));
     EXPECT_GE(countOf(op::glUniform1f), 4u) << "what was set meanwhile is not taken for what it was before";
@@ -573,15 +573,15 @@ TEST_F(CommandFilterTest, followsListsThatSetState) {
 
 // Draw records of a list are skipped together; glBegin and glEnd are paired nevertheless, even across packets.
 TEST_F(CommandFilterTest, pairsPrimitivesOfLists) {
-    for (const bool leavesOut : {true, false}) {
+    for (const bool dropsRedundant : {true, false}) {
         for (const bool ends : {true, false}) {
             SCOPED_TRACE(testing::Message()
-                         << "small state left out: " << leavesOut << ", the last primitive ends: " << ends);
+                         << "redundant state is dropped: " << dropsRedundant << ", the last primitive ends: " << ends);
             SeenModel seen;
             CommandFilter subject(kBound, [&](uint32_t stream, std::span<const std::byte> payload,
                                               const RecordOffsets*) { seen.packet(stream, payload); });
             const auto feed = [&](const PacketBuilder& p) { subject.add(kStream, p.bytes()); };
-            subject.leaveOutSmall(leavesOut);
+            subject.setDropsRedundant(dropsRedundant);
             feed(PacketBuilder()
                      .context(1)
                      .window(1, 20, 10)

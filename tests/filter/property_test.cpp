@@ -108,8 +108,8 @@ public:
         return p.swap(1, ++frame_);
     }
     static bool endsFrames(const PacketBuilder& p) {
-        trace::RecordWalk walk(p.bytes());
-        for (trace::RecordView r; walk.next(r);)
+        wire::RecordWalk walk(p.bytes());
+        for (wire::RecordView r; walk.next(r);)
             if (CommandKinds::all()[r.opcode].frame == FrameRole::Ends) return true;
         return false;
     }
@@ -325,14 +325,14 @@ class Both {
 public:
     Both(RandomProgram& program, uint64_t maxBytes, bool small, uint32_t toggles)
         : program_(program), maxBytes_(maxBytes), toggles_(toggles) {
-        filter_.leaveOutSmall(small);
+        filter_.setDropsRedundant(small);
     }
 
     // Sends in pieces: values may be divided between two packets, but not between streams.
     void send(uint32_t stream, const PacketBuilder& p) {
         const auto bytes = p.bytes();
-        trace::RecordWalk walk(bytes);
-        trace::RecordView r;
+        wire::RecordWalk walk(bytes);
+        wire::RecordView r;
         size_t from = 0;
         while (walk.next(r)) {
             if (program_.below(8) != 0) continue;
@@ -354,7 +354,7 @@ public:
 
 private:
     void give(uint32_t stream, std::span<const std::byte> payload) {
-        if (program_.below(toggles_) == 0) filter_.leaveOutSmall(program_.below(3) != 0);
+        if (program_.below(toggles_) == 0) filter_.setDropsRedundant(program_.below(3) != 0);
         whole_.packet(stream, payload);
         filter_.add(stream, payload);
     }
@@ -370,8 +370,8 @@ private:
                               held_.packet(stream, payload);
                           }};
     static void isMadeOf(std::span<const std::byte> payload, const RecordOffsets& offsets) {
-        trace::RecordWalk walk(payload);
-        trace::RecordView r;
+        wire::RecordWalk walk(payload);
+        wire::RecordView r;
         while (walk.next(r)) {}
         ASSERT_NE(walk.whole(), nullptr);
         ASSERT_EQ(offsets.records, walk.whole()->records);

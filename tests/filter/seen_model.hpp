@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gl_opcodes.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/record.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
@@ -20,8 +20,8 @@ namespace mural::filter {
 class SeenModel {
 public:
     void packet(uint32_t stream, std::span<const std::byte> payload) {
-        trace::RecordWalk walk(payload);
-        trace::RecordView r;
+        wire::RecordWalk walk(payload);
+        wire::RecordView r;
         while (walk.next(r)) record(stream, r);
         sizeBytes_ += payload.size();
     }
@@ -118,8 +118,8 @@ private:
             textures_[name][0] = h;
     }
     // The value of the record and its blob.
-    Bytes valueOf(Stream& s, const trace::RecordView& r, size_t word) {
-        const uint32_t tag = trace::argumentWord(r, word);
+    Bytes valueOf(Stream& s, const wire::RecordView& r, size_t word) {
+        const uint32_t tag = wire::argumentWord(r, word);
         if (tag == record::kTagBlob) {
             if (s.blobs.empty()) return {};
             Bytes value = std::move(s.blobs.front());
@@ -141,9 +141,9 @@ private:
         std::copy(value.begin(), value.end(), bytes.begin() + static_cast<std::ptrdiff_t>(offset));
     }
 
-    void record(uint32_t stream, const trace::RecordView& r) {
+    void record(uint32_t stream, const wire::RecordView& r) {
         Stream& s = streams_[stream];
-        const auto arg = [&](size_t word) { return trace::argumentWord(r, word); };
+        const auto arg = [&](size_t word) { return wire::argumentWord(r, word); };
         switch (r.opcode) {
         case wire::kOpBlobBegin: s.blobs.emplace_back(); return;
         case wire::kOpBlobData:
@@ -164,8 +164,8 @@ private:
         if (c.inPrimitive && r.opcode != op::glEnd && r.opcode != op::glCallList) return;
         execute(c, s, r);
     }
-    void execute(Context& c, Stream& s, const trace::RecordView& r) {
-        const auto arg = [&](size_t word) { return trace::argumentWord(r, word); };
+    void execute(Context& c, Stream& s, const wire::RecordView& r) {
+        const auto arg = [&](size_t word) { return wire::argumentWord(r, word); };
         uint32_t& texture = c.textures[c.unit];
         switch (r.opcode) {
         case op::glActiveTexture: c.unit = arg(0) - GL_TEXTURE0; return;
@@ -276,7 +276,7 @@ private:
         case op::glEndList: c.list = 0; return;
         case op::glCallList:
             for (const auto& [opcode, words] : lists_[arg(0)]) {
-                trace::RecordView listed;
+                wire::RecordView listed;
                 listed.opcode = opcode;
                 listed.arguments = std::as_bytes(std::span(words));
                 execute(c, s, listed);

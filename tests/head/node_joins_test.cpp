@@ -8,7 +8,7 @@
 #include "nodes/head/membership/rejoin_log.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
 #include "nodes/head/frames/picture_assembler.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -126,9 +126,9 @@ TEST(NodeJoins, repeatNoDriverEvents) {
 
 size_t contextsIn(const RejoinLog::Snapshot& snapshot) {
     size_t contexts = 0;
-    for (const trace::SnapshotPacket& packet : snapshot.packets) {
-        trace::RecordWalk walk(packet.payload);
-        for (trace::RecordView r; walk.next(r);) contexts += r.opcode == wire::kOpCreateContext ? 1 : 0;
+    for (const snapshot::SnapshotPacket& packet : snapshot.packets) {
+        wire::RecordWalk walk(packet.payload);
+        for (wire::RecordView r; walk.next(r);) contexts += r.opcode == wire::kOpCreateContext ? 1 : 0;
     }
     return contexts;
 }

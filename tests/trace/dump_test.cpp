@@ -17,8 +17,8 @@ namespace {
 std::string textOf(uint16_t opcode, const std::vector<uint32_t>& arguments) {
     PacketBuilder packet;
     packet.record(opcode, arguments);
-    RecordWalk walk(packet.bytes());
-    RecordView r;
+    wire::RecordWalk walk(packet.bytes());
+    wire::RecordView r;
     StreamBlobs blobs;
     return walk.next(r) ? recordText(r, blobs) : "no record";
 }

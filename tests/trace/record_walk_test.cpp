@@ -1,5 +1,5 @@
 // Records skipped together equal those visited one by one: numbers per command, positions, totals.
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ Passed byOne(std::span<const std::byte> packet, size_t maxExamined = 0) {
     return p;
 }
 
-void expectPassed(const RecordWalk& walk, const Passed& right) {
+void expectPassed(const wire::RecordWalk& walk, const Passed& right) {
     ASSERT_EQ(walk.at(), right.at);
     const RecordOffsets* const whole = walk.whole();
     if (whole == nullptr) return;
@@ -75,7 +75,7 @@ TEST(RecordWalk, skipsRoundsLikeSingleRecords) {
     forRandomPackets([&](std::span<const std::byte> packet, std::mt19937&) {
         const Passed right = byOne(packet);
         std::map<uint16_t, size_t> opcodes;
-        RecordWalk walk(packet);
+        wire::RecordWalk walk(packet);
         walk.skip([&](uint16_t opcode, size_t times) {
             if (opcode == kExamined) return false;
             opcodes[opcode] += times;
@@ -94,12 +94,12 @@ TEST(RecordWalk, reportsSelectedRecords) {
         const size_t maximum = random() % 8;
         const Passed right = byOne(packet, maximum);
         std::vector<size_t> examined;
-        RecordWalk walk(packet);
+        wire::RecordWalk walk(packet);
         walk.pass(
             [](uint16_t opcode) {
-                return opcode == kExamined ? RecordWalk::Interest::Examine : RecordWalk::Interest::None;
+                return opcode == kExamined ? wire::RecordWalk::Interest::Examine : wire::RecordWalk::Interest::None;
             },
-            [&](const RecordView& r) {
+            [&](const wire::RecordView& r) {
                 if (examined.size() == maximum) return false;
                 EXPECT_EQ(r.opcode, kExamined);
                 EXPECT_EQ(r.arguments.size(), r.sizeBytes - 4);
@@ -125,7 +125,7 @@ TEST(RecordWalk, skipsRoundsWithRepeatedCommands) {
                                           1 + static_cast<uint32_t>(command % 3));
             }
             size_t examinedCount = 0, passed = 0;
-            RecordWalk walk(packet);
+            wire::RecordWalk walk(packet);
             walk.skip([&](uint16_t, size_t times) {
                 ++examinedCount;
                 passed += times;

@@ -139,7 +139,7 @@ TEST(SnapshotProperty, leavesTheStateOfTheWholeStream) {
     size_t whole = 0, snapshotBytes = 0;
     for (uint32_t seed = 1; seed <= 300; ++seed) {
         RandomProgram program(seed);
-        LiveCommandLog log;
+        snapshot::LiveCommandLog log;
         StateModel all;
         const auto give = [&](const PacketBuilder& packet) {
             all.packet(packet.bytes());

@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "gl_opcodes.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 
 namespace mural::trace {
 
 class StateModel {
 public:
     void packet(std::span<const std::byte> payload) {
-        RecordWalk walk(payload);
-        RecordView r;
+        wire::RecordWalk walk(payload);
+        wire::RecordView r;
         while (walk.next(r)) record(r);
     }
     // The complete state as text, for comparison.
@@ -108,14 +108,16 @@ private:
         uint64_t* const target = targetContent();
         if (target != nullptr) *target = caps_[GL_SCISSOR_TEST] ? mix(*target, 77 + clearColor_) : 1000 + clearColor_;
     }
-    void record(const RecordView& r) {
+    void record(const wire::RecordView& r) {
         if (list_ != 0 && r.opcode != op::glEndList) {
-            lists_[list_].push_back(
-                {r.opcode, {argumentWord(r, 0), argumentWord(r, 1), argumentWord(r, 2), argumentWord(r, 3)}});
+            lists_[list_].push_back({r.opcode,
+                                     {wire::argumentWord(r, 0), wire::argumentWord(r, 1), wire::argumentWord(r, 2),
+                                      wire::argumentWord(r, 3)}});
             return;
         }
-        call(r.opcode, {argumentWord(r, 0), argumentWord(r, 1), argumentWord(r, 2), argumentWord(r, 3),
-                        argumentWord(r, 4), argumentWord(r, 5), argumentWord(r, 6)});
+        call(r.opcode,
+             {wire::argumentWord(r, 0), wire::argumentWord(r, 1), wire::argumentWord(r, 2), wire::argumentWord(r, 3),
+              wire::argumentWord(r, 4), wire::argumentWord(r, 5), wire::argumentWord(r, 6)});
     }
     void call(uint16_t opcode, const std::array<uint32_t, 7>& a) {
         const auto boundTexture = [&]() -> Texture* {

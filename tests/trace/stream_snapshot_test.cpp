@@ -28,9 +28,9 @@ protected:
     // Returns the number of remaining commands with this opcode.
     size_t left(uint16_t opcode) {
         size_t n = 0;
-        for (const SnapshotPacket& packet : stream_.snapshot()) {
-            RecordWalk walk(packet.payload);
-            RecordView r;
+        for (const snapshot::SnapshotPacket& packet : stream_.snapshot()) {
+            wire::RecordWalk walk(packet.payload);
+            wire::RecordView r;
             while (walk.next(r)) n += r.opcode == opcode;
             EXPECT_FALSE(walk.malformed());
         }
@@ -44,7 +44,7 @@ protected:
     }
 
     const RecordedLog log_{"node:debug"};
-    StreamSnapshot stream_{size_t{1} << 20};
+    snapshot::StreamSnapshot stream_{size_t{1} << 20};
     uint32_t frame_ = 0;
 };
 
@@ -58,10 +58,10 @@ TEST_F(StreamSnapshotTest, staysAsLargeAsOneFrame) {
 
 TEST_F(StreamSnapshotTest, dropsSwaps) {
     frame();
-    for (const SnapshotPacket& packet : stream_.snapshot()) {
-        RecordWalk walk(packet.payload);
-        RecordView r;
-        while (walk.next(r)) EXPECT_TRUE(r.opcode != wire::kOpSwap || argumentWord(r, 1) == wire::kUnseenFrame);
+    for (const snapshot::SnapshotPacket& packet : stream_.snapshot()) {
+        wire::RecordWalk walk(packet.payload);
+        wire::RecordView r;
+        while (walk.next(r)) EXPECT_TRUE(r.opcode != wire::kOpSwap || wire::argumentWord(r, 1) == wire::kUnseenFrame);
     }
 }
 
@@ -157,7 +157,7 @@ TEST_F(StreamSnapshotTest, keepsRequestsAfterBitmaps) {
 
 TEST_F(StreamSnapshotTest, keepsNothingOfAnEndedProgram) {
     frame();
-    stream_.event({Event::ClientGone, 1, 0, ""});
+    stream_.clientGone(1);
     EXPECT_TRUE(stream_.snapshot().empty());
 }
 

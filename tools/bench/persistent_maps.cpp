@@ -103,7 +103,7 @@ struct Watch : Comparison {
 
 // Mural's method: as Watch, but recently written pages stay unlocked and are compared.
 struct Chosen : ChosenFilter {
-    mural::MapChanges changes;
+    mural::DirtyPages changes;
     bool begin(std::byte* memory, size_t size) override { return changes.begin(memory, size); }
     void beforeDraw() override {
         changes.collect(

@@ -18,7 +18,7 @@ constexpr uint64_t kFullStagedBytes = uint64_t{64} * 1024; // the size of a writ
 // From these sizes on, the 0.8 us of reading the thread's CPU clock are negligible: for packets, which mostly repeat,
 // and for new bytes. Shorter work is unlikely to be preempted, so the wall clock serves as well.
 constexpr size_t kLongPacketBytes = size_t{256} << 10, kLongBytes = size_t{64} << 10;
-constexpr uint64_t kWorthAWayBytes = 2048;
+constexpr uint64_t kMinChoiceBytes = 2048;
 constexpr uint64_t kMaxDeferredBytes = uint64_t{256} << 20;
 // The first loads of a program are copied several times. Page faults (3 us per new page) took half as long as the rest.
 constexpr size_t kFirstBytes = size_t{16} << 20;
@@ -40,23 +40,23 @@ DeltaStream::DeltaStream(const delta::Limits& limits, std::unique_ptr<Coder> cod
     : limits_(limits),
       filter_(std::min(kMaxDeferredBytes, limits.cacheBytes / 4),
               [this](uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
-                  pack(stream, payload, walked);
+                  encode(stream, payload, walked);
               }),
       coder_(std::move(coder)) {}
 
 DeltaStream::Coder::Coder(const delta::Limits& limits)
-    : packer(limits), encoder([](size_t sizeBytes) { return clockFor(sizeBytes)(); }) {}
+    : deltaEncoder(limits), batchEncoder([](size_t sizeBytes) { return clockFor(sizeBytes)(); }) {}
 
 Result<std::unique_ptr<DeltaStream::Coder>> DeltaStream::freshCoder(const delta::Limits& limits) {
     auto coder = std::make_unique<Coder>(limits);
-    if (!coder->packer.ready())
+    if (!coder->deltaEncoder.ready())
         return Error{"no memory for a delta cache of " + std::to_string(limits.cacheBytes >> 20) +
                      " MiB; choose a smaller --cache-size"};
     return coder;
 }
 
 std::unique_ptr<DeltaStream::Coder> DeltaStream::restart(std::unique_ptr<Coder> fresh) {
-    const delta::DeltaEncoderCounts& c = coder_->packer.counts();
+    const delta::DeltaEncoderCounts& c = coder_->deltaEncoder.counts();
     before_ = {before_.packets + c.packets,         before_.records + c.records,   before_.rawBytes + c.rawBytes,
                before_.stagedBytes + c.stagedBytes, before_.pageHits + c.pageHits, before_.newPages + c.newPages,
                before_.patches + c.patches};
@@ -73,13 +73,13 @@ void DeltaStream::add(uint32_t stream, std::span<const std::byte> payload) {
     }
     nowNs_ = isLong ? threadCpuNowNs : quickNowNs;
     const int64_t beganNs = nowNs_();
-    sendNs_ = packNs_ = 0;
-    timesPacking_ = true;
+    sendNs_ = deltaNs_ = 0;
+    timesDelta_ = true;
     filterPacket(stream, payload);
-    timesPacking_ = false;
+    timesDelta_ = false;
     const auto ns = static_cast<uint64_t>(nowNs_() - beganNs - sendNs_);
     encodeNs_ += ns;
-    measured_.filterNs += ns - std::min(ns, packNs_);
+    measured_.filterNs += ns - std::min(ns, deltaNs_);
     if (!isLong) usualNs.add(static_cast<double>(ns));
 }
 
@@ -90,9 +90,9 @@ void DeltaStream::miss(uint32_t stream, std::span<const std::byte> payload) {
 }
 
 void DeltaStream::filterPacket(uint32_t stream, std::span<const std::byte> payload) {
-    if (!filters_) return pack(stream, payload);
+    if (!filters_) return encode(stream, payload);
     if (wire::clientOf(stream) != 0) {
-        filter_.leaveOutSmall(small_.leavesOut());
+        filter_.setDropsRedundant(redundancy_.dropsRedundant());
         return filter_.add(stream, payload);
     }
     // Commands of the head: data of an ended program is dropped. Before any other command all deferred data is sent, as
@@ -103,41 +103,41 @@ void DeltaStream::filterPacket(uint32_t stream, std::span<const std::byte> paylo
         filter_.clientGone(words[1]);
     else
         filter_.releaseAll();
-    pack(stream, payload);
+    encode(stream, payload);
 }
 
-void DeltaStream::pack(uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
+void DeltaStream::encode(uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked) {
     if (missed_) return;
-    const int64_t startedNs = timesPacking_ ? nowNs_() : 0;
-    coder_->packer.add(stream, payload, walked);
-    if (timesPacking_) packNs_ += static_cast<uint64_t>(nowNs_() - startedNs);
+    const int64_t startedNs = timesDelta_ ? nowNs_() : 0;
+    coder_->deltaEncoder.add(stream, payload, walked);
+    if (timesDelta_) deltaNs_ += static_cast<uint64_t>(nowNs_() - startedNs);
     ++packets_;
-    if (!full() || !send_) return coder_->packer.ownBytes();
+    if (!full() || !send_) return coder_->deltaEncoder.ownBytes();
     const int64_t beganNs = nowNs_();
     send_();
     sendNs_ += nowNs_() - beganNs;
-    coder_->packer.ownBytes();
+    coder_->deltaEncoder.ownBytes();
 }
 
 // Returns whether references already replace most bytes. Another coding then gains little, and loses dictionary space.
 bool DeltaStream::isMostlyDropped() const {
-    return measured_.rawBytes >= kWorthAWayBytes && measured_.droppedBytes > measured_.rawBytes / 2;
+    return measured_.rawBytes >= kMinChoiceBytes && measured_.droppedBytes > measured_.rawBytes / 2;
 }
 
 bool DeltaStream::full() const {
-    return coder_->packer.stagedBytes() >= kFullStagedBytes || coder_->packer.rawBytes() >= kFullRawBytes;
+    return coder_->deltaEncoder.stagedBytes() >= kFullStagedBytes || coder_->deltaEncoder.rawBytes() >= kFullRawBytes;
 }
 
 Result<std::span<const std::byte>> DeltaStream::take() {
-    delta::DeltaEncoder& packer = coder_->packer;
-    const bool frameGoesOn = full(), isLong = packer.stagedBytes() >= kLongBytes, timed = timesFrame_ || isLong;
-    const auto now = clockFor(packer.stagedBytes());
+    delta::DeltaEncoder& encoder = coder_->deltaEncoder;
+    const bool frameGoesOn = full(), isLong = encoder.stagedBytes() >= kLongBytes, timed = timesFrame_ || isLong;
+    const auto now = clockFor(encoder.stagedBytes());
     const int64_t beganNs = timed ? now() : 0;
-    measured_.rawBytes += packer.rawBytes();
-    measured_.pageBytes += packer.pageBytes();
-    measured_.droppedBytes += packer.droppedBytes();
-    auto batch = coder_->encoder.encode(packer.finish(), link_.nsPerByte(), packer.plain());
-    packer.clear();
+    measured_.rawBytes += encoder.rawBytes();
+    measured_.pageBytes += encoder.pageBytes();
+    measured_.droppedBytes += encoder.droppedBytes();
+    auto batch = coder_->batchEncoder.encode(encoder.finish(), link_.nsPerByte(), encoder.plain());
+    encoder.clear();
     packets_ = 0;
     const auto ns = timed ? static_cast<uint64_t>(now() - beganNs) : static_cast<uint64_t>(takeNs_.value());
     encodeNs_ += ns;
@@ -147,27 +147,27 @@ Result<std::span<const std::byte>> DeltaStream::take() {
         measured_.wireBytes += batch->size();
     }
     if (!frameGoesOn || measured_.rawBytes > kFullRawBytes) {
-        delta::ModeSelector& transferScale = coder_->transferScale;
+        delta::ModeSelector& mode = coder_->mode;
         const double frameNs = timesFrame_ ? static_cast<double>(encodeNs_ - measured_.encodeNs) : -1;
         // Deferred data costs the same either way.
         if (isMostlyDropped())
-            transferScale.leftOut();
+            mode.mostlyPlain();
         else if (timesFrame_)
-            transferScale.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes,
-                                   static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.filterNs),
-                                   link_.nsPerByte());
+            mode.measured(measured_.rawBytes, measured_.pageBytes, measured_.wireBytes,
+                          static_cast<int64_t>(frameNs) - static_cast<int64_t>(measured_.filterNs), link_.nsPerByte());
         else
-            transferScale.unmeasured();
-        if (transferScale.plain() != packer.plain())
-            small_.disturbed();
+            mode.unmeasured();
+        if (mode.plain() != encoder.plain())
+            redundancy_.disturbed();
         else
-            small_.frame(filter_.counts().inBytes - measured_.programBytes, measured_.wireBytes,
-                         timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte() : -1);
-        timesFrame_ = transferScale.wantsTime() || small_.wantsTime();
-        if (transferScale.plain() != packer.plain())
-            log::debug(log::Topic::Stream, "delta coding ", transferScale.plain() ? "stops searching" : "searches",
+            redundancy_.frame(filter_.counts().inBytes - measured_.programBytes, measured_.wireBytes,
+                              timesFrame_ ? frameNs + static_cast<double>(measured_.wireBytes) * link_.nsPerByte()
+                                          : -1);
+        timesFrame_ = mode.wantsTime() || redundancy_.wantsTime();
+        if (mode.plain() != encoder.plain())
+            log::debug(log::Topic::Stream, "delta coding ", mode.plain() ? "stops searching" : "searches",
                        " for known data");
-        packer.beginFrame(transferScale.plain(), frameGoesOn);
+        encoder.beginFrame(mode.plain(), frameGoesOn);
         measured_ = {0, 0, 0, 0, encodeNs_, filter_.counts().inBytes, 0};
     }
     publishCounts();
@@ -175,7 +175,7 @@ Result<std::span<const std::byte>> DeltaStream::take() {
 }
 
 void DeltaStream::publishCounts() {
-    const delta::DeltaEncoderCounts& c = coder_->packer.counts();
+    const delta::DeltaEncoderCounts& c = coder_->deltaEncoder.counts();
     const delta::DeltaEncoderCounts& b = before_;
     const auto set = [](std::atomic<uint64_t>& to, uint64_t value) { to.store(value, std::memory_order_relaxed); };
     set(published_.packets, b.packets + c.packets);

@@ -38,12 +38,12 @@ public:
     // The dictionary and the compressor, which start together.
     struct Coder {
         explicit Coder(const delta::Limits& limits);
-        delta::DeltaEncoder packer;
-        delta::BatchEncoder encoder;
-        delta::ModeSelector transferScale;
+        delta::DeltaEncoder deltaEncoder;
+        delta::BatchEncoder batchEncoder;
+        delta::ModeSelector mode;
     };
     static Result<std::unique_ptr<Coder>> freshCoder(const delta::Limits& limits); // thread-safe
-    // Replaces the dictionary. Nodes learn it at the same position of the stream (HeadCommand::ResetDictionary).
+    // Replaces the dictionary. Nodes replace theirs at the same position of the stream (HeadCommand::ResetDictionary).
     // Requires empty(). Returns the old one, for destruction without the lock.
     [[nodiscard]] std::unique_ptr<Coder> restart(std::unique_ptr<Coder> fresh);
     [[nodiscard]] const delta::Limits& limits() const { return limits_; }
@@ -62,7 +62,7 @@ public:
     // True if the batch should be sent now: it is large enough for the nodes to start decoding.
     [[nodiscard]] bool full() const;
     // True inside a blob: nodes cannot use the last packet until the rest arrives.
-    [[nodiscard]] bool inValue() const { return coder_->packer.endsInValue(); }
+    [[nodiscard]] bool inValue() const { return coder_->deltaEncoder.endsInValue(); }
     // Returns the batch, valid until the next call, and starts a new one.
     Result<std::span<const std::byte>> take();
     void wrote(size_t sizeBytes, int64_t ns) { link_.wrote(sizeBytes, ns); }
@@ -75,11 +75,11 @@ private:
     [[nodiscard]] bool isMostlyDropped() const;
 
     void filterPacket(uint32_t stream, std::span<const std::byte> payload);
-    void pack(uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked = nullptr);
+    void encode(uint32_t stream, std::span<const std::byte> payload, const RecordOffsets* walked = nullptr);
 
     const delta::Limits limits_;
     filter::CommandFilter filter_;
-    filter::RedundancyTuner small_;
+    filter::RedundancyTuner redundancy_;
     std::function<void()> send_;
     bool filters_ = true;
     bool missed_ = false;                 // output of the current packet
@@ -90,8 +90,8 @@ private:
     delta::LinkRate link_;
     size_t packets_ = 0;     // packets in the batch
     bool timesFrame_ = true; // times every packet of this frame; otherwise long packets only
-    bool timesPacking_ = false;
-    uint64_t packNs_ = 0;         // coding time of the current packet, without the filter
+    bool timesDelta_ = false;
+    uint64_t deltaNs_ = 0;        // coding time of the current packet, without the filter
     MedianTimersBySize packetNs_; // from timed frames and the first packet of each size; without long packets
     MedianTimer takeNs_;          // the same, per batch
     uint64_t wireBytes_ = 0, encodeNs_ = 0;

@@ -40,7 +40,7 @@ public:
     // number.
     virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) = 0;
     virtual Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) = 0;
-    // The last call for a node that ended without Bye, after all of its messages.
+    // The last call for a node that ended without Goodbye, after all of its messages.
     virtual void nodeLost(int node, const std::string& why) = 0;
 };
 
@@ -61,8 +61,8 @@ public:
     // The destination of the node's packets: the connection, none, or a queue that another thread sends during resync.
     enum class Feed { Direct, Nothing, Queued };
 
-    // Sets the decoder of the node's pictures (nodes/pictures). Call before startReading(). way: the scale of its
-    // pictures in transfer (nodes/frame_transfer/transfer_scale.hpp).
+    // Sets the decoder of the node's pictures (nodes/frame_transfer). Call before startReading(). transferScale: the
+    // scale of its pictures in transfer (nodes/frame_transfer/transfer_scale.hpp).
     void unpackBy(const std::string& codec, const Zoom& transferScale) {
         transferScale_ = transferScale;
         if (codec != kRawCodec) pictures_ = std::make_unique<PictureUnpacker>(codec);

@@ -55,8 +55,8 @@ public:
     [[nodiscard]] int livingCount() const;
     NodeConnection& link(int node) { return *links_[static_cast<size_t>(node)]; }
 
-    // ---- nodes that come again (membership_join.cpp)
-    // All that a node needs that comes now has been kept.
+    // ---- restarted nodes (membership_join.cpp)
+    // Returns whether the rejoin log has everything that a node needs to join now.
     [[nodiscard]] bool canJoin() const { return rejoinLog_ && rejoinLog_->complete(); }
     // Replaces a lost node whose end was fully reported. The new link receives nothing yet. Call from the adding
     // thread; never blocks.
@@ -68,7 +68,7 @@ public:
     struct PhaseRequest {
         uint32_t number = 0;                  // number of the RequestPhase
         std::function<bool(int node)> knows;  // the member has the same kind of state
-        std::vector<NodeConnection*> members; // output: the members that will answer if they live
+        std::vector<NodeConnection*> members; // output: the members that will reply if they live
     };
     Result<RejoinLog::Snapshot> beginCatchUp(int node, PhaseRequest* turns, Deadline deadline);
     // Makes the node a member after all packets so far, and informs all nodes. `announce` runs first and may refuse. If
@@ -89,7 +89,7 @@ public:
     // Loses silent nodes, and synchronises the losses of connections and multicast group. `rerouted` receives nodes
     // that multicast no longer reaches (false) or reaches again (true).
     void watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted);
-    void loseAll(const std::string& why); // all nodes that have not sent Bye
+    void loseAll(const std::string& why); // all nodes that have not sent Goodbye
     void end();
 
     // The nodes whose full connections block the stream.

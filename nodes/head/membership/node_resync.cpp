@@ -87,7 +87,7 @@ void NodeResync::sendSnapshot(const RejoinLog::Snapshot& snapshot) {
         const std::lock_guard lock(mutex_);
         frames_ = snapshot.frames;
     }
-    for (const trace::SnapshotPacket& packet : snapshot.packets) {
+    for (const snapshot::SnapshotPacket& packet : snapshot.packets) {
         if (!link_.alive()) return;
         const wire::PacketHeader header{static_cast<uint32_t>(packet.payload.size()), packet.stream};
         link_.sendNow(bytesOf(header), packet.payload);

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "streamcodec/snapshot/stream_snapshot.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
 
@@ -14,8 +14,8 @@ namespace {
 
 constexpr int64_t kSliceMs = 100;
 
-std::unique_ptr<trace::StreamSnapshot> emptyStream(uint64_t maxBytes) {
-    return std::make_unique<trace::StreamSnapshot>(static_cast<size_t>(maxBytes));
+std::unique_ptr<snapshot::StreamSnapshot> emptyStream(uint64_t maxBytes) {
+    return std::make_unique<snapshot::StreamSnapshot>(static_cast<size_t>(maxBytes));
 }
 
 } // namespace
@@ -91,15 +91,15 @@ void RejoinLog::work() {
 
 void RejoinLog::take(const Entry& entry) {
     if (entry.clientGone != 0) {
-        snapshot_->event({trace::Event::ClientGone, entry.clientGone, 0, {}});
+        snapshot_->clientGone(entry.clientGone);
         frames_.erase(entry.clientGone);
         return;
     }
-    trace::RecordWalk walk(entry.payload);
-    trace::RecordView r;
+    wire::RecordWalk walk(entry.payload);
+    wire::RecordView r;
     while (walk.next(r))
         if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
-            frames_[wire::clientOf(entry.stream)] = trace::argumentWord(r, 1);
+            frames_[wire::clientOf(entry.stream)] = wire::argumentWord(r, 1);
     snapshot_->append(entry.stream, entry.payload);
 }
 

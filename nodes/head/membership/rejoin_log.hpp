@@ -19,9 +19,9 @@
 #include "streamcodec/snapshot/snapshot_packet.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
-namespace mural::trace {
+namespace mural::snapshot {
 class StreamSnapshot;
-} // namespace mural::trace
+} // namespace mural::snapshot
 
 namespace mural {
 
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] uint64_t pause();
 
     struct Snapshot {
-        std::vector<trace::SnapshotPacket> packets; // in stream order
+        std::vector<snapshot::SnapshotPacket> packets; // in stream order
         std::vector<wire::ClientFrame> frames; // the last frame of each program; the frames in `packets` are not shown
     };
     // Returns the snapshot of a held position; once per position, from any thread. Waits until the thread reaches the
@@ -76,9 +76,10 @@ private:
     bool inHand_ = false; // the thread is processing an entry
     bool stop_ = false;
 
-    std::unique_ptr<trace::StreamSnapshot> snapshot_; // owned by the thread; by snapshot() while the thread is paused
-    std::map<uint32_t, uint32_t> frames_;             // the same; last frame by program
-    std::mutex snapshots_;                            // serialises snapshot()
+    std::unique_ptr<snapshot::StreamSnapshot>
+        snapshot_;                        // owned by the thread; by snapshot() while the thread is paused
+    std::map<uint32_t, uint32_t> frames_; // the same; last frame by program
+    std::mutex snapshots_;                // serialises snapshot()
     std::thread thread_;
 };
 

@@ -14,13 +14,14 @@
 namespace mural::delta {
 
 // Prediction methods of a changed word. Each has a moving cost of its recent errors.
-enum class Prediction : uint8_t { Same, IntegerLine, FloatLine, FloatCurve, ControlOp };
-constexpr size_t kGuesses = 5;
+enum class Prediction : uint8_t { Same, IntegerLine, FloatLine, FloatCurve, OtherWord };
+constexpr size_t kPredictions = 5;
 
 struct WordState {
-    uint32_t before = 0, twoBefore = 0;   // previous values; the last one is in the entry
-    std::array<uint8_t, kGuesses> cost{}; // in quarters of a bit
-    uint8_t other = 0;    // distance in changed words to the word this one is predicted from (Guess::Other); 0: none
+    uint32_t before = 0, twoBefore = 0;       // previous values; the last one is in the entry
+    std::array<uint8_t, kPredictions> cost{}; // in quarters of a bit
+    uint8_t other =
+        0; // distance in changed words to the word this one is predicted from (Prediction::OtherWord); 0: none
     bool negated = false; // predicted with the opposite sign, as a float
 };
 

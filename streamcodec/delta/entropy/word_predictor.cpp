@@ -74,12 +74,12 @@ void WordPredictor::begin(DictionaryEntry& item, std::span<const std::byte> byte
 void WordPredictor::end() { item_->speed = weight_ > 0 ? speed_ : 1; }
 
 // Extrapolates. Time steps: the last is 1, the one before 1 / item_->speed, the next speed_.
-WordPredictor::Curve WordPredictor::guess(const WordState& word, uint32_t old, Guesses& guesses) const {
+WordPredictor::Curve WordPredictor::prediction(const WordState& word, uint32_t old, Guesses& predictions) const {
     Curve curve;
-    guesses[static_cast<size_t>(Prediction::Same)] = old;
-    guesses[static_cast<size_t>(Prediction::IntegerLine)] = old + (old - word.before);
-    uint32_t& line = guesses[static_cast<size_t>(Prediction::FloatLine)];
-    uint32_t& bent = guesses[static_cast<size_t>(Prediction::FloatCurve)];
+    predictions[static_cast<size_t>(Prediction::Same)] = old;
+    predictions[static_cast<size_t>(Prediction::IntegerLine)] = old + (old - word.before);
+    uint32_t& line = predictions[static_cast<size_t>(Prediction::FloatLine)];
+    uint32_t& bent = predictions[static_cast<size_t>(Prediction::FloatCurve)];
     line = bent = old;
     if (isPlain(old) && isPlain(word.before) && isPlain(word.twoBefore) && old != word.before) {
         const double last = floatOf(old), step = last - floatOf(word.before),
@@ -91,23 +91,23 @@ WordPredictor::Curve WordPredictor::guess(const WordState& word, uint32_t old, G
         curve.known = true;
         bent = wordOf(curve.value);
     }
-    uint32_t& other = guesses[static_cast<size_t>(Prediction::ControlOp)];
+    uint32_t& other = predictions[static_cast<size_t>(Prediction::OtherWord)];
     other = word.other == 0 ? old : recent_[(recentEnd_ - word.other) % kRecent] ^ (word.negated ? 0x80000000 : 0);
     return curve;
 }
 
 template <class Coder> uint32_t WordPredictor::code(Coder& coder, uint32_t i, uint32_t old, uint32_t now) {
     WordState& word = word_[i];
-    Guesses guesses;
-    const Curve curve = guess(word, old, guesses);
+    Guesses predictions;
+    const Curve curve = prediction(word, old, predictions);
     size_t best = 0;
-    for (size_t g = 1; g < kGuesses; ++g)
+    for (size_t g = 1; g < kPredictions; ++g)
         if (word.cost[g] < word.cost[best]) best = g;
-    const uint32_t expected = ordered(guesses[best]);
+    const uint32_t expected = ordered(predictions[best]);
     const uint32_t distance =
         codeDistance(coder, std::min<uint32_t>(word.cost[best] / 7u, kContexts - 1), ordered(now) - expected);
     const uint32_t value = wordOf(expected + distance);
-    update(word, value, guesses, curve);
+    update(word, value, predictions, curve);
     word.twoBefore = word.before;
     word.before = old;
     return value;
@@ -132,12 +132,12 @@ template <class Coder> uint32_t WordPredictor::codeDistance(Coder& coder, uint32
     return unfolded(value);
 }
 
-void WordPredictor::update(WordState& word, uint32_t value, const Guesses& guesses, const Curve& curve) {
+void WordPredictor::update(WordState& word, uint32_t value, const Guesses& predictions, const Curve& curve) {
     uint32_t minimum = UINT32_MAX;
-    for (size_t g = 0; g < kGuesses; ++g) {
-        const uint32_t bits = widthOf(folded(ordered(value) - ordered(guesses[g])));
+    for (size_t g = 0; g < kPredictions; ++g) {
+        const uint32_t bits = widthOf(folded(ordered(value) - ordered(predictions[g])));
         word.cost[g] = static_cast<uint8_t>((word.cost[g] * 3u + bits * 4 + 2) / 4);
-        if (g != static_cast<size_t>(Prediction::ControlOp)) minimum = std::min(minimum, bits);
+        if (g != static_cast<size_t>(Prediction::OtherWord)) minimum = std::min(minimum, bits);
     }
     // A smoothly moving word reveals the time step; faster words are more precise.
     constexpr uint32_t kGain = 8;
@@ -152,7 +152,7 @@ void WordPredictor::update(WordState& word, uint32_t value, const Guesses& guess
         }
     }
     const uint32_t slot = ((value & 0x7fffffff) * 0x9e3779b1u) >> 24;
-    if (minimum > 2 && guesses[static_cast<size_t>(Prediction::ControlOp)] != value) {
+    if (minimum > 2 && predictions[static_cast<size_t>(Prediction::OtherWord)] != value) {
         const uint32_t back = recentEnd_ - positions_[slot], there = recent_[positions_[slot] % kRecent];
         if (back - 1 < kRecent - 1 && ((there ^ value) & 0x7fffffff) == 0) {
             word.other = static_cast<uint8_t>(back);

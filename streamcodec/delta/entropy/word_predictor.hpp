@@ -22,16 +22,16 @@ public:
     void end();
 
 private:
-    using Guesses = std::array<uint32_t, kGuesses>;
+    using Guesses = std::array<uint32_t, kPredictions>;
 
     // Parts of a float's extrapolation that are needed after its value is known.
     struct Curve {
         bool known = false;
         double value = 0, slope = 0; // predicted value; derivative by the speed
     };
-    [[nodiscard]] Curve guess(const WordState& word, uint32_t old, Guesses& guesses) const;
+    [[nodiscard]] Curve prediction(const WordState& word, uint32_t old, Guesses& predictions) const;
     template <class Coder> uint32_t codeDistance(Coder& coder, uint32_t context, uint32_t distance);
-    void update(WordState& word, uint32_t value, const Guesses& guesses, const Curve& curve);
+    void update(WordState& word, uint32_t value, const Guesses& predictions, const Curve& curve);
 
     PredictorState models_;
     EntryModel* item_ = nullptr;

@@ -67,8 +67,8 @@ private:
     }
 
     bool packet(const Entry& e) {
-        RecordWalk walk(e.payload);
-        RecordView r;
+        wire::RecordWalk walk(e.payload);
+        wire::RecordView r;
         while (walk.next(r)) {
             frame_ = frames_.frames() + 1;
             const bool shows = inRange();
@@ -82,13 +82,13 @@ private:
         return true;
     }
 
-    bool call(uint32_t stream, const RecordView& r, bool shows) {
+    bool call(uint32_t stream, const wire::RecordView& r, bool shows) {
         const std::string text = recordText(r, blobs_[stream]); // always formatted, because it consumes its blobs
         if (!shows || !kindOf(r.opcode).wanted) return true;
         return line_(fmt::format("{:6} {}.{:<2} {}", frame_, wire::clientOf(stream), stream & 0xffff, text));
     }
 
-    bool count(const RecordView& r) {
+    bool count(const wire::RecordView& r) {
         const Kind& kind = kindOf(r.opcode);
         if (!kind.wanted) return true;
         for (Count* c : {&ofFrame_[kind.name], &total_[kind.name]}) {
@@ -143,8 +143,8 @@ Result<bool> hasUnendedFrame(TraceReader& reader) {
         if (e.stream == 0 && parseEvent(e.payload, event) && event.kind == Event::ClientGone)
             frames.clientGone(event.client);
         if (e.stream == 0) return true;
-        RecordWalk walk(e.payload);
-        RecordView r;
+        wire::RecordWalk walk(e.payload);
+        wire::RecordView r;
         while (walk.next(r)) unended = frames.record(e.stream, r) == 0;
         return true;
     });

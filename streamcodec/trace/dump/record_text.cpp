@@ -172,7 +172,7 @@ std::string recordName(uint16_t opcode) {
     return fmt::format("opcode {}", opcode);
 }
 
-std::string recordText(const RecordView& record, StreamBlobs& blobs) {
+std::string recordText(const wire::RecordView& record, StreamBlobs& blobs) {
     const bool blob = blobs.take(record);
     Args in(record.arguments, blobs);
     std::string text = recordName(record.opcode) + "(";

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "streamcodec/trace/stream_blobs.hpp"
 
 namespace mural::trace {
@@ -13,6 +13,6 @@ std::string recordName(uint16_t opcode);
 
 // Returns "glClear(mask=GL_COLOR_BUFFER_BIT)". Consumes the record's blobs. Unreadable records end with "...,
 // malformed".
-std::string recordText(const RecordView& record, StreamBlobs& blobs);
+std::string recordText(const wire::RecordView& record, StreamBlobs& blobs);
 
 } // namespace mural::trace

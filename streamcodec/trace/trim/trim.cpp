@@ -4,7 +4,7 @@
 #include <set>
 
 #include "streamcodec/trace/trace_writer.hpp"
-#include "streamcodec/snapshot/command_effects.hpp"
+#include "streamcodec/effect_rules.hpp"
 #include "streamcodec/snapshot/stream_snapshot.hpp"
 #include "streamcodec/snapshot/packet_splitter.hpp"
 #include "streamcodec/registry_digest.hpp"
@@ -15,9 +15,9 @@ namespace mural::trace {
 namespace {
 
 bool draws(uint16_t opcode) {
-    const Family family = ruleOf(opcode).family;
-    return family == Family::Draw || family == Family::Begin || family == Family::CallList ||
-           family == Family::CallLists;
+    const EffectKind kind = effectRuleOf(opcode).kind;
+    return kind == EffectKind::Draw || kind == EffectKind::Begin || kind == EffectKind::CallList ||
+           kind == EffectKind::CallLists;
 }
 
 // First pass: finds the needed part of earlier frames, and the requested frames. Records are numbered from 0 over the
@@ -42,7 +42,7 @@ public:
     }
     [[nodiscard]] int64_t frames() const { return frames_.frames(); }
 
-    LiveCommandLog log;
+    snapshot::LiveCommandLog log;
     // programs that existed at the start of the first frame
     std::vector<std::pair<uint32_t, std::vector<std::byte>>> came;
     bool before = true;       // before the first frame
@@ -61,8 +61,8 @@ private:
         log.settlePending();
     }
     bool packet(const Entry& e) {
-        RecordWalk walk(e.payload);
-        RecordView r;
+        wire::RecordWalk walk(e.payload);
+        wire::RecordView r;
         for (; walk.next(r); ++number_) {
             drawsBefore += before && draws(r.opcode);
             log.record(e.stream, r, e.payload.subspan(r.offset, r.sizeBytes), !before);
@@ -95,7 +95,7 @@ public:
     bool copyNeeded() {
         for (const auto& [client, event] : survey_.came)
             if (!put({0, 0, event})) return false;
-        PacketSplitter packets([&](uint32_t stream, std::span<const std::byte> payload) {
+        snapshot::PacketSplitter packets([&](uint32_t stream, std::span<const std::byte> payload) {
             if (failed_) failed_ = writer_.append({stream, 0, unseen(payload)});
         });
         survey_.log.forEach([&](uint32_t stream, std::span<const std::byte> records) { packets.add(stream, records); });
@@ -117,8 +117,8 @@ private:
 
     bool packet(const Entry& e) {
         records_.clear();
-        RecordWalk walk(e.payload);
-        RecordView r;
+        wire::RecordWalk walk(e.payload);
+        wire::RecordView r;
         bool more = true;
         for (; more && walk.next(r); ++number_) {
             more = number_ < survey_.endRecord;
@@ -133,21 +133,21 @@ private:
     }
 
     // Swaps before the first frame become unseen; visible frames are renumbered from 1.
-    void number(uint32_t stream, const RecordView& r, size_t argumentsAt, bool before) {
-        if (r.arguments.size() < 8 || argumentWord(r, 1) == wire::kUnseenFrame) return;
+    void number(uint32_t stream, const wire::RecordView& r, size_t argumentsAt, bool before) {
+        if (r.arguments.size() < 8 || wire::argumentWord(r, 1) == wire::kUnseenFrame) return;
         const uint32_t frame = before ? wire::kUnseenFrame : ++frames_[wire::clientOf(stream)];
         std::memcpy(records_.data() + argumentsAt + 4, &frame, sizeof frame);
     }
 
     std::span<const std::byte> unseen(std::span<const std::byte> payload) {
         records_.assign(payload.begin(), payload.end());
-        RecordWalk walk(payload);
-        RecordView r;
+        wire::RecordWalk walk(payload);
+        wire::RecordView r;
         while (walk.next(r)) {
             ++report_.recordsWritten;
             report_.drawsWritten += draws(r.opcode);
         }
-        hideFrames(records_);
+        snapshot::hideFrames(records_);
         return records_;
     }
 

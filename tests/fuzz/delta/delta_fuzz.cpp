@@ -55,8 +55,8 @@ uint64_t joinPieces(std::span<const std::byte> input) {
 } // namespace
 
 uint64_t fuzzOne(std::span<const std::byte> input) {
-    delta::DeltaDecoder unpacker(fuzzLimits());
-    delta::BatchDecoder decoder;
+    delta::DeltaDecoder decoder(fuzzLimits());
+    delta::BatchDecoder batchDecoder;
     uint64_t packets = 0;
     if (input.empty()) return 0;
     const unsigned kind = static_cast<unsigned>(take(input, 1)[0]) & 3;
@@ -68,17 +68,17 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
             auto batch = takeSized(input);
             delta::BatchHeadReader head;
             for (bool complete = false; !complete && !batch.empty();) complete = head.add(take(batch, 1)[0]);
-            const auto decoded = decoder.decode(head.head(), batch);
+            const auto decoded = batchDecoder.decode(head.head(), batch);
             if (!decoded) return packets;
             sections = decoded.value();
         } else {
             for (auto& section : sections) section = takeSized(input);
         }
-        unpacker.begin(sections);
+        decoder.begin(sections);
         while (true) {
             uint32_t stream = 0;
             std::span<const std::byte> packet;
-            const auto more = unpacker.next(stream, packet);
+            const auto more = decoder.next(stream, packet);
             if (!more) return packets;
             if (!more.value()) break;
             must(packet.size() <= wire::kMaxPacketBytes, "packets are bounded");

@@ -1,4 +1,4 @@
-// Writes the corpus of delta_fuzz: the packer's output for frames that resemble each other.
+// Writes the corpus of delta_fuzz: the encoder's output for frames that resemble each other.
 //   delta_fuzz_seeds FOLDER
 #include <cstdio>
 #include <cstring>
@@ -58,21 +58,21 @@ Bytes plainFrame(uint32_t seed, uint32_t number) {
 }
 
 Bytes seedOf(uint32_t seed, bool coded, bool pages, bool plain = false) {
-    delta::DeltaEncoder packer(fuzz::fuzzLimits());
-    delta::BatchEncoder encoder([](size_t) { return int64_t{0}; });
+    delta::DeltaEncoder encoder(fuzz::fuzzLimits());
+    delta::BatchEncoder batchEncoder([](size_t) { return int64_t{0}; });
     Bytes input{static_cast<std::byte>(coded ? 0 : 1)};
     for (uint32_t number = 0; number < 6; ++number) {
-        packer.beginFrame(plain);
+        encoder.beginFrame(plain);
         const Bytes bytes = plain ? plainFrame(seed, number) : frame(seed, number, pages);
-        packer.add(0x10000 + seed % 2 * (number % 3), bytes);
+        encoder.add(0x10000 + seed % 2 * (number % 3), bytes);
         if (coded) {
-            const auto batch = encoder.encode(packer.finish(), 80);
+            const auto batch = batchEncoder.encode(encoder.finish(), 80);
             if (!batch) std::exit(1);
             addSized(input, Bytes(batch.value().begin(), batch.value().end()));
         } else {
-            for (const auto section : packer.finish()) addSized(input, section);
+            for (const auto section : encoder.finish()) addSized(input, section);
         }
-        packer.clear();
+        encoder.clear();
     }
     return input;
 }
@@ -105,11 +105,11 @@ Bytes photographSeed(uint32_t seed) {
     for (size_t i = 0; i < 4 * delta::kPageBytes; ++i)
         record.push_back(
             static_cast<std::byte>(i < 4 ? 128 : static_cast<uint32_t>(record[record.size() - 4]) + random() % 7 - 3));
-    delta::DeltaEncoder packer(fuzz::fuzzLimits());
-    delta::BatchEncoder encoder([](size_t) { return int64_t{0}; });
-    packer.beginFrame(false);
-    packer.add(0x10000, record);
-    const auto batch = encoder.encode(packer.finish(), 80);
+    delta::DeltaEncoder encoder(fuzz::fuzzLimits());
+    delta::BatchEncoder batchEncoder([](size_t) { return int64_t{0}; });
+    encoder.beginFrame(false);
+    encoder.add(0x10000, record);
+    const auto batch = batchEncoder.encode(encoder.finish(), 80);
     if (!batch) std::exit(1);
     Bytes input{std::byte{0}};
     addSized(input, Bytes(batch.value().begin(), batch.value().end()));

@@ -1,4 +1,4 @@
-// Limits of the fuzzed unpacker and of the packer that makes its corpus. They are so small that all memory is soon
+// Limits of the fuzzed decoder and of the encoder that makes its corpus. They are so small that all memory is soon
 // overwritten.
 #pragma once
 

@@ -14,7 +14,7 @@ namespace {
 class DeltaCoding final : public StreamCoding {
 public:
     DeltaCoding(std::unique_ptr<DeltaStream> deltaStream, const delta::Limits& limits, bool filters)
-        : deltaStream_(std::move(deltaStream)), unpacker_(limits), filters_(filters) {
+        : deltaStream_(std::move(deltaStream)), deltaDecoder_(limits), filters_(filters) {
         deltaStream_->sendBy([this] { take(); });
         if (!filters) deltaStream_->disableFilter(); // decoded packets are compared with the originals
     }
@@ -41,7 +41,7 @@ public:
         std::span<const std::byte> payload;
         while (true) {
             if (unpacking_) {
-                auto more = unpacker_.next(stream, payload);
+                auto more = deltaDecoder_.next(stream, payload);
                 if (!more) return more.error();
                 unpacking_ = *more;
                 if (unpacking_) break;
@@ -79,14 +79,14 @@ private:
         while (at < batch_.size() && !head.add(batch_[at++])) {}
         auto sections = decoder_.decode(head.head(), std::span(batch_).subspan(at));
         if (!sections) return sections.error();
-        unpacker_.begin(*sections);
+        deltaDecoder_.begin(*sections);
         unpacking_ = true;
         return {};
     }
 
     std::unique_ptr<DeltaStream> deltaStream_;
     delta::BatchDecoder decoder_;
-    delta::DeltaDecoder unpacker_;
+    delta::DeltaDecoder deltaDecoder_;
     std::vector<Sent> sent_;                     // of the frame
     std::deque<std::vector<std::byte>> batches_; // not decoded yet
     std::vector<std::byte> batch_;               // being decoded

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/base/clock.hpp"
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 #include "tools/bench/stream/stream_coding.hpp"
 
 namespace mural::bench {
@@ -34,8 +34,8 @@ public:
     void packet(const StreamPacket& p) override {
         const size_t start = now_.bytes.size();
         now_.bytes.insert(now_.bytes.end(), p.payload.begin(), p.payload.end());
-        trace::RecordWalk walk(p.payload);
-        trace::RecordView r;
+        wire::RecordWalk walk(p.payload);
+        wire::RecordView r;
         size_t end = 0;
         while (walk.next(r)) {
             now_.commands.push_back({start + r.offset, r.sizeBytes});

@@ -1,11 +1,11 @@
-#include "streamcodec/trace/record_values.hpp"
+#include "streamcodec/wire/record_blobs.hpp"
 
 #include "streamcodec/wire/args.hpp"
 #include "streamcodec/wire/client_arrays.hpp"
 #include "streamcodec/command_parameters.hpp"
 #include "streamcodec/wire/control_records.hpp"
 
-namespace mural::trace {
+namespace mural::wire {
 namespace {
 
 class CountingQueue : public BlobQueue {
@@ -44,14 +44,14 @@ size_t blobsTakenBy(const RecordView& record) {
     CountingQueue queue;
     Args in(record.arguments, queue);
     switch (record.opcode) {
-    case wire::kOpClientArrays: readClientArrays(in); break;
-    case wire::kOpFillWindow: skip(in, 20), (void)in.data(); break;
-    case wire::kOpProgramLayout:
-    case wire::kOpProgramRecipe: skip(in, 4), (void)in.data(); break;
-    case wire::kOpBufferBytes: skip(in, 12), (void)in.data(); break;
+    case kOpClientArrays: readClientArrays(in); break;
+    case kOpFillWindow: skip(in, 20), (void)in.data(); break;
+    case kOpProgramLayout:
+    case kOpProgramRecipe: skip(in, 4), (void)in.data(); break;
+    case kOpBufferBytes: skip(in, 12), (void)in.data(); break;
     default: readGl(in, record.opcode); // not a control record
     }
     return queue.taken;
 }
 
-} // namespace mural::trace
+} // namespace mural::wire

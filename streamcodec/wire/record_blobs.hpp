@@ -1,10 +1,10 @@
 // Number of blobs that a record consumes. Without it later records would take the wrong blobs.
 #pragma once
 
-#include "streamcodec/trace/record_walk.hpp"
+#include "streamcodec/wire/record_walk.hpp"
 
-namespace mural::trace {
+namespace mural::wire {
 
 size_t blobsTakenBy(const RecordView& record);
 
-} // namespace mural::trace
+} // namespace mural::wire

@@ -10,13 +10,13 @@
 namespace mural::trace {
 namespace {
 
-class Recorder : public ::testing::Test {
+class StreamRecorderTest : public ::testing::Test {
 protected:
-    Recorder()
+    StreamRecorderTest()
         : path_(
               (std::filesystem::temp_directory_path() / ("mural-recorder-test." + std::to_string(getpid()))).string()) {
     }
-    ~Recorder() override { std::filesystem::remove(path_); }
+    ~StreamRecorderTest() override { std::filesystem::remove(path_); }
 
     std::unique_ptr<StreamRecorder> recorder(RecorderConfig config = {}, const std::string& path = "") {
         auto made = StreamRecorder::create(path.empty() ? path_ : path, std::move(config));
@@ -28,7 +28,7 @@ protected:
     const RecordedLog log_;
 };
 
-TEST_F(Recorder, keepsOrderWithASmallQueue) {
+TEST_F(StreamRecorderTest, keepsOrderWithASmallQueue) {
     RecorderConfig config;
     config.queueBytes = 256;
     auto r = recorder(config);
@@ -52,7 +52,7 @@ TEST_F(Recorder, keepsOrderWithASmallQueue) {
     EXPECT_TRUE(log_.texts().empty());
 }
 
-TEST_F(Recorder, endsWithTheLastFrame) {
+TEST_F(StreamRecorderTest, endsWithTheLastFrame) {
     RecorderConfig config;
     config.lastFrame = 3;
     auto r = recorder(config);
@@ -65,7 +65,7 @@ TEST_F(Recorder, endsWithTheLastFrame) {
     EXPECT_EQ(entriesOf(**reader).size(), 4u);
 }
 
-TEST_F(Recorder, stopsWithOneLineOnAFullDisk) {
+TEST_F(StreamRecorderTest, stopsWithOneLineOnAFullDisk) {
     auto r = recorder({}, "/dev/full");
     r->begin({});
     for (uint32_t i = 1; i <= 100; ++i) r->packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
@@ -77,7 +77,7 @@ TEST_F(Recorder, stopsWithOneLineOnAFullDisk) {
               "place; the trace ends after 0 frames, the program continues");
 }
 
-TEST_F(Recorder, stopsWithOneLineOnABlockedDisk) {
+TEST_F(StreamRecorderTest, stopsWithOneLineOnABlockedDisk) {
     RecorderConfig config;
     config.queueBytes = 1024;
     config.patienceMs = 50;
@@ -87,7 +87,7 @@ TEST_F(Recorder, stopsWithOneLineOnABlockedDisk) {
     EXPECT_NE(log_.texts()[0].find("the disk may be too slow"), std::string::npos) << log_.texts()[0];
 }
 
-TEST_F(Recorder, preservesDataOlderThanASecondWhenTheHeadIsKilled) {
+TEST_F(StreamRecorderTest, preservesDataOlderThanASecondWhenTheHeadIsKilled) {
     RecorderConfig config;
     config.wholeEveryMs = 20;
     {

@@ -1,4 +1,4 @@
-// Makes the corpus: bin/recording_fuzz_seeds RECORDING OUT NAME. It writes OUT/NAME_entries (small entries of the first
+// Makes the corpus: bin/trace_fuzz_seeds RECORDING OUT NAME. It writes OUT/NAME_entries (small entries of the first
 // block) and OUT/NAME_file (the rest of the file after the header).
 #include <cstdio>
 #include <fstream>
@@ -18,7 +18,7 @@ void save(const std::string& path, std::span<const std::byte> bytes) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 4) return std::fputs("recording_fuzz_seeds RECORDING OUT NAME\n", stderr), 2;
+    if (argc != 4) return std::fputs("trace_fuzz_seeds RECORDING OUT NAME\n", stderr), 2;
     auto reader = mural::trace::TraceReader::open(argv[1]);
     if (!reader) return std::fprintf(stderr, "%s\n", reader.error().message.c_str()), 1;
     const std::string name = std::string(argv[2]) + "/" + argv[3];

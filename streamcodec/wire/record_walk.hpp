@@ -10,7 +10,7 @@
 #include "streamcodec/wire/record_round.hpp"
 #include "streamcodec/wire/record_offsets.hpp"
 
-namespace mural::trace {
+namespace mural::wire {
 
 struct RecordView {
     uint16_t opcode = 0;
@@ -165,4 +165,4 @@ inline uint32_t argumentWord(const RecordView& record, size_t index) {
     return value;
 }
 
-} // namespace mural::trace
+} // namespace mural::wire

@@ -9,13 +9,13 @@
 namespace mural::trace {
 namespace {
 
-class RecordingFile : public testing::Test {
+class TraceFile : public testing::Test {
 protected:
-    RecordingFile()
+    TraceFile()
         : folder_(std::filesystem::temp_directory_path() / ("mural-recording-test." + std::to_string(getpid()))) {
         std::filesystem::create_directories(folder_);
     }
-    ~RecordingFile() override { std::filesystem::remove_all(folder_); }
+    ~TraceFile() override { std::filesystem::remove_all(folder_); }
     [[nodiscard]] std::string path() const { return (folder_ / "a.mural").string(); }
 
     // Writes two programs and three frames of the larger window in two blocks; returns the entries.
@@ -47,7 +47,7 @@ protected:
     const std::filesystem::path folder_;
 };
 
-TEST_F(RecordingFile, roundTrips) {
+TEST_F(TraceFile, roundTrips) {
     const auto put = writeSmall();
     auto reader = TraceReader::open(path());
     ASSERT_TRUE(reader) << reader.error().message;
@@ -63,7 +63,7 @@ TEST_F(RecordingFile, roundTrips) {
     EXPECT_EQ(problem, "");
 }
 
-TEST_F(RecordingFile, isReadableUpToTheLastCompleteBlockWhenTruncated) {
+TEST_F(TraceFile, isReadableUpToTheLastCompleteBlockWhenTruncated) {
     const auto put = writeSmall();
     const Bytes whole = readWhole(path());
     auto all = readerOf(whole);
@@ -88,7 +88,7 @@ TEST_F(RecordingFile, isReadableUpToTheLastCompleteBlockWhenTruncated) {
     EXPECT_EQ(maxRead, put.size()); // only the index is missing
 }
 
-TEST_F(RecordingFile, detectsEveryChangedByte) {
+TEST_F(TraceFile, detectsEveryChangedByte) {
     const auto put = writeSmall();
     const Bytes whole = readWhole(path());
     for (size_t at = 0; at < whole.size(); ++at) {
@@ -104,7 +104,7 @@ TEST_F(RecordingFile, detectsEveryChangedByte) {
     }
 }
 
-TEST_F(RecordingFile, reportsProblemAndRemedy) {
+TEST_F(TraceFile, reportsProblemAndRemedy) {
     writeSmall();
     const Bytes whole = readWhole(path());
     const auto errorOf = [&](size_t at, uint32_t value) {
@@ -127,7 +127,7 @@ TEST_F(RecordingFile, reportsProblemAndRemedy) {
               "trace /nowhere/a.mural: cannot be written: No such file or directory; choose another place");
 }
 
-TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
+TEST_F(TraceFile, keepsFramesBeforeADamagedBlock) {
     const auto put = writeSmall();
     const Bytes whole = readWhole(path());
     const auto blocks = (*TraceReader::open(path()))->blocks();
@@ -155,7 +155,7 @@ TEST_F(RecordingFile, keepsFramesBeforeADamagedBlock) {
                   "it again");
 }
 
-TEST_F(RecordingFile, explainsMissingFrames) {
+TEST_F(TraceFile, explainsMissingFrames) {
     writeSmall();
     const Bytes whole = readWhole(path());
     const uint64_t first = (*TraceReader::open(path()))->blocks()[0].offset;
@@ -173,7 +173,7 @@ TEST_F(RecordingFile, explainsMissingFrames) {
               "some of them, such as 1-3");
 }
 
-TEST_F(RecordingFile, rejectsOtherCommandTables) {
+TEST_F(TraceFile, rejectsOtherCommandTables) {
     auto writer = TraceWriter::create(path());
     ASSERT_TRUE((*writer)->begin({"9.9", {}, ""}, wire::kVersion, registryDigest() ^ 1));
     ASSERT_TRUE((*writer)->finish());
@@ -184,7 +184,7 @@ TEST_F(RecordingFile, rejectsOtherCommandTables) {
                                           "that version, or record it again");
 }
 
-TEST_F(RecordingFile, dividesLargeFramesIntoBoundedBlocks) {
+TEST_F(TraceFile, dividesLargeFramesIntoBoundedBlocks) {
     auto writer = TraceWriter::create(path());
     TraceWriter& w = **writer;
     ASSERT_TRUE(w.begin({}, wire::kVersion, registryDigest()));
@@ -204,18 +204,18 @@ TEST_F(RecordingFile, dividesLargeFramesIntoBoundedBlocks) {
 
 TEST(RecordWalk, stopsAtAnInvalidRecord) {
     const uint32_t endless[] = {wire::kOpFinish | 2u << 16, 0, 99u << 16 | wire::kOpSwap, 0};
-    RecordWalk walk(std::as_bytes(std::span(endless)));
-    RecordView r;
+    wire::RecordWalk walk(std::as_bytes(std::span(endless)));
+    wire::RecordView r;
     EXPECT_TRUE(walk.next(r));
     EXPECT_EQ(r.opcode, wire::kOpFinish);
     EXPECT_FALSE(walk.next(r));
     EXPECT_TRUE(walk.malformed());
     const uint32_t shortLong[] = {0xffff0000u | wire::kOpSwap, 1};
-    RecordWalk second(std::as_bytes(std::span(shortLong)));
+    wire::RecordWalk second(std::as_bytes(std::span(shortLong)));
     EXPECT_FALSE(second.next(r));
     EXPECT_TRUE(second.malformed());
     const uint32_t zero[] = {0};
-    RecordWalk third(std::as_bytes(std::span(zero)));
+    wire::RecordWalk third(std::as_bytes(std::span(zero)));
     EXPECT_FALSE(third.next(r));
     EXPECT_TRUE(third.malformed());
 }
