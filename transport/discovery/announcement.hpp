@@ -1,4 +1,4 @@
-// The announcement of a waiting node, as one datagram. It contains no secrets and is not trusted: a node still has to
+// The announcement of a daemon, as one datagram. It contains no secrets and is not trusted: a node still has to
 // prove that it knows the session's secret. Little-endian:
 //
 //   0 "MURALDB"   7 u8 version   8 u8 kind   9 u8 0   10 u16 port   12 UUID

@@ -1,4 +1,4 @@
-// Announces a waiting node during its lifetime: by beacon, and by Avahi where it runs.
+// Announces a daemon during its lifetime, by Mural's beacon and by Avahi where it runs.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ public:
     static Result<std::unique_ptr<Announcing>> start(const Announcement& self, const DiscoveryOptions& options);
     ~Announcing(); // sends the final announcement
 
-    // Return the reason why this node is not announced by beacon, or by Avahi; empty: it is.
+    // Return the reason why this daemon is not announced by beacon, or by Avahi; empty: it is.
     [[nodiscard]] std::string beaconTrouble() const;
     [[nodiscard]] std::string avahiTrouble() const { return publisher_ ? publisher_->trouble() : std::string(); }
 

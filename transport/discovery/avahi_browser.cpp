@@ -40,7 +40,7 @@ void AvahiBrowser::Search::browsed(AvahiServiceBrowser*, AvahiIfIndex interface,
                                    AvahiLookupResultFlags, void* data) {
     auto& s = *static_cast<Search*>(data);
     if (event == AVAHI_BROWSER_NEW) {
-        // It gives itself back when it has answered.
+        // resolved() frees the resolver.
         (void)s.avahi->serviceResolverNew(s.client, interface, protocol, name, type, domain, AVAHI_PROTO_UNSPEC,
                                           static_cast<AvahiLookupFlags>(0), resolved, data);
     } else if (event == AVAHI_BROWSER_REMOVE) {

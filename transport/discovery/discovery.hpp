@@ -1,4 +1,4 @@
-// Finds waiting nodes on this network: by Mural's beacon (UDP multicast, IPv4 and IPv6), and by Avahi where it runs.
+// Finds daemons on this network: by Mural's beacon (UDP multicast, IPv4 and IPv6), and by Avahi where it runs.
 #pragma once
 
 #include <functional>

@@ -65,13 +65,13 @@ unsigned Channel::onReceived(const Endpoint::Completion& completion) {
         return kWriting;
     }
     const auto bytes = endpoint_->memory(slot).first(std::min(completion.sizeBytes, kMessageBytes));
-    const auto kind = bytes.size() < kHeadBytes ? MessageKind{} : static_cast<MessageKind>(bytes[0]);
+    const auto kind = bytes.size() < kHeaderBytes ? MessageKind{} : static_cast<MessageKind>(bytes[0]);
     switch (kind) {
     case MessageKind::Data:
         if (closedHere_)
             receiveInto(slot); // no reader
         else
-            received_.push_back({slot, bytes.subspan(kHeadBytes)});
+            received_.push_back({slot, bytes.subspan(kHeaderBytes)});
         return kReading;
     case MessageKind::Credit:
         onCredits(loadLittle<uint16_t>(bytes.data() + 2));
@@ -99,18 +99,18 @@ void Channel::receiveInto(Endpoint::Slot slot) {
 void Channel::sendControls() {
     if (byeSent_) return;
     if (gone_) {
-        if (fault_.empty()) byeSent_ = injected(makeHead(MessageKind::Bye)); // the reply to the peer's Bye
+        if (fault_.empty()) byeSent_ = injected(makeHeader(MessageKind::Bye)); // the reply to the peer's Bye
         return;
     }
     if (closedHere_) {
-        if (sendGathered()) byeSent_ = injected(makeHead(MessageKind::Bye));
-    } else if (pendingCredits_ >= kCreditsAtOnce && injected(makeHead(MessageKind::Credit, pendingCredits_))) {
+        if (sendGathered()) byeSent_ = injected(makeHeader(MessageKind::Bye));
+    } else if (pendingCredits_ >= kCreditsAtOnce && injected(makeHeader(MessageKind::Credit, pendingCredits_))) {
         pendingCredits_ = 0;
     }
 }
 
-bool Channel::injected(const Head& head) {
-    const long code = endpoint_->inject(head);
+bool Channel::injected(const Header& header) {
+    const long code = endpoint_->inject(header);
     if (code != 0 && code != -FI_EAGAIN && !gone_) end(code);
     return code != -FI_EAGAIN;
 }
@@ -141,9 +141,9 @@ size_t Channel::gather(std::span<const std::byte> bytes) {
         if (gathering_ == 0) {
             gathering_ = freeSends_.back();
             freeSends_.pop_back();
-            const Head head = makeHead(MessageKind::Data);
-            std::copy(head.begin(), head.end(), endpoint_->memory(gathering_).begin());
-            gatheredBytes_ = kHeadBytes;
+            const Header header = makeHeader(MessageKind::Data);
+            std::copy(header.begin(), header.end(), endpoint_->memory(gathering_).begin());
+            gatheredBytes_ = kHeaderBytes;
         }
         const size_t n = std::min(bytes.size() - done, messageBytes_ - gatheredBytes_);
         std::memcpy(endpoint_->memory(gathering_).data() + gatheredBytes_, bytes.data() + done, n);
@@ -204,7 +204,7 @@ Channel::End Channel::leave(End end) {
 
 void Channel::close() {
     closedHere_ = true;
-    received_.clear(); // their slots are credits that are no longer used
+    received_.clear(); // the peer gets no more credits for these slots
     wakeAll();
     progress(Side::Writing);
 }

@@ -77,7 +77,7 @@ private:
     void onCredits(uint16_t credits);
     void receiveInto(Endpoint::Slot slot);
     void sendControls();
-    bool injected(const Head& head);
+    bool injected(const Header& header);
     void end(std::string fault);
     void end(long code);
 
@@ -91,13 +91,13 @@ private:
     std::deque<Message> received_;
     uint16_t pendingCredits_ = 0;
 
-    const size_t messageBytes_; // including its head; the minimum of both ends
+    const size_t messageBytes_; // including its header; the minimum of both ends
     const uint16_t window_;     // credits of the peer
     uint16_t credits_;
     std::vector<Endpoint::Slot> freeSends_;
     size_t sendsUnderWay_ = 0;
     Endpoint::Slot gathering_ = 0; // 0: none, because slot 0 is for receiving
-    size_t gatheredBytes_ = 0;     // including the head
+    size_t gatheredBytes_ = 0;     // including the header
 
     bool closedHere_ = false;
     bool byeSent_ = false;

@@ -126,7 +126,7 @@ long Endpoint::send(Slot slot, size_t sizeBytes) {
     return fi_send(endpoint_.get(), memory(slot).data(), sizeBytes, fi_mr_desc(registered_.get()), 0, &contexts_[slot]);
 }
 
-long Endpoint::inject(const Head& head) { return fi_inject(endpoint_.get(), head.data(), head.size(), 0); }
+long Endpoint::inject(const Header& header) { return fi_inject(endpoint_.get(), header.data(), header.size(), 0); }
 
 int Endpoint::completions(std::span<Completion> into, long& code) {
     std::array<fi_cq_msg_entry, 16> entries{};

@@ -41,7 +41,7 @@ public:
     // Returns 0 or an error; -FI_EAGAIN: retry later.
     long receive(Slot slot);
     long send(Slot slot, size_t sizeBytes);
-    long inject(const Head& head); // copies the bytes, and completes without a completion event
+    long inject(const Header& header); // copies the bytes, and completes without a completion event
 
     // Returns the number of entries filled; negative: the connection is broken, `code` has the reason.
     int completions(std::span<Completion> into, long& code);

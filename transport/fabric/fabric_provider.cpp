@@ -32,7 +32,7 @@ Info makeHints(const std::string& provider) {
     hints->ep_attr->type = FI_EP_MSG;
     hints->domain_attr->mr_mode = FI_MR_LOCAL | FI_MR_ALLOCATED | FI_MR_PROV_KEY | FI_MR_VIRT_ADDR;
     hints->domain_attr->threading = FI_THREAD_DOMAIN;
-    hints->tx_attr->inject_size = kHeadBytes;
+    hints->tx_attr->inject_size = kHeaderBytes;
     hints->tx_attr->size = kSends + kControls;
     hints->rx_attr->size = kReceives;
     if (!provider.empty()) hints->fabric_attr->prov_name = strdup(provider.c_str());

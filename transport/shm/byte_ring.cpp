@@ -23,8 +23,9 @@ uint32_t announceDataFor(size_t capacityBytes) {
 
 uint32_t announceRoomFor(size_t capacityBytes) { return static_cast<uint32_t>(std::max<size_t>(capacityBytes / 4, 1)); }
 
-// Both sides store their own word and then load the other's, sequentially consistent. So the sleeper sees the new
-// position, or the waker sees the flag. One wake-up per sleep.
+// Publishes a position, and wakes the other side if it sleeps. The waker stores the position and then loads the flag;
+// sleepWhileEqual() stores the flag and then loads the position. Both are sequentially consistent, so the sleeper sees
+// the new position, or the waker sees the flag. The exchange limits this to one wake-up per sleep.
 bool wakeIfWaiting(std::atomic<uint32_t>& waiting, std::atomic<uint32_t>& position, uint32_t positionNow) {
     position.store(positionNow, std::memory_order_seq_cst);
     if (waiting.load(std::memory_order_seq_cst) == 0) return false;

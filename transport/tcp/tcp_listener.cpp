@@ -131,7 +131,7 @@ Result<std::unique_ptr<Listener>> listenTcp(const std::string& address, uint16_t
     return first;
 }
 
-// Divides the remaining time among the host's addresses, so that one without answers (a dead IPv6 route) does not
+// Divides the remaining time among the host's addresses, so that one that does not answer (a dead IPv6 route) does not
 // consume all of it.
 Result<std::unique_ptr<Connection>> connectTcp(const std::string& host, uint16_t port, Deadline deadline) {
     auto addresses = resolveTcp(host, port, TcpRole::Connect, deadline);

@@ -45,12 +45,12 @@ uint64_t parse(std::span<const std::byte> datagram) {
     uint64_t meant = 0;
     if (const auto d = readStream(datagram)) {
         std::vector<std::byte> again(datagram.begin(), datagram.end());
-        writeStreamHead(*d, again);
+        writeStreamHeader(*d, again);
         const auto twice = readStream(again);
         must(twice && twice->sequence == d->sequence && twice->next == d->next &&
                  twice->payload.size() == d->payload.size(),
              "a stream's datagram is read as it was written");
-        must(kStreamHeadBytes + d->payload.size() == datagram.size(), "a payload lies within its datagram");
+        must(kStreamHeaderBytes + d->payload.size() == datagram.size(), "a payload lies within its datagram");
         ++meant;
     }
     if (const auto f = readFeedback(datagram)) {
@@ -65,11 +65,11 @@ uint64_t parse(std::span<const std::byte> datagram) {
 
 // Sends a genuine datagram, changed in transit by `bits`.
 void sealAndOpen(Ends& e, Seal seal, const std::vector<std::byte>& payload, uint16_t at, uint8_t bits) {
-    std::vector<std::byte> sealed(kStreamHeadBytes + payload.size() + tagBytes(seal));
-    StreamDatagram head;
-    head.from = kWriter;
-    writeStreamHead(head, sealed);
-    std::ranges::copy(payload, sealed.begin() + kStreamHeadBytes);
+    std::vector<std::byte> sealed(kStreamHeaderBytes + payload.size() + tagBytes(seal));
+    StreamDatagram header;
+    header.from = kWriter;
+    writeStreamHeader(header, sealed);
+    std::ranges::copy(payload, sealed.begin() + kStreamHeaderBytes);
     e.sealer.seal(sealed);
     const bool changed = change(sealed, at, bits);
     std::vector<std::byte> first = sealed, second = sealed, strange = sealed;
@@ -80,7 +80,7 @@ void sealAndOpen(Ends& e, Seal seal, const std::vector<std::byte>& payload, uint
     must(taken == !changed, "what is genuine is taken, and nothing else");
     must(e.wrong.open(strange).empty(), "nothing is taken with another key");
     if (!changed) {
-        must(taken && std::ranges::equal(opened.subspan(kStreamHeadBytes), payload),
+        must(taken && std::ranges::equal(opened.subspan(kStreamHeaderBytes), payload),
              "what is taken is what was sealed");
         must(e.right.open(second).empty(), "nothing is taken twice");
     }

@@ -45,7 +45,7 @@ private:
 };
 
 Bytes streamBytes(Type type, uint32_t sequence, unsigned index, unsigned size, size_t payload, uint8_t flags = 0) {
-    Bytes bytes(kStreamHeadBytes + payload, std::byte{5});
+    Bytes bytes(kStreamHeaderBytes + payload, std::byte{5});
     StreamDatagram d;
     d.type = type;
     d.flags = flags;
@@ -54,7 +54,7 @@ Bytes streamBytes(Type type, uint32_t sequence, unsigned index, unsigned size, s
     d.groupSize = static_cast<uint8_t>(size);
     d.sentUs = 1000;
     d.next = Sequence(sequence + 1);
-    writeStreamHead(d, bytes);
+    writeStreamHeader(d, bytes);
     return bytes;
 }
 

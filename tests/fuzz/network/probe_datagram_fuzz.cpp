@@ -15,7 +15,7 @@ uint64_t fuzzOne(std::span<const std::byte> input) {
     std::vector<std::byte> again(exact.size());
     cli::writeProbe(*probe, again);
     must(std::ranges::equal(std::span(again).first(20), std::span(exact).first(20)),
-         "a probe's head is written in one way");
+         "a probe's header is written in one way");
     return 1;
 }
 

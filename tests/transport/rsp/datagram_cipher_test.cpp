@@ -12,23 +12,23 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-class DatagramSeal : public testing::TestWithParam<Seal> {
+class DatagramCiphers : public testing::TestWithParam<Seal> {
 protected:
     void SetUp() override {
         if (!available(GetParam())) GTEST_SKIP() << "this processor has no instructions for " << nameOf(GetParam());
         keys_ = makeSessionKeys(GetParam());
     }
     Bytes datagram(uint8_t value, size_t payloadBytes = 100) const {
-        Bytes d(kStreamHeadBytes + payloadBytes + tagBytes(keys_.seal), static_cast<std::byte>(value));
-        StreamDatagram head;
-        head.from = 3;
-        writeStreamHead(head, d);
+        Bytes d(kStreamHeaderBytes + payloadBytes + tagBytes(keys_.seal), static_cast<std::byte>(value));
+        StreamDatagram header;
+        header.from = 3;
+        writeStreamHeader(header, d);
         return d;
     }
     SessionKeys keys_;
 };
 
-TEST_P(DatagramSeal, opensEachDatagramOnce) {
+TEST_P(DatagramCiphers, opensEachDatagramOnce) {
     DatagramSealer sealer(keys_, 3);
     DatagramOpener opener(keys_);
     opener.addMember(3);
@@ -39,26 +39,26 @@ TEST_P(DatagramSeal, opensEachDatagramOnce) {
         Bytes again = sealed;
         const auto opened = opener.open(sealed);
         ASSERT_EQ(opened.size(), plain.size() - tagBytes(keys_.seal));
-        EXPECT_TRUE(std::equal(opened.begin() + kHeadBytes, opened.end(), plain.begin() + kHeadBytes));
+        EXPECT_TRUE(std::equal(opened.begin() + kHeaderBytes, opened.end(), plain.begin() + kHeaderBytes));
         EXPECT_TRUE(opener.open(again).empty()) << "the same datagram again";
     }
     EXPECT_EQ(opener.refused().replayed, 100u);
     EXPECT_EQ(opener.refused().all(), 100u);
 }
 
-TEST_P(DatagramSeal, hidesThePayload) {
+TEST_P(DatagramCiphers, hidesThePayload) {
     DatagramSealer sealer(keys_, 3);
     Bytes sealed = datagram(0x5a);
     sealer.seal(sealed);
     const auto same =
-        std::count(sealed.begin() + kStreamHeadBytes, sealed.begin() + kStreamHeadBytes + 100, std::byte{0x5a});
+        std::count(sealed.begin() + kStreamHeaderBytes, sealed.begin() + kStreamHeaderBytes + 100, std::byte{0x5a});
     if (keys_.seal == Seal::None || keys_.seal == Seal::Tag)
         EXPECT_EQ(same, 100);
     else
         EXPECT_LT(same, 20);
 }
 
-TEST_P(DatagramSeal, rejectsOtherSessionsMembersAndKeys) {
+TEST_P(DatagramCiphers, rejectsOtherSessionsMembersAndKeys) {
     DatagramOpener opener(keys_);
     opener.addMember(3);
     SessionKeys other = makeSessionKeys(keys_.seal);
@@ -84,7 +84,7 @@ TEST_P(DatagramSeal, rejectsOtherSessionsMembersAndKeys) {
     EXPECT_EQ(opener.refused().forged, 2u);
 }
 
-TEST_P(DatagramSeal, rejectsAMemberAfterItHasLeft) {
+TEST_P(DatagramCiphers, rejectsAMemberAfterItHasLeft) {
     DatagramSealer sealer(keys_, 3);
     DatagramOpener opener(keys_);
     opener.addMember(3);
@@ -98,7 +98,7 @@ TEST_P(DatagramSeal, rejectsAMemberAfterItHasLeft) {
     EXPECT_EQ(opener.refused().stranger, 1u);
 }
 
-class DatagramForgery : public DatagramSeal {};
+class DatagramForgery : public DatagramCiphers {};
 
 TEST_P(DatagramForgery, isRejectedEachTime) {
     std::mt19937 random(5);
@@ -127,7 +127,7 @@ std::string testName(const testing::TestParamInfo<Seal>& info) {
     constexpr std::array names{"None", "Tag", "AesGcm", "ChaCha"};
     return names[static_cast<size_t>(info.param)];
 }
-INSTANTIATE_TEST_SUITE_P(Seals, DatagramSeal, testing::Values(Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha),
+INSTANTIATE_TEST_SUITE_P(Seals, DatagramCiphers, testing::Values(Seal::None, Seal::Tag, Seal::AesGcm, Seal::ChaCha),
                          testName);
 INSTANTIATE_TEST_SUITE_P(Seals, DatagramForgery, testing::Values(Seal::Tag, Seal::AesGcm, Seal::ChaCha), testName);
 

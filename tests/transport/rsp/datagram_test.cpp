@@ -23,8 +23,8 @@ TEST(Sequence, comparesAcrossTheWrap) {
 }
 
 Bytes streamBytes(StreamDatagram d, size_t payloadBytes) {
-    Bytes bytes(kStreamHeadBytes + payloadBytes, std::byte{7});
-    writeStreamHead(d, bytes);
+    Bytes bytes(kStreamHeaderBytes + payloadBytes, std::byte{7});
+    writeStreamHeader(d, bytes);
     return bytes;
 }
 
@@ -79,7 +79,7 @@ TEST(Datagram, rejectsFieldsOutOfBounds) {
     EXPECT_FALSE(readStream(streamBytes(d, 1)));
     Bytes other = streamBytes({}, 1);
     other[0] ^= std::byte{0x10};
-    EXPECT_FALSE(readHead(other)) << "another version";
+    EXPECT_FALSE(readHeader(other)) << "another version";
 }
 
 TEST(Datagram, decodesItsOwnFeedback) {

@@ -91,7 +91,7 @@ TEST(Receiver, usesPayloadsInPlace) {
     settings.shape = {100, 64};
     Receiver receiver(settings, Sequence(7));
     ReceiveBuffers landing = receiver.landing();
-    ASSERT_GE(landing.bufferBytes, kStreamHeadBytes + 100);
+    ASSERT_GE(landing.bufferBytes, kStreamHeaderBytes + 100);
     ASSERT_GE(landing.buffers.size(), 4u);
     const auto come = [&](int number, std::span<const std::byte> payload) {
         StreamDatagram data;
@@ -101,7 +101,7 @@ TEST(Receiver, usesPayloadsInPlace) {
         receiver.input(data, 1'000'000);
     };
     const auto landed = [&](size_t place, int value) {
-        std::byte* const at = landing.buffers[place] + kStreamHeadBytes;
+        std::byte* const at = landing.buffers[place] + kStreamHeaderBytes;
         std::fill_n(at, 100, static_cast<std::byte>(value));
         return std::span<const std::byte>(at, 100);
     };
@@ -110,14 +110,14 @@ TEST(Receiver, usesPayloadsInPlace) {
     come(0, landed(0, 10));
     come(1, landed(2, 11)); // one slot was skipped: another stream's, or a duplicate
     ASSERT_EQ(receiver.readable(pieces), 2u);
-    EXPECT_EQ(pieces[0].data(), landing.buffers[0] + kStreamHeadBytes);
-    EXPECT_EQ(pieces[1].data(), landing.buffers[2] + kStreamHeadBytes);
+    EXPECT_EQ(pieces[0].data(), landing.buffers[0] + kStreamHeaderBytes);
+    EXPECT_EQ(pieces[1].data(), landing.buffers[2] + kStreamHeaderBytes);
     come(1, landed(3, 99)); // a duplicate: rejected, and its slot is reused
     const std::vector<std::byte> elsewhere(100, std::byte{12});
     come(2, elsewhere);
     const ReceiveBuffers next = receiver.landing();
     for (std::byte* const place : next.buffers)
-        for (const auto& piece : std::span(pieces).first(2)) EXPECT_NE(place + kStreamHeadBytes, piece.data());
+        for (const auto& piece : std::span(pieces).first(2)) EXPECT_NE(place + kStreamHeaderBytes, piece.data());
     for (const size_t again : {1, 3})
         EXPECT_NE(std::ranges::find(next.buffers, landing.buffers[again]), next.buffers.end()) << again;
     receiver.consume(40);

@@ -89,7 +89,7 @@ size_t SimulatedStream::join() {
 
 // Delivers as a socket does: randomly in place in the window or elsewhere.
 std::optional<StreamDatagram> SimulatedStream::landed(std::span<const std::byte> datagram, Receiver& receiver) {
-    if (datagram.size() <= kStreamHeadBytes || network_.random() % 2 == 0) return readStream(datagram);
+    if (datagram.size() <= kStreamHeaderBytes || network_.random() % 2 == 0) return readStream(datagram);
     const ReceiveBuffers landing = receiver.landing();
     if (datagram.size() > landing.bufferBytes) return readStream(datagram);
     std::byte* const place = landing.buffers[network_.random() % landing.buffers.size()];

@@ -100,7 +100,7 @@ TEST(UdpSocket, receivesInPlaceWithoutMerging) {
 // As a group uses it: no sender addresses, all slots offered to each call, and no slot used by two calls.
 TEST(UdpSocket, usesSeparateSlotsPerCall) {
     Ends ends;
-    ends.to.leaveOutSenders();
+    ends.to.omitSenders();
     const Places few(4);
     const std::array<Places, 4> calls{Places(kMaxAtOnce), Places(kMaxAtOnce), Places(kMaxAtOnce, 2 * kPlace),
                                       Places(kMaxAtOnce)};

@@ -70,7 +70,7 @@ Result<void> Group::State::openSockets() {
     auto own = UdpSocket::openOwn(interface_, group_.family(), options_.socketBytes);
     if (!own) return own.error();
     own_.emplace(std::move(*own));
-    own_->leaveOutSenders(); // datagrams identify their sender
+    own_->omitSenders(); // datagrams identify their sender
     auto arrivals = SocketPoller::open();
     if (!arrivals) return arrivals.error();
     arrivals_.emplace(std::move(*arrivals));
@@ -89,7 +89,7 @@ Result<void> Group::State::joinMulticast() {
     auto socket = UdpSocket::openGroup(group_, interface_, options_.socketBytes);
     if (!socket) return socket.error();
     groupSocket_.emplace(std::move(*socket));
-    groupSocket_->leaveOutSenders();
+    groupSocket_->omitSenders();
     return arrivals_->add(groupSocket_->descriptor());
 }
 

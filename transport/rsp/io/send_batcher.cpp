@@ -35,7 +35,7 @@ std::span<std::byte> SendBatcher::datagram(MemberId to, size_t bytes) {
     }
     openBytes_ = whole;
     const auto room = std::span(bytes_).subspan(used_, bytes);
-    std::ranges::fill(room.first(std::min(bytes, kHeadBytes)), std::byte{0});
+    std::ranges::fill(room.first(std::min(bytes, kHeaderBytes)), std::byte{0});
     return room;
 }
 

@@ -18,8 +18,8 @@ public:
     void setMember(MemberId id, const SocketAddress& address) { members_[id] = address; }
     void removeMember(MemberId id) { members_.erase(id); }
 
-    // Returns room for one datagram, as Outbox::datagram. Discards datagrams before keys exist, and to members without
-    // an address.
+    // Returns room for one datagram, as DatagramSink::datagram. Discards datagrams before keys exist, and to members
+    // without an address.
     std::span<std::byte> datagram(MemberId to, size_t bytes);
     // Sends the current batch.
     void flush();

@@ -158,8 +158,8 @@ void UdpSocket::setLoop(bool loop) {
 }
 
 void UdpSocket::ignoreMember(MemberId self) {
-    // The datagram's head follows the UDP header (8 bytes), with the member id in its third and fourth byte. BPF loads
-    // big-endian.
+    // The datagram's header follows the UDP header (8 bytes), with the member id in its third and fourth byte. BPF
+    // loads big-endian.
     constexpr uint32_t field = 8 + 2;
     const auto turned = static_cast<uint32_t>((self & 0xff) << 8 | self >> 8);
     std::array<sock_filter, 4> program{{

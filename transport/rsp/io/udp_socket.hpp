@@ -36,7 +36,7 @@ public:
     void ignoreNobody();
 
     // Omits sender addresses, which cost the kernel time per datagram.
-    void leaveOutSenders() { reportsSenders_ = false; }
+    void omitSenders() { reportsSenders_ = false; }
 
     [[nodiscard]] int descriptor() const { return socket_.get(); }
     [[nodiscard]] SocketAddress localAddress() const;

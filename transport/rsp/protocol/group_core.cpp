@@ -52,7 +52,7 @@ private:
 GroupCore::GroupCore(const GroupSettings& settings, GroupOutput& out)
     : settings_(settings), out_(out), datagrams_(std::make_unique<Datagrams>(*this)), probeNonce_(settings.probeSeed) {
     if (!settings_.host) return;
-    shape_ = {settings_.datagramBytes - kStreamHeadBytes - kLengthBytes - tagBytes(settings_.keys.seal),
+    shape_ = {settings_.datagramBytes - kStreamHeaderBytes - kLengthBytes - tagBytes(settings_.keys.seal),
               settings_.windowDatagrams};
     makeSender();
     live_ = true;
@@ -149,9 +149,9 @@ ReceiveBuffers GroupCore::landing() { return active_.receiver ? active_.receiver
 
 // Returns true for a probe of full size. Members that lost multicast are tested by probes only, at growing intervals.
 bool GroupCore::showsMulticast(std::span<const std::byte> datagram) const {
-    if (datagram.size() != kStreamHeadBytes + shape_.payloadBytes) return false;
-    const auto head = readHead(datagram);
-    return head && head->from == kHost && head->type == Type::Data;
+    if (datagram.size() != kStreamHeaderBytes + shape_.payloadBytes) return false;
+    const auto header = readHeader(datagram);
+    return header && header->from == kHost && header->type == Type::Data;
 }
 
 void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs) {
@@ -163,18 +163,18 @@ void GroupCore::inputDatagram(std::span<const std::byte> datagram, int64_t nowNs
 }
 
 void GroupCore::deliver(std::span<const std::byte> datagram, int64_t nowNs) {
-    const auto head = readHead(datagram);
-    if (!head) return;
-    if (head->type == Type::Probe) {
-        if (!settings_.host && (!live_ || tunnelled_) && datagram.size() >= kProbeHeadBytes) {
-            const auto nonce = loadLittle<uint32_t>(datagram.data() + kHeadBytes);
+    const auto header = readHeader(datagram);
+    if (!header) return;
+    if (header->type == Type::Probe) {
+        if (!settings_.host && (!live_ || tunnelled_) && datagram.size() >= kProbeHeaderBytes) {
+            const auto nonce = loadLittle<uint32_t>(datagram.data() + kHeaderBytes);
             if (nonce == probeNonce_) out_.control(kHost, Probed{nonce});
         }
-    } else if (head->type == Type::Feedback) {
+    } else if (header->type == Type::Feedback) {
         if (!sender_) return;
         if (const auto f = readFeedback(datagram)) sender_->input(*f, nowNs);
-    } else if (Receiver* r = ofMember(head->from)) {
-        if (const auto d = readStream(*head, datagram)) r->input(*d, nowNs);
+    } else if (Receiver* r = ofMember(header->from)) {
+        if (const auto d = readStream(*header, datagram)) r->input(*d, nowNs);
     }
 }
 

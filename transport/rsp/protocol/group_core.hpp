@@ -21,9 +21,9 @@ namespace mural::rsp {
 
 constexpr MemberId kHost = 0;
 constexpr int64_t kBetweenProbesNs = 50'000'000;
-constexpr int64_t kMaxLateNs = 100'000'000;        // longest time that tunnelled input waits for the sockets
-constexpr int64_t kBetweenWatchesNs = 5'000'000;   // interval of checks for silent or stalled members
-constexpr size_t kProbeHeadBytes = kHeadBytes + 4; // plus the nonce; padding fills the datagram
+constexpr int64_t kMaxLateNs = 100'000'000;            // longest time that tunnelled input waits for the sockets
+constexpr int64_t kBetweenWatchesNs = 5'000'000;       // interval of checks for silent or stalled members
+constexpr size_t kProbeHeaderBytes = kHeaderBytes + 4; // plus the nonce; padding fills the datagram
 
 // Action for a member that stalls the stream.
 enum class StallPolicy : uint8_t {
@@ -76,7 +76,7 @@ public:
 
     // Sends a message over the control connection of a member (host), or to the host (member: kHost).
     virtual void control(MemberId to, const ControlMessage& message) = 0;
-    // Returns room for a datagram to the group or one member, as Outbox. Filled before the next call.
+    // Returns room for a datagram to the group or one member, as DatagramSink. Filled before the next call.
     virtual std::span<std::byte> datagram(MemberId to, size_t bytes) = 0;
     // Returns true if sockets hold datagrams that may have been sent before the data of a connection.
     virtual bool behind() = 0;
@@ -84,7 +84,7 @@ public:
     virtual void welcomed(const Welcome& w) = 0;
     virtual void memberCame(MemberId id, const MemberInfo& info) = 0;
     virtual void memberGone(MemberId id, GoneReason reason) = 0;
-    // Multicast no longer reaches the member, and its control connection takes over; or it does again.
+    // Reports whether multicast reaches the member. Otherwise its control connection carries its datagrams.
     virtual void memberRerouted(MemberId id, bool multicast) = 0;
     // Requests the end of the control connection.
     virtual void hangUp(MemberId id, const std::string& why) = 0;
@@ -139,11 +139,11 @@ private:
     struct Unreached {
         uint32_t nonce = 0;
         int64_t againNs = 0;                  // time of the next probe
-        int64_t waitNs = 0;                   // interval to the following one; grows with each loss of multicast
+        int64_t waitNs = 0;                   // interval to the probe after it; grows with each loss of multicast
         int64_t soonNs = 0;                   // shorter interval that applies first
-        std::optional<int64_t> silentSinceNs; // start of the silence that caused this state; empty once it is heard
+        std::optional<int64_t> silentSinceNs; // start of the silence that caused this state; empty once it sends again
     };
-    class Datagrams; // the Outbox with tunnels
+    class Datagrams; // the DatagramSink with tunnels
 
     void take(MemberId from, const Join& m, int64_t nowNs);
     void take(MemberId from, const Welcome& m, int64_t nowNs);

@@ -51,7 +51,7 @@ void GroupCore::take(MemberId from, const Join& m, int64_t nowNs) {
 // Runs at members.
 void GroupCore::take(MemberId, const Welcome& m, int64_t) {
     if (settings_.host || sender_) return;
-    const size_t overhead = kStreamHeadBytes + kLengthBytes + tagBytes(m.keys.seal);
+    const size_t overhead = kStreamHeaderBytes + kLengthBytes + tagBytes(m.keys.seal);
     if (m.datagramBytes < kMinDatagramBytes || m.windowDatagrams < 64 || m.windowDatagrams > kMaxWindow ||
         (m.windowDatagrams & (m.windowDatagrams - 1)) != 0) {
         over_ = true;
@@ -92,11 +92,11 @@ void GroupCore::probe(int64_t nowNs) {
 void GroupCore::sendProbe(uint32_t nonce) {
     const auto d = out_.datagram(kEverybody, settings_.datagramBytes - tagBytes(settings_.keys.seal));
     std::ranges::fill(d, std::byte{0});
-    StreamDatagram head;
-    head.type = Type::Probe;
-    head.from = self_;
-    writeStreamHead(head, d);
-    storeLittle(d.data() + kHeadBytes, nonce);
+    StreamDatagram header;
+    header.type = Type::Probe;
+    header.from = self_;
+    writeStreamHeader(header, d);
+    storeLittle(d.data() + kHeaderBytes, nonce);
 }
 
 void GroupCore::probeUnreached(int64_t nowNs) {
@@ -176,10 +176,10 @@ void GroupCore::take(MemberId, const MemberGone& m, int64_t) {
 }
 
 void GroupCore::take(MemberId from, const Tunnel& m, int64_t nowNs) {
-    const auto head = readHead(m.datagram);
-    if (!head) return;
+    const auto header = readHeader(m.datagram);
+    if (!header) return;
     if (!settings_.host) return deliver(m.datagram, nowNs);
-    if (head->from != from || !members_.contains(from)) return; // forged sender
+    if (header->from != from || !members_.contains(from)) return; // forged sender
     for (const auto& [id, other] : members_) {
         if (id != from && (m.to == id || m.to == kEverybody)) out_.control(id, Tunnel{id, m.datagram});
     }
@@ -220,7 +220,7 @@ void GroupCore::take(MemberId, const Rerouted& m, int64_t) {
 }
 
 // Host: sends each datagram over the member's connection as well; repairs continue. `silent`: the member may only have
-// been stopped, and is probed again as soon as it is heard.
+// been stopped, and is probed again as soon as it sends.
 void GroupCore::toConnection(MemberId id, bool silent, int64_t nowNs) {
     Unreached& u = unreached_[id];
     u.waitNs = u.waitNs == 0 ? kTryAgainNs : std::min(2 * u.waitNs, kMaxTryAgainNs);

@@ -17,7 +17,7 @@ constexpr uint32_t kNoSlot = UINT32_MAX;
 // Size of a slot: a whole datagram with any tag, rounded up to cache lines.
 constexpr size_t slotBytes(size_t payloadBytes) {
     constexpr size_t kLineBytes = 64;
-    const size_t maximum = kStreamHeadBytes + kLengthBytes + payloadBytes + kMaxTagBytes;
+    const size_t maximum = kStreamHeaderBytes + kLengthBytes + payloadBytes + kMaxTagBytes;
     return (maximum + kLineBytes - 1) / kLineBytes * kLineBytes;
 }
 
@@ -98,7 +98,7 @@ ReceiveBuffers ReceiveWindow::landing() {
 // Returns the slot that already contains the payload, otherwise a slot with a copy.
 uint32_t ReceiveWindow::slotFor(std::span<const std::byte> payload) {
     const auto isAt = [&](size_t i) {
-        return landing_[i] != kNoSlot && landingBytes_[i] + kStreamHeadBytes == payload.data();
+        return landing_[i] != kNoSlot && landingBytes_[i] + kStreamHeaderBytes == payload.data();
     };
     for (size_t k = 0; k < kMaxAtOnce; ++k) { // usually the next one
         const size_t i = (landed_ + k) % kMaxAtOnce;
@@ -107,7 +107,7 @@ uint32_t ReceiveWindow::slotFor(std::span<const std::byte> payload) {
         return std::exchange(landing_[i], kNoSlot);
     }
     const uint32_t poolSlot = payloads_.take();
-    std::memcpy(payloads_.at(poolSlot) + kStreamHeadBytes, payload.data(), payload.size());
+    std::memcpy(payloads_.at(poolSlot) + kStreamHeaderBytes, payload.data(), payload.size());
     return poolSlot;
 }
 

@@ -29,8 +29,8 @@ class ReceiveWindow {
 public:
     ReceiveWindow(const StreamShape& shape, Sequence first);
 
-    // Returns buffers for the next datagrams, valid until the next call. A payload received into them, after its head,
-    // is not copied.
+    // Returns buffers for the next datagrams, valid until the next call. A payload received into them, after its
+    // header, is not copied.
     ReceiveBuffers landing();
 
     enum class InsertResult { New, Known, Refused };
@@ -85,7 +85,7 @@ private:
     void forget();
     void forgetDatagram(size_t at);
     [[nodiscard]] std::span<const std::byte> payload(Sequence s) const {
-        return {payloads_.at(poolSlots_[slot(s)]) + kStreamHeadBytes, lengths_[slot(s)]};
+        return {payloads_.at(poolSlots_[slot(s)]) + kStreamHeaderBytes, lengths_[slot(s)]};
     }
 
     size_t payloadBytes_;

@@ -1,5 +1,5 @@
-// Plans retransmissions. A group of datagrams receives as many new parity symbols as its neediest member lacks, once:
-// one parity symbol repairs different losses of different members.
+// Plans retransmissions. A group of datagrams receives as many new parity symbols as its member with the most losses
+// lacks, once: one parity symbol repairs different losses of different members.
 //
 // Feedback is as old as the newest datagram the member had received (its echo). Parity sent later may be in flight and
 // is taken into account, so repeated requests cause no superfluous parity. When the parity symbols of a group are used

@@ -101,9 +101,9 @@ void Sender::sendDatagram(Sequence s, uint8_t flags, int64_t nowNs, DatagramSink
     d.rowsSent = static_cast<uint8_t>(repairs_.rowsSent(group.base));
     d.sentUs = toUs(nowNs);
     d.next = later(next_, s + 1);
-    const auto to = out.datagram(kEverybody, kStreamHeadBytes + payload.size());
-    writeStreamHead(d, to);
-    copyBytes(payload, to.subspan(kStreamHeadBytes));
+    const auto to = out.datagram(kEverybody, kStreamHeaderBytes + payload.size());
+    writeStreamHeader(d, to);
+    copyBytes(payload, to.subspan(kStreamHeaderBytes));
     sentNs_ = nowNs;
 }
 
@@ -146,9 +146,9 @@ void Sender::sendRow(const RetransmitPlanner::Repair& r, const SendWindow::Group
     d.rowsSent = r.rowsSent;
     d.sentUs = toUs(nowNs);
     d.next = next_;
-    const auto to = out.datagram(kEverybody, kStreamHeadBytes + kLengthBytes + longest);
-    writeStreamHead(d, to);
-    const auto symbol = to.subspan(kStreamHeadBytes);
+    const auto to = out.datagram(kEverybody, kStreamHeaderBytes + kLengthBytes + longest);
+    writeStreamHeader(d, to);
+    const auto symbol = to.subspan(kStreamHeaderBytes);
     std::ranges::fill(symbol, std::byte{0});
     for (int i = 0; i < group.size; ++i) addSymbol(symbol, r.index, i, window_.payload(group.base + i));
     sentNs_ = nowNs;
@@ -186,7 +186,7 @@ void Sender::sendPoll(int64_t nowNs, uint8_t flags, DatagramSink& out) {
     d.groupSize = sent ? group.size : 0;
     d.sentUs = toUs(nowNs);
     d.next = next_;
-    writeStreamHead(d, out.datagram(kEverybody, kStreamHeadBytes));
+    writeStreamHeader(d, out.datagram(kEverybody, kStreamHeaderBytes));
     sentNs_ = nowNs;
     ++counters_.polls;
 }
@@ -241,7 +241,7 @@ int64_t Sender::sendWhatMay(int64_t nowNs, DatagramSink& out) {
         if (!waitsFor(m)) m.movedNs = nowNs;
     }
     endRound(nowNs);
-    const auto bytes = static_cast<double>(kWireOverheadBytes + kStreamHeadBytes + kLengthBytes +
+    const auto bytes = static_cast<double>(kWireOverheadBytes + kStreamHeaderBytes + kLengthBytes +
                                            settings_.shape.payloadBytes + settings_.tagBytes);
     // While more than a batch waits, send whole batches only: the kernel's cost per system call is independent of their
     // size.

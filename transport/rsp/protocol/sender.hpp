@@ -1,5 +1,5 @@
 // Sending end of one stream to a group: schedules datagrams and repairs losses. Has no sockets, clock or threads: times
-// come in, datagrams go to an Outbox, and tick() returns the time of its next call.
+// come in, datagrams go to a DatagramSink, and tick() returns the time of its next call.
 //
 // Source: thesis, section "Reliable Stream Protocol"; docs/architecture/transport.md lists the differences.
 #pragma once

@@ -67,7 +67,7 @@ struct Refused {
     std::string why;
 };
 struct Leave {};
-// Host to all: multicast no longer reaches this member, so its datagrams travel as Tunnel messages; or it does again.
+// Host to all: whether multicast reaches this member. Otherwise its datagrams travel as Tunnel messages.
 struct Rerouted {
     MemberId id = 0;
     bool multicast = false;

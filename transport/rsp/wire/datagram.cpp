@@ -8,11 +8,11 @@ namespace mural::rsp {
 
 namespace {
 
-void writeHead(std::byte* at, Type type, uint8_t flags, MemberId from) {
+void writeHeader(std::byte* at, Type type, uint8_t flags, MemberId from) {
     at[0] = static_cast<std::byte>(kVersion << 4 | static_cast<uint8_t>(type));
     at[1] = static_cast<std::byte>(flags);
     storeLittle<uint16_t>(at + 2, from);
-    std::fill(at + 4, at + kHeadBytes, std::byte{0});
+    std::fill(at + 4, at + kHeaderBytes, std::byte{0});
 }
 
 bool inBounds(const StreamDatagram& d) {
@@ -26,9 +26,9 @@ bool inBounds(const StreamDatagram& d) {
 
 } // namespace
 
-void writeStreamHead(const StreamDatagram& d, std::span<std::byte> into) {
+void writeStreamHeader(const StreamDatagram& d, std::span<std::byte> into) {
     std::byte* at = into.data();
-    writeHead(at, d.type, d.flags, d.from);
+    writeHeader(at, d.type, d.flags, d.from);
     storeLittle(at + 16, d.sequence.value());
     at[20] = static_cast<std::byte>(d.index);
     at[21] = static_cast<std::byte>(d.groupSize);
@@ -38,11 +38,11 @@ void writeStreamHead(const StreamDatagram& d, std::span<std::byte> into) {
     storeLittle(at + 28, d.next.value());
 }
 
-size_t feedbackBytes(const Feedback& f) { return kFeedbackHeadBytes + f.entryCount * kFeedbackEntryBytes; }
+size_t feedbackBytes(const Feedback& f) { return kFeedbackHeaderBytes + f.entryCount * kFeedbackEntryBytes; }
 
 void writeFeedback(const Feedback& f, std::span<std::byte> into) {
     std::byte* at = into.data();
-    writeHead(at, Type::Feedback, f.flags, f.from);
+    writeHeader(at, Type::Feedback, f.flags, f.from);
     storeLittle(at + 16, f.cumulative.value());
     storeLittle(at + 20, f.edge.value());
     storeLittle(at + 24, f.highest.value());
@@ -52,7 +52,7 @@ void writeFeedback(const Feedback& f, std::span<std::byte> into) {
     storeLittle<uint16_t>(at + 38, f.entryCount);
     storeLittle(at + 40, f.lost);
     storeLittle(at + 44, f.dropped);
-    at += kFeedbackHeadBytes;
+    at += kFeedbackHeaderBytes;
     for (size_t i = 0; i < f.entryCount; ++i, at += kFeedbackEntryBytes) {
         const Missing& m = f.entries[i];
         storeLittle(at, m.base.value());
@@ -64,18 +64,18 @@ void writeFeedback(const Feedback& f, std::span<std::byte> into) {
 }
 
 std::optional<StreamDatagram> readStream(std::span<const std::byte> d) {
-    const auto head = readHead(d);
-    return head ? readStream(*head, d) : std::nullopt;
+    const auto header = readHeader(d);
+    return header ? readStream(*header, d) : std::nullopt;
 }
 
 // Constructed in place: copying the freshly written struct would stall on store forwarding and dominate this function.
-std::optional<StreamDatagram> readStream(const Head& head, std::span<const std::byte> d) {
+std::optional<StreamDatagram> readStream(const Header& header, std::span<const std::byte> d) {
     std::optional<StreamDatagram> read;
-    if (head.type > Type::Poll || d.size() < kStreamHeadBytes) return read;
+    if (header.type > Type::Poll || d.size() < kStreamHeaderBytes) return read;
     StreamDatagram& s = read.emplace();
-    s.type = head.type;
-    s.flags = head.flags;
-    s.from = head.from;
+    s.type = header.type;
+    s.flags = header.flags;
+    s.from = header.from;
     s.sequence = Sequence(loadLittle<uint32_t>(d.data() + 16));
     s.index = byteAt(d, 20);
     s.groupSize = byteAt(d, 21);
@@ -83,17 +83,17 @@ std::optional<StreamDatagram> readStream(const Head& head, std::span<const std::
     s.rowsSent = byteAt(d, 23);
     s.sentUs = loadLittle<uint32_t>(d.data() + 24);
     s.next = Sequence(loadLittle<uint32_t>(d.data() + 28));
-    s.payload = d.subspan(kStreamHeadBytes);
+    s.payload = d.subspan(kStreamHeaderBytes);
     if (!inBounds(s)) read.reset();
     return read;
 }
 
 std::optional<Feedback> readFeedback(std::span<const std::byte> d) {
-    const auto head = readHead(d);
-    if (!head || head->type != Type::Feedback || d.size() < kFeedbackHeadBytes) return {};
+    const auto header = readHeader(d);
+    if (!header || header->type != Type::Feedback || d.size() < kFeedbackHeaderBytes) return {};
     Feedback f;
-    f.from = head->from;
-    f.flags = head->flags;
+    f.from = header->from;
+    f.flags = header->flags;
     f.cumulative = Sequence(loadLittle<uint32_t>(d.data() + 16));
     f.edge = Sequence(loadLittle<uint32_t>(d.data() + 20));
     f.highest = Sequence(loadLittle<uint32_t>(d.data() + 24));
@@ -105,7 +105,7 @@ std::optional<Feedback> readFeedback(std::span<const std::byte> d) {
     f.dropped = loadLittle<uint32_t>(d.data() + 44);
     if (f.entryCount > kMaxEntries || d.size() != feedbackBytes(f)) return {};
     for (size_t i = 0; i < f.entryCount; ++i) {
-        const std::byte* at = d.data() + kFeedbackHeadBytes + i * kFeedbackEntryBytes;
+        const std::byte* at = d.data() + kFeedbackHeaderBytes + i * kFeedbackEntryBytes;
         Missing& m = f.entries[i];
         m = {Sequence(loadLittle<uint32_t>(at)), loadLittle<uint32_t>(at + 4), std::to_integer<uint8_t>(at[8]),
              std::to_integer<uint8_t>(at[9])};

@@ -28,9 +28,9 @@ using MemberId = uint16_t;
 constexpr MemberId kEverybody = 0xffff;
 
 constexpr uint8_t kVersion = 1;
-constexpr size_t kHeadBytes = 16;
-constexpr size_t kStreamHeadBytes = 32; // of DATA, PARITY and POLL
-constexpr size_t kFeedbackHeadBytes = 48;
+constexpr size_t kHeaderBytes = 16;
+constexpr size_t kStreamHeaderBytes = 32; // of DATA, PARITY and POLL
+constexpr size_t kFeedbackHeaderBytes = 48;
 constexpr size_t kFeedbackEntryBytes = 12;
 constexpr size_t kMaxEntries = 64; // per FEEDBACK: bounds the retransmissions that a member can request at once
 constexpr int kMaxInGroup = 32;    // bitmaps have 32 bits
@@ -46,7 +46,7 @@ constexpr uint8_t kPoll = 1;   // requests immediate feedback
 constexpr uint8_t kRepair = 2; // retransmission
 } // namespace flag
 
-struct Head {
+struct Header {
     Type type{};
     uint8_t flags = 0;
     MemberId from = 0;
@@ -93,31 +93,31 @@ struct Feedback {
     std::array<Missing, kMaxEntries> entries{};
 };
 
-// Writes the head without session and counter. Requires sufficient room.
-void writeStreamHead(const StreamDatagram& d, std::span<std::byte> into);
+// Writes the header without session and counter. Requires sufficient room.
+void writeStreamHeader(const StreamDatagram& d, std::span<std::byte> into);
 [[nodiscard]] size_t feedbackBytes(const Feedback& f);
 void writeFeedback(const Feedback& f, std::span<std::byte> into);
 
 inline uint8_t byteAt(std::span<const std::byte> d, size_t at) { return std::to_integer<uint8_t>(d[at]); }
 
-// Parses the head. Rejects datagrams that are too short, of another version, or with invalid fields. Inline, because it
-// runs per datagram.
-[[nodiscard]] inline std::optional<Head> readHead(std::span<const std::byte> d) {
-    if (d.size() < kHeadBytes || byteAt(d, 0) >> 4 != kVersion) return {};
+// Parses the header. Rejects datagrams that are too short, of another version, or with invalid fields. Inline, because
+// it runs per datagram.
+[[nodiscard]] inline std::optional<Header> readHeader(std::span<const std::byte> d) {
+    if (d.size() < kHeaderBytes || byteAt(d, 0) >> 4 != kVersion) return {};
     const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
     if (type < Type::Data || type > Type::Probe) return {};
-    return Head{type, byteAt(d, 1), loadLittle<uint16_t>(d.data() + 2), loadLittle<uint32_t>(d.data() + 4),
-                loadLittle<uint64_t>(d.data() + 8)};
+    return Header{type, byteAt(d, 1), loadLittle<uint16_t>(d.data() + 2), loadLittle<uint32_t>(d.data() + 4),
+                  loadLittle<uint64_t>(d.data() + 8)};
 }
 // Returns true if the datagram must be processed immediately: POLL, PROBE, or FEEDBACK while this member has
-// unacknowledged data. Requires a valid head.
+// unacknowledged data. Requires a valid header.
 [[nodiscard]] inline bool isUrgent(std::span<const std::byte> d, bool waitsForAnswers) {
     const auto type = static_cast<Type>(byteAt(d, 0) & 0xf);
     return (type == Type::Feedback && waitsForAnswers) || type == Type::Probe || (byteAt(d, 1) & flag::kPoll) != 0;
 }
 [[nodiscard]] std::optional<StreamDatagram> readStream(std::span<const std::byte> datagram);
-// Parses the body of a datagram with a valid head.
-[[nodiscard]] std::optional<StreamDatagram> readStream(const Head& head, std::span<const std::byte> datagram);
+// Parses the body of a datagram with a valid header.
+[[nodiscard]] std::optional<StreamDatagram> readStream(const Header& header, std::span<const std::byte> datagram);
 [[nodiscard]] std::optional<Feedback> readFeedback(std::span<const std::byte> datagram);
 
 } // namespace mural::rsp

@@ -15,7 +15,7 @@ static_assert(crypto_aead_aes256gcm_NPUBBYTES == kNonceBytes &&
 static_assert(crypto_aead_aes256gcm_ABYTES == 16 && crypto_aead_chacha20poly1305_ietf_ABYTES == 16);
 static_assert(crypto_shorthash_BYTES == 8 && crypto_shorthash_KEYBYTES <= kKeyBytes);
 
-// The counter is the last eight bytes of the head.
+// Returns the nonce: the datagram's counter, which is the last eight bytes of its header, and zeros.
 std::array<unsigned char, kNonceBytes> nonceOf(std::span<const std::byte> datagram) {
     std::array<unsigned char, kNonceBytes> nonce{};
     std::memcpy(nonce.data(), datagram.data() + 8, 8);
@@ -43,19 +43,19 @@ void DatagramCipher::seal(std::span<std::byte> datagram) const {
     const auto* key = reinterpret_cast<const unsigned char*>(key_.data());
     const auto covered = datagram.first(datagram.size() - tagBytes(seal_));
     unsigned char* tag = raw(datagram) + covered.size();
-    unsigned char* body = raw(datagram) + kHeadBytes;
-    const size_t bodyBytes = covered.size() - kHeadBytes;
+    unsigned char* body = raw(datagram) + kHeaderBytes;
+    const size_t bodyBytes = covered.size() - kHeaderBytes;
     const auto nonce = nonceOf(datagram);
     switch (seal_) {
     case Seal::None: return;
     case Seal::Tag: crypto_shorthash(tag, raw(datagram), covered.size(), key); return;
     case Seal::AesGcm:
-        crypto_aead_aes256gcm_encrypt_detached_afternm(body, tag, nullptr, body, bodyBytes, raw(datagram), kHeadBytes,
+        crypto_aead_aes256gcm_encrypt_detached_afternm(body, tag, nullptr, body, bodyBytes, raw(datagram), kHeaderBytes,
                                                        nullptr, nonce.data(), &prepared_->state);
         return;
     case Seal::ChaCha:
         crypto_aead_chacha20poly1305_ietf_encrypt_detached(body, tag, nullptr, body, bodyBytes, raw(datagram),
-                                                           kHeadBytes, nullptr, nonce.data(), key);
+                                                           kHeaderBytes, nullptr, nonce.data(), key);
         return;
     }
 }
@@ -65,8 +65,8 @@ bool DatagramCipher::open(std::span<std::byte> datagram) const {
     const auto* key = reinterpret_cast<const unsigned char*>(key_.data());
     const auto covered = datagram.first(datagram.size() - tagBytes(seal_));
     const unsigned char* tag = raw(datagram) + covered.size();
-    unsigned char* body = raw(datagram) + kHeadBytes;
-    const size_t bodyBytes = covered.size() - kHeadBytes;
+    unsigned char* body = raw(datagram) + kHeaderBytes;
+    const size_t bodyBytes = covered.size() - kHeaderBytes;
     const auto nonce = nonceOf(datagram);
     switch (seal_) {
     case Seal::None: return true;
@@ -77,10 +77,10 @@ bool DatagramCipher::open(std::span<std::byte> datagram) const {
     }
     case Seal::AesGcm:
         return crypto_aead_aes256gcm_decrypt_detached_afternm(body, nullptr, body, bodyBytes, tag, raw(datagram),
-                                                              kHeadBytes, nonce.data(), &prepared_->state) == 0;
+                                                              kHeaderBytes, nonce.data(), &prepared_->state) == 0;
     case Seal::ChaCha:
         return crypto_aead_chacha20poly1305_ietf_decrypt_detached(body, nullptr, body, bodyBytes, tag, raw(datagram),
-                                                                  kHeadBytes, nonce.data(), key) == 0;
+                                                                  kHeaderBytes, nonce.data(), key) == 0;
     }
     return false;
 }
@@ -134,15 +134,16 @@ DatagramOpener::Member* DatagramOpener::member(MemberId id) {
 
 std::span<const std::byte> DatagramOpener::open(std::span<std::byte> datagram) {
     const size_t tag = tagBytes(keys_.seal);
-    if (datagram.size() < kHeadBytes + tag) return ++refused_.tooShort, std::span<const std::byte>{};
-    const auto head = readHead(datagram);
-    if (!head) return ++refused_.version, std::span<const std::byte>{};
-    if (head->session != static_cast<uint32_t>(keys_.session)) return ++refused_.session, std::span<const std::byte>{};
-    Member* const m = member(head->from);
+    if (datagram.size() < kHeaderBytes + tag) return ++refused_.tooShort, std::span<const std::byte>{};
+    const auto header = readHeader(datagram);
+    if (!header) return ++refused_.version, std::span<const std::byte>{};
+    if (header->session != static_cast<uint32_t>(keys_.session))
+        return ++refused_.session, std::span<const std::byte>{};
+    Member* const m = member(header->from);
     if (!m) return ++refused_.stranger, std::span<const std::byte>{};
-    if (!m->window.fresh(head->counter)) return ++refused_.replayed, std::span<const std::byte>{};
+    if (!m->window.fresh(header->counter)) return ++refused_.replayed, std::span<const std::byte>{};
     if (!m->cipher.open(datagram)) return ++refused_.forged, std::span<const std::byte>{};
-    m->window.came(head->counter);
+    m->window.came(header->counter);
     return datagram.first(datagram.size() - tag);
 }
 

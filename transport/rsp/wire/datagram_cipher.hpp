@@ -1,7 +1,7 @@
 // Authenticated encryption of datagrams, with replay protection. An attacker without a session key cannot inject,
 // change or (with encryption) read a datagram.
 //
-// The head (16 bytes) is readable and authenticated; the body is encrypted. The counter is the nonce: each member
+// The header (16 bytes) is readable and authenticated; the body is encrypted. The counter is the nonce: each member
 // counts its datagrams with its own key. Checks run in this order: length, version, session, member, counter, tag. A
 // failed check is counted and ends the processing.
 #pragma once
