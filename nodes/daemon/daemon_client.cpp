@@ -56,7 +56,7 @@ Result<int> callNode(const DaemonClient& call) {
     if (!socket) return socket.error();
     ChannelSocket channel(std::move(*socket), SecureChannel::connecting("head", call.secret));
     if (auto r = channel.open(Deadline::inMs(kProofMs)); !r) return r.error();
-    if (auto r = channel.send(orderMessage(call.arguments), Deadline::inMs(kSendMs)); !r) return r.error();
+    if (auto r = channel.send(commandMessage(call.arguments), Deadline::inMs(kSendMs)); !r) return r.error();
     bool input = true;
     while (true) {
         while (auto m = channel.next()) {

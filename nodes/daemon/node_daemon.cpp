@@ -20,9 +20,9 @@ namespace {
 
 constexpr int kBacklog = 32;
 constexpr unsigned kMaxConnections = 64;
-constexpr int64_t kProofMs = 5'000; // for the proof of the secret and for the order
+constexpr int64_t kProofMs = 5'000; // for the proof of the secret and for the command
 constexpr int64_t kAnswerMs = 5'000;
-constexpr int64_t kEndMs = 10'000; // for all orders, when the daemon stops
+constexpr int64_t kEndMs = 10'000; // for all commands, when the daemon stops
 
 Result<FileDescriptor> listenAt(const std::string& text) {
     auto where = splitHostPort(text);
@@ -85,15 +85,15 @@ void NodeDaemon::take(FileDescriptor socket, const std::string& peer) {
         (void)channel.send(textMessage(NodeMessageKind::Refused, why), Deadline::inMs(kAnswerMs));
         log::warning(log::Topic::Daemon, peer, " was rejected: ", why);
     };
-    auto order = channel.receive(Deadline::inMs(kProofMs));
-    if (!order) return log::warning(log::Topic::Daemon, peer, " sent no command: ", order.error().message);
-    auto arguments = orderArguments(*order);
+    auto command = channel.receive(Deadline::inMs(kProofMs));
+    if (!command) return log::warning(log::Topic::Daemon, peer, " sent no command: ", command.error().message);
+    auto arguments = commandArguments(*command);
     if (!arguments || !isAllowedCommand(*arguments))
         return refuse("only render nodes can be started here; check that both run the same version");
-    completeOrder(*arguments, peer);
+    completeCommand(*arguments, peer);
     if (!enter(peer)) return refuse("another head uses this machine; try again after its session");
     log::info(log::Topic::Daemon, peer, " started a ", arguments->front(), " on this machine");
-    auto how = runOrdered(options_.executable, *arguments, channel, stop_);
+    auto how = runRemoteCommand(options_.executable, *arguments, channel, stop_);
     leave(peer);
     log::info(log::Topic::Daemon, peer, ": the ", arguments->front(), " ended: ", how ? *how : how.error().message);
 }

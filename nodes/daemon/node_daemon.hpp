@@ -18,7 +18,7 @@ namespace mural {
 struct DaemonOptions {
     std::string listen = ":4279"; // address (empty: all interfaces) and port (0: any)
     ChannelSecret secret{};
-    std::string executable; // the executable of orders
+    std::string executable; // the program that runs all commands: mural
 };
 
 class NodeDaemon {
@@ -40,7 +40,7 @@ private:
     FileDescriptor socket_;
     uint16_t port_;
     std::mutex mutex_;
-    std::map<std::string, unsigned> heads_; // running orders by the head's address; at most one entry
+    std::map<std::string, unsigned> heads_; // running commands by the head's address; at most one entry
     std::atomic<unsigned> connections_ = 0;
     std::atomic<bool> stop_ = false;
 };

@@ -20,8 +20,8 @@ std::optional<NodeMessage> decodeNodeMessage(std::span<const std::byte> bytes) {
     return NodeMessage{static_cast<NodeMessageKind>(bytes[0]), {bytes.begin() + 1, bytes.end()}};
 }
 
-NodeMessage orderMessage(const std::vector<std::string>& arguments) {
-    NodeMessage m{NodeMessageKind::Order, {}};
+NodeMessage commandMessage(const std::vector<std::string>& arguments) {
+    NodeMessage m{NodeMessageKind::Command, {}};
     for (const std::string& a : arguments) {
         const auto* at = reinterpret_cast<const std::byte*>(a.c_str());
         m.body.insert(m.body.end(), at, at + a.size() + 1);
@@ -29,8 +29,8 @@ NodeMessage orderMessage(const std::vector<std::string>& arguments) {
     return m;
 }
 
-std::optional<std::vector<std::string>> orderArguments(const NodeMessage& m) {
-    if (m.kind != NodeMessageKind::Order || m.body.empty() || m.body.size() > kMaxOrderBytes ||
+std::optional<std::vector<std::string>> commandArguments(const NodeMessage& m) {
+    if (m.kind != NodeMessageKind::Command || m.body.empty() || m.body.size() > kMaxCommandBytes ||
         m.body.back() != std::byte{0})
         return {};
     std::vector<std::string> arguments;
@@ -39,7 +39,7 @@ std::optional<std::vector<std::string>> orderArguments(const NodeMessage& m) {
         arguments.push_back(textOf({at, end}));
         at = end + 1;
     }
-    if (arguments.size() > kMaxOrderArguments) return {};
+    if (arguments.size() > kMaxCommandArguments) return {};
     return arguments;
 }
 

@@ -60,7 +60,7 @@ public:
                                           {waiting_.empty() ? -1 : s_.input.get(), POLLOUT, 0}}};
             (void)poll(polled.data(), polled.size(), kSliceMs);
             auto came = polled[0].revents != 0 ? channel_.fetch() : Result<void>();
-            // Input may have arrived with the order.
+            // Input may have arrived with the command.
             if (auto r = takeInput(); !r) return r.error();
             if (!came) return came.error();
             feed();
@@ -132,13 +132,13 @@ bool isAllowedCommand(const std::vector<std::string>& a) {
            !a[4].starts_with("-");
 }
 
-void completeOrder(std::vector<std::string>& a, const std::string& peer) {
+void completeCommand(std::vector<std::string>& a, const std::string& peer) {
     if (a.size() == 5 && a[4].starts_with(":"))
         a[4] = (peer.find(':') == std::string::npos ? peer : "[" + peer + "]") + a[4];
 }
 
-Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments,
-                               ChannelSocket& channel, const std::atomic<bool>& stop) {
+Result<std::string> runRemoteCommand(const std::string& executable, const std::vector<std::string>& arguments,
+                                     ChannelSocket& channel, const std::atomic<bool>& stop) {
     auto streams = Streams::make();
     if (!streams) return streams.error();
     launch::Environment environment = launch::Environment::current();

@@ -1,4 +1,4 @@
-// A process of Mural that a head has ordered; forwards between its pipes and the head's channel.
+// Runs a command of Mural for a head. Forwards between its pipes and the head's channel.
 #pragma once
 
 #include <atomic>
@@ -13,10 +13,10 @@ namespace mural {
 // Allows nodes that connect to a head, and members for `mural doctor --network`.
 bool isAllowedCommand(const std::vector<std::string>& arguments);
 // Replaces a bare port in the arguments by the peer's address and the port.
-void completeOrder(std::vector<std::string>& arguments, const std::string& peer);
+void completeCommand(std::vector<std::string>& arguments, const std::string& peer);
 
 // Runs until the process ends, the head is gone, or `stop`. Returns how the process ended; it no longer runs.
-Result<std::string> runOrdered(const std::string& executable, const std::vector<std::string>& arguments,
-                               ChannelSocket& channel, const std::atomic<bool>& stop);
+Result<std::string> runRemoteCommand(const std::string& executable, const std::vector<std::string>& arguments,
+                                     ChannelSocket& channel, const std::atomic<bool>& stop);
 
 } // namespace mural

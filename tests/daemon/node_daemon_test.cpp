@@ -34,9 +34,9 @@ done
 exit 3
 )";
 
-class Waiting : public testing::Test {
+class NodeDaemonTest : public testing::Test {
 protected:
-    Waiting()
+    NodeDaemonTest()
         : folder_(testing::TempDir() + "/mural_waiting_" + std::to_string(::getpid())), stop_(eventfd(0, EFD_CLOEXEC)) {
         std::filesystem::create_directories(folder_);
         std::ofstream(folder_ + "/mural") << kScript;
@@ -47,7 +47,7 @@ protected:
         node_ = std::move(*node);
         thread_ = std::thread([this] { EXPECT_TRUE(node_->serve(stop_.get())); });
     }
-    ~Waiting() override {
+    ~NodeDaemonTest() override {
         stop();
         std::filesystem::remove_all(folder_);
     }
@@ -67,9 +67,9 @@ protected:
         return fd;
     }
     [[nodiscard]] std::unique_ptr<ChannelSocket> head(int host, const ChannelSecret& secret,
-                                                      const std::vector<std::string>& order) const {
+                                                      const std::vector<std::string>& command) const {
         auto channel = std::make_unique<ChannelSocket>(connect(host), SecureChannel::connecting("head", secret));
-        if (!channel->open(Deadline::inMs(kMs)) || !channel->send(orderMessage(order), Deadline::inMs(kMs)))
+        if (!channel->open(Deadline::inMs(kMs)) || !channel->send(commandMessage(command), Deadline::inMs(kMs)))
             return nullptr;
         return channel;
     }
@@ -102,7 +102,7 @@ protected:
     std::thread thread_;
 };
 
-TEST_F(Waiting, runsOrdersAndReportsTheirEnd) {
+TEST_F(NodeDaemonTest, runsCommandsAndReportsTheirEnd) {
     const auto channel = head();
     ASSERT_TRUE(channel);
     EXPECT_EQ(awaitMessage(*channel, NodeMessageKind::Output, "\n"), "node --as node3 --connect wall0:4711\n");
@@ -112,8 +112,8 @@ TEST_F(Waiting, runsOrdersAndReportsTheirEnd) {
     EXPECT_EQ(awaitMessage(*channel, NodeMessageKind::Ended, "7").substr(1), "exit status 7");
 }
 
-// The order and its input arrive in one piece; no byte may be lost.
-TEST_F(Waiting, passesOnInputThatArrivesWithTheOrder) {
+// The command and its input arrive in one piece; no byte may be lost.
+TEST_F(NodeDaemonTest, passesOnInputThatArrivesWithTheCommand) {
     FileDescriptor fd = connect(1);
     SecureChannel secure = SecureChannel::connecting("head", secret_);
     const auto write = [&] {
@@ -130,7 +130,7 @@ TEST_F(Waiting, passesOnInputThatArrivesWithTheOrder) {
         ASSERT_TRUE(secure.input(std::span(piece).first(static_cast<size_t>(n)), none));
         write();
     }
-    for (const NodeMessage& m : {orderMessage(kNode), textMessage(NodeMessageKind::Input, "early\n"),
+    for (const NodeMessage& m : {commandMessage(kNode), textMessage(NodeMessageKind::Input, "early\n"),
                                  NodeMessage{NodeMessageKind::InputEnd, {}}})
         ASSERT_TRUE(secure.send(encode(m)));
     write();
@@ -139,7 +139,7 @@ TEST_F(Waiting, passesOnInputThatArrivesWithTheOrder) {
     EXPECT_EQ(awaitMessage(channel, NodeMessageKind::Ended, "3").substr(1), "exit status 3");
 }
 
-TEST_F(Waiting, sendsNothingToHeadsWithoutTheSecret) {
+TEST_F(NodeDaemonTest, sendsNothingToHeadsWithoutTheSecret) {
     ChannelSecret other = secret_;
     other[3] = std::byte{8};
     EXPECT_FALSE(head(1, other, kNode));
@@ -147,14 +147,14 @@ TEST_F(Waiting, sendsNothingToHeadsWithoutTheSecret) {
     EXPECT_TRUE(head()) << "and others are served";
 }
 
-TEST_F(Waiting, runsOnlyNodes) {
+TEST_F(NodeDaemonTest, runsOnlyNodes) {
     const auto channel = head(1, secret_, {"run", "--", "sh"});
     ASSERT_TRUE(channel);
     EXPECT_NE(awaitMessage(*channel, NodeMessageKind::Refused, "only").find("only render nodes"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/pid"));
 }
 
-TEST_F(Waiting, acceptsOneHeadAtATimeWithAllItsNodes) {
+TEST_F(NodeDaemonTest, acceptsOneHeadAtATimeWithAllItsNodes) {
     auto first = head(1);
     ASSERT_TRUE(first);
     awaitMessage(*first, NodeMessageKind::Output, "\n");
@@ -179,7 +179,7 @@ TEST_F(Waiting, acceptsOneHeadAtATimeWithAllItsNodes) {
     EXPECT_EQ(output, "served");
 }
 
-TEST_F(Waiting, endsProcessesWithTheirHead) {
+TEST_F(NodeDaemonTest, endsProcessesWithTheirHead) {
     auto channel = head();
     ASSERT_TRUE(channel);
     awaitMessage(*channel, NodeMessageKind::Output, "\n");
@@ -190,7 +190,7 @@ TEST_F(Waiting, endsProcessesWithTheirHead) {
     EXPECT_TRUE(goneSoon(started));
 }
 
-TEST_F(Waiting, endsProcessesWithTheNode) {
+TEST_F(NodeDaemonTest, endsProcessesWithTheNode) {
     const auto channel = head();
     ASSERT_TRUE(channel);
     awaitMessage(*channel, NodeMessageKind::Output, "\n");

@@ -12,9 +12,9 @@ using Arguments = std::vector<std::string>;
 
 TEST(NodeMessage, decodesItsOwnEncoding) {
     const Arguments arguments{"node", "", "--connect", "wall0:4711"};
-    const auto message = decodeNodeMessage(encode(orderMessage(arguments)));
+    const auto message = decodeNodeMessage(encode(commandMessage(arguments)));
     ASSERT_TRUE(message);
-    EXPECT_EQ(orderArguments(*message), arguments);
+    EXPECT_EQ(commandArguments(*message), arguments);
 }
 
 TEST(NodeMessage, rejectsLengthsOutOfBounds) {
@@ -22,13 +22,13 @@ TEST(NodeMessage, rejectsLengthsOutOfBounds) {
     const std::vector<std::byte> unknown{std::byte{7}};
     EXPECT_FALSE(decodeNodeMessage(unknown));
     EXPECT_FALSE(decodeNodeMessage(std::vector<std::byte>(kMaxNodeMessageBytes + 2)));
-    EXPECT_FALSE(orderArguments(orderMessage({})));
-    EXPECT_FALSE(orderArguments(orderMessage(Arguments(kMaxOrderArguments + 1, "x"))));
-    EXPECT_FALSE(orderArguments(orderMessage({std::string(kMaxOrderBytes, 'x')})));
-    NodeMessage cut = orderMessage({"node"});
+    EXPECT_FALSE(commandArguments(commandMessage({})));
+    EXPECT_FALSE(commandArguments(commandMessage(Arguments(kMaxCommandArguments + 1, "x"))));
+    EXPECT_FALSE(commandArguments(commandMessage({std::string(kMaxCommandBytes, 'x')})));
+    NodeMessage cut = commandMessage({"node"});
     cut.body.pop_back();
-    EXPECT_FALSE(orderArguments(cut));
-    EXPECT_FALSE(orderArguments(textMessage(NodeMessageKind::Input, std::string("node\0", 5))));
+    EXPECT_FALSE(commandArguments(cut));
+    EXPECT_FALSE(commandArguments(textMessage(NodeMessageKind::Input, std::string("node\0", 5))));
 }
 
 TEST(NodeMessage, permitsOnlyNodesInOrders) {

@@ -26,7 +26,7 @@
 #include "tools/mural/simulate/simulate_command.hpp"
 #include "tools/mural/trace/replay_command.hpp"
 #include "tools/mural/trace/trim_command.hpp"
-#include "tools/mural/daemon/waiting_commands.hpp"
+#include "tools/mural/daemon/daemon_commands.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// mural discover: lists waiting nodes on this network.
+// mural discover: lists daemons on this network.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -11,7 +11,7 @@ namespace mural::cli {
 
 namespace {
 
-// A program whose GL library is not GLVND's needs the preloaded front.
+// A program whose GL library is not GLVND's needs the preloaded entry.
 launch::CaptureEntries chooseEntries(const RunOptions& options, const launch::ProgramCheck& program,
                                      const launch::Environment& environment) {
     if (options.captureVia == EntryChoice::Preload) return launch::CaptureEntries::VendorAndPreload;

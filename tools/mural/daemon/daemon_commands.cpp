@@ -1,4 +1,4 @@
-#include "tools/mural/daemon/waiting_commands.hpp"
+#include "tools/mural/daemon/daemon_commands.hpp"
 
 #include <algorithm>
 #include <array>
@@ -170,7 +170,7 @@ int callCommand(const CallArguments& a) {
     auto call = placeOf(a.command[0], a);
     if (!call) return failed("call", call.error().message);
     call->secret = *secret;
-    // Drops the path, which only ssh needs: a waiting node runs its own binary.
+    // Drops the path, which only ssh needs: a daemon runs its own binary.
     call->arguments.assign(a.command.begin() + 2, a.command.end());
     const auto status = callNode(*call);
     return status ? status.value() : failed("call", fmt::format("{}: {}", a.command[0], status.error().message));
