@@ -1,10 +1,10 @@
-// The memory that a captured program (the app) shares with the head. Encoded commands go to the head in chunks. Answers
+// The memory that a captured program (the app) shares with the head. Encoded commands go to the head in chunks. Replies
 // and credits come back. The memory holds plain data and atomics only, because it is mapped into foreign processes.
 //
 //   app thread → chunk (bump pointer)  → publication (chunk, range, stream) → head;
 //   head       → freed chunk index     → app;
 //   head       → reply ring (bytes)    → the app thread that sent the request;
-//   head       → table of answers      → results of queries, requested when the query ends;
+//   head       → table of replies      → results of queries, requested when the query ends;
 //   head       → event slots (a ring)   → the first app thread that checks; a full ring drops events;
 //   head       → reply ring (pictures) → the app, which puts them into its own windows during a server grab.
 //
@@ -35,15 +35,15 @@ constexpr uint32_t kDisplays = 16;
 constexpr uint32_t kDisplayNameBytes = 128; // including the terminating 0
 constexpr uint32_t kNoDisplay = 0xffffffff; // the table is full, or the name is too long
 
-// Bit in the ids of prefetch requests, whose answers no thread waits for yet. Each answer lies in a table at its id
-// modulo the table's size until a later answer replaces it.
+// Bit in the ids of prefetch requests, whose replies no thread waits for yet. Each reply is in a table, at its id
+// modulo the table's size, until a later reply replaces it.
 constexpr uint32_t kPrefetched = 0x80000000;
-constexpr uint32_t kAheadAnswers = 1024;
-// Bit in the ids of deferred requests. Their answers come as replies, which are read when the program needs them, if
-// ever.
+constexpr uint32_t kPrefetchedReplies = 1024;
+// Bit in the ids of deferred requests. Their replies arrive in the reply ring; the program reads them when it needs
+// them, if ever.
 constexpr uint32_t kDeferred = 0x40000000;
-struct AheadAnswer {
-    std::atomic<uint32_t> request; // id of the answered request; 0: none yet. Stored last; futex
+struct PrefetchedReply {
+    std::atomic<uint32_t> request; // id of its request; 0: no reply yet. Stored last; futex
     std::atomic<uint64_t> value;
 };
 
@@ -190,7 +190,7 @@ struct alignas(64) CaptureHeader {
     char displays[kDisplays][kDisplayNameBytes];
 
     alignas(64) OwnWindow ownWindows[kOwnWindows];
-    alignas(64) AheadAnswer ahead[kAheadAnswers]; // head writes
+    alignas(64) PrefetchedReply prefetched[kPrefetchedReplies]; // head writes
 };
 
 inline Publication* publications(CaptureHeader* h) {

@@ -26,15 +26,15 @@ size_t endOf(size_t from, size_t step, size_t end) { return end - from < step ? 
 
 } // namespace
 
-struct MapChanges::Pass {
-    MapChanges* map;
+struct DirtyPages::Pass {
+    DirtyPages* map;
     size_t unit, gap;
     Changed changed;
     void* self;
     size_t quietFrom = 0, quietEnd = 0; // a run of pages to lock
 };
 
-bool MapChanges::begin(void* memory, size_t sizeBytes, bool mayWatch) {
+bool DirtyPages::begin(void* memory, size_t sizeBytes, bool mayWatch) {
     end();
     const size_t pages = sizeBytes / kPage + 2; // the memory may begin and end within pages
     reservedBytes_ = sizeBytes + pages;
@@ -50,14 +50,14 @@ bool MapChanges::begin(void* memory, size_t sizeBytes, bool mayWatch) {
     return true;
 }
 
-void MapChanges::end() {
+void DirtyPages::end() {
     if (!active()) return;
     watch_.end();
     munmap(known_, reservedBytes_);
     memory_ = nullptr;
 }
 
-void MapChanges::collect(bool exact, Changed changed, void* self) {
+void DirtyPages::collect(bool exact, Changed changed, void* self) {
     Pass pass{this, exact ? kWord : kBlock, exact ? 0 : kMergedGap, changed, self};
     if (!watched()) return static_cast<void>(compare(pass, memory_, 0, sizeBytes_));
     const auto visit = [](void* p, size_t from, size_t end) {
@@ -69,12 +69,12 @@ void MapChanges::collect(bool exact, Changed changed, void* self) {
     compare(pass, memory_, 0, sizeBytes_);
 }
 
-void MapChanges::accept(size_t fromByte, const std::byte* bytes, size_t sizeBytes, Changed changed, void* self) {
+void DirtyPages::accept(size_t fromByte, const std::byte* bytes, size_t sizeBytes, Changed changed, void* self) {
     compare(Pass{this, kWord, 0, changed, self}, bytes - fromByte, fromByte, fromByte + sizeBytes);
 }
 
 // Compares unlocked pages. Collects pages without recent changes into runs, and locks the runs.
-void MapChanges::comparePages(Pass& pass, size_t fromByte, size_t endByte) {
+void DirtyPages::comparePages(Pass& pass, size_t fromByte, size_t endByte) {
     const size_t inPage = reinterpret_cast<uintptr_t>(memory_) % kPage;
     for (size_t at = fromByte, next = 0; at < endByte; at = next) {
         const size_t page = (at + inPage) / kPage;
@@ -94,7 +94,7 @@ void MapChanges::comparePages(Pass& pass, size_t fromByte, size_t endByte) {
 }
 
 // Locks the run before its last comparison: later writes unlock pages again.
-void MapChanges::lockQuiet(Pass& pass) {
+void DirtyPages::lockQuiet(Pass& pass) {
     if (pass.quietEnd == pass.quietFrom) return;
     const auto visit = [](void* p, size_t from, size_t end) {
         auto& its = *static_cast<Pass*>(p);
@@ -108,7 +108,7 @@ void MapChanges::lockQuiet(Pass& pass) {
 
 // Returns true if anything has changed. Reports changed units with small gaps as one run, from the copy, because the
 // program may continue to write.
-bool MapChanges::compare(const Pass& pass, const std::byte* with, size_t fromByte, size_t endByte) {
+bool DirtyPages::compare(const Pass& pass, const std::byte* with, size_t fromByte, size_t endByte) {
     bool any = false;
     const auto same = [this, with](size_t from, size_t end) {
         return sameBytes(known_ + from, with + from, end - from);

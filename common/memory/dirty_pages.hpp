@@ -11,9 +11,9 @@
 
 namespace mural {
 
-class MapChanges {
+class DirtyPages {
 public:
-    ~MapChanges() { end(); }
+    ~DirtyPages() { end(); }
     // Starts change detection. Returns false if there is no memory for the copy. mayWatch: the memory has no other
     // mapping with write access.
     bool begin(void* memory, size_t sizeBytes, bool mayWatch = true);

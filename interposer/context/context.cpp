@@ -275,7 +275,7 @@ void becameCurrent(Context* context, Window* draw, Window* read) {
         t.drawLocally = t.vertexLocally = true;
         return;
     }
-    noteCalls(t);
+    recordCalls(t);
     beforeDrawableSwitch(t);
     if (t.context && (t.context != context)) {
         records::makeCurrent(t, 0, 0, 0);

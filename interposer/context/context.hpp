@@ -200,7 +200,7 @@ bool swapLocally();
 // Returns whether the driver's own swap of this window must follow endFrame. Null: an unknown window.
 bool swapsItself(Window* w);
 
-// Sends the nodes the query results for conditional rendering in display lists (commands/queries.cpp).
+// Sends the nodes the query results for conditional rendering in display lists (interposer/wrappers/queries.cpp).
 void sendListConditions(ThreadState& t, const char* by);
 inline bool listConditional(const ShareGroup& group, GLuint list) {
     return group.listsChange || !NameBits::known(list) || !group.listCompiled.get(list) ||

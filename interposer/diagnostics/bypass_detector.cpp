@@ -66,7 +66,7 @@ void reportPartialBypass() {
 
 } // namespace
 
-void noteCalls(ThreadState& t) {
+void recordCalls(ThreadState& t) {
     if (t.context && t.cursor != t.context->quietSince) t.context->called = true;
 }
 
@@ -76,7 +76,7 @@ void watchFromHere(ThreadState& t) {
 
 bool bypassesCapture(ThreadState& t, Window& w) {
     Context& c = *t.context;
-    noteCalls(t);
+    recordCalls(t);
     const bool changed = backBufferChanged(t, w);
     if (c.called) {
         w.drawnInPart = changed;

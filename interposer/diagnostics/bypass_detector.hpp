@@ -9,7 +9,7 @@ struct ThreadState;
 struct Window;
 
 // Call before and after control records are written. Calls in between belong to the program.
-void noteCalls(ThreadState& t);
+void recordCalls(ThreadState& t);
 void watchFromHere(ThreadState& t);
 // Call before a picture is sent. Returns true if the program draws into the context by another path. This has then been
 // reported, and the program continues without capture.

@@ -44,7 +44,7 @@ void compare(ThreadState& t, Window& w, uint8_t* ownPixels, size_t pixels, const
     const GLenum errorBefore = t.context->stashedError;
     // points to memory of this thread
     auto* nodePixels = const_cast<void*>(requestPixels(t, 0, 0, width, height, GL_RGBA, reads.type, 0, "--verify"));
-    t.context->stashedError = errorBefore; // a lost answer is not an error of the program
+    t.context->stashedError = errorBefore; // a lost reply is not an error of the program
     if (!nodePixels) return countUncompared(Uncompared::NoAnswer);
     const ColourDifference difference = compareColours(ownPixels, nodePixels, pixels, reads.type);
     auto* h = Session::current()->header();

@@ -276,8 +276,8 @@ uint32_t Session::beginRequest(const char* by) {
 
 void Session::endRequest() { requestLock.unlock(); }
 
-bool Session::aheadAnswer(uint32_t request, uint64_t& value) {
-    capture::AheadAnswer& answer = header_->ahead[request % capture::kAheadAnswers];
+bool Session::prefetchedReply(uint32_t request, uint64_t& value) {
+    capture::PrefetchedReply& answer = header_->prefetched[request % capture::kPrefetchedReplies];
     std::optional<Waiting> waiting;
     bool known = false;
     while (alive()) {

@@ -1,5 +1,5 @@
 // The connection to the head: one per process, opened with the first context. It owns the mapping, hands out chunks,
-// publishes records, and waits for credit and answers. After the end of the head every call becomes a no-op, and the
+// publishes records, and waits for credit and replies. After the end of the head every call becomes a no-op, and the
 // program continues alone. A forked child has no session until it creates a context.
 #pragma once
 
@@ -46,9 +46,9 @@ public:
     // Begins a request to the nodes, one at a time per process. The round trip counts under `by`, the requesting
     // function.
     uint32_t beginRequest(const char* by);
-    // Reads the header of the answer. Returns false if the head has ended; the request is then over.
+    // Reads the header of the reply. Returns false if the head has ended; the request is then over.
     bool answerHeader(uint32_t request, wire::ReplyHeader& header);
-    // Reads the next bytes of the answer.
+    // Reads the next bytes of the reply.
     bool answerBytes(void* into, uint64_t sizeBytes);
     void endRequest();
     // Returns the id of a request with a deferred reply (interposer/readback/deferred_replies.hpp).
@@ -61,10 +61,10 @@ public:
     bool waitDeferred(uint32_t request, const char* by);
     // Reads deferred replies that have arrived, so that the head need not store them.
     void takeArrived();
-    // Returns the id of a prefetch request, which causes no round trip. aheadAnswer() blocks until its answer has
-    // arrived. It returns false if the head has ended or a later answer has replaced this one.
+    // Returns the id of a prefetch request, which causes no round trip. prefetchedReply() blocks until its reply has
+    // arrived. It returns false if the head has ended or a later reply has replaced this one.
     uint32_t nextAhead() { return capture::kPrefetched | __atomic_add_fetch(&lastAhead_, 1, __ATOMIC_RELAXED); }
-    bool aheadAnswer(uint32_t request, uint64_t& value);
+    bool prefetchedReply(uint32_t request, uint64_t& value);
 
     // Call after each frame of the thread. Adds up the thread's CPU time.
     void countFrameCpu(ThreadState& t);

@@ -20,7 +20,7 @@ struct MappedBuffer {
     std::byte* memory;
     uint64_t offset, length; // in the buffer, bytes
     GLbitfield access;
-    MapChanges changes; // for persistent mappings without explicit flushes
+    DirtyPages changes; // for persistent mappings without explicit flushes
     MappedBuffer* next;
     bool pinned = false; // client memory: a permanent mapping
 

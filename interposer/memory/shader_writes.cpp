@@ -76,7 +76,7 @@ bool shaderMayStore(ThreadState& t, GLuint shader) {
 
 } // namespace
 
-void noteMemoryWriter(ThreadState& t, GLuint program) {
+void recordMemoryWriter(ThreadState& t, GLuint program) {
     note(t, program, [&] {
         GLuint attached[kMaxShaders] = {};
         GLsizei count = 0;
@@ -87,7 +87,7 @@ void noteMemoryWriter(ThreadState& t, GLuint program) {
     });
 }
 
-void noteMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count, const GLchar* const* strings) {
+void recordMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count, const GLchar* const* strings) {
     note(t, program, [&] {
         StorageScan scan;
         for (GLsizei i = 0; type == GL_FRAGMENT_SHADER && i < count; ++i)
@@ -96,7 +96,7 @@ void noteMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count
     });
 }
 
-void noteMemoryWriter(ThreadState& t, GLuint program, const std::byte* recipe, size_t sizeBytes) {
+void recordMemoryWriter(ThreadState& t, GLuint program, const std::byte* recipe, size_t sizeBytes) {
     note(t, program, [&] {
         size_t at = 4; // after `separable`
         const auto number = [&] {

@@ -12,8 +12,8 @@ struct ThreadState;
 
 // Call after a program was linked: from its attached shaders, from one of these texts, or from a recipe
 // (docs/reference/wire-format.md).
-void noteMemoryWriter(ThreadState& t, GLuint program);
-void noteMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count, const GLchar* const* strings);
-void noteMemoryWriter(ThreadState& t, GLuint program, const std::byte* recipe, size_t sizeBytes);
+void recordMemoryWriter(ThreadState& t, GLuint program);
+void recordMemoryWriter(ThreadState& t, GLuint program, GLenum type, GLsizei count, const GLchar* const* strings);
+void recordMemoryWriter(ThreadState& t, GLuint program, const std::byte* recipe, size_t sizeBytes);
 
 } // namespace mural

@@ -24,8 +24,8 @@ void childBegins() {
     forgetDriverEvents();
 }
 
-// Locks the tables, because the child copies them and no other thread may be changing them. Bounded, because a signal
-// handler may fork.
+// Locks the tables, because the child copies them and no other thread may be changing them. The wait is bounded,
+// because a signal handler of the thread that holds the lock may fork.
 void beforeFork() {
     constexpr int kTries = 100;
     const timespec nap{0, 200'000};

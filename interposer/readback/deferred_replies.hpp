@@ -12,7 +12,7 @@ constexpr int kMaxDeferred = 64;
 constexpr uint64_t kMaxDeferredReplyBytes = uint64_t{256} << 20;
 
 struct DeferredReply {
-    enum class State { Requested, Arrived, None }; // None: the nodes had no answer
+    enum class State { Requested, Arrived, None }; // None: the nodes had no reply
     uint32_t request = 0;
     uint64_t sizeBytes = 0;
     std::byte* bytes = nullptr;

@@ -14,8 +14,8 @@ namespace mural {
 
 namespace {
 
-// Sends one request and reads its answer into the memory that room(sizeBytes) returns. Null skips the answer. If the
-// session ends before the answer arrives, a GL error informs the program.
+// Sends one request and reads its reply into the memory that room(sizeBytes) returns. Null skips the reply. If the
+// session ends before the reply arrives, a GL error informs the program.
 template <class Send, class Room> bool requestReply(ThreadState& t, const char* by, Room&& memoryFor, Send&& send) {
     Session* s = Session::current();
     if (!s || !t.context) return false;
@@ -42,7 +42,7 @@ template <class Send, class Room> bool requestReply(ThreadState& t, const char* 
     return ok;
 }
 
-// The same for an answer of known size. `into` must hold sizeBytes.
+// The same for a reply of known size. `into` must hold sizeBytes.
 template <class Send> bool requestReply(ThreadState& t, const char* by, void* into, uint64_t sizeBytes, Send&& send) {
     return requestReply(
         t, by, [=](uint64_t replyBytes) { return replyBytes == sizeBytes ? into : nullptr; }, send);

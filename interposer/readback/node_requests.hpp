@@ -13,7 +13,7 @@ struct ThreadState;
 struct Context;
 
 // Returns the rectangle of the current read framebuffer, tightly packed, combined from all nodes. The result is in
-// scratch memory of the thread. Null: no answer. `how`: flags of groupBytes (streamcodec/wire/control_records.hpp).
+// scratch memory of the thread. Null: no reply. `how`: flags of groupBytes (streamcodec/wire/control_records.hpp).
 const void* requestPixels(ThreadState& t, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GLenum type,
                           uint32_t how = 0, const char* by = __builtin_FUNCTION());
 void* requestTexImage(ThreadState& t, bool byName, GLuint targetOrTexture, GLint level, GLenum format, GLenum type,
@@ -35,7 +35,7 @@ GLenum driverError();
 // Returns true if the driver is inside a primitive of a compile-and-execute list. It has then rejected the call.
 bool executesInPrimitive(const Context& c);
 void stashError(Context& c, GLenum error);
-// Call when the session ended before an answer arrived. The program's own GL has not drawn the requested data, so the
+// Call when the session ended before a reply arrived. The program's own GL has not drawn the requested data, so the
 // call writes nothing. It raises GL_OUT_OF_MEMORY.
 void answerLost(Context& c);
 

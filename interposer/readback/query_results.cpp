@@ -39,7 +39,7 @@ bool QueryResults::find(GLuint query, uint32_t swaps, uint64_t& value) {
     readsLate_ = readsLate_ || ended.swaps != swaps + 1;
     Session* const s = Session::current();
     if (!ended.known && ended.request != 0 && ended.swaps != swaps + 1 && s)
-        ended.known = s->aheadAnswer(ended.request, ended.value);
+        ended.known = s->prefetchedReply(ended.request, ended.value);
     if (ended.known) value = ended.value;
     return ended.known;
 }

@@ -31,7 +31,7 @@ public:
     Box wider(const ThreadState& t, const Kind& kind, const Box& box) const;
     // Returns whether this read continues a series of small reads, which justifies fetching a block.
     bool inSeries(const ThreadState& t, const Kind& kind, const Box& box);
-    // Memory for the answer to a larger request; null if the allocation fails.
+    // Memory for the reply to a larger request; null if the allocation fails.
     std::byte* memory(size_t sizeBytes);
     // Records an answered request. `stored`: its pixels are in memory().
     void answered(const ThreadState& t, const Kind& kind, const Box& box, bool stored);

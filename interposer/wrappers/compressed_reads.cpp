@@ -55,7 +55,7 @@ Level inBlocks(const Level& texels, const sizes::CompressedBlock& block) {
     return {along(texels.width, block.width), along(texels.height, block.height), along(texels.depth, block.depth)};
 }
 
-// Executes the driver's own call first. It raises errors, and returns data in case the nodes have no answer.
+// Executes the driver's own call first. It raises errors, and returns data in case the nodes have no reply.
 template <class Local>
 void readBound(GLenum target, GLint level, void* pixels, Local&& local, const char* by = __builtin_FUNCTION()) {
     ThreadState& t = *tThread;

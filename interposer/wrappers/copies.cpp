@@ -17,8 +17,8 @@ using namespace mural;
 
 namespace {
 
-// Returns the planes that a copy into a texture level reads. `query` queries the level's internal format. The copy
-// itself raises the errors.
+// Returns the planes that a copy into a texture level reads. `query` queries the level's internal format. Errors of the
+// query are dropped: the copy raises them again.
 template <class Query> GLbitfield planesInto(ThreadState& t, Query&& query) {
     Session* s = Session::current();
     if (!t.context || !s || s->welcome().nodeCount < 2) return GL_COLOR_BUFFER_BIT;

@@ -1,4 +1,4 @@
-// Shared by commands that read images from the nodes: level sizes, parts of images, and delivery of the answer.
+// Shared by commands that read images from the nodes: level sizes, parts of images, and delivery of the reply.
 #pragma once
 
 #include "encoders.hpp"

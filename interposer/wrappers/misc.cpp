@@ -288,7 +288,7 @@ void mural_glLinkProgram(GLuint program) {
     ThreadState& t = *tThread;
     gReal.glLinkProgram(program);
     if (capturing(t)) bindAttributes(t, program);
-    noteMemoryWriter(t, program);
+    recordMemoryWriter(t, program);
     encode_glLinkProgram(t, program);
     if (capturing(t)) sendLayout(t, program);
 }
@@ -296,7 +296,7 @@ void mural_glLinkProgramARB(GLuint program) { mural_glLinkProgram(program); }
 GLuint mural_glCreateShaderProgramv(GLenum type, GLsizei count, const GLchar* const* strings) {
     ThreadState& t = *tThread;
     const GLuint program = gReal.glCreateShaderProgramv(type, count, strings);
-    noteMemoryWriter(t, program, type, count, strings);
+    recordMemoryWriter(t, program, type, count, strings);
     encode_glCreateShaderProgramv(t, type, count, packStrings(t, count, strings, nullptr), program);
     if (capturing(t) && program) sendLayout(t, program);
     return program;

@@ -110,7 +110,7 @@ void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* bina
     if (!loads || !linked(program)) return records::programRecipe(t, program, {});
     bindAttributes(t, program);
     const auto* const recipe = static_cast<const std::byte*>(binary) + footer.driverBytes;
-    noteMemoryWriter(t, program, recipe, footer.recipeBytes);
+    recordMemoryWriter(t, program, recipe, footer.recipeBytes);
     records::programRecipe(t, program, DataArg::of(recipe, footer.recipeBytes));
     sendLayout(t, program);
 }

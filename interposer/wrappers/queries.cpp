@@ -1,4 +1,4 @@
-// Wrappers of query objects. Each node counts its own part, so the result is combined from the answers of all nodes.
+// Wrappers of query objects. Each node counts its own part, so the result is combined from the replies of all nodes.
 #include "custom_wrappers.hpp"
 #include "encoders.hpp"
 #include "interposer/readback/node_requests.hpp"

@@ -70,7 +70,7 @@ void readTexture(ThreadState& t, bool byName, GLuint which, GLint level, GLenum 
     requestAndDeliver(t, {byName, which, level, format, type, bytes}, pixels, layout, by);
 }
 
-// Executes the driver's own call first. It raises errors, and returns data in case the nodes have no answer.
+// Executes the driver's own call first. It raises errors, and returns data in case the nodes have no reply.
 template <class Local>
 void readBound(GLenum target, GLint level, GLenum format, GLenum type, void* pixels, Local&& local,
                const char* by = __builtin_FUNCTION()) {

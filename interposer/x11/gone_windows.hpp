@@ -26,7 +26,7 @@ void requestWindowAttributes(_XDisplay* display);
 void takeGoneWindows();
 // Call it when the program binds a destroyed window again: the number may belong to a new window. Waits for the reply.
 void checkForDestroyed(Window& w);
-// Drops the questions of a closing connection and ends the windows that it has created.
+// Drops the pending queries of a closing connection and ends the windows that it has created.
 void connectionCloses(xcb_connection_t* connection);
 
 } // namespace mural

@@ -12,9 +12,9 @@ namespace mural {
 
 struct Window;
 
-// Call before the records of a frame of this window. Returns true if the head will send the picture
-// (Session::takePictures). Returns false if the head shows it, because no connection of this process has grabbed the
-// server.
+// Requests the picture of a frame from the head, if this process has grabbed the window's server and must put the
+// picture itself (Session::takePictures). Returns false if the head shows the picture. Call before the records of the
+// frame.
 bool announceOwnPut(capture::CaptureHeader& header, const Window& w, uint32_t frame);
 
 // Puts a received picture into its window. The X server reports no error of it to the program.

@@ -176,7 +176,7 @@ void CaptureMemory::waitReplyRoom(int64_t timeoutNs) const {
 }
 
 void CaptureMemory::answerAhead(uint32_t request, uint64_t value) {
-    capture::AheadAnswer& answer = shared_->ahead[request % capture::kAheadAnswers];
+    capture::PrefetchedReply& answer = shared_->prefetched[request % capture::kPrefetchedReplies];
     answer.request.store(0, std::memory_order_relaxed);
     std::atomic_thread_fence(std::memory_order_release);
     answer.value.store(value, std::memory_order_relaxed);

@@ -1,4 +1,4 @@
-// Uninitialised heap memory for pictures and answers, which are large and written once.
+// Uninitialised heap memory for pictures and replies, which are large and written once.
 #pragma once
 
 #include <cstddef>

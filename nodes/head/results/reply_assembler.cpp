@@ -84,7 +84,7 @@ bool ReplyAssembler::allAnswered(const Request& request) const {
 
 bool ReplyAssembler::canDeliver(const Request& request) const {
     const bool bytes = request.kind == static_cast<uint32_t>(ReplyKind::Bytes);
-    // A rectangle that lies in one node's part needs no answers of other nodes.
+    // A rectangle that lies in one node's part needs no replies of other nodes.
     const bool rectangle = request.kind == static_cast<uint32_t>(ReplyKind::Rectangle);
     if (rectangle && request.firstNode >= 0 && request.last[static_cast<size_t>(request.firstNode)]) return true;
     // All nodes hold the same bytes, except undefined ones. The answer of the first living node is always used, so that
@@ -102,7 +102,7 @@ void ReplyAssembler::nodeLost(int node) {
         for (auto it = requests_.begin(); it != requests_.end();) {
             Request& request = it->second;
             request.awaited[static_cast<size_t>(node)] = false;
-            // Discards a partial answer of kind Bytes: another node sends all bytes.
+            // Discards a partial reply of kind Bytes: another node sends all bytes.
             if (request.firstNode == node && !request.last[static_cast<size_t>(node)]) request.firstNode = -1;
             if (!allAnswered(request)) {
                 ++it;
@@ -147,7 +147,7 @@ Reply ReplyAssembler::assemble(uint32_t requestId, const Request& request) {
     Reply reply;
     reply.header.requestId = requestId;
     reply.header.kind = request.kind;
-    reply.header.failed = 1; // set to 0 by the first valid answer
+    reply.header.failed = 1; // set to 0 by the first valid reply
     if (request.kind == static_cast<uint32_t>(ReplyKind::Rectangle)) assembleRectangle(request, reply);
     if (request.kind == static_cast<uint32_t>(ReplyKind::Bytes)) assembleBytes(request, reply);
     if (request.kind == static_cast<uint32_t>(ReplyKind::Sum)) assembleSum(request, reply);
@@ -162,7 +162,7 @@ void ReplyAssembler::assembleRectangle(const Request& request, Reply& reply) {
         all = unite(all, part.rectangle);
         covered += part.rectangle.area();
     }
-    // A rectangle outside all tiles has a valid answer without pixels.
+    // A rectangle outside all tiles has a valid reply without pixels.
     reply.header.failed = std::ranges::find(request.last, true) == request.last.end() && all.empty();
     reply.header.groupBytes = request.groupBytes;
     reply.header.x = all.x;
@@ -191,7 +191,7 @@ void ReplyAssembler::assembleRectangle(const Request& request, Reply& reply) {
 void ReplyAssembler::assembleBytes(const Request& request, Reply& reply) {
     int from = request.firstNode;
     for (const Part& part : request.parts) {
-        // If the preferred node is lost, the first node with a complete answer replaces it.
+        // If the preferred node is lost, the first node with a complete reply replaces it.
         const bool whole = request.last[static_cast<size_t>(part.node)];
         if (request.firstNode < 0 && whole && (from < 0 || part.node < from)) from = part.node;
     }

@@ -1,4 +1,4 @@
-// Assembles the answers of the nodes to a program's request. The answers alone identify requests: all nodes receive the
+// Assembles the replies of the nodes to a program's request. The replies alone identify requests: all nodes receive the
 // same stream, so every node answers every request.
 #pragma once
 
@@ -26,7 +26,7 @@ public:
     ReplyAssembler(int nodes, Deliver deliver);
 
     Result<void> answer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes);
-    // Completes pending requests from the answers that have arrived.
+    // Completes pending requests from the replies that have arrived.
     void nodeLost(int node);
 
     // Adds a returned node. It answers requests from this view on.
@@ -50,9 +50,9 @@ private:
         uint32_t groupBytes = 0;
         std::vector<Part> parts;
         std::vector<bool> awaited; // per node; false after it is lost
-        std::vector<bool> last;    // per node: its answer is complete
-        int firstNode = -1;        // the node whose answer counts (ReplyKind::Bytes)
-        bool delivered = false;    // later answers are discarded
+        std::vector<bool> last;    // per node: its reply is complete
+        int firstNode = -1;        // the node whose reply counts (ReplyKind::Bytes)
+        bool delivered = false;    // later replies are discarded
     };
 
     Result<void> add(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes, Request& request);
