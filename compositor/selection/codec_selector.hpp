@@ -1,8 +1,8 @@
 // Selects, for one link, the codec with minimal delivery time per piece of a picture. Decides from reports about
 // previous pieces only: no clock, no threads, deterministic.
 //
-// Delivery time: encoding, transfer, decoding. Each is estimated per class of pieces and codec. Codecs that are not
-// selected are measured on the side: on a few pieces another codec encodes and decodes as well, without sending. Both
+// Delivery time: encoding, transfer, decoding. Each is estimated per class of pieces and codec. To measure codecs that
+// are not selected, the caller encodes and decodes a few pieces with another codec too, and discards the result. Both
 // results refer to the same piece, so differences between pieces do not matter.
 #pragma once
 

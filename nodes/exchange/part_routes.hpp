@@ -24,7 +24,7 @@ public:
     virtual LinkTransfer takeTransfer(int rank) = 0;
     // Drops a peer that has sent an invalid message.
     virtual void giveUp(int rank) = 0;
-    // Replaces the node of that rank by its incarnation `incarnation`. Without a connection the rank counts as lost.
+    // Replaces the node of that rank by this incarnation. Without a connection the rank counts as lost.
     virtual void renew(int rank, uint32_t incarnation) = 0;
 };
 

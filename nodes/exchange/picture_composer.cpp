@@ -17,9 +17,10 @@ PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes)
 void PictureComposer::agree() {
     if (std::exchange(agreed_, false) || strategy_ == Strategy::Serial || config_.rank == 0 || lost_.contains(0))
         return;
-    auto word = routes_.receive(0, 1, Deadline::inMs(config_.wordMs));
-    if (!word || word->size() != 1) return lost(0, word ? "range 1 sent an invalid strategy" : word.error().message);
-    if (word->front() != std::byte{0}) serially();
+    auto decision = routes_.receive(0, 1, Deadline::inMs(config_.decisionMs));
+    if (!decision || decision->size() != 1)
+        return lost(0, decision ? "range 1 sent an invalid strategy" : decision.error().message);
+    if (decision->front() != std::byte{0}) serially();
 }
 
 // After a loss, the remaining nodes send directly to the collector from the next picture on.

@@ -22,7 +22,7 @@ struct ComposerConfig {
     compositor::Strategy strategy = compositor::Strategy::Serial;
     int rank = 0, ranks = 1;
     int64_t partMs = 20'000;            // limit for a part of another node; equals the head's limit for silent nodes
-    int64_t wordMs = 60'000;            // limit for the collector's decision, which may wait for lost nodes
+    int64_t decisionMs = 60'000;        // limit for the collector's decision, which may wait for lost nodes
     int64_t stageMs = 5'000;            // added per earlier stage, so that one lost node does not make others seem lost
     std::string plant;                  // MURAL_PLANT: fault injection for tests
     std::string codec = kQuickestCodec; // see PlaneEncoder
@@ -35,8 +35,8 @@ public:
     // Called by each node with its part. Afterwards the collector's part is the whole picture; other nodes' parts are
     // undefined. Returns the area that may have changed. Reports each lost node once; its range is missing.
     PixelViewport compose(PicturePart& part, const CompositeRule& rule);
-    // From the next picture on, the rank takes part with its incarnation `incarnation`, and so do all ranks except
-    // `absent`. All participants must call this between the same two pictures.
+    // From the next picture on, this incarnation of the rank takes part, and so do all ranks except `absent`. All
+    // participants must call this between the same two pictures.
     void returned(int rank, uint32_t incarnation, const std::set<int>& absent);
 
 private:

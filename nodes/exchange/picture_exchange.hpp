@@ -1,8 +1,8 @@
 // Direct picture exchange between nodes. Of two nodes that start together, the one with the higher rank connects; a
 // restarted node connects to all peers. The accepting node confirms each connection, so that no node waits for one that
-// will not come. A node that lags in the stream still reads the messages of a lost node; the incarnation `incarnation`
-// separates them from its successor's. Connections are encrypted with a secret that the head gives to the nodes of one
-// picture.
+// will not come. A node that lags in the stream still reads the messages of a lost node; the incarnation
+// distinguishes them from its successor's. Connections are encrypted with a secret that the head gives to the nodes of
+// one picture.
 #pragma once
 
 #include <condition_variable>
@@ -23,7 +23,7 @@ class PictureExchange final : public PartRoutes {
 public:
     struct Name {
         int rank = 0;             // from 0
-        uint32_t incarnation = 0; // incarnation: number of restarts
+        uint32_t incarnation = 0; // number of restarts
         friend bool operator==(const Name&, const Name&) = default;
     };
     PictureExchange(Name own, const ChannelSecret& secret) : own_(own), secret_(secret) {}

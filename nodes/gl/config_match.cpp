@@ -37,8 +37,8 @@ bool isAcceptable(const Attribute& attribute, int requested, int offered) {
     return attribute.other == Other::AnyButZero && requested != 0 && offered != 0;
 }
 
-// Substitutes the smallest offered value above the wish, or the largest offered one if none is above. Returns the wish
-// itself if it is offered.
+// Substitutes the smallest offered value above the requested one, or the largest offered one if none is above. Returns
+// the requested value itself if it is offered.
 int nearestTo(int requested, const std::set<int>& offered) {
     const auto above = offered.lower_bound(requested);
     return above != offered.end() ? *above : *offered.rbegin();

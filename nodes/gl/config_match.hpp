@@ -2,8 +2,8 @@
 // clears or blending, and the picture then differs from the native one.
 //
 // A driver may lack such a configuration: only Mesa has depths of 32 bits. The nearest depth, stencil, samples, colour
-// bits and non-zero alpha bits then replace the wish. The surface reports its real bits. A picture that may differ is
-// better than none.
+// bits and non-zero alpha bits then replace the requested ones. The surface reports its real bits. A picture that may
+// differ is better than none.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct ConfigCandidate {
 Result<size_t> matchConfig(const std::string& backend, const std::vector<ConfigCandidate>& candidates,
                            const SurfaceConfig& requested);
 
-// Returns the bits of a candidate with the size of the wish.
+// Returns the bits of a candidate with the requested size.
 SurfaceConfig bitsOf(const ConfigCandidate& taken, const SurfaceConfig& requested);
 
 // Returns a text such as "depth 24 instead of 32, samples 0 instead of 4". Empty: no difference.

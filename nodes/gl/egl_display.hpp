@@ -104,7 +104,7 @@ struct EglConfigs {
 // surface and not of its configuration.
 EglConfigs listEglConfigs(const EglDisplayState& display, bool srgb);
 
-// Returns and clears the error of this thread as text, such as "EGL_BAD_MATCH (the wishes do not go together)".
+// Returns and clears the error of this thread as text, such as "EGL_BAD_MATCH (the driver does not have it)".
 std::string takeEglError(const EglFunctions& egl);
 
 } // namespace mural::gl

@@ -116,8 +116,8 @@ public:
     // Returns the EGL image extensions that this platform implements. Empty: no images.
     [[nodiscard]] virtual std::vector<std::string> imageExtensions() const { return {}; }
     virtual Result<std::unique_ptr<Image>> createImage(const ImageSource& source);
-    // wish: the configuration that `shareWith` was created with. Errors: this platform supports contexts in one thread
-    // only.
+    // requested: the configuration that `shareWith` was created with. Errors: this platform supports contexts in one
+    // thread only.
     virtual Result<std::unique_ptr<SharedReader>> createReader(const ContextConfig& requested, Context& shareWith);
     // Returns an entry point for all contexts, or null for an unknown name. Requires a current context.
     virtual Proc getProcAddress(const char* name) = 0;

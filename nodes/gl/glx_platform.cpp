@@ -1,8 +1,8 @@
 // Contexts over GLX on an X display. Surfaces are double-buffered pbuffers of the whole picture's size.
 //
 // Measured with Mesa 22.3.6 (llvmpipe, Xvfb) and checked by tests/gl/. Accumulation buffers of 16 bits and 4 samples
-// exist, but not together. GL_BACK and GL_FRONT are two buffers. A wish that the driver can't meet causes an X error,
-// which XErrorTrap catches.
+// exist, but not together. GL_BACK and GL_FRONT are two buffers. A request that the driver can't meet causes an X
+// error, which XErrorTrap catches.
 #include <algorithm>
 #include <utility>
 

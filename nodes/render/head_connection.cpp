@@ -91,7 +91,7 @@ Result<void> HeadConnection::changeOver(uint64_t skipBytes) {
     if (!stream) return stream.error();
     stream_ = std::move(*stream);
     log::debug(log::Topic::Stream, "receives by multicast from now on");
-    if (unpacker_) {
+    if (deltaDecoder_) {
         const auto had = readBatch();
         return had ? Result<void>() : had.error();
     }
@@ -105,7 +105,7 @@ Result<void> HeadConnection::endBatch() {
     if (!inBatch_) return {};
     uint32_t stream = 0;
     std::span<const std::byte> payload;
-    const auto more = unpacker_->next(stream, payload);
+    const auto more = deltaDecoder_->next(stream, payload);
     if (!more || more.value())
         return Error{
             "the head sent data after the last command of a batch; install the same version of mural on all machines"};
@@ -113,17 +113,17 @@ Result<void> HeadConnection::endBatch() {
     return {};
 }
 
-Result<void> HeadConnection::unpackBatches(uint64_t cacheBytes, const std::string& plant) {
+Result<void> HeadConnection::decodeBatches(uint64_t cacheBytes, const std::string& plant) {
     delta::Limits limits;
     limits.cacheBytes = cacheBytes;
     if (auto ended = endBatch(); !ended) return ended;
-    unpacker_.reset(); // frees the old memory before the new allocation
+    deltaDecoder_.reset(); // frees the old memory before the new allocation
     batchDecoder_ = std::make_unique<delta::BatchDecoder>();
-    unpacker_ = std::make_unique<delta::DeltaDecoder>(limits);
-    if (!unpacker_->ready())
+    deltaDecoder_ = std::make_unique<delta::DeltaDecoder>(limits);
+    if (!deltaDecoder_->ready())
         return Error{"no memory for a delta cache of " + std::to_string(cacheBytes >> 20) +
                      " MiB; choose a smaller --cache-size"};
-    if (plant == "delta") unpacker_->loseWords();
+    if (plant == "delta") deltaDecoder_->loseWords();
     return {};
 }
 
@@ -133,7 +133,7 @@ Result<wire::PacketHeader> HeadConnection::next(std::span<const std::byte>& payl
         auto more = nextOfBatch(header, payload);
         if (more && more.value()) return header;
         if (more) {
-            if (!unpacker_) return readPacket(payload);
+            if (!deltaDecoder_) return readPacket(payload);
             auto head = readBatch();
             if (!head) return head.error();
             if (const auto opened = openBatch(head.value()); !opened) more = opened.error();
@@ -146,7 +146,7 @@ Result<wire::PacketHeader> HeadConnection::next(std::span<const std::byte>& payl
 
 Result<bool> HeadConnection::nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload) {
     if (!inBatch_) return false;
-    auto more = unpacker_->next(header.stream, payload);
+    auto more = deltaDecoder_->next(header.stream, payload);
     inBatch_ = more && more.value();
     header.sizeBytes = static_cast<uint32_t>(payload.size());
     return more;
@@ -155,7 +155,7 @@ Result<bool> HeadConnection::nextOfBatch(wire::PacketHeader& header, std::span<c
 Result<void> HeadConnection::openBatch(delta::BatchHead head) {
     const auto sections = batchDecoder_->decode(head, payload_);
     if (!sections) return sections.error();
-    unpacker_->begin(sections.value());
+    deltaDecoder_->begin(sections.value());
     inBatch_ = true;
     return {};
 }

@@ -34,7 +34,7 @@ public:
 
     // Packets arrive in batches from now on, with an empty dictionary. Errors: out of memory; called within a batch.
     // `plant`: fault injection for tests.
-    Result<void> unpackBatches(uint64_t cacheBytes, const std::string& plant);
+    Result<void> decodeBatches(uint64_t cacheBytes, const std::string& plant);
 
     // Returns the next packet; its payload is valid until the next call. Errors: the head is gone; invalid data, which
     // has been reported to the head.
@@ -68,8 +68,8 @@ private:
     Result<void> openBatch(delta::BatchHead head);
 
     std::vector<std::byte> payload_;
-    std::unique_ptr<delta::BatchDecoder> batchDecoder_; // set together with the unpacker
-    std::unique_ptr<delta::DeltaDecoder> unpacker_;     // null: no batches
+    std::unique_ptr<delta::BatchDecoder> batchDecoder_; // set together with deltaDecoder_
+    std::unique_ptr<delta::DeltaDecoder> deltaDecoder_; // null: no batches
     bool inBatch_ = false;
     std::mutex sending_;
     std::atomic<bool> broken_{false};

@@ -119,7 +119,7 @@ private:
             return client.has_value();
         }
         case wire::HeadCommand::Activate: return newMember(rest);
-        case wire::HeadCommand::ResetDictionary: return unpackBatches();
+        case wire::HeadCommand::ResetDictionary: return decodeBatches();
         case wire::HeadCommand::RequestPhase: return sendPhaseState(rest);
         case wire::HeadCommand::Turns: return takeTurns(rest);
         case wire::HeadCommand::JoinMulticast: return joinGroup(rest);
@@ -170,7 +170,7 @@ private:
             const auto followed = line_->follow(setup_.stream, setup_.streamSecret, name_);
             if (!followed) ready["ownStream"] = followed.error().message;
         }
-        if (setup_.delta && !unpackBatches()) return false;
+        if (setup_.delta && !decodeBatches()) return false;
         if (setup_.pass.ranges > 1) {
             if (auto opened = openExchange(ready); !opened) return fail(opened.error().message);
         }
@@ -232,10 +232,10 @@ private:
     }
 
     // Starts with an empty dictionary.
-    bool unpackBatches() {
+    bool decodeBatches() {
         const char* const plant = std::getenv("MURAL_PLANT");
-        const auto unpacks = line_->unpackBatches(static_cast<uint64_t>(setup_.cacheBytes), plant ? plant : "");
-        return unpacks || fail(unpacks.error().message);
+        const auto started = line_->decodeBatches(static_cast<uint64_t>(setup_.cacheBytes), plant ? plant : "");
+        return started || fail(started.error().message);
     }
 
     Result<void> openExchange(nlohmann::json& ready) {

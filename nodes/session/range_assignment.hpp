@@ -1,4 +1,4 @@
-// Shares of a picture's draws, one per node, for sessions in which shares change (HeadCommand::Shares).
+// Shares of a picture's draws, one per node, for sessions in which shares change (HeadCommand::RangeAssignment).
 #pragma once
 
 #include <cstddef>

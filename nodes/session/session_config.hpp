@@ -51,7 +51,7 @@ struct SessionConfig {
     ProjectionChoice projection = ProjectionChoice::Auto; // --projection
     double modelUnit = 1;                                 // --model-unit: program units per metre of the file
     PassCounts passes;                                    // --stereo, --pixel, --subpixel, --dplex, --db, --zoom
-    std::string codec = "auto"; // --codec: encoding of transferred pictures: a name for PlaneEncoder (nodes/pictures)
+    std::string codec = "auto";         // --codec: name of the codec of transferred pictures (nodes/frame_transfer)
     Readback readback = Readback::Auto; // --readback: transfer from GL to memory
     std::string composition = "auto";   // --composition: auto, or the name of a compositor::Strategy
     double eyeBase = 0.05;              // --eye-base: distance between the eyes, in the program's units
@@ -87,7 +87,7 @@ struct NodeSetup {
     int regionColumn = 0, regionRow = 0, regionColumns = 1, regionRows = 1;
     bool hasArea = false; // the node draws `area` instead of tiles
     Viewport area;        // region of the picture
-    // x, y, width, height of every node's area, if areas move (HeadCommand::Areas); empty: fixed areas
+    // x, y, width, height of every node's area, if areas move (HeadCommand::ViewportAssignment); empty: fixed areas
     std::vector<double> areas;
     RenderPass pass;
     bool sharesMachine = false;       // other nodes of the session run on the same machine
@@ -117,8 +117,8 @@ struct NodeSetup {
     int64_t cacheBytes = int64_t{1} << 30;
     // in resync: receives earlier commands; sends nothing about them until it is a member (HeadCommand::Activate)
     bool isResyncing = false;
-    bool skipsFrames = false; // with catchesUp: skips drawing until Synchronize
-    uint32_t incarnation = 0; // incarnation: number of restarts
+    bool skipsFrames = false; // with isResyncing: skips drawing until Synchronize
+    uint32_t incarnation = 0; // number of restarts
     int collector = 0; // node that composes this node's picture; the nodes of the ranges follow it, one per range
     std::string composition = "serial"; // name of the compositor::Strategy for that picture
     // in hex; for nodes that exchange parts of a picture or share a swap barrier; empty: none

@@ -1,4 +1,4 @@
-// Areas of the nodes, for sessions in which areas change (HeadCommand::Areas).
+// Areas of the nodes, for sessions in which areas change (HeadCommand::ViewportAssignment).
 #pragma once
 
 #include <cstddef>

@@ -56,7 +56,7 @@ struct Window {
     bool lean = false;              // the framebuffer has the region's size
     bool widens = true;             // to the window's size on demand; false after a failure
     wire::WindowConfig config{};    // with the channel bits of `surface`
-    uint8_t wishedRed = 0;          // red bits of the program's window; equal on all nodes
+    uint8_t programRed = 0;         // red bits of the program's window; equal on all nodes
     ContextState* drawer = nullptr; // the context that was last current with it for drawing; null: destroyed
     bool isFlat = false;            // the program's window has no depth and no stencil buffer; this node's surface may
     std::unique_ptr<gl::Surface> surface;

@@ -199,7 +199,7 @@ bool Replay::onWindow(Args& in) {
                      "side-by-side or anaglyph shows both");
     w.config = *config;
     w.isFlat = config->depth == 0 && config->stencil == 0;
-    w.wishedRed = config->red;
+    w.programRed = config->red;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
     if (moves() && (!w.surface || renewed || w.surface->width() != std::max(width, 1) ||

@@ -92,11 +92,11 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (drawsOtherPixels()) onWholeWindow(opcode, arguments);
     if (takesRanges()) in = Args(onRange(opcode, arguments), blobs); // reduced to this node's piece, or empty
     // after onRange(), which decides whether this node draws the command
-    const bool leftOut = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && shouldSkipDraw(opcode);
+    const bool skips = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && shouldSkipDraw(opcode);
     if (moves()) onArea(opcode, arguments);
-    if (leftOut) swapDrawEntryPoints();
+    if (skips) swapDrawEntryPoints();
     const bool done = hasTrait(opcode, Trait::Allocates) ? executeAllocating(function, in) : function(*this, in);
-    if (leftOut) swapDrawEntryPoints();
+    if (skips) swapDrawEntryPoints();
     if (movesView()) onEyeAfter(opcode);
     return done;
 }

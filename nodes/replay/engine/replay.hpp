@@ -371,7 +371,7 @@ private:
     void onRangeState(uint16_t opcode, std::span<const std::byte> arguments);
     void onCompiled(uint16_t opcode, std::span<const std::byte> arguments);
     bool onRangeList(const DisplayListItem& item);
-    void notePrimitiveIds(GLuint nodeName);
+    void recordPrimitiveIds(GLuint nodeName);
     [[nodiscard]] bool mayShare();
     bool shares(Window& w, uint64_t cost, uint64_t& first, uint64_t& last);
     void beginSplit(Window& w);
@@ -491,9 +491,10 @@ private:
     [[nodiscard]] uint64_t returnsSeen() const { return returnsTaken_ + returns_.size(); }
     std::shared_ptr<const ViewportAssignment> areas_; // the latest; null: areas never change
     bool knowsAreas_ = true;
-    bool showedInvalid_ = false;           // a frame was drawn from its beginning, and still depended on skipped ones
-    std::unique_ptr<GlFunctions> leftOut_; // functions without effect, for skipped draws; null: not created yet
-    std::unique_ptr<ContextState> none_;   // context of streams without one
+    bool showedInvalid_ = false; // a frame was drawn from its beginning, and still depended on skipped ones
+    std::unique_ptr<GlFunctions>
+        ineffectiveDraws_;               // functions without effect, for skipped draws; null: not created yet
+    std::unique_ptr<ContextState> none_; // context of streams without one
 };
 
 } // namespace mural

@@ -57,7 +57,7 @@ struct ReplayConfig {
 
 // Outputs of the replay; called on the replay thread.
 struct ReplayOutputs {
-    // Part of an answer; `last` closes this node's part.
+    // Part of a reply; `last` closes this node's part.
     std::function<void(const wire::ReplyPartHeader&, std::span<const std::byte>)> answer;
     // A frame of the window is complete. `pixels` reads the given rectangle in window coordinates. Rows are bottom
     // first and tightly packed. `pixels` is only valid during the call.
@@ -72,15 +72,16 @@ struct ReplayOutputs {
         bool valid;            // does not depend on skipped draws (ReplayConfig::skips)
         bool notSplit;         // several ranges exist, but no draws were shared
         uint32_t areas;        // number of the ViewportAssignment that divides the picture
-        uint32_t shares;       // number of the RangeAssignment that divided the draws; 0: the initial ones, or no shared draws
-        bool keepsAreas;       // newer areas have waited too long for a full clear
+        uint32_t
+            shares; // number of the RangeAssignment that divided the draws; 0: the initial ones, or no shared draws
+        bool keepsAreas; // newer areas have waited too long for a full clear
         std::function<const std::byte*(const PixelViewport&)> pixels;
         // Reads `region` once, for another thread, which may have to wait for its drawing. Set where `pixels` is.
         // Returns null if no picture is available.
         std::function<std::unique_ptr<PictureRead>()> read;
     };
     std::function<void(const Frame&)> frameDone;
-    // Called when an answer about a window depends on skipped draws.
+    // Called when a reply about a window depends on skipped draws.
     std::function<void()> invalid;
     std::function<void(uint32_t client, uint32_t window)> windowGone; // the program has destroyed it
     // Sort-last (features/sort_last.cpp): composites the parts of all nodes of the picture. Afterwards the collector's

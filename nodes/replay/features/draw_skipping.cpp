@@ -16,7 +16,7 @@ constexpr auto kDraws = std::tuple(
 #include "streamcodec/wire/control_records.hpp"
 );
 
-template <class... A> void leaveOut(void (*&function)(A...)) {
+template <class... A> void makeIneffective(void (*&function)(A...)) {
     if (function) function = [](A...) {};
 }
 
@@ -66,11 +66,11 @@ bool Replay::stipplesLines() const {
 
 // Exchanges GL's draw functions with functions that have no effect. A second call restores them.
 void Replay::swapDrawEntryPoints() {
-    if (!leftOut_) {
-        leftOut_ = std::make_unique<GlFunctions>(gl);
-        forEachDraw([&](auto member) { leaveOut((*leftOut_).*member); });
+    if (!ineffectiveDraws_) {
+        ineffectiveDraws_ = std::make_unique<GlFunctions>(gl);
+        forEachDraw([&](auto member) { makeIneffective((*ineffectiveDraws_).*member); });
     }
-    forEachDraw([&](auto member) { std::swap(gl.*member, (*leftOut_).*member); });
+    forEachDraw([&](auto member) { std::swap(gl.*member, (*ineffectiveDraws_).*member); });
 }
 
 } // namespace mural

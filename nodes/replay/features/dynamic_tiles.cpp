@@ -1,4 +1,4 @@
-// Moving areas: this node's part of a window changes with some frame.
+// Dynamic tiles: this node's part of a window changes from one frame to another.
 //
 // A framebuffer has the whole window's size, so another part needs only another scissor. But other nodes have drawn the
 // earlier content of that part, and this node lacks it. New areas are therefore applied when that content no longer
@@ -73,7 +73,7 @@ void Replay::moveAreas(ViewportAssignment areas) {
     if (config_.plant == "early" && config_.node == 1) areasChanged();
 }
 
-// The window has new buffers, with equal content on all nodes.
+// Restarts the areas of a window with new buffers, whose content is equal on all nodes.
 void Replay::redivide(Window& w) {
     w.moving = {};
     w.moving.areas = w.moving.wanted = w.moving.front = areas_;
@@ -151,7 +151,8 @@ void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
     if (use == WindowUse::Draws) m.drawn |= drawnBy(opcode) & buffersOf(w.config);
 }
 
-// The draws and enables of a native list are unknown.
+// Called before a native list, whose draws and enables are unknown. It counts as a draw of colours, and of depth and
+// stencil if any command or list has enabled their tests.
 void Replay::onNativeList() {
     if (!drawsWindow() || !c_->draw || !c_->shared) return;
     Window& w = *c_->draw;

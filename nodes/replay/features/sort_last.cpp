@@ -64,7 +64,7 @@ bool Replay::mayShare() {
     if (c_->api != wire::Api::Desktop || !c_->draw || c_->read != c_->draw || c_->draw->config.samples > 0 ||
         c_->draw->config.depth == 0)
         return false;
-    if (c_->draw->wishedRed > 8) return false; // the exchange has 8 bits per channel
+    if (c_->draw->programRed > 8) return false; // the exchange has 8 bits per channel
     if (!on(GL_DEPTH_TEST) || on(GL_BLEND) || on(GL_STENCIL_TEST) || on(GL_COLOR_LOGIC_OP)) return false;
     if (!c_->core && on(GL_INDEX_LOGIC_OP)) return false;
     GLboolean depthMask = GL_FALSE;
@@ -100,7 +100,7 @@ void Replay::onRangeState(uint16_t opcode, std::span<const std::byte> arguments)
     }
 }
 
-void Replay::notePrimitiveIds(GLuint nodeName) {
+void Replay::recordPrimitiveIds(GLuint nodeName) {
     GLuint attached[64] = {};
     GLsizei count = 0;
     gl.glGetAttachedShaders(nodeName, 64, &count, attached);

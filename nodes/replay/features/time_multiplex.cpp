@@ -1,5 +1,5 @@
 // Time-multiplex: this node draws the frames of its turns. In all other frames it draws nothing into windows. Its
-// region is empty then, so scissors, answers, counts and pictures need no special cases. All nodes draw framebuffer
+// region is empty then, so scissors, replies, counts and pictures need no special cases. All nodes draw framebuffer
 // objects, whose contents outlive frames.
 //
 // A frame that clears its window before it draws there begins the next node's turn. A frame that builds on the previous

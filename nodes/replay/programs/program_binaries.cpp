@@ -55,7 +55,7 @@ void Replay::glDeleteObjectARB(GLuint obj) {
     c_->shared->primitiveIds.erase(nodeName);
 }
 
-// ---- requests and answers
+// ---- requests and replies
 
 bool Replay::onRequestProgram(Args& in) {
     const auto request = in.get<uint32_t>(), program = in.get<uint32_t>();

@@ -115,7 +115,7 @@ void Replay::glLinkProgram(GLuint program) {
     linkProgram(nodeName);
     if (c_->shared) c_->shared->recipes.linked(gl, nodeName);
     onModules(nodeName);
-    if (takesRanges()) notePrimitiveIds(nodeName);
+    if (takesRanges()) recordPrimitiveIds(nodeName);
     applyTileValues(); // it may be the current program
 }
 void Replay::linkProgram(GLuint nodeName) {

@@ -1,9 +1,9 @@
-// Readback of a frame's picture: synchronous, or into a buffer that the packing thread waits for.
+// Readback of a frame's picture: synchronous, or into a buffer for which the encoding thread waits.
 //
 // The buffer needs no wait for GL on this thread, which continues with the next frame's commands. It requires fences,
-// pixel buffers, and a second context for the other thread. A measurement selects the way that costs the drawing thread
-// less time (readback_choice.hpp). llvmpipe gains nothing from the buffer: it draws and copies within the read call, on
-// this thread.
+// pixel buffers, and a second context for the other thread. A measurement selects the method that costs the drawing
+// thread less time (readback_choice.hpp). llvmpipe gains nothing from the buffer: it draws and copies within the read
+// call, on this thread.
 #include <cstring>
 #include <utility>
 

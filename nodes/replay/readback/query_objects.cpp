@@ -153,7 +153,7 @@ bool Replay::onRequestQuery(Args& in) {
     return true;
 }
 
-// Answers requested results when a frame is complete, so that answers do not delay its drawing.
+// Sends the results that were requested during the frame, after its end, so that they do not delay its drawing.
 void Replay::sendPrefetched() {
     if (!bound_ || bound_->prefetches.empty()) return;
     ContextState* const own = std::exchange(c_, bound_);
@@ -180,7 +180,8 @@ void Replay::answerQuery(uint32_t request, GLuint query) {
     answerBytes(request, added ? wire::ReplyKind::Sum : wire::ReplyKind::Bytes, std::as_bytes(std::span(&value, 1)));
 }
 
-// ---- conditional rendering with a known result: a query that counts nothing makes GL skip the draws
+// ---- conditional rendering with a known result: its query has counted something, or nothing, so that GL draws or
+// skips
 
 namespace {
 bool isInverted(GLenum mode) {

@@ -16,8 +16,8 @@ namespace mural {
 // Software drivers have no choice: they draw and copy in the calling thread, so a second thread saves nothing. It is
 // also unsafe: llvmpipe up to at least Mesa 22 walks, when it maps a buffer, the drawing of all contexts without a
 // lock, and sometimes crashes.
-[[nodiscard]] inline Readback readbackBy(std::string_view renderer, Readback wished) {
-    return wished == Readback::Auto && gl::drawsWithoutGpu(renderer) ? Readback::Direct : wished;
+[[nodiscard]] inline Readback readbackBy(std::string_view renderer, Readback requested) {
+    return requested == Readback::Auto && gl::drawsWithoutGpu(renderer) ? Readback::Direct : requested;
 }
 
 class ReadbackChoice {
@@ -28,7 +28,7 @@ public:
     void took(int64_t ns) {
         if (frames_ >= kWarmUp && frames_ < kMeasured)
             (later() ? laterNs_ : atOnceNs_)[static_cast<size_t>(frames_ - kWarmUp) / 2] = ns;
-        // similar times favour the simpler way
+        // similar times favour the simpler method
         if (++frames_ == kMeasured) later_ = 4 * median(laterNs_) < 3 * median(atOnceNs_);
         if (frames_ == kMeasured + kDecisionFrames) frames_ = kWarmUp;
     }
