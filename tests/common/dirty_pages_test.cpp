@@ -52,7 +52,7 @@ public:
         size_t from, size;
         bool operator==(const Run&) const = default;
     };
-    MapChanges changes;
+    DirtyPages changes;
     std::byte* memory = nullptr;
     std::vector<std::byte> copy;
     std::vector<Run> reported;
@@ -67,10 +67,10 @@ bool kernelWatches() {
     return memory.changes.watched();
 }
 
-class MapChangesOfSize : public testing::TestWithParam<size_t> {};
-INSTANTIATE_TEST_SUITE_P(Sizes, MapChangesOfSize, testing::Values(kSmall, kLarge));
+class DirtyPagesOfSize : public testing::TestWithParam<size_t> {};
+INSTANTIATE_TEST_SUITE_P(Sizes, DirtyPagesOfSize, testing::Values(kSmall, kLarge));
 
-TEST_P(MapChangesOfSize, reportsWritesOnce) {
+TEST_P(DirtyPagesOfSize, reportsWritesOnce) {
     Watched memory(GetParam());
     memory.memory[100] = std::byte{1};
     memory.check();
@@ -80,7 +80,7 @@ TEST_P(MapChangesOfSize, reportsWritesOnce) {
     EXPECT_TRUE(memory.reported.empty());
 }
 
-TEST_P(MapChangesOfSize, reportsRandomWritesInLongAndShortIntervals) {
+TEST_P(DirtyPagesOfSize, reportsRandomWritesInLongAndShortIntervals) {
     Watched memory(GetParam());
     std::mt19937 random(5);
     for (int step = 0; step < 3000; ++step) {
@@ -93,7 +93,7 @@ TEST_P(MapChangesOfSize, reportsRandomWritesInLongAndShortIntervals) {
     }
 }
 
-TEST_P(MapChangesOfSize, reportsWritesOfSystemCalls) {
+TEST_P(DirtyPagesOfSize, reportsWritesOfSystemCalls) {
     Watched memory(GetParam());
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
@@ -106,7 +106,7 @@ TEST_P(MapChangesOfSize, reportsWritesOfSystemCalls) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST_P(MapChangesOfSize, reportsConcurrentWritesOfOtherThreads) {
+TEST_P(DirtyPagesOfSize, reportsConcurrentWritesOfOtherThreads) {
     Watched memory(GetParam());
     std::thread writer([&] {
         std::mt19937 random(9);
@@ -118,7 +118,7 @@ TEST_P(MapChangesOfSize, reportsConcurrentWritesOfOtherThreads) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST_P(MapChangesOfSize, reportsWritesOfAForkedChildOnlyToTheChild) {
+TEST_P(DirtyPagesOfSize, reportsWritesOfAForkedChildOnlyToTheChild) {
     Watched memory(GetParam());
     const pid_t child = fork();
     if (child == 0) {
@@ -136,14 +136,14 @@ TEST_P(MapChangesOfSize, reportsWritesOfAForkedChildOnlyToTheChild) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST_P(MapChangesOfSize, reportsExactlyTheChangedWords) {
+TEST_P(DirtyPagesOfSize, reportsExactlyTheChangedWords) {
     Watched memory(GetParam());
     memory.memory[4] = memory.memory[15] = memory.memory[40] = std::byte{1};
     memory.check(true);
     EXPECT_EQ(memory.reported, (std::vector<Watched::Run>{{4, 4}, {12, 4}, {40, 4}}));
 }
 
-TEST_P(MapChangesOfSize, ignoresAcceptedForeignWrites) {
+TEST_P(DirtyPagesOfSize, ignoresAcceptedForeignWrites) {
     Watched memory(GetParam());
     std::vector<std::byte> changed(memory.memory, memory.memory + 256);
     changed[8] = std::byte{9};
@@ -160,7 +160,7 @@ TEST_P(MapChangesOfSize, ignoresAcceptedForeignWrites) {
     EXPECT_EQ(memory.reported.size(), 1U);
 }
 
-TEST(MapChanges, supportsMemoryThatBeginsAndEndsWithinPages) {
+TEST(DirtyPages, supportsMemoryThatBeginsAndEndsWithinPages) {
     Watched memory(kLarge - 1000, 300);
     for (int i = 0; i < 40; ++i) memory.check();
     memory.memory[-1] = memory.memory[kLarge - 1000] = std::byte{1}; // foreign bytes in the same pages
@@ -172,7 +172,7 @@ TEST(MapChanges, supportsMemoryThatBeginsAndEndsWithinPages) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST(MapChanges, comparesWhenTheKernelWatchIsLost) {
+TEST(DirtyPages, comparesWhenTheKernelWatchIsLost) {
     if (!kernelWatches()) GTEST_SKIP() << "this kernel can't watch memory";
     Watched memory(kLarge);
     // Maps other memory at the same address, so the kernel drops its watch.
@@ -186,12 +186,12 @@ TEST(MapChanges, comparesWhenTheKernelWatchIsLost) {
     EXPECT_TRUE(memory.same());
 }
 
-TEST(MapChanges, supportsSharedMemoryOfAFile) {
+TEST(DirtyPages, supportsSharedMemoryOfAFile) {
     const int file = memfd_create("shared", MFD_CLOEXEC);
     ASSERT_EQ(ftruncate(file, kLarge), 0);
     auto* memory = static_cast<std::byte*>(mmap(nullptr, kLarge, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0));
     ASSERT_NE(memory, MAP_FAILED);
-    MapChanges changes;
+    DirtyPages changes;
     ASSERT_TRUE(changes.begin(memory, kLarge));
     for (int round = 0; round < 3; ++round) {
         memory[kLarge / 2] = std::byte(round + 1);

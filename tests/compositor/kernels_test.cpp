@@ -54,7 +54,7 @@ TEST(InterleavePixels, givesTheSameRowOnEveryPath) {
     });
 }
 
-TEST(FindUnlike, findsTheFirst) {
+TEST(FindFirstDifference, findsTheFirst) {
     forEachTarget([](const char* target) {
         std::mt19937 random(8);
         const uint32_t pattern[4] = {1, 2, 3, 0xffffff00}, mask[4] = {0xffffffff, 0xff, 0xffffffff, 0xffffff00};

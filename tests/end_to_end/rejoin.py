@@ -250,7 +250,7 @@ def waiting_node(context):
             try:
                 while "waits for heads" not in waiting.stderr.readline():
                     if waiting.poll() is not None:
-                        return "the waiting node ended"
+                        return "the daemon ended"
                 watch = Watch(context, options=("--nodes", "%s,%s" % (host, host), "--launch", "%s call --secret %s" % (context.mural, secret)))
                 with watch.start() as run:
                     if not run.wait_for_line("frame 60 "):

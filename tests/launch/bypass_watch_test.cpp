@@ -57,7 +57,7 @@ TEST_F(Bypass, reportsTheProgramBesideALaunchersDialog) {
     }
 }
 
-TEST(BypassNotes, returnCompleteLinesOnce) {
+TEST(BypassWatch, returnCompleteLinesOnce) {
     auto watch = BypassWatch::create();
     ASSERT_TRUE(watch.ok());
     BypassWatch& w = *watch.value();
@@ -87,7 +87,7 @@ TEST_F(Bypass, reportsGlWithoutTheCaptureLibrary) {
     EXPECT_EQ(describeUncaptured({"app", {x11}}), "");
 }
 
-TEST(BypassNotes, ignoreProcessesThatEnded) {
+TEST(BypassWatch, ignoreProcessesThatEnded) {
     auto watch = BypassWatch::create();
     ASSERT_TRUE(watch.ok());
     EXPECT_EQ(watch.value()->describeRunning({}), "");

@@ -451,7 +451,7 @@ TEST_F(ReplayTest, ignoresGlWithoutAContext) {
     EXPECT_EQ(pictureBytes_, -1);
 }
 
-// ---- handles of textures: of a driver that deals others than the program's
+// ---- texture handles: this node's driver numbers them differently than the program's
 
 struct OtherHandles {
     std::vector<GLuint64> resident, notResident, uniforms;
@@ -538,7 +538,7 @@ TEST_F(HandlesTest, rejectsCountsThatAreTooLarge) {
     EXPECT_TRUE(other.uniforms.empty());
 }
 
-// ---- pages: of a driver whose are larger than the program's
+// ---- pages of sparse textures: this node's driver has larger ones than the program's
 
 struct OtherPages {
     std::vector<std::array<GLint, 7>> commits; // x, y, z, sizes, commit

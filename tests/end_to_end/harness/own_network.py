@@ -131,7 +131,7 @@ class OwnNetwork:
     def launch_script(self, path):
         """Returns the command for `--launch`: HOST COMMAND..., with an address as HOST."""
         with open(path, "w", encoding="utf-8") as file:
-            file.write("#!/bin/sh\n# HOST COMMAND...: runs it there, as ssh would\ncase $1 in\n")
+            file.write("#!/bin/sh\n# HOST COMMAND...: runs the command on the host, as ssh does\ncase $1 in\n")
             for name, address in self.others.items():
                 file.write("%s) machine=%s ;;\n" % (address, name))
             file.write("esac\nshift\nexec ip netns exec $machine sh -c \"$*\"\n")

@@ -68,7 +68,7 @@ void unchangedTiles(const std::filesystem::path& folder) {
         input.push_back(static_cast<std::byte>(bytes.size() >> 8));
         input.insert(input.end(), bytes.begin(), bytes.end());
     }
-    save(folder / "unchanged_tiles", "three_planes", input);
+    save(folder / "tile_delta", "three_planes", input);
 }
 
 } // namespace

@@ -206,7 +206,7 @@ void drawCompressed(unsigned frame) {
         glCompressedTexSubImage2D(GL_TEXTURE_2D, 0, 4, 4, 4, 4, formats[i], blockBytes[i], data.data());
         drawCell(Plain);
     }
-    // Compressed by GL, then read as blocks and uploaded again.
+    // A texture that GL has compressed: its blocks are read and uploaded again.
     GLubyte blocks[128];
     glBindTexture(GL_TEXTURE_2D, names[22]);
     nearest(GL_TEXTURE_2D);

@@ -16,14 +16,14 @@ RenderPass kernel(int x, int y, int width, int height) {
     return p;
 }
 
-TEST(PassPlace, isTheIdentityForPlainPasses) {
+TEST(PixelMapping, isTheIdentityForPlainPasses) {
     for (const double x : {0.0, 3.5, 16384.0}) EXPECT_EQ(placeInPass({}, x, -x), (std::array<double, 2>{x, -x}));
     EXPECT_EQ(inKernel({}, {-3, 4, 7, 9}), (PixelViewport{-3, 4, 7, 9}));
     EXPECT_EQ(moveInViewport({}, {10, 20, 300, 200}), (std::array<float, 4>{}));
 }
 
 // The centre of pixel i of a pass equals the centre of its window pixel.
-TEST(PassPlace, alignsCentresOfKernelPixels) {
+TEST(PixelMapping, alignsCentresOfKernelPixels) {
     for (int width = 1; width <= 5; ++width)
         for (int k = 0; k < width; ++k)
             for (int i = 0; i < 4; ++i) {
@@ -32,7 +32,7 @@ TEST(PassPlace, alignsCentresOfKernelPixels) {
             }
 }
 
-TEST(PassPlace, placesSamplesBesideTheCentre) {
+TEST(PixelMapping, placesSamplesBesideTheCentre) {
     RenderPass p;
     p.samples = 4;
     for (p.sample = 0; p.sample < 4; ++p.sample) {
@@ -44,7 +44,7 @@ TEST(PassPlace, placesSamplesBesideTheCentre) {
 }
 
 // Compared with counting: pixel x of the window belongs to column x mod width.
-TEST(PassPlace, convertsRectanglesToKernels) {
+TEST(PixelMapping, convertsRectanglesToKernels) {
     for (int width = 1; width <= 4; ++width)
         for (int k = 0; k < width; ++k)
             for (int x = 0; x < 9; ++x)
@@ -64,7 +64,7 @@ TEST(PassPlace, convertsRectanglesToKernels) {
                 }
 }
 
-TEST(PassPlace, coversAWindowOnceWithKernels) {
+TEST(PixelMapping, coversAWindowOnceWithKernels) {
     const PixelViewport window{0, 0, 253, 191};
     int64_t pixels = 0;
     for (int y = 0; y < 2; ++y)
@@ -72,7 +72,7 @@ TEST(PassPlace, coversAWindowOnceWithKernels) {
     EXPECT_EQ(pixels, window.area());
 }
 
-TEST(PassPlace, relatesShownAndRepresentativePixels) {
+TEST(PixelMapping, relatesShownAndRepresentativePixels) {
     const RenderPass p = kernel(1, 0, 3, 2);
     EXPECT_EQ(shownByKernel(p, {2, 1, 4, 3}), (PixelViewport{7, 2, 10, 5}));
     EXPECT_EQ(inKernel(p, shownByKernel(p, {2, 1, 4, 3})), (PixelViewport{2, 1, 4, 3}));
@@ -86,7 +86,7 @@ RenderPass zoomed(double x, double y, RenderPass p = {}) {
 }
 
 // Disjoint parts of a window stay disjoint in a zoomed pass, without gaps.
-TEST(PassPlace, joinsZoomedParts) {
+TEST(PixelMapping, joinsZoomedParts) {
     for (const double zoom : {0.5, 0.3, 0.77, 0.999, 1.5, 2.0, 3.7, 16.0})
         for (const int width : {320, 321, 1001}) {
             const RenderPass p = zoomed(zoom, 1);
@@ -103,7 +103,7 @@ TEST(PassPlace, joinsZoomedParts) {
         }
 }
 
-TEST(PassPlace, alignsCentresOfZoomedPixels) {
+TEST(PixelMapping, alignsCentresOfZoomedPixels) {
     EXPECT_EQ(placeInPass(zoomed(0.5, 0.25), 8, 8), (std::array<double, 2>{4, 2}));
     const auto at = placeInPass(zoomed(0.5, 0.5, kernel(1, 0, 2, 1)), 2 * 10 + 1 + 0.5, 0); // pixel 10 of the kernel
     EXPECT_DOUBLE_EQ(at[0], 10.5 / 2);
@@ -118,7 +118,7 @@ TEST(PassPlace, alignsCentresOfZoomedPixels) {
     }
 }
 
-TEST(PassPlace, acceptsAnyRectangle) {
+TEST(PixelMapping, acceptsAnyRectangle) {
     constexpr int32_t kMax = std::numeric_limits<int32_t>::max(), kMin = std::numeric_limits<int32_t>::min();
     for (const PixelViewport& r : {PixelViewport{kMax, kMax, kMax, kMax}, PixelViewport{kMin, kMin, kMax, kMax},
                                    PixelViewport{kMin, 0, kMin, 1}})
@@ -129,7 +129,7 @@ TEST(PassPlace, acceptsAnyRectangle) {
 }
 
 // A position moved within its viewport equals the position in a moved viewport.
-TEST(PassPlace, movesPositionsLikeViewports) {
+TEST(PixelMapping, movesPositionsLikeViewports) {
     RenderPass p = kernel(2, 1, 3, 2);
     p.samples = 5;
     p.sample = 3;

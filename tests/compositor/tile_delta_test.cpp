@@ -20,7 +20,7 @@ struct Link {
     }
 };
 
-TEST(UnchangedTiles, sendsChangesOnly) {
+TEST(TileDelta, sendsChangesOnly) {
     std::mt19937 random(1);
     Link link;
     Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Noise, 1000, 300),
@@ -43,7 +43,7 @@ TEST(UnchangedTiles, sendsChangesOnly) {
     }
 }
 
-TEST(UnchangedTiles, detectsAMissingPlaneAndRestarts) {
+TEST(TileDelta, detectsAMissingPlaneAndRestarts) {
     std::mt19937 random(2);
     Link link;
     Plane plane = makePlane(random, PlaneFormat::D24S8, Content::Surface, 300, 70), there(PlaneFormat::D24S8, 300, 70);
@@ -65,7 +65,7 @@ TEST(UnchangedTiles, detectsAMissingPlaneAndRestarts) {
     EXPECT_EQ(target, larger);
 }
 
-TEST(UnchangedTiles, rejectsDamagedBytes) {
+TEST(TileDelta, rejectsDamagedBytes) {
     std::mt19937 random(3);
     Link link;
     const Plane plane = makePlane(random, PlaneFormat::Rgba8, Content::Mixed, 300, 70);

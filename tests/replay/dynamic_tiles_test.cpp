@@ -27,7 +27,7 @@ ViewportAssignment leftAndRight(uint32_t number, bool swapped) {
 }
 
 // Node 0 of two starts with the left half of a window of 64x32 pixels, and is to get the right one.
-class MovingAreas : public ::testing::Test {
+class DynamicTiles : public ::testing::Test {
 protected:
     void SetUp() override { replay_ = make(false); }
 
@@ -82,7 +82,7 @@ protected:
     uint32_t frames_ = 0;
 };
 
-TEST_F(MovingAreas, areAdoptedAtTheNextFullClear) {
+TEST_F(DynamicTiles, areAdoptedAtTheNextFullClear) {
     open();
     encode_glEnable(t_, GL_DEPTH_TEST);
     encode_glClear(t_, kColour | kDepth);
@@ -102,7 +102,7 @@ TEST_F(MovingAreas, areAdoptedAtTheNextFullClear) {
         << "what was the other node's is cleared here, too";
 }
 
-TEST_F(MovingAreas, waitForEachBufferThatIsDrawnTo) {
+TEST_F(DynamicTiles, waitForEachBufferThatIsDrawnTo) {
     open(24, 8);
     encode_glEnable(t_, GL_DEPTH_TEST);
     draw();
@@ -120,7 +120,7 @@ TEST_F(MovingAreas, waitForEachBufferThatIsDrawnTo) {
     EXPECT_EQ(shown(), kLeft);
 }
 
-TEST_F(MovingAreas, considerDrawsBetweenClears) {
+TEST_F(DynamicTiles, considerDrawsBetweenClears) {
     open();
     encode_glEnable(t_, GL_DEPTH_TEST);
     draw();
@@ -133,7 +133,7 @@ TEST_F(MovingAreas, considerDrawsBetweenClears) {
     EXPECT_EQ(shown(), kRight) << "in a later frame, as nothing was drawn since";
 }
 
-TEST_F(MovingAreas, ignorePartialClears) {
+TEST_F(DynamicTiles, ignorePartialClears) {
     open();
     draw();
     announce();
@@ -159,7 +159,7 @@ TEST_F(MovingAreas, ignorePartialClears) {
     EXPECT_EQ(shown(), kRight);
 }
 
-TEST_F(MovingAreas, useTheLatestOnly) {
+TEST_F(DynamicTiles, useTheLatestOnly) {
     open();
     draw();
     announce(1, true);
@@ -169,7 +169,7 @@ TEST_F(MovingAreas, useTheLatestOnly) {
     EXPECT_EQ(frame_.areas, 2u);
 }
 
-TEST_F(MovingAreas, areAdoptedAfterAClearWithoutDraws) {
+TEST_F(DynamicTiles, areAdoptedAfterAClearWithoutDraws) {
     open();
     encode_glEnable(t_, GL_DEPTH_TEST);
     draw();
@@ -179,7 +179,7 @@ TEST_F(MovingAreas, areAdoptedAfterAClearWithoutDraws) {
     EXPECT_EQ(shown(), kRight);
 }
 
-TEST_F(MovingAreas, applyTheLatestToNewWindowsAndSizes) {
+TEST_F(DynamicTiles, applyTheLatestToNewWindowsAndSizes) {
     announce();
     open();
     EXPECT_EQ(shown(), kRight);
@@ -193,7 +193,7 @@ TEST_F(MovingAreas, applyTheLatestToNewWindowsAndSizes) {
     EXPECT_EQ(shown(), (PixelViewport{0, 0, 64, 32}));
 }
 
-TEST_F(MovingAreas, stayForFrontDrawsAndAccumulation) {
+TEST_F(DynamicTiles, stayForFrontDrawsAndAccumulation) {
     open(24, 0, 16);
     encode_glDrawBuffer(t_, GL_FRONT);
     draw();
@@ -206,7 +206,7 @@ TEST_F(MovingAreas, stayForFrontDrawsAndAccumulation) {
     }
 }
 
-TEST_F(MovingAreas, reportAWindowThatIsNeverCleared) {
+TEST_F(DynamicTiles, reportAWindowThatIsNeverCleared) {
     open();
     draw();
     announce();
@@ -218,7 +218,7 @@ TEST_F(MovingAreas, reportAWindowThatIsNeverCleared) {
     EXPECT_TRUE(frame_.keepsAreas);
 }
 
-TEST_F(MovingAreas, considerDisplayLists) {
+TEST_F(DynamicTiles, considerDisplayLists) {
     open();
     encode_glNewList(t_, 1, GL_COMPILE);
     encode_glClear(t_, kColour | kDepth);
@@ -245,7 +245,7 @@ TEST_F(MovingAreas, considerDisplayLists) {
 }
 
 // The driver clears the node's part only.
-TEST_F(MovingAreas, acceptClearsOfBuffersInLists) {
+TEST_F(DynamicTiles, acceptClearsOfBuffersInLists) {
     open();
     const GLfloat depth = 0.5F;
     encode_glNewList(t_, 1, GL_COMPILE);
@@ -259,7 +259,7 @@ TEST_F(MovingAreas, acceptClearsOfBuffersInLists) {
     EXPECT_EQ(shown(), kRight);
 }
 
-TEST_F(MovingAreas, answerForTheAreaAtThePosition) {
+TEST_F(DynamicTiles, answerForTheAreaAtThePosition) {
     open();
     draw();
     announce();
@@ -274,7 +274,7 @@ TEST_F(MovingAreas, answerForTheAreaAtThePosition) {
 }
 
 // A returning node gets the state that a member reports.
-TEST_F(MovingAreas, areReportedToReturningNodes) {
+TEST_F(DynamicTiles, areReportedToReturningNodes) {
     open();
     draw();
     announce();
@@ -290,7 +290,7 @@ TEST_F(MovingAreas, areReportedToReturningNodes) {
     EXPECT_NE(replay_->memberAreas(), sentAreas);
 }
 
-TEST_F(MovingAreas, rejectInvalidReports) {
+TEST_F(DynamicTiles, rejectInvalidReports) {
     open();
     const auto sentAreas = replay_->memberAreas();
     for (size_t size = 0; size < sentAreas.size(); ++size) {
@@ -301,7 +301,7 @@ TEST_F(MovingAreas, rejectInvalidReports) {
     }
 }
 
-TEST_F(MovingAreas, restartWithoutAMember) {
+TEST_F(DynamicTiles, restartWithoutAMember) {
     replay_ = make(true);
     open();
     announce();

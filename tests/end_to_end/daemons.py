@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Nodes without ssh: mural call finds and starts daemons (mural node --wait), which draw the same as local nodes.
 
-waiting_nodes.py --build BUILD
+daemons.py --build BUILD
 """
 import argparse
 import filecmp
@@ -22,7 +22,7 @@ def lines_of(process, wanted, seconds):
         line = process.stderr.readline()
         if wanted in line:
             return line
-    raise RuntimeError('the waiting node did not print "%s"' % wanted)
+    raise RuntimeError('the daemon did not print "%s"' % wanted)
 
 
 def run(command, seconds=90):
@@ -64,7 +64,7 @@ class Case:
                 local, expected = self.pictures('local', '--local-nodes', '2')
                 self.check('local nodes', local.returncode == 0, local.stderr)
                 waiting, drawn = self.pictures('waiting', '--nodes', '%s,%s' % (HOST, HOST), '--launch', self.call(secret))
-                self.check('waiting nodes', waiting.returncode == 0, waiting.stderr)
+                self.check('daemons', waiting.returncode == 0, waiting.stderr)
                 names = sorted(os.listdir(expected))
                 same = filecmp.cmpfiles(expected, drawn, names, shallow=False)[0]
                 self.check('they draw the same', len(names) == int(FRAMES) and sorted(same) == names, str(names))

@@ -12,7 +12,7 @@ void fold(PicturePart& into, const PicturePart& other, LayerOrder side, const Co
 }
 
 // Three nodes draw a third each; any pairing gives the picture of a single node.
-TEST(PartFold, givesOneNodesPictureForAnyPairing) {
+TEST(PartComposition, givesOneNodesPictureForAnyPairing) {
     std::mt19937 random(5);
     for (const auto function : kOrders)
         for (const bool deep : {false, true})
@@ -43,7 +43,7 @@ TEST(PartFold, givesOneNodesPictureForAnyPairing) {
 }
 
 // All 32 bits count.
-TEST(PartFold, comparesAllBitsOfDeepBuffers) {
+TEST(PartComposition, comparesAllBitsOfDeepBuffers) {
     const CompositeRule rule = ruleOf(compositor::DepthFunction::Less, true);
     PicturePart into = clearedPart(1, 1, rule), later = into;
     draw(into, 0, 1, 0x80000001u, rule);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Traces of programs' GL streams: a replay, on any nodes, shows the program's native pictures.
 
-recordings.py --build build/release [--cases replay,trim] [--list]
+traces.py --build build/release [--cases replay,trim] [--list]
 """
 
 import os

@@ -47,7 +47,7 @@ Point moved(const ClipTransform& m, const Point& p) {
     return {p[0] + by(m.x), p[1] + by(m.y), p[2] + m.z * by(m.w), p[3] + by(m.w)};
 }
 
-class ViewMoveTest : public testing::Test {
+class ClipTransformTest : public testing::Test {
 protected:
     std::mt19937 numbers{7};
     double random(double from, double to) { return std::uniform_real_distribution<double>(from, to)(numbers); }
@@ -62,7 +62,7 @@ Matrix4 turn(double about, double up) {
     return Matrix4::rows({1, 0, 0}, {0, std::cos(up), -std::sin(up)}, {0, std::sin(up), std::cos(up)}) * y;
 }
 
-TEST_F(ViewMoveTest, matchesScreensOfARoom) {
+TEST_F(ClipTransformTest, matchesScreensOfARoom) {
     for (int i = 0; i < 2000; ++i) {
         const Projection own = anyProjection();
         ScreenView s;
@@ -100,7 +100,7 @@ TEST_F(ViewMoveTest, matchesScreensOfARoom) {
 }
 
 // A screen in the program's assumed place shows the program's picture.
-TEST_F(ViewMoveTest, isTheIdentityForTheProgramsOwnScreen) {
+TEST_F(ClipTransformTest, isTheIdentityForTheProgramsOwnScreen) {
     for (int i = 0; i < 100; ++i) {
         const Projection own = anyProjection();
         double m[16];
@@ -113,7 +113,7 @@ TEST_F(ViewMoveTest, isTheIdentityForTheProgramsOwnScreen) {
     }
 }
 
-TEST_F(ViewMoveTest, matchesEyesInFrontOfOneScreen) {
+TEST_F(ClipTransformTest, matchesEyesInFrontOfOneScreen) {
     const Projection own{-2, 2, -1, 1, 1.5, 60};
     double m[16], shifted[16];
     std::ranges::copy(own.matrix(), m);
@@ -128,7 +128,7 @@ TEST_F(ViewMoveTest, matchesEyesInFrontOfOneScreen) {
 }
 
 // Upside down, as programs draw into framebuffer objects that they show flipped.
-TEST_F(ViewMoveTest, keepsMirroredProjectionsMirrored) {
+TEST_F(ClipTransformTest, keepsMirroredProjectionsMirrored) {
     double m[16];
     std::ranges::copy(Projection{-2, 2, -1, 1, 1.5, 60}.matrix(), m);
     m[5] = -m[5];
