@@ -11,7 +11,7 @@
 #include "common/base/result.hpp"
 #include "streamcodec/delta/batch.hpp"
 #include "streamcodec/delta/control_code.hpp"
-#include "streamcodec/delta/dictionary.hpp"
+#include "streamcodec/delta/dictionary/dictionary.hpp"
 #include "streamcodec/delta/entropy/word_predictor.hpp"
 
 namespace mural::delta {

@@ -11,7 +11,7 @@
 #include "streamcodec/delta/batch.hpp"
 #include "streamcodec/delta/control_code.hpp"
 #include "streamcodec/delta/section_buffer.hpp"
-#include "streamcodec/delta/dictionary.hpp"
+#include "streamcodec/delta/dictionary/dictionary.hpp"
 #include "streamcodec/delta/match_index.hpp"
 #include "streamcodec/delta/run_cache.hpp"
 #include "streamcodec/delta/novelty_detector.hpp"

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <vector>
 
-#include "streamcodec/delta/large_array.hpp"
+#include "streamcodec/delta/dictionary/large_array.hpp"
 
 namespace mural::delta {
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "streamcodec/delta/raw_run_cache.hpp"
+#include "streamcodec/delta/dictionary/raw_run_cache.hpp"
 
 namespace mural::delta {
 

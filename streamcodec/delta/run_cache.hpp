@@ -9,8 +9,8 @@
 #include <cstring>
 #include <span>
 
-#include "streamcodec/delta/entry_log.hpp"
-#include "streamcodec/delta/large_array.hpp"
+#include "streamcodec/delta/dictionary/entry_log.hpp"
+#include "streamcodec/delta/dictionary/large_array.hpp"
 
 namespace mural::delta {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "streamcodec/delta/dictionary_entry.hpp"
+#include "streamcodec/delta/dictionary/dictionary_entry.hpp"
 
 namespace mural::delta {
 

@@ -1,4 +1,4 @@
-#include "streamcodec/delta/dictionary.hpp"
+#include "streamcodec/delta/dictionary/dictionary.hpp"
 
 #include <algorithm>
 

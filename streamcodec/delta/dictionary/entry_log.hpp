@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "streamcodec/delta/dictionary_entry.hpp"
-#include "streamcodec/delta/large_array.hpp"
+#include "streamcodec/delta/dictionary/dictionary_entry.hpp"
+#include "streamcodec/delta/dictionary/large_array.hpp"
 
 namespace mural::delta {
 

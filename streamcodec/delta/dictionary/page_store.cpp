@@ -1,4 +1,4 @@
-#include "streamcodec/delta/page_store.hpp"
+#include "streamcodec/delta/dictionary/page_store.hpp"
 
 #include <cstring>
 

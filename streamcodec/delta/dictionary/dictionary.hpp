@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "streamcodec/delta/dictionary_entry.hpp"
-#include "streamcodec/delta/entry_log.hpp"
-#include "streamcodec/delta/raw_run_cache.hpp"
+#include "streamcodec/delta/dictionary/dictionary_entry.hpp"
+#include "streamcodec/delta/dictionary/entry_log.hpp"
+#include "streamcodec/delta/dictionary/raw_run_cache.hpp"
 #include "streamcodec/delta/limits.hpp"
-#include "streamcodec/delta/page_store.hpp"
-#include "streamcodec/delta/record_ring.hpp"
+#include "streamcodec/delta/dictionary/page_store.hpp"
+#include "streamcodec/delta/dictionary/record_ring.hpp"
 
 namespace mural::delta {
 

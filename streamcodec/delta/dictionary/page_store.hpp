@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "streamcodec/delta/large_array.hpp"
+#include "streamcodec/delta/dictionary/large_array.hpp"
 #include "streamcodec/delta/limits.hpp"
 
 namespace mural::delta {

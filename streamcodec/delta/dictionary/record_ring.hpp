@@ -7,7 +7,7 @@
 #include <cstring>
 #include <span>
 
-#include "streamcodec/delta/large_array.hpp"
+#include "streamcodec/delta/dictionary/large_array.hpp"
 
 namespace mural::delta {
 
