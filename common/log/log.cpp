@@ -72,8 +72,9 @@ private:
 
 struct State {
     Outputs outputs;
-    std::shared_mutex mutex; // held shared by calls of receivers
+    std::shared_mutex mutex; // held shared by calls of receivers and observers
     std::vector<const Receiver*> receivers;
+    std::vector<const Observer*> observers;
 };
 
 // Never destroyed: threads may log while the process exits.
@@ -101,6 +102,15 @@ bool receiverTook(Topic topic, Level level, std::string_view text) {
     return (*innermost)->take(topic, level, text);
 }
 
+void showToObservers(Topic topic, Level level, std::string_view text) {
+    if (inReceiver) return;
+    State& s = state();
+    const std::shared_lock lock(s.mutex);
+    const InReceiver inside;
+    for (const Observer* const observer : s.observers)
+        if (observer->wants(level)) observer->see(topic, level, text);
+}
+
 template <class Number, class... Format> void appendNumber(std::string& line, Number number, Format... format) {
     std::array<char, 340> digits; // the longest double has 309 digits before its point
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number, format...).ptr;
@@ -121,6 +131,7 @@ void Part::appendTo(std::string& line) const {
 void detail::write(Topic topic, Level level, std::initializer_list<Part> parts) {
     std::string line;
     for (const Part& part : parts) part.appendTo(line);
+    showToObservers(topic, level, line);
     if (!receiverTook(topic, level, line)) state().outputs.write(topic, level, line);
 }
 
@@ -161,6 +172,18 @@ Receiver::~Receiver() {
     State& s = state();
     const std::unique_lock lock(s.mutex);
     std::erase(s.receivers, this);
+}
+
+Observer::Observer(Level least, See see) : least_(least), see_(std::move(see)) {
+    State& s = state();
+    const std::unique_lock lock(s.mutex);
+    s.observers.push_back(this);
+}
+
+Observer::~Observer() {
+    State& s = state();
+    const std::unique_lock lock(s.mutex);
+    std::erase(s.observers, this);
 }
 
 } // namespace mural::log

@@ -42,4 +42,23 @@ private:
     const Take take_;
 };
 
+// Receives a copy of each enabled line of at least one level while it lives. The line still goes to its destination.
+class Observer {
+public:
+    // Called by the thread that logs, also by several at a time. Lines that it logs itself are not observed.
+    using See = std::function<void(Topic topic, Level level, std::string_view text)>;
+
+    Observer(Level least, See see);
+    ~Observer(); // waits for calls in progress
+    Observer(const Observer&) = delete;
+    Observer& operator=(const Observer&) = delete;
+
+    [[nodiscard]] bool wants(Level level) const { return level >= least_; }
+    void see(Topic topic, Level level, std::string_view text) const { see_(topic, level, text); }
+
+private:
+    const Level least_;
+    const See see_;
+};
+
 } // namespace mural::log

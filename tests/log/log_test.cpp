@@ -165,6 +165,26 @@ TEST(Log, givesLinesToTheInnermostReceiver) {
     EXPECT_EQ(inner, std::vector<std::string>{"node warning b"});
 }
 
+TEST(Log, showsLinesToObserversAsWell) {
+    std::vector<std::string> taken, seen;
+    const log::Receiver receiver(Level::Info, [&](Topic, Level, std::string_view text) {
+        taken.emplace_back(text);
+        return true;
+    });
+    {
+        const log::Observer observer(Level::Warning, [&](Topic topic, Level level, std::string_view text) {
+            seen.push_back(std::string(nameOf(topic)) + " " + std::string(nameOf(level)) + " " + std::string(text));
+            log::warning(Topic::Tool, "not observed again");
+        });
+        log::info(Topic::Node, "too low");
+        log::warning(Topic::Node, "one");
+    }
+    log::warning(Topic::Node, "two");
+    EXPECT_EQ(seen, (std::vector<std::string>{"node warning one"}));
+    EXPECT_EQ(std::ranges::count(taken, "one"), 1);
+    EXPECT_EQ(taken.back(), "two");
+}
+
 TEST(Log, printsLinesThatTheReceiverCannotDeliver) {
     const log::Receiver broken(Level::Info, [](Topic, Level, std::string_view) { return false; });
     testing::internal::CaptureStderr();
