@@ -225,10 +225,6 @@ struct Hello {
     uint32_t reserved;
 };
 
-// Magic of a Hello that `mural stat` sends instead of a program. The head answers with the session's state as JSON
-// (nodes/head/session/session_status.hpp) and closes the connection.
-constexpr uint32_t kStatusMagic = 0x4d535441; // "MSTA"
-
 enum LocalRendering : uint32_t { kLocalRenderingOff = 0, kLocalRenderingOn = 1 };
 
 struct Welcome {

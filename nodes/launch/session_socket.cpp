@@ -20,7 +20,10 @@ namespace {
 
 constexpr const char* kTemporary = "/tmp";
 constexpr const char* kFileName = "/socket";
+constexpr const char* kControlName = "/control";
 constexpr time_t kMinAgeS = 10; // the head of a newer folder may not have opened its socket yet
+
+std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/')); }
 
 bool isOwnFolder(const std::string& path, struct stat& facts) {
     return lstat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == geteuid();
@@ -60,9 +63,12 @@ Result<std::unique_ptr<SessionSocket>> SessionSocket::create(const std::string& 
 
 SessionSocket::~SessionSocket() { removeSessionSocket(path_); }
 
+std::string controlSocketOf(const std::string& sessionSocket) { return folderOf(sessionSocket) + kControlName; }
+
 void removeSessionSocket(const std::string& path) {
     unlink(path.c_str());
-    rmdir(path.substr(0, path.rfind('/')).c_str());
+    unlink(controlSocketOf(path).c_str());
+    rmdir(folderOf(path).c_str());
 }
 
 void removeStaleSockets(const std::string& folder) {

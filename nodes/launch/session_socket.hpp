@@ -1,5 +1,6 @@
-// The session's socket in the file system, in addition to its abstract one. Programs in another network namespace
-// (sandboxes) cannot reach an abstract socket. Each session has its own folder, which only its user may enter.
+// The session's sockets in the file system: one for programs, in addition to the abstract one, and the control socket.
+// Programs in another network namespace (sandboxes) cannot reach an abstract socket. Each session has its own folder,
+// which only its user may enter.
 #pragma once
 
 #include <memory>
@@ -27,7 +28,9 @@ private:
     std::string path_;
 };
 
-// Removes the socket and its folder. Idempotent.
+// Returns the path of the control socket, in the folder of the session's socket.
+std::string controlSocketOf(const std::string& sessionSocket);
+// Removes both sockets and their folder. Idempotent.
 void removeSessionSocket(const std::string& path);
 // Removes the folders of sessions in `folder` that this user owns and no head listens in any more.
 void removeStaleSockets(const std::string& folder);

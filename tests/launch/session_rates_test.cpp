@@ -141,17 +141,19 @@ TEST(SessionRates, surviveMalformedStates) {
     }
 }
 
-TEST(RunningSessions, areFoundByTheirSocketNames) {
+TEST(RunningSessions, areFoundByTheirControlSockets) {
     const std::string sockets =
         "Num       RefCount Protocol Flags    Type St Inode Path\n"
-        "0000000000000000: 00000002 00000000 00010000 0001 01 411 @mural-123-00ff00ff00ff00ff\n"
-        "0000000000000000: 00000003 00000000 00000000 0001 03 412 @mural-123-00ff00ff00ff00ff\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 411 /run/user/1/mural-123-00ff00ff00ff00ff/control\n"
+        "0000000000000000: 00000003 00000000 00000000 0001 03 412 /run/user/1/mural-123-00ff00ff00ff00ff/control\n"
         "0000000000000000: 00000002 00000000 00010000 0001 01 413 @mural-test-123-1\n"
-        "0000000000000000: 00000002 00000000 00010000 0001 01 414 /tmp/mural-9-00ff00ff00ff00ff\n"
-        "0000000000000000: 00000002 00000000 00010000 0001 01 415 @mural-45-0123456789abcdef\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 414 /tmp/mural-9-00ff00ff00ff00ff/socket\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 415 /a b/ c/mural-45-0123456789abcdef/control\n"
+        "0000000000000000: 00000002 00000000 00010000 0001 01 417 @/tmp/mural-8-00ff00ff00ff00ff/control\n"
         "0000000000000000: 00000003 00000000 00000000 0002 01 416\n";
-    EXPECT_EQ(sessionNamesIn(sockets),
-              (std::vector<std::string>{"mural-123-00ff00ff00ff00ff", "mural-45-0123456789abcdef"}));
+    EXPECT_EQ(sessionsIn(sockets), (std::vector<RunningSession>{
+                                       {"mural-123-00ff00ff00ff00ff", "/run/user/1/mural-123-00ff00ff00ff00ff/control"},
+                                       {"mural-45-0123456789abcdef", "/a b/ c/mural-45-0123456789abcdef/control"}}));
 }
 
 } // namespace

@@ -48,6 +48,7 @@ TEST(SessionSocket, isGoneAtTheEnd) {
     auto socket = SessionSocket::create(kSession, runtime.path());
     ASSERT_TRUE(socket.ok());
     const FileDescriptor listener = listenAt(socket.value()->path());
+    const FileDescriptor control = listenAt(controlSocketOf(socket.value()->path()));
     socket.value().reset();
     EXPECT_FALSE(std::filesystem::exists(runtime.at(kSession)));
 }

@@ -33,6 +33,7 @@ HeadEvent::Kind kindOf(const std::string& name) {
     if (name == "clients") return Kind::Clients;
     if (name == "frame") return Kind::Frame;
     if (name == "frames-reached") return Kind::FramesReached;
+    if (name == "stop-requested") return Kind::StopRequested;
     if (name == "wall-lost") return Kind::WallLost;
     if (name == "say") return Kind::Say;
     if (name == "report") return Kind::Report;

@@ -18,6 +18,7 @@
 #include "nodes/trace_player/player.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/config/config_command.hpp"
+#include "tools/mural/ctl/ctl_command.hpp"
 #include "tools/mural/daemon/discover.hpp"
 #include "tools/mural/trace/dump_command.hpp"
 #include "tools/mural/netperf/netperf.hpp"
@@ -85,6 +86,7 @@ public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
         const std::string rest = app->get_name() == "run"     ? " -- PROGRAM ARGUMENTS..."
+                                 : app->get_name() == "ctl"   ? " [SESSION] COMMAND..."
                                  : app->get_name() == "bench" ? " accuracy [-- PROGRAM ARGUMENTS...]"
                                  : app->get_name() == "replay" || app->get_name() == "dump" ? " FILE"
                                  : app->get_name() == "trim"                                ? " FILE FRAMES"
@@ -261,6 +263,10 @@ private:
 
     void addTools() {
         addDoctor();
+        CLI::App& ctl = add(
+            "ctl", "request an operation of a running session: state, nodes, log, equalizers, end",
+            [this] { return runCtl(); }, mural::cli::kCtlFooter);
+        mural::cli::describeCtl(ctl, ctl_);
         CLI::App& stat = add(
             "stat", "show the running sessions: programs, frames, round trips, nodes",
             [this] { return mural::cli::statCommand(stat_); },
@@ -305,6 +311,11 @@ private:
         add(
             "network-member", "", [] { return mural::cli::networkMemberCommand(); }, "")
             .group("");
+    }
+
+    int runCtl() {
+        ctl_.words.insert(ctl_.words.end(), line_.program.begin(), line_.program.end());
+        return mural::cli::ctlCommand(ctl_);
     }
 
     void addBench() {
@@ -377,6 +388,7 @@ private:
     bool asJson_ = false;
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
+    mural::cli::CtlArguments ctl_;
     mural::cli::BenchArguments bench_;
     mural::cli::ConfigArguments config_;
     mural::cli::SimulateArguments simulate_;

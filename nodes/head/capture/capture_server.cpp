@@ -113,23 +113,22 @@ bool peerOf(int socket, ucred& peer) {
 } // namespace
 
 Result<std::unique_ptr<CaptureServer>> CaptureServer::start(const CaptureAddresses& addresses, uint64_t digest,
-                                                            ProgramHost& host, std::function<std::string()> status) {
+                                                            ProgramHost& host) {
     auto listener = listenAbstract(addresses.abstractName);
     if (!listener) return listener.error();
-    std::unique_ptr<CaptureServer> server(new CaptureServer(std::move(*listener), listenInFolder(addresses.path),
-                                                            addresses.path, digest, host, std::move(status)));
+    std::unique_ptr<CaptureServer> server(
+        new CaptureServer(std::move(*listener), listenInFolder(addresses.path), addresses.path, digest, host));
     server->thread_ = std::thread([raw = server.get()] { raw->serve(); });
     return server;
 }
 
 CaptureServer::CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest,
-                             ProgramHost& host, std::function<std::string()> status)
+                             ProgramHost& host)
     : listener_(std::move(listener)),
       pathListener_(std::move(pathListener)),
       path_(std::move(path)),
       digest_(digest),
-      host_(host),
-      status_(std::move(status)) {}
+      host_(host) {}
 
 CaptureServer::~CaptureServer() {
     stop_ = true;
@@ -186,7 +185,6 @@ bool CaptureServer::settle(Newcomer& newcomer, bool readable) {
 }
 
 void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
-    if (hello.magic == capture::kStatusMagic) return sendStatus(socket.get());
     auto admission = judge(socket.get(), hello);
     if (!admission) {
         log::debug(log::Topic::Program, "a program was refused: ", admission.error().message);
@@ -197,13 +195,6 @@ void CaptureServer::answer(FileDescriptor socket, const Hello& hello) {
     }
     const bool sent = sendWelcome(socket.get(), admission->welcome, admission->extensions, admission->memoryFd);
     host_.programWelcomed(admission->welcome.clientId, sent ? std::move(socket) : FileDescriptor());
-}
-
-void CaptureServer::sendStatus(int socket) {
-    ucred peer{};
-    if (!peerOf(socket, peer) || (peer.uid != geteuid() && peer.uid != 0)) return;
-    const std::string text = status_();
-    sendAll(socket, std::as_bytes(std::span(text)), -1, Deadline::inMs(kWelcomePatienceMs));
 }
 
 Result<Admission> CaptureServer::judge(int socket, const Hello& hello) {

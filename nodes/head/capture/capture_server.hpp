@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <sys/types.h>
@@ -41,9 +40,8 @@ struct CaptureAddresses {
 class CaptureServer {
 public:
     // digest: the digest of the command table, which must be equal at both ends.
-    // status: returns the session's state as JSON, for `mural stat`; called by the server's thread.
     static Result<std::unique_ptr<CaptureServer>> start(const CaptureAddresses& addresses, uint64_t digest,
-                                                        ProgramHost& host, std::function<std::string()> status);
+                                                        ProgramHost& host);
     CaptureServer(const CaptureServer&) = delete;
     CaptureServer& operator=(const CaptureServer&) = delete;
     ~CaptureServer(); // stops
@@ -58,20 +56,18 @@ private:
     };
 
     CaptureServer(FileDescriptor listener, FileDescriptor pathListener, std::string path, uint64_t digest,
-                  ProgramHost& host, std::function<std::string()> status);
+                  ProgramHost& host);
     void serve();
     void acceptOne(int listener);
     bool settle(Newcomer& newcomer, bool readable); // true: accepted or refused
     void answer(FileDescriptor socket, const capture::Hello& hello);
     Result<Admission> judge(int socket, const capture::Hello& hello);
-    void sendStatus(int socket);
 
     const FileDescriptor listener_;
     const FileDescriptor pathListener_; // invalid: no path
     const std::string path_;
     const uint64_t digest_;
     ProgramHost& host_;
-    const std::function<std::string()> status_;
     std::vector<Newcomer> newcomers_; // connected, with an incomplete Hello
     std::atomic<bool> stop_{false};
     std::thread thread_;

@@ -34,7 +34,7 @@ std::string NodeRestarter::memberLost(int node) {
     // skipped frames may have caused the loss
     if (n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false;
     const std::string tiles = hooks_.tilesOfLost(node);
-    if (terms_.tries == 0 || !hooks_.start || stopped_) return tiles;
+    if (terms_.tries == 0 || !hooks_.start || stopped_ || n.isRetired) return tiles;
     if (!never.empty()) return tiles + ": " + never;
     if (nowNs - n.memberNs > terms_.steadyMs * kNsPerMs) n.tries = 0;
     if (n.tries >= terms_.tries)
@@ -42,6 +42,29 @@ std::string NodeRestarter::memberLost(int node) {
     n.phase = Phase::Waiting;
     n.nextNs = nowNs + terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)] * kNsPerMs;
     return tiles + " until it rejoins";
+}
+
+Result<void> NodeRestarter::canRestart(int node) const {
+    if (terms_.tries == 0 || !hooks_.start)
+        return Error{"nodes of this session are not restarted; start it with --restart-nodes 1 or more"};
+    if (const std::string never = hooks_.whyNever(node); !never.empty()) return Error{never};
+    const std::lock_guard lock(mutex_);
+    const Node& n = nodes_[static_cast<size_t>(node)];
+    if (n.phase != Phase::Member) return Error{"it is no member at the moment; try again when it has joined"};
+    const bool isSteady = monotonicNowNs() - n.memberNs > terms_.steadyMs * kNsPerMs;
+    if (n.tries > 0 && !isSteady)
+        return Error{"it joined less than " + std::to_string(terms_.steadyMs / 1000) + " s ago; try again later"};
+    return {};
+}
+
+Result<void> NodeRestarter::retire(int node) {
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    if (n.phase != Phase::Member && n.phase != Phase::Waiting && n.phase != Phase::Over)
+        return Error{"it is being restarted; try again when it has joined"};
+    n.isRetired = true;
+    if (n.phase == Phase::Waiting) n.problem = "it was removed"; // tick() ends its restarts
+    return {};
 }
 
 // The attempt at the start of the session counts as the first one.
@@ -171,6 +194,7 @@ void NodeRestarter::catchUp(int node) {
 void NodeRestarter::start(int node, int64_t nowNs) {
     {
         const std::lock_guard lock(mutex_);
+        if (at(node).isRetired) return;
         ++at(node).tries;
     }
     log::debug(log::Topic::Node, "starts ", set_.link(node).describe(), " again");
@@ -209,7 +233,7 @@ void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
         // the loss is caused by skipped frames: does not count as an attempt
         if (n.catchUp && n.catchUp->invalid() && std::exchange(skipsFrames_, false)) --n.tries;
         n.problem.clear();
-        again = n.tries < terms_.tries && !stopped_;
+        again = n.tries < terms_.tries && !stopped_ && !n.isRetired;
         n.phase = again ? Phase::Waiting : Phase::Over;
         const int64_t pauseMs = terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)];
         n.nextNs = nowNs + pauseMs * kNsPerMs;

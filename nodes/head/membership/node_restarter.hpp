@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/result.hpp"
 #include "nodes/head/membership/node_resync.hpp"
 #include "nodes/head/membership/node_launcher.hpp"
 #include "streamcodec/wire/node_messages.hpp"
@@ -44,6 +45,10 @@ public:
     // Records the loss of a member. Returns the consequence for the user's line: "its tiles stay as they were until it
     // is back".
     std::string memberLost(int node);
+    // Returns an error if a member that is lost now would not be restarted at once.
+    [[nodiscard]] Result<void> canRestart(int node) const;
+    // Ends the restarts of a node for good. The caller loses its link. Errors: the node is being restarted.
+    Result<void> retire(int node);
     // Records that a node was absent when the session began. It is restarted as well.
     void notThere(int node);
     // Returns true if the node was being restarted: the attempt has failed, and no member was lost.
@@ -75,6 +80,7 @@ private:
     struct Node {
         Phase phase = Phase::Member;
         int tries = 0; // attempts since it was last steady
+        bool isRetired = false;
         int64_t lostNs = 0, nextNs = 0, memberNs = 0;
         Deadline readyBy = Deadline::never();
         std::unique_ptr<StartingNode> starting; // accessed by tick() only

@@ -151,6 +151,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
 
 HeadSession::~HeadSession() {
     tearingDown_ = true;
+    controlServer_.reset();
     server_.reset();
     if (output_) output_->drop();
     nodes_.loseAll("the head ends");
@@ -167,7 +168,10 @@ int HeadSession::run() {
     }
     serve();
     finish();
-    control_.send(reportOf(numbers()));
+    SessionNumbers last = numbers();
+    last.recorded = recorded_;
+    if (options_.lastPicture) last.lastPicture = options_.lastPicture();
+    control_.send(reportOf(last));
     return 0;
 }
 
@@ -213,16 +217,16 @@ void HeadSession::reportProgress(int64_t nowNs) {
     const int64_t onWall = sendsPictures_ ? output_->totals().wallFrames : totals.wallFrames;
     if (config_.frames > 0 && onWall >= config_.frames && !framesReached_) {
         framesReached_ = true;
-        control_.send({{"event", "frames-reached"}});
+        announce({{"event", "frames-reached"}});
     }
     if (totals.wallFrames == lastProgressFrame_ || nowNs - lastProgressNs_ < kProgressNs) return;
     lastProgressNs_ = nowNs;
     lastProgressFrame_ = totals.wallFrames;
     const auto rates = meter_.sample(nowNs, totals.wallFrames, nodes_.bytesSent());
-    control_.send({{"event", "frame"},
-                   {"frame", totals.wallFrames},
-                   {"framesPerSecond", rates.framesPerSecond},
-                   {"bytesPerFrame", rates.bytesPerFrame}});
+    announce({{"event", "frame"},
+              {"frame", totals.wallFrames},
+              {"framesPerSecond", rates.framesPerSecond},
+              {"bytesPerFrame", rates.bytesPerFrame}});
 }
 
 // ---- what the nodes say
@@ -353,6 +357,7 @@ void HeadSession::finish() {
     programs_->drainAll(Deadline::inMs(options_.drainPatienceMs), [this] { watchNodes(monotonicNowNs()); });
     finishNodes();
     finishOutput();
+    controlServer_.reset();
     server_.reset();
     programs_->endAll();
     if (options_.recorder) recorded_ = options_.recorder->finish(Deadline::inMs(options_.recordPatienceMs));
@@ -467,9 +472,7 @@ SessionNumbers HeadSession::numbers() {
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = advice_.drawnWhole();
-    if (options_.lastPicture) result.lastPicture = options_.lastPicture();
     if (options_.recorder) result.recording = config_.record;
-    result.recorded = recorded_;
     const std::lock_guard lock(mutex_);
     result.nodes = totals_;
     for (NodeTotals& totals : result.nodes) totals.frames = frames_.framesOf(totals.node);

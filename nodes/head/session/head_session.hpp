@@ -19,6 +19,9 @@
 #include "nodes/head/results/reply_assembler.hpp"
 #include "nodes/head/capture/capture_server.hpp"
 #include "nodes/head/balancing/load_balancer.hpp"
+#include "nodes/head/control/control_feed.hpp"
+#include "nodes/head/control/control_server.hpp"
+#include "nodes/head/control/equalizer_control.hpp"
 #include "nodes/head/session/control_channel.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
@@ -101,6 +104,16 @@ private:
     void goOnWithout(int node);
     bool noneIsLeft();
 
+    // The control interface (head_session_control.cpp). The control thread calls the operations.
+    void openControl();
+    ControlOperations controlOperations();
+    void addNodeOperations(ControlOperations& operations);
+    Result<void> checkNode(int64_t node); // that an operation may change it
+    Result<void> restartNode(int node);
+    Result<void> removeNode(int node, bool isForced);
+    // Sends an event to `mural run` and to the clients of the control interface. Thread-safe.
+    void announce(const nlohmann::json& event);
+
     Result<void> bringUp();
     void openMulticast();
     Result<void> openDeltaStream();
@@ -138,6 +151,9 @@ private:
     const SessionPlan plan_;
     ControlChannel& control_;
     HeadOptions options_;
+    ControlFeed feed_;
+    const LogToFeed logToFeed_{feed_};
+    EqualizerControl* equalizers_ = nullptr; // null: the session has no equalizers
     const int nodeCount_;
     const bool sendsPictures_;
     std::string placement_;  // placement of the head's threads
@@ -156,6 +172,7 @@ private:
     std::unique_ptr<NodeRestarter> returns_;
     std::unique_ptr<ProgramTable> programs_; // set when the nodes are ready
     std::unique_ptr<CaptureServer> server_;
+    std::unique_ptr<ControlServer> controlServer_; // null: the session has no folder for its socket
 
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};

@@ -181,6 +181,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
         totals.snapshotBytes = static_cast<int64_t>(numbers.snapshotBytes);
         totals.secondsToRejoin = numbers.secondsToRejoin;
     }
+    feed_.publish(ControlTopic::Events, {{"event", "node-joined"}, {"node", node}, {"joins", joins}});
     const bool first = absences_.contains(node) && joins == 1;
     log::info(log::Topic::Node, nodes_.link(node).describe(), first ? " joined " : " rejoined ",
               seconds(numbers.secondsToRejoin),
@@ -198,6 +199,7 @@ void HeadSession::loseMember(int node, const std::string& why) {
     if (returns_->lostWhileRestarting(node, refusal.empty() ? why : refusal)) return;
     const std::lock_guard membership(membership_);
     log::warning(log::Topic::Node, nodes_.link(node).describe(), " was lost: ", why, "; ", returns_->memberLost(node));
+    feed_.publish(ControlTopic::Events, {{"event", "node-lost"}, {"node", node}, {"text", why}});
     goOnWithout(node);
 }
 
@@ -238,7 +240,7 @@ void HeadSession::noNodeIsLeft() {
                "all render nodes are lost: programs continue alone, without the wall; restart the session");
     programs_->refuseFrom("all render nodes of this session are lost; restart it");
     programs_->reportHeadGone();
-    control_.send({{"event", "wall-lost"}});
+    announce({{"event", "wall-lost"}});
 }
 
 // True if no node lives and none can be restarted.

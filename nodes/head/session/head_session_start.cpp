@@ -59,10 +59,10 @@ Result<void> HeadSession::bringUp() {
     introduceNodes();
     openTables();
     goOnWithoutAbsent();
-    auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_,
-                                       [this] { return statusOf(status()).dump(); });
+    auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_);
     if (!server) return server.error();
     server_ = std::move(*server);
+    openControl();
     announceReady();
     log::debug(log::Topic::Session, "programs may connect");
     return {};
@@ -206,7 +206,7 @@ void HeadSession::openTables() {
         if (options_.recorder)
             options_.recorder->event({trace::Event::ClientCame, client.id(), client.pid(), client.name()});
     };
-    events.countChanged = [this](size_t count) { control_.send({{"event", "clients"}, {"count", count}}); };
+    events.countChanged = [this](size_t count) { announce({{"event", "clients"}, {"count", count}}); };
     events.gone = [this](uint32_t client) {
         driverEvents_.programGone(client);
         if (options_.recorder) options_.recorder->event({trace::Event::ClientGone, client, 0, ""});

@@ -3,17 +3,15 @@
 import glob
 import json
 import os
+import re
 import signal
 import socket
-import struct
 import subprocess
 import time
 
 from benchlib.cpu_times import descendants
 from benchlib.mural_runs import RunFailed, role_of
 
-HELLO = struct.Struct("<IIQiI")  # capture::Hello
-STATUS_MAGIC = 0x4D535441        # capture::kStatusMagic
 KINDS = ("Rss", "Pss", "Private")
 LOOK_SECONDS = 0.01
 
@@ -36,21 +34,19 @@ def memory_of(pid):
 
 
 def _session_state(run_pid):
-    """Returns the state that the head of this `mural run` reports (nodes/head/session/session_status.hpp); None: no report
-    yet."""
+    """Returns the status of this `mural run` from its control socket (docs/reference/control.md); None: no reply yet."""
     with open("/proc/net/unix", encoding="ascii", errors="replace") as file:
-        names = {line.split("@", 1)[1].strip() for line in file if "@mural-%d-" % run_pid in line}
-    for name in names:
+        paths = set(re.findall(r" (/.*/mural-%d-[0-9a-f]+/control)$" % run_pid, file.read(), re.MULTILINE))
+    for path in paths:
         try:
-            with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as line:
-                line.settimeout(5)
-                line.connect("\0" + name)
-                line.sendall(HELLO.pack(STATUS_MAGIC, 0, 0, os.getpid(), 0))
-                text = b""
-                while part := line.recv(65536):
-                    text += part
-            return json.loads(text)
-        except (OSError, ValueError):
+            with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
+                connection.settimeout(5)
+                connection.connect(path)
+                connection.sendall(b'{"id":1,"op":"status"}\n')
+                with connection.makefile("rb") as lines:
+                    lines.readline()  # hello
+                    return json.loads(lines.readline())["result"]
+        except (OSError, ValueError, KeyError):
             continue
     return None
 

@@ -48,7 +48,7 @@ public:
         uncapturedAt_ = Deadline::inMs(kUncapturedMs);
         whileRunning();
         finish();
-        return framesReached_ ? 0 : wallLost_ ? kWallLost : program_.exitStatus();
+        return endRequested_ ? 0 : wallLost_ ? kWallLost : program_.exitStatus();
     }
 
 private:
@@ -76,9 +76,9 @@ private:
     }
 
     void whileRunning() {
-        if (framesReached_) program_.end(kEndGraceMs); // the event arrived before the program was started
+        if (endRequested_) program_.end(kEndGraceMs); // the event arrived before the program was started
         while (program_.programRunning()) turn();
-        if (framesReached_ || wallLost_ || program_.stopRequested()) {
+        if (endRequested_ || wallLost_ || program_.stopRequested()) {
             endDescendants();
             return;
         }
@@ -101,7 +101,7 @@ private:
                 noticed = true;
             }
             turn();
-            if (framesReached_) return;
+            if (endRequested_) return;
         }
     }
 
@@ -229,7 +229,8 @@ private:
             break;
         case HeadEvent::Kind::Frame: console_.progress(event.frame, event.framesPerSecond, event.bytesPerFrame); break;
         case HeadEvent::Kind::FramesReached:
-            framesReached_ = true;
+        case HeadEvent::Kind::StopRequested:
+            endRequested_ = true;
             program_.end(kEndGraceMs);
             break;
         case HeadEvent::Kind::WallLost: endUncounted(); break;
@@ -249,8 +250,8 @@ private:
     std::unique_ptr<HeadControl> head_;
     bool ready_ = false;
     bool finishing_ = false;
-    bool framesReached_ = false;
-    bool wallLost_ = false; // lost before the requested frames were shown
+    bool endRequested_ = false; // by the head: --frames is reached, or mural ctl stop
+    bool wallLost_ = false;     // lost before the requested frames were shown
     bool everClients_ = false;
     int64_t clients_ = 0;
     std::optional<std::string> failure_;

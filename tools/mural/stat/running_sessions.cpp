@@ -1,103 +1,74 @@
 #include "tools/mural/stat/running_sessions.hpp"
 
-#include <algorithm>
 #include <cerrno>
-#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
-#include <set>
 #include <sstream>
-#include <sys/socket.h>
-#include <sys/time.h>
-#include <sys/un.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/ipc/capture_ring.hpp"
-#include "common/ipc/file_descriptor.hpp"
+#include "tools/mural/ctl/control_client.hpp"
 
 namespace mural::cli {
 
 namespace {
 
-constexpr timeval kPatience{5, 0}; // timeout of a silent head
-constexpr size_t kMaxBytes = size_t{16} << 20;
+constexpr int64_t kPatienceMs = 5'000; // with a silent head
 
-// Calls with a timeout are not restarted after a stop (SIGSTOP, SIGCONT), whatever the signals' flags.
-template <class Call> auto uninterrupted(Call&& call) {
-    auto result = call();
-    while (result < 0 && errno == EINTR) result = call();
-    return result;
-}
-
-FileDescriptor connectTo(const std::string& session) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (session.size() >= sizeof address.sun_path) return {};
-    std::memcpy(address.sun_path + 1, session.data(), session.size()); // [0] = 0: abstract
-    const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + session.size());
-    FileDescriptor fd(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    if (!fd.valid()) return {};
-    setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
-    setsockopt(fd.get(), SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
-    if (uninterrupted([&] { return connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), length); }) != 0)
-        return {};
-    return fd;
-}
-
-// Checks the owner, because any user may listen under such a name.
-bool isTrustedPeer(int fd) {
-    ucred peer{};
-    socklen_t size = sizeof peer;
-    return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
-}
-
-std::optional<nlohmann::json> querySession(const std::string& name) {
-    const FileDescriptor fd = connectTo(name);
-    if (!fd.valid() || !isTrustedPeer(fd.get())) return {};
-    capture::Hello hello{};
-    hello.magic = capture::kStatusMagic;
-    hello.version = capture::kVersion;
-    hello.pid = getpid();
-    if (uninterrupted([&] { return send(fd.get(), &hello, sizeof hello, MSG_NOSIGNAL); }) !=
-        static_cast<ssize_t>(sizeof hello))
-        return {};
-    std::string text;
-    char part[65536];
-    ssize_t n = 0;
-    while (text.size() < kMaxBytes && (n = uninterrupted([&] { return recv(fd.get(), part, sizeof part, 0); })) > 0)
-        text.append(part, static_cast<size_t>(n));
-    nlohmann::json state = nlohmann::json::parse(text, nullptr, false);
+std::optional<nlohmann::json> querySession(const std::string& path) {
+    const Deadline deadline = Deadline::inMs(kPatienceMs);
+    auto client = ControlClient::connect(path, deadline);
+    if (!client) return {};
+    auto reply = client->request("status", nlohmann::json::object(), deadline);
+    if (!reply) return {};
+    nlohmann::json state = memberOf(*reply, "result");
     if (!state.is_object()) return {};
     return state;
 }
 
+bool isOwn(const std::string& path) {
+    struct stat facts {};
+    return lstat(path.c_str(), &facts) == 0 && S_ISSOCK(facts.st_mode) && facts.st_uid == geteuid();
+}
+
 } // namespace
 
-std::vector<std::string> sessionNamesIn(const std::string& unixSockets) {
-    // The last word of a line is the name; "@" stands for the 0 of an abstract name.
-    static const std::regex kName(R"( @(mural-[0-9]+-[0-9a-f]{16})$)");
-    std::set<std::string> names; // a session appears once per connection
+std::vector<RunningSession> sessionsIn(const std::string& unixSockets) {
+    // The path ends the line. The words before it contain no '/'.
+    static const std::regex kPath("^[^/]* (/.*/(mural-[0-9]+-[0-9a-f]{16})/control)$");
+    std::map<std::string, std::string> paths; // a session appears once per connection
     std::istringstream lines(unixSockets);
     std::smatch found;
     for (std::string line; std::getline(lines, line);)
-        if (std::regex_search(line, found, kName)) names.insert(found[1]);
-    return {names.begin(), names.end()};
+        if (std::regex_match(line, found, kPath)) paths[found[2]] = found[1];
+    std::vector<RunningSession> sessions;
+    for (const auto& [name, path] : paths) sessions.push_back({name, path});
+    return sessions;
 }
 
-Result<std::vector<nlohmann::json>> queryRunningSessions() {
+Result<std::vector<RunningSession>> findRunningSessions() {
     std::ifstream file("/proc/net/unix", std::ios::binary);
     if (!file)
         return Error{std::string("/proc/net/unix cannot be read: ") + std::strerror(errno) +
                      "; check that /proc is mounted"};
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    std::vector<nlohmann::json> sessions;
-    for (const std::string& name : sessionNamesIn(text))
-        if (auto state = querySession(name)) sessions.push_back(std::move(*state));
+    std::vector<RunningSession> sessions = sessionsIn(text);
+    std::erase_if(sessions, [](const RunningSession& session) { return !isOwn(session.controlPath); });
     return sessions;
+}
+
+Result<std::vector<nlohmann::json>> queryRunningSessions() {
+    auto sessions = findRunningSessions();
+    if (!sessions) return sessions.error();
+    std::vector<nlohmann::json> states;
+    for (const RunningSession& session : *sessions)
+        if (auto state = querySession(session.controlPath)) states.push_back(std::move(*state));
+    return states;
 }
 
 } // namespace mural::cli

@@ -208,6 +208,12 @@ std::vector<Json> withRates(const std::vector<Json>& before, std::vector<Json> n
     return now;
 }
 
+std::vector<std::string> nodeLines(const Json& session) {
+    std::vector<std::string> lines;
+    for (const Json& node : entries(session, "nodes")) addNode(node, lines);
+    return lines;
+}
+
 std::vector<std::string> statLines(const Json& session) {
     std::vector<std::string> lines;
     lines.push_back(fmt::format("session {:.0f}  {} tiles, display {}, {:.0f} frames on the wall; head {:.0f}",

@@ -14,5 +14,7 @@ std::vector<nlohmann::json> withRates(const std::vector<nlohmann::json>& before,
 
 // Returns a line for the session, then one per program and node.
 std::vector<std::string> statLines(const nlohmann::json& session);
+// Returns only the lines of the nodes.
+std::vector<std::string> nodeLines(const nlohmann::json& session);
 
 } // namespace mural::cli

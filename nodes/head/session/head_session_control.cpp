@@ -1,0 +1,141 @@
+// The session's operations of the control interface (docs/reference/control.md). The control thread calls them.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/log/log.hpp"
+#include "common/log/process_log.hpp"
+#include "nodes/head/control/equalizer_operations.hpp"
+#include "nodes/head/session/head_session.hpp"
+#include "nodes/launch/session_socket.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+using Kind = ControlArgument::Kind;
+
+Json levelsJson() {
+    const log::Levels levels = log::currentLevels();
+    Json byTopic = Json::object();
+    for (size_t i = 0; i < log::kTopics; ++i)
+        byTopic[std::string(nameOf(static_cast<log::Topic>(i)))] = nameOf(levels[i]);
+    return {{"levels", byTopic}};
+}
+
+// Nodes keep their levels: each is a process of its own, with a MURAL_LOG of its own.
+Result<Json> changeLevels(const Json& arguments) {
+    if (const auto text = arguments.find("levels"); text != arguments.end()) {
+        const auto levels = log::parseLevels(text->get<std::string>());
+        if (!levels) return levels.error();
+        log::setLevels(levels.value());
+    }
+    return levelsJson();
+}
+
+Result<Json> resultOf(const Result<void>& done) {
+    if (!done) return done.error();
+    return Json::object();
+}
+
+} // namespace
+
+void HeadSession::announce(const Json& event) {
+    control_.send(event);
+    feed_.publish(ControlTopic::Events, event);
+}
+
+// A session without its socket still runs: the line names the consequence.
+void HeadSession::openControl() {
+    if (config_.socketPath.empty()) return;
+    ControlServerConfig server;
+    server.path = launch::controlSocketOf(config_.socketPath);
+    server.hello = {
+        {"mural", MURAL_VERSION}, {"session", config_.session}, {"runPid", getppid()}, {"headPid", getpid()}};
+    auto started = ControlServer::start(std::move(server), controlOperations(), feed_);
+    if (started)
+        controlServer_ = std::move(*started);
+    else
+        log::warning(log::Topic::Session, started.error().message);
+}
+
+ControlOperations HeadSession::controlOperations() {
+    ControlOperations all;
+    all.add({"status", "", "the state of programs and nodes, as mural stat shows it", {}, [this](const Json&) {
+                 return Result<Json>(statusOf(status()));
+             }});
+    all.add({"report", "", "the numbers of the session up to now", {}, [this](const Json&) {
+                 return Result<Json>(reportOf(numbers()));
+             }});
+    all.add({"log-level",
+             "",
+             "the levels of the head's log lines; with LEVELS it changes them, as MURAL_LOG does",
+             {{"levels", Kind::Text, false, "comma-separated list of [topic:]level"}},
+             changeLevels});
+    all.add({"stop", "", "end the programs and the session in order", {}, [this](const Json&) {
+                 log::info(log::Topic::Session, "the session ends at the request of mural ctl stop");
+                 announce({{"event", "stop-requested"}});
+                 return Result<Json>(Json::object());
+             }});
+    addNodeOperations(all);
+    if (equalizers_ != nullptr) addEqualizerOperations(all, *equalizers_);
+    return all;
+}
+
+void HeadSession::addNodeOperations(ControlOperations& operations) {
+    operations.add({"nodes", "", "the state of each node", {}, [this](const Json&) {
+                        return Result<Json>(Json{{"nodes", statusOf(status())["nodes"]}});
+                    }});
+    const ControlArgument node{"node", Kind::Whole, true, "number of the node, from 0"};
+    operations.add({"restart-node",
+                    "",
+                    "end a node and start it again; it joins with the current state",
+                    {node},
+                    [this](const Json& arguments) -> Result<Json> {
+                        const auto number = arguments.at("node").get<int64_t>();
+                        if (const auto known = checkNode(number); !known) return known.error();
+                        return resultOf(restartNode(static_cast<int>(number)));
+                    }});
+    operations.add({"remove-node",
+                    "",
+                    "end a node for good; other nodes take its tiles or chunks",
+                    {node, {"force", Kind::Truth, false, "also if no other node takes its part of the picture"}},
+                    [this](const Json& arguments) -> Result<Json> {
+                        const auto number = arguments.at("node").get<int64_t>();
+                        if (const auto known = checkNode(number); !known) return known.error();
+                        return resultOf(removeNode(static_cast<int>(number), arguments.value("force", false)));
+                    }});
+}
+
+Result<void> HeadSession::checkNode(int64_t node) {
+    if (node < 0 || node >= nodeCount_)
+        return Error{"the session has no node " + std::to_string(node) + "; its nodes are 0 to " +
+                     std::to_string(nodeCount_ - 1)};
+    if (finishing_) return Error{"the session is ending; its nodes end with it"};
+    return {};
+}
+
+Result<void> HeadSession::restartNode(int node) {
+    NodeConnection& link = nodes_.link(node);
+    if (const auto can = returns_->canRestart(node); !can)
+        return Error{link.describe() + " cannot be restarted: " + can.error().message};
+    link.lose("an operator restarts it");
+    return {};
+}
+
+Result<void> HeadSession::removeNode(int node, bool isForced) {
+    NodeConnection& link = nodes_.link(node);
+    const std::string subject = link.describe() + " cannot be removed: ";
+    bool hasOthers = false;
+    for (int other = 0; other < nodeCount_; ++other)
+        hasOthers = hasOthers || (other != node && nodes_.link(other).alive());
+    if (!hasOthers) return Error{subject + "it is the only node; end the session with mural ctl stop"};
+    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+    const bool isReplaced = plan.pass.range > 0 ? plan.chunkQueue >= 0 : plan.queue >= 0;
+    if (!isReplaced && !isForced)
+        return Error{subject + "no other node takes its part of the picture; add force, or use --tile-queue"};
+    if (const auto retired = returns_->retire(node); !retired) return Error{subject + retired.error().message};
+    link.lose("an operator removes it");
+    return {};
+}
+
+} // namespace mural

@@ -1,0 +1,165 @@
+// The control interface of a complete head: its operations, events, and documentation.
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include "tests/head/support/session_harness.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+
+class ControlledSession : public SessionHarness {
+public:
+    explicit ControlledSession(int nodes) : SessionHarness(nodes) { config.socketPath = folder_.at("socket"); }
+    void open() {
+        start();
+        waitFor("ready");
+        socket_ = FileDescriptor(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        folder_.at("control").copy(address.sun_path, sizeof address.sun_path - 1);
+        ASSERT_EQ(connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+        hello = line()["hello"];
+    }
+    Json line() {
+        const Deadline deadline = Deadline::inMs(kTestPatienceMs);
+        size_t end = 0;
+        while ((end = received_.find('\n')) == std::string::npos && !deadline.passed()) {
+            pollfd ready{socket_.get(), POLLIN, 0};
+            char part[4096];
+            if (poll(&ready, 1, 100) <= 0) continue;
+            const ssize_t n = recv(socket_.get(), part, sizeof part, 0);
+            if (n <= 0) return {};
+            received_.append(part, static_cast<size_t>(n));
+        }
+        const Json json = Json::parse(received_.substr(0, end), nullptr, false);
+        received_.erase(0, end + 1);
+        return json;
+    }
+    Json request(const std::string& operation, const Json& arguments = Json::object()) {
+        const std::string text = Json{{"id", 1}, {"op", operation}, {"args", arguments}}.dump() + "\n";
+        EXPECT_EQ(send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
+        Json reply;
+        do reply = line();
+        while (reply.contains("topic"));
+        return reply;
+    }
+    // Returns the next event of that name, from messages of the subscription.
+    Json event(const std::string& name) {
+        for (Json message = line(); message.is_object(); message = line())
+            for (const Json& entry : message["data"])
+                if (entry["event"] == name) return entry;
+        ADD_FAILURE() << "no event " << name;
+        return {};
+    }
+    Json hello;
+
+private:
+    test::TemporaryFolder folder_;
+    FileDescriptor socket_;
+    std::string received_;
+};
+
+TEST(SessionControl, introducesTheSession) {
+    ControlledSession head(1);
+    head.open();
+    EXPECT_EQ(head.hello["session"], head.config.session);
+    EXPECT_EQ(head.hello["headPid"], getpid());
+    head.finish();
+    EXPECT_EQ(head.line(), Json()); // the connection ends with the session
+}
+
+TEST(SessionControl, repliesWithStatusReportAndNodes) {
+    ControlledSession head(2);
+    head.open();
+    const Json status = head.request("status");
+    EXPECT_EQ(status["result"]["nodes"].size(), 2U) << status;
+    EXPECT_EQ(head.request("nodes")["result"]["nodes"][1]["state"], "alive");
+    const Json report = head.request("report");
+    EXPECT_EQ(report["result"]["nodes"].size(), 2U) << report;
+    EXPECT_EQ(head.request("stat")["code"], "unknown-operation");
+    EXPECT_EQ(head.request("equalizers")["code"], "unknown-operation"); // the session has none
+    head.finish();
+}
+
+TEST(SessionControl, changesLogLevels) {
+    const log::Levels before = log::currentLevels();
+    ControlledSession head(1);
+    head.open();
+    EXPECT_EQ(head.request("log-level")["result"]["levels"]["rsp"], "info");
+    EXPECT_EQ(head.request("log-level", {{"levels", "rsp:debug"}})["result"]["levels"]["rsp"], "debug");
+    EXPECT_TRUE(log::enabled(log::Topic::Rsp, log::Level::Debug));
+    EXPECT_EQ(head.request("log-level", {{"levels", "rsp:loud"}})["code"], "failed");
+    head.finish();
+    log::setLevels(before);
+}
+
+TEST(SessionControl, requestsTheEndFromTheRun) {
+    ControlledSession head(1);
+    head.open();
+    EXPECT_EQ(head.request("stop")["ok"], true);
+    head.waitFor("stop-requested");
+    head.finish();
+    EXPECT_EQ(head.status(), 0);
+}
+
+TEST(SessionControl, removesANodeWhoseTilesOthersTake) {
+    ControlledSession head(3);
+    head.config.tileWidth = head.config.tileHeight = 16;
+    head.open();
+    EXPECT_EQ(head.request("subscribe", {{"topic", "events"}, {"interval", 20}})["ok"], true);
+    EXPECT_EQ(head.request("remove-node", {{"node", 1}})["ok"], true);
+    EXPECT_EQ(head.event("node-lost")["node"], 1);
+    const Json nodes = head.request("nodes")["result"]["nodes"];
+    EXPECT_EQ(nodes[1]["state"], "lost");
+    EXPECT_EQ(nodes[2]["state"], "alive");
+    head.finish();
+}
+
+TEST(SessionControl, keepsANodeWhosePartNoOtherTakes) {
+    ControlledSession head(2);
+    head.open();
+    const Json refused = head.request("remove-node", {{"node", 1}});
+    EXPECT_EQ(refused["code"], "failed");
+    EXPECT_NE(refused["error"].get<std::string>().find("force"), std::string::npos) << refused;
+    EXPECT_EQ(head.request("remove-node", {{"node", 2}})["code"], "failed");
+    EXPECT_EQ(head.request("remove-node", {{"node", -1}})["code"], "failed");
+    EXPECT_EQ(head.request("nodes")["result"]["nodes"][1]["state"], "alive");
+    EXPECT_EQ(head.request("remove-node", {{"node", 1}, {"force", true}})["ok"], true);
+    head.waitForMessage("an operator removes it");
+    const Json last = head.request("remove-node", {{"node", 0}, {"force", true}});
+    EXPECT_EQ(last["code"], "failed") << last;
+    head.finish();
+}
+
+TEST(SessionControl, restartsOnlyNodesThatCanReturn) {
+    ControlledSession head(2);
+    head.open();
+    const Json refused = head.request("restart-node", {{"node", 1}});
+    EXPECT_EQ(refused["code"], "failed"); // the fake nodes of this test cannot be started again
+    EXPECT_NE(refused["error"].get<std::string>().find("--restart-nodes"), std::string::npos) << refused;
+    head.finish();
+}
+
+TEST(SessionControl, documentsEveryOperation) {
+    ControlledSession head(1);
+    head.open();
+    std::ifstream file(std::string(MURAL_SOURCE_DIR) + "/docs/reference/control.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
+    const Json operations = head.request("help")["result"]["operations"];
+    EXPECT_GE(operations.size(), 10U);
+    for (const Json& operation : operations) {
+        EXPECT_NE(page.find("`" + operation["name"].get<std::string>() + "`"), std::string::npos) << operation;
+        EXPECT_NE(page.find("`" + operation["usage"].get<std::string>() + "`"), std::string::npos) << operation;
+    }
+    head.finish();
+}
+
+} // namespace
+} // namespace mural
