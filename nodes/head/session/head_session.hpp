@@ -18,10 +18,9 @@
 
 #include "nodes/head/results/reply_assembler.hpp"
 #include "nodes/head/capture/capture_server.hpp"
-#include "nodes/head/balancing/load_balancer.hpp"
+#include "nodes/head/balancing/balancer_control.hpp"
 #include "nodes/head/control/control_feed.hpp"
 #include "nodes/head/control/control_server.hpp"
-#include "nodes/head/control/equalizer_control.hpp"
 #include "nodes/head/session/control_channel.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
@@ -153,7 +152,6 @@ private:
     HeadOptions options_;
     ControlFeed feed_;
     const LogToFeed logToFeed_{feed_};
-    EqualizerControl* equalizers_ = nullptr; // null: the session has no equalizers
     const int nodeCount_;
     const bool sendsPictures_;
     std::string placement_;  // placement of the head's threads
@@ -167,6 +165,7 @@ private:
     std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
     PictureAssembler pictures_;
     LoadBalancer balancer_;
+    BalancerControl equalizers_{balancer_};
     SlowdownAdvice advice_;
     StreamBroadcaster nodes_;
     std::unique_ptr<NodeRestarter> returns_;

@@ -77,7 +77,7 @@ ControlOperations HeadSession::controlOperations() {
                  return Result<Json>(Json::object());
              }});
     addNodeOperations(all);
-    if (equalizers_ != nullptr) addEqualizerOperations(all, *equalizers_);
+    if (balancer_.isActive()) addEqualizerOperations(all, equalizers_);
     return all;
 }
 
@@ -130,9 +130,9 @@ Result<void> HeadSession::removeNode(int node, bool isForced) {
         hasOthers = hasOthers || (other != node && nodes_.link(other).alive());
     if (!hasOthers) return Error{subject + "it is the only node; end the session with mural ctl stop"};
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
-    const bool isReplaced = plan.pass.range > 0 ? plan.chunkQueue >= 0 : plan.queue >= 0;
+    const bool isReplaced = plan.movesArea || plan.movesRange;
     if (!isReplaced && !isForced)
-        return Error{subject + "no other node takes its part of the picture; add force, or use --tile-queue"};
+        return Error{subject + "no other node takes its part of the picture; add force, or use --balance"};
     if (const auto retired = returns_->retire(node); !retired) return Error{subject + retired.error().message};
     link.lose("an operator removes it");
     return {};
