@@ -43,7 +43,7 @@ void expectWhole(Preset form) {
 
 TEST(ShortForms, workSeparately) {
     for (const auto member :
-         {&Preset::columns, &Preset::rows, &Preset::ranges, &Preset::pixels, &Preset::samples, &Preset::frames}) {
+         {&Preset::columns, &Preset::rows, &Preset::ranges, &Preset::pixelColumns, &Preset::samples, &Preset::frames}) {
         for (const int n : {1, 2, 3, 7}) {
             Preset form;
             form.*member = n;
