@@ -165,14 +165,15 @@ TEST(SessionControl, changesEqualizers) {
     ControlledSession head(2);
     head.config.balance = balance::Balance::Load;
     head.open();
-    const Json listed = head.request("equalizers")["equalizers"];
-    ASSERT_EQ(listed.size(), 1u);
+    const Json reply = head.request("equalizers");
+    const Json listed = reply["result"]["equalizers"];
+    EXPECT_EQ(listed.size(), 1u) << reply;
     EXPECT_EQ(listed[0]["kind"], "load_equalizer");
     EXPECT_EQ(listed[0]["parameters"]["damping"], "0.5");
     const std::string name = listed[0]["name"];
     EXPECT_EQ(head.request("equalizer-set", {{"name", name}, {"parameter", "damping"}, {"value", .25}})["ok"], true);
     EXPECT_EQ(head.request("equalizer-freeze", {{"name", name}, {"frozen", true}})["ok"], true);
-    const Json changed = head.request("equalizers")["equalizers"];
+    const Json changed = head.request("equalizers")["result"]["equalizers"];
     EXPECT_EQ(changed[0]["parameters"]["damping"], "0.25");
     EXPECT_EQ(changed[0]["frozen"], true);
     EXPECT_EQ(head.request("equalizer-set", {{"name", name}, {"parameter", "damping"}, {"value", 7}})["ok"], false);

@@ -28,7 +28,7 @@ namespace {
 using Predicate = std::function<bool(uint16_t opcode)>;
 
 // Every command with `premise` has `conclusion`, except those in `exceptions`.
-struct EffectRule {
+struct Implication {
     std::string_view text;
     Predicate premise, conclusion;
     std::vector<uint16_t> exceptions;
@@ -64,7 +64,7 @@ std::vector<uint16_t> sentCommands() {
 }
 
 // Returns the names of the commands that break the rule, and of superfluous exceptions.
-std::vector<std::string> disagreements(const EffectRule& rule) {
+std::vector<std::string> disagreements(const Implication& rule) {
     std::vector<std::string> found;
     for (const uint16_t opcode : sentCommands()) {
         const bool breaks = rule.premise(opcode) && !rule.conclusion(opcode);
@@ -75,8 +75,8 @@ std::vector<std::string> disagreements(const EffectRule& rule) {
     return found;
 }
 
-void expectAll(std::span<const EffectRule> rules) {
-    for (const EffectRule& rule : rules) EXPECT_EQ(disagreements(rule), std::vector<std::string>()) << rule.text;
+void expectAll(std::span<const Implication> rules) {
+    for (const Implication& rule : rules) EXPECT_EQ(disagreements(rule), std::vector<std::string>()) << rule.text;
 }
 
 const Predicate kWrites = has(Draw, Pixels, Clear, ClearBuffer, ClearNamed, Begin, CallList); // to the draw framebuffer
@@ -86,7 +86,7 @@ const Predicate kUnknown = hasEffect({EffectKind::Unknown, EffectKind::UnknownNa
 
 TEST(CommandTraits, areOfClassDrawExactlyWhenTheCommandWritesPixelsOrOrdersThem) {
     const Predicate output = either(kWrites, has(Vertex, End, Compute, Barrier));
-    const EffectRule rules[] = {
+    const Implication rules[] = {
         {"output is of class draw", output, has(DrawClass), {}},
         {"class draw is output", has(DrawClass), output, {}},
         {"copies out of a framebuffer are state, unless they write to one",
@@ -100,7 +100,7 @@ TEST(CommandTraits, areOfClassDrawExactlyWhenTheCommandWritesPixelsOrOrdersThem)
 // A driver gives a window its size at the first of these commands; textures from drawables are refreshed before them.
 TEST(CommandTraits, areWindowDrawsWhenTheyAccessFramebuffers) {
     const Predicate draws = [](uint16_t opcode) { return drawsIntoWindow(opcode); };
-    const EffectRule rules[] = {
+    const Implication rules[] = {
         {"output", kWrites, draws, {}},
         {"vertices", has(Vertex), draws, {}},
         {"reads", has(ReadsFramebuffer), draws, {}},
@@ -117,7 +117,7 @@ TEST(CommandTraits, agreeWithEffects) {
     const Predicate drawEffect = hasEffect({EffectKind::Draw, EffectKind::Compute, EffectKind::Clear,
                                             EffectKind::ClearBuffer, Blit, EffectKind::Barrier, EffectKind::Begin,
                                             EffectKind::Vertex, EffectKind::End, EffectKind::CallList, CallLists});
-    const EffectRule rules[] = {
+    const Implication rules[] = {
         // glPrimitiveRestartNV is no vertex: it restarts the primitive. The program's own context executes it to track
         // that.
         {"an effect on pixels is of class draw", drawEffect, has(DrawClass), {op::glPrimitiveRestartNV}},
@@ -161,7 +161,7 @@ TEST(CommandTraits, agreeWithEffects) {
 }
 
 TEST(CommandTraits, excludeEachOther) {
-    const EffectRule rules[] = {
+    const Implication rules[] = {
         {"skippable draws are draws", has(SkippableDraw), has(Draw), {}},
         {"rectangles are draws", has(DrawRectangle), has(Draw), {}},
         {"rectangles are not skippable", has(DrawRectangle), !has(SkippableDraw), {}},
@@ -198,7 +198,7 @@ TEST(CommandUses, agreeInReplay) {
     const Predicate rangeKnows =
         either(either(range(RangeUse::Draw), range(RangeUse::Begin)),
                either(range(RangeUse::Clear), either(range(RangeUse::Read), range(RangeUse::Feedback))));
-    const EffectRule rules[] = {
+    const Implication rules[] = {
         {"output is of class draw", writes, has(DrawClass), {}},
         // Sort-last sees the commands of a list, or counts them when the list is compiled.
         {"sort-last classifies output", writes, rangeKnows, {op::glCallList, op::glCallLists}},
@@ -233,7 +233,7 @@ TEST(CommandClasses, excludeCommandsThatMayReadDeferredUploads) {
         return [=](uint16_t opcode) { return filter::stateRoleOf(opcode) == r; };
     };
     const Predicate pass = about(CommandClass::Pass);
-    const EffectRule rules[] = {
+    const Implication rules[] = {
         {"draws", has(Draw, Compute, RasterPosition), !pass, {}},
         {"images and bitmaps", both(has(Pixels), !has(ReadsFramebuffer)), !pass, {}},
         {"primitives", has(Begin, End, CallList), !pass, {}},
@@ -268,7 +268,7 @@ TEST(CommandEffects, agreeWithCellsAndRoles) {
     const Predicate splits = [](uint16_t opcode) { return effectOf(opcode).list != ListRole::Native; };
     const Predicate divides = [](uint16_t opcode) { return effectOf(opcode).draw.count > 0; };
     const Predicate names = [](uint16_t opcode) { return effectOf(opcode).nameNumber > 0; };
-    const EffectRule rules[] = {
+    const Implication rules[] = {
         {"cells are state", hasCell, hasEffect({Cell, EffectKind::Limit, MatrixMode}), {}},
         {"checks belong to cells", isChecked, hasCell, {}},
         {"cells do not stand alone", hasCell, !has(StandsAlone), {}},
