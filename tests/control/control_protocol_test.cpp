@@ -126,8 +126,8 @@ TEST_F(ControlProtocolTest, performsALimitedNumberPerCall) {
     EXPECT_FALSE(client.hasRequest());
 }
 
-TEST_F(ControlProtocolTest, performsAMillionRequests) {
-    constexpr int kRequests = 1'000'000;
+TEST_F(ControlProtocolTest, performsManyRequests) {
+    constexpr int kRequests = 200'000; // 1 000 000 take five times as long, and pass
     const std::string line = "{\"id\":1,\"op\":\"echo\"}\n";
     int replies = 0;
     size_t largestUnsent = 0;
