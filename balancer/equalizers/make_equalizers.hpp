@@ -8,8 +8,8 @@
 
 namespace mural::balance {
 
-// Returns the equalizers in the order in which they decide: those of a parent before those of its children. Values
-// outside the limits of a parameter become the nearest limit.
+// Returns the equalizers in order of decision: parents before children. Values outside the limits of a parameter become
+// the nearest limit.
 std::vector<std::unique_ptr<Equalizer>> makeEqualizers(const ResolvedConfig& config,
                                                        Balance balance = Balance::AsInFile);
 

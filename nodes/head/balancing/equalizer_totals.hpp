@@ -1,4 +1,4 @@
-// What an equalizer did in a session, for reports and the status.
+// Totals of an equalizer in a session, for reports and the status.
 #pragma once
 
 #include <cstdint>
