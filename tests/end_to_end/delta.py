@@ -47,6 +47,8 @@ def per_frame(case_name, program, at_least, at_most, frames=(4, 10)):
                 return "%d frames instead of %d" % (report["frames"], count)
             wire.append(report["delta"]["wireBytes"])
         each = (wire[1] - wire[0]) / (frames[1] - frames[0])
+        if min(wire) <= 0:
+            return "no bytes on the wire were counted: %s" % wire
         if not at_least <= each <= at_most:
             return "%.0f bytes per frame on the wire instead of %d to %d; in all %s" % (each, at_least, at_most, wire)
         print("  %.0f bytes per frame on the wire" % each)
@@ -59,9 +61,10 @@ per_frame("same_scene", "same_scene", 0.5, 100, (10, 310))  # measured times sel
 per_frame("same_texture", "same_texture", 1, 1024)
 per_frame("changed_texture", "changed_texture", PATCH_BYTES, 1.5 * PATCH_BYTES + 1024)
 
-# Values of 16 to 36 kB that recur in random order: a source, vertices, or an image costs only a reference.
+# Values of 16 to 36 kB that recur in random order: a source, vertices, or an image costs only a reference. Measured times
+# select the compression of the first values, so the totals of two runs differ by up to 8 kB in either direction.
 for value in ("same_sources", "same_arrays", "same_pixels"):
-    per_frame(value, value, 1, 300, (30, 90))
+    per_frame(value, value, -8192 / 120, 300, (30, 150))
 
 
 @cases.case
