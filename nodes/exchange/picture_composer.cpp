@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/log/log.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 
 namespace mural {
 
@@ -17,10 +18,15 @@ PictureComposer::PictureComposer(ComposerConfig config, PartRoutes& routes)
 void PictureComposer::agree() {
     if (std::exchange(agreed_, false) || strategy_ == Strategy::Serial || config_.rank == 0 || lost_.contains(0))
         return;
-    auto decision = routes_.receive(0, 1, Deadline::inMs(config_.decisionMs));
+    auto decision = receive(0, 1, Deadline::inMs(config_.decisionMs));
     if (!decision || decision->size() != 1)
         return lost(0, decision ? "range 1 sent an invalid strategy" : decision.error().message);
     if (decision->front() != std::byte{0}) serially();
+}
+
+Result<std::vector<std::byte>> PictureComposer::receive(int rank, size_t maxBytes, Deadline deadline) {
+    const SpanScope waits(SpanKind::WaitPart);
+    return routes_.receive(rank, maxBytes, deadline);
 }
 
 // After a loss, the remaining nodes send directly to the collector from the next picture on.
@@ -51,6 +57,7 @@ void PictureComposer::returned(int rank, uint32_t incarnation, const std::set<in
 }
 
 PixelViewport PictureComposer::compose(PicturePart& part, const CompositeRule& rule) {
+    const SpanScope composes(SpanKind::Compose);
     agree();
     const int64_t beganNs = monotonicNowNs();
     if (rows_ != part.id.box.h) {
@@ -88,7 +95,7 @@ void PictureComposer::send(const PicturePart& part, const Step& step, const Comp
 void PictureComposer::take(PicturePart& part, const Step& step, const CompositeRule& rule, int64_t beganNs) {
     if (lost_.contains(step.peer)) return;
     const Deadline deadline = Deadline::at(beganNs + (config_.partMs + config_.stageMs * step.stage) * kNsPerMs);
-    auto message = routes_.receive(step.peer, boundBytesOf(part.id.box, step.rows), deadline);
+    auto message = receive(step.peer, boundBytesOf(part.id.box, step.rows), deadline);
     if (!message) return lost(step.peer, message.error().message);
     Step::Kind kind = step.kind;
     // Fault injection: drops the contributions of others, drops a band, or swaps the draw order.

@@ -41,6 +41,7 @@ public:
 
 private:
     void agree();
+    Result<std::vector<std::byte>> receive(int rank, size_t maxBytes, Deadline deadline);
     void sendNext();
     void serially();
     void send(const PicturePart& part, const compositor::Step& step, const CompositeRule& rule);

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "common/log/log.hpp"
+#include "nodes/frame_spans/frame_spans_message.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
 
 namespace mural {
@@ -137,6 +139,7 @@ void PictureSender::run() {
 }
 
 void PictureSender::send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+    const SpanScope transfers(SpanKind::Transfer);
     sending_ = true;
     send_(type, a, b);
     sending_ = false;
@@ -159,8 +162,10 @@ void PictureSender::forget(const Forgotten& forgotten) {
 // Sends a black picture if the readback fails, so that the frame still completes.
 void PictureSender::sendFrame(Frame& frame) {
     const wire::PictureHeader& h = frame.header;
+    recordThread(spans_, !frame.spans.empty(), SpanKind::WaitFrame);
+    const SpanScope works(SpanKind::Compress);
     const int64_t beganCpuNs = threadCpuNowNs();
-    auto read = frame.picture->bytes(Deadline::inMs(config_.readMs));
+    auto read = bytesOf(*frame.picture);
     if (!read && !std::exchange(lossReported_, true))
         log::warning(
             log::Topic::Picture,
@@ -175,25 +180,40 @@ void PictureSender::sendFrame(Frame& frame) {
         pixels = inTransfer_;
     }
     int64_t packedNs = beganNs;
-    if (packer_) {
-        auto packed = packer_->pack(h.client, h.window, size.w, size.h, pixels.data());
-        packedNs = monotonicNowNs();
-        if (packed) {
-            send(wire::NodeMessage::PackedPicture, std::as_bytes(std::span(&h, 1)), *packed);
-            if (packed->size() >= kMinMeasuredBytes) packer_->transferred(packed->size(), monotonicNowNs() - packedNs);
-        } else { // out of memory
-            send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
-        }
-    } else {
-        send(wire::NodeMessage::Picture, std::as_bytes(std::span(&h, 1)), pixels);
-    }
+    sendPicture(h, size, pixels, packedNs);
     const int64_t tookCpuNs = threadCpuNowNs() - beganCpuNs;
     frame.done.readbackNs += static_cast<uint64_t>(tookCpuNs);
     if (config_.addsCpu)
         frame.done.busyNs += static_cast<uint64_t>(tookCpuNs);
     else
         frame.done.busyNs = std::max(frame.done.busyNs, static_cast<uint64_t>(packedNs - beganNs));
+    sendSpans(frame);
     send(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&frame.done, 1)), {});
+}
+
+Result<std::span<const std::byte>> PictureSender::bytesOf(PictureRead& picture) const {
+    const SpanScope waits(SpanKind::WaitReadback);
+    return picture.bytes(Deadline::inMs(config_.readMs));
+}
+
+// Sets `packedNs` to the end of the encoding; without encoding it stays as it is.
+void PictureSender::sendPicture(const wire::PictureHeader& h, const ScaledSize& size, std::span<const std::byte> pixels,
+                                int64_t& packedNs) {
+    const auto header = std::as_bytes(std::span(&h, 1));
+    if (!packer_) return send(wire::NodeMessage::Picture, header, pixels);
+    auto packed = packer_->pack(h.client, h.window, size.w, size.h, pixels.data());
+    packedNs = monotonicNowNs();
+    if (!packed) return send(wire::NodeMessage::Picture, header, pixels); // out of memory
+    send(wire::NodeMessage::PackedPicture, header, *packed);
+    if (packed->size() >= kMinMeasuredBytes) packer_->transferred(packed->size(), monotonicNowNs() - packedNs);
+}
+
+void PictureSender::sendSpans(Frame& frame) {
+    if (frame.spans.empty()) return;
+    const int64_t nowNs = quickNowNs();
+    addSpans(frame.spans, wire::SpanThread::Pictures, spans_.take(nowNs));
+    const wire::FrameSpansHeader header{frame.done.client, frame.done.window, frame.done.frame, 0, nowNs};
+    send(wire::NodeMessage::FrameSpans, std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(frame.spans)));
 }
 
 } // namespace mural

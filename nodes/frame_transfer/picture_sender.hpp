@@ -17,8 +17,10 @@
 #include <vector>
 
 #include "common/geometry/zoom.hpp"
+#include "nodes/frame_spans/thread_spans.hpp"
 #include "nodes/frame_transfer/picture_packer.hpp"
 #include "nodes/frame_transfer/picture_read.hpp"
+#include "nodes/frame_transfer/transfer_scale.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
@@ -45,6 +47,8 @@ public:
         wire::PictureHeader header{};
         std::unique_ptr<PictureRead> picture;
         wire::FrameDoneMessage done{}; // sent after the picture; the sender adds the time of readback and encoding
+        // of the replay thread, sent before `done`; the sender adds its own. Empty: no statistics
+        std::vector<wire::FrameSpan> spans = {};
     };
 
     PictureSender(PictureSenderConfig config, Send send);
@@ -88,6 +92,10 @@ private:
     void run();
     void work(Job& job);
     void sendFrame(Frame& frame);
+    void sendPicture(const wire::PictureHeader& header, const ScaledSize& size, std::span<const std::byte> pixels,
+                     int64_t& packedNs);
+    [[nodiscard]] Result<std::span<const std::byte>> bytesOf(PictureRead& picture) const;
+    void sendSpans(Frame& frame);
     void forget(const Forgotten& forgotten);
     void send(wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b); // called by thread_
     bool give(Job job, size_t bytes, bool isFrame);
@@ -98,6 +106,7 @@ private:
     const Send send_;
     const std::unique_ptr<PicturePacker> packer_; // null: no encoding; used by thread_
     std::vector<std::byte> black_, inTransfer_;
+    ThreadSpans spans_; // of thread_, while statistics are on
     bool lossReported_ = false;
     std::atomic<bool> sending_{false}; // thread_ is in send_
 

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "common/log/log.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 #include "nodes/session/session_secret.hpp"
 #include "transport/connection_description.hpp"
 #include "transport/rsp/group_connection.hpp"
@@ -146,6 +147,7 @@ Result<wire::PacketHeader> HeadConnection::next(std::span<const std::byte>& payl
 
 Result<bool> HeadConnection::nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload) {
     if (!inBatch_) return false;
+    const SpanScope decodes(SpanKind::Decode);
     auto more = deltaDecoder_->next(header.stream, payload);
     inBatch_ = more && more.value();
     header.sizeBytes = static_cast<uint32_t>(payload.size());
@@ -153,6 +155,7 @@ Result<bool> HeadConnection::nextOfBatch(wire::PacketHeader& header, std::span<c
 }
 
 Result<void> HeadConnection::openBatch(delta::BatchHead head) {
+    const SpanScope decodes(SpanKind::Decode);
     const auto sections = batchDecoder_->decode(head, payload_);
     if (!sections) return sections.error();
     deltaDecoder_->begin(sections.value());
@@ -160,9 +163,15 @@ Result<void> HeadConnection::openBatch(delta::BatchHead head) {
     return {};
 }
 
+// Waits for the first bytes of a packet or batch.
+Result<void> HeadConnection::readFirst(std::span<std::byte> bytes) {
+    const SpanScope waits(SpanKind::WaitPackets);
+    return line().read(bytes, Deadline::never());
+}
+
 Result<wire::PacketHeader> HeadConnection::readPacket(std::span<const std::byte>& payload) {
     wire::PacketHeader header{};
-    const auto got = line().read(std::as_writable_bytes(std::span(&header, 1)), Deadline::never());
+    const auto got = readFirst(std::as_writable_bytes(std::span(&header, 1)));
     if (!got) return got.error();
     const auto rest = readPayload(header.sizeBytes, wire::kMaxPacketBytes);
     if (!rest) return rest.error();
@@ -174,7 +183,7 @@ Result<delta::BatchHead> HeadConnection::readBatch() {
     delta::BatchHeadReader head;
     std::byte byte{};
     do {
-        const auto got = line().read(std::span(&byte, 1), Deadline::never());
+        const auto got = readFirst(std::span(&byte, 1));
         if (!got) return got.error();
     } while (!head.add(byte));
     const auto rest = readPayload(head.head().sizeBytes, wire::kMaxBatchBytes);
@@ -187,6 +196,7 @@ Result<void> HeadConnection::readPayload(uint32_t sizeBytes, uint32_t maxBytes) 
         return Error{"the head sent an invalid packet of " + std::to_string(sizeBytes) +
                      " bytes; install the same version of mural on all machines"};
     payload_.resize(sizeBytes);
+    const SpanScope receives(SpanKind::Receive);
     // no deadline: the head may pause in the middle; its end closes the connection
     return line().read(payload_, Deadline::never());
 }

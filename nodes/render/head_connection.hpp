@@ -63,6 +63,7 @@ private:
     [[nodiscard]] Connection& line() { return stream_ ? *stream_ : *connection_; } // the source of packets
     Result<wire::PacketHeader> readPacket(std::span<const std::byte>& payload);
     Result<delta::BatchHead> readBatch();
+    Result<void> readFirst(std::span<std::byte> bytes);
     Result<void> readPayload(uint32_t sizeBytes, uint32_t maxBytes);
     Result<bool> nextOfBatch(wire::PacketHeader& header, std::span<const std::byte>& payload);
     Result<void> openBatch(delta::BatchHead head);

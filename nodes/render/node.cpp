@@ -7,7 +7,6 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -15,8 +14,10 @@
 #include "common/base/pause_watch.hpp"
 #include "common/log/log.hpp"
 #include "common/log/process_log.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 #include "nodes/gl/software_renderer.hpp"
 #include "nodes/render/barrier_part.hpp"
+#include "nodes/render/command_arguments.hpp"
 #include "nodes/render/exchange_part.hpp"
 #include "nodes/render/frame_messages.hpp"
 #include "nodes/render/goodbye.hpp"
@@ -25,10 +26,10 @@
 #include "nodes/render/lost_bits_notice.hpp"
 #include "nodes/render/node_description.hpp"
 #include "nodes/render/replay_config.hpp"
+#include "nodes/render/replay_spans.hpp"
 #include "nodes/render/tile_windows.hpp"
 #include "nodes/render/work_clock.hpp"
 #include "nodes/frame_transfer/picture_sender.hpp"
-#include "nodes/affinity/placement.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/session/session_config.hpp"
 #include "nodes/session/stream_build.hpp"
@@ -43,21 +44,6 @@ namespace mural {
 namespace {
 
 uint64_t threadCpuNs() { return static_cast<uint64_t>(threadCpuNowNs()); }
-
-// Places the replay thread near the GPU. Not with software rendering, because the driver's threads then need all cores.
-std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
-    if (!setup.placeThreads) return "not placed: --no-placement";
-    if (gl::drawsWithoutGpu(renderer)) return "not placed: no GPU draws";
-    return placeThread(DeviceKind::Gpu).description;
-}
-
-// Returns the first bytes of a command's arguments as a T; empty: there are too few.
-template <class T> std::optional<T> argument(std::span<const std::byte> bytes) {
-    if (bytes.size() < sizeof(T)) return std::nullopt;
-    T value;
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return value;
-}
 
 constexpr int64_t kSlower = 2;  // planted fault: additional time, as a multiple of the work's time
 constexpr int kLostPacket = 10; // planted fault: index of the packet that a node in resync drops
@@ -129,6 +115,8 @@ private:
         case wire::HeadCommand::Synchronize: return synchronize(rest);
         case wire::HeadCommand::Exchange:
             return connectNodes(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
+        case wire::HeadCommand::Statistics: return spans_.record(rest);
+        case wire::HeadCommand::ClockProbe: return replyClock(rest);
         case wire::HeadCommand::Finish:
             log::debug(log::Topic::Node, "the session ends");
             sendGoodbye();
@@ -146,6 +134,12 @@ private:
         if (sender_) sender_->clientGone(client);
         lostBits_.clientGone(client);
         reportWindowGone(client, wire::kAllWindows);
+    }
+
+    bool replyClock(std::span<const std::byte> arguments) {
+        const auto reply = clockReplyTo(arguments);
+        if (reply) line_->send(wire::NodeMessage::ClockReply, std::as_bytes(std::span(&*reply, 1)));
+        return reply.has_value();
     }
 
     bool setUp(const std::string& json) {
@@ -186,8 +180,10 @@ private:
         const ReplayConfig config = replayConfigOf(setup_, renderer);
         losesPackets_ = config.plant == "rejoin";
         if (config.plant == "slow" && setup_.node == 1) work_.slowDown(kSlower);
+        if (config.plant == "spans" && setup_.node == 0) spans_.delay();
         replay_ = std::make_unique<Replay>(std::move(*platform), config, createOutputs());
         lastCpuNs_ = threadCpuNs();
+        spans_.record(setup_.recordsSpans);
         log::debug(log::Topic::Node, setup_.isResyncing ? "restarted, " : "", "draws with ",
                    renderer.empty() ? "no GL" : renderer);
         log::debug(log::Topic::Affinity, "thread of the replay: ", ready.value("placement", ""));
@@ -248,27 +244,18 @@ private:
 
     bool connectNodes(const std::string& text) {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+        const auto addressOf = [&](const char* what, int n) { return addressIn(json, what, n, line_->headHost()); };
         if (exchange_) {
-            const auto connected = exchange_->connect([&](int node) { return addressIn(json, "pictures", node); });
+            const auto connected = exchange_->connect([&](int node) { return addressOf("pictures", node); });
             if (!connected) return fail(connected.error().message);
         }
         if (!swaps_ || setup_.swapRank == 0) return true;
-        const auto leader = addressIn(json, "swaps", setup_.swapLeader);
+        const auto leader = addressOf("swaps", setup_.swapLeader);
         if (!leader)
             return fail("the head sent no address of the swap barrier's leader; install the same version of mural on "
                         "all machines");
         swaps_->follow(leader->host, leader->port);
         return true;
-    }
-
-    // Returns the address at which `node` listens. Without a host it runs on the head's machine.
-    [[nodiscard]] std::optional<HostPort> addressIn(const nlohmann::json& all, const char* what, int node) const {
-        const auto found = all.is_object() ? all.find(what) : all.end();
-        if (found == all.end() || !found->is_object()) return std::nullopt;
-        auto where = splitHostPort(found->value(std::to_string(node), ""));
-        if (!where) return std::nullopt;
-        if (where->host.empty()) where->host = line_->headHost().empty() ? "127.0.0.1" : line_->headHost();
-        return *where;
     }
 
     // Sends the reason even if its level is off, because the head uses it.
@@ -390,7 +377,7 @@ private:
         std::unique_ptr<PictureRead> picture;
         if (f.pixels && !f.region.empty()) {
             if (setup_.node == 0 && (sender_ || windows_)) lostBits_.report(f);
-            if (sender_) picture = f.read();
+            if (sender_) picture = readPicture(f);
             work_.pause();
             if (windows_) showTiles(f);
             work_.begin(); // excludes a wait for the barrier or the display
@@ -402,9 +389,19 @@ private:
         lastCpuNs_ = threadCpuNs();
         done.readbackNs = lastCpuNs_ - replayedNs;
         done.calls = calls_[f.client] + (f.client == clientInHand_ ? replay_->counts().commands - callsBefore_ : 0);
-        if (!picture) return sendMessage(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
-        stuck_ = !sender_->send({pictureHeaderOf(f), std::move(picture), done}) || stuck_;
+        std::vector<wire::FrameSpan> spans = spans_.take();
+        if (!picture) return sendDone(done, spans);
+        const SpanScope waits(SpanKind::WaitQueue);
+        stuck_ = !sender_->send({pictureHeaderOf(f), std::move(picture), done, std::move(spans)}) || stuck_;
         work_.begin(); // excludes a wait for queue space
+    }
+
+    // The spans precede the end of their frame.
+    void sendDone(const wire::FrameDoneMessage& done, std::span<const wire::FrameSpan> spans) {
+        const wire::FrameSpansHeader header = spansHeaderOf(done);
+        const auto bytes = std::as_bytes(std::span(&header, 1));
+        if (!spans.empty()) sendMessage(wire::NodeMessage::FrameSpans, bytes, std::as_bytes(spans));
+        sendMessage(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
     }
 
     void windowGone(uint32_t client, uint32_t window) {
@@ -463,6 +460,7 @@ private:
     std::unique_ptr<Replay> replay_;
     std::unique_ptr<PictureSender> sender_; // null: the head requests no pictures
     bool stuck_ = false;                    // the sender failed: no message leaves this node
+    ReplaySpans spans_;                     // while statistics are on
     uint64_t lastCpuNs_ = 0;
     WorkClock work_;
     std::map<uint32_t, uint64_t> calls_;  // commands by client, in completed packets

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "nodes/affinity/placement.hpp"
 #include "nodes/gl/software_renderer.hpp"
 #include "nodes/replay/readback/readback_choice.hpp"
 
@@ -40,6 +41,12 @@ ReplayConfig replayConfigOf(const NodeSetup& setup, const std::string& renderer)
     config.focusDistance = setup.focusDistance;
     if (const char* const plant = std::getenv("MURAL_PLANT")) config.plant = plant;
     return config;
+}
+
+std::string placeReplay(const NodeSetup& setup, const std::string& renderer) {
+    if (!setup.placeThreads) return "not placed: --no-placement";
+    if (gl::drawsWithoutGpu(renderer)) return "not placed: no GPU draws";
+    return placeThread(DeviceKind::Gpu).description;
 }
 
 } // namespace mural

@@ -1,4 +1,4 @@
-// The replay's configuration, from the head's Setup message and this node's GL.
+// The replay's configuration and placement, from the head's Setup message and this node's GL.
 #pragma once
 
 #include <string>
@@ -10,5 +10,9 @@ namespace mural {
 
 // `renderer`: name of this node's GL; software renderers draw and read differently.
 [[nodiscard]] ReplayConfig replayConfigOf(const NodeSetup& setup, const std::string& renderer);
+
+// Places the calling thread near the GPU, and returns the placement for a person. Not with software rendering, because
+// the driver's threads then need all cores.
+std::string placeReplay(const NodeSetup& setup, const std::string& renderer);
 
 } // namespace mural

@@ -1,5 +1,6 @@
 #include "nodes/render/tile_windows.hpp"
 
+#include "nodes/frame_spans/span_scope.hpp"
 #include "nodes/output/windows/wall_layout.hpp"
 
 namespace mural {
@@ -42,7 +43,13 @@ Result<void> TileWindows::reopen(int width, int height) {
     return {};
 }
 
+int64_t TileWindows::awaitBarrier(SwapBarrier& barrier, const SwapKey& key) {
+    const SpanScope waits(SpanKind::WaitBarrier);
+    return barrier.await(key);
+}
+
 Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barrier) {
+    const SpanScope presents(SpanKind::Present);
     const bool other = !setup_.pass.shown.none(); // the canvas has its own resolution
     const int width = other ? f.picture.w : static_cast<int>(f.config.width),
               height = other ? f.picture.h : static_cast<int>(f.config.height);
@@ -63,7 +70,7 @@ Result<void> TileWindows::show(const ReplayOutputs::Frame& f, SwapBarrier* barri
     if (!barrier) return windows_->showAll(shown);
     const SwapKey key{f.client, f.window, f.frame};
     if (const auto drawn = windows_->drawAll(shown); !drawn) return drawn;
-    auto presentedNs = windows_->present(barrier->await(key));
+    auto presentedNs = windows_->present(awaitBarrier(*barrier, key));
     if (!presentedNs) return presentedNs.error();
     barrier->shown(key, *presentedNs);
     return {};

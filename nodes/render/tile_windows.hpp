@@ -24,6 +24,7 @@ private:
     explicit TileWindows(const NodeSetup& setup) : setup_(setup) {}
     [[nodiscard]] std::vector<TileWindow> windowsFor(int width, int height) const;
     Result<void> reopen(int width, int height);
+    static int64_t awaitBarrier(SwapBarrier& barrier, const SwapKey& key);
 
     NodeSetup setup_;
     std::unique_ptr<WallWindows> windows_;

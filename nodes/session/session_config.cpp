@@ -173,6 +173,7 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("delta", s.delta);
     visit("catchesUp", s.isResyncing);
     visit("skipsFrames", s.skipsFrames);
+    visit("recordsSpans", s.recordsSpans);
     visit("incarnation", s.incarnation);
     visit("cacheBytes", s.cacheBytes, 1 << 20);
     visit("collector", s.collector, 0);

@@ -36,6 +36,8 @@ enum class HeadCommand : uint32_t {
     // u32 number, u32 nodes, {f64 start, end} of each: the ranges of a frame's draws that nodes draw, from the next
     // shared draws of each window on.
     RangeAssignment = 13,
+    Statistics = 14, // u32 on: the node sends FrameSpans with each frame from here on, or no longer
+    ClockProbe = 15, // i64 sentNs: the node replies ClockReply
 };
 struct SwitchToMulticastCommand {
     uint32_t node;

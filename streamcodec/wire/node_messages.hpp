@@ -22,6 +22,8 @@ enum class NodeMessage : uint32_t {
     // u32 windows, WindowAreas of each, ViewportAssignment*: the latest first, then all that the windows refer to.
     Turns = 12,
     PackedPicture = 13, // PictureHeader + the rows as encoded by PicturePacker
+    FrameSpans = 14,    // FrameSpansHeader + FrameSpan*, before the frame's FrameDone; only while statistics are on
+    ClockReply = 15,    // ClockReplyMessage: the reply to ClockProbe
 };
 
 struct MessageHeader {
