@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "common/log/log.hpp"
 #include "tests/head/support/session_harness.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -85,6 +86,19 @@ TEST(SessionControl, repliesWithStatusReportAndNodes) {
     EXPECT_EQ(report["result"]["nodes"].size(), 2U) << report;
     EXPECT_EQ(head.request("stat")["code"], "unknown-operation");
     EXPECT_EQ(head.request("equalizers")["code"], "unknown-operation"); // the session has none
+    head.finish();
+}
+
+TEST(SessionControl, repliesWithTheStatisticsOfFrames) {
+    ControlledSession head(2);
+    head.open();
+    const Json reply = head.request("frames", {{"since", 3}});
+    EXPECT_EQ(reply["result"]["frames"], Json::array()) << reply;
+    EXPECT_EQ(reply["result"]["next"], 3) << reply;
+    EXPECT_EQ(reply["result"]["status"]["nodes"].size(), 2U) << reply;
+    EXPECT_EQ(head.request("frames")["result"]["next"], 1);
+    EXPECT_EQ(head.request("frames", {{"since", -1}})["code"], "failed");
+    EXPECT_EQ(head.request("frames", {{"since", "3"}})["code"], "bad-argument");
     head.finish();
 }
 

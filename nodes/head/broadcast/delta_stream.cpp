@@ -8,6 +8,7 @@
 #include "common/log/log.hpp"
 #include "common/memory/malloc_tuning.hpp"
 #include "common/base/quick_clock.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/packet.hpp"
 
@@ -64,6 +65,7 @@ std::unique_ptr<DeltaStream::Coder> DeltaStream::restart(std::unique_ptr<Coder> 
 }
 
 void DeltaStream::add(uint32_t stream, std::span<const std::byte> payload) {
+    const SpanScope encodes(SpanKind::Encode);
     const bool isLong = payload.size() >= kLongPacketBytes;
     MedianTimer& usualNs = packetNs_.of(payload.size());
     if (!timesFrame_ && !isLong && usualNs.isKnown()) {
@@ -95,13 +97,14 @@ void DeltaStream::filterPacket(uint32_t stream, std::span<const std::byte> paylo
         filter_.setDropsRedundant(redundancy_.dropsRedundant());
         return filter_.add(stream, payload);
     }
-    // Commands of the head: data of an ended program is dropped. Before any other command all deferred data is sent, as
-    // for a node that joins now.
+    // Commands of the head: data of an ended program is dropped. Before most other commands all deferred data is sent,
+    // as for a node that joins now.
     uint32_t words[2] = {};
     std::memcpy(words, payload.data(), std::min(payload.size(), sizeof words));
-    if (words[0] == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
+    const auto command = static_cast<wire::HeadCommand>(words[0]);
+    if (command == wire::HeadCommand::ClientGone)
         filter_.clientGone(words[1]);
-    else
+    else if (command != wire::HeadCommand::ClockProbe && command != wire::HeadCommand::Statistics)
         filter_.releaseAll();
     encode(stream, payload);
 }
@@ -129,6 +132,7 @@ bool DeltaStream::full() const {
 }
 
 Result<std::span<const std::byte>> DeltaStream::take() {
+    const SpanScope encodes(SpanKind::Encode);
     delta::DeltaEncoder& encoder = coder_->deltaEncoder;
     const bool frameGoesOn = full(), isLong = encoder.stagedBytes() >= kLongBytes, timed = timesFrame_ || isLong;
     const auto now = clockFor(encoder.stagedBytes());

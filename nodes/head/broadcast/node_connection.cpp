@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "common/log/log.hpp"
+#include "nodes/frame_spans/frame_spans_message.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 
 namespace mural {
 namespace {
@@ -141,7 +143,10 @@ void NodeConnection::readMessages() {
 
 // Returns false if no message has arrived yet.
 Result<bool> NodeConnection::readHeader(wire::MessageHeader& header) {
-    const Result<void> got = connection_->read(bytesOf(header), Deadline::inMs(kReadSliceMs));
+    const Result<void> got = [&] {
+        const SpanScope waits(SpanKind::WaitNode);
+        return connection_->read(bytesOf(header), Deadline::inMs(kReadSliceMs));
+    }();
     if (got) return true;
     if (!connection_->timedOut()) return got.error();
     // All messages have been read, so an ended process counts as lost now. A shared-memory connection does not report
@@ -184,6 +189,13 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         if (header.sizeBytes != sizeof(message)) break;
         if (auto got = readStruct(message); !got) return got;
         return handle([&] { return events_.nodeSynchronized(location_.node, message); });
+    }
+    case NodeMessage::FrameSpans: return readFrameSpans(header.sizeBytes);
+    case NodeMessage::ClockReply: {
+        wire::ClockReplyMessage message{};
+        if (header.sizeBytes != sizeof(message)) break;
+        if (auto got = readStruct(message); !got) return got;
+        return handle([&] { return events_.nodeClock(location_.node, message); });
     }
     }
     return Error{"it sent an invalid message (type " + std::to_string(header.type) + ", " +
@@ -228,6 +240,22 @@ Result<void> NodeConnection::readList(uint32_t sizeBytes, uint32_t& first, std::
     entries.resize(entriesBytes / sizeof(Entry));
     if (entries.empty()) return {};
     return connection_->read(std::as_writable_bytes(std::span(entries)), Deadline::inMs(kMessageLimitMs));
+}
+
+Result<void> NodeConnection::readFrameSpans(uint32_t sizeBytes) {
+    wire::FrameSpansHeader header{};
+    const size_t spansBytes = sizeBytes - std::min<size_t>(sizeBytes, sizeof(header));
+    if (sizeBytes < sizeof(header) || spansBytes % sizeof(wire::FrameSpan) != 0 ||
+        spansBytes > wire::kMaxFrameSpans * sizeof(wire::FrameSpan))
+        return Error{"it sent statistics of invalid size"};
+    if (auto got = readStruct(header); !got) return got;
+    std::vector<wire::FrameSpan> spans(spansBytes / sizeof(wire::FrameSpan));
+    if (!spans.empty()) {
+        auto got = connection_->read(std::as_writable_bytes(std::span(spans)), Deadline::inMs(kMessageLimitMs));
+        if (!got) return got;
+    }
+    if (auto valid = checkSpans(spans); !valid) return valid;
+    return handle([&] { return events_.nodeFrameSpans(location_.node, header, spans); });
 }
 
 Result<void> NodeConnection::readDriverEvent(uint32_t sizeBytes) {
@@ -283,8 +311,11 @@ Result<void> NodeConnection::readPackedPicture(uint32_t sizeBytes) {
     return handle([&]() -> Result<void> {
         ByteBuffer rows = ByteBuffer::ofSize(pixels * 4);
         if (rows.size() != pixels * 4) return Error{"no memory for a picture of " + std::to_string(pixels) + " pixels"};
-        if (auto done = pictures_->unpack(header.client, header.window, size.w, size.h, packed->span(), rows.span());
-            !done)
+        const auto unpack = [&] {
+            const SpanScope decodes(SpanKind::Decode);
+            return pictures_->unpack(header.client, header.window, size.w, size.h, packed->span(), rows.span());
+        };
+        if (auto done = unpack(); !done)
             return Error{"it sent a picture that cannot be decoded: " + done.error().message};
         pictureBytes_ += static_cast<int64_t>(packed->size());
         pictureRawBytes_ += static_cast<int64_t>(rows.size());
@@ -308,6 +339,7 @@ Result<ByteBuffer> NodeConnection::readBytes(size_t sizeBytes) {
     ByteBuffer buffer = ByteBuffer::ofSize(sizeBytes);
     if (buffer.size() != sizeBytes) return Error{"no memory for a message of " + std::to_string(sizeBytes) + " bytes"};
     if (sizeBytes == 0) return buffer;
+    const SpanScope receives(SpanKind::Receive);
     auto got = connection_->read(buffer.span(), Deadline::inMs(kMessageLimitMs));
     if (!got) return got.error();
     return buffer;

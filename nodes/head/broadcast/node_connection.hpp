@@ -16,6 +16,7 @@
 #include "nodes/head/membership/node_process.hpp"
 #include "nodes/frame_transfer/picture_unpacker.hpp"
 #include "nodes/frame_transfer/transfer_scale.hpp"
+#include "streamcodec/wire/frame_spans.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/replies.hpp"
 #include "transport/connection.hpp"
@@ -40,6 +41,10 @@ public:
     // number.
     virtual Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) = 0;
     virtual Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) = 0;
+    // Precedes the nodeFrameDone of the frame, while statistics are on. The spans have been validated (checkSpans).
+    virtual Result<void> nodeFrameSpans(int node, const wire::FrameSpansHeader& header,
+                                        const std::vector<wire::FrameSpan>& spans) = 0;
+    virtual Result<void> nodeClock(int node, const wire::ClockReplyMessage& message) = 0;
     // The last call for a node that ended without Goodbye, after all of its messages.
     virtual void nodeLost(int node, const std::string& why) = 0;
 };
@@ -138,6 +143,7 @@ private:
     Result<void> readText(const wire::MessageHeader& header);
     Result<void> readInView(uint32_t sizeBytes);
     Result<void> readTurns(uint32_t sizeBytes);
+    Result<void> readFrameSpans(uint32_t sizeBytes);
     // Reads a number followed by a list that fills the message.
     template <class Entry>
     Result<void> readList(uint32_t sizeBytes, uint32_t& first, std::vector<Entry>& entries, const char* what);

@@ -7,6 +7,7 @@
 
 #include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/broadcast/head_command.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/packet.hpp"
 
@@ -57,7 +58,10 @@ void StreamBroadcaster::sendLeadLocked() {
         leads.swap(leads_);
         hasLead_ = false;
     }
-    for (const auto& [command, bytes] : leads) sendLocked(wire::streamOf(0, 0), bytes);
+    for (auto& [command, bytes] : leads) {
+        if (command == wire::HeadCommand::ClockProbe) bytes = commandBytes(command, bytesOf(monotonicNowNs()));
+        sendLocked(wire::streamOf(0, 0), bytes);
+    }
 }
 
 bool StreamBroadcaster::broadcast(wire::HeadCommand command, Deadline deadline) {
@@ -89,6 +93,7 @@ bool StreamBroadcaster::sendPacketLocked(uint32_t stream, std::span<const std::b
 // Sends to the links that receive batches, or to all others.
 bool StreamBroadcaster::sendToLinksLocked(std::span<const std::byte> header, std::span<const std::byte> payload,
                                           bool inBatches) {
+    const SpanScope sends(SpanKind::Send);
     bool any = false;
     bool byMulticast = false;
     for (NodeConnection* link : links_) {

@@ -41,7 +41,7 @@ public:
     bool broadcast(uint32_t stream, std::span<const std::byte> payload);
     bool broadcast(wire::HeadCommand command, std::span<const std::byte> arguments);
     // Queues a command that precedes the next packet of a program on all nodes. Replaces a queued command of the same
-    // kind. Never blocks.
+    // kind. A ClockProbe gets the time at which it is sent. Never blocks.
     void scheduleBeforeNextPacket(wire::HeadCommand command, std::span<const std::byte> arguments);
     // Gives up if the connections stay full until the deadline.
     bool broadcast(wire::HeadCommand command, Deadline deadline);

@@ -27,8 +27,14 @@ std::string nameOf(pid_t pid) {
 } // namespace
 
 CaptureClient::CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                             CaptureEvents& events)
-    : id_(id), pid_(pid), name_(nameOf(pid)), memory_(std::move(memory)), nodes_(nodes), events_(events) {}
+                             CaptureEvents& events, FrameStatistics* statistics)
+    : id_(id),
+      pid_(pid),
+      name_(nameOf(pid)),
+      memory_(std::move(memory)),
+      nodes_(nodes),
+      events_(events),
+      spans_(statistics, id, *memory_) {}
 
 CaptureClient::~CaptureClient() {
     stop();
@@ -85,6 +91,7 @@ void CaptureClient::pump() {
             continue;
         }
         flushNodes(!arrived_ && monotonicNowNs() - arrivedNs_ >= kValuePatienceNs);
+        spans_.sent();
         if (stop_ || gone) break; // gone: no publication has arrived since the program's end was detected
         gone = programGone();
         if (!gone) waitForMore();
@@ -103,6 +110,7 @@ void CaptureClient::waitForMore() {
     }
     arrived_ = false;
     const bool soon = pace_.moreSoon(nowNs);
+    const SpanScope waits(SpanKind::WaitProgram);
     memory_->waitPublished(soon ? capture::Reader::Naps : capture::Reader::Sleeps,
                            soon ? capture::kNapNs : kPumpSliceNs);
 }
@@ -124,6 +132,7 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
         drop("its shared memory contains an invalid index; the program may have overwritten it");
         return false;
     }
+    spans_.published(range.bytes);
     if (!range.bytes.empty()) {
         nodes_.broadcast(wire::streamOf(id_, range.stream), range.bytes);
         unflushedBytes_ += range.bytes.size();

@@ -19,6 +19,7 @@
 #include "nodes/head/results/byte_buffer.hpp"
 #include "nodes/head/capture/capture_memory.hpp"
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
+#include "nodes/head/statistics/pump_spans.hpp"
 #include "streamcodec/wire/replies.hpp"
 
 namespace mural {
@@ -41,8 +42,9 @@ struct Reply {
 // Thread-safe.
 class CaptureClient {
 public:
+    // statistics: null: none.
     CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                  CaptureEvents& events);
+                  CaptureEvents& events, FrameStatistics* statistics);
     ~CaptureClient(); // calls stop()
 
     // Errors: no threads available.
@@ -83,10 +85,11 @@ private:
     FileDescriptor socket_;
     std::thread pumpThread_;
     std::thread replyThread_;
-    size_t unflushedBytes_ = 0; // used by the pump's thread, as the next three
+    size_t unflushedBytes_ = 0; // used by the pump's thread, as the next four
     bool arrived_ = false;      // data arrived since the last wait
     int64_t arrivedNs_ = 0;     // start of the last wait after arrived data
     ArrivalRate pace_;
+    PumpSpans spans_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> draining_{false};
     std::atomic<uint32_t> drainTail_{0};

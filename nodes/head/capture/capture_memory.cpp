@@ -242,6 +242,12 @@ std::vector<std::string> CaptureMemory::displayNames() const {
     return names;
 }
 
+std::array<uint64_t, capture::kWaits> CaptureMemory::waitNs() const {
+    std::array<uint64_t, capture::kWaits> waits{};
+    for (uint32_t i = 0; i < capture::kWaits; ++i) waits[i] = shared_->waitNs[i].load(std::memory_order_relaxed);
+    return waits;
+}
+
 CaptureCounts CaptureMemory::counts() const {
     CaptureCounts c;
     c.verifiedFrames = shared_->verifiedFrames.load();

@@ -90,6 +90,8 @@ public:
     void setHeadGone();                                                        // also wakes the waiters on all words
     std::atomic<uint32_t>& livenessWord() { return shared_->headLiveness; }    // the word of a LivenessMark
     [[nodiscard]] CaptureCounts counts() const;
+    // A part of the counters, for the statistics of frames.
+    [[nodiscard]] std::array<uint64_t, capture::kWaits> waitNs() const;
     // Names of the X displays on which the program has windows, by number.
     [[nodiscard]] std::vector<std::string> displayNames() const;
 

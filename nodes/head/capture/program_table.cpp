@@ -34,7 +34,7 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
     admission.welcome.clientId = id;
     admission.memoryFd = (*memory)->fdToPass();
     admission.extensions = terms_.extensions;
-    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this);
+    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.statistics);
     return admission;
 }
 

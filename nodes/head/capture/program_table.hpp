@@ -24,6 +24,7 @@ struct ProgramTerms {
     std::string extensions;
     bool framesDoneWhenShown = false; // --display app without latency
     uint32_t chunkCount = capture::kDefaultChunks;
+    FrameStatistics* statistics = nullptr; // null: none
 };
 
 // Thread-safe, except that drainAll(), reap() and endAll() need one thread.

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <new>
 
+#include "nodes/frame_spans/span_scope.hpp"
+
 namespace mural {
 namespace {
 
@@ -122,6 +124,7 @@ bool PictureAssembler::allOf(const std::vector<bool>& awaited, const std::vector
 }
 
 void PictureAssembler::deliver(const Key& key, const Open& open) {
+    const SpanScope assembles(SpanKind::Assemble);
     const bool visible = std::ranges::any_of(open.parts, [](const Part& part) { return part.header.windowWidth > 0; });
     if (!visible) return;
     WindowPicture result;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/log/log.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 
 namespace mural {
 namespace {
@@ -56,6 +57,7 @@ void PictureOutput::clientGone(uint32_t client) {
 }
 
 void PictureOutput::waitForRoom() {
+    const SpanScope waits(SpanKind::WaitOutput);
     std::unique_lock lock(mutex_);
     while (queue_.size() > kQueuedPictures && !dropped_ && !ended_) changed_.wait_for(lock, kSlice);
 }
@@ -84,10 +86,7 @@ void PictureOutput::work() {
         queue_.pop_front();
         changed_.notify_all();
         lock.unlock();
-        if (picture.picture)
-            show(picture);
-        else
-            forget(picture);
+        take(picture);
         lock.lock();
     }
     queue_.clear();
@@ -112,6 +111,19 @@ void PictureOutput::finishFile() {
     warn(finished.error().message);
     const std::lock_guard lock(mutex_);
     totals_.savedPictures = 0;
+}
+
+void PictureOutput::take(const WindowPicture& picture) {
+    if (!picture.picture) return forget(picture);
+    const bool isOn = config_.statistics && config_.statistics->isOn();
+    recordThread(spans_, isOn, SpanKind::WaitPicture);
+    {
+        const SpanScope outputs(SpanKind::Output);
+        show(picture);
+    }
+    if (!isOn) return;
+    const int64_t nowNs = quickNowNs();
+    config_.statistics->add(picture.client, picture.frame, {SpanProcess::Head, 0, "output", spans_.take(nowNs)}, nowNs);
 }
 
 void PictureOutput::show(const WindowPicture& picture) {

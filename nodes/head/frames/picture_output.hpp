@@ -20,6 +20,7 @@
 #include "common/base/main_window.hpp"
 #include "nodes/head/frames/native_windows.hpp"
 #include "nodes/head/frames/picture_assembler.hpp"
+#include "nodes/head/statistics/frame_statistics.hpp"
 #include "nodes/output/picture_sink.hpp"
 
 namespace mural {
@@ -45,7 +46,8 @@ struct PictureOutputConfig {
     std::function<void(uint32_t client, bool isBlocked)> displayBlocked = [](uint32_t, bool) {};
     // Opens the windows of the wall. Empty: the head has no such windows.
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
-    std::vector<OtherCanvas> canvases; // in the order of WindowPicture::others
+    std::vector<OtherCanvas> canvases;     // in the order of WindowPicture::others
+    FrameStatistics* statistics = nullptr; // null: none
     // Called when a picture was passed to all its outputs, by any thread of the output.
     std::function<void(uint32_t client, uint32_t frame)> done;
 };
@@ -75,6 +77,7 @@ public:
 
 private:
     void work();
+    void take(const WindowPicture& picture);
     void show(const WindowPicture& picture);
     void finishFile();
     Result<void> give(PictureSink& sink, int64_t frame, const Picture& picture, bool pair);
@@ -98,6 +101,7 @@ private:
     std::vector<Shown> canvases_; // in the order of config_.canvases
     MainWindow mainWindow_;
     NativeWindows natives_;
+    ThreadSpans spans_; // of thread_
 
     mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;

@@ -74,6 +74,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
       options_(std::move(options)),
       nodeCount_(static_cast<int>(nodes.size())),
       sendsPictures_(headTakesPictures(config_, plan_)),
+      statistics_(clocksOf(plan_)),
       frames_(nodeCount_,
               [this](uint32_t client, uint32_t finished, uint32_t shown) {
                   if (serving_) programs_->credit(client, finished, shown);
@@ -128,6 +129,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
     output.pairs = plan_.wall.stereo == StereoMode::Quad;
+    output.statistics = &statistics_;
     output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
     if (headShowsWall(config_, plan_)) output.openWall = [this] { return options_.openWall(0); };
     for (size_t i = 0; i < plan_.canvases.size(); ++i) {
@@ -210,6 +212,7 @@ void HeadSession::tick() {
     programs_->reap();
     returns_->tick(nowNs);
     reportProgress(nowNs);
+    tickStatistics(nowNs);
 }
 
 void HeadSession::reportProgress(int64_t nowNs) {
@@ -268,7 +271,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
     }
     balancer_.frameDone(node, message, monotonicNowNs());
     advice_.frameDone(message.flags, plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1);
-    return frames_.frameDone(node, message, monotonicNowNs());
+    return recordFrame(node, message, frames_.frameDone(node, message, monotonicNowNs()));
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {

@@ -34,6 +34,7 @@
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
 #include "nodes/head/session/slowdown_advice.hpp"
+#include "nodes/head/statistics/frame_statistics.hpp"
 #include "nodes/session/session_config.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/replies.hpp"
@@ -90,7 +91,22 @@ private:
     Result<void> nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) override;
     Result<void> nodeTurns(int node, uint32_t number, const std::vector<std::byte>& turns) override;
     Result<void> nodeSynchronized(int node, const wire::SynchronizedMessage& message) override;
+    Result<void> nodeFrameSpans(int node, const wire::FrameSpansHeader& header,
+                                const std::vector<wire::FrameSpan>& spans) override;
+    Result<void> nodeClock(int node, const wire::ClockReplyMessage& message) override;
     void nodeLost(int node, const std::string& why) override;
+
+    // Statistics of frames (head_session_statistics.cpp).
+    // Returns the frames from this number on that are complete, with the state of the session, and requests statistics
+    // for some seconds. Thread-safe.
+    nlohmann::json framesJson(uint64_t sinceFrame);
+    void addFramesOperation(ControlOperations& operations);
+    Result<void> recordFrame(int node, const wire::FrameDoneMessage& message, Result<void> counted);
+    void measureClocks();
+    void tickStatistics(int64_t nowNs);
+    void switchStatistics(bool isOn);
+    [[nodiscard]] bool areClocksKnown() const; // of all nodes that live
+    static std::vector<NodeClock> clocksOf(const SessionPlan& plan);
 
     // Restarts of nodes (head_session_restarts.cpp).
     NodeRestarter::Hooks returnHooks();
@@ -159,6 +175,8 @@ private:
     std::string streamLine_; // for --explain: transport of the stream; empty: shared memory only
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
+    FrameStatistics statistics_;
+    int64_t probedNs_ = 0; // the latest ClockProbe
     FrameTracker frames_;
     ReplyAssembler answers_;
     DriverEventMerger driverEvents_;

@@ -68,6 +68,7 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
         rerouted_.erase(node);
         introduced_[static_cast<size_t>(node)] = false;
         incarnation = ++incarnations_[static_cast<size_t>(node)];
+        statistics_.forgetClock(node);
     }
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
     NodeEvents& events = *this; // a private base: make_unique could not convert

@@ -57,6 +57,7 @@ Result<void> HeadSession::bringUp() {
             nodes_.sendAlone(plan.node, wire::HeadCommand::Setup, toJson(setupFor(plan)));
     if (auto ready = awaitReady(); !ready) return ready;
     introduceNodes();
+    measureClocks();
     openTables();
     goOnWithoutAbsent();
     auto server = CaptureServer::start({config_.session, config_.socketPath}, options_.registryDigest, *programs_);
@@ -78,6 +79,7 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
     setup.delta = nodes_.link(plan.node).inBatches();
     setup.cacheBytes = config_.cacheBytes;
     setup.log = log::environmentLevels();
+    setup.recordsSpans = statistics_.isOn();
     return setup;
 }
 
@@ -200,6 +202,7 @@ void HeadSession::openTables() {
     }
     terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
     terms.chunkCount = options_.chunkCount;
+    terms.statistics = &statistics_;
     beginRecording();
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {

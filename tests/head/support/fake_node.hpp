@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "nodes/session/session_config.hpp"
+#include "streamcodec/wire/frame_spans.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -32,6 +33,7 @@ struct FakeNodeBehaviour {
     uint32_t dieAtFrame = 0;               // closes its connection instead of finishing this frame
     uint32_t dieAtRequest = 0;             // instead of answering
     uint32_t garbageAtFrame = 0;           // sends a malformed message
+    bool overlappingSpans = false;         // of the statistics of its frames
     bool halfAnswer = false;               // sends the first part of an answer, then dies
     bool noBye = false;                    // hangs at the end
     bool alive = false;                    // sends heartbeats
@@ -109,6 +111,7 @@ private:
                                       R"( fake","extensions":")" + common + "\"}";
             if (!behaviour_.silentStart) sendText(wire::NodeMessage::Ready, ready);
         }
+        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Statistics)) sendsSpans_ = words.at(1) != 0;
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ViewportAssignment))
             areas_ = words.at(1); // applied at once
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
@@ -165,6 +168,7 @@ private:
                                           static_cast<uint32_t>(behaviour_.driverMessage.size())};
             sendStruct(wire::NodeMessage::DriverEvent, event, std::as_bytes(std::span(behaviour_.driverMessage)));
         }
+        if (sendsSpans_) sendSpans(client, a[1], frame);
         wire::FrameDoneMessage done{};
         done.client = client;
         done.window = a[1];
@@ -177,6 +181,16 @@ private:
         done.busyNs = behaviour_.busyNs;
         sendStruct(wire::NodeMessage::FrameDone, done, {});
         return true;
+    }
+
+    void sendSpans(uint32_t client, uint32_t window, uint32_t frame) {
+        const int64_t nowNs = monotonicNowNs(), beganNs = nowNs - kNsPerMs;
+        const int64_t middleNs = beganNs + (behaviour_.overlappingSpans ? -1 : 1000);
+        const wire::FrameSpan spans[] = {
+            {static_cast<uint32_t>(wire::SpanKind::WaitPackets), 0, beganNs, beganNs + 1000},
+            {static_cast<uint32_t>(wire::SpanKind::Replay), 0, middleNs, nowNs}};
+        sendStruct(wire::NodeMessage::FrameSpans, wire::FrameSpansHeader{client, window, frame, 0, nowNs},
+                   std::as_bytes(std::span(spans)));
     }
 
     bool answer(uint32_t client, uint32_t verb, const std::vector<uint32_t>& a) {
@@ -234,6 +248,7 @@ private:
     FakeNodeBehaviour behaviour_;
     NodeSetup setup_;
     uint32_t areas_ = 0;
+    bool sendsSpans_ = false;
     bool goodbyeReceived_ = false;
     std::atomic<bool> stop_{false};
     mutable std::mutex mutex_;
