@@ -13,7 +13,11 @@ int doctorCommand(bool asJson);
 int listCommandsCommand(bool onlyUnsupported);
 
 struct StatOptions {
+    std::string session; // name, or pid of its `mural run`; empty: all sessions
     bool asJson = false;
+    bool asPrometheus = false;
+    std::string traceFile;   // empty: none
+    int64_t frames = 300;    // in the trace
     double watchSeconds = 0; // 0: once
 };
 int statCommand(const StatOptions& options);

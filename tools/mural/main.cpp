@@ -270,10 +270,23 @@ private:
         CLI::App& stat = add(
             "stat", "show the running sessions: programs, frames, round trips, nodes",
             [this] { return mural::cli::statCommand(stat_); },
-            "Examples:\n  mural stat                 once, over one second\n  mural stat --watch 5       every 5 "
-            "seconds, until Ctrl-C\n  mural stat --json          for scripts\n\nA round trip is a request that only "
-            "the render nodes can answer (glReadPixels, query results). The program waits\nfor its reply.\nExit "
-            "status: 0, or 1 if no session of this user runs on this machine.");
+            "Examples:\n  mural stat                     once, over one second\n  mural stat --watch 2           the "
+            "slowest stage of frames, every 2 seconds, until Ctrl-C\n  mural stat --json              for scripts\n  "
+            "mural stat --trace f.json      300 frames, for https://ui.perfetto.dev\n  mural stat 4711 --prometheus   "
+            "metrics of the session whose mural run has pid 4711\n\nA round trip is a request that only the render "
+            "nodes can answer (glReadPixels, query results). The program waits\nfor its reply.\nExit status: 0, or 1 "
+            "if no such session of this user runs on this machine.");
+        stat.add_option("session", stat_.session, "name of a session, or pid of its mural run; default all")
+            ->type_name("SESSION");
+        auto* trace =
+            stat.add_option("--trace", stat_.traceFile, "write a timeline of frames, in the Chrome trace format")
+                ->type_name("FILE");
+        stat.add_option("--frames", stat_.frames, "frames of the timeline; default 300")
+            ->type_name("N")
+            ->check(CLI::Range(1, 100'000))
+            ->needs(trace);
+        stat.add_flag("--prometheus", stat_.asPrometheus, "print metrics in the text format of Prometheus")
+            ->excludes(trace);
         stat.add_flag("--json", stat_.asJson, "print one line of JSON per report");
         stat.add_option("--watch", stat_.watchSeconds, "repeat every SECONDS")
             ->type_name("SECONDS")

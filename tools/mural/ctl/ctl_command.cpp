@@ -33,10 +33,6 @@ struct Target {
     int status = kExitFailed; // with a problem
 };
 
-bool isCalled(const RunningSession& session, const std::string& word) {
-    return session.name == word || session.name.starts_with("mural-" + word + "-");
-}
-
 Target targetOf(const std::string& word, const std::vector<RunningSession>& sessions) {
     if (word.starts_with("/")) return {word, ""};
     std::vector<std::string> names;

@@ -5,8 +5,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <regex>
 #include <sstream>
 #include <sys/stat.h>
@@ -20,15 +18,17 @@ namespace {
 
 constexpr int64_t kPatienceMs = 5'000; // with a silent head
 
-std::optional<nlohmann::json> querySession(const std::string& path) {
+// Returns the result of an operation. Empty: the session does not reply, or rejects the request.
+std::optional<nlohmann::json> querySession(const std::string& path, const char* operation,
+                                           const nlohmann::json& arguments) {
     const Deadline deadline = Deadline::inMs(kPatienceMs);
     auto client = ControlClient::connect(path, deadline);
     if (!client) return {};
-    auto reply = client->request("status", nlohmann::json::object(), deadline);
+    auto reply = client->request(operation, arguments, deadline);
     if (!reply) return {};
-    nlohmann::json state = memberOf(*reply, "result");
-    if (!state.is_object()) return {};
-    return state;
+    nlohmann::json result = memberOf(*reply, "result");
+    if (!result.is_object()) return {};
+    return result;
 }
 
 bool isOwn(const std::string& path) {
@@ -37,6 +37,10 @@ bool isOwn(const std::string& path) {
 }
 
 } // namespace
+
+bool isCalled(const RunningSession& session, const std::string& word) {
+    return session.name == word || session.name.starts_with("mural-" + word + "-");
+}
 
 std::vector<RunningSession> sessionsIn(const std::string& unixSockets) {
     // The path ends the line. The words before it contain no '/'.
@@ -51,24 +55,31 @@ std::vector<RunningSession> sessionsIn(const std::string& unixSockets) {
     return sessions;
 }
 
-Result<std::vector<RunningSession>> findRunningSessions() {
+Result<std::vector<RunningSession>> findRunningSessions(const std::string& session) {
     std::ifstream file("/proc/net/unix", std::ios::binary);
     if (!file)
         return Error{std::string("/proc/net/unix cannot be read: ") + std::strerror(errno) +
                      "; check that /proc is mounted"};
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     std::vector<RunningSession> sessions = sessionsIn(text);
-    std::erase_if(sessions, [](const RunningSession& session) { return !isOwn(session.controlPath); });
+    std::erase_if(sessions, [&](const RunningSession& s) {
+        return (!session.empty() && !isCalled(s, session)) || !isOwn(s.controlPath);
+    });
     return sessions;
 }
 
-Result<std::vector<nlohmann::json>> queryRunningSessions() {
-    auto sessions = findRunningSessions();
+Result<std::vector<nlohmann::json>> queryRunningSessions(const std::string& session) {
+    auto sessions = findRunningSessions(session);
     if (!sessions) return sessions.error();
     std::vector<nlohmann::json> states;
-    for (const RunningSession& session : *sessions)
-        if (auto state = querySession(session.controlPath)) states.push_back(std::move(*state));
+    for (const RunningSession& s : *sessions)
+        if (auto state = querySession(s.controlPath, "status", nlohmann::json::object()))
+            states.push_back(std::move(*state));
     return states;
+}
+
+std::optional<nlohmann::json> queryFrames(const std::string& controlPath, uint64_t sinceFrame) {
+    return querySession(controlPath, "frames", {{"since", sinceFrame}});
 }
 
 } // namespace mural::cli
