@@ -5,24 +5,15 @@
 // shows. Each draw of the compound tree becomes one render node with its area, eye, pixels, samples, phase and range.
 // Nodes send their ranges to each other and everything else to the head, as in a session without a file. The frames of
 // the file do not change these paths.
+//
+// planning/config/ plans one canvas, step by step. This module joins the plans of all canvases.
 #pragma once
 
 #include "balancer/compound/load_config.hpp"
+#include "nodes/head/planning/config/plan_options.hpp"
 #include "nodes/head/planning/node_plan.hpp"
 
 namespace mural {
-
-struct PlanOptions {
-    std::string ownHost;
-    bool allLocal = false; // all nodes on this machine
-    std::string canvas;    // name of the canvas to show; empty: all that show something
-    // names of the layouts to show; a canvas without any of them shows its first layout
-    std::vector<std::string> layouts;
-    ProjectionChoice projection = ProjectionChoice::Auto;
-    double modelUnit = 1; // units of the program per metre of the file
-    int width = 0;        // of the program's picture in pixels; 0: as in the file
-    balance::Balance balance = balance::Balance::AsInFile;
-};
 
 // Plans every canvas that shows something, unless one is named. Each canvas has its own nodes, which draw the program's
 // picture at the resolution of the canvas. Errors, one line each: nothing to draw; an unsupported mix of

@@ -1,0 +1,36 @@
+// The draw tasks of a configuration's compound trees: the first step of a plan. Pure.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "balancer/compound/frame_flow.hpp"
+#include "nodes/head/planning/config/config_source.hpp"
+#include "nodes/head/planning/node_plan.hpp"
+
+namespace mural {
+
+// One draw task of the compound tree. It becomes one render node.
+struct ConfigDraw {
+    compound::RenderContext context;
+    Viewport area;                    // on the canvas
+    compound::Flow flow;              // the path of its frames
+    std::optional<Viewport> shown;    // on the canvas, if different from area; set by followFrames()
+    Zoom transferScale;               // scale of its picture in transfer; set by followFrames()
+    int picture = 0;                  // index of its picture (WallPart); set by placeParts()
+    std::optional<ScreenView> screen; // for a screen in a room; set by chooseProjection()
+    [[nodiscard]] const Viewport& onWall() const { return shown ? *shown : area; }
+};
+
+struct ConfigDraws {
+    std::vector<ConfigDraw> draws;
+    std::map<compound::Index, std::string> barriers; // name of the swap barrier by window
+};
+
+// Returns the draws of all phases of a period, each once, and divides pictures evenly among the workers of a queue.
+// Adds warnings to the plan.
+[[nodiscard]] ConfigDraws gatherDraws(const ConfigSource& source, compound::FrameInput input, SessionPlan& plan);
+
+} // namespace mural
