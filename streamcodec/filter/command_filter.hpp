@@ -1,16 +1,18 @@
 // Command filter: defers texture, buffer and uniform uploads until the first command that may read them. Drops uploads
-// that are overwritten before that, and uploads that do not change the contents.
+// that a later upload overwrites before that, and uploads that do not change the contents.
 //
-// Each object has a queue of deferred commands: its uploads and the later commands on the same object. Optionally,
-// redundant state setters are deferred per state cell. The queue is flushed before the first command that may read the
-// object, which is
+// Each object has a queue. The queue holds the deferred uploads of the object, and later commands on the same object.
+// The filter flushes it before the first command that may read the object:
 // - a draw while the object is bound,
-// - a command whose reads are unknown,
+// - a command with unknown reads,
 // - any command of another context of the share group.
-// A flush binds the object, sends the queue, and restores the previous binding. The filter tracks bindings only. A
-// command without an effect rule (streamcodec/snapshot) disables deferral for its share group.
+// A flush binds the object, sends the queue, and restores the previous binding. The filter therefore tracks bindings,
+// but no other state. A command without an effect rule (streamcodec/snapshot) disables deferral for its share group.
 //
-// Assumption: calls that bind something are valid. A rejected upload is rejected at any position.
+// setDropsRedundant() adds the setters of small state (state_setters.hpp). Each cell of state then holds its latest
+// setter until a command reads the state.
+//
+// Assumption: calls that bind something are valid. GL rejects an invalid upload at any position.
 #pragma once
 
 #include <map>
