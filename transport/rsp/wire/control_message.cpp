@@ -1,6 +1,7 @@
 #include "transport/rsp/wire/control_message.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "common/base/little_endian.hpp"
 
@@ -23,16 +24,20 @@ public:
     template <size_t N> void fixed(const std::array<std::byte, N>& value) {
         bytes_.insert(bytes_.end(), value.begin(), value.end());
     }
+    void text(const std::string& value) {
+        bytes(std::as_bytes(std::span(value)).first(std::min(value.size(), kMaxTextBytes)));
+    }
+    void datagram(const std::vector<std::byte>& value) { bytes(value); }
+    void sequence(Sequence value) { number(value.value()); }
+    template <class Enum> void choice(Enum value, Enum /*last*/) { number(static_cast<uint8_t>(value)); }
+    std::vector<std::byte> take() { return std::move(bytes_); }
+
+private:
     void bytes(std::span<const std::byte> value) {
         number(static_cast<uint32_t>(value.size()));
         bytes_.insert(bytes_.end(), value.begin(), value.end());
     }
-    void text(const std::string& value) {
-        bytes(std::as_bytes(std::span(value)).first(std::min(value.size(), kMaxTextBytes)));
-    }
-    std::vector<std::byte> take() { return std::move(bytes_); }
 
-private:
     std::vector<std::byte> bytes_;
 };
 
@@ -56,6 +61,29 @@ public:
         std::copy_n(left_.begin(), N, value.begin());
         left_ = left_.subspan(N);
     }
+    void text(std::string& value) {
+        const auto b = bytes(kMaxTextBytes);
+        value.assign(reinterpret_cast<const char*>(b.data()), b.size());
+    }
+    void datagram(std::vector<std::byte>& value) {
+        const auto b = bytes(kMaxTunnelBytes);
+        value.assign(b.begin(), b.end());
+    }
+    void sequence(Sequence& value) {
+        uint32_t n = 0;
+        number(n);
+        value = Sequence(n);
+    }
+    // last: the largest valid value.
+    template <class Enum> void choice(Enum& value, Enum last) {
+        uint8_t n = 0;
+        number(n);
+        if (n > static_cast<uint8_t>(last)) fail();
+        value = static_cast<Enum>(n);
+    }
+    [[nodiscard]] bool whole() const { return good_ && left_.empty(); }
+
+private:
     std::span<const std::byte> bytes(size_t maximum) {
         uint32_t count = 0;
         number(count);
@@ -64,130 +92,67 @@ public:
         left_ = left_.subspan(count);
         return value;
     }
-    void text(std::string& value) {
-        const auto b = bytes(kMaxTextBytes);
-        value.assign(reinterpret_cast<const char*>(b.data()), b.size());
-    }
     void fail() {
         good_ = false;
         left_ = {};
     }
-    [[nodiscard]] bool whole() const { return good_ && left_.empty(); }
 
-private:
     std::span<const std::byte> left_;
     bool good_ = true;
 };
 
-void put(Writer& w, const Join& m) {
-    w.fixed(m.uuid);
-    w.number(m.udpPort);
-    w.number(m.socketDatagrams);
-    w.number(m.maxDatagramBytes);
-    w.number(m.seals);
-    w.flag(m.multicast);
-}
-void get(Reader& r, Join& m) {
-    r.fixed(m.uuid);
-    r.number(m.udpPort);
-    r.number(m.socketDatagrams);
-    r.number(m.maxDatagramBytes);
-    r.number(m.seals);
-    r.flag(m.multicast);
-}
-void put(Writer& w, const Welcome& m) {
-    w.number(m.self);
-    w.number(m.keys.session);
-    w.number(static_cast<uint8_t>(m.keys.seal));
-    w.fixed(m.keys.secret);
-    w.text(m.group);
-    w.number(m.datagramBytes);
-    w.number(m.windowDatagrams);
-    w.number(m.probeNonce);
-}
-void get(Reader& r, Welcome& m) {
-    uint8_t seal = 0;
-    r.number(m.self);
-    r.number(m.keys.session);
-    r.number(seal);
-    if (seal > static_cast<uint8_t>(Seal::ChaCha)) r.fail();
-    m.keys.seal = static_cast<Seal>(seal);
-    r.fixed(m.keys.secret);
-    r.text(m.group);
-    r.number(m.datagramBytes);
-    r.number(m.windowDatagrams);
-    r.number(m.probeNonce);
-}
-void put(Writer& w, const Probed& m) { w.number(m.nonce); }
-void get(Reader& r, Probed& m) { r.number(m.nonce); }
-void put(Writer& w, const MemberCame& m) {
-    w.number(m.id);
-    w.fixed(m.uuid);
-    w.text(m.address);
-    w.number(m.udpPort);
-    w.flag(m.multicast);
-}
-void get(Reader& r, MemberCame& m) {
-    r.number(m.id);
-    r.fixed(m.uuid);
-    r.text(m.address);
-    r.number(m.udpPort);
-    r.flag(m.multicast);
-}
-void put(Writer& w, const StreamStart& m) {
-    w.number(m.writer);
-    w.number(m.reader);
-    w.number(m.first.value());
-}
-void get(Reader& r, StreamStart& m) {
-    uint32_t first = 0;
-    r.number(m.writer);
-    r.number(m.reader);
-    r.number(first);
-    m.first = Sequence(first);
-}
-void put(Writer& w, const MemberGone& m) {
-    w.number(m.id);
-    w.number(static_cast<uint8_t>(m.reason));
-}
-void get(Reader& r, MemberGone& m) {
-    uint8_t reason = 0;
-    r.number(m.id);
-    r.number(reason);
-    if (reason > static_cast<uint8_t>(GoneReason::Removed)) r.fail();
-    m.reason = static_cast<GoneReason>(reason);
-}
-void put(Writer& w, const Tunnel& m) {
-    w.number(m.to);
-    w.bytes(m.datagram);
-}
-void get(Reader& r, Tunnel& m) {
-    r.number(m.to);
-    const auto b = r.bytes(kMaxTunnelBytes);
-    m.datagram.assign(b.begin(), b.end());
-}
-void put(Writer& w, const Refused& m) { w.text(m.why); }
-void get(Reader& r, Refused& m) { r.text(m.why); }
-void put(Writer&, const Leave&) {}
-void get(Reader&, Leave&) {}
-void put(Writer& w, const Ping& m) {
-    w.number(m.number);
-    w.flag(m.answer);
-}
-void get(Reader& r, Ping& m) {
-    r.number(m.number);
-    r.flag(m.answer);
-}
+// The fields of each message, in their order on the wire. Coder is Writer or Reader.
+template <class M, class Message> concept Is = std::is_same_v<std::remove_const_t<M>, Message>;
 
-void put(Writer& w, const Rerouted& m) {
-    w.number(m.id);
-    w.flag(m.multicast);
-    w.number(m.probeNonce);
+template <class Coder, Is<Join> M> void visitFields(Coder& c, M& m) {
+    c.fixed(m.uuid);
+    c.number(m.udpPort);
+    c.number(m.socketDatagrams);
+    c.number(m.maxDatagramBytes);
+    c.number(m.seals);
+    c.flag(m.multicast);
 }
-void get(Reader& r, Rerouted& m) {
-    r.number(m.id);
-    r.flag(m.multicast);
-    r.number(m.probeNonce);
+template <class Coder, Is<Welcome> M> void visitFields(Coder& c, M& m) {
+    c.number(m.self);
+    c.number(m.keys.session);
+    c.choice(m.keys.seal, Seal::ChaCha);
+    c.fixed(m.keys.secret);
+    c.text(m.group);
+    c.number(m.datagramBytes);
+    c.number(m.windowDatagrams);
+    c.number(m.probeNonce);
+}
+template <class Coder, Is<Probed> M> void visitFields(Coder& c, M& m) { c.number(m.nonce); }
+template <class Coder, Is<MemberCame> M> void visitFields(Coder& c, M& m) {
+    c.number(m.id);
+    c.fixed(m.uuid);
+    c.text(m.address);
+    c.number(m.udpPort);
+    c.flag(m.multicast);
+}
+template <class Coder, Is<StreamStart> M> void visitFields(Coder& c, M& m) {
+    c.number(m.writer);
+    c.number(m.reader);
+    c.sequence(m.first);
+}
+template <class Coder, Is<MemberGone> M> void visitFields(Coder& c, M& m) {
+    c.number(m.id);
+    c.choice(m.reason, GoneReason::Removed);
+}
+template <class Coder, Is<Tunnel> M> void visitFields(Coder& c, M& m) {
+    c.number(m.to);
+    c.datagram(m.datagram);
+}
+template <class Coder, Is<Refused> M> void visitFields(Coder& c, M& m) { c.text(m.why); }
+template <class Coder, Is<Leave> M> void visitFields(Coder&, M&) {}
+template <class Coder, Is<Ping> M> void visitFields(Coder& c, M& m) {
+    c.number(m.number);
+    c.flag(m.answer);
+}
+template <class Coder, Is<Rerouted> M> void visitFields(Coder& c, M& m) {
+    c.number(m.id);
+    c.flag(m.multicast);
+    c.number(m.probeNonce);
 }
 
 // The index of an alternative in the variant is its type on the wire.
@@ -195,7 +160,7 @@ template <size_t I = 0> std::optional<ControlMessage> decodeKind(size_t kind, Re
     if constexpr (I < std::variant_size_v<ControlMessage>) {
         if (kind != I) return decodeKind<I + 1>(kind, r);
         std::variant_alternative_t<I, ControlMessage> message;
-        get(r, message);
+        visitFields(r, message);
         if (!r.whole()) return {};
         return message;
     } else {
@@ -207,7 +172,7 @@ template <size_t I = 0> std::optional<ControlMessage> decodeKind(size_t kind, Re
 
 std::vector<std::byte> encode(const ControlMessage& message) {
     Writer w(message.index());
-    std::visit([&](const auto& m) { put(w, m); }, message);
+    std::visit([&](const auto& m) { visitFields(w, m); }, message);
     return w.take();
 }
 
