@@ -15,12 +15,6 @@ namespace {
 
 constexpr GLsizei kNameBytes = 512;
 
-bool linked(GLuint program) {
-    GLint status = 0;
-    gReal.glGetProgramiv(program, GL_LINK_STATUS, &status);
-    return status != 0;
-}
-
 struct LayoutWriter {
     ThreadState& t;
     size_t bytes = 4;
@@ -56,12 +50,14 @@ void addUniform(LayoutWriter& w, GLuint program, const char* name, GLint size) {
 
 } // namespace
 
+bool isLinked(Context& context, GLuint program) {
+    GLint status = 0;
+    return raisesNothing(context, [&] { gReal.glGetProgramiv(program, GL_LINK_STATUS, &status); }) && status != 0;
+}
+
 void bindAttributes(ThreadState& t, GLuint program) {
     if (!gReal.glGetActiveAttrib || !t.context) return;
-    const bool fine = raisesNothing(*t.context, [&] {
-        if (!linked(program)) return;
-    });
-    if (!fine || !linked(program)) return;
+    if (!isLinked(*t.context, program)) return;
     GLint count = 0;
     gReal.glGetProgramiv(program, GL_ACTIVE_ATTRIBUTES, &count);
     for (GLint i = 0; i < count; ++i) {
@@ -78,7 +74,7 @@ void bindAttributes(ThreadState& t, GLuint program) {
 
 void sendLayout(ThreadState& t, GLuint program) {
     if (!gReal.glGetActiveUniform || !gReal.glGetUniformLocation || !t.context) return;
-    if (!raisesNothing(*t.context, [&] { linked(program); }) || !linked(program)) return;
+    if (!isLinked(*t.context, program)) return;
     LayoutWriter w{t};
     if (!scratchMemory(t, 4)) return;
     GLint count = 0;

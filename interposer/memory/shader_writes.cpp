@@ -3,9 +3,9 @@
 #include <GL/glext.h>
 #include <cstring>
 
-#include "interposer/readback/node_requests.hpp"
 #include "interposer/wrappers/copies.hpp"
 #include "interposer/context/context.hpp"
+#include "interposer/encode/program_layout.hpp"
 #include "interposer/encode/real_gl.hpp"
 #include "interposer/encode/session.hpp"
 #include "interposer/memory/shader_storage_scan.hpp"
@@ -46,14 +46,9 @@ bool mayHaveWriters(const ThreadState& t) {
     return may && gReal.glGetProgramInterfaceiv && gReal.glGetProgramResourceiv;
 }
 
-bool linked(Context& c, GLuint program) {
-    GLint status = 0;
-    return raisesNothing(c, [&] { gReal.glGetProgramiv(program, GL_LINK_STATUS, &status); }) && status;
-}
-
 // fragmentMayStore(): one of its fragment shaders may write to storage blocks.
 template <class MayStore> void note(ThreadState& t, GLuint program, MayStore&& fragmentMayStore) {
-    if (!mayHaveWriters(t) || !linked(*t.context, program)) return;
+    if (!mayHaveWriters(t) || !isLinked(*t.context, program)) return;
     const bool writes = fragmentUses(program, GL_ATOMIC_COUNTER_BUFFER) || fragmentUses(program, GL_UNIFORM) ||
                         (activeCount(program, GL_SHADER_STORAGE_BLOCK) > 0 && fragmentMayStore());
     if (writes) copies::drawAll(t, "glLinkProgram");

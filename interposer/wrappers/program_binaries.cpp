@@ -55,12 +55,6 @@ void append(std::byte* binary, uint32_t driverBytes, const void* recipe, uint32_
     std::memcpy(binary + driverBytes + recipeBytes, &footer, sizeof footer);
 }
 
-bool linked(GLuint program) {
-    GLint status = 0;
-    gReal.glGetProgramiv(program, GL_LINK_STATUS, &status);
-    return status != 0;
-}
-
 } // namespace
 
 extern "C" {
@@ -107,7 +101,7 @@ void mural_glProgramBinary(GLuint program, GLenum binaryFormat, const void* bina
     const bool loads = isMuralBinary && footer.recipeBytes > 0;
     const GLsizei driverBytes = length < 0 ? length : loads ? static_cast<GLsizei>(footer.driverBytes) : 0;
     if (!raisesNothing(*t.context, [&] { gReal.glProgramBinary(program, binaryFormat, binary, driverBytes); })) return;
-    if (!loads || !linked(program)) return records::programRecipe(t, program, {});
+    if (!loads || !isLinked(*t.context, program)) return records::programRecipe(t, program, {});
     bindAttributes(t, program);
     const auto* const recipe = static_cast<const std::byte*>(binary) + footer.driverBytes;
     recordMemoryWriter(t, program, recipe, footer.recipeBytes);
