@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "tests/replay/frustum_matrix.hpp"
+
 namespace mural {
 namespace {
 
@@ -12,24 +14,7 @@ using Point = std::array<double, 4>;
 
 struct Projection {
     double l, r, b, t, n, f;
-    [[nodiscard]] std::array<double, 16> matrix() const {
-        return {2 * n / (r - l),
-                0,
-                0,
-                0,
-                0,
-                2 * n / (t - b),
-                0,
-                0,
-                (r + l) / (r - l),
-                (t + b) / (t - b),
-                -(f + n) / (f - n),
-                -1,
-                0,
-                0,
-                -2 * f * n / (f - n),
-                0};
-    }
+    [[nodiscard]] std::array<double, 16> matrix() const { return test::frustumMatrix(l, r, b, t, n, f); }
 };
 
 Point times(const double (&m)[16], const Point& p) {

@@ -7,8 +7,12 @@
 #include <limits>
 #include <vector>
 
+#include "tests/replay/frustum_matrix.hpp"
+
 namespace mural {
 namespace {
+
+using test::frustumMatrix;
 
 using Matrix = std::array<double, 16>; // columns
 
@@ -24,36 +28,18 @@ double scaleOf(const Matrix& m) {
     std::copy(m.begin(), m.end(), plain);
     return seenProjection(plain).scaleX;
 }
-Matrix frustum(double l, double r, double b, double t, double n, double f) {
-    return {2 * n / (r - l),
-            0,
-            0,
-            0,
-            0,
-            2 * n / (t - b),
-            0,
-            0,
-            (r + l) / (r - l),
-            (t + b) / (t - b),
-            -(f + n) / (f - n),
-            -1,
-            0,
-            0,
-            -2 * f * n / (f - n),
-            0};
-}
 Matrix turned(double angle) {
     return {std::cos(angle), 0, -std::sin(angle), 0, 0, 1, 0, 0, std::sin(angle), 0, std::cos(angle), 0, 3, -2, -9, 1};
 }
 
 TEST(ProjectionDetector, recognisesPlainProjections) {
-    EXPECT_DOUBLE_EQ(scaleOf(frustum(-2, 2, -1, 1, 3, 50)), 1.5);
-    EXPECT_NEAR(scaleOf(frustum(-1, 3, -1, 1, 3, 50)), 1.5, 1e-12) << "sheared";
-    EXPECT_NEAR(scaleOf(frustum(-2, 2, -1, 1, 3, 1e9)), 1.5, 1e-12);
+    EXPECT_DOUBLE_EQ(scaleOf(frustumMatrix(-2, 2, -1, 1, 3, 50)), 1.5);
+    EXPECT_NEAR(scaleOf(frustumMatrix(-1, 3, -1, 1, 3, 50)), 1.5, 1e-12) << "sheared";
+    EXPECT_NEAR(scaleOf(frustumMatrix(-2, 2, -1, 1, 3, 1e9)), 1.5, 1e-12);
 }
 
 TEST(ProjectionDetector, recognisesProductsWithViewsAndModels) {
-    const Matrix p = frustum(-1, 3, -1, 1, 3, 50);
+    const Matrix p = frustumMatrix(-1, 3, -1, 1, 3, 50);
     EXPECT_NEAR(scaleOf(product(p, turned(0.7))), 1.5, 1e-12);
     Matrix small = turned(-1.1);
     for (size_t i = 0; i < 12; ++i) small[i] *= 0.01;
@@ -64,7 +50,7 @@ TEST(ProjectionDetector, rejectsMatricesWithoutPerspective) {
     EXPECT_EQ(scaleOf(turned(0.3)), 0);
     EXPECT_EQ(scaleOf({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1}), 0);
     EXPECT_EQ(scaleOf({}), 0);
-    Matrix bad = frustum(-1, 1, -1, 1, 1, 2);
+    Matrix bad = frustumMatrix(-1, 1, -1, 1, 1, 2);
     bad[5] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(scaleOf(bad), 0);
     bad[5] = std::numeric_limits<double>::infinity();
@@ -72,7 +58,7 @@ TEST(ProjectionDetector, rejectsMatricesWithoutPerspective) {
 }
 
 TEST(ProjectionDetector, readsAllLayoutsOfUniforms) {
-    const Matrix p = product(frustum(-2, 2, -1, 1, 3, 50), turned(0.2));
+    const Matrix p = product(frustumMatrix(-2, 2, -1, 1, 3, 50), turned(0.2));
     float single[16], turnedOver[16];
     for (size_t i = 0; i < 16; ++i)
         single[i] = static_cast<float>(p[i]), turnedOver[i % 4 * 4 + i / 4] = static_cast<float>(p[i]);
@@ -82,7 +68,7 @@ TEST(ProjectionDetector, readsAllLayoutsOfUniforms) {
 }
 
 TEST(ProjectionDetector, findsProjectionsInBuffers) {
-    const Matrix p = frustum(-2, 2, -1, 1, 3, 50);
+    const Matrix p = frustumMatrix(-2, 2, -1, 1, 3, 50);
     std::vector<float> values(7, 0.25f);
     for (const double v : p) values.push_back(static_cast<float>(v));
     values.insert(values.end(), 9, 1.0f);
