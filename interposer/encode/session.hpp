@@ -104,4 +104,10 @@ private:
     uint32_t picturesTaken_ = 0; // latest frame whose picture was taken; guarded by the request lock
 };
 
+// Returns true if the thread has a context and the head lives, so that Mural captures the thread's calls.
+[[nodiscard]] inline bool capturing(const ThreadState& t) {
+    const Session* s = Session::current();
+    return t.context && s && s->alive();
+}
+
 } // namespace mural

@@ -17,11 +17,6 @@ namespace mural {
 
 namespace {
 
-bool capturing(const ThreadState& t) {
-    const Session* s = Session::current();
-    return t.context && s && s->alive();
-}
-
 GLint get(GLenum name) {
     GLint value = 0;
     gReal.glGetIntegerv(name, &value);

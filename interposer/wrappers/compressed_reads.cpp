@@ -4,6 +4,7 @@
 #include "interposer/readback/node_requests.hpp"
 #include "interposer/wrappers/image_reads.hpp"
 #include "interposer/memory/pixel_store.hpp"
+#include "interposer/encode/session.hpp"
 #include "streamcodec/sizes/compressed_block.hpp"
 
 using namespace mural;

@@ -39,11 +39,6 @@ GLenum targetOf(Context& c, GLuint texture) {
 
 } // namespace
 
-bool capturing(const ThreadState& t) {
-    Session* s = Session::current();
-    return t.context && s && s->alive();
-}
-
 void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::ImageLayout& layout) {
     if (!packBufferBound(*t.context)) {
         if (pixels) sizes::unpackTight(pixels, tight, layout);

@@ -10,8 +10,6 @@
 
 namespace mural::image_reads {
 
-[[nodiscard]] bool capturing(const ThreadState& t);
-
 // Writes tight pixels according to the pack state: to client memory, or to the bound pack buffer (the program's own and
 // the nodes').
 void deliver(ThreadState& t, const void* tight, void* pixels, const sizes::ImageLayout& layout);

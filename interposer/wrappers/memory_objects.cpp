@@ -17,11 +17,6 @@ namespace {
 constexpr GLubyte kUuid[GL_UUID_SIZE_EXT] = {0xb9, 0x1f, 0x6c, 0x4e, 0x72, 0x0a, 0x4d, 0x35,
                                              0x8e, 0xc3, 0x1d, 0x58, 0xa7, 0x60, 0xf2, 0x94};
 
-bool capturing(const ThreadState& t) {
-    Session* s = Session::current();
-    return t.context && s && s->alive();
-}
-
 template <class Call> void getBytes(GLenum pname, GLubyte* data, Call&& call) {
     const ThreadState& t = *tThread;
     if (!capturing(t)) return call();

@@ -20,10 +20,6 @@
 using namespace mural;
 
 namespace {
-bool capturing(const ThreadState& t) {
-    Session* s = Session::current();
-    return t.context && s && s->alive();
-}
 void publish(ThreadState& t) {
     if (Session* s = Session::current(); s && t.context) s->publish(t, false);
 }

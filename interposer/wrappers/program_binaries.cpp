@@ -24,11 +24,6 @@ struct Footer {
 };
 static_assert(sizeof(Footer) == 24);
 
-bool capturing(const ThreadState& t) {
-    Session* s = Session::current();
-    return t.context && s && s->alive();
-}
-
 uint32_t checksumOf(const std::byte* bytes, size_t count) {
     uint32_t hash = 2166136261U;
     for (size_t i = 0; i < count; ++i) hash = (hash ^ static_cast<uint32_t>(bytes[i])) * 16777619U;

@@ -13,11 +13,6 @@ using namespace mural;
 
 namespace {
 
-bool capturing(const ThreadState& t) {
-    Session* s = Session::current();
-    return t.context && s && s->alive();
-}
-
 void begins(ThreadState& t, GLenum target, GLuint index, GLuint id) {
     if (!t.context || t.context->listPrimitive) return; // not valid in a list there
     t.context->queryIsAny.set(id, target == GL_ANY_SAMPLES_PASSED || target == GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
