@@ -165,11 +165,8 @@ private:
             }
             if (i > 0 || level.kind != Level::Kind::Ranges) {
                 name += kNames[static_cast<size_t>(level.kind)] + std::to_string(i);
-                addChannel(name, {0, 0, form_.width, form_.height}, false, {channelNamed(name)});
-                part.channel = name;
-                Frame frame;
-                frame.name = level.kind == Level::Kind::Frames ? channel + ".frame" : name;
-                part.outputFrames.push_back(frame);
+                const std::string frameName = level.kind == Level::Kind::Frames ? channel + ".frame" : name;
+                const Frame frame = drawOnNewChannel(part, name, frameName);
                 if (level.kind != Level::Kind::Frames || i == 0) c.inputFrames.push_back(frame);
             }
             divide(part, name, depth + 1);
@@ -181,6 +178,16 @@ private:
         TileQueue queue = chunksOf(channel);
         queue.size.range = edge(1, form_.chunks);
         c.outputTiles.push_back(queue);
+    }
+
+    // Adds a channel, on which the part is drawn. Returns the frame that transfers its picture.
+    Frame drawOnNewChannel(Compound& part, const std::string& channel, const std::string& frameName) {
+        addChannel(channel, {0, 0, form_.width, form_.height}, false, {channelNamed(channel)});
+        part.channel = channel;
+        Frame frame;
+        frame.name = frameName;
+        part.outputFrames.push_back(frame);
+        return frame;
     }
 
     static TileQueue chunksOf(const std::string& channel) {
@@ -210,12 +217,7 @@ private:
                 part.viewport = Viewport{0, edge(i, n), 1, between(edge(i, n), edge(i + 1, n))};
             if (i > 0) {
                 const std::string name = channel + ".part." + std::to_string(i);
-                addChannel(name, {0, 0, form_.width, form_.height}, false, {channelNamed(name)});
-                part.channel = name;
-                Frame frame;
-                frame.name = name;
-                part.outputFrames.push_back(frame);
-                c.inputFrames.push_back(frame);
+                c.inputFrames.push_back(drawOnNewChannel(part, name, name));
             }
             c.children.push_back(std::move(part));
         }
@@ -228,14 +230,9 @@ private:
         queue.name = channel + ".queue";
         for (int32_t i = 0; i < form_.takers; ++i) {
             const std::string name = channel + ".taker." + std::to_string(i);
-            addChannel(name, {0, 0, form_.width, form_.height}, false, {channelNamed(name)});
             Compound part;
-            part.channel = name;
             part.inputTiles.push_back(queue);
-            Frame frame;
-            frame.name = name;
-            part.outputFrames.push_back(frame);
-            c.inputFrames.push_back(frame);
+            c.inputFrames.push_back(drawOnNewChannel(part, name, name));
             c.children.push_back(std::move(part));
         }
         queue.size.pixels = Pixels2{static_cast<uint32_t>(form_.tileWidth), static_cast<uint32_t>(form_.tileHeight)};
