@@ -18,8 +18,8 @@ using config::at;
 using config::Index;
 using config::kNone;
 
-// Assignments that no frame was drawn with yet. A window that is never cleared keeps its areas, so more of them would
-// have no effect either.
+// Limit of the assignments with which no frame has been drawn yet. A window that is never cleared keeps its areas, so
+// further assignments would have no effect.
 constexpr size_t kMaxIssues = 64;
 constexpr size_t kRatedFrames = 32;
 constexpr uint32_t kSeed = 20261123;

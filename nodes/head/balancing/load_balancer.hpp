@@ -33,8 +33,9 @@ public:
         std::function<void(const RangeAssignment&)> ranges;
     };
 
-    // plant: fault injection for tests. "areas" and "shares" divide at random after each frame and reply of each node;
-    // the picture must stay exact. "early", "uncleared" and "lateshare" do so, too, and are faults of nodes.
+    // plant: fault injection for tests; each value divides at random after each frame and reply of a node. With "areas"
+    // and "shares" the picture must stay exact. With "early", "uncleared" and "lateshare" a node also applies
+    // assignments at the wrong time, and tests must find wrong pixels.
     LoadBalancer(const SessionPlan& plan, Announce announce, const std::string& plant = {});
 
     // nowNs: time at which the node's message arrived, on the monotonic clock.

@@ -17,8 +17,8 @@ namespace mural {
 
 inline constexpr int kControlVersion = 1;
 inline constexpr size_t kMaxControlRequestBytes = size_t{64} << 10;
-// A client with this much unsent data gets no further replies until it reads. Half of it stops the messages of its
-// subscriptions.
+// Limit of the unsent data of a client. A client at the limit receives no further replies until it reads. A client at
+// half of the limit receives no messages of its subscriptions.
 inline constexpr size_t kMaxControlUnsentBytes = size_t{1} << 20;
 inline constexpr size_t kMaxControlWaitingEntries = 256; // of a subscription, between two messages
 inline constexpr int64_t kMinControlIntervalMs = 20;

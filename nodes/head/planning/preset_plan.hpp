@@ -10,7 +10,7 @@ namespace mural {
 // sessions run the configuration of presetOf().
 [[nodiscard]] bool movesWork(const SessionConfig& config);
 
-// Returns true if several nodes may share each part of the picture, so their number exceeds that of the tiles.
+// Returns true if several nodes may share each part of the picture. A session may then have more nodes than tiles.
 [[nodiscard]] inline bool sharesParts(const SessionConfig& config) {
     return config.tileWidth > 0 || (movesWork(config) && config.chunks == 0);
 }

@@ -1,5 +1,5 @@
-// Assembles the replies of the nodes to a program's request. The replies alone identify requests: all nodes receive the
-// same stream, so every node answers every request.
+// Assembles the replies of the nodes to a program's request. All nodes receive the same stream, so every node answers
+// every request. The first reply to a request therefore announces it here.
 #pragma once
 
 #include <cstdint>
