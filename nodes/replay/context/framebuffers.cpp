@@ -58,7 +58,7 @@ GLenum Replay::bufferOfEye(GLenum buffer, const Window* w) const {
     default: return buffer;
     }
 }
-// Reads of the other eye return this node's eye. It is the only one here, and the read must not be an error.
+// Replaces a buffer of the other eye by that of this node's eye, the only one here. The read must not be an error.
 GLenum Replay::readBufferOfEye(GLenum buffer, const Window* w) const {
     const GLenum here = bufferOfEye(buffer, w);
     if (here != GL_NONE || buffer == GL_NONE) return here;

@@ -68,7 +68,7 @@ void Replay::swapUnbound(Window& w, ContextState& drawer, uint32_t id, uint32_t 
     before.read = boundRead_;
     Window* const draw = drawer.draw;
     Window* const read = drawer.read;
-    // Mesa gathers vertices. Without a flush the context would later draw them into the window that is bound next.
+    // Mesa collects vertices before it draws them. Without a flush it would draw them into the next bound window.
     if (bound_ && gl.glFlush) gl.glFlush();
     Stream forSwap;
     forSwap.context = &drawer;
@@ -124,8 +124,8 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
             };
     }
     if (window && bound_) flushIfRequested(*window);
-    // A frame counts after its draws, because pacing and frame rates depend on that. If its picture is read later, the
-    // frame counts with the picture.
+    // A frame ends after its draws, because pacing and frame rates depend on that. If its picture is read later, the
+    // frame ends with that read.
     const bool shown = frame != wire::kUnseenFrame;
     const bool later = shown && readable && readsLater(*readable, f.region);
     const int64_t beganNs = monotonicNowNs();

@@ -285,7 +285,8 @@ std::span<const std::byte> Replay::onRange(uint16_t opcode, std::span<const std:
     }
 }
 
-// A native list is one piece. Returns false if the list changes state that decides about later draws.
+// Treats a native list as one draw, because its draws cannot be divided. Returns false if the list changes state on
+// which the division of later draws depends.
 bool Replay::onRangeList(const DisplayListItem& item) {
     if (!bound_ || !drawsWindow() || !c_->draw || c_->inPrimitive) return item.plain;
     Window& w = *c_->draw;
