@@ -10,7 +10,7 @@
 
 namespace mural::delta {
 
-// Spans and Words describe changed pages. Those of short entries are part of Control.
+// Spans and Words describe changed pages. Control includes the changes of short entries.
 enum class Section : uint8_t { Control, Words, Texts, Pages, Spans };
 constexpr size_t kSections = 5;
 

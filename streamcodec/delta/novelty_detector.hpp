@@ -17,9 +17,11 @@ namespace mural::delta {
 // State of one stream. Positions refer to its log.
 class NoveltyDetector {
 public:
-    // A packet begins in this frame; `end` is the end of the log. The threshold is lower for a long packet after many
-    // packets, and falls to zero after packets of this frame whose rest was plain. A short packet would gain little.
-    // Between pages, which are always coded, short records resynchronize the log.
+    // Begins a packet; `end`: the end of the log. At least a threshold of its new records is coded. The threshold is
+    // - kAtLeast for a short packet, which would gain little, and between pages: pages are always coded, and the short
+    //   records between them resynchronize the log;
+    // - kFew for a long packet, and after a packet of this frame with a plain rest.
+    // Each packet of this frame with a plain rest halves the threshold.
     void packetBegins(uint64_t frame, uint64_t end, bool isLong) {
         packets_ = frame == frame_ && isLeftOut_ ? std::min(packets_ + 1, kMaxHalved) : 0;
         isLeftOut_ = false;
@@ -58,8 +60,8 @@ public:
 
 private:
     static constexpr uint32_t kMany = 64;
-    static constexpr uint32_t kAtLeast = 32, kFew = 4; // threshold within a packet; threshold after many packets
-    static constexpr uint32_t kMaxHalved = 3;          // halvings of the threshold, to four; then zero
+    static constexpr uint32_t kAtLeast = 32, kFew = 4; // thresholds, see packetBegins()
+    static constexpr uint32_t kMaxHalved = 3;          // halvings: kAtLeast becomes 4, kFew becomes 0
     static constexpr uint32_t kFoundCounts = 3;        // one repeated record outweighs this number of new ones
     static constexpr uint64_t kNever = UINT64_MAX;
     static constexpr size_t kSlots = 16; // approximate number of packets of a frame

@@ -86,8 +86,8 @@ void CommandFilter::add(uint32_t streamId, std::span<const std::byte> payload) {
     output.finish(walk.whole());
 }
 
-// Skips records of no interest. In most programs these are nearly all records but bindings, which are tracked here,
-// and draws, most of which need nothing deferred.
+// Skips records of no interest. In most programs these are nearly all records. The walk tracks bindings itself. It also
+// passes draws that need nothing deferred.
 void CommandFilter::passOthers(Stream& stream, Output& output, wire::RecordWalk& walk, const Packet& packet,
                                bool tracksState) {
     using Walk = CommandKinds::Walk;

@@ -108,7 +108,7 @@ struct FrameMatcher {
     enum class Now : uint8_t {
         Apart,     // every record is tracked
         Recording, // the same, and a template is built
-        Matching,  // matching records are skipped: the bindings are those of the frame's start, or of
+        Matching,  // matching records are skipped; the bindings stay as at the frame's start, or as after
                    // frameTemplate.track()
     };
     Now now = Now::Apart;

@@ -78,7 +78,7 @@ struct Object {
     struct Known {
         Place place;
         Shape shape;
-        std::optional<Sum> sum; // empty for first uploads, most of which never recur
+        std::optional<Sum> sum; // empty for first uploads: most never recur
     };
     std::vector<Known> known; // contents after the queue is flushed
 

@@ -48,9 +48,9 @@ constexpr uint16_t kFirstGlOpcode = 64;
 constexpr uint32_t kPlainTransfer = 0x80000000;
 // The samples of each pixel are resolved, as in a copy of the window.
 constexpr uint32_t kResolved = 0x40000000;
-// Flags in planes of kOpFillWindow.
+// Flags in `planes` of kOpFillWindow.
 //
-// For the next copy only. A window with samples keeps its own.
+// The pixels are for the next copy only. They do not replace the samples of a window with samples.
 constexpr uint32_t kForCopy = 0x80000000;
 // Colours are words of GL_UNSIGNED_INT_2_10_10_10_REV, or four floats. Default: four bytes.
 constexpr uint32_t kTenBits = 0x40000000;

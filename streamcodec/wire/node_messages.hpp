@@ -18,8 +18,10 @@ enum class NodeMessage : uint32_t {
     DriverEvent = 9,   // DriverEvent + text: a driver event
     ViewReached = 10,  // u32 view, ClientFrame*: later messages were sent after this Activate
     Synchronized = 11, // SynchronizedMessage: the node has reached that Synchronize
-    // u32 number of the RequestPhase, then the state of all windows there: WindowTurn*, or, of nodes whose areas move,
-    // u32 windows, WindowAreas of each, ViewportAssignment*: the latest first, then all that the windows refer to.
+    // u32 number of the RequestPhase, then the state of all windows of the node.
+    // - Node with phases: WindowTurn*.
+    // - Node with moving areas: u32 windows, WindowAreas of each, ViewportAssignment*. The latest assignment is first,
+    //   and the assignments of the windows follow.
     Turns = 12,
     PackedPicture = 13, // PictureHeader + the rows as encoded by PicturePacker
     FrameSpans = 14,    // FrameSpansHeader + FrameSpan*, before the frame's FrameDone; only while statistics are on
@@ -83,7 +85,7 @@ struct WindowAreas {
     uint32_t client;
     uint32_t window;
     uint32_t areas, wanted, front;
-    uint32_t drawn; // buffers of which each node holds only its own part
+    uint32_t drawn; // buffers that are divided: each node has its own part only
     uint32_t fixed; // 1: the areas no longer change
 };
 static_assert(sizeof(WindowAreas) == 28);

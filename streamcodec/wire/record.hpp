@@ -29,8 +29,8 @@ struct Header {
     explicit operator bool() const { return headerBytes != 0; }
 };
 
-// Reads the header of the record at `at`, of which `leftBytes` are readable. The result is false for a record that is
-// longer than that, or shorter than its header.
+// Reads the header of the record at `at`; `leftBytes`: number of readable bytes there. The result is false for a record
+// that is longer, or shorter than its header.
 inline Header readHeader(const std::byte* at, size_t leftBytes) {
     uint32_t words[2] = {};
     if (leftBytes < 4) return {};

@@ -12,8 +12,8 @@
 
 namespace mural {
 
-// For a walk over short records that reports each record it passes. A round lies between two places with the same pair
-// of headers; a single header occurs several times in most rounds.
+// Finds rounds. The walk over short records reports each record with add(). A round lies between two places with the
+// same pair of headers. One header does not identify a place, because it occurs several times in most rounds.
 class RecordRound {
 public:
     // Returns whether a record with this header may start a new round.

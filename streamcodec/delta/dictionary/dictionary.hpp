@@ -35,8 +35,8 @@ public:
         log.appendCopies(log.cursor, items);
         log.cursor += items;
     }
-    // The longest run of short entries after the cursor with contiguous bytes that are not old. The bytes are
-    // contiguous where the entries were new one after the other.
+    // The longest run of short entries after the cursor whose bytes are contiguous and not old. Bytes are contiguous if
+    // the entries were added in this order.
     struct Stretch {
         std::span<const std::byte> bytes;
         size_t items = 0;
