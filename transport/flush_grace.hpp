@@ -1,4 +1,4 @@
-// Minimum time for a flush, whose deadline is that of the last write and may have passed long ago.
+// Minimum time for a flush. A flush has the deadline of the last write, which may have passed long ago.
 #pragma once
 
 #include <cstdint>

@@ -8,8 +8,8 @@
 //   datagram=1472         UDP payload in bytes; 0: from the interface's MTU
 //   window=4096           in datagrams
 //   socket=8M             size of the socket buffers in bytes
-//   stalled=eject|wait    action for a member that stalls all others, after
-//   stalled-ms=2000
+//   stalled=eject|wait    action for a member that stalls all others
+//   stalled-ms=2000       time after which a member counts as stalled
 //   silent-ms=1000        eviction timeout
 //   probe-ms=300          timeout of the multicast probe
 //   parity=on|off         off: retransmits datagrams instead of parity

@@ -76,7 +76,7 @@ public:
 
     // Sends a message over the control connection of a member (host), or to the host (member: kHost).
     virtual void control(MemberId to, const ControlMessage& message) = 0;
-    // Returns room for a datagram to the group or one member, as DatagramSink. Filled before the next call.
+    // Returns room for a datagram to the group or one member, as DatagramSink. Fill it before the next call.
     virtual std::span<std::byte> datagram(MemberId to, size_t bytes) = 0;
     // Returns true if sockets hold datagrams that may have been sent before the data of a connection.
     virtual bool behind() = 0;
@@ -99,7 +99,7 @@ public:
     void begin();
     // Host: a control connection is open. Returns its id; empty if ids are exhausted.
     std::optional<MemberId> connected(const std::string& address, const std::string& name, int64_t nowNs);
-    // The control connection has ended (host: that of the member).
+    // Reports the end of the control connection; at the host, of the member's connection.
     void disconnected(MemberId id, int64_t nowNs);
     void inputControl(MemberId from, const ControlMessage& message, int64_t nowNs);
     // Buffers for the next datagrams of the most recent stream.

@@ -1,6 +1,6 @@
-// Loss detection. A late datagram overtakes few others and arrives soon. A gap therefore counts as lost after three
-// later datagrams, if it is also older than the observed reordering delay, or when the writer polls because it has
-// nothing more to send.
+// Loss detection. Few datagrams overtake a late one, and it arrives soon. A gap therefore counts as lost in two cases:
+// - three later datagrams have arrived, and the gap is older than the observed reordering delay;
+// - the writer polls, because it has nothing more to send.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,12 @@
 // A member's receiving end of one writer's stream: restores the order, and sends feedback about received and missing
 // data and its window. Has no sockets, clock or threads, as Sender.
 //
-// Feedback is sent every N datagrams (with a different phase per member), after a POLL, after a loss and while it is
-// not repaired, when a waiting writer gains room, and as heartbeat.
+// Feedback is sent
+// - every N datagrams, with a different phase per member,
+// - after a POLL,
+// - after a loss, and until its repair,
+// - when a waiting writer gains room,
+// - as heartbeat.
 #pragma once
 
 #include "transport/rsp/protocol/loss_detector.hpp"

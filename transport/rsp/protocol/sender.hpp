@@ -70,7 +70,7 @@ public:
     [[nodiscard]] size_t roomBytes() const { return window_.roomBytes(); }
     // Returns true if an unsent datagram may be sent: a full one, or a flushed one.
     [[nodiscard]] bool canSend() const { return next_ < limit(); }
-    // Returns true if there is enough room that a waiting writer does not soon wait again.
+    // Returns true if an eighth of the window is free, so that a woken writer does not soon wait again.
     [[nodiscard]] bool muchRoom() const {
         return window_.roomBytes() >= settings_.shape.payloadBytes * settings_.shape.windowDatagrams / 8;
     }

@@ -59,7 +59,7 @@ struct StreamDatagram {
     Type type = Type::Data;
     uint8_t flags = 0;
     MemberId from = 0;
-    Sequence sequence;     // DATA: its own; otherwise that of the group's first datagram
+    Sequence sequence;     // DATA: its own; otherwise the number of the group's first datagram
     uint8_t index = 0;     // DATA: index in the group
     uint8_t groupSize = 0; // 0: not known yet
     uint8_t row = 0;       // PARITY: index of the parity symbol
