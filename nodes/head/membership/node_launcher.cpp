@@ -17,8 +17,8 @@ constexpr size_t kLocalBytes = size_t{16} << 20; // per direction between head a
 
 std::string nameOf(const NodePlan& plan) { return "node " + std::to_string(plan.node) + " (" + plan.where + ")"; }
 
-// The host:port at which `host` reaches the gate, or this machine's name if no route is known. The result has no host
-// for a daemon that announces itself: the caller knows the route.
+// Returns the host:port at which `host` reaches the gate; without a known route, this machine's name as the host. For a
+// daemon that announces itself the host is empty, because the caller knows the route.
 std::string endpointTowards(const std::string& host, uint16_t port) {
     constexpr int64_t kLookupMs = 5000;
     if (host.starts_with("@")) return endpointText("", port);

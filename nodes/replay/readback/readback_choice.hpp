@@ -13,9 +13,9 @@
 
 namespace mural {
 
-// Software drivers have no choice: they draw and copy in the calling thread, so a second thread saves nothing. It is
-// also unsafe: llvmpipe up to at least Mesa 22 walks, when it maps a buffer, the drawing of all contexts without a
-// lock, and sometimes crashes.
+// Replaces Auto by Direct for software drivers. They draw and copy in the calling thread, so a second thread saves
+// nothing. It is also unsafe: in Mesa up to at least 22, llvmpipe reads the drawing of all contexts without a lock when
+// it maps a buffer, and sometimes crashes.
 [[nodiscard]] inline Readback readbackBy(std::string_view renderer, Readback requested) {
     return requested == Readback::Auto && gl::drawsWithoutGpu(renderer) ? Readback::Direct : requested;
 }
