@@ -75,8 +75,8 @@ struct CommandKind {
     EffectKind effect = EffectKind::Unknown;
     uint8_t valueWord = kNoValue; // argument word in which the first value of variable size begins
     bool small = false;           // sets uniforms, which are examined together with redundant state
-    // Change of the glBegin nesting depth, for commands without another effect in a list that is compiled. kExamined:
-    // the command has to be examined.
+    // Change of the glBegin nesting depth in a list under compilation. kExamined: the command has other effects, so it
+    // must be examined.
     int8_t deeper = kExamined;
     FrameRole frame = FrameRole::Ends;
     Binding binding = Binding::Nothing;

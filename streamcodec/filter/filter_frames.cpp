@@ -26,8 +26,8 @@ bool fewEnough(const Bindings& b) {
 
 using Textures = std::vector<TextureUnit>;
 
-// Returns true if a frame, or a part of one, that leads from `begins` to `after` leads from `now` to `after` too: it
-// binds everything that it changes.
+// A frame, or a part of one, has changed the textures from `begins` to `after`. Returns true if it changes them from
+// `now` to `after` too, because it binds every target at which `now` and `begins` differ.
 bool leadsTo(const Textures& now, const Textures& begins, const Textures& after) {
     if (now == begins) return true;
     if (now.size() != begins.size() || now.size() != after.size()) return false;

@@ -25,9 +25,8 @@ template <size_t Words> class StateCache {
 public:
     static constexpr size_t kMaxBytes = Words * 4;
 
-    // If `deferrable`, the command is deferred until a command reads this cell; otherwise it is sent now unless
-    // redundant. A deferred command is replaced by a later one; the caller guarantees that both are valid or both
-    // invalid.
+    // Sets a cell. A `deferrable` command waits until a command reads the cell. Any other command goes now, unless it
+    // is redundant. A later command replaces a deferred one. The caller guarantees that both are valid or both invalid.
     SetResult set(size_t index, std::span<const std::byte> record, bool deferrable) {
         if (index >= cells_.size()) cells_.resize(index + 1);
         Cell& cell = cells_[index];

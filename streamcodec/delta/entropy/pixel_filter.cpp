@@ -24,9 +24,9 @@ constexpr uint32_t kForColours = 32;
 // sample bits is uniform.
 constexpr uint32_t kEvenBits = 2 * kSampledBytes;
 
-// Non-uniform parts of uniform pictures may repeat: letters, dotted lines, tiles. Zstandard finds repeats in the pixels
-// but fewer in differences; such pieces stay unfiltered. Two samples of kEvenPieces pieces decide, if at most
-// 1/kLeftOfEven of them remains; above that, Zstandard beats LZ4's estimate.
+// Parts of uniform pictures may repeat: letters, dotted lines, tiles. Zstandard finds more repeats in such pixels than
+// in their differences, so they stay unfiltered. LZ4 decides on two samples of kEvenPieces pieces: they must shrink to
+// 1/kLeftOfEven. Above that, Zstandard compresses better than LZ4 predicts.
 constexpr size_t kEvenPieces = 4, kLeftOfEven = 8;
 
 size_t bestOf(const Roughness& rough) {

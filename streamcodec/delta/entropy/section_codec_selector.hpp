@@ -18,8 +18,8 @@ public:
     static constexpr size_t kLongBytes = 16384; // the cost of reading a clock is negligible from this size on
 
     [[nodiscard]] Coding choose(size_t sizeBytes, double linkNsPerByte);
-    // Returns the number of bytes of the last section on which to measure LZ4 in addition to the chosen coding; 0:
-    // none. A trial on all of a long section, such as the first pictures of a program, would increase its cost by half.
+    // Returns the number of bytes of the last section to compress with LZ4 too, as a measurement; 0: no measurement. A
+    // measurement of all of a long section, such as the first pictures of a program, would increase its cost by half.
     [[nodiscard]] size_t sampleBytes(size_t sizeBytes) const {
         return sizeBytes >= kLongBytes && known(Coding::Zstd) && (!known(Coding::Lz4) || triesAgain()) ? kLongBytes : 0;
     }
