@@ -1,5 +1,5 @@
 // Thread that communicates with the Avahi daemon. Destruction stops it and waits for a moment. A thread that hangs in a
-// broken message bus is detached, so its data is its own.
+// broken message bus is detached. The thread therefore owns its data.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,6 @@
-// Drains closed connections: libfabric sends only while polled, and an end that disappears with unread messages can
-// lose the tail of its own stream. Each closed channel therefore has a thread until the peer has answered its Bye.
+// Drains closed connections. libfabric sends only while it is polled. An end that disappears before it has read all
+// messages can lose the tail of its own stream. Each closed channel therefore keeps a thread until the peer has
+// answered its Bye.
 #pragma once
 
 #include <memory>

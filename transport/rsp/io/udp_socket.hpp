@@ -31,7 +31,7 @@ public:
     // Sets whether datagrams to the group reach members on this machine.
     void setLoop(bool loop);
     // Drops this member's own looped-back datagrams in the kernel, before they take room in the buffer. The filter runs
-    // per datagram, on one machine at the cost of the sender.
+    // for each datagram. A sender on the same machine executes the filters of its receivers.
     void ignoreMember(MemberId self);
     void ignoreNobody();
 
