@@ -8,7 +8,8 @@
 namespace mural {
 
 // Formats the prefix, the text as far as it fits, and a newline, without a terminator. Returns the length; 0: nothing.
-size_t formatLine(char* line, size_t sizeBytes, const char* prefix, const char* format, va_list arguments);
+[[gnu::format(printf, 4, 0)]] size_t formatLine(char* line, size_t sizeBytes, const char* prefix, const char* format,
+                                                va_list arguments);
 
 // Writes all bytes despite interruptions. Neither SIGPIPE nor SIGXFSZ reaches the program. Returns false if bytes are
 // left.

@@ -99,15 +99,13 @@ MURAL_EXEC int execveat(int folder, const char* path, char* const* arguments, ch
 }
 
 MURAL_EXEC int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
-                           const posix_spawnattr_t* attributes, char* const* arguments,
-                           char* const* environment) noexcept {
+                           const posix_spawnattr_t* attributes, char* const* arguments, char* const* environment) {
     CAPTURED(environment);
     return nextCalls().posixSpawn ? next.posixSpawn(pid, path, actions, attributes, arguments, captured) : ENOSYS;
 }
 
 MURAL_EXEC int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file_actions_t* actions,
-                            const posix_spawnattr_t* attributes, char* const* arguments,
-                            char* const* environment) noexcept {
+                            const posix_spawnattr_t* attributes, char* const* arguments, char* const* environment) {
     CAPTURED(environment);
     return nextCalls().posixSpawnp ? next.posixSpawnp(pid, file, actions, attributes, arguments, captured) : ENOSYS;
 }

@@ -8,13 +8,13 @@
 #include <new>
 
 #include "nodes/frame_spans/span_scope.hpp"
+#include "nodes/head/frames/picture_place.hpp"
 
 namespace mural {
 namespace {
 
 using wire::PictureHeader;
 
-constexpr uint32_t kMaxSide = 32768;
 constexpr uint64_t kMaxPixels = uint64_t{1} << 28; // 16384 * 16384
 constexpr size_t kMaxOpenPictures = 4096;
 constexpr size_t kMaxWindows = 8;  // more windows rarely swap; per pass
@@ -23,7 +23,7 @@ constexpr size_t kMaxPictures = 6; // the latest, those in the output's queue, a
 bool sensible(const PictureHeader& h) {
     if (h.format > static_cast<uint32_t>(kLastPictureFormat)) return false;
     if (h.windowWidth == 0 || h.windowHeight == 0) return h.w == 0 || h.h == 0;
-    if (h.windowWidth > kMaxSide || h.windowHeight > kMaxSide) return false;
+    if (h.windowWidth > kMaxPictureSide || h.windowHeight > kMaxPictureSide) return false;
     if (uint64_t{h.windowWidth} * h.windowHeight > kMaxPixels) return false;
     return h.x >= 0 && h.y >= 0 && h.w >= 0 && h.h >= 0 && int64_t{h.x} + h.w <= h.windowWidth &&
            int64_t{h.y} + h.h <= h.windowHeight;
@@ -171,9 +171,9 @@ std::shared_ptr<const OwnedPicture> PictureAssembler::assemblePass(const WindowK
         const Zoom& from = sizes_[static_cast<size_t>(seen->pass)];
         const Zoom& to = sizes_[static_cast<size_t>(std::get<2>(key))];
         size.windowWidth =
-            static_cast<uint32_t>(std::clamp<double>(std::round(size.windowWidth / from.x * to.x), 1, kMaxSide));
-        size.windowHeight =
-            static_cast<uint32_t>(std::clamp<double>(std::round(size.windowHeight / from.y * to.y), 1, kMaxSide));
+            static_cast<uint32_t>(std::clamp<double>(std::round(size.windowWidth / from.x * to.x), 1, kMaxPictureSide));
+        size.windowHeight = static_cast<uint32_t>(
+            std::clamp<double>(std::round(size.windowHeight / from.y * to.y), 1, kMaxPictureSide));
     }
     // kernel sizes differ by 1
     const auto isClose = [](int now, uint32_t wanted) { return std::abs(now - static_cast<int>(wanted)) <= 1; };

@@ -7,11 +7,10 @@ namespace mural {
 
 Result<PlacedPicture> placeOnWall(const NodePlan& node, const wire::PictureHeader& header, ByteBuffer rows) {
     if (node.transferScale.none() && !node.shown) return PlacedPicture{header, std::move(rows)};
-    constexpr uint32_t kMaxSide = 32768;
     const ScaledSize size = scaledSizeOf(header.w, header.h, node.transferScale);
     const bool sensible = header.format == static_cast<uint32_t>(PictureFormat::Bgra8) &&
-                          header.windowWidth <= kMaxSide && header.windowHeight <= kMaxSide && header.w >= 0 &&
-                          header.h >= 0 && static_cast<uint32_t>(header.w) <= header.windowWidth &&
+                          header.windowWidth <= kMaxPictureSide && header.windowHeight <= kMaxPictureSide &&
+                          header.w >= 0 && header.h >= 0 && static_cast<uint32_t>(header.w) <= header.windowWidth &&
                           static_cast<uint32_t>(header.h) <= header.windowHeight && size.bytes() == rows.size();
     if (!sensible) return Error{"it sent a picture of invalid size"};
     PlacedPicture placed;

@@ -2,12 +2,16 @@
 // another place and size than drawn.
 #pragma once
 
+#include <cstdint>
+
 #include "common/base/result.hpp"
 #include "nodes/head/results/byte_buffer.hpp"
 #include "nodes/head/planning/node_plan.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
 namespace mural {
+
+inline constexpr uint32_t kMaxPictureSide = 32768; // pixels; a larger picture is invalid
 
 struct PlacedPicture {
     wire::PictureHeader header{}; // the shown area
