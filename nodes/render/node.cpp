@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "common/json/json_text.hpp"
 #include "common/base/clock.hpp"
 #include "common/base/pause_watch.hpp"
 #include "common/log/log.hpp"
@@ -187,7 +188,7 @@ private:
         log::debug(log::Topic::Node, setup_.isResyncing ? "restarted, " : "", "draws with ",
                    renderer.empty() ? "no GL" : renderer);
         log::debug(log::Topic::Affinity, "thread of the replay: ", ready.value("placement", ""));
-        line_->sendText(wire::NodeMessage::Ready, ready.dump());
+        line_->sendText(wire::NodeMessage::Ready, jsonText(ready));
         return true;
     }
 
@@ -243,7 +244,7 @@ private:
     }
 
     bool connectNodes(const std::string& text) {
-        const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+        const nlohmann::json json = parseJson(text);
         const auto addressOf = [&](const char* what, int n) { return addressIn(json, what, n, line_->headHost()); };
         if (exchange_) {
             const auto connected = exchange_->connect([&](int node) { return addressOf("pictures", node); });
@@ -441,7 +442,7 @@ private:
     void sendGoodbye() {
         if (sender_ && !sender_->finish()) return; // the sender has logged the reason
         const GoodbyeParts parts{replay_.get(), exchange_.get(), sender_.get(), swaps_.get(), setup_.swapMembers};
-        line_->sendText(wire::NodeMessage::Goodbye, goodbyeOf(parts).dump());
+        line_->sendText(wire::NodeMessage::Goodbye, jsonText(goodbyeOf(parts)));
     }
 
     // Sends log lines for the user to the head.

@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/json/json_text.hpp"
+
 namespace mural {
 namespace {
 
@@ -284,11 +286,11 @@ template <class Config> std::string write(const Config& config) {
     Json json = Json::object();
     visitFields(config, [&](const char* name, const auto& value, int64_t = 0) { json[name] = valueToJson(value); });
     // Paths need not be UTF-8; a replaced character is better than an exception.
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return jsonText(json);
 }
 
 template <class Config> Result<Config> read(const std::string& line, const std::string& what) {
-    Json json = Json::parse(line, nullptr, false);
+    Json json = parseJson(line);
     if (!json.is_object()) {
         return Error{what + " is not a JSON object: " + line.substr(0, 60) +
                      "; install the same version of mural on both ends"};

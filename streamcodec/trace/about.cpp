@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
+
 namespace mural::trace {
 namespace {
 
@@ -17,11 +19,11 @@ std::string textOf(const Json& json, const char* name) {
 std::string toJson(const About& about) {
     Json json{{"version", about.version}, {"nodes", about.nodes}};
     if (!about.trimmed.empty()) json["trimmed"] = about.trimmed;
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return jsonText(json);
 }
 
 Result<About> aboutFromJson(const std::string& text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parseJson(text);
     if (!json.is_object()) return Error{"its description is not JSON"};
     About about;
     about.version = textOf(json, "version");

@@ -1,4 +1,5 @@
 // The table of operations: checks of arguments, errors, descriptions; the operations of equalizers.
+#include "common/json/json_text.hpp"
 #include "nodes/head/control/control_operations.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ using Json = nlohmann::json;
 
 std::string codeOf(const ControlOperations& operations, const char* name, const char* arguments) {
     Json result;
-    return operations.perform(name, Json::parse(arguments), result).code;
+    return operations.perform(name, parseJson(arguments), result).code;
 }
 
 TEST(ControlOperations, acceptArgumentsOfTheDescribedTypes) {
@@ -98,7 +99,7 @@ TEST(EqualizerOperations, listSetAndFreeze) {
     EXPECT_EQ(codeOf(all, "equalizer-freeze", R"({"name":"wall","frozen":true})"), "");
     Json result;
     EXPECT_EQ(all.perform("equalizers", Json::object(), result).code, "");
-    EXPECT_EQ(result, Json::parse(R"({"equalizers":[{"name":"wall","frozen":true}]})"));
+    EXPECT_EQ(result, parseJson(R"({"equalizers":[{"name":"wall","frozen":true}]})"));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 // The protocol of one control client, without sockets: half messages, bad messages, limits, subscriptions.
+#include "common/json/json_text.hpp"
 #include "nodes/head/control/control_protocol.hpp"
 
 #include <gtest/gtest.h>
@@ -36,14 +37,14 @@ protected:
 };
 
 TEST_F(ControlProtocolTest, beginsWithAHello) {
-    EXPECT_EQ(hello, Json::parse(R"({"hello":{"protocol":1,"session":"mural-1-0"}})"));
+    EXPECT_EQ(hello, parseJson(R"({"hello":{"protocol":1,"session":"mural-1-0"}})"));
 }
 
 TEST_F(ControlProtocolTest, repliesWithTheIdOfTheRequest) {
-    EXPECT_EQ(reply(R"({"id":41,"op":"status"})"), Json::parse(R"({"id":41,"ok":true,"result":{"frames":7}})"));
+    EXPECT_EQ(reply(R"({"id":41,"op":"status"})"), parseJson(R"({"id":41,"ok":true,"result":{"frames":7}})"));
     EXPECT_EQ(reply(R"({"id":-1,"op":"echo","args":{"text":"ä"}})")["result"]["text"], "ä");
     EXPECT_EQ(reply(R"({"id":3,"op":"restart-node","args":{"node":2}})"),
-              Json::parse(R"({"id":3,"ok":false,"code":"failed",
+              parseJson(R"({"id":3,"ok":false,"code":"failed",
                               "error":"the session has no node 2; its nodes are 0 to 1"})"));
 }
 
@@ -162,10 +163,10 @@ TEST_F(ControlProtocolTest, stopsWhileTheClientReadsNothing) {
 TEST_F(ControlProtocolTest, sendsTheStatusAtTheInterval) {
     EXPECT_EQ(client.nextMessageNs(), INT64_MAX);
     const auto lines = send("{\"id\":1,\"op\":\"subscribe\",\"args\":{\"topic\":\"status\",\"interval\":250}}\n", 5);
-    EXPECT_EQ(lines.at(0)["result"], Json::parse(R"({"topic":"status","interval":250})"));
+    EXPECT_EQ(lines.at(0)["result"], parseJson(R"({"topic":"status","interval":250})"));
     EXPECT_EQ(client.nextMessageNs(), 5);
     client.sendMessages(5);
-    EXPECT_EQ(takeLines(client).at(0), Json::parse(R"({"topic":"status","dropped":0,"data":{"frames":7}})"));
+    EXPECT_EQ(takeLines(client).at(0), parseJson(R"({"topic":"status","dropped":0,"data":{"frames":7}})"));
     EXPECT_EQ(client.nextMessageNs(), 5 + 250 * kNsPerMs);
     client.sendMessages(6);
     EXPECT_TRUE(takeLines(client).empty());
@@ -185,7 +186,7 @@ TEST_F(ControlProtocolTest, gathersEntriesBetweenMessages) {
     client.offer(ControlTopic::Events, "3");
     client.sendMessages(1);
     EXPECT_EQ(takeLines(client),
-              std::vector<Json>{Json::parse(R"({"topic":"events","dropped":0,"data":[{"event":"clients"}]})")});
+              std::vector<Json>{parseJson(R"({"topic":"events","dropped":0,"data":[{"event":"clients"}]})")});
     client.sendMessages(kNsPerS);
     EXPECT_EQ(takeLines(client).at(0)["data"], Json({3}));
 }
@@ -203,7 +204,7 @@ TEST_F(ControlProtocolTest, countsDroppedEntries) {
 TEST_F(ControlProtocolTest, dropsMessagesWhileTheClientReadsNothing) {
     send("{\"id\":1,\"op\":\"subscribe\",\"args\":{\"topic\":\"log\",\"interval\":20}}\n");
     send("{\"id\":1,\"op\":\"subscribe\",\"args\":{\"topic\":\"status\",\"interval\":20}}\n");
-    const std::string entry = Json(std::string(2000, 'x')).dump();
+    const std::string entry = jsonText(Json(std::string(2000, 'x')));
     for (int64_t i = 0; i < 5000; ++i) {
         client.offer(ControlTopic::Log, entry);
         client.sendMessages(i * kNsPerS);

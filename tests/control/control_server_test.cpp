@@ -1,4 +1,5 @@
 // The control socket: its mode, many clients, clients that flood, stop reading or vanish.
+#include "common/json/json_text.hpp"
 #include "nodes/head/control/control_server.hpp"
 
 #include <atomic>
@@ -40,7 +41,7 @@ public:
         const Deadline deadline = Deadline::inMs(kPatienceMs);
         while (!deadline.passed()) {
             if (const size_t end = received_.find('\n'); end != std::string::npos) {
-                const Json line = Json::parse(received_.substr(0, end));
+                const Json line = parseJson(received_.substr(0, end));
                 received_.erase(0, end + 1);
                 return line;
             }
@@ -115,7 +116,7 @@ TEST_F(ControlServerTest, reportsAPathThatCannotBeUsed) {
 TEST_F(ControlServerTest, greetsAndReplies) {
     start();
     TestClient client(path);
-    EXPECT_EQ(client.read(), Json::parse(R"({"hello":{"protocol":1,"session":"mural-1-0"}})"));
+    EXPECT_EQ(client.read(), parseJson(R"({"hello":{"protocol":1,"session":"mural-1-0"}})"));
     EXPECT_EQ(client.request(kStatus)["result"]["frames"], 7);
 }
 
@@ -230,7 +231,7 @@ TEST_F(ControlServerTest, sendsLogLinesEventsAndStatus) {
     EXPECT_EQ(log[0]["text"], "node 1 joined");
     EXPECT_EQ(log[0]["topic"], "node");
     EXPECT_EQ(log[0]["level"], "info");
-    EXPECT_EQ(events, Json::parse(R"([{"event":"node-joined"}])"));
+    EXPECT_EQ(events, parseJson(R"([{"event":"node-joined"}])"));
     client.write("{\"id\":2,\"op\":\"subscribe\",\"args\":{\"topic\":\"status\",\"interval\":20}}\n");
     client.read();
     for (int i = 0; i < 3; ++i) EXPECT_EQ(client.read()["data"]["frames"], 7);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/json/json_text.hpp"
 #include "nodes/head/control/control_protocol.hpp"
 
 namespace mural {
@@ -36,7 +37,7 @@ inline std::vector<nlohmann::json> takeLines(ControlProtocol& protocol) {
     protocol.sent(text.size());
     size_t at = 0;
     for (size_t end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
-        lines.push_back(nlohmann::json::parse(text.substr(at, end - at)));
+        lines.push_back(parseJson(text.substr(at, end - at)));
     return lines;
 }
 

@@ -1,4 +1,5 @@
 // The lines of the control connection: split reads, a slow reader, invalid text.
+#include "common/json/json_text.hpp"
 #include "nodes/head/session/control_channel.hpp"
 
 #include <algorithm>
@@ -60,7 +61,7 @@ TEST(ControlChannel, writesJsonForInvalidText) {
     const ssize_t n = recv(ends.mine.get(), bytes, sizeof(bytes), 0);
     const std::string line(bytes, static_cast<size_t>(n));
     EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1);
-    EXPECT_TRUE(nlohmann::json::parse(line)["text"].is_string());
+    EXPECT_TRUE(parseJson(line)["text"].is_string());
 }
 
 // Lines for the user arrive once, in order, between the head's other events; disabled lines and diagnostics do not.

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "tests/head/support/session_harness.hpp"
 #include "tests/temporary_folder.hpp"
@@ -39,12 +40,12 @@ public:
             if (n <= 0) return {};
             received_.append(part, static_cast<size_t>(n));
         }
-        const Json json = Json::parse(received_.substr(0, end), nullptr, false);
+        const Json json = parseJson(received_.substr(0, end));
         received_.erase(0, end + 1);
         return json;
     }
     Json request(const std::string& operation, const Json& arguments = Json::object()) {
-        const std::string text = Json{{"id", 1}, {"op", operation}, {"args", arguments}}.dump() + "\n";
+        const std::string text = jsonText(Json{{"id", 1}, {"op", operation}, {"args", arguments}}) + "\n";
         EXPECT_EQ(send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
         Json reply;
         do reply = line();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "tools/mural/ctl/command_words.hpp"
 #include "tools/mural/ctl/reply_text.hpp"
 
@@ -37,7 +38,7 @@ Json sampleOperations() {
 // Returns the operation and its arguments, or the error.
 std::string requested(const std::vector<std::string>& words) {
     auto request = requestOf(words, sampleOperations());
-    return request ? request->operation + " " + request->arguments.dump() : request.error().message;
+    return request ? request->operation + " " + jsonText(request->arguments) : request.error().message;
 }
 
 TEST(CommandWords, becomeRequests) {
@@ -73,7 +74,7 @@ TEST(CommandWords, nameSimilarOperations) {
 TEST(CommandWords, surviveMalformedOperations) {
     for (const char* text : {"null", "7", "[]", "[null]", "[{}]", R"([{"usage":7}])", R"([{"usage":"status [x] N"}])",
                              R"([{"usage":"status N","arguments":[7,{"name":1}]}])"})
-        EXPECT_FALSE(requestOf({"status", "1", "2"}, Json::parse(text)).ok()) << text;
+        EXPECT_FALSE(requestOf({"status", "1", "2"}, parseJson(text)).ok()) << text;
 }
 
 TEST(CommandWords, nameASession) {
@@ -103,7 +104,7 @@ TEST(ReplyText, survivesMalformedResults) {
         for (const char* text :
              {"null", "7", "[]", R"({"nodes":7,"operations":8})", R"({"nodes":[7],"operations":[[]]})",
               R"({"a":[[[[{"b":{"c":[{"d":[{"e":{}}]}]}}]]]]})"})
-            EXPECT_NO_THROW(replyLines(operation, Json::parse(text))) << operation << text;
+            EXPECT_NO_THROW(replyLines(operation, parseJson(text))) << operation << text;
 }
 
 } // namespace

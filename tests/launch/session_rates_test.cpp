@@ -1,4 +1,5 @@
 // Rates of mural stat from two states of a session.
+#include "common/json/json_text.hpp"
 #include "tools/mural/stat/session_rates.hpp"
 
 #include <gtest/gtest.h>
@@ -136,7 +137,7 @@ TEST(SessionRates, surviveMalformedStates) {
     for (const char* text : {"{}", R"({"programs":[{}],"nodes":[{}]})", R"({"programs":7,"nodes":"x","atSeconds":[]})",
                              R"({"programs":[1,null],"nodes":[[]]})",
                              R"({"programs":[{"waitSeconds":{"frames":"x"},"client":1}],"nodes":[]})"}) {
-        const Json odd = Json::parse(text);
+        const Json odd = parseJson(text);
         EXPECT_GE(statLines(withRates({odd}, {odd})[0]).size(), 1u) << text;
     }
 }

@@ -1,4 +1,5 @@
 // The timeline: valid JSON in the Chrome trace event format.
+#include "common/json/json_text.hpp"
 #include "tools/mural/stat/chrome_trace.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ protected:
         return {event["pid"].get<int>(), event["tid"].get<int>()};
     }
 
-    const Json trace_ = Json::parse(chromeTrace(sampleFrames()).dump());
+    const Json trace_ = parseJson(jsonText(chromeTrace(sampleFrames())));
 };
 
 TEST_F(ChromeTrace, hasTheMembersThatItsFormatRequires) {
@@ -100,7 +101,7 @@ TEST_F(ChromeTrace, countsTheTimeOfEachFrame) {
 }
 
 TEST_F(ChromeTrace, isValidWithoutFrames) {
-    const Json empty = Json::parse(chromeTrace(SessionFrames{Json::object(), Json::array(), {}, 1}).dump());
+    const Json empty = parseJson(jsonText(chromeTrace(SessionFrames{Json::object(), Json::array(), {}, 1})));
     EXPECT_TRUE(empty["traceEvents"].empty());
 }
 

@@ -1,4 +1,5 @@
 // Records of frames as JSON: nothing is lost, and invalid text is an error.
+#include "common/json/json_text.hpp"
 #include "nodes/head/statistics/frame_record.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ FrameRecord sampleRecord() {
 }
 
 TEST(FrameRecord, keepsEverythingInJson) {
-    const auto read = frameRecordFromJson(nlohmann::json::parse(toJson(sampleRecord()).dump()));
+    const auto read = frameRecordFromJson(parseJson(jsonText(toJson(sampleRecord()))));
     ASSERT_TRUE(read.ok()) << read.error().message;
     EXPECT_EQ(read.value(), sampleRecord());
 }

@@ -1,4 +1,5 @@
 // The length of a reply.
+#include "common/json/json_text.hpp"
 #include "nodes/head/statistics/frames_reply.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ TEST(FramesReply, fitsIntoTheUnsentBytesOfAClient) {
     const nlohmann::json reply = framesReply(fullFrames(600, 8), 7);
     EXPECT_TRUE(reply["more"].get<bool>());
     EXPECT_GT(reply["frames"].size(), 5u);
-    EXPECT_LT(reply.dump().size(), kMaxControlUnsentBytes * 6 / 10);
+    EXPECT_LT(jsonText(reply).size(), kMaxControlUnsentBytes * 6 / 10);
     EXPECT_EQ(reply["next"].get<size_t>(), 7 + reply["frames"].size());
 }
 

@@ -12,6 +12,7 @@
 #include <sys/mman.h>
 #include <vector>
 
+#include "common/json/json_text.hpp"
 #include "common/base/clock.hpp"
 #include "common/memory/malloc_tuning.hpp"
 #include "tools/bench/stream/stream_coding.hpp"
@@ -151,6 +152,6 @@ int main(int argc, char** argv) {
         coding["startCpuUs"] = median(all[i], &Counted::startCpuNs) / 1000;
         coding["cpuUsPerFrame"] = median(all[i], &Counted::cpuNs) / 1000 / count;
     }
-    std::cout << report.dump() << '\n';
+    std::cout << jsonText(report) << '\n';
     return 0;
 }

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
+
 namespace mural::cli {
 
 namespace {
@@ -129,7 +131,7 @@ SessionReport reportFrom(const Json& j) {
 } // namespace
 
 Result<HeadEvent> parseHeadEvent(const std::string& line) {
-    const Json j = Json::parse(line, nullptr, false);
+    const Json j = parseJson(line);
     if (!j.is_object() || !j.contains("event")) {
         return Error{"the head sent an invalid event: " + line.substr(0, 80)};
     }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/json/json_text.hpp"
 #include "common/base/clock.hpp"
 
 namespace mural {
@@ -17,7 +18,7 @@ constexpr size_t kMaxTextBytes = 2048; // of a log line
 
 void ControlFeed::publish(ControlTopic topic, const Json& entry) {
     if (!isWanted(topic)) return;
-    std::string json = entry.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string json = jsonText(entry);
     const std::lock_guard lock(mutex_);
     if (batch_.entries.size() < kMaxEntries)
         batch_.entries.push_back({topic, std::move(json)});

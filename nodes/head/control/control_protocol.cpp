@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "common/base/clock.hpp"
 #include "nodes/head/control/control_request.hpp"
 #include "nodes/head/control/nearest_names.hpp"
@@ -193,7 +194,7 @@ void ControlProtocol::sendMessage(ControlTopic topic) {
         return write(message);
     }
     Json entries = Json::array();
-    for (const std::string& entry : s.entries) entries.push_back(Json::parse(entry, nullptr, false));
+    for (const std::string& entry : s.entries) entries.push_back(parseJson(entry));
     s.entries.clear();
     message["data"] = std::move(entries);
     write(message);
@@ -203,7 +204,7 @@ void ControlProtocol::sendMessage(ControlTopic topic) {
 
 void ControlProtocol::write(const Json& line) {
     // Text from nodes and programs may not be valid UTF-8.
-    unsent_ += line.dump(-1, ' ', false, Json::error_handler_t::replace);
+    unsent_ += jsonText(line);
     unsent_ += '\n';
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/json/json_text.hpp"
+
 namespace mural {
 namespace {
 
@@ -46,7 +48,7 @@ ControlRequest parseControlRequest(std::string_view line) {
         request.problem = "a request may nest " + std::to_string(kMaxDepth) + " levels of values at most";
         return request;
     }
-    Json json = Json::parse(line, nullptr, false);
+    Json json = parseJson(line);
     if (!json.is_object()) {
         request.problem = std::string("a request must be one object of JSON in one line of UTF-8") + kForm;
         return request;

@@ -10,6 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 
 namespace mural {
@@ -56,12 +57,11 @@ bool isTemporary(int error) { return error == EAGAIN || error == EWOULDBLOCK || 
 
 void refuse(int socket) {
     const std::string line =
-        Json{{"id", nullptr},
-             {"ok", false},
-             {"code", control_code::kLimit},
-             {"error", "the session has " + std::to_string(kMaxControlClients) +
-                           " control clients already; end one of them, such as mural stat --watch"}}
-            .dump() +
+        jsonText(Json{{"id", nullptr},
+                      {"ok", false},
+                      {"code", control_code::kLimit},
+                      {"error", "the session has " + std::to_string(kMaxControlClients) +
+                                    " control clients already; end one of them, such as mural stat --watch"}}) +
         "\n";
     [[maybe_unused]] const ssize_t n = ::send(socket, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }

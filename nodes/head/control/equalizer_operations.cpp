@@ -2,13 +2,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
+
 namespace mural {
 namespace {
 
 using Json = nlohmann::json;
 using Kind = ControlArgument::Kind;
 
-std::string textOf(const Json& scalar) { return scalar.is_string() ? scalar.get<std::string>() : scalar.dump(); }
+std::string textOf(const Json& scalar) { return scalar.is_string() ? scalar.get<std::string>() : jsonText(scalar); }
 
 } // namespace
 

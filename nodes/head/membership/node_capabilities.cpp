@@ -6,6 +6,8 @@
 #include <set>
 #include <sstream>
 
+#include "common/json/json_text.hpp"
+
 namespace mural {
 namespace {
 
@@ -49,7 +51,7 @@ std::vector<std::string> extensionsOf(const Json& json) {
 } // namespace
 
 Result<NodeCapabilities> nodeFactsFromJson(const std::string& text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parseJson(text);
     if (!json.is_object())
         return Error{"its ready message is not JSON; install the same version of mural on all machines"};
     NodeCapabilities facts;

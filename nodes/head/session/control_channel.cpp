@@ -6,6 +6,8 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "common/json/json_text.hpp"
+
 namespace mural {
 namespace {
 
@@ -20,7 +22,7 @@ int pollMs(Deadline deadline) { return static_cast<int>((deadline.leftNs(kNsPerS
 
 void ControlChannel::send(const nlohmann::json& event) {
     // Text from nodes and programs may not be valid UTF-8.
-    writeLine(event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    writeLine(jsonText(event) + "\n");
 }
 
 void ControlChannel::say(const std::string& text) { send({{"event", "say"}, {"text", text}}); }

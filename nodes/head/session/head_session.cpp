@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <thread>
 
+#include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/frames/picture_place.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -187,7 +188,7 @@ bool HeadSession::finishRequested(Deadline deadline) {
     const auto line = control_.receive(deadline);
     if (control_.broken() || (options_.interrupted && options_.interrupted())) return true;
     if (!line) return false;
-    const Json command = Json::parse(*line, nullptr, false);
+    const Json command = parseJson(*line);
     const bool known = command.is_object() && command.value("command", Json()) == "finish";
     if (!known) log::warning(log::Topic::Session, "unknown command to the head: ", line->substr(0, 60));
     return known;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -103,7 +104,7 @@ void HeadSession::introduceAgain(int node) {
         }
         introduced_[static_cast<size_t>(node)] = true;
     }
-    nodes_.sendAlone(node, wire::HeadCommand::Exchange, nlohmann::json{{"pictures", pictures}}.dump());
+    nodes_.sendAlone(node, wire::HeadCommand::Exchange, jsonText(nlohmann::json{{"pictures", pictures}}));
 }
 
 // The restarted node's GL must support everything that has been announced to programs.

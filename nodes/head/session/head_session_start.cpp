@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
 #include "common/log/process_log.hpp"
 #include "nodes/head/planning/delta_plan.hpp"
@@ -143,7 +144,7 @@ void HeadSession::introduceNodes() {
         }
     }
     if (pictures.empty() && swaps.empty()) return;
-    const std::string text = Json{{"pictures", pictures}, {"swaps", swaps}}.dump();
+    const std::string text = jsonText(Json{{"pictures", pictures}, {"swaps", swaps}});
     nodes_.broadcast(wire::HeadCommand::Exchange, std::as_bytes(std::span(text.data(), text.size())));
     nodes_.flush();
 }

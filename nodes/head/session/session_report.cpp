@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "common/json/json_text.hpp"
 #include "common/base/clock.hpp"
 
 namespace mural {
@@ -27,7 +28,7 @@ double secondsOf(int64_t ns) { return static_cast<double>(ns) / static_cast<doub
 } // namespace
 
 void readGoodbye(const std::string& text, NodeTotals& totals) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parseJson(text);
     if (!json.is_object()) return;
     totals.commands = wholeOf(json, "commands");
     totals.exchangeBytes = wholeOf(json, "exchangeBytes");

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/json/json_text.hpp"
 #include "tests/control/sample_operations.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
@@ -22,7 +23,7 @@ uint64_t drain(ControlProtocol& client, size_t& replies) {
     must(text.empty() || text.back() == '\n', "lines are complete");
     size_t at = 0;
     for (size_t end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
-        const auto line = nlohmann::json::parse(text.substr(at, end - at), nullptr, false);
+        const auto line = parseJson(text.substr(at, end - at));
         must(line.is_object(), "a line is one object");
         if (line.contains("topic") || line.contains("hello")) continue;
         ++replies;

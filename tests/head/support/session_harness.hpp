@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/json/json_text.hpp"
 #include "nodes/head/planning/make_plan.hpp"
 #include "nodes/head/session/head_session.hpp"
 #include "nodes/head/session/log_to_control.hpp"
@@ -84,7 +85,7 @@ public:
                 if (reader_->broken() && ended()) break;
                 continue;
             }
-            nlohmann::json json = nlohmann::json::parse(*line);
+            nlohmann::json json = parseJson(*line);
             seen.push_back(json);
             if (json["event"] == event) return json;
         }
@@ -98,7 +99,7 @@ public:
         while (!deadline.passed()) {
             const auto line = reader_->receive(Deadline::inMs(100));
             if (!line) continue;
-            seen.push_back(nlohmann::json::parse(*line));
+            seen.push_back(parseJson(*line));
             const auto& e = seen.back();
             if (e["event"] == "say" && e["text"].get<std::string>().find(part) != std::string::npos) return e["text"];
         }

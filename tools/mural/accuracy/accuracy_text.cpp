@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "nodes/launch/program_check.hpp"
 
 namespace mural::cli {
@@ -114,7 +115,7 @@ std::string jsonOf(const AccuracyReport& report) {
         if (!row.failure.empty()) j["failure"] = row.failure;
         all["rows"].push_back(j);
     }
-    return all.dump(1) + "\n";
+    return jsonText(all, 1) + "\n";
 }
 
 } // namespace mural::cli

@@ -7,6 +7,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "common/json/json_text.hpp"
 #include "nodes/head/control/control_protocol.hpp"
 
 namespace mural::cli {
@@ -44,7 +45,7 @@ bool waitFor(int fd, short events, Deadline deadline) {
 } // namespace
 
 // Texts of nodes, programs and the command line may not be valid UTF-8.
-std::string jsonLine(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string jsonLine(const Json& value) { return jsonText(value); }
 
 Json memberOf(const Json& value, const char* name) {
     if (!value.is_object()) return {};
@@ -102,7 +103,7 @@ Result<Json> ControlClient::receive(Deadline deadline) {
         if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR) || received_.size() > kMaxReplyBytes) return kClosed;
         if (n < 0 && !waitFor(socket_.get(), POLLIN, deadline)) return kNoReply;
     }
-    Json line = Json::parse(std::string_view(received_).substr(0, end), nullptr, false);
+    Json line = parseJson(std::string_view(received_).substr(0, end));
     received_.erase(0, end + 1);
     if (!line.is_object()) return Error{"the session sent an invalid line; use the mural that started it"};
     return line;

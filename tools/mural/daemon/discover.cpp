@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "nodes/launch/program_check.hpp"
 
 namespace mural::cli {
@@ -29,7 +30,7 @@ void printJson(const Discovered& d) {
                          {"by", means}});
     }
     const nlohmann::json all{{"nodes", nodes}, {"beaconTrouble", d.beaconTrouble}, {"avahiTrouble", d.avahiTrouble}};
-    fmt::print("{}\n", all.dump());
+    fmt::print("{}\n", jsonText(all));
 }
 
 void printTable(const Discovered& d) {

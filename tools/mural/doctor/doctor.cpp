@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "tools/mural/doctor/check_report.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/doctor/doctor_checks.hpp"
@@ -32,7 +33,7 @@ int doctorCommand(bool asJson) {
     const bool good = usable(checks);
     if (asJson) {
         const nlohmann::json all = {{"usable", good}, {"checks", toJson(checks)}};
-        fmt::print("{}\n", all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", jsonText(all, 2));
     } else {
         printChecks(checks);
         fmt::print("{}\n", good ? "Mural can be used on this machine."

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
+
 namespace mural::cli {
 
 using nlohmann::json;
@@ -115,7 +117,7 @@ void printTable(const Measured& m) {
 
 void print(const Measured& m, bool asJson) {
     if (asJson)
-        fmt::print("{}\n", toJson(m).dump());
+        fmt::print("{}\n", jsonText(toJson(m)));
     else
         printTable(m);
     std::fflush(stdout);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/doctor/check_report.hpp"
@@ -121,7 +122,7 @@ int networkDoctorCommand(const NetworkArguments& arguments, bool asJson) {
     const bool good = usable(all);
     report["usable"] = good;
     if (asJson) {
-        fmt::print("{}\n", report.dump(2, ' ', false, json::error_handler_t::replace));
+        fmt::print("{}\n", jsonText(report, 2));
     } else {
         printTable(survey.value().hosts);
         printChecks(all);

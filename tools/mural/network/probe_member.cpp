@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "nodes/session/session_secret.hpp"
 #include "tools/mural/commands.hpp"
 #include "tools/mural/network/line_channel.hpp"
@@ -99,7 +100,7 @@ public:
             return failed("no command from mural doctor on standard input: " + first.error().message +
                           "; mural doctor --network starts this process");
         try {
-            if (auto r = begin(json::parse(*first)); !r) return failed(r.error().message);
+            if (auto r = begin(parseJson(*first)); !r) return failed(r.error().message);
             return converse();
         } catch (const json::exception& e) {
             return failed(std::string("invalid command from mural doctor: ") + e.what() +
@@ -110,7 +111,7 @@ public:
 private:
     int failed(const std::string& why) {
         fmt::print(stderr, "mural network-member: {}\n", why);
-        (void)lines_.write(json{{"failed", why}}.dump(), Deadline::inMs(kSpeakMs));
+        (void)lines_.write(jsonText(json{{"failed", why}}), Deadline::inMs(kSpeakMs));
         return 1;
     }
 
@@ -140,7 +141,7 @@ private:
                          {"port", sockets_->port()},
                          {"troubles", troubles()},
                          {"facts", toJson(readMachineFacts(*interface, sockets_->bufferBytes()))}};
-        return lines_.write(hello.dump(), Deadline::inMs(kSpeakMs));
+        return lines_.write(jsonText(hello), Deadline::inMs(kSpeakMs));
     }
 
     int converse() {
@@ -148,7 +149,7 @@ private:
         while (sockets_->listen(deadline, lines_.readableFd())) {
             auto line = lines_.read(Deadline::inMs(kSpeakMs));
             if (!line) return 0; // the doctor has ended
-            if (auto r = lines_.write(answer(json::parse(*line)).dump(), Deadline::inMs(kSpeakMs)); !r) return 0;
+            if (auto r = lines_.write(jsonText(answer(parseJson(*line))), Deadline::inMs(kSpeakMs)); !r) return 0;
             deadline = Deadline::inMs(kSilenceMs);
         }
         return failed("no command from mural doctor for ten minutes; start it again");

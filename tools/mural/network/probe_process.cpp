@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "common/json/json_text.hpp"
 #include "nodes/launch/environment.hpp"
 #include "transport/system_error.hpp"
 
@@ -46,7 +47,7 @@ ProbeProcess::~ProbeProcess() {
 }
 
 Result<void> ProbeProcess::send(const nlohmann::json& words) {
-    return lines_.write(words.dump(), Deadline::inMs(kSendMs));
+    return lines_.write(jsonText(words), Deadline::inMs(kSendMs));
 }
 
 Result<nlohmann::json> ProbeProcess::receive(Deadline deadline) {
@@ -55,7 +56,7 @@ Result<nlohmann::json> ProbeProcess::receive(Deadline deadline) {
         const bool ended = process_.waitUntil(Deadline::inMs(200));
         return Error{ended ? "the test process ended: " + process_.describeEnd() : line.error().message};
     }
-    auto answer = nlohmann::json::parse(*line, nullptr, false);
+    auto answer = parseJson(*line);
     if (!answer.is_object())
         return Error{"invalid reply \"" + line->substr(0, 80) + "\"; check the host's shell for startup output"};
     if (answer.contains("failed") && answer["failed"].is_string()) return Error{answer["failed"].get<std::string>()};

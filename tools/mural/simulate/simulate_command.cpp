@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "balancer/simulation/measures.hpp"
 #include "balancer/simulation/scenes.hpp"
 #include "nodes/launch/program_check.hpp"
@@ -143,7 +144,7 @@ void printJson(const SimulateArguments& a, const std::vector<Row>& rows) {
     }
     const nlohmann::json document = {{"nodes", a.nodes}, {"latency", a.latency}, {"noise", a.noise},
                                      {"seed", a.seed},   {"seeds", a.seeds},     {"rows", all}};
-    fmt::print("{}\n", document.dump());
+    fmt::print("{}\n", jsonText(document));
 }
 
 Result<void> writeFile(const std::string& path, const std::string& text) {

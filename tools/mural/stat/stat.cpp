@@ -8,6 +8,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "common/json/json_text.hpp"
 #include "common/base/clock.hpp"
 #include "nodes/launch/program_check.hpp"
 #include "tools/mural/commands.hpp"
@@ -40,7 +41,7 @@ int failNone(const StatOptions& options) {
 
 void print(const std::vector<nlohmann::json>& sessions, bool asJson) {
     if (asJson) {
-        fmt::print("{}\n", nlohmann::json{{"sessions", sessions}}.dump());
+        fmt::print("{}\n", jsonText(nlohmann::json{{"sessions", sessions}}));
     } else {
         for (const auto& session : sessions)
             for (const std::string& line : statLines(session)) fmt::print("{}\n", line);
@@ -94,7 +95,7 @@ int writeTrace(const StatOptions& options) {
     frames.frames.resize(std::min(frames.frames.size(), wanted));
     fmt::print("{} frames in {}; open it with https://ui.perfetto.dev\n", frames.frames.size(), options.traceFile);
     for (const std::string& line : summaryLines(summarize(frames.frames))) fmt::print("{}\n", line);
-    return reportTo(options.traceFile, chromeTrace(frames).dump());
+    return reportTo(options.traceFile, jsonText(chromeTrace(frames)));
 }
 
 // Collects the statistics of all sessions over some seconds.
