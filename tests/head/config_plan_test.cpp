@@ -331,12 +331,12 @@ TEST(ConfigPlan, reportsUnsupportedZooms) {
 // Fields without effect are reported with position and remedy.
 TEST(ConfigPlan, reportsFieldsWithoutEffect) {
     auto plan = planOfText("monitor_equalizer { } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" "
-                           "viewport [ .5 0 .5 1 ] framerate_equalizer { } outputframe { } }");
+                           "viewport [ .5 0 .5 1 ] DFR_equalizer { } outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
     ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
     EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: monitor_equalizer has no effect"), std::string::npos)
         << plan->warnings[0];
-    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: framerate_equalizer has no effect"), std::string::npos)
+    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: DFR_equalizer has no effect"), std::string::npos)
         << plan->warnings[1];
     EXPECT_NE(plan->warnings[1].find("; "), std::string::npos) << "a remedy";
     EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ "

@@ -5,6 +5,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
+#include <utility>
 
 #include "nodes/head/planning/make_plan.hpp"
 #include "streamcodec/wire/node_messages.hpp"
@@ -23,10 +24,13 @@ protected:
         plan_ = std::move(*plan);
         areas_.clear();
         ranges_.clear();
+        paces_.clear();
         balancer_ = std::make_unique<LoadBalancer>(
             plan_,
-            LoadBalancer::Announce{[this](const ViewportAssignment& areas) { areas_.push_back(areas); },
-                                   [this](const RangeAssignment& ranges) { ranges_.push_back(ranges); }},
+            LoadBalancer::Announce{
+                [this](const ViewportAssignment& areas) { areas_.push_back(areas); },
+                [this](const RangeAssignment& ranges) { ranges_.push_back(ranges); },
+                [this](uint32_t client, double framesPerSecond) { paces_.emplace_back(client, framesPerSecond); }},
             plant);
         alive_.assign(plan_.nodes.size(), true);
         frames_ = 0;
@@ -140,6 +144,7 @@ protected:
     std::unique_ptr<LoadBalancer> balancer_;
     std::vector<ViewportAssignment> areas_;
     std::vector<RangeAssignment> ranges_;
+    std::vector<std::pair<uint32_t, double>> paces_; // client, frames per second
     std::vector<bool> alive_;
     uint32_t frames_ = 0, client_ = 1;
     double efficiency_ = 0; // of the last frame
@@ -272,7 +277,7 @@ TEST_F(BalancerTest, assignsFewerExpensiveChunks) {
     EXPECT_LT(rangeOf(0).end, 0.14);
     EXPECT_LT(rangeOf(1).end, 0.3);
     const EqualizerTotals totals = balancer_->totals()[0];
-    EXPECT_TRUE(totals.ranges);
+    EXPECT_EQ(totals.division, Division::Ranges);
     EXPECT_EQ(totals.kind, "chunk_queue");
     EXPECT_GT(totals.moves, 0);
     EXPECT_LT(totals.moves, 20) << "it settles";
@@ -444,12 +449,12 @@ TEST_F(BalancerTest, doesNothingWithoutEqualizers) {
     EXPECT_TRUE(ranges_.empty());
 }
 
-TEST_F(BalancerTest, doesNothingForTimeMultiplexedNodes) {
+TEST_F(BalancerTest, dividesNoFramesOfTimeMultiplexedNodes) {
     SessionConfig turns = chunksOf(2, 20);
     turns.passes.period = 2;
     turns.localNodes = 4;
     begin(turns);
-    EXPECT_FALSE(balancer_->isActive());
+    for (const EqualizerTotals& totals : balancer_->totals()) EXPECT_EQ(totals.division, Division::Frames) << totals.id;
     ASSERT_FALSE(plan_.warnings.empty());
     EXPECT_NE(plan_.warnings[0].find("in turn"), std::string::npos) << plan_.warnings[0];
 }
@@ -463,6 +468,51 @@ TEST(RangeAssignment, roundTripsAndRejectsInvalidOnes) {
          {Range{.5, .25}, Range{-.1, 1}, Range{0, 1.1}, Range{std::numeric_limits<double>::quiet_NaN(), 1},
           Range{0, std::numeric_limits<double>::quiet_NaN()}})
         EXPECT_FALSE(sharesOf(bytesOf(RangeAssignment{1, {wrong}})));
+}
+
+SessionConfig turns() {
+    SessionConfig config;
+    config.configFile = std::string(MURAL_SOURCE_DIR) + "/configs/dplex.eqc";
+    config.allLocal = true;
+    return config;
+}
+
+TEST_F(BalancerTest, pacesTheProgramByTheSlowestOfTheNodesThatDrawInTurn) {
+    begin(turns());
+    ASSERT_EQ(plan_.nodes.size(), 3u);
+    constexpr double kMs = 100; // of finish()
+    for (int i = 0; i < 30; ++i) {
+        std::vector<double> busy(3, 0.05 * kMs);
+        busy[static_cast<size_t>(i % 3)] = (i % 3 == 1 ? 90 : 60) * kMs;
+        finish(busy);
+    }
+    ASSERT_FALSE(paces_.empty());
+    EXPECT_EQ(paces_.back().first, client_);
+    EXPECT_NEAR(paces_.back().second, 3 / 0.090 * 1.05, 0.1);
+    const EqualizerTotals totals = balancer_->totals().at(0);
+    EXPECT_EQ(totals.kind, "framerate_equalizer");
+    EXPECT_EQ(totals.division, Division::Frames);
+    EXPECT_EQ(totals.nodes.size(), 3u);
+    EXPECT_NEAR(totals.framesPerSecond, paces_.back().second, 1e-9);
+}
+
+TEST_F(BalancerTest, pacesNoFastProgram) {
+    begin(turns());
+    for (int i = 0; i < 30; ++i) finish({100, 100, 100}); // 1 ms
+    for (const auto& [client, framesPerSecond] : paces_) EXPECT_EQ(framesPerSecond, 0);
+}
+
+TEST_F(BalancerTest, endsThePaceOfAProgramThatIsNoLongerFollowed) {
+    begin(turns());
+    for (int i = 0; i < 30; ++i) finish({9000, 9000, 9000});
+    ASSERT_FALSE(paces_.empty());
+    EXPECT_GT(paces_.back().second, 0);
+    const size_t before = paces_.size();
+    balancer_->windowGone(client_, wire::kAllWindows);
+    client_ = 2;
+    finish({9000, 9000, 9000});
+    ASSERT_GT(paces_.size(), before);
+    EXPECT_EQ(paces_[before], (std::pair<uint32_t, double>{1, 0}));
 }
 
 } // namespace

@@ -112,6 +112,13 @@ std::vector<std::string> reportLines(const SessionReport& r) {
                                     sizeText(packed / static_cast<double>(r.frames))));
     for (const EqualizerReport& e : r.equalizers) {
         if (e.frames == 0) continue;
+        if (e.divides == "frames") {
+            const std::string pace = e.framesPerSecond > 0
+                                         ? fmt::format("at most {:.1f} per second at the end", e.framesPerSecond)
+                                         : std::string("without a limit of their rate at the end");
+            lines.push_back(fmt::format("equalizer \"{}\": frames began {}", e.name, pace));
+            continue;
+        }
         std::string nodes;
         for (const auto& [node, part] : e.nodes)
             nodes += fmt::format("{}node {} {:.0f} %", nodes.empty() ? "" : ", ", node, 100 * part);

@@ -68,6 +68,7 @@ std::vector<EqualizerReport> equalizersFrom(const Json& list) {
                               whole(e, "frames"),
                               whole(e, "moves"),
                               real(e, "efficiency"),
+                              real(e, "framesPerSecond"),
                               {}});
         const auto nodes = e.find("nodes");
         if (nodes == e.end() || !nodes->is_array()) continue;

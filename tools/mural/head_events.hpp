@@ -44,9 +44,10 @@ struct DeltaReport {
 // Numbers of one equalizer.
 struct EqualizerReport {
     std::string name, kind;
-    std::string divides; // "picture" or "draws"
+    std::string divides; // "picture", "draws" or "frames"
     int64_t frames = 0, moves = 0;
-    double efficiency = 0;                         // 1: all nodes were busy for the same time
+    double efficiency = 0;                         // 1: all nodes were busy for the same time; 0 for "frames"
+    double framesPerSecond = 0;                    // highest rate, for "frames"; 0: no limit
     std::vector<std::pair<int64_t, double>> nodes; // node, and its part of the picture or the draws
 };
 

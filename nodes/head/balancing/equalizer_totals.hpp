@@ -8,18 +8,23 @@
 
 namespace mural {
 
+// What the nodes of an equalizer share. Frames: they draw frames in turn.
+enum class Division : uint8_t { Areas, Ranges, Frames };
+
 struct EqualizerTotals {
     std::string id;
-    std::string kind;    // keyword of the format, or "cost_map"
-    bool ranges = false; // divides ranges of draws; otherwise areas of the picture
+    std::string kind; // keyword of the format, or "cost_map"
+    Division division = Division::Areas;
     bool frozen = false;
-    std::string decision;  // the latest one
-    int64_t frames = 0;    // measured frames
-    int64_t moves = 0;     // decisions that changed a part
-    int64_t taken = 0;     // frames drawn with other parts than the previous one
-    double efficiency = 0; // total busy time / (nodes * longest busy time), mean of the last 32 measured frames
+    std::string decision; // the latest one
+    int64_t frames = 0;   // measured frames
+    int64_t moves = 0;    // decisions that changed a part or the pace
+    int64_t taken = 0;    // frames drawn with other parts than the previous one
+    // total busy time / (nodes * longest busy time), mean of the last 32 measured frames; 0 for Division::Frames
+    double efficiency = 0;
+    double framesPerSecond = 0; // highest rate of the program, for Division::Frames; 0: no limit
     std::vector<std::pair<std::string, std::string>> parameters; // name and value
-    std::vector<std::pair<int, double>> nodes;                   // node and its part of the area or range
+    std::vector<std::pair<int, double>> nodes;                   // node and its part of the area, range or frames
 };
 
 } // namespace mural

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "balancer/equalizers/make_equalizers.hpp"
@@ -49,6 +50,11 @@ compound::DisplaySizes scaled(compound::DisplaySizes sizes, double x, double y) 
     return sizes;
 }
 
+Division divisionBy(Effect effect) {
+    if (effect == Effect::Viewports) return Division::Areas;
+    return effect == Effect::Ranges ? Division::Ranges : Division::Frames;
+}
+
 double partOf(const Viewport& area) { return area.w * area.h; }
 double partOf(const Range& range) { return range.end - range.start; }
 
@@ -69,13 +75,13 @@ LoadBalancer::LoadBalancer(const SessionPlan& plan, Announce announce, const std
     planner_ = std::make_unique<balance::FramePlanner>(plan.balance->config, plan.balance->input,
                                                        equalizersOf(*plan.balance, plant));
     for (const auto& e : planner_->equalizers()) {
-        if (e->effect() != Effect::Viewports && e->effect() != Effect::Ranges) continue;
+        if (e->effect() == Effect::Usage) continue;
         Watched& w = watched_.emplace_back();
         w.equalizer = e.get();
         w.nodes = nodesOf(plan, *e);
         w.totals.id = e->id();
         w.totals.kind = e->kind();
-        w.totals.ranges = e->effect() == Effect::Ranges;
+        w.totals.division = divisionBy(e->effect());
     }
 }
 
@@ -92,7 +98,7 @@ void LoadBalancer::frameDone(int node, const wire::FrameDoneMessage& message, in
     if (!times_.follows(message)) return;
     for (Watched& w : watched_) {
         const auto first = std::ranges::find_if(w.nodes, [&](int n) { return times_.isAlive(n); });
-        const uint32_t number = w.totals.ranges ? message.shares : message.areas;
+        const uint32_t number = w.totals.division == Division::Ranges ? message.shares : message.areas;
         if (first != w.nodes.end() && *first == node && number != std::exchange(w.drawn, number)) ++w.totals.taken;
     }
     if (isRandom_) return;
@@ -130,7 +136,8 @@ void LoadBalancer::advance(bool repeats) {
     for (Watched& w : watched_) {
         const auto moved = [&](int n) {
             const auto i = static_cast<size_t>(n);
-            return w.totals.ranges ? ranges.ofNodes[i] != ranges_.ofNodes[i] : areas.ofNodes[i] != areas_.ofNodes[i];
+            return w.totals.division == Division::Ranges ? ranges.ofNodes[i] != ranges_.ofNodes[i]
+                                                         : areas.ofNodes[i] != areas_.ofNodes[i];
         };
         if (!repeats && !issues_.empty() && std::ranges::any_of(w.nodes, moved)) ++w.totals.moves;
     }
@@ -146,6 +153,24 @@ void LoadBalancer::advance(bool repeats) {
     }
     if (!isRandom_ && (hasAreas || hasRanges || issues_.empty()))
         issues_.push_back({areas_.number, ranges_.number, leavesOfPlan()});
+    announcePace();
+}
+
+// Announces the lowest rate of the framerate equalizers.
+void LoadBalancer::announcePace() {
+    double pace = 0;
+    for (Watched& w : watched_) {
+        if (w.totals.division != Division::Frames) continue;
+        const double rate = planner_->input().compounds[at(w.equalizer->compound())].maxFps;
+        if (rate > 0) pace = pace > 0 ? std::min(pace, rate) : rate;
+        if (std::exchange(w.totals.framesPerSecond, rate) != rate) ++w.totals.moves;
+    }
+    if (pace == pace_ && times_.client() == pacedClient_) return;
+    if (!announce_.pace) return;
+    if (times_.client() != pacedClient_ && pace_ > 0) announce_.pace(pacedClient_, 0);
+    pace_ = pace;
+    pacedClient_ = times_.client();
+    announce_.pace(pacedClient_, pace_);
 }
 
 // Sets the areas and ranges of the nodes that move. A task without a context draws nothing.
@@ -231,16 +256,38 @@ void LoadBalancer::observe(const FrameTimes::Frame& frame, int64_t nowNs) {
     balance::FrameStatistics statistics;
     statistics.frameNumber = measured_++;
     for (LeafStatistics leaf : issue->leaves) {
-        if (busy[at(leaf.compound)] < 0) continue;
+        if (busy[at(leaf.compound)] < 0 || drawsInTurn(leaf.compound)) continue;
         leaf.busySeconds = leaf.end = 1e-9 * busy[at(leaf.compound)];
         statistics.leaves.push_back(leaf);
     }
+    addTurns(frame, statistics);
     for (const Index root : planner_->config().roots)
         statistics.roots.push_back({root, 1e-9 * static_cast<double>(frameNs), false});
     while (&issues_.front() != issue) issues_.pop_front();
     if (statistics.leaves.empty()) return;
     countFrame(frame);
     planner_->addStatistics(statistics);
+}
+
+bool LoadBalancer::drawsInTurn(Index compound) const {
+    return std::ranges::any_of(
+        nodes_, [&](const NodePlan& n) { return n.task && n.task->compound == compound && n.pass.period > 1; });
+}
+
+// Adds the nodes that draw frames in turn. The busiest node of each picture and range has drawn this frame; the others
+// have skipped it.
+void LoadBalancer::addTurns(const FrameTimes::Frame& frame, balance::FrameStatistics& statistics) const {
+    std::map<std::pair<int, int>, size_t> drawing; // node by picture and range
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+        if (!nodes_[i].task || nodes_[i].pass.period < 2 || frame.busyNs[i] < 0) continue;
+        const auto [entry, isNew] = drawing.try_emplace({nodes_[i].picture, nodes_[i].pass.range}, i);
+        if (!isNew && frame.busyNs[i] > frame.busyNs[entry->second]) entry->second = i;
+    }
+    for (const auto& [part, i] : drawing) {
+        LeafStatistics& leaf = statistics.leaves.emplace_back();
+        leaf.compound = nodes_[i].task->compound;
+        leaf.busySeconds = leaf.end = 1e-9 * frame.busyNs[i];
+    }
 }
 
 void LoadBalancer::countFrame(const FrameTimes::Frame& frame) {
@@ -255,6 +302,7 @@ void LoadBalancer::countFrame(const FrameTimes::Frame& frame) {
         }
         if (longest <= 0) continue;
         ++w.totals.frames;
+        if (w.totals.division == Division::Frames) continue; // one of its nodes draws each frame
         w.efficiencies.push_back(sum / (alive * longest));
         if (w.efficiencies.size() > kRatedFrames) w.efficiencies.pop_front();
     }
@@ -303,7 +351,9 @@ void LoadBalancer::count(Watched& w) const {
     double whole = 0;
     for (const int node : w.nodes) {
         const auto i = static_cast<size_t>(node);
-        const double part = w.totals.ranges ? partOf(ranges_.ofNodes[i]) : partOf(areas_.ofNodes[i]);
+        const double part = w.totals.division == Division::Frames   ? 1
+                            : w.totals.division == Division::Ranges ? partOf(ranges_.ofNodes[i])
+                                                                    : partOf(areas_.ofNodes[i]);
         w.totals.nodes.emplace_back(node, part);
         whole += part;
     }

@@ -31,6 +31,8 @@ public:
     struct Announce {
         std::function<void(const ViewportAssignment&)> viewports;
         std::function<void(const RangeAssignment&)> ranges;
+        // The client begins frames at this rate at most; 0: no limit. May be empty.
+        std::function<void(uint32_t client, double framesPerSecond)> pace;
     };
 
     // plant: fault injection for tests; each value divides at random after each frame and reply of a node. With "areas"
@@ -57,7 +59,7 @@ private:
         uint32_t viewports = 0, ranges = 0; // numbers of the assignments; 0: the parts of Setup
         std::vector<balance::LeafStatistics> leaves;
     };
-    struct Watched { // one equalizer of areas or ranges
+    struct Watched { // one equalizer of areas, ranges or the frame rate
         balance::Equalizer* equalizer;
         std::vector<int> nodes;
         EqualizerTotals totals;
@@ -69,10 +71,13 @@ private:
     void advance(bool repeats = false);
     void findParts(ViewportAssignment& areas, RangeAssignment& ranges) const;
     void snap(Viewport& area) const;
+    void announcePace();
     [[nodiscard]] std::vector<balance::LeafStatistics> leavesOfPlan() const;
     void observe(const FrameTimes::Frame& frame, int64_t nowNs);
     [[nodiscard]] const Issue* issueOf(const FrameTimes::Frame& frame) const;
     [[nodiscard]] std::vector<double> busyByCompound(const FrameTimes::Frame& frame) const;
+    [[nodiscard]] bool drawsInTurn(balance::Index compound) const;
+    void addTurns(const FrameTimes::Frame& frame, balance::FrameStatistics& statistics) const;
     void countFrame(const FrameTimes::Frame& frame);
     void count(Watched& watched) const;
     [[nodiscard]] Result<balance::Equalizer*> find(const std::string& name) const;
@@ -90,7 +95,9 @@ private:
     ViewportAssignment areas_; // the latest ones, per node
     RangeAssignment ranges_;
     std::deque<Issue> issues_; // oldest first; those that frames may still be drawn with
-    uint64_t measured_ = 0;    // frames
+    uint32_t pacedClient_ = 0; // the latest announced pace
+    double pace_ = 0;
+    uint64_t measured_ = 0; // frames
     int64_t lastFrameNs_ = 0;
     bool isRandom_ = false;
 };

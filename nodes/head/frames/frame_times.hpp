@@ -40,6 +40,7 @@ public:
     [[nodiscard]] bool isAlive(int node) const { return alive_[static_cast<size_t>(node)]; }
 
     [[nodiscard]] bool known() const { return width_ > 0; } // a window is followed
+    [[nodiscard]] uint32_t client() const { return followed_.first; }
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "common/log/log.hpp"
+#include "nodes/frame_spans/span_scope.hpp"
 
 namespace mural {
 
@@ -75,7 +76,7 @@ private:
             queue_.pop_front();
             lock.unlock();
             if (picture.picture)
-                take(picture);
+                takeAsSpan(picture);
             else
                 forget(picture.window);
             lock.lock();
@@ -86,6 +87,18 @@ private:
         lock.lock();
         ended_ = true;
         changed_.notify_all();
+    }
+
+    void takeAsSpan(const WindowPicture& picture) {
+        const bool isOn = config_.statistics && config_.statistics->isOn();
+        recordThread(spans_, isOn, SpanKind::WaitPicture);
+        {
+            const SpanScope outputs(SpanKind::Output);
+            take(picture);
+        }
+        if (!isOn) return;
+        const int64_t nowNs = quickNowNs();
+        config_.statistics->add(client_, picture.frame, {SpanProcess::Head, 0, "window", spans_.take(nowNs)}, nowNs);
     }
 
     void take(const WindowPicture& picture) {
@@ -150,9 +163,10 @@ private:
 
     const uint32_t client_;
     const NativeWindowsConfig& config_;
-    OwnedPicture bothEyes_;                                    // used by thread_, as the next two
+    OwnedPicture bothEyes_;                                    // used by thread_, as the next three
     std::map<uint32_t, std::unique_ptr<PictureSink>> windows_; // null: the window could not be opened
     std::set<uint32_t> complained_;
+    ThreadSpans spans_;
 
     std::mutex mutex_; // guards the members below
     std::condition_variable changed_;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "nodes/head/frames/picture_assembler.hpp"
+#include "nodes/head/statistics/frame_statistics.hpp"
 #include "nodes/output/picture_sink.hpp"
 
 namespace mural {
@@ -26,6 +27,7 @@ struct NativeWindowsConfig {
     std::function<bool(const WindowPicture& picture, const Picture& whole)> giveToProgram;
     std::function<void(uint32_t client, uint32_t frame)> done;    // the picture was shown or dropped
     std::function<void(uint32_t client, bool isBlocked)> blocked; // its X server stops or resumes to answer
+    FrameStatistics* statistics = nullptr;                        // null: none
 };
 
 // The threads of the programs call the functions of the config.

@@ -22,7 +22,8 @@ PictureOutput::PictureOutput(PictureOutputConfig config, std::unique_ptr<Picture
       saveFrames_(config_.saveFrames.begin(), config_.saveFrames.end()),
       file_(std::move(file)),
       canvases_(config_.canvases.size()),
-      natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked}),
+      natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked,
+                config_.statistics}),
       thread_([this] { work(); }) {}
 
 PictureOutput::~PictureOutput() {

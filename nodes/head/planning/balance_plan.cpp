@@ -84,6 +84,19 @@ void settleDivision(SessionPlan& plan, const SessionConfig& config, const balanc
                            " among nodes " + listOf(nodes) + " by their times for the last frames");
 }
 
+void settlePace(SessionPlan& plan, const balance::Equalizer& e, BalancePlan& into) {
+    std::vector<int> nodes = nodesOf(plan, e);
+    std::erase_if(nodes, [&](int n) { return plan.nodes[static_cast<size_t>(n)].pass.period < 2; });
+    const std::string name = "equalizer \"" + e.id() + "\"";
+    if (nodes.size() < 2) {
+        plan.explain.push_back(name + " has no effect: no nodes of its compound draw frames in turn");
+        return;
+    }
+    into.equalizers.push_back(e.id());
+    plan.explain.push_back(name + " (" + e.kind() + ") begins frames at equal intervals, by the times of nodes " +
+                           listOf(nodes));
+}
+
 } // namespace
 
 std::vector<int> nodesOf(const SessionPlan& plan, const balance::Equalizer& equalizer) {
@@ -103,6 +116,8 @@ void settleBalance(SessionPlan& plan, const SessionConfig& config) {
     for (const auto& e : all)
         if (e->effect() == Effect::Viewports || e->effect() == Effect::Ranges)
             settleDivision(plan, config, *e, *settled);
+        else if (e->effect() == Effect::FrameRates)
+            settlePace(plan, *e, *settled);
     for (const auto& e : all)
         if (e->effect() == Effect::Usage && dividesBelow(*settled, all, e->compound()))
             settled->equalizers.push_back(e->id());

@@ -53,7 +53,6 @@ constexpr std::array kGaps = {
     Gap{"", "NV_group", "barriers use the network, without hardware; remove it"},
     Gap{"", "NV_barrier", "barriers use the network, without hardware; remove it"},
     Gap{"compound", "DFR_equalizer", "the size of pictures is fixed; set a zoom in the compound"},
-    Gap{"compound", "framerate_equalizer", "frames are shown as soon as they are complete; remove it"},
     Gap{"compound", "monitor_equalizer", "mural_copy_to in a segment shows its picture on another one, too"},
 };
 

@@ -76,10 +76,11 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
       nodeCount_(static_cast<int>(nodes.size())),
       sendsPictures_(headTakesPictures(config_, plan_)),
       statistics_(clocksOf(plan_)),
+      pacer_([this](uint32_t client, uint32_t finished, uint32_t shown) {
+          if (serving_) programs_->credit(client, finished, shown);
+      }),
       frames_(nodeCount_,
-              [this](uint32_t client, uint32_t finished, uint32_t shown) {
-                  if (serving_) programs_->credit(client, finished, shown);
-              }),
+              [this](uint32_t client, uint32_t finished, uint32_t shown) { pacer_.add(client, finished, shown); }),
       answers_(nodeCount_,
                [this](uint32_t client, Reply reply) {
                    if (serving_) programs_->reply(client, std::move(reply));
@@ -98,7 +99,8 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
                  },
                  [this](const RangeAssignment& ranges) {
                      nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(ranges));
-                 }},
+                 },
+                 [this](uint32_t client, double framesPerSecond) { pacer_.setPace(client, framesPerSecond); }},
                 plantOf()),
       advice_(config_, nodeCount_),
       absences_(absencesOf(nodes)),
@@ -308,6 +310,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
         return;
     }
     frames_.clientGone(client);
+    pacer_.clientGone(client);
     if (!sendsPictures_) return;
     pictures_.clientGone(client);
     output_->clientGone(client);

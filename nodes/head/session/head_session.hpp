@@ -22,6 +22,7 @@
 #include "nodes/head/control/control_feed.hpp"
 #include "nodes/head/control/control_server.hpp"
 #include "nodes/head/session/control_channel.hpp"
+#include "nodes/head/frames/credit_pacer.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
 #include "nodes/head/membership/node_capabilities.hpp"
@@ -177,6 +178,7 @@ private:
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameStatistics statistics_;
     int64_t probedNs_ = 0; // the latest ClockProbe
+    CreditPacer pacer_;
     FrameTracker frames_;
     ReplyAssembler answers_;
     DriverEventMerger driverEvents_;

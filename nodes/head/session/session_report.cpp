@@ -80,6 +80,15 @@ Json uncomparedJson(const CaptureCounts& counts) {
     return reasons;
 }
 
+const char* nameOf(Division division) {
+    switch (division) {
+    case Division::Areas: return "picture";
+    case Division::Ranges: return "draws";
+    case Division::Frames: break;
+    }
+    return "frames";
+}
+
 Json equalizersJson(const std::vector<EqualizerTotals>& equalizers) {
     if (equalizers.empty()) return nullptr;
     Json list = Json::array();
@@ -91,13 +100,14 @@ Json equalizersJson(const std::vector<EqualizerTotals>& equalizers) {
         list.push_back({{"name", e.id},
                         {"parameters", parameters},
                         {"kind", e.kind},
-                        {"divides", e.ranges ? "draws" : "picture"},
+                        {"divides", nameOf(e.division)},
                         {"frozen", e.frozen},
                         {"decision", e.decision},
                         {"frames", e.frames},
                         {"moves", e.moves},
                         {"taken", e.taken},
                         {"efficiency", e.efficiency},
+                        {"framesPerSecond", e.framesPerSecond},
                         {"nodes", nodes}});
     }
     return list;

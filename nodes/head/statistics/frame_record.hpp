@@ -18,7 +18,7 @@ enum class SpanProcess : uint32_t { Program, Head, Node };
 struct SpanTrack {
     SpanProcess process = SpanProcess::Head;
     int number = 0;     // of the node; of a reader in the head: its node; otherwise 0
-    std::string thread; // "gl", "stream", "reader", "output", "replay", "pictures"
+    std::string thread; // "gl", "stream", "reader", "output", "window", "replay", "pictures"
     std::vector<Span> spans;
 
     bool operator==(const SpanTrack&) const = default;

@@ -173,8 +173,10 @@ class CriticalPath:
             return trace.program()
         if wait in ("credit", "picture"):
             return self._latest(trace.named("reader"), time)
-        if wait in ("output", "window"):
+        if wait == "output":
             return trace.thread("head", "output")
+        if wait == "window":
+            return self._latest(trace.named("windows of program"), time)
         return None
 
 

@@ -16,8 +16,8 @@ using Json = nlohmann::json;
 
 // Process and thread ids of the trace.
 constexpr int kHead = 1, kPrograms = 100, kNodes = 1000;
-constexpr int kOutput = 1, kStreams = 100, kReaders = 1000; // threads of the head
-constexpr int kReplay = 1, kPictures = 2;                   // threads of a node
+constexpr int kOutput = 1, kStreams = 100, kReaders = 1000, kWindows = 100'000; // threads of the head
+constexpr int kReplay = 1, kPictures = 2;                                       // threads of a node
 
 struct TraceThread {
     int process, thread;
@@ -37,6 +37,8 @@ TraceThread threadOf(const SpanTrack& track, const FrameRecord& record) {
         return {kHead, kReaders + track.number, "head", fmt::format("reader of node {}", track.number)};
     if (track.thread == "stream")
         return {kHead, kStreams + client, "head", fmt::format("stream of program {}", client)};
+    if (track.thread == "window")
+        return {kHead, kWindows + client, "head", fmt::format("windows of program {}", client)};
     return {kHead, kOutput, "head", track.thread};
 }
 
