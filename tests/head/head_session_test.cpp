@@ -15,6 +15,14 @@ bool swapFrames(FakeProgram& program, uint32_t from, uint32_t to, uint32_t width
     return true;
 }
 
+size_t swapsOf(FakeNode& node) {
+    size_t swaps = 0;
+    for (const auto& packet : node.packets())
+        for (size_t at = 0; packet.stream != 0 && at + 1 < packet.words.size(); at += packet.words[at])
+            swaps += packet.words[at + 1] == kFakeSwap ? 1 : 0;
+    return swaps;
+}
+
 std::vector<uint32_t> notesOf(FakeNode& node, uint32_t stream) {
     std::vector<uint32_t> notes;
     for (const auto& packet : node.packets())
@@ -104,14 +112,20 @@ TEST(HeadSession, sendsEveryPacketToEveryNodeInOrder) {
 }
 
 TEST(HeadSession, givesCreditOnlyWhenAllNodesAreDone) {
-    std::atomic<bool> isPaused{true};
+    std::atomic<bool> isPaused{false};
     SessionHarness head(2);
-    head.behaviours[1].isPaused = nullptr;
+    head.behaviours[1].isPaused = &isPaused;
     head.start();
     head.waitFor("ready");
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
+    isPaused = true;
     ASSERT_TRUE(swapFrames(program, 1, 40));
+    const Deadline deadline = Deadline::inMs(kTestPatienceMs);
+    while (swapsOf(head.node(0)) < 40 && !deadline.passed()) std::this_thread::yield();
+    EXPECT_EQ(swapsOf(head.node(0)), 40u);
+    EXPECT_EQ(program.header()->framesDone.load(), 0u);
+    isPaused = false;
     EXPECT_TRUE(program.waitFramesDone(40));
     EXPECT_EQ(program.header()->framesDone.load(), 40u);
     const auto report = head.finish();

@@ -9,7 +9,7 @@
 namespace mural {
 namespace {
 
-constexpr DiscoveryOptions kBeacon{true, false, {}};
+const DiscoveryOptions kBeacon{true, false, {}};
 
 Announcement self(const std::string& name) {
     Announcement a{AnnouncementKind::Here, 4278, {}, name + std::to_string(::getpid()), "0.1.0"};

@@ -261,7 +261,8 @@ TEST(Group, wakesOtherThreadsFromTheLeader) {
     ASSERT_TRUE(silent && member);
     ASSERT_TRUE(host->waitForMembers(2, Deadline::inMs(10'000)));
     for (int i = 0; i < 2; ++i) ASSERT_TRUE(host->accept(Deadline::inMs(10'000)));
-    std::thread leader([&] { EXPECT_TRUE(readWord(*host, (*silent)->self(), Deadline::inMs(30'000))); });
+    std::thread leader(
+        [&silent, &host = host] { EXPECT_TRUE(readWord(*host, (*silent)->self(), Deadline::inMs(30'000))); });
     // the thread probably waits by then; the test does not depend on it
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     expectEachWordWakes(**member, *host, (*member)->self());

@@ -124,7 +124,7 @@ Kernel zKernel(const std::string& name, DepthFormat format, bool isNoise, double
 // Memory traffic of z compositing when no cache line can be skipped, with minimal arithmetic: reads both depths and
 // colours, writes one of each. No kernel moves less for random depths; this row shows the memory bandwidth of a plain
 // loop.
-__attribute__((optimize("O3"))) void exclusiveOr(std::byte* into, const std::byte* source) {
+void exclusiveOr(std::byte* into, const std::byte* source) {
     auto* const to = reinterpret_cast<uint64_t*>(into);
     const auto* const from = reinterpret_cast<const uint64_t*>(source);
     for (size_t i = 0; i < kPixels; ++i) to[i] ^= from[i];
