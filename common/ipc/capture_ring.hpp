@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 9;
+constexpr uint32_t kVersion = 10;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -96,9 +96,9 @@ enum class Reader : uint32_t {
 };
 constexpr int64_t kNapNs = 100'000;
 
-// A program may exceed the frames of Welcome.latency while its oldest unfinished frame is younger than this. Latency 0
-// allows no such excess. Slower frames are not affected. A program that only shows frames sleeps occasionally instead
-// of in each frame.
+// A program may exceed the frames of CaptureHeader::latency while its oldest unfinished frame is younger than this.
+// Latency 0 allows no such excess. Slower frames are not affected. A program that only shows frames sleeps occasionally
+// instead of in each frame.
 constexpr int64_t kAheadNs = 1'000'000;
 constexpr uint32_t kAheadFrames = 64; // a power of two
 
@@ -150,6 +150,9 @@ struct alignas(64) CaptureHeader {
 
     // Frames that the nodes have finished, over all windows: the credit of the frame latency. futex.
     alignas(64) std::atomic<uint32_t> framesDone;
+    // Frames that the app may be ahead of the nodes. The head may change it at any time. The app reads it at each swap,
+    // and again when a change wakes it (framesDone).
+    std::atomic<uint32_t> latency;
     // kFramesWanted | frames. When that many frames are done, the head wakes the threads that sleep on framesDone, and
     // clears the word. A thread that waits for fewer frames may wake with a later one, because all these frames are
     // under way.
@@ -232,7 +235,6 @@ struct Welcome {
     uint32_t version;
     uint32_t clientId;
     uint32_t localRendering;
-    uint32_t latency;       // frames that the app may be ahead of the nodes
     uint32_t verifyEvery;   // 0: never; n: compare every n-th frame with the local picture
     uint32_t nodeCount;     // render nodes; 1: copies need no gathering
     uint32_t displayApp;    // 1: pictures come back into the app's own window

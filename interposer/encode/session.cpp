@@ -215,7 +215,7 @@ bool Session::takeChunk(ThreadState& t) {
 }
 
 bool Session::mayGoAhead(uint32_t submitted, uint32_t done, int64_t nowNs) const {
-    if (welcome_.latency == 0 || submitted - done >= capture::kAheadFrames) return false;
+    if (latency() == 0 || submitted - done >= capture::kAheadFrames) return false;
     const int64_t oldestNs = __atomic_load_n(&submittedNs_[(done + 1) % capture::kAheadFrames], __ATOMIC_RELAXED);
     return nowNs - oldestNs < capture::kAheadNs;
 }
@@ -227,7 +227,7 @@ void Session::waitForCredit() {
     __atomic_store_n(&submittedNs_[submitted % capture::kAheadFrames], nowNs, __ATOMIC_RELAXED);
     header_->framesSubmitted.store(submitted, std::memory_order_relaxed);
     const auto tooMany = [&](uint32_t done) {
-        return static_cast<int32_t>(submitted - done) > static_cast<int32_t>(welcome_.latency);
+        return static_cast<int32_t>(submitted - done) > static_cast<int32_t>(latency());
     };
     uint32_t done = header_->framesDone.load(std::memory_order_acquire);
     if (!alive() || !tooMany(done) || mayGoAhead(submitted, done, nowNs)) return;
@@ -238,7 +238,7 @@ void Session::waitForCredit() {
             if (!headAlive()) return;
             if (waiting.forNs() > 10 * kStuckNs) die("no frame was completed for 10 minutes");
         }
-        header_->framesWanted.store(capture::kFramesWanted | (submitted - welcome_.latency), std::memory_order_relaxed);
+        header_->framesWanted.store(capture::kFramesWanted | (submitted - latency()), std::memory_order_relaxed);
         std::atomic_thread_fence(std::memory_order_seq_cst);
         done = header_->framesDone.load(std::memory_order_acquire);
         if (tooMany(done)) futexWait(header_->framesDone, done, kSliceNs);

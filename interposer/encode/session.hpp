@@ -33,8 +33,8 @@ public:
     void publish(ThreadState& t, bool last, bool hurry = true);
     // Gives the thread a new chunk, after publish(t, true). Returns false if the head has ended.
     bool takeChunk(ThreadState& t);
-    // Blocks until the number of pending frames is within the session's latency. Frames faster than capture::kAheadNs
-    // may exceed it.
+    // Blocks until the number of pending frames is within the latency, which the head may change meanwhile. Frames
+    // faster than capture::kAheadNs may exceed it.
     void waitForCredit();
     // Blocks until all frames of this process are in its windows (--display app). The wait is bounded.
     void waitShown();
@@ -88,6 +88,7 @@ private:
     [[nodiscard]] bool publishLocked(ThreadState& t, bool last); // false: no records, or no room
     void wakeReader(bool fromNap);
     [[nodiscard]] bool mayGoAhead(uint32_t submitted, uint32_t done, int64_t nowNs) const;
+    [[nodiscard]] uint32_t latency() const { return header_->latency.load(std::memory_order_relaxed); }
     [[nodiscard]] uint32_t framesSubmitted() const { return __atomic_load_n(&framesSubmitted_, __ATOMIC_RELAXED); }
 
     capture::CaptureHeader* header_ = nullptr;

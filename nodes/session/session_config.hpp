@@ -27,6 +27,8 @@ enum class ProjectionChoice {
 };
 enum class DeltaMode { Auto, On, Off };
 
+constexpr int kMaxLatency = 64;
+
 struct SessionConfig {
     std::string session;    // abstract Unix socket name that programs connect to
     std::string socketPath; // the same socket's path, for programs in other network namespaces; empty: none

@@ -117,7 +117,7 @@ bool CaptureLink::allTaken() const {
 }
 
 bool CaptureLink::mayGoOn(uint32_t submittedFrame) {
-    const uint32_t wanted = submittedFrame - welcome_.latency;
+    const uint32_t wanted = submittedFrame - header_->latency.load(std::memory_order_relaxed);
     const auto done = [&] {
         return static_cast<int32_t>(header_->framesDone.load(std::memory_order_acquire) - wanted) >= 0;
     };

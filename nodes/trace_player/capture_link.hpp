@@ -32,7 +32,7 @@ public:
     [[nodiscard]] bool allTaken() const; // wait on chunkWord()
 
     void submitted(uint32_t frame) { header_->framesSubmitted.store(frame, std::memory_order_relaxed); }
-    bool mayGoOn(uint32_t submittedFrame); // applies the session's latency
+    bool mayGoOn(uint32_t submittedFrame); // applies the session's current latency
     [[nodiscard]] const std::atomic<uint32_t>& framesWord() const { return header_->framesDone; }
 
     void requested() { ++requested_; }

@@ -21,20 +21,9 @@ except ImportError:  # Debian's package serves Debian's Python only
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
 from harness import cases  # noqa: E402
+from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
 
-PATIENCE_SECONDS = 60
 SCHEMA = os.path.join(TOP, "docs", "reference", "control.schema.json")
-
-
-def ctl(context, *words):
-    """Returns (exit status, output, errors)."""
-    done = subprocess.run([context.mural, "ctl", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=PATIENCE_SECONDS, check=False)
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
-
-
-def result_of(context, run, *words):
-    status, output, errors = ctl(context, "--json", str(run.process.pid), *words)
-    return json.loads(output)["result"] if status == 0 else {"error": errors}
 
 
 def drawing(context, *options):

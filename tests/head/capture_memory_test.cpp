@@ -54,6 +54,26 @@ protected:
     int wakes_ = 0;
 };
 
+TEST_F(CaptureMemoryTest, wakesAProgramThatAChangeOfTheLatencyPermitsToContinue) {
+    memory_->setLatency(1);
+    std::thread sleeper([this] { // a thread of the program after its third swap, before any frame is done
+        uint32_t done = 0;
+        while (3 - (done = program_->framesDone.load()) > program_->latency.load()) {
+            program_->framesWanted = capture::kFramesWanted | (3 - program_->latency.load());
+            futexWait(program_->framesDone, done, 10 * kNsPerS);
+            ++wakes_;
+        }
+    });
+    ASSERT_TRUE(wantedIs(capture::kFramesWanted | 2));
+    const Deadline patience = Deadline::inMs(100); // the thread may not be asleep yet
+    while (!patience.passed()) std::this_thread::yield();
+    const int64_t beganNs = monotonicNowNs();
+    memory_->setLatency(3);
+    sleeper.join();
+    EXPECT_LT(monotonicNowNs() - beganNs, 5 * kNsPerS);
+    EXPECT_EQ(wakes_, 1);
+}
+
 TEST(CaptureMemory, reportsAProgramWhileItHasADescriptorOrTheMapping) {
     auto memory = CaptureMemory::create(16, 4096);
     ASSERT_TRUE(memory) << memory.error().message;

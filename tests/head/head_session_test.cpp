@@ -46,7 +46,7 @@ TEST(HeadSession, announcesCommonFeaturesOfAllNodes) {
     EXPECT_EQ(head.waitFor("clients")["count"], 1);
     EXPECT_EQ(program.welcome().refused, 0u);
     EXPECT_EQ(program.welcome().nodeCount, 3u);
-    EXPECT_EQ(program.welcome().latency, 2u);
+    EXPECT_EQ(program.header()->latency.load(), 2u);
     EXPECT_EQ(program.welcome().verifyEvery, 5u);
     EXPECT_EQ(program.welcome().localRendering, capture::kLocalRenderingOn);
     EXPECT_EQ(program.welcome().nodeGlVersion, 40u);

@@ -1,66 +1,10 @@
 // Pictures through the complete head: saved, shown, counted.
-#include "tests/head/support/session_harness.hpp"
-
 #include <gtest/gtest.h>
-#include <map>
+
+#include "tests/head/support/fake_sink.hpp"
 
 namespace mural {
 namespace {
-
-// Frames that sinks received; shared with the test.
-struct Shown {
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::map<std::string, std::vector<int64_t>> frames; // by sink
-    std::vector<uint32_t> lastPixels;
-    bool finished = false;
-    bool blocked = false;
-    bool failing = false;
-
-    size_t count(const std::string& sink) {
-        const std::lock_guard lock(mutex);
-        return frames[sink].size();
-    }
-    void block(bool on) {
-        const std::lock_guard lock(mutex);
-        blocked = on;
-        changed.notify_all();
-    }
-};
-
-class FakeSink : public PictureSink {
-public:
-    FakeSink(Shown& shown, std::string name) : shown_(shown), name_(std::move(name)) {}
-    Result<void> show(int64_t frame, const Picture& picture) override {
-        std::unique_lock lock(shown_.mutex);
-        shown_.changed.wait_for(lock, std::chrono::seconds(20), [this] { return !shown_.blocked; });
-        if (shown_.failing) return Error{"disk full"};
-        shown_.frames[name_].push_back(frame);
-        shown_.lastPixels.resize(picture.sizeBytes() / 4);
-        std::memcpy(shown_.lastPixels.data(), picture.bgra, picture.sizeBytes());
-        return {};
-    }
-    Result<void> finish() override {
-        const std::lock_guard lock(shown_.mutex);
-        shown_.finished = true;
-        return {};
-    }
-    [[nodiscard]] std::string describe() const override { return name_; }
-
-private:
-    Shown& shown_;
-    std::string name_;
-};
-
-void addSinks(SessionHarness& head, Shown& shown) {
-    for (auto& behaviour : head.behaviours) behaviour.pictures = true;
-    head.options.file = std::make_unique<FakeSink>(shown, "file");
-    head.options.openWindow = [&shown](const NativeWindow& window) {
-        return Result<std::unique_ptr<PictureSink>>(
-            std::make_unique<FakeSink>(shown, "window " + std::to_string(window.id)));
-    };
-    head.config.out = "out";
-}
 
 bool swapFrame(FakeProgram& program, uint32_t frame, uint32_t window = 1, uint32_t width = 64) {
     return program.publish(kFakeSwap, {frame, window, width, 48});

@@ -2,71 +2,14 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 
-#include "common/json/json_text.hpp"
 #include "common/log/log.hpp"
-#include "tests/head/support/session_harness.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/head/support/controlled_session.hpp"
 
 namespace mural {
 namespace {
 
 using Json = nlohmann::json;
-
-class ControlledSession : public SessionHarness {
-public:
-    explicit ControlledSession(int nodes) : SessionHarness(nodes) { config.socketPath = folder_.at("socket"); }
-    void open() {
-        start();
-        waitFor("ready");
-        socket_ = FileDescriptor(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-        sockaddr_un address{};
-        address.sun_family = AF_UNIX;
-        folder_.at("control").copy(address.sun_path, sizeof address.sun_path - 1);
-        ASSERT_EQ(connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-        hello = line()["hello"];
-    }
-    Json line() {
-        const Deadline deadline = Deadline::inMs(kTestPatienceMs);
-        size_t end = 0;
-        while ((end = received_.find('\n')) == std::string::npos && !deadline.passed()) {
-            pollfd ready{socket_.get(), POLLIN, 0};
-            char part[4096];
-            if (poll(&ready, 1, 100) <= 0) continue;
-            const ssize_t n = recv(socket_.get(), part, sizeof part, 0);
-            if (n <= 0) return {};
-            received_.append(part, static_cast<size_t>(n));
-        }
-        const Json json = parseJson(received_.substr(0, end));
-        received_.erase(0, end + 1);
-        return json;
-    }
-    Json request(const std::string& operation, const Json& arguments = Json::object()) {
-        const std::string text = jsonText(Json{{"id", 1}, {"op", operation}, {"args", arguments}}) + "\n";
-        EXPECT_EQ(send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
-        Json reply;
-        do reply = line();
-        while (reply.contains("topic"));
-        return reply;
-    }
-    // Returns the next event of that name, from messages of the subscription.
-    Json event(const std::string& name) {
-        for (Json message = line(); message.is_object(); message = line())
-            for (const Json& entry : message["data"])
-                if (entry["event"] == name) return entry;
-        ADD_FAILURE() << "no event " << name;
-        return {};
-    }
-    Json hello;
-
-private:
-    test::TemporaryFolder folder_;
-    FileDescriptor socket_;
-    std::string received_;
-};
 
 TEST(SessionControl, introducesTheSession) {
     ControlledSession head(1);

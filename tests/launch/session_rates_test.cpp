@@ -19,6 +19,7 @@ Json stateAt(double atSeconds, int frames, int calls, int bytes, int trips, doub
             {"atSeconds", atSeconds},
             {"tiles", "2x1"},
             {"display", "app"},
+            {"latency", 1},
             {"frames", frames},
             {"programs",
              {{{"client", 1},
@@ -61,7 +62,7 @@ TEST(SessionRates, areDifferencesOfTwoStates) {
     EXPECT_DOUBLE_EQ(recent["waitShares"]["frames"].get<double>(), 0.75);
     EXPECT_DOUBLE_EQ(both[0]["nodes"][0]["recent"]["busyShare"].get<double>(), 0.25);
     EXPECT_EQ(statLines(both[0]),
-              (std::vector<std::string>{"session 7  2x1 tiles, display app, 150 frames on the wall; head 8",
+              (std::vector<std::string>{"session 7  2x1 tiles, display app, latency 1, 150 frames on the wall; head 8",
                                         "  program 9  glxgears -info",
                                         "    150 frames, 25.0 frames/s, 20 calls and 2.0 kB per frame",
                                         "    0.50 round trips per frame, 29 in all: glReadPixels 29",

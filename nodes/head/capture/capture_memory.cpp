@@ -215,6 +215,13 @@ std::optional<PixelFormat> CaptureMemory::ownWindow(uint32_t window, uint32_t fr
     return std::nullopt;
 }
 
+// A thread that read the previous value and is not asleep yet misses this wake-up. It reads the value again after its
+// slice of 50 ms.
+void CaptureMemory::setLatency(uint32_t frames) {
+    shared_->latency.store(frames, std::memory_order_release);
+    futexWakeAll(shared_->framesDone);
+}
+
 void CaptureMemory::setFramesDone(uint32_t frames) {
     shared_->framesDone.store(frames, std::memory_order_release);
     std::atomic_thread_fence(std::memory_order_seq_cst);

@@ -84,6 +84,8 @@ public:
     // Returns the format of the window if the program itself puts this frame's picture into it, otherwise nullopt.
     [[nodiscard]] std::optional<PixelFormat> ownWindow(uint32_t window, uint32_t frame) const;
 
+    // Sets the frames that the program may be ahead, and wakes its waiting threads.
+    void setLatency(uint32_t frames);
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);
     void beat() { shared_->headBeat.fetch_add(1, std::memory_order_relaxed); } // heartbeat of the head

@@ -18,7 +18,7 @@ constexpr uint32_t kMaxIds = 65535; // streams carry 16 bits of it, see wire::st
 } // namespace
 
 ProgramTable::ProgramTable(ProgramTerms terms, StreamBroadcaster& nodes, Events events)
-    : terms_(std::move(terms)), nodes_(nodes), events_(std::move(events)) {}
+    : terms_(std::move(terms)), nodes_(nodes), events_(std::move(events)), latency_(terms_.latency) {}
 
 ProgramTable::~ProgramTable() { endAll(); }
 
@@ -32,6 +32,7 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
     Admission admission;
     admission.welcome = terms_.welcome;
     admission.welcome.clientId = id;
+    (*memory)->setLatency(latency_);
     admission.memoryFd = (*memory)->fdToPass();
     admission.extensions = terms_.extensions;
     admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.statistics);
@@ -97,6 +98,21 @@ void ProgramTable::driverEvent(const wire::DriverEvent& event, const std::string
     if (const auto client = find(event.client)) (void)client->memory().putDriverEvent(event, text);
 }
 
+void ProgramTable::setLatency(uint32_t frames) {
+    const std::lock_guard lock(mutex_);
+    latency_ = frames;
+    for (const auto& [id, client] : admitted_) client->memory().setLatency(frames);
+    for (const auto& [id, client] : clients_) {
+        client->memory().setLatency(frames);
+        publishProgress(*client, progress_[id]); // without latency, the credit waits for the windows
+    }
+}
+
+uint32_t ProgramTable::latency() const {
+    const std::lock_guard lock(mutex_);
+    return latency_;
+}
+
 void ProgramTable::credit(uint32_t id, uint32_t finished, uint32_t shown) {
     const std::lock_guard lock(mutex_);
     const auto found = clients_.find(id);
@@ -116,10 +132,11 @@ void ProgramTable::displayBlocked(uint32_t id, bool isBlocked) {
     publishProgress(*found->second, progress);
 }
 
-// A program receives no further credit while too many of its pictures wait for their window.
+// A program receives no further credit while too many of its pictures wait for their window; without latency, while
+// any of them waits. Requires mutex_.
 void ProgramTable::publishProgress(CaptureClient& client, const Progress& progress) const {
     constexpr uint32_t kMaxUnshown = 3;
-    const uint32_t allowed = progress.shown + (terms_.framesDoneWhenShown ? 0 : kMaxUnshown);
+    const uint32_t allowed = progress.shown + (latency_ == 0 ? 0 : kMaxUnshown);
     const bool isLimited = terms_.welcome.displayApp != 0 && !progress.isBlocked;
     client.memory().setFramesDone(isLimited ? std::min(progress.finished, allowed) : progress.finished);
     client.memory().setFramesShown(progress.shown);

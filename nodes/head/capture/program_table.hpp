@@ -22,7 +22,7 @@ namespace mural {
 struct ProgramTerms {
     capture::Welcome welcome{}; // equal for all programs except the id
     std::string extensions;
-    bool framesDoneWhenShown = false; // --display app without latency
+    uint32_t latency = 1; // of the start; setLatency() changes it
     uint32_t chunkCount = capture::kDefaultChunks;
     FrameStatistics* statistics = nullptr; // null: none
 };
@@ -46,6 +46,10 @@ public:
     void refuseFrom(const std::string& reason); // refuses programs from now on; call before drainAll()
     void reply(uint32_t client, Reply reply);
     void driverEvent(const wire::DriverEvent& event, const std::string& text);
+    // Sets the frames that programs may be ahead of the nodes, for current and later programs. Each program applies the
+    // value from its next swap on; a waiting one continues at once if the value permits it.
+    void setLatency(uint32_t frames);
+    [[nodiscard]] uint32_t latency() const;
     void credit(uint32_t client, uint32_t finished, uint32_t shown);
     // While the X server does not answer, the credit does not wait for the program's windows.
     void displayBlocked(uint32_t client, bool isBlocked);
@@ -88,6 +92,7 @@ private:
     std::string refusal_;
     bool headGone_ = false;
     uint32_t nextId_ = 1;
+    uint32_t latency_;
     Clients admitted_; // no Welcome was sent yet
     Clients clients_;
     std::map<uint32_t, Progress> progress_;

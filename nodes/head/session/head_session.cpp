@@ -448,6 +448,7 @@ SessionStatus HeadSession::status() {
     result.rows = config_.rows;
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
+    result.latency = programs_->latency();
     result.delta = nodes_.deltaCounts();
     result.equalizers = balancer_.totals();
     result.programs = programs_->status();

@@ -124,6 +124,9 @@ private:
     void openControl();
     ControlOperations controlOperations();
     void addNodeOperations(ControlOperations& operations);
+    // Changes to the running session (head_session_changes.cpp).
+    void addChangeOperations(ControlOperations& operations);
+    Result<nlohmann::json> changeLatency(const nlohmann::json& arguments);
     Result<void> checkNode(int64_t node); // that an operation may change it
     Result<void> restartNode(int node);
     Result<void> removeNode(int node, bool isForced);

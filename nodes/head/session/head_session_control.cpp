@@ -77,6 +77,7 @@ ControlOperations HeadSession::controlOperations() {
                  return Result<Json>(Json::object());
              }});
     addNodeOperations(all);
+    addChangeOperations(all);
     addFramesOperation(all);
     if (balancer_.isActive()) addEqualizerOperations(all, equalizers_);
     return all;

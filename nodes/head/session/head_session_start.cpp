@@ -185,7 +185,6 @@ void HeadSession::openTables() {
     capture::Welcome& welcome = terms.welcome;
     welcome.localRendering =
         config_.localRendering == LocalRendering::On ? capture::kLocalRenderingOn : capture::kLocalRenderingOff;
-    welcome.latency = static_cast<uint32_t>(config_.latency);
     welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
     // A recording must play on any number of nodes. The program therefore fetches the pixels that it copies from a
     // window, as it does with several nodes.
@@ -201,7 +200,7 @@ void HeadSession::openTables() {
         promisedGlVersion_ = lowestGlVersion(facts);
         promisedExtensions_ = terms.extensions;
     }
-    terms.framesDoneWhenShown = config_.display == Display::App && config_.latency == 0;
+    terms.latency = static_cast<uint32_t>(config_.latency);
     terms.chunkCount = options_.chunkCount;
     terms.statistics = &statistics_;
     beginRecording();

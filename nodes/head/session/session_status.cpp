@@ -66,6 +66,7 @@ Json statusOf(const SessionStatus& status) {
         {"tiles", std::to_string(status.columns) + "x" + std::to_string(status.rows)},
         {"display", status.display},
         {"frames", status.wallFrames},
+        {"latency", status.latency},
         {"delta", deltaJson(status.delta)},
         {"equalizers", equalizersJson(status.equalizers)},
         {"programs", programs},

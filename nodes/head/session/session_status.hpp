@@ -41,6 +41,7 @@ struct SessionStatus {
     int columns = 1, rows = 1;
     std::string display; // app, windows, none
     int64_t wallFrames = 0;
+    uint32_t latency = 0; // frames that programs may be ahead, at the moment
     DeltaCounts delta;
     std::vector<EqualizerTotals> equalizers;
     std::vector<ProgramStatus> programs;

@@ -11,7 +11,6 @@
 namespace mural::cli {
 
 constexpr int kMaxNodes = 1024;
-constexpr int kMaxLatency = 64;
 
 // Tiles, and size and place of the wall.
 Result<void> readSizes(const RunArguments& a, SessionConfig& c);

@@ -216,9 +216,10 @@ std::vector<std::string> nodeLines(const Json& session) {
 
 std::vector<std::string> statLines(const Json& session) {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("session {:.0f}  {} tiles, display {}, {:.0f} frames on the wall; head {:.0f}",
-                                number(session, "runPid"), memberText(session, "tiles"), memberText(session, "display"),
-                                number(session, "frames"), number(session, "headPid")));
+    lines.push_back(
+        fmt::format("session {:.0f}  {} tiles, display {}, latency {:.0f}, {:.0f} frames on the wall; head {:.0f}",
+                    number(session, "runPid"), memberText(session, "tiles"), memberText(session, "display"),
+                    number(session, "latency"), number(session, "frames"), number(session, "headPid")));
     const std::vector<Json> programs = entries(session, "programs");
     for (const Json& program : programs) addProgram(program, lines);
     if (programs.empty()) lines.emplace_back("  no program draws at the moment");
