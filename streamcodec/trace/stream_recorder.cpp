@@ -1,6 +1,7 @@
 #include "streamcodec/trace/stream_recorder.hpp"
 
 #include <chrono>
+#include <filesystem>
 
 #include "common/log/log.hpp"
 #include "streamcodec/registry_digest.hpp"
@@ -19,6 +20,10 @@ Result<std::unique_ptr<StreamRecorder>> StreamRecorder::create(const std::string
     return std::unique_ptr<StreamRecorder>(new StreamRecorder(path, std::move(*writer), std::move(config)));
 }
 
+std::unique_ptr<StreamRecorder> StreamRecorder::createWaiting(const std::string& path, RecorderConfig config) {
+    return std::unique_ptr<StreamRecorder>(new StreamRecorder(path, nullptr, std::move(config)));
+}
+
 StreamRecorder::StreamRecorder(std::string path, std::unique_ptr<TraceWriter> writer, RecorderConfig config)
     : path_(std::move(path)), writer_(std::move(writer)), config_(std::move(config)) {}
 
@@ -35,6 +40,29 @@ void StreamRecorder::begin(const About& about) {
     if (const auto begun = writer_->begin(about, wire::kVersion, registryDigest()); !begun) end(begun.error().message);
     log::debug(log::Topic::Trace, path_, ": the recording begins");
     thread_ = std::thread([this] { work(); });
+}
+
+Result<void> StreamRecorder::beginAfter(const About& about, StreamBefore before) {
+    if (ended_) return Error{"trace " + path_ + ": programs sent too much before the recording could begin; try again"};
+    auto writer = TraceWriter::create(path_);
+    if (!writer) return writer.error();
+    if (auto begun = (*writer)->begin(about, wire::kVersion, registryDigest()); !begun) {
+        std::error_code ignored;
+        if (std::filesystem::is_regular_file(path_, ignored)) std::filesystem::remove(path_, ignored);
+        return begun;
+    }
+    writer_ = std::move(*writer);
+    frameNumbers_.emplace(std::move(before.wall));
+    before_ = std::move(before);
+    log::debug(log::Topic::Trace, path_, ": the recording begins after ", before_.packets.size(), " packets of state");
+    thread_ = std::thread([this] { work(); });
+    return {};
+}
+
+void StreamRecorder::discard() {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    changed_.notify_all();
 }
 
 void StreamRecorder::packet(uint32_t stream, std::span<const std::byte> payload) {
@@ -68,6 +96,7 @@ void StreamRecorder::end(const std::string& why) {
 }
 
 void StreamRecorder::work() {
+    if (const auto written = writeBefore(); !written) end(written.error().message);
     std::vector<std::byte> batch;
     Deadline wholeBy = Deadline::never();
     std::unique_lock lock(mutex_);
@@ -84,6 +113,7 @@ void StreamRecorder::work() {
         Result<void> written = ended_ ? Result<void>() : writeAll(batch);
         if (written && wholeBy.passed() && !ended_) written = writer_->flush();
         wholeFrames_ = writer_->totals().frames;
+        fileBytes_ = writer_->totals().fileBytes;
         if (!writer_->hasUnwritten() || ended_)
             wholeBy = Deadline::never();
         else if (wholeBy.atNs() == INT64_MAX || wholeBy.passed())
@@ -107,12 +137,28 @@ void StreamRecorder::work() {
     changed_.notify_all();
 }
 
-Result<void> StreamRecorder::writeAll(std::span<const std::byte> entries) {
+Result<void> StreamRecorder::writeBefore() {
+    for (const ClientEvent& program : before_.programs)
+        if (auto r = writer_->append({0, 0, eventBytes(program)}); !r) return r;
+    for (const snapshot::SnapshotPacket& packet : before_.packets)
+        if (auto r = writer_->append({packet.stream, 0, packet.payload}); !r) return r;
+    before_ = {};
+    return {};
+}
+
+Result<void> StreamRecorder::writeAll(std::span<std::byte> entries) {
     EntryWalk walk(entries);
     Entry entry;
     while (walk.next(entry)) {
         const bool late = config_.lastFrame > 0 && writer_->framesSeen() >= config_.lastFrame && entry.stream != 0;
         if (late) continue;
+        ClientEvent event;
+        if (frameNumbers_ && entry.stream != 0)
+            frameNumbers_->apply(
+                entry.stream,
+                entries.subspan(static_cast<size_t>(entry.payload.data() - entries.data()), entry.payload.size()));
+        else if (frameNumbers_ && parseEvent(entry.payload, event) && event.kind == Event::ClientGone)
+            frameNumbers_->clientGone(event.client);
         if (auto r = writer_->append(entry); !r) return r;
     }
     return {};

@@ -1,6 +1,11 @@
 // Changes to a running session through the control interface, with nodes and programs without GL.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "streamcodec/trace/trace_reader.hpp"
+#include "streamcodec/wire/control_records.hpp"
+#include "streamcodec/wire/packet.hpp"
 #include "tests/head/support/controlled_session.hpp"
 #include "tests/head/support/fake_sink.hpp"
 
@@ -74,6 +79,98 @@ TEST(SessionChanges, letTheCreditWaitForTheProgramsWindowOnlyWithoutLatency) {
     EXPECT_TRUE(program.waitFramesDone(2));
     EXPECT_TRUE(program.waitFramesShown(2));
     head.finish();
+}
+
+// A session whose nodes could be restarted, with one program that has shown frames in real records.
+class RecordedSession : public ControlledSession {
+public:
+    explicit RecordedSession(int nodes) : ControlledSession(nodes) {
+        options.startNode = [](const NodePlan&) { return Result<StartingNode>(Error{"no node"}); };
+    }
+    bool connectProgram() {
+        open();
+        if (!program.connect(config.session)) return false;
+        waitFor("clients");
+        wire::WindowConfig window{};
+        window.width = 64;
+        window.height = 48;
+        std::vector<uint32_t> words(1 + sizeof window / 4, 1);
+        std::memcpy(words.data() + 1, &window, sizeof window);
+        return record(wire::kOpWindow, words);
+    }
+    bool record(uint16_t opcode, const std::vector<uint32_t>& arguments) {
+        std::vector<uint32_t> words{opcode | static_cast<uint32_t>(arguments.size() + 1) << 16};
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        return program.publishWords(words);
+    }
+    bool swap(uint32_t frame) { return record(wire::kOpSwap, {1, frame}); }
+    std::string file() const { return folder.at("a.mural"); }
+
+    FakeProgram program;
+    test::TemporaryFolder folder;
+};
+
+TEST(SessionChanges, recordFromTheNextFrameOn) {
+    RecordedSession head(2);
+    ASSERT_TRUE(head.connectProgram());
+    for (uint32_t frame = 1; frame <= 4; ++frame) ASSERT_TRUE(head.swap(frame));
+    ASSERT_TRUE(passed(head.program));
+    EXPECT_EQ(head.request("status")["result"]["recording"], Json());
+    const Json begun = head.request("record-start", {{"file", head.file()}});
+    EXPECT_EQ(begun["result"]["firstFrame"], 5) << begun;
+    const Json again = head.request("record-start", {{"file", head.file()}});
+    EXPECT_NE(again["error"].get<std::string>().find("record stop"), std::string::npos) << again;
+    EXPECT_EQ(head.request("status")["result"]["recording"]["file"], head.file());
+    for (uint32_t frame = 5; frame <= 7; ++frame) ASSERT_TRUE(head.swap(frame));
+    ASSERT_TRUE(passed(head.program));
+    const Json ended = head.request("record-stop")["result"];
+    EXPECT_EQ(ended["frames"], 3) << ended;
+    EXPECT_EQ(ended["complete"], true);
+    EXPECT_EQ(ended["bytes"], std::filesystem::file_size(head.file()));
+    ASSERT_TRUE(head.swap(8)); // not recorded
+    ASSERT_TRUE(passed(head.program));
+    EXPECT_EQ(head.request("record-stop")["ok"], false);
+    const auto report = head.finish();
+    EXPECT_EQ(report["recording"], head.file());
+    EXPECT_EQ(report["recordedFrames"], 3);
+    auto reader = trace::TraceReader::open(head.file());
+    ASSERT_TRUE(reader) << reader.error().message;
+    EXPECT_EQ((*reader)->frames(), 3);
+}
+
+TEST(SessionChanges, completeARecordingAtTheEnd) {
+    RecordedSession head(2);
+    ASSERT_TRUE(head.connectProgram());
+    ASSERT_TRUE(head.swap(1));
+    ASSERT_TRUE(passed(head.program));
+    ASSERT_EQ(head.request("record-start", {{"file", head.file()}})["ok"], true);
+    ASSERT_TRUE(head.swap(2));
+    ASSERT_TRUE(passed(head.program));
+    EXPECT_EQ(head.finish()["recordedFrames"], 1);
+    auto reader = trace::TraceReader::open(head.file());
+    ASSERT_TRUE(reader) << reader.error().message;
+    EXPECT_EQ((*reader)->notice(), "");
+}
+
+TEST(SessionChanges, refuseARecordingThatWouldNotPlay) {
+    RecordedSession one(1);
+    one.open();
+    const Json copies = one.request("record-start", {{"file", one.file()}});
+    EXPECT_NE(copies["error"].get<std::string>().find("two nodes"), std::string::npos) << copies;
+    one.finish();
+    ControlledSession stateless(2); // its nodes are not restarted
+    stateless.open();
+    const Json state = stateless.request("record-start", {{"file", one.file()}});
+    EXPECT_NE(state["error"].get<std::string>().find("--restart-nodes"), std::string::npos) << state;
+    stateless.finish();
+    RecordedSession unwritable(2);
+    unwritable.open();
+    const Json place = unwritable.request("record-start", {{"file", "/nowhere/a.mural"}});
+    EXPECT_NE(place["error"].get<std::string>().find("cannot be written"), std::string::npos) << place;
+    EXPECT_EQ(unwritable.request("record-start", {{"file", unwritable.file()}})["ok"], true);
+    unwritable.finish();
+    EXPECT_TRUE(std::filesystem::exists(unwritable.file()));
+    EXPECT_FALSE(std::filesystem::exists(one.file()));
 }
 
 } // namespace

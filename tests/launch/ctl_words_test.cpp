@@ -1,4 +1,5 @@
 // The words of mural ctl, and its texts, without a session.
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +30,11 @@ Json sampleOperations() {
           {"meaning", "set"},
           {"arguments", Json::array({argument("name", "text"), argument("parameter", "text"),
                                      argument("value", "text, number or truth value")})}},
+         {{"name", "record-start"},
+          {"usage", "record start FILE"},
+          {"meaning", "record"},
+          {"arguments", Json::array({argument("file", "file")})}},
+         {{"name", "record-stop"}, {"usage", "record stop"}, {"meaning", "end"}, {"arguments", Json::array()}},
          {{"name", "equalizer-freeze"},
           {"usage", "equalizer NAME freeze FROZEN"},
           {"meaning", "freeze"},
@@ -50,6 +56,15 @@ TEST(CommandWords, becomeRequests) {
     EXPECT_EQ(requested({"equalizer", "set", "set", "damping", "0.5"}),
               R"(equalizer-set {"name":"set","parameter":"damping","value":"0.5"})");
     EXPECT_EQ(requested({"equalizer", "wall", "freeze", "off"}), R"(equalizer-freeze {"frozen":false,"name":"wall"})");
+}
+
+TEST(CommandWords, completePathsOfFiles) {
+    const std::string here = std::filesystem::current_path().string();
+    EXPECT_EQ(requested({"record", "start", "a.mural"}), R"(record-start {"file":")" + here + R"(/a.mural"})");
+    EXPECT_EQ(requested({"record", "start", "./b/../a.mural"}), R"(record-start {"file":")" + here + R"(/a.mural"})");
+    EXPECT_EQ(requested({"record", "start", "/tmp/a.mural"}), R"(record-start {"file":"/tmp/a.mural"})");
+    EXPECT_EQ(requested({"record", "stop"}), "record-stop {}");
+    EXPECT_NE(requested({"record", "start", ""}).find("must be a file"), std::string::npos);
 }
 
 TEST(CommandWords, nameTheUsageInErrors) {

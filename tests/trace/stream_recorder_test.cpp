@@ -52,6 +52,60 @@ TEST_F(StreamRecorderTest, keepsOrderWithASmallQueue) {
     EXPECT_TRUE(log_.texts().empty());
 }
 
+// Main window 1 (200x100) and window 2 (20x10) of program 1, with frames up to 7.
+StreamBefore before() {
+    StreamBefore before;
+    before.programs.push_back({Event::ClientCame, 1, 5, "x"});
+    const auto bytes = PacketBuilder().context(1).window(1, 200, 100).window(2, 20, 10).swap(1, 0).bytes();
+    before.packets.push_back({wire::streamOf(1, 0), {bytes.begin(), bytes.end()}});
+    before.wall.packet(wire::streamOf(1, 0), PacketBuilder().window(1, 200, 100).window(2, 20, 10).bytes());
+    for (uint32_t i = 1; i <= 7; ++i) before.wall.packet(wire::streamOf(1, 0), PacketBuilder().swap(1, i).bytes());
+    return before;
+}
+
+uint32_t frameOf(const Written& entry) {
+    uint32_t frame = 0;
+    std::memcpy(&frame, entry.payload.data() + 8, 4);
+    return frame;
+}
+
+TEST_F(StreamRecorderTest, beginsWithTheStateBeforeItsFirstPacket) {
+    auto r = StreamRecorder::createWaiting(path_, {});
+    const uint32_t main = wire::streamOf(1, 0);
+    r->packet(main, PacketBuilder().swap(2, 8).bytes()); // not of the wall, and before its next frame
+    r->packet(main, PacketBuilder().swap(1, 9).bytes());
+    EXPECT_FALSE(std::filesystem::exists(path_));
+    ASSERT_TRUE(r->beginAfter({}, before()));
+    r->packet(main, PacketBuilder().swap(2, 10).bytes());
+    r->event({Event::ClientCame, 2, 6, "y"});
+    r->packet(wire::streamOf(2, 0), PacketBuilder().swap(1, 1).bytes());
+    const WriterTotals totals = r->finish(Deadline::inMs(20'000));
+    EXPECT_EQ(totals.frames, 1); // the second program's window has no size
+    auto reader = TraceReader::open(path_);
+    ASSERT_TRUE(reader) << reader.error().message;
+    const auto entries = entriesOf(**reader);
+    ASSERT_EQ(entries.size(), 7U);
+    EXPECT_EQ(entries[0].stream, 0U);
+    EXPECT_EQ(entries[1].payload, before().packets[0].payload);
+    EXPECT_EQ(frameOf(entries[2]), wire::kUnseenFrame);
+    EXPECT_EQ(frameOf(entries[3]), 1U);
+    EXPECT_EQ(frameOf(entries[4]), 2U);
+    EXPECT_EQ(entries[5].stream, 0U);
+    EXPECT_EQ(frameOf(entries[6]), 1U);
+    EXPECT_TRUE(log_.texts().empty());
+}
+
+TEST_F(StreamRecorderTest, leavesNoFileAfterAFailedBeginning) {
+    auto full = StreamRecorder::createWaiting("/dev/full", {});
+    const auto begun = full->beginAfter({}, before());
+    ASSERT_FALSE(begun);
+    EXPECT_NE(begun.error().message.find("No space left"), std::string::npos) << begun.error().message;
+    auto discarded = StreamRecorder::createWaiting(path_, {});
+    discarded->discard();
+    EXPECT_FALSE(discarded->beginAfter({}, before()));
+    EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
 TEST_F(StreamRecorderTest, endsWithTheLastFrame) {
     RecorderConfig config;
     config.lastFrame = 3;

@@ -30,6 +30,30 @@ void StreamBroadcaster::startReading() {
     for (NodeConnection* link : links_) link->startReading();
 }
 
+Result<RejoinLog::Snapshot> StreamBroadcaster::beginRecording(trace::StreamRecorder& recorder,
+                                                              const std::function<void()>& atPosition,
+                                                              Deadline deadline) {
+    uint64_t position = 0;
+    {
+        ++joining_;
+        const std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
+        --joining_;
+        if (!lock.owns_lock()) return Error{"a node accepts no data at the moment; see mural stat, and try again"};
+        position = rejoinLog_->pause();
+        recorder_ = &recorder;
+        atPosition();
+    }
+    return rejoinLog_->snapshot(position, deadline);
+}
+
+bool StreamBroadcaster::endRecording(Deadline deadline) {
+    ++joining_;
+    const std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
+    --joining_;
+    if (lock.owns_lock()) recorder_ = nullptr;
+    return lock.owns_lock();
+}
+
 bool StreamBroadcaster::broadcast(uint32_t stream, std::span<const std::byte> payload) {
     if (joining_ > 0) std::this_thread::yield(); // the mutex is not fair: lets the joining thread go first
     const std::lock_guard lock(sendMutex_);

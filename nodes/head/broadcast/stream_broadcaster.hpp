@@ -27,8 +27,8 @@ public:
     // Sets the multicast stream for links that use it. Call before the first broadcast.
     void multicastBy(std::unique_ptr<NodeMulticast> multicast) { multicast_ = std::move(multicast); }
     [[nodiscard]] NodeMulticast* multicast() { return multicast_.get(); }
-    // The recorder receives all packets of programs in stream order, and must outlive their senders. Call before the
-    // first broadcast.
+    // The recorder receives all packets of programs in stream order, until endRecording() or the end of their senders.
+    // Call before the first broadcast.
     void setRecorder(trace::StreamRecorder* recorder) { recorder_ = recorder; }
     // Sets the encoder of batches. Call before the first broadcast.
     void setDeltaStream(std::unique_ptr<DeltaStream> deltaStream);
@@ -55,7 +55,17 @@ public:
     [[nodiscard]] int livingCount() const;
     NodeConnection& link(int node) { return *links_[static_cast<size_t>(node)]; }
 
+    // ---- recordings that begin while programs run
+    // Sets the recorder, and returns the snapshot of the position at which that happens. `atPosition` runs there, with
+    // the lock that orders packets. After an error the recorder may still be set: call endRecording(). Requires a
+    // rejoin log.
+    Result<RejoinLog::Snapshot> beginRecording(trace::StreamRecorder& recorder, const std::function<void()>& atPosition,
+                                               Deadline deadline);
+    // Returns false if a node accepts no data until the deadline; the recorder then stays set.
+    bool endRecording(Deadline deadline);
+
     // ---- restarted nodes (membership_join.cpp)
+    [[nodiscard]] bool hasRejoinLog() const { return rejoinLog_ != nullptr; }
     // Returns whether the rejoin log has everything that a node needs to join now.
     [[nodiscard]] bool canJoin() const { return rejoinLog_ && rejoinLog_->complete(); }
     // Replaces a lost node whose end was fully reported. The new link receives nothing yet. Call from the adding

@@ -20,6 +20,7 @@ std::string nameOf(Kind kind) {
     case Kind::Whole: return "whole number";
     case Kind::Text: return "text";
     case Kind::Truth: return "truth value";
+    case Kind::File: return "file";
     case Kind::Scalar: break;
     }
     return "text, number or truth value";
@@ -29,7 +30,8 @@ bool fits(Kind kind, const Json& value) {
     switch (kind) {
     case Kind::Whole:
         return value.is_number_integer() && !(value.is_number_unsigned() && value.get<uint64_t>() > INT64_MAX);
-    case Kind::Text: return value.is_string();
+    case Kind::Text:
+    case Kind::File: return value.is_string();
     case Kind::Truth: return value.is_boolean();
     case Kind::Scalar: break;
     }

@@ -12,7 +12,8 @@
 namespace mural {
 
 struct ControlArgument {
-    enum class Kind { Whole, Text, Truth, Scalar }; // Scalar: text, number or truth value
+    // File: text; mural ctl completes a relative path. Scalar: text, number or truth value.
+    enum class Kind { Whole, Text, Truth, File, Scalar };
     std::string name;
     Kind kind = Kind::Text;
     bool isRequired = true;

@@ -75,6 +75,7 @@ void RejoinLog::work() {
         const bool wanted = complete_;
         inHand_ = true;
         lock.unlock();
+        countFrames(entry);
         if (wanted || entry.clientGone != 0) take(entry);
         const bool fits = snapshot_->serves();
         logBytes_ = snapshot_->sizeBytes();
@@ -89,17 +90,22 @@ void RejoinLog::work() {
     }
 }
 
-void RejoinLog::take(const Entry& entry) {
+void RejoinLog::countFrames(const Entry& entry) {
     if (entry.clientGone != 0) {
-        snapshot_->clientGone(entry.clientGone);
         frames_.erase(entry.clientGone);
-        return;
+        return wall_.clientGone(entry.clientGone);
     }
     wire::RecordWalk walk(entry.payload);
     wire::RecordView r;
-    while (walk.next(r))
+    while (walk.next(r)) {
+        wall_.record(entry.stream, r);
         if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
             frames_[wire::clientOf(entry.stream)] = wire::argumentWord(r, 1);
+    }
+}
+
+void RejoinLog::take(const Entry& entry) {
+    if (entry.clientGone != 0) return snapshot_->clientGone(entry.clientGone);
     snapshot_->append(entry.stream, entry.payload);
 }
 
@@ -116,7 +122,7 @@ Result<RejoinLog::Snapshot> RejoinLog::snapshot(uint64_t position, Deadline dead
         {
             // Locked after `lock` was released: a snapshot of a later position waits for earlier ones.
             const std::lock_guard alone(snapshots_);
-            Snapshot snapshot{snapshot_->snapshot(), {}};
+            Snapshot snapshot{snapshot_->snapshot(), {}, wall_};
             for (const auto& [client, frame] : frames_) snapshot.frames.push_back({client, frame});
             result = std::move(snapshot);
         }

@@ -17,6 +17,7 @@
 #include "common/base/clock.hpp"
 #include "common/base/result.hpp"
 #include "streamcodec/snapshot/snapshot_packet.hpp"
+#include "streamcodec/trace/wall_frames.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
 namespace mural::snapshot {
@@ -42,6 +43,7 @@ public:
     struct Snapshot {
         std::vector<snapshot::SnapshotPacket> packets; // in stream order
         std::vector<wire::ClientFrame> frames; // the last frame of each program; the frames in `packets` are not shown
+        trace::WallFrames wall;                // the frames of the wall so far
     };
     // Returns the snapshot of a held position; once per position, from any thread. Waits until the thread reaches the
     // position. Errors: the log has overflowed; the deadline has passed.
@@ -57,6 +59,7 @@ private:
         uint32_t clientGone = 0; // nonzero: not a packet, but the end of this program
     };
     void work();
+    void countFrames(const Entry& entry);
     void take(const Entry& entry);
     void overflow(); // with the lock held: discards the log of all current programs
 
@@ -79,6 +82,7 @@ private:
     std::unique_ptr<snapshot::StreamSnapshot>
         snapshot_;                        // owned by the thread; by snapshot() while the thread is paused
     std::map<uint32_t, uint32_t> frames_; // the same; last frame by program
+    trace::WallFrames wall_;              // the same; includes programs whose log was discarded
     std::mutex snapshots_;                // serialises snapshot()
     std::thread thread_;
 };

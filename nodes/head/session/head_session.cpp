@@ -174,7 +174,6 @@ int HeadSession::run() {
     serve();
     finish();
     SessionNumbers last = numbers();
-    last.recorded = recorded_;
     if (options_.lastPicture) last.lastPicture = options_.lastPicture();
     control_.send(reportOf(last));
     return 0;
@@ -367,7 +366,7 @@ void HeadSession::finish() {
     controlServer_.reset();
     server_.reset();
     programs_->endAll();
-    if (options_.recorder) recorded_ = options_.recorder->finish(Deadline::inMs(options_.recordPatienceMs));
+    recording_.finish(Deadline::inMs(options_.recordPatienceMs));
     reportProgress(monotonicNowNs());
     const Deadline deadline = Deadline::inMs(kProcessPatienceMs);
     for (int node = 0; node < nodeCount_; ++node) {
@@ -449,6 +448,7 @@ SessionStatus HeadSession::status() {
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.latency = programs_->latency();
+    result.recording = recording_.status();
     result.delta = nodes_.deltaCounts();
     result.equalizers = balancer_.totals();
     result.programs = programs_->status();
@@ -480,7 +480,7 @@ SessionNumbers HeadSession::numbers() {
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = advice_.drawnWhole();
-    if (options_.recorder) result.recording = config_.record;
+    result.recording = recording_.latest();
     const std::lock_guard lock(mutex_);
     result.nodes = totals_;
     for (NodeTotals& totals : result.nodes) totals.frames = frames_.framesOf(totals.node);

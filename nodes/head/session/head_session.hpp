@@ -32,6 +32,7 @@
 #include "nodes/head/frames/picture_assembler.hpp"
 #include "nodes/head/frames/picture_output.hpp"
 #include "nodes/head/capture/program_table.hpp"
+#include "nodes/head/recording/session_recording.hpp"
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
 #include "nodes/head/session/slowdown_advice.hpp"
@@ -127,6 +128,8 @@ private:
     // Changes to the running session (head_session_changes.cpp).
     void addChangeOperations(ControlOperations& operations);
     Result<nlohmann::json> changeLatency(const nlohmann::json& arguments);
+    Result<nlohmann::json> startRecording(const nlohmann::json& arguments);
+    Result<nlohmann::json> stopRecording();
     Result<void> checkNode(int64_t node); // that an operation may change it
     Result<void> restartNode(int node);
     Result<void> removeNode(int node, bool isForced);
@@ -141,7 +144,7 @@ private:
     Result<void> awaitReady();
     Result<void> checkSize();
     void openTables();
-    void beginRecording();
+    trace::About aboutTrace();
     void announceReady();
     std::string placeOwnThreads() const;
     std::vector<std::string> explainLines();
@@ -191,6 +194,8 @@ private:
     BalancerControl equalizers_{balancer_};
     SlowdownAdvice advice_;
     StreamBroadcaster nodes_;
+    SessionRecording recording_{nodes_};
+    bool fetchesCopies_ = false; // programs send the pixels that they copy from windows, as a trace needs them
     std::unique_ptr<NodeRestarter> returns_;
     std::unique_ptr<ProgramTable> programs_; // set when the nodes are ready
     std::unique_ptr<CaptureServer> server_;
@@ -207,7 +212,6 @@ private:
     int64_t lastProgressNs_ = 0;
     int64_t lastProgressFrame_ = 0;
     bool framesReached_ = false;
-    trace::WriterTotals recorded_;
 
     std::mutex membership_; // held while a node becomes a member or is lost; locked before mutex_
     std::mutex mutex_;      // guards the members below

@@ -189,6 +189,7 @@ void HeadSession::openTables() {
     // A recording must play on any number of nodes. The program therefore fetches the pixels that it copies from a
     // window, as it does with several nodes.
     welcome.nodeCount = static_cast<uint32_t>(options_.recorder ? std::max(nodeCount_, 2) : nodeCount_);
+    fetchesCopies_ = welcome.nodeCount > 1;
     welcome.displayApp = config_.display == Display::App ? 1 : 0;
     {
         const std::lock_guard lock(mutex_);
@@ -203,23 +204,21 @@ void HeadSession::openTables() {
     terms.latency = static_cast<uint32_t>(config_.latency);
     terms.chunkCount = options_.chunkCount;
     terms.statistics = &statistics_;
-    beginRecording();
+    if (options_.recorder) recording_.beginAtStart(std::move(options_.recorder), aboutTrace());
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {
-        if (options_.recorder)
-            options_.recorder->event({trace::Event::ClientCame, client.id(), client.pid(), client.name()});
+        recording_.programCame({trace::Event::ClientCame, client.id(), client.pid(), client.name()});
     };
     events.countChanged = [this](size_t count) { announce({{"event", "clients"}, {"count", count}}); };
     events.gone = [this](uint32_t client) {
         driverEvents_.programGone(client);
-        if (options_.recorder) options_.recorder->event({trace::Event::ClientGone, client, 0, ""});
+        recording_.programGone(client);
     };
     programs_ = std::make_unique<ProgramTable>(std::move(terms), nodes_, std::move(events));
     serving_ = true;
 }
 
-void HeadSession::beginRecording() {
-    if (!options_.recorder) return;
+trace::About HeadSession::aboutTrace() {
     trace::About about;
     about.version = MURAL_VERSION;
     {
@@ -228,8 +227,7 @@ void HeadSession::beginRecording() {
             about.nodes.push_back(facts.renderer + ", GL " + std::to_string(facts.glVersion / 10) + "." +
                                   std::to_string(facts.glVersion % 10));
     }
-    options_.recorder->begin(about);
-    nodes_.setRecorder(options_.recorder.get());
+    return about;
 }
 
 // Places the thread near the network card if any node is on another machine.

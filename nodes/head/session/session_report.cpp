@@ -180,9 +180,9 @@ Json reportOf(const SessionNumbers& n) {
         {"callsUnsupported", n.programs.callsUnsupported},
         {"savedPictures", n.output.savedPictures},
         {"lastPicture", n.lastPicture},
-        {"recording", n.recording},
-        {"recordedFrames", n.recorded.frames},
-        {"recordedBytes", n.recorded.fileBytes},
+        {"recording", n.recording ? n.recording->file : ""},
+        {"recordedFrames", n.recording ? n.recording->frames : 0},
+        {"recordedBytes", n.recording ? n.recording->bytes : 0},
         {"nodes", nodes},
     };
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 #include "nodes/head/frames/picture_output.hpp"
 #include "nodes/head/broadcast/delta_stream.hpp"
 #include "nodes/head/balancing/equalizer_totals.hpp"
-#include "streamcodec/trace/trace_writer.hpp"
+#include "nodes/head/recording/recording_status.hpp"
 
 namespace mural {
 
@@ -49,10 +50,9 @@ struct SessionNumbers {
     std::vector<EqualizerTotals> equalizers;
     CaptureCounts programs;
     OutputTotals output;
-    std::string lastPicture; // path
-    std::string recording;   // path of --record; empty: none
-    trace::WriterTotals recorded;
-    bool drawnWhole = false; // see SlowdownAdvice
+    std::string lastPicture;                  // path
+    std::optional<RecordingStatus> recording; // the latest one
+    bool drawnWhole = false;                  // see SlowdownAdvice
     std::vector<NodeTotals> nodes;
 };
 

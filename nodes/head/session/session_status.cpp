@@ -67,6 +67,7 @@ Json statusOf(const SessionStatus& status) {
         {"display", status.display},
         {"frames", status.wallFrames},
         {"latency", status.latency},
+        {"recording", status.recording ? recordingJson(*status.recording) : Json()},
         {"delta", deltaJson(status.delta)},
         {"equalizers", equalizersJson(status.equalizers)},
         {"programs", programs},

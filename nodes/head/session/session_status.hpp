@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <sys/types.h>
 #include <vector>
@@ -42,6 +43,7 @@ struct SessionStatus {
     std::string display; // app, windows, none
     int64_t wallFrames = 0;
     uint32_t latency = 0; // frames that programs may be ahead, at the moment
+    std::optional<RecordingStatus> recording;
     DeltaCounts delta;
     std::vector<EqualizerTotals> equalizers;
     std::vector<ProgramStatus> programs;

@@ -1,8 +1,8 @@
 #include "streamcodec/trace/trim/trim.hpp"
 
-#include <cstring>
 #include <set>
 
+#include "streamcodec/trace/frame_numbers.hpp"
 #include "streamcodec/trace/trace_writer.hpp"
 #include "streamcodec/effect_rules.hpp"
 #include "streamcodec/snapshot/stream_snapshot.hpp"
@@ -126,17 +126,14 @@ private:
             const size_t at = records_.size();
             records_.insert(records_.end(), e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset),
                             e.payload.begin() + static_cast<std::ptrdiff_t>(r.offset + r.sizeBytes));
-            if (r.opcode == wire::kOpSwap || r.opcode == wire::kOpFrontPicture)
-                number(e.stream, r, at + r.sizeBytes - r.arguments.size(), number_ < survey_.shownFrom);
+            // Swaps before the first frame become unseen; visible frames are renumbered from 1.
+            const auto record = std::span(records_).subspan(at);
+            if (number_ < survey_.shownFrom)
+                snapshot::hideFrames(record);
+            else
+                numbers_.apply(e.stream, record);
         }
         return (records_.empty() || put({e.stream, timeOf(e), records_})) && more;
-    }
-
-    // Swaps before the first frame become unseen; visible frames are renumbered from 1.
-    void number(uint32_t stream, const wire::RecordView& r, size_t argumentsAt, bool before) {
-        if (r.arguments.size() < 8 || wire::argumentWord(r, 1) == wire::kUnseenFrame) return;
-        const uint32_t frame = before ? wire::kUnseenFrame : ++frames_[wire::clientOf(stream)];
-        std::memcpy(records_.data() + argumentsAt + 4, &frame, sizeof frame);
     }
 
     std::span<const std::byte> unseen(std::span<const std::byte> payload) {
@@ -160,7 +157,7 @@ private:
     TraceWriter& writer_;
     TrimReport& report_;
     uint64_t number_ = 0;
-    std::map<uint32_t, uint32_t> frames_;
+    FrameNumbers numbers_;
     std::vector<std::byte> records_;
     Result<void> failed_;
 };

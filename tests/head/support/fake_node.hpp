@@ -125,7 +125,8 @@ private:
 
     bool records(uint32_t stream, const std::vector<uint32_t>& words) {
         const uint32_t client = wire::clientOf(stream);
-        for (size_t at = 0; at + 2 <= words.size() && words[at] >= 2; at += words[at]) {
+        for (size_t at = 0; at + 2 <= words.size() && words[at] >= 2 && at + words[at] <= words.size();
+             at += words[at]) {
             const std::vector<uint32_t> a(words.begin() + static_cast<long>(at) + 2,
                                           words.begin() + static_cast<long>(at) + words[at]);
             if (words[at + 1] == kFakeSwap && !swap(client, a)) return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <filesystem>
 #include <optional>
 #include <regex>
 #include <sstream>
@@ -66,6 +67,12 @@ Result<Json> valueOf(const std::string& word, const Json& argument) {
         if (word == "on" || word == "true" || word == "yes") return Json(true);
         if (word == "off" || word == "false" || word == "no") return Json(false);
         return Error{name + " must be on or off instead of " + word};
+    }
+    if (kind == "file") { // the session has another current folder
+        std::error_code failed;
+        const auto path = std::filesystem::absolute(word, failed);
+        if (word.empty() || failed) return Error{name + " must be a file instead of \"" + word + "\""};
+        return Json(path.lexically_normal().string());
     }
     return Json(word);
 }
