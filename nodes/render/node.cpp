@@ -123,6 +123,7 @@ private:
             sendGoodbye();
             finished_ = true;
             return true;
+        case wire::HeadCommand::Leave: return leave(rest);
         }
         return false;
     }
@@ -437,6 +438,15 @@ private:
             log::warning(log::Topic::Output, "the wall windows are lost: ", shown.error().message);
             windows_.reset();
         }
+    }
+
+    bool leave(std::span<const std::byte> arguments) {
+        const auto node = argument<uint32_t>(arguments);
+        if (!node || *node != static_cast<uint32_t>(setup_.node)) return node.has_value();
+        log::debug(log::Topic::Node, "leaves the session after its last frame");
+        sendGoodbye();
+        finished_ = true;
+        return true;
     }
 
     void sendGoodbye() {

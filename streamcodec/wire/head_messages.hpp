@@ -38,6 +38,7 @@ enum class HeadCommand : uint32_t {
     RangeAssignment = 13,
     Statistics = 14, // u32 on: the node sends FrameSpans with each frame from here on, or no longer
     ClockProbe = 15, // i64 sentNs: the node replies ClockReply
+    Leave = 16,      // u32 node: that node sends everything about earlier packets, replies Goodbye, and is no member
 };
 struct SwitchToMulticastCommand {
     uint32_t node;

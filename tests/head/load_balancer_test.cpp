@@ -230,6 +230,38 @@ TEST_F(BalancerTest, reassignsTheTilesOfALostNode) {
     EXPECT_EQ(areas_.size(), before) << "it is there already";
 }
 
+TEST_F(BalancerTest, givesUpTheAreaOfALivingNode) {
+    begin(tilesOf(3));
+    EXPECT_TRUE(balancer_->giveUp(1)); // no window: there is nothing to draw
+    EXPECT_TRUE(balancer_->hasGivenUp(1));
+    balancer_->takeBack(1);
+    finish({4, 4, 4});
+    ASSERT_GT(pixelsOf(1), 0);
+    ASSERT_TRUE(balancer_->giveUp(1));
+    EXPECT_EQ(pixelsOf(1), 0);
+    expectWholePicture(kWidth, kHeight);
+    EXPECT_FALSE(balancer_->hasGivenUp(1)); // no frame is drawn with these areas yet
+    wire::FrameDoneMessage old{};
+    old.areas = kOld;
+    finish({4, 4, 4}, old);
+    EXPECT_FALSE(balancer_->hasGivenUp(1));
+    EXPECT_EQ(pixelsOf(1), 0);
+    finish({4, 0, 4});
+    EXPECT_TRUE(balancer_->hasGivenUp(1));
+    wire::FrameDoneMessage other{}; // a second window that has not taken the areas over
+    other.client = 2;
+    other.window = 9;
+    other.frame = 1;
+    other.width = other.height = 10;
+    balancer_->frameDone(1, other, 0);
+    EXPECT_FALSE(balancer_->hasGivenUp(1));
+    balancer_->windowGone(2, 9);
+    EXPECT_TRUE(balancer_->hasGivenUp(1));
+    balancer_->takeBack(1);
+    EXPECT_GT(pixelsOf(1), 0);
+    EXPECT_FALSE(balancer_->hasGivenUp(1));
+}
+
 TEST_F(BalancerTest, followsAnotherProgramAfterTheFirstHasEnded) {
     begin(tilesOf(2));
     drawAreas(even);

@@ -94,6 +94,8 @@ void LoadBalancer::frameDone(int node, const wire::FrameDoneMessage& message, in
         advance(false);
     }
     times_.worked(node, message.busyNs);
+    if (const auto given = givenUp_.find(node); given != givenUp_.end() && message.width > 0)
+        given->second.latest[{message.client, message.window}] = message.areas;
     if (isRandom_) advance(false);
     if (!times_.follows(message)) return;
     for (Watched& w : watched_) {
@@ -311,6 +313,10 @@ void LoadBalancer::countFrame(const FrameTimes::Frame& frame) {
 void LoadBalancer::windowGone(uint32_t client, uint32_t window) {
     const std::lock_guard lock(mutex_);
     times_.windowGone(client, window);
+    for (auto& [node, given] : givenUp_)
+        std::erase_if(given.latest, [&](const auto& entry) {
+            return entry.first.first == client && (window == wire::kAllWindows || entry.first.second == window);
+        });
 }
 
 // The nodes of both eyes draw one part, so both must live.
@@ -319,13 +325,14 @@ void LoadBalancer::setAvailable(int node, bool isAvailable) {
     const Index compound = planOf(node).task->compound;
     for (size_t i = 0; i < nodes_.size(); ++i)
         if (nodes_[i].task && nodes_[i].task->compound == compound)
-            isAvailable = isAvailable && times_.isAlive(static_cast<int>(i));
+            isAvailable = isAvailable && times_.isAlive(static_cast<int>(i)) && !givenUp_.contains(static_cast<int>(i));
     planner_->changeInput().compounds[at(compound)].isAvailable = isAvailable;
 }
 
 void LoadBalancer::nodeLost(int node) {
     const std::lock_guard lock(mutex_);
     times_.lost(node);
+    givenUp_.erase(node);
     if (!isActive()) return;
     setAvailable(node, false);
     advance(true);
@@ -336,6 +343,38 @@ void LoadBalancer::nodeJoined(int node) {
     if (!times_.joined(node) || !isActive()) return;
     setAvailable(node, true);
     advance(true);
+}
+
+Result<void> LoadBalancer::giveUp(int node) {
+    const std::lock_guard lock(mutex_);
+    if (!isActive() || !planOf(node).movesArea) return Error{"no other node takes its part of the picture"};
+    givenUp_[node] = {};
+    setAvailable(node, false);
+    advance(true);
+    givenUp_[node].number = areas_.number;
+    if (!times_.known() || areas_.ofNodes[static_cast<size_t>(node)].empty()) return {};
+    givenUp_.erase(node);
+    setAvailable(node, true);
+    advance(true);
+    return Error{"its equalizer does not give its part of the picture to other nodes"};
+}
+
+void LoadBalancer::takeBack(int node) {
+    const std::lock_guard lock(mutex_);
+    if (givenUp_.erase(node) == 0) return;
+    setAvailable(node, true);
+    advance(true);
+}
+
+bool LoadBalancer::hasGivenUp(int node) const {
+    const std::lock_guard lock(mutex_);
+    const auto given = givenUp_.find(node);
+    if (given == givenUp_.end()) return false;
+    if (!times_.known()) return true;
+    const auto& latest = given->second.latest;
+    return !latest.empty() && std::ranges::all_of(latest, [&](const auto& entry) {
+        return entry.second >= given->second.number && entry.second > 0;
+    });
 }
 
 void LoadBalancer::count(Watched& w) const {

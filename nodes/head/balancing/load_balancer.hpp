@@ -8,10 +8,12 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "balancer/planner/frame_planner.hpp"
@@ -46,6 +48,13 @@ public:
     void windowGone(uint32_t client, uint32_t window); // or wire::kAllWindows
     void nodeLost(int node);
     void nodeJoined(int node);
+    // Gives the area of a living node to others, which draw it from a later frame on. hasGivenUp() reports that.
+    // Errors: no other node takes the area. takeBack() revokes it.
+    Result<void> giveUp(int node);
+    void takeBack(int node);
+    // Returns whether the latest frame of each window that the node has finished since giveUp(), at least one, has none
+    // of its pixels. Its later frames have none either. True if no program has a window.
+    [[nodiscard]] bool hasGivenUp(int node) const;
 
     [[nodiscard]] bool isActive() const { return planner_ != nullptr; }
     [[nodiscard]] std::vector<EqualizerTotals> totals() const;
@@ -100,6 +109,11 @@ private:
     uint64_t measured_ = 0; // frames
     int64_t lastFrameNs_ = 0;
     bool isRandom_ = false;
+    struct GivenUp {
+        uint32_t number = 0;                                      // of the first assignment without its area
+        std::map<std::pair<uint32_t, uint32_t>, uint32_t> latest; // by client and window: assignment of its last frame
+    };
+    std::map<int, GivenUp> givenUp_; // by node
 };
 
 } // namespace mural

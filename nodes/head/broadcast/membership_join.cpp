@@ -1,5 +1,6 @@
-// The return of restarted nodes. The lock that orders packets guards the choice of the snapshot's position and of the
-// position where the node becomes a member. The transfer of the snapshot runs without the lock.
+// The return of restarted nodes, and the leave of members. The lock that orders packets guards the choice of the
+// snapshot's position and of the position where the node becomes a member. The transfer of the snapshot runs without
+// the lock.
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -107,6 +108,22 @@ bool StreamBroadcaster::goDirect(int node, bool now) {
     if (!to.queueEmpty()) return false;
     to.setFeed(NodeConnection::Feed::Direct);
     to.flushNow();
+    return true;
+}
+
+bool StreamBroadcaster::dismiss(int node, Deadline deadline) {
+    ++joining_;
+    const std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
+    --joining_;
+    if (!lock.owns_lock()) return false;
+    const auto number = static_cast<uint32_t>(node);
+    // other nodes ignore it
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Leave, std::as_bytes(std::span(&number, 1))));
+    flushLocked();
+    NodeConnection& from = link(node);
+    from.setFeed(NodeConnection::Feed::Nothing);
+    from.setMember(false);
+    from.setInBatches(false);
     return true;
 }
 

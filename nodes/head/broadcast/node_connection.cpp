@@ -116,6 +116,12 @@ void NodeConnection::watch(int64_t nowNs, int64_t patienceNs) {
     lose("no message for " + std::to_string(patienceNs / kNsPerS) + " s (stopped, or its driver hangs)");
 }
 
+void NodeConnection::endAfterGoodbye(Deadline deadline) {
+    if (!goodbyeReceived() || !readerEnded()) return;
+    connection_->close();
+    if (process_) process_->waitEnded(deadline);
+}
+
 void NodeConnection::end() {
     if (alive_.exchange(false)) connection_->close();
     if (reader_.joinable()) reader_.join();

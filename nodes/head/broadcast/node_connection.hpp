@@ -126,6 +126,8 @@ public:
     [[nodiscard]] NodeProcess* process() { return process_.get(); }
     [[nodiscard]] std::string describe() const; // "node 2 (local, pid 77)"
 
+    // Closes the connection of a node that has sent Goodbye, and waits for the end of its process until the deadline.
+    void endAfterGoodbye(Deadline deadline);
     // Joins the reader thread and ends the process.
     void end();
 

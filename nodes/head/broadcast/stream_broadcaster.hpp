@@ -93,6 +93,9 @@ public:
     // Switches the node's feed to its connection. Returns false if its queue is not empty. `now`: sends the queue at
     // once.
     bool goDirect(int node, bool now);
+    // Ends the membership of a node at the current position: it finishes everything before, and receives nothing after.
+    // Returns false if a node accepts no data until the deadline; nothing has happened then.
+    bool dismiss(int node, Deadline deadline);
     // Invites a member to join the multicast group. watch() switches its transport after it has joined.
     void inviteToGroup(int node);
 

@@ -67,6 +67,35 @@ Result<void> NodeRestarter::retire(int node) {
     return {};
 }
 
+Result<void> NodeRestarter::leave(int node) {
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    if (n.phase != Phase::Member) return Error{"it is no member at the moment; see mural ctl nodes"};
+    n.isRetired = true;
+    return {};
+}
+
+void NodeRestarter::stay(int node) {
+    const std::lock_guard lock(mutex_);
+    at(node).isRetired = false;
+}
+
+Result<void> NodeRestarter::bringBack(int node) {
+    if (terms_.tries == 0 || !hooks_.start)
+        return Error{"nodes of this session are not restarted; start it with --restart-nodes 1 or more"};
+    if (const std::string never = hooks_.whyNever(node); !never.empty()) return Error{never};
+    const std::lock_guard lock(mutex_);
+    Node& n = at(node);
+    if (stopped_) return Error{"the session is ending"};
+    if (n.phase == Phase::Member) return Error{"it is a member already; see mural ctl nodes"};
+    if (n.phase != Phase::Over) return Error{"it is being restarted already; see mural ctl nodes"};
+    n.isRetired = false;
+    n.tries = 0;
+    n.lostNs = n.nextNs = monotonicNowNs();
+    n.phase = Phase::Waiting;
+    return {};
+}
+
 // The attempt at the start of the session counts as the first one.
 void NodeRestarter::notThere(int node) {
     const int64_t nowNs = monotonicNowNs();

@@ -49,6 +49,13 @@ public:
     [[nodiscard]] Result<void> canRestart(int node) const;
     // Ends the restarts of a node for good. The caller loses its link. Errors: the node is being restarted.
     Result<void> retire(int node);
+    // Begins and revokes the stop of a member: after its loss it is not restarted until bringBack(). Errors: it is no
+    // member.
+    Result<void> leave(int node);
+    void stay(int node);
+    // Starts a node again that has been stopped or removed, or that stays lost, with all attempts. Errors: it is a
+    // member or being restarted; the session cannot take it back.
+    Result<void> bringBack(int node);
     // Records that a node was absent when the session began. It is restarted as well.
     void notThere(int node);
     // Returns true if the node was being restarted: the attempt has failed, and no member was lost.

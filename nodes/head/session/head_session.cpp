@@ -334,9 +334,14 @@ Result<void> HeadSession::nodeLog(int node, const std::string& text) {
 }
 
 Result<void> HeadSession::nodeGoodbye(int node, const std::string& json) {
-    if (!finishing_) return Error{"it ended without a request from the head"};
-    const std::lock_guard lock(mutex_);
-    readGoodbye(json, totals_[static_cast<size_t>(node)]);
+    bool isLeaving = false;
+    {
+        const std::lock_guard lock(mutex_);
+        isLeaving = leaving_.contains(node);
+        if (!finishing_ && !isLeaving) return Error{"it ended without a request from the head"};
+        readGoodbye(json, totals_[static_cast<size_t>(node)]);
+    }
+    if (isLeaving) memberLeft(node);
     return {};
 }
 
@@ -465,6 +470,7 @@ SessionStatus HeadSession::status() {
         node.totals.pictureBytes = link.pictureBytes(); // the node's Bye holds the other numbers
         node.totals.pictureRawBytes = link.pictureRawBytes();
         node.returning = returns_->isRestarting(node.totals.node);
+        node.isStopped = stopped_.contains(node.totals.node);
         node.silentSeconds = static_cast<double>(link.silentNs(result.nowNs)) / static_cast<double>(kNsPerS);
         result.nodes.push_back(std::move(node));
     }
@@ -483,7 +489,10 @@ SessionNumbers HeadSession::numbers() {
     result.recording = recording_.latest();
     const std::lock_guard lock(mutex_);
     result.nodes = totals_;
-    for (NodeTotals& totals : result.nodes) totals.frames = frames_.framesOf(totals.node);
+    for (NodeTotals& totals : result.nodes) {
+        totals.frames = frames_.framesOf(totals.node);
+        totals.lost = totals.lost && !stopped_.contains(totals.node); // an operator stopped it in order
+    }
     return result;
 }
 

@@ -130,6 +130,12 @@ private:
     Result<nlohmann::json> changeLatency(const nlohmann::json& arguments);
     Result<nlohmann::json> startRecording(const nlohmann::json& arguments);
     Result<nlohmann::json> stopRecording();
+    void addStopOperations(ControlOperations& operations);
+    Result<void> stopNode(int node, bool isForced);
+    Result<void> handOver(int node, Deadline deadline); // to the nodes that take its area
+    Result<void> leaveAt(int node, Deadline deadline);
+    void memberLeft(int node);
+    Result<void> startNode(int node);
     Result<void> checkNode(int64_t node); // that an operation may change it
     Result<void> restartNode(int node);
     Result<void> removeNode(int node, bool isForced);
@@ -223,7 +229,9 @@ private:
     std::vector<bool> introduced_;       // nodes that have the addresses of the other nodes of their picture
     std::vector<uint32_t> incarnations_; // number of restarts by node
     std::set<int> rerouted_;             // nodes that multicast does not reach
-    std::vector<std::string> refusals_;  // latest log line of each node before it was ready
+    std::set<int> leaving_, stopped_;    // nodes that finish their last frames for stop-node, and that have done so
+    std::condition_variable nodeStopped_;
+    std::vector<std::string> refusals_; // latest log line of each node before it was ready
     std::vector<NodeTotals> totals_;
     std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> gone_; // by window: nodes that have not reported its end
     std::string startFailure_;

@@ -77,6 +77,7 @@ ControlOperations HeadSession::controlOperations() {
                  return Result<Json>(Json::object());
              }});
     addNodeOperations(all);
+    addStopOperations(all);
     addChangeOperations(all);
     addFramesOperation(all);
     if (balancer_.isActive()) addEqualizerOperations(all, equalizers_);

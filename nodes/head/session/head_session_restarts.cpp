@@ -146,6 +146,7 @@ StreamBroadcaster::Admission HeadSession::admit(int node, uint32_t view) {
         admission.first = admission.first && (totals_[other].lost ||
                                               (plan_.nodes[other].pass.period < 2 && !plan_.nodes[other].movesArea));
     totals_[static_cast<size_t>(node)].lost = false;
+    stopped_.erase(node);
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
         if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive())
             admission.absent.push_back(static_cast<uint32_t>(other));

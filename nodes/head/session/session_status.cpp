@@ -36,6 +36,7 @@ Json nodeJson(const NodeStatus& node) {
         {"pid", node.pid},
         {"gl", node.gl},
         {"state", node.returning     ? "rejoining"
+                  : node.isStopped   ? "stopped"
                   : node.totals.lost ? "lost"
                                      : "alive"},
         {"silentSeconds", node.silentSeconds},

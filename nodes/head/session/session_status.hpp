@@ -32,6 +32,7 @@ struct NodeStatus {
     double silentSeconds = 0; // since its last message
     std::string stream;       // transport of its packets: memory, TCP, multicast
     bool returning = false;   // lost, and being restarted
+    bool isStopped = false;   // by an operator, until it is started again
 };
 
 struct SessionStatus {

@@ -116,7 +116,9 @@ private:
             areas_ = words.at(1); // applied at once
         if (op(words) == static_cast<uint32_t>(wire::HeadCommand::ClientGone))
             sendStruct(wire::NodeMessage::WindowGone, wire::WindowGoneMessage{words.at(1), wire::kAllWindows}, {});
-        if (op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish) && !behaviour_.noBye) {
+        const bool leaves = op(words) == static_cast<uint32_t>(wire::HeadCommand::Leave) &&
+                            words.at(1) == static_cast<uint32_t>(setup_.node);
+        if ((leaves || op(words) == static_cast<uint32_t>(wire::HeadCommand::Finish)) && !behaviour_.noBye) {
             sendText(wire::NodeMessage::Goodbye, R"({"commands":42,"cpuSeconds":0.5})");
             goodbyeReceived_ = true;
         }

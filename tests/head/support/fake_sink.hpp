@@ -19,6 +19,7 @@ struct Shown {
     std::condition_variable changed;
     std::map<std::string, std::vector<int64_t>> frames; // by sink
     std::vector<uint32_t> lastPixels;
+    std::map<std::string, std::vector<std::vector<uint32_t>>> pixels; // of each frame, by sink
     bool finished = false;
     bool blocked = false;
     bool failing = false;
@@ -44,6 +45,7 @@ public:
         shown_.frames[name_].push_back(frame);
         shown_.lastPixels.resize(picture.sizeBytes() / 4);
         std::memcpy(shown_.lastPixels.data(), picture.bgra, picture.sizeBytes());
+        shown_.pixels[name_].push_back(shown_.lastPixels);
         return {};
     }
     Result<void> finish() override {
