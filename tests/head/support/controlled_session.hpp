@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "common/json/json_text.hpp"
 #include "tests/head/support/session_harness.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -37,12 +38,12 @@ public:
             if (n <= 0) return {};
             received_.append(part, static_cast<size_t>(n));
         }
-        const nlohmann::json json = nlohmann::json::parse(received_.substr(0, end), nullptr, false);
+        const nlohmann::json json = parseJson(received_.substr(0, end));
         received_.erase(0, end + 1);
         return json;
     }
     nlohmann::json request(const std::string& operation, const nlohmann::json& arguments = nlohmann::json::object()) {
-        const std::string text = nlohmann::json{{"id", 1}, {"op", operation}, {"args", arguments}}.dump() + "\n";
+        const std::string text = jsonText(nlohmann::json{{"id", 1}, {"op", operation}, {"args", arguments}}) + "\n";
         EXPECT_EQ(send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
         nlohmann::json reply;
         do reply = line();
