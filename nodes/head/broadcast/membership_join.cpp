@@ -34,10 +34,20 @@ void StreamBroadcaster::replace(int node, std::unique_ptr<NodeConnection> link) 
     before.end();
     if (before.byMulticast() || before.joinsGroup()) multicast_->remove(node, "the head has lost its connection to it");
     std::erase_if(comers_, [node](const NodeMulticast::Change& came) { return came.node == node; });
+    replaced_.push_back(&before);
     link->setFeed(NodeConnection::Feed::Nothing);
     link->setMember(false);
     links_[static_cast<size_t>(node)] = link.get();
     owned_.push_back(std::move(link));
+}
+
+// A sender may still use the connection of a replaced link while it holds the lock. The thread of its resync has ended.
+void StreamBroadcaster::releaseReplaced() {
+    if (replaced_.empty()) return;
+    const std::unique_lock lock(sendMutex_, std::try_to_lock);
+    if (!lock.owns_lock()) return;
+    for (NodeConnection* const link : replaced_) link->release();
+    replaced_.clear();
 }
 
 Result<RejoinLog::Snapshot> StreamBroadcaster::beginCatchUp(int node, PhaseRequest* turns, Deadline deadline) {

@@ -130,6 +130,11 @@ public:
     void endAfterGoodbye(Deadline deadline);
     // Joins the reader thread and ends the process.
     void end();
+    // Frees the memory of the connection. Call after end(), while no thread sends.
+    void release() {
+        connection_.reset();
+        pictures_.reset();
+    }
 
 private:
     void readMessages();
@@ -153,7 +158,7 @@ private:
     std::string reasonOfEnd();
 
     const NodeLocation location_;
-    const std::unique_ptr<Connection> connection_;
+    std::unique_ptr<Connection> connection_;
     const std::unique_ptr<NodeProcess> process_;
     NodeEvents& events_;
     Zoom transferScale_;                        // scale of its pictures in transfer

@@ -211,6 +211,7 @@ int StreamBroadcaster::livingCount() const {
 }
 
 void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::function<void(int, bool)>& rerouted) {
+    releaseReplaced();
     for (NodeConnection* link : links_) link->watch(nowNs, patienceNs);
     if (!multicast_) return;
     for (const NodeMulticast::Change& change : multicast_->takeChanges()) {

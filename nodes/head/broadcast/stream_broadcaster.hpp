@@ -116,6 +116,7 @@ private:
     void sendLeadLocked();
 
     bool changesOver(const NodeMulticast::Change& came);
+    void releaseReplaced();
     void multicastLocked(std::span<const std::byte> header, std::span<const std::byte> payload);
     void sendTo(NodeConnection& link, std::span<const std::byte> header, std::span<const std::byte> payload);
     void flushLocked();
@@ -134,9 +135,10 @@ private:
     std::unique_ptr<RejoinLog> rejoinLog_;           // null: lost nodes stay lost
     std::deque<std::atomic<NodeConnection*>> links_; // by node
     std::vector<std::unique_ptr<NodeConnection>>
-        owned_;                   // includes links of lost nodes, which other threads may still use
-    uint32_t view_ = 0;           // number of returned nodes
-    std::atomic<int> joining_{0}; // resync threads that wait for the mutex
+        owned_;                             // includes links of lost nodes, which other threads may still use
+    std::vector<NodeConnection*> replaced_; // links of lost nodes whose memory is not released yet; for watch()
+    uint32_t view_ = 0;                     // number of returned nodes
+    std::atomic<int> joining_{0};           // resync threads that wait for the mutex
     std::timed_mutex sendMutex_;
     std::atomic<uint64_t> bytesSent_{0};
     std::mutex leadMutex_;
