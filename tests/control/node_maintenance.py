@@ -151,7 +151,7 @@ def errors(context):
     """Each error is one line with the next step, and changes nothing."""
     wrong = []
     command = [context.program("long_run"), "--frames", "100000", "--size", SIZE]
-    for options, words, text in ((("--tiles", "2x1"), ("stop-node", "1"), "add force"), (("--tiles", "1x1"), ("stop-node", "0"), "the only node"),
+    for options, words, text in ((("--tiles", "2x1"), ("stop-node", "1"), "add force"), (("--tiles", "1x1"), ("stop-node", "0"), "the only node that draws"),
                                  (("--db", "2", "--local-nodes", "2"), ("stop-node", "1"), "share the draws"), (("--tiles", "2x1"), ("stop-node", "2"), "no node 2"),
                                  (("--tiles", "2x1"), ("start-node", "1"), "a member already")):
         with context.run(command, list(options) + ["--display", "none"]) as run:

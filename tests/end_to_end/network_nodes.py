@@ -8,6 +8,7 @@ Exit status 77, with a reason: this machine permits no namespaces.
 
 import argparse
 import os
+import subprocess
 import sys
 import tempfile
 
@@ -28,8 +29,8 @@ class Lab:
         self.launch = network.launch_script(os.path.join(folder, "launch"))
         self.end_file = os.path.join(folder, "end")
 
-    def run(self, frames, *options):
-        command = [self.mural, "run", "--tiles", "2x1", "--nodes", ",".join(NODES.values()), "--launch", self.launch,
+    def run(self, frames, *options, layout=("--tiles", "2x1")):
+        command = [self.mural, "run", *layout, "--nodes", ",".join(NODES.values()), "--launch", self.launch,
                    "--display", "none", "--explain", "--verify", *options, "--", self.program, "--frames", str(frames), "--size", "250x190"]
         return session.Session(command, self.display, {"END_FILE": self.end_file})
 
@@ -141,7 +142,24 @@ def killed_without_delta(lab):
     return killed(lab, "--delta", "off")
 
 
-CASES = {f.__name__: f for f in (good, loss, short_packets, tcp, not_reached, no_group, ceases_and_returns, killed, killed_without_delta)}
+def stopped(lab):
+    """A node that an operator stops hands its area over and leaves the group; started again, it returns to both."""
+    with lab.run(MAX_FRAMES, layout=("--balance", "auto")) as run:
+        if not run.wait_for_line("frame 30"):
+            return "it did not begin: %s" % run.standard_error
+        ctl = [lab.mural, "ctl", str(run.process.pid)]
+        for words, awaited in ((("stop-node", "1"), "has stopped"), (("start-node", "1"), REACHED_AGAIN)):
+            done = subprocess.run(ctl + list(words), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+            if done.returncode != 0 or not run.wait_for_line(awaited):
+                return "%s: status %d, %s; output:\n%s" % (" ".join(words), done.returncode, done.stderr, "\n".join(run.standard_error))
+            before = drawn_by(run)
+            if not run.wait_for_line("frame %d" % (before + 20)):
+                return "no frames after %s" % " ".join(words)
+        lab.end_after(20)
+        return finished(run, [MULTICAST, " rejoined "]) or too_many(drawn_by(run))
+
+
+CASES = {f.__name__: f for f in (good, loss, short_packets, tcp, not_reached, no_group, ceases_and_returns, killed, killed_without_delta, stopped)}
 
 
 def main():

@@ -131,6 +131,7 @@ private:
     Result<nlohmann::json> startRecording(const nlohmann::json& arguments);
     Result<nlohmann::json> stopRecording();
     void addStopOperations(ControlOperations& operations);
+    bool hasOtherMembers(int node);
     Result<void> stopNode(int node, bool isForced);
     Result<void> handOver(int node, Deadline deadline); // to the nodes that take its area
     Result<void> leaveAt(int node, Deadline deadline);

@@ -128,10 +128,8 @@ Result<void> HeadSession::restartNode(int node) {
 Result<void> HeadSession::removeNode(int node, bool isForced) {
     NodeConnection& link = nodes_.link(node);
     const std::string subject = link.describe() + " cannot be removed: ";
-    bool hasOthers = false;
-    for (int other = 0; other < nodeCount_; ++other)
-        hasOthers = hasOthers || (other != node && nodes_.link(other).alive());
-    if (!hasOthers) return Error{subject + "it is the only node; end the session with mural ctl stop"};
+    if (!hasOtherMembers(node))
+        return Error{subject + "it is the only node that draws at the moment; end the session with mural ctl stop"};
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
     const bool isReplaced = plan.movesArea || plan.movesRange;
     if (!isReplaced && !isForced)

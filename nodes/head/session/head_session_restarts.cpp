@@ -146,7 +146,6 @@ StreamBroadcaster::Admission HeadSession::admit(int node, uint32_t view) {
         admission.first = admission.first && (totals_[other].lost ||
                                               (plan_.nodes[other].pass.period < 2 && !plan_.nodes[other].movesArea));
     totals_[static_cast<size_t>(node)].lost = false;
-    stopped_.erase(node);
     for (size_t other = 0; other < plan_.nodes.size(); ++other)
         if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive())
             admission.absent.push_back(static_cast<uint32_t>(other));
@@ -177,10 +176,12 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     frames_.nodeJoined(node, frames, monotonicNowNs());
     balancer_.nodeJoined(node);
     int64_t joins = 0;
+    bool wasStopped = false;
     {
         const std::lock_guard lock(mutex_);
         NodeTotals& totals = totals_[static_cast<size_t>(node)];
         joins = ++totals.joins;
+        wasStopped = stopped_.erase(node) > 0;
         totals.snapshotBytes = static_cast<int64_t>(numbers.snapshotBytes);
         totals.secondsToRejoin = numbers.secondsToRejoin;
     }
@@ -188,7 +189,9 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     const bool first = absences_.contains(node) && joins == 1;
     log::info(log::Topic::Node, nodes_.link(node).describe(), first ? " joined " : " rejoined ",
               seconds(numbers.secondsToRejoin),
-              first ? " after the start of the session, with a snapshot of " : " after its loss, with a snapshot of ",
+              first        ? " after the start of the session, with a snapshot of "
+              : wasStopped ? " after its start, with a snapshot of "
+                           : " after its loss, with a snapshot of ",
               (numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20, " MiB");
     return {};
 }

@@ -50,12 +50,17 @@ void HeadSession::addStopOperations(ControlOperations& operations) {
                     }});
 }
 
+// Nodes that catch up draw nothing yet.
+bool HeadSession::hasOtherMembers(int node) {
+    for (int other = 0; other < nodeCount_; ++other)
+        if (other != node && nodes_.link(other).alive() && !returns_->isRestarting(other)) return true;
+    return false;
+}
+
 Result<void> HeadSession::stopNode(int node, bool isForced) {
     const std::string subject = nodes_.link(node).describe() + " cannot be stopped: ";
-    bool hasOthers = false;
-    for (int other = 0; other < nodeCount_; ++other)
-        hasOthers = hasOthers || (other != node && nodes_.link(other).alive());
-    if (!hasOthers) return Error{subject + "it is the only node; end the session with mural ctl stop"};
+    if (!hasOtherMembers(node))
+        return Error{subject + "it is the only node that draws at the moment; end the session with mural ctl stop"};
     const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
     if (plan.pass.ranges > 1 && !isForced)
         return Error{subject + "the nodes of its picture share the draws, and frames in progress would lack its range; "

@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""Random sequences of changes to a running session. No pixel differs, nothing hangs, and the heads' memory stays stable.
+
+random_changes.py --build build/release [--cases exact,killed] [--list]
+RANDOM_CHANGES=200 and RANDOM_SEEDS=1,2,3 in the environment change the number of changes and the seeds.
+"""
+
+import json
+import os
+import random
+import signal
+import sys
+import tempfile
+import time
+
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
+from harness import cases, session  # noqa: E402
+from harness.control import PATIENCE_SECONDS, ctl, result_of  # noqa: E402
+
+CHANGES = int(os.environ.get("RANDOM_CHANGES", "40"))
+SEEDS = [int(seed) for seed in os.environ.get("RANDOM_SEEDS", "1").split(",")]
+NODES = 3
+
+
+def memory_mib(pid):
+    with open("/proc/%d/status" % pid, encoding="ascii") as file:
+        return next(int(line.split()[1]) for line in file if line.startswith("VmRSS")) // 1024
+
+
+def frames_go_on(context, run):
+    """Returns whether the wall shows further frames in time."""
+    before, deadline = result_of(context, run, "status").get("frames", 0), time.monotonic() + PATIENCE_SECONDS
+    while time.monotonic() < deadline and run.process.poll() is None:
+        if result_of(context, run, "status").get("frames", 0) > before + 1:
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def change(context, run, numbers, folder, kills):
+    """Performs one change; returns its words, and whether it succeeded. A refused change is right as well."""
+    node, number = numbers.randrange(NODES), numbers.randrange(1000)
+    changes = [("latency", str(numbers.randrange(5))), ("record", "start", os.path.join(folder, "%d.mural" % number)), ("record", "stop"),
+               ("stop-node", str(node)), ("start-node", str(node)), ("stop-node", str(node)), ("start-node", str(node)), ("frames",)]
+    if kills and numbers.random() < 0.15:
+        alive = run.processes(cases.NODE)
+        if len(alive) > 1:
+            os.kill(numbers.choice(alive), signal.SIGKILL)
+        return ("kill",), True
+    words = numbers.choice(changes)
+    status, _, message = ctl(context, str(run.process.pid), *words)
+    if status != 0 and (status != 1 or message.count("\n") != 1):
+        raise SystemExit("%s: status %d, %s" % (" ".join(words), status, message))
+    return words, status == 0
+
+
+def perform(context, seed, kills):
+    numbers = random.Random(seed)
+    with tempfile.TemporaryDirectory(prefix="mural-changes.") as folder:
+        report, end_file = os.path.join(folder, "report.json"), os.path.join(folder, "end")
+        command = [context.program("long_scene"), "--frames", "1000000", "--size", "200x150"]
+        options = ["--balance", "auto", "--local-nodes", str(NODES), "--display", "none", "--restart-nodes", "1000", "--report", report]
+        with context.run(command, options + ([] if kills else ["--verify"]), {"SCENE_MIB": "4", "SCENE_PAUSE_US": "1000", "END_FILE": end_file}) as run:
+            if not frames_go_on(context, run):
+                return "no frames: %s" % " | ".join(run.standard_error[-3:])
+            head = run.wait_for_processes(cases.HEAD)[0]
+            done, early = {}, 0
+            for count in range(CHANGES):
+                words, succeeded = change(context, run, numbers, folder, kills)
+                done[words[0]] = done.get(words[0], 0) + succeeded
+                if not frames_go_on(context, run):
+                    return "no frames after %s, change %d of seed %d: %s" % (" ".join(words), count, seed, " | ".join(run.standard_error[-5:]))
+                if count == CHANGES // 2:
+                    early = memory_mib(head)
+            late = memory_mib(head)
+            session.end_after(end_file, 3)
+            wrong = cases.check_end(run, 0)
+        if wrong is not None:
+            return "seed %d: %s" % (seed, wrong)
+        with open(report, encoding="utf-8") as file:
+            numbers_at_end = json.load(file)
+    print("    seed %d: %s; head %d MiB, then %d; %d frames compared, %d pixels differ" % (
+        seed, ", ".join("%s %d" % item for item in sorted(done.items())), early, late, numbers_at_end["verifiedFrames"], numbers_at_end["differingPixels"]))
+    return None if numbers_at_end["differingPixels"] == 0 and late < early + 64 else "seed %d: pixels differ, or the memory grows" % seed
+
+
+def all_seeds(context, kills):
+    wrong = [perform(context, seed, kills) for seed in SEEDS]
+    return "; ".join(text for text in wrong if text) or None
+
+
+@cases.case
+def exact(context):
+    """Every frame is compared with the program's own GL."""
+    return all_seeds(context, False)
+
+
+@cases.case
+def killed_nodes(context):
+    """Nodes are killed between the changes. The program continues to the end."""
+    return all_seeds(context, True)
+
+
+if __name__ == "__main__":
+    sys.exit(cases.main(__doc__))
