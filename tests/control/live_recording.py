@@ -20,11 +20,12 @@ SIZE = "252x190"
 BEFORE, DURING = 12, 8  # frames before and during a recording, at least
 
 
-def wait_for_frames(context, run, wanted):
-    """Returns whether the wall has shown that many frames in time."""
+def wait_for_frames(context, run, wanted, programs=0):
+    """Returns whether the wall has shown that many frames in time, and that many programs have drawn."""
     deadline = time.monotonic() + PATIENCE_SECONDS
     while time.monotonic() < deadline and run.process.poll() is None:
-        if result_of(context, run, "status").get("frames", 0) >= wanted:
+        status = result_of(context, run, "status")
+        if status.get("frames", 0) >= wanted and sum(program["frames"] > 0 for program in status["programs"]) >= programs:
             return True
         time.sleep(0.02)
     return False
@@ -37,8 +38,8 @@ def read_pictures(folder):
 class Recorded:
     """One session with saved pictures, a part of which it records, and the replay of that part."""
 
-    def __init__(self, context, command, options=("--tiles", "2x1"), environment=None, stops=True):
-        self.context, self.command, self.stops = context, command, stops
+    def __init__(self, context, command, options=("--tiles", "2x1"), environment=None, stops=True, programs=0):
+        self.context, self.command, self.stops, self.programs = context, command, stops, programs
         self.options = list(options)
         self.environment = environment or {}
         self.folder = tempfile.TemporaryDirectory(prefix="mural-recordings.")
@@ -50,12 +51,15 @@ class Recorded:
     def record(self):
         """Returns an error, or None; sets the first recorded frame."""
         with self.context.run(self.command, self.options + ["--display", "none", "--out", self.live], self.environment) as run:
-            if not wait_for_frames(self.context, run, BEFORE):
+            if not wait_for_frames(self.context, run, BEFORE, self.programs):
                 return "no frames: %s" % " | ".join(run.standard_error[-3:])
             begun = result_of(self.context, run, "record", "start", self.file)
             if begun.get("file") != self.file:
                 return "record start: %s" % begun
             self.first = begun["firstFrame"]
+            wrong = self.runs_late_program()
+            if wrong is not None:
+                return wrong
             if not wait_for_frames(self.context, run, self.first + DURING):
                 return "no frames during the recording: %s" % " | ".join(run.standard_error[-3:])
             if result_of(self.context, run, "status")["recording"]["firstFrame"] != self.first:
@@ -68,6 +72,19 @@ class Recorded:
                     return "the status still has a recording"
             ctl(self.context, str(run.process.pid), "stop")
             return cases.check_end(run, 0)
+
+    def runs_late_program(self):
+        """Waits for the program that begins during the recording, if any; returns an error, or None."""
+        if "LATE_BEGIN" not in self.environment:
+            return None
+        with open(self.environment["LATE_BEGIN"], "w", encoding="ascii"):
+            pass
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while not os.path.exists(self.environment["LATE_END"]):
+            if time.monotonic() > deadline:
+                return "the late program does not end"
+            time.sleep(0.02)
+        return None
 
     def differing(self, tiles):
         """Replays the trace and compares; returns an error, or None."""
@@ -134,10 +151,13 @@ def programs_of_all_kinds(context):
 
 @cases.case
 def several_programs(context):
-    """Two programs at the start of the recording, and one that begins later."""
+    """Two programs at the start of the recording, and one that begins and ends during the recording."""
     program = context.program("long_scene")
-    script = '"$0" --frames 100000 --size 131x77 > /dev/null & (sleep 3; exec "$0" --frames 5 --size 99x60 > /dev/null) & exec "$0" --frames 100000 --size %s' % SIZE
-    recorded = Recorded(context, ["/bin/sh", "-c", script, program], environment={"SCENE_MIB": "4"})
+    script = ('"$0" --frames 100000 --size 131x77 > /dev/null & '
+              '(until test -e "$LATE_BEGIN"; do sleep 0.1; done; "$0" --frames 5 --size 99x60 > /dev/null; : > "$LATE_END") & '
+              'exec "$0" --frames 100000 --size ' + SIZE)
+    recorded = Recorded(context, ["/bin/sh", "-c", script, program], environment={"SCENE_MIB": "4"}, programs=2)
+    recorded.environment.update(LATE_BEGIN=recorded.path("late_begin"), LATE_END=recorded.path("late_end"))
     return recorded.record() or recorded.differing(("--tiles", "2x2"))
 
 

@@ -31,6 +31,16 @@ def wait_for(context, run, reached):
     return None
 
 
+def wait_for_node_processes(run, count):
+    """Waits until that number of node processes is left; returns their pids. The head itself waits only a second for an end."""
+    deadline = time.monotonic() + PATIENCE_SECONDS
+    pids = run.processes(cases.NODE)
+    while len(pids) != count and time.monotonic() < deadline:
+        time.sleep(0.02)
+        pids = run.processes(cases.NODE)
+    return pids
+
+
 def more_frames(context, run, count=10):
     wanted = result_of(context, run, "status")["frames"] + count
     return wait_for(context, run, lambda status: status["frames"] >= wanted)
@@ -61,8 +71,9 @@ class Maintained:
                 print("    stop-node took %.2f s" % (time.monotonic() - began))
                 if status != 0:
                     return "stop-node: %s" % message
-                if result_of(context, run, "nodes")["nodes"][node]["state"] != "stopped" or len(run.processes(cases.NODE)) != self.nodes() - 1:
-                    return "after stop-node: %s, %s" % (result_of(context, run, "nodes")["nodes"][node], run.processes(cases.NODE))
+                stopped, left = result_of(context, run, "nodes")["nodes"][node], wait_for_node_processes(run, self.nodes() - 1)
+                if stopped["state"] != "stopped" or len(left) != self.nodes() - 1:
+                    return "after stop-node: %s, %s" % (stopped, left)
                 if not more_frames(context, run):
                     return "no frames without the node"
                 status, _, message = ctl(context, str(run.process.pid), "start-node", str(node))

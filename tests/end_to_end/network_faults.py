@@ -108,7 +108,7 @@ class Lab:
         self.wait_until_it_flows(sender)
         return sender, receivers
 
-    def wait_until_it_flows(self, sender, seconds=10):
+    def wait_until_it_flows(self, sender, seconds=40):
         """Waits until the sender has passed the bytes of a tenth of a second to its card."""
         wanted, until = self._sent_bytes() + RATE_BYTES_PER_S // 10, time.monotonic() + seconds
         while self._sent_bytes() < wanted:

@@ -83,11 +83,17 @@ protected:
 
 TEST_F(CreditPacerTest, spacesABurstOfFrames) {
     constexpr double kPace = 50;
+    constexpr int64_t kIntervalNs = 20 * kNsPerMs;
     pacer_.setPace(1, kPace);
+    const int64_t beganNs = monotonicNowNs();
     pacer_.add(1, 5, 0);
     const std::vector<Sent> sent = waitFor(5);
-    for (uint32_t i = 0; i < 5; ++i) EXPECT_EQ(sent[i].finished, i + 1);
-    for (size_t i = 1; i < 5; ++i) EXPECT_GE(sent[i].atNs - sent[i - 1].atNs, 19 * kNsPerMs);
+    ASSERT_EQ(sent.size(), 5u);
+    for (uint32_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(sent[i].finished, i + 1);
+        // A preemption may delay a call, which shortens the time to the next one. No call is early.
+        EXPECT_GE(sent[i].atNs - beganNs, i * kIntervalNs);
+    }
 }
 
 TEST_F(CreditPacerTest, passesOtherProgramsAndShownFramesThrough) {

@@ -237,6 +237,9 @@ TEST(SessionChanges, awaitAllFramesBeforeTheStop) {
     FakeProgram program;
     ASSERT_TRUE(program.connect(head.config.session));
     ASSERT_TRUE(swapFrame(program, 1) && passed(program));
+    const Deadline shownBy = Deadline::inMs(kTestPatienceMs);
+    while (shown.count("file") == 0 && !shownBy.passed()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_EQ(shown.count("file"), 1U);
     isPaused = true;
     for (uint32_t frame = 2; frame <= 6; ++frame) ASSERT_TRUE(swapFrame(program, frame));
     const Deadline sent = Deadline::inMs(kTestPatienceMs); // node 0 has them

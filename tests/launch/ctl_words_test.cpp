@@ -110,7 +110,7 @@ TEST(ReplyText, hasOneLinePerMember) {
 
 TEST(ReplyText, listsOperations) {
     const auto lines = replyLines("help", {{"operations", sampleOperations()}});
-    ASSERT_EQ(lines.size(), 5U);
+    ASSERT_EQ(lines.size(), sampleOperations().size());
     EXPECT_EQ(lines.back(), "status                              the state");
 }
 

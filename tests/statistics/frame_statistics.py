@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -21,9 +22,24 @@ MAX_ERROR_NS, MAX_DRIFT_NS = 20_000_000, 5_000_000  # on a machine whose cores a
 PROGRAM = ["--frames", "1000000", "--size", "250x190"]
 
 
-def stat(context, run, *options):
+def stat(context, run, *options, seconds=PATIENCE_SECONDS):
     return subprocess.run([context.mural, "stat", str(run.process.pid), *options], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True, timeout=PATIENCE_SECONDS, check=False)
+                          text=True, timeout=seconds, check=False)
+
+
+def output_until(command, patterns):
+    """Runs a command that has no end until its output matches all patterns, or patience ends; returns the output."""
+    output = ""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        patience = threading.Timer(PATIENCE_SECONDS, process.kill)
+        patience.start()
+        for line in process.stdout:
+            output += line
+            if all(re.search(pattern, output) for pattern in patterns):
+                break
+        patience.cancel()
+        process.kill()
+    return output
 
 
 def faults_of_trace(context, options, nodes, environment=None, frames=60):
@@ -104,7 +120,7 @@ def trace_after_a_loss(context):
         time.sleep(1.0)
         with tempfile.TemporaryDirectory(prefix="mural-trace.") as folder:
             path = os.path.join(folder, "trace.json")
-            shown = stat(context, run, "--trace", path, "--frames", "600")
+            shown = stat(context, run, "--trace", path, "--frames", "600", seconds=3 * PATIENCE_SECONDS)
             if shown.returncode != 0:
                 return shown.stdout
             trace = frame_trace.Trace(path)
@@ -115,19 +131,19 @@ def trace_after_a_loss(context):
 
 @cases.case
 def stages_and_metrics(context):
+    stages = (r"slowest stage: \w+ on (node [01]|head|program)", r"node 1 +[0-9.]+ +[0-9.]+")
+    metrics = (r'mural_node_up\{session="[^"]+",node="1"\} 1\n', r'mural_frame_seconds\{[^}]*\} [0-9.e-]+\n',
+               r'mural_stage_seconds\{[^}]*process="node",node="0",stage="replay"\} [0-9.e-]+\n', r"# TYPE mural_frames_total counter\n")
     with context.run([context.program("long_run")] + PROGRAM, ["--tiles", "2x1", "--display", "none"]) as run:
         if not run.wait_for_line("frame 20"):
             return "no frames: %s" % " | ".join(run.standard_error[-3:])
-        watch = subprocess.Popen([context.mural, "stat", str(run.process.pid), "--watch", "0.5"], stdout=subprocess.PIPE, text=True)
-        time.sleep(2.5)
-        watch.terminate()
-        watched = watch.communicate()[0]
+        watched = output_until([context.mural, "stat", str(run.process.pid), "--watch", "0.5"], stages)
+        deadline = time.monotonic() + PATIENCE_SECONDS
         text = stat(context, run, "--prometheus").stdout
-    wrong = [] if re.search(r"slowest stage: \w+ on (node [01]|head|program)", watched) else ["watch"]
-    wrong += [] if re.search(r"node 1 +[0-9.]+ +[0-9.]+", watched) else ["nodes of watch"]
-    for wanted in (r'mural_node_up\{session="[^"]+",node="1"\} 1\n', r'mural_frame_seconds\{[^}]*\} [0-9.e-]+\n',
-                   r'mural_stage_seconds\{[^}]*process="node",node="0",stage="replay"\} [0-9.e-]+\n', r"# TYPE mural_frames_total counter\n"):
-        wrong += [] if re.search(wanted, text) else [wanted]
+        while not all(re.search(wanted, text) for wanted in metrics) and time.monotonic() < deadline:
+            text = stat(context, run, "--prometheus").stdout  # a slow program finishes no frame in the second of a report
+    wrong = [wanted for wanted in stages if not re.search(wanted, watched)]
+    wrong += [wanted for wanted in metrics if not re.search(wanted, text)]
     return "missing are %s in\n%s\n%s" % (wrong, watched, text) if wrong else None
 
 

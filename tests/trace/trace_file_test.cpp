@@ -1,6 +1,7 @@
 // Trace files: round trips, and truncated, modified or foreign files.
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "streamcodec/wire/control_records.hpp"
 #include "streamcodec/wire/packet.hpp"
@@ -125,6 +126,13 @@ TEST_F(TraceFile, reportsProblemAndRemedy) {
     EXPECT_EQ(TraceReader::open("/").error().message, "trace /: is not a file; choose a file of mural run --record");
     EXPECT_EQ(TraceWriter::create("/nowhere/a.mural").error().message,
               "trace /nowhere/a.mural: cannot be written: No such file or directory; choose another place");
+}
+
+// A blocking open would wait for a reader.
+TEST_F(TraceFile, refusesAFifoWithoutAReader) {
+    ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
+    EXPECT_EQ(TraceWriter::create(path()).error().message,
+              "trace " + path() + ": cannot be written: No such device or address; choose another place");
 }
 
 TEST_F(TraceFile, keepsFramesBeforeADamagedBlock) {
