@@ -132,8 +132,8 @@ void LoadBalancer::advance(bool repeats) {
     findParts(areas, ranges);
     const bool movesAreas = std::ranges::any_of(nodes_, &NodePlan::movesArea);
     const bool movesRanges = std::ranges::any_of(nodes_, &NodePlan::movesRange);
-    // without a window the areas have no pixels to align to
-    const bool hasAreas = movesAreas && times_.known() && (repeats || areas.ofNodes != areas_.ofNodes);
+    // Without a window the areas have no pixels to align to. The first frame of a window replaces them.
+    const bool hasAreas = movesAreas && (repeats || (times_.known() && areas.ofNodes != areas_.ofNodes));
     const bool hasRanges = movesRanges && (repeats || ranges.ofNodes != ranges_.ofNodes);
     for (Watched& w : watched_) {
         const auto moved = [&](int n) {
@@ -352,7 +352,7 @@ Result<void> LoadBalancer::giveUp(int node) {
     setAvailable(node, false);
     advance(true);
     givenUp_[node].number = areas_.number;
-    if (!times_.known() || areas_.ofNodes[static_cast<size_t>(node)].empty()) return {};
+    if (areas_.ofNodes[static_cast<size_t>(node)].empty()) return {};
     givenUp_.erase(node);
     setAvailable(node, true);
     advance(true);

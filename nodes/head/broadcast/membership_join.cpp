@@ -116,6 +116,7 @@ bool StreamBroadcaster::goDirect(int node, bool now) {
     if (now)
         for (const auto& packet : to.takeQueue()) to.sendNow(packet, {});
     if (!to.queueEmpty()) return false;
+    if (!to.member()) return true; // dismissed meanwhile: nothing may follow its Leave
     to.setFeed(NodeConnection::Feed::Direct);
     to.flushNow();
     return true;
@@ -131,6 +132,7 @@ bool StreamBroadcaster::dismiss(int node, Deadline deadline) {
     sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Leave, std::as_bytes(std::span(&number, 1))));
     flushLocked();
     NodeConnection& from = link(node);
+    from.setLeaves();
     from.setFeed(NodeConnection::Feed::Nothing);
     from.setMember(false);
     from.setInBatches(false);

@@ -100,11 +100,9 @@ void NodeConnection::flushNow() {
 }
 
 void NodeConnection::lose(const std::string& why) {
-    {
-        const std::lock_guard lock(reasonMutex_);
-        if (reason_.empty()) reason_ = why;
-    }
     log::debug(log::Topic::Node, "gives up node ", location_.node, ": ", why);
+    const std::lock_guard lock(reasonMutex_); // release() must not free the connection meanwhile
+    if (reason_.empty()) reason_ = why;
     if (alive_.exchange(false)) connection_->close();
 }
 
@@ -201,6 +199,9 @@ Result<void> NodeConnection::readMessage(const wire::MessageHeader& header) {
         wire::ClockReplyMessage message{};
         if (header.sizeBytes != sizeof(message)) break;
         if (auto got = readStruct(message); !got) return got;
+        if (!wire::isSensibleTime(message.sentNs) || !wire::isSensibleTime(message.arrivedNs) ||
+            !wire::isSensibleTime(message.leftNs))
+            break;
         return handle([&] { return events_.nodeClock(location_.node, message); });
     }
     }
@@ -261,6 +262,7 @@ Result<void> NodeConnection::readFrameSpans(uint32_t sizeBytes) {
         if (!got) return got;
     }
     if (auto valid = checkSpans(spans); !valid) return valid;
+    if (!wire::isSensibleTime(header.sentNs)) return Error{"it sent statistics whose times are out of range"};
     return handle([&] { return events_.nodeFrameSpans(location_.node, header, spans); });
 }
 

@@ -91,6 +91,9 @@ public:
     void setByMulticast(bool by) { byMulticast_ = by; }
     [[nodiscard]] bool byMulticast() const { return byMulticast_; }
     // A restarted node is not a member until its resync has finished.
+    // The node sends Goodbye and ends. The end of its multicast membership is then no loss.
+    void setLeaves() { leaves_ = true; }
+    [[nodiscard]] bool leaves() const { return leaves_; }
     void setMember(bool member) { member_ = member; }
     [[nodiscard]] bool member() const { return member_; }
     // The node receives delta-coded batches. Call before the first one.
@@ -132,6 +135,7 @@ public:
     void end();
     // Frees the memory of the connection. Call after end(), while no thread sends.
     void release() {
+        const std::lock_guard lock(reasonMutex_);
         connection_.reset();
         pictures_.reset();
     }
@@ -169,6 +173,7 @@ private:
     std::atomic<bool> goodbyeReceived_{false};
     std::atomic<bool> byMulticast_{false};
     std::atomic<bool> joinsGroup_{false};
+    std::atomic<bool> leaves_{false};
     bool member_ = true;
     bool inBatches_ = false;
     bool joinsBatches_ = false;

@@ -218,8 +218,8 @@ void StreamBroadcaster::watch(int64_t nowNs, int64_t patienceNs, const std::func
         using Kind = NodeMulticast::Change::Kind;
         NodeConnection& link = this->link(change.node);
         if (change.kind == Kind::Came && link.joinsGroup()) comers_.push_back(change);
-        if (!link.alive() || link.goodbyeReceived() || !link.byMulticast())
-            continue; // or it has returned by another transport
+        // or it has returned by another transport; the connection of a node that leaves reports its end
+        if (!link.alive() || link.goodbyeReceived() || link.leaves() || !link.byMulticast()) continue;
         if (change.kind == Kind::Gone)
             link.lose(change.why);
         else if (change.kind == Kind::Rerouted || !change.multicast)

@@ -32,7 +32,7 @@ std::string NodeRestarter::memberLost(int node) {
     n.phase = Phase::Over;
     n.lostNs = nowNs;
     // skipped frames may have caused the loss
-    if (n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false;
+    if (!n.isRetired && n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false;
     const std::string tiles = hooks_.tilesOfLost(node);
     if (terms_.tries == 0 || !hooks_.start || stopped_ || n.isRetired) return tiles;
     if (!never.empty()) return tiles + ": " + never;

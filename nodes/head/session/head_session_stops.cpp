@@ -97,6 +97,7 @@ Result<void> HeadSession::leaveAt(int node, Deadline deadline) {
     {
         const std::lock_guard lock(mutex_);
         leaving_.insert(node);
+        stopped_.erase(node); // of an earlier stop
     }
     const bool isDismissed = nodes_.dismiss(node, deadline);
     bool hasStopped = false;
