@@ -26,8 +26,9 @@ Result<void> checkSpans(std::span<const wire::FrameSpan> message) {
     for (const wire::FrameSpan& span : message) {
         if (span.kind >= wire::kSpanKinds || span.thread >= wire::kSpanThreads)
             return Error{"it sent statistics of an unknown kind; install the same version of mural on all machines"};
-        if (span.beginNs < ends[span.thread] || span.endNs < span.beginNs)
-            return Error{"it sent statistics whose times overlap"};
+        if (!wire::isSensibleTime(span.beginNs) || !wire::isSensibleTime(span.endNs) ||
+            span.beginNs < ends[span.thread] || span.endNs < span.beginNs)
+            return Error{"it sent statistics whose times overlap, or are out of range"};
         ends[span.thread] = span.endNs;
     }
     return {};

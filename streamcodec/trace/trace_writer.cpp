@@ -16,7 +16,8 @@ template <class T> std::span<const std::byte> bytesOf(const T& value) { return s
 } // namespace
 
 Result<std::unique_ptr<TraceWriter>> TraceWriter::create(const std::string& path, int level) {
-    FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    // O_NONBLOCK: a FIFO without a reader is an error, and does not block.
+    FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666));
     if (!file.valid())
         return Error{"trace " + path + ": cannot be written: " + std::strerror(errno) + "; choose another place"};
     return std::unique_ptr<TraceWriter>(new TraceWriter(path, std::move(file), level));

@@ -78,6 +78,9 @@ constexpr uint32_t kSpanThreads = 2;
 
 constexpr size_t kMaxFrameSpans = 512; // of one message
 
+// Returns whether differences of such times fit into 64 bits.
+inline bool isSensibleTime(int64_t ns) { return ns > -(int64_t{1} << 61) && ns < int64_t{1} << 61; }
+
 // Message FrameSpans: this header, then FrameSpan*, by thread and time. The spans of a thread do not overlap.
 struct FrameSpansHeader {
     uint32_t client;

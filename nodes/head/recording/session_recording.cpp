@@ -91,8 +91,10 @@ Result<RecordingStatus> SessionRecording::stop(Deadline deadline) {
     if (!nodes_.endRecording(deadline))
         return Error{"the recording continues: a node accepts no data at the moment; see mural stat, and try again"};
     const int64_t firstFrame = firstFrame_;
-    const auto recorder = take();
+    auto recorder = take();
     RecordingStatus ended = complete(*recorder, firstFrame, deadline);
+    // The destruction waits for a writer that is late, without a limit.
+    if (recorder->hasEnded()) abandoned_.push_back(std::move(recorder));
     log::info(log::Topic::Trace, "trace ", ended.file, ": the recording ends after ", ended.frames, " frames, ",
               ended.bytes, " bytes");
     return ended;
@@ -114,7 +116,8 @@ std::unique_ptr<trace::StreamRecorder> SessionRecording::take() {
 
 RecordingStatus SessionRecording::complete(trace::StreamRecorder& recorder, int64_t firstFrame, Deadline deadline) {
     const trace::WriterTotals totals = recorder.finish(deadline);
-    const RecordingStatus ended{recorder.path(), firstFrame, totals.frames, totals.fileBytes, !recorder.hasEnded()};
+    RecordingStatus ended{recorder.path(), firstFrame, totals.frames, totals.fileBytes, !recorder.hasEnded()};
+    if (recorder.hasEnded()) ended.frames = recorder.frames(), ended.bytes = recorder.fileBytes();
     const std::lock_guard lock(mutex_);
     latest_ = ended;
     return ended;

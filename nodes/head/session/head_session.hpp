@@ -106,7 +106,7 @@ private:
     Result<void> recordFrame(int node, const wire::FrameDoneMessage& message, Result<void> counted);
     void measureClocks();
     void tickStatistics(int64_t nowNs);
-    void switchStatistics(bool isOn);
+    void announceStatistics();
     [[nodiscard]] bool areClocksKnown() const; // of all nodes that live
     static std::vector<NodeClock> clocksOf(const SessionPlan& plan);
 
@@ -190,7 +190,8 @@ private:
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameStatistics statistics_;
-    int64_t probedNs_ = 0; // the latest ClockProbe
+    std::mutex announceMutex_; // orders announcements of the statistics' state
+    int64_t probedNs_ = 0;     // the latest ClockProbe
     CreditPacer pacer_;
     FrameTracker frames_;
     ReplyAssembler answers_;

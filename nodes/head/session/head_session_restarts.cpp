@@ -175,6 +175,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // plus the frames that it has drawn itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
     balancer_.nodeJoined(node);
+    if (statistics_.isOn()) announceStatistics(); // its Setup may be older than the request
     int64_t joins = 0;
     bool wasStopped = false;
     {

@@ -43,7 +43,7 @@ void HeadSession::addFramesOperation(ControlOperations& operations) {
 
 Json HeadSession::framesJson(uint64_t sinceFrame) {
     const int64_t nowNs = monotonicNowNs();
-    if (statistics_.request(nowNs)) switchStatistics(true);
+    if (statistics_.request(nowNs)) announceStatistics();
     Json reply = framesReply(statistics_.since(sinceFrame, nowNs), sinceFrame);
     reply["kinds"] = wire::kSpanKindNames;
     reply["clocks"] = clocksJson(statistics_.clocks());
@@ -51,14 +51,16 @@ Json HeadSession::framesJson(uint64_t sinceFrame) {
     return reply;
 }
 
-// The command precedes the next packet of a program, because the calling thread must not wait for a node.
-void HeadSession::switchStatistics(bool isOn) {
-    const uint32_t argument = isOn ? 1 : 0;
+// Announces the current state. The command precedes the next packet of a program, because the calling thread must not
+// wait for a node. The lock orders the announcements of two threads.
+void HeadSession::announceStatistics() {
+    const std::lock_guard lock(announceMutex_);
+    const uint32_t argument = statistics_.isOn() ? 1 : 0;
     nodes_.scheduleBeforeNextPacket(wire::HeadCommand::Statistics, bytesOf(argument));
 }
 
 void HeadSession::tickStatistics(int64_t nowNs) {
-    if (statistics_.expire(nowNs)) switchStatistics(false);
+    if (statistics_.expire(nowNs)) announceStatistics();
     if (!statistics_.isOn() || nowNs - probedNs_ < kProbeNs) return;
     probedNs_ = nowNs;
     if (std::ranges::any_of(plan_.nodes, [](const NodePlan& n) { return n.reach != NodeReach::SharedMemory; }))

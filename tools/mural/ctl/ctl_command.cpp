@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int64_t kReplyPatienceMs = 10'000;
+constexpr int64_t kReplyPatienceMs = 25'000; // above the time of two operations, of which one is another client's
 constexpr int kExitFailed = 1;
 
 int ctlFailure(const std::string& why, int status) {

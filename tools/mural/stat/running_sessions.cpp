@@ -16,7 +16,8 @@ namespace mural::cli {
 
 namespace {
 
-constexpr int64_t kPatienceMs = 5'000; // with a silent head
+// With a silent head. Another client's operation may last nine seconds, such as stop-node.
+constexpr int64_t kPatienceMs = 15'000;
 
 // Returns the result of an operation. Empty: the session does not reply, or rejects the request.
 std::optional<nlohmann::json> querySession(const std::string& path, const char* operation,
