@@ -33,7 +33,7 @@ std::string NodeRestarter::memberLost(int node) {
     n.lostNs = nowNs;
     // skipped frames may have caused the loss
     if (!n.isRetired && n.tries > 0 && nowNs - n.memberNs <= terms_.steadyMs * kNsPerMs) skipsFrames_ = false;
-    const std::string tiles = hooks_.tilesOfLost(node);
+    std::string tiles = hooks_.tilesOfLost(node);
     if (terms_.tries == 0 || !hooks_.start || stopped_ || n.isRetired) return tiles;
     if (!never.empty()) return tiles + ": " + never;
     if (nowNs - n.memberNs > terms_.steadyMs * kNsPerMs) n.tries = 0;

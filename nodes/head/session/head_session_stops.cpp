@@ -80,7 +80,7 @@ Result<void> HeadSession::stopNode(int node, bool isForced) {
 }
 
 Result<void> HeadSession::handOver(int node, Deadline deadline) {
-    if (const auto given = balancer_.giveUp(node); !given) return given;
+    if (auto given = balancer_.giveUp(node); !given) return given;
     while (!balancer_.hasGivenUp(node)) {
         if (!nodes_.link(node).alive())
             return Error{"it was lost meanwhile; mural ctl start-node " + std::to_string(node) + " starts it again"};
