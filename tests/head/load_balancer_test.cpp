@@ -422,6 +422,7 @@ TEST_P(SplitTest, reassignsThePartOfALostNode) {
     begin(balanced(4));
     alive_[2] = false;
     balancer_->nodeLost(2); // before the first frame
+    EXPECT_TRUE(areaOf(2).empty()) << "the first frame of a new window has no part of it";
     for (int i = 0; i < 20; ++i) {
         drawAreas(corner);
         expectWholePicture();

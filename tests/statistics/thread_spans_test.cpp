@@ -115,7 +115,7 @@ TEST(SpanScope, returnsToTheOuterStateOfItsThread) {
     EXPECT_EQ(kinds, (std::vector<SpanKind>{SpanKind::Replay, SpanKind::Readback, SpanKind::WaitPackets}));
 }
 
-TEST(FrameSpansMessage, rejectsUnknownKindsAndOverlaps) {
+TEST(FrameSpansMessage, rejectsUnknownKindsOverlapsAndTimesOutOfRange) {
     const auto problemOf = [](const std::vector<wire::FrameSpan>& spans) {
         const auto checked = checkSpans(spans);
         return checked ? std::string() : checked.error().message;
@@ -127,6 +127,8 @@ TEST(FrameSpansMessage, rejectsUnknownKindsAndOverlaps) {
     EXPECT_NE(problemOf({{0, 0, 5, 4}}), "");
     EXPECT_NE(problemOf({{0, 0, 5, 7}, {1, 0, 6, 9}}), "");
     EXPECT_NE(problemOf({{0, 0, 5, 7}, {1, 1, 0, 1}, {1, 0, 6, 9}}), "");
+    EXPECT_NE(problemOf({{0, 0, INT64_MIN, 0}}), "") << "the head subtracts an offset";
+    EXPECT_NE(problemOf({{0, 0, 5, INT64_MAX}}), "");
 }
 
 TEST(FrameSpansMessage, returnsWhatWasAddedUpToItsLimit) {
