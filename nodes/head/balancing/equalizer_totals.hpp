@@ -8,7 +8,7 @@
 
 namespace mural {
 
-// What the nodes of an equalizer share. Frames: they draw frames in turn.
+// The kind of parts among which an equalizer divides work. Frames: nodes draw whole frames in turn.
 enum class Division : uint8_t { Areas, Ranges, Frames };
 
 struct EqualizerTotals {

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "common/log/log.hpp"
-#include "nodes/frame_spans/span_scope.hpp"
+#include "nodes/head/statistics/output_spans.hpp"
 
 namespace mural {
 
@@ -76,7 +76,7 @@ private:
             queue_.pop_front();
             lock.unlock();
             if (picture.picture)
-                takeAsSpan(picture);
+                recordOutput(config_.statistics, spans_, client_, picture.frame, "window", [&] { take(picture); });
             else
                 forget(picture.window);
             lock.lock();
@@ -87,18 +87,6 @@ private:
         lock.lock();
         ended_ = true;
         changed_.notify_all();
-    }
-
-    void takeAsSpan(const WindowPicture& picture) {
-        const bool isOn = config_.statistics && config_.statistics->isOn();
-        recordThread(spans_, isOn, SpanKind::WaitPicture);
-        {
-            const SpanScope outputs(SpanKind::Output);
-            take(picture);
-        }
-        if (!isOn) return;
-        const int64_t nowNs = quickNowNs();
-        config_.statistics->add(client_, picture.frame, {SpanProcess::Head, 0, "window", spans_.take(nowNs)}, nowNs);
     }
 
     void take(const WindowPicture& picture) {

@@ -6,6 +6,7 @@
 
 #include "common/log/log.hpp"
 #include "nodes/frame_spans/span_scope.hpp"
+#include "nodes/head/statistics/output_spans.hpp"
 
 namespace mural {
 namespace {
@@ -116,15 +117,7 @@ void PictureOutput::finishFile() {
 
 void PictureOutput::take(const WindowPicture& picture) {
     if (!picture.picture) return forget(picture);
-    const bool isOn = config_.statistics && config_.statistics->isOn();
-    recordThread(spans_, isOn, SpanKind::WaitPicture);
-    {
-        const SpanScope outputs(SpanKind::Output);
-        show(picture);
-    }
-    if (!isOn) return;
-    const int64_t nowNs = quickNowNs();
-    config_.statistics->add(picture.client, picture.frame, {SpanProcess::Head, 0, "output", spans_.take(nowNs)}, nowNs);
+    recordOutput(config_.statistics, spans_, picture.client, picture.frame, "output", [&] { show(picture); });
 }
 
 void PictureOutput::show(const WindowPicture& picture) {

@@ -137,6 +137,9 @@ private:
     Result<void> leaveAt(int node, Deadline deadline);
     void memberLeft(int node);
     Result<void> startNode(int node);
+    // Returns an operation that changes a node. canForce: it has the argument `force`.
+    ControlOperation nodeOperation(std::string name, std::string meaning, bool canForce,
+                                   std::function<Result<void>(int node, bool isForced)> change);
     Result<void> checkNode(int64_t node); // that an operation may change it
     Result<void> restartNode(int node);
     Result<void> removeNode(int node, bool isForced);

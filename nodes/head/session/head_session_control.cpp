@@ -88,25 +88,27 @@ void HeadSession::addNodeOperations(ControlOperations& operations) {
     operations.add({"nodes", "", "the state of each node", {}, [this](const Json&) {
                         return Result<Json>(Json{{"nodes", statusOf(status())["nodes"]}});
                     }});
-    const ControlArgument node{"node", Kind::Whole, true, "number of the node, from 0"};
-    operations.add({"restart-node",
-                    "",
-                    "end a node and start it again; it joins with the current state",
-                    {node},
-                    [this](const Json& arguments) -> Result<Json> {
-                        const auto number = arguments.at("node").get<int64_t>();
-                        if (const auto known = checkNode(number); !known) return known.error();
-                        return resultOf(restartNode(static_cast<int>(number)));
-                    }});
-    operations.add({"remove-node",
-                    "",
-                    "end a node for good; other nodes take its tiles or chunks",
-                    {node, {"force", Kind::Truth, false, "also if no other node takes its part of the picture"}},
-                    [this](const Json& arguments) -> Result<Json> {
-                        const auto number = arguments.at("node").get<int64_t>();
-                        if (const auto known = checkNode(number); !known) return known.error();
-                        return resultOf(removeNode(static_cast<int>(number), arguments.value("force", false)));
-                    }});
+    operations.add(nodeOperation("restart-node", "end a node and start it again; it joins with the current state",
+                                 false, [this](int node, bool) { return restartNode(node); }));
+    operations.add(nodeOperation("remove-node", "end a node for good; other nodes take its tiles or chunks", true,
+                                 [this](int node, bool isForced) { return removeNode(node, isForced); }));
+}
+
+ControlOperation HeadSession::nodeOperation(std::string name, std::string meaning, bool canForce,
+                                            std::function<Result<void>(int node, bool isForced)> change) {
+    ControlOperation operation;
+    operation.name = std::move(name);
+    operation.meaning = std::move(meaning);
+    operation.arguments = {{"node", Kind::Whole, true, "number of the node, from 0"}};
+    if (canForce)
+        operation.arguments.push_back(
+            {"force", Kind::Truth, false, "also if no other node takes its part of the picture"});
+    operation.perform = [this, change = std::move(change)](const Json& arguments) -> Result<Json> {
+        const auto number = arguments.at("node").get<int64_t>();
+        if (const auto known = checkNode(number); !known) return known.error();
+        return resultOf(change(static_cast<int>(number), arguments.value("force", false)));
+    };
+    return operation;
 }
 
 Result<void> HeadSession::checkNode(int64_t node) {

@@ -14,9 +14,6 @@
 namespace mural {
 namespace {
 
-using Json = nlohmann::json;
-using Kind = ControlArgument::Kind;
-
 // The sum stays below the patience of mural ctl.
 constexpr int64_t kHandOverMs = 4'000; // until a frame is drawn with the new areas
 constexpr int64_t kLeaveMs = 4'000;    // until the node has finished its frames
@@ -25,29 +22,11 @@ constexpr int64_t kProcessMs = 1'000;
 } // namespace
 
 void HeadSession::addStopOperations(ControlOperations& operations) {
-    const ControlArgument node{"node", Kind::Whole, true, "number of the node, from 0"};
-    operations.add({"stop-node",
-                    "",
-                    "end a node in order after its frames; start-node brings it back",
-                    {node, {"force", Kind::Truth, false, "also if no other node takes its part of the picture"}},
-                    [this](const Json& arguments) -> Result<Json> {
-                        const auto number = arguments.at("node").get<int64_t>();
-                        if (const auto known = checkNode(number); !known) return known.error();
-                        const auto done = stopNode(static_cast<int>(number), arguments.value("force", false));
-                        if (!done) return done.error();
-                        return Json::object();
-                    }});
-    operations.add({"start-node",
-                    "",
-                    "start a node that was stopped, removed or given up; it joins with the current state",
-                    {node},
-                    [this](const Json& arguments) -> Result<Json> {
-                        const auto number = arguments.at("node").get<int64_t>();
-                        if (const auto known = checkNode(number); !known) return known.error();
-                        const auto done = startNode(static_cast<int>(number));
-                        if (!done) return done.error();
-                        return Json::object();
-                    }});
+    operations.add(nodeOperation("stop-node", "end a node in order after its frames; start-node brings it back", true,
+                                 [this](int node, bool isForced) { return stopNode(node, isForced); }));
+    operations.add(nodeOperation("start-node",
+                                 "start a node that was stopped, removed or given up; it joins with the current state",
+                                 false, [this](int node, bool) { return startNode(node); }));
 }
 
 // Nodes that catch up draw nothing yet.
