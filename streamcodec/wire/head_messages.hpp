@@ -6,6 +6,8 @@
 namespace mural::wire {
 
 // First word of a packet of the head's own stream.
+constexpr uint32_t kNoNode = 0xFFFFFFFF;
+
 enum class HeadCommand : uint32_t {
     Setup = 1,      // json: tiles, regions, outputs, backend, rewriting mode (nodes/session/session_config.hpp)
     ClientGone = 2, // u32 client: frees its contexts and windows
@@ -18,6 +20,7 @@ enum class HeadCommand : uint32_t {
     //   first        1: no other member has phases; the phases restart
     //   incarnation  of the node
     //   absent       nodes that are no members; the node's picture is composited without them
+    // node kNoNode: no node becomes a member; only a position.
     Activate = 5,
     // u32 number, u32 draws: to a node in resync, which replies Synchronized. draws = 1: it draws each window from its
     // next frame on.

@@ -1,5 +1,7 @@
-// The equalizers of a LoadBalancer as operations of the control interface.
+// The equalizers of the current LoadBalancer as operations of the control interface.
 #pragma once
+
+#include <functional>
 
 #include "nodes/head/balancing/load_balancer.hpp"
 #include "nodes/head/control/equalizer_control.hpp"
@@ -8,17 +10,16 @@ namespace mural {
 
 class BalancerControl : public EqualizerControl {
 public:
-    // Keeps a reference.
-    explicit BalancerControl(LoadBalancer& balancer) : balancer_(balancer) {}
+    explicit BalancerControl(std::function<LoadBalancer&()> current) : current_(std::move(current)) {}
 
     [[nodiscard]] nlohmann::json list() const override;
     Result<void> set(const std::string& name, const std::string& parameter, const std::string& value) override {
-        return balancer_.set(name, parameter, value);
+        return current_().set(name, parameter, value);
     }
-    Result<void> freeze(const std::string& name, bool isFrozen) override { return balancer_.freeze(name, isFrozen); }
+    Result<void> freeze(const std::string& name, bool isFrozen) override { return current_().freeze(name, isFrozen); }
 
 private:
-    LoadBalancer& balancer_;
+    const std::function<LoadBalancer&()> current_;
 };
 
 } // namespace mural

@@ -68,6 +68,7 @@ LoadBalancer::LoadBalancer(const SessionPlan& plan, Announce announce, const std
     for (const NodePlan& node : nodes_) {
         areas_.ofNodes.push_back(node.area.value_or(Viewport{}));
         ranges_.ofNodes.push_back(node.pass.share);
+        if (node.isVacant) times_.lost(node.node);
     }
     if (!plan.balance || plan.balance->equalizers.empty()) return;
     fileSizes_ = plan.balance->input.sizes;
@@ -83,6 +84,11 @@ LoadBalancer::LoadBalancer(const SessionPlan& plan, Announce announce, const std
         w.totals.kind = e->kind();
         w.totals.division = divisionBy(e->effect());
     }
+}
+
+ViewportAssignment LoadBalancer::viewports() const {
+    const std::lock_guard lock(mutex_);
+    return areas_;
 }
 
 void LoadBalancer::frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs) {
@@ -331,6 +337,7 @@ void LoadBalancer::setAvailable(int node, bool isAvailable) {
 
 void LoadBalancer::nodeLost(int node) {
     const std::lock_guard lock(mutex_);
+    if (planOf(node).isVacant) return;
     times_.lost(node);
     givenUp_.erase(node);
     if (!isActive()) return;

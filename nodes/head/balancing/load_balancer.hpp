@@ -56,6 +56,7 @@ public:
     // of its pixels. Its later frames have none either. True if no program has a window.
     [[nodiscard]] bool hasGivenUp(int node) const;
 
+    [[nodiscard]] ViewportAssignment viewports() const; // the latest ones
     [[nodiscard]] bool isActive() const { return planner_ != nullptr; }
     [[nodiscard]] std::vector<EqualizerTotals> totals() const;
     // Changes of a running session, from the next decision on. name: as in totals(). Errors name the known names.

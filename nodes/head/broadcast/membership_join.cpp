@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "common/log/log.hpp"
+#include "nodes/head/broadcast/bytes_of.hpp"
 #include "nodes/head/broadcast/head_command.hpp"
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
 #include "streamcodec/wire/head_messages.hpp"
@@ -70,21 +71,15 @@ Result<RejoinLog::Snapshot> StreamBroadcaster::beginCatchUp(int node, PhaseReque
     return rejoinLog_->snapshot(position, deadline);
 }
 
-Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(uint32_t view)>& announce) {
+// Constructs the dictionary of a node that receives batches. Takes long, so call it without the lock.
+Result<StreamBroadcaster::History> StreamBroadcaster::freshHistory(int node) {
+    if (!link(node).joinsBatches()) return History();
+    return DeltaStream::freshCoder(deltaStream_->limits());
+}
+
+// history: on return the previous dictionary, which the caller destroys without the lock.
+void StreamBroadcaster::admitLocked(int node, const Admission& admission, History& history) {
     NodeConnection& to = link(node);
-    // the new dictionary is constructed, and the old one destroyed, without the lock
-    std::unique_ptr<DeltaStream::Coder> history;
-    if (to.joinsBatches()) {
-        auto fresh = DeltaStream::freshCoder(deltaStream_->limits());
-        if (!fresh) return fresh.error();
-        history = std::move(*fresh);
-    }
-    ++joining_;
-    std::unique_lock lock(sendMutex_);
-    --joining_;
-    sendBatchLocked();
-    const Admission admission = announce(++view_);
-    if (admission.refused) return {};
     std::vector<uint32_t> arguments = {view_, static_cast<uint32_t>(node), admission.first ? 1U : 0U,
                                        admission.incarnation};
     arguments.insert(arguments.end(), admission.absent.begin(), admission.absent.end());
@@ -92,19 +87,62 @@ Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(ui
     to.setMember(true);
     log::debug(log::Topic::Node, "node ", node, " is a member from view ", view_, " on, incarnation ",
                admission.incarnation);
-    if (history) {
-        // The last batch of the old dictionary announces the new one. This node receives batches from here on.
-        const auto reset = commandBytes(wire::HeadCommand::ResetDictionary, {});
-        deltaStream_->add(wire::streamOf(0, 0), reset);
-        sendBatchLocked();
-        history = deltaStream_->restart(std::move(history));
-        const wire::PacketHeader header{static_cast<uint32_t>(reset.size()), wire::streamOf(0, 0)};
-        sendTo(to, std::as_bytes(std::span(&header, 1)), reset);
-        to.setInBatches(true);
-    }
+    if (!history) return;
+    // The last batch of the old dictionary announces the new one. This node receives batches from here on.
+    const auto reset = commandBytes(wire::HeadCommand::ResetDictionary, {});
+    deltaStream_->add(wire::streamOf(0, 0), reset);
     sendBatchLocked();
-    flushLinksLocked();
-    lock.unlock();
+    history = deltaStream_->restart(std::move(history));
+    const wire::PacketHeader header{static_cast<uint32_t>(reset.size()), wire::streamOf(0, 0)};
+    sendTo(to, std::as_bytes(std::span(&header, 1)), reset);
+    to.setInBatches(true);
+}
+
+Result<void> StreamBroadcaster::admit(int node, const std::function<Admission(uint32_t view)>& announce) {
+    auto history = freshHistory(node);
+    if (!history) return history.error();
+    ++joining_;
+    const std::lock_guard lock(sendMutex_);
+    --joining_;
+    sendBatchLocked();
+    const Admission admission = announce(++view_);
+    if (admission.refused) return {};
+    admitLocked(node, admission, *history);
+    flushLocked();
+    return {};
+}
+
+// Packets of programs are neither between two of the commands nor lost: every frame belongs to one set of members.
+Result<void> StreamBroadcaster::exchangeMembers(const MemberExchange& exchange, Deadline deadline) {
+    std::vector<History> histories;
+    for (const int node : exchange.joining) {
+        auto history = freshHistory(node);
+        if (!history) return history.error();
+        histories.push_back(std::move(*history));
+    }
+    ++joining_;
+    const std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
+    --joining_;
+    if (!lock.owns_lock()) return Error{"a node accepts no data at the moment; see mural stat, and try again"};
+    sendBatchLocked();
+    if (!exchange.atPosition(view_ + 1)) return Error{"a node was lost meanwhile"};
+    const uint32_t marker[] = {++view_, wire::kNoNode, 0, 0};
+    sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Activate, bytesOf(marker)));
+    { // assignments to the earlier nodes
+        const std::lock_guard leads(leadMutex_);
+        leads_.erase(wire::HeadCommand::ViewportAssignment);
+        leads_.erase(wire::HeadCommand::RangeAssignment);
+    }
+    // They may have received areas of the earlier nodes.
+    if (!exchange.viewports.ofNodes.empty())
+        sendLocked(wire::streamOf(0, 0),
+                   commandBytes(wire::HeadCommand::ViewportAssignment, bytesOf(exchange.viewports)));
+    for (size_t i = 0; i < exchange.joining.size(); ++i) {
+        const Admission admission = exchange.announce(exchange.joining[i], ++view_);
+        admitLocked(exchange.joining[i], admission, histories[i]);
+    }
+    for (const int node : exchange.leaving) dismissLocked(node);
+    flushLocked();
     return {};
 }
 
@@ -127,16 +165,30 @@ bool StreamBroadcaster::dismiss(int node, Deadline deadline) {
     const std::unique_lock lock(sendMutex_, std::chrono::nanoseconds(deadline.leftNs(60 * kNsPerS)));
     --joining_;
     if (!lock.owns_lock()) return false;
+    dismissLocked(node);
+    flushLocked();
+    return true;
+}
+
+void StreamBroadcaster::dismissLocked(int node) {
     const auto number = static_cast<uint32_t>(node);
     // other nodes ignore it
     sendLocked(wire::streamOf(0, 0), commandBytes(wire::HeadCommand::Leave, std::as_bytes(std::span(&number, 1))));
-    flushLocked();
+    sendBatchLocked();
     NodeConnection& from = link(node);
+    if (!from.byMulticast()) from.flush();
     from.setLeaves();
     from.setFeed(NodeConnection::Feed::Nothing);
     from.setMember(false);
     from.setInBatches(false);
-    return true;
+}
+
+void StreamBroadcaster::retire(int node) {
+    NodeConnection& before = this->link(node);
+    before.end();
+    if (before.byMulticast() || before.joinsGroup()) multicast_->remove(node, "it has left the session");
+    std::erase_if(comers_, [node](const NodeMulticast::Change& came) { return came.node == node; });
+    replaced_.push_back(&before);
 }
 
 void StreamBroadcaster::inviteToGroup(int node) {

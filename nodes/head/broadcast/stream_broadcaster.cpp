@@ -14,7 +14,7 @@
 namespace mural {
 
 void StreamBroadcaster::add(std::unique_ptr<NodeConnection> link) {
-    links_.emplace_back(link.get());
+    links_.add(link.get());
     owned_.push_back(std::move(link));
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,8 +13,10 @@
 
 #include "nodes/head/membership/rejoin_log.hpp"
 #include "nodes/head/broadcast/node_connection.hpp"
+#include "nodes/head/broadcast/node_links.hpp"
 #include "nodes/head/broadcast/node_multicast.hpp"
 #include "nodes/head/broadcast/delta_stream.hpp"
+#include "nodes/session/viewport_assignment.hpp"
 #include "streamcodec/trace/stream_recorder.hpp"
 #include "streamcodec/wire/head_messages.hpp"
 
@@ -23,7 +24,8 @@ namespace mural {
 
 class StreamBroadcaster {
 public:
-    void add(std::unique_ptr<NodeConnection> link); // before any other call
+    // Adds the link of the next node, before any other call; later, a link without connection, from the adding thread.
+    void add(std::unique_ptr<NodeConnection> link);
     // Sets the multicast stream for links that use it. Call before the first broadcast.
     void multicastBy(std::unique_ptr<NodeMulticast> multicast) { multicast_ = std::move(multicast); }
     [[nodiscard]] NodeMulticast* multicast() { return multicast_.get(); }
@@ -32,6 +34,7 @@ public:
     void setRecorder(trace::StreamRecorder* recorder) { recorder_ = recorder; }
     // Sets the encoder of batches. Call before the first broadcast.
     void setDeltaStream(std::unique_ptr<DeltaStream> deltaStream);
+    [[nodiscard]] bool hasDeltaStream() const { return deltaStream_ != nullptr; }
     [[nodiscard]] DeltaCounts deltaCounts() const { return deltaStream_ ? deltaStream_->counts() : DeltaCounts(); }
     // Sets the rejoin log. Call before the first broadcast.
     void setRejoinLog(std::unique_ptr<RejoinLog> log) { rejoinLog_ = std::move(log); }
@@ -53,7 +56,7 @@ public:
 
     [[nodiscard]] size_t size() const { return links_.size(); }
     [[nodiscard]] int livingCount() const;
-    NodeConnection& link(int node) { return *links_[static_cast<size_t>(node)]; }
+    NodeConnection& link(int node) { return *links_[static_cast<size_t>(node)].load(); }
 
     // ---- recordings that begin while programs run
     // Sets the recorder, and returns the snapshot of the position at which that happens. `atPosition` runs there, with
@@ -90,12 +93,27 @@ public:
         std::vector<uint32_t> absent; // nodes that are no members
     };
     Result<void> admit(int node, const std::function<Admission(uint32_t view)>& announce);
+    // Makes nodes members that have caught up, and ends the membership of others, at one position of the stream.
+    struct MemberExchange {
+        std::vector<int> joining, leaving;
+        // Called at the position, with the lock that orders packets. Members report that they have passed `view`.
+        // Returns false to refuse the exchange.
+        std::function<bool(uint32_t view)> atPosition;
+        std::function<Admission(int node, uint32_t view)> announce; // for each joining node, in order
+        ViewportAssignment viewports; // initial areas of the joining nodes; no nodes: areas stay fixed
+    };
+    // Errors: refused; no memory for delta coding; a node accepts no data until the deadline. Nothing has happened
+    // then.
+    Result<void> exchangeMembers(const MemberExchange& exchange, Deadline deadline);
     // Switches the node's feed to its connection. Returns false if its queue is not empty. `now`: sends the queue at
     // once.
     bool goDirect(int node, bool now);
     // Ends the membership of a node at the current position: it finishes everything before, and receives nothing after.
     // Returns false if a node accepts no data until the deadline; nothing has happened then.
     bool dismiss(int node, Deadline deadline);
+    // Ends the link of a node that has left or was lost for good, and frees its memory later. Call from the adding
+    // thread.
+    void retire(int node);
     // Invites a member to join the multicast group. watch() switches its transport after it has joined.
     void inviteToGroup(int node);
 
@@ -114,6 +132,10 @@ public:
 private:
     bool sendLocked(uint32_t stream, std::span<const std::byte> payload);
     void sendLeadLocked();
+    using History = std::unique_ptr<DeltaStream::Coder>;
+    Result<History> freshHistory(int node);
+    void admitLocked(int node, const Admission& admission, History& history);
+    void dismissLocked(int node);
 
     bool changesOver(const NodeMulticast::Change& came);
     void releaseReplaced();
@@ -131,9 +153,9 @@ private:
     std::unique_ptr<NodeMulticast> multicast_;  // null: each node has its own stream
     // for watch(): group members that still receive their packets on both transports
     std::vector<NodeMulticast::Change> comers_;
-    const NodeConnection* changingOver_ = nullptr;   // the link that receives packets on both transports, or null
-    std::unique_ptr<RejoinLog> rejoinLog_;           // null: lost nodes stay lost
-    std::deque<std::atomic<NodeConnection*>> links_; // by node
+    const NodeConnection* changingOver_ = nullptr; // the link that receives packets on both transports, or null
+    std::unique_ptr<RejoinLog> rejoinLog_;         // null: lost nodes stay lost
+    NodeLinks links_;                              // by node
     std::vector<std::unique_ptr<NodeConnection>>
         owned_;                             // includes links of lost nodes, which other threads may still use
     std::vector<NodeConnection*> replaced_; // links of lost nodes whose memory is not released yet; for watch()

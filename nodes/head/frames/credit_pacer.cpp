@@ -66,6 +66,15 @@ void CreditPacer::setPace(uint32_t client, double framesPerSecond) {
     changed_.notify_all();
 }
 
+void CreditPacer::endPaces() {
+    const int64_t nowNs = monotonicNowNs();
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, client] : clients_) {
+        client.credit.setInterval(0, nowNs);
+        send(id, client, nowNs);
+    }
+}
+
 void CreditPacer::clientGone(uint32_t client) {
     const std::lock_guard lock(mutex_);
     clients_.erase(client);

@@ -46,6 +46,7 @@ public:
     void add(uint32_t client, uint32_t finished, uint32_t shown);
     // 0: no pace, for clients without a call, too.
     void setPace(uint32_t client, double framesPerSecond);
+    void endPaces(); // of all clients
     void clientGone(uint32_t client);
 
 private:

@@ -51,6 +51,13 @@ void FrameTracker::nodeLost(int node, int64_t nowNs) {
     for (auto& [id, c] : clients_) advance(id, c, nowNs);
 }
 
+void FrameTracker::addNodes(size_t count) {
+    const std::lock_guard lock(mutex_);
+    living_.resize(living_.size() + count, false);
+    framesOf_.resize(living_.size(), 0);
+    for (auto& [id, c] : clients_) c.nodes.resize(living_.size());
+}
+
 void FrameTracker::nodeJoins(int node) {
     const std::lock_guard lock(mutex_);
     for (auto& [id, c] : clients_) {

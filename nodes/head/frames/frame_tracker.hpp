@@ -36,6 +36,8 @@ public:
 
     Result<void> frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs);
     void nodeLost(int node, int64_t nowNs);
+    // Adds nodes that are no members yet.
+    void addNodes(size_t count);
     // The node is returning. Credit waits for it from now on, although its progress is still unknown.
     void nodeJoins(int node);
     // The node has returned. It finishes the frames after `before`; other nodes have finished the earlier ones.

@@ -54,7 +54,7 @@ Result<void> PictureAssembler::part(int node, const PictureHeader& header, ByteB
     if (open_.size() >= kMaxOpenPictures) return Error{"it sent a picture number that is thousands ahead"};
     const auto at = opened(node, header.client, header.window, header.frame);
     Open& open = at->second;
-    if (!open.awaited[index]) return {};
+    if (index >= open.awaited.size() || !open.awaited[index]) return {};
     if (open.done[index]) return Error{"it sent a part of a picture twice"};
     open.done[index] = true;
     open.parts.push_back({passOf_[index], header, std::move(rows)});
@@ -93,6 +93,13 @@ void PictureAssembler::clientGone(uint32_t client) {
     const std::lock_guard lock(mutex_);
     std::erase_if(open_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });
     std::erase_if(latest_, [&](const auto& entry) { return std::get<0>(entry.first) == client; });
+}
+
+void PictureAssembler::release() {
+    const std::lock_guard lock(mutex_);
+    open_.clear();
+    latest_.clear();
+    made_.clear();
 }
 
 PictureAssembler::OpenPictures::iterator PictureAssembler::opened(int node, uint32_t client, uint32_t window,

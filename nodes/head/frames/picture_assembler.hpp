@@ -55,6 +55,8 @@ public:
     void nodeJoins(int node, uint32_t view);
     void nodeInView(int node, uint32_t view);
     void clientGone(uint32_t client); // no node sends more parts of it
+    // Frees the pictures. Call after the last message of the last node.
+    void release();
 
 private:
     using Key = std::tuple<uint32_t, uint32_t, uint32_t>;  // client, window, frame

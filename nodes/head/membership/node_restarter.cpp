@@ -96,6 +96,17 @@ Result<void> NodeRestarter::bringBack(int node) {
     return {};
 }
 
+void NodeRestarter::addGroup(std::shared_ptr<NodeGroup> group) {
+    const int64_t nowNs = monotonicNowNs();
+    const std::lock_guard lock(mutex_);
+    for ([[maybe_unused]] const int node : group->nodes()) {
+        Node& n = nodes_.emplace_back();
+        n.phase = Phase::Waiting;
+        n.lostNs = n.nextNs = nowNs;
+        n.group = group;
+    }
+}
+
 // The attempt at the start of the session counts as the first one.
 void NodeRestarter::notThere(int node) {
     const int64_t nowNs = monotonicNowNs();
@@ -117,7 +128,10 @@ bool NodeRestarter::lostWhileRestarting(int node, const std::string& why) {
 
 void NodeRestarter::ready(int node) {
     const std::lock_guard lock(mutex_);
-    if (at(node).phase == Phase::Readying) at(node).phase = Phase::Ready;
+    Node& n = at(node);
+    if (n.phase != Phase::Readying) return;
+    n.phase = Phase::Ready;
+    if (n.group) n.group->ready(node);
 }
 
 void NodeRestarter::synchronized(int node, const wire::SynchronizedMessage& message) {
@@ -140,11 +154,26 @@ bool NodeRestarter::becomesMember(int node) {
     const std::lock_guard lock(mutex_);
     Node& n = at(node);
     if (n.phase != Phase::CatchingUp || !n.problem.empty() || stopped_) return false;
+    becomeMember(n);
+    return true;
+}
+
+bool NodeRestarter::becomeMembers(const NodeGroup& group) {
+    const std::lock_guard lock(mutex_);
+    if (stopped_) return false;
+    for (const int node : group.nodes())
+        if (at(node).phase != Phase::CatchingUp || !at(node).problem.empty()) return false;
+    for (const int node : group.nodes()) becomeMember(at(node));
+    return true;
+}
+
+// Requires mutex_.
+void NodeRestarter::becomeMember(Node& n) {
     n.phase = Phase::Member;
     n.memberNs = monotonicNowNs();
     n.numbers = {static_cast<double>(n.memberNs - n.lostNs) / static_cast<double>(kNsPerS), n.catchUp->snapshotBytes(),
                  n.catchUp->queuedBytes(), n.catchUp->framesGiven()};
-    return true;
+    n.group = nullptr;
 }
 
 bool NodeRestarter::awaited() const {
@@ -168,6 +197,7 @@ NodeRestarter::Numbers NodeRestarter::numbers(int node) const {
 // be called without the lock.
 
 void NodeRestarter::tick(int64_t nowNs) {
+    // only this thread adds nodes
     for (size_t node = 0; node < nodes_.size(); ++node) tickNode(static_cast<int>(node), nowNs);
 }
 
@@ -176,6 +206,7 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
     std::shared_ptr<NodeResync> over;
     std::string problem;
     bool due = false;
+    std::shared_ptr<NodeGroup> group;
     Deadline readyBy = Deadline::never();
     {
         const std::lock_guard lock(mutex_);
@@ -185,9 +216,11 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
         due = nowNs >= n.nextNs && !n.catchUp;
         problem = n.problem;
         readyBy = n.readyBy;
+        group = n.group;
     }
     over.reset();
     if (!problem.empty()) return fail(node, problem, nowNs);
+    if (group && group->hasFailed() && cancels(node, phase)) return;
     switch (phase) {
     case Phase::Waiting:
         if (due && set_.link(node).readerEnded()) start(node, nowNs);
@@ -197,7 +230,9 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
         if (readyBy.passed())
             set_.link(node).lose("it was not ready within " + std::to_string(terms_.readyPatienceMs / 1000) + " s");
         return;
-    case Phase::Ready: return catchUp(node);
+    case Phase::Ready:
+        if (!group || group->areAllReady()) catchUp(node);
+        return;
     case Phase::Member:
     case Phase::CatchingUp:
     case Phase::Over: return;
@@ -206,11 +241,16 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
 
 void NodeRestarter::catchUp(int node) {
     hooks_.introduce(node);
+    bool isInGroup = false;
+    {
+        const std::lock_guard lock(mutex_);
+        isInGroup = at(node).group != nullptr;
+    }
     std::optional<StreamBroadcaster::PhaseRequest> turns;
-    if (const auto kind = hooks_.turns(node); kind != StreamBroadcaster::Turns::None)
+    // members of another plan have no state for the nodes of a group
+    if (const auto kind = hooks_.turns(node); kind != StreamBroadcaster::Turns::None && !isInGroup)
         turns = {++phaseRequests_, [this, kind](int other) { return hooks_.turns(other) == kind; }, {}};
-    const auto catchUp = std::make_shared<NodeResync>(
-        set_, node, std::move(turns), [this, node](uint32_t view) { return hooks_.admitted(node, view); });
+    const auto catchUp = std::make_shared<NodeResync>(set_, node, std::move(turns), joinOf(node));
     {
         const std::lock_guard lock(mutex_);
         at(node).catchUp = catchUp;
@@ -218,6 +258,40 @@ void NodeRestarter::catchUp(int node) {
         if (!at(node).problem.empty()) catchUp->linkLost();
     }
     catchUp->start();
+}
+
+NodeResync::Join NodeRestarter::joinOf(int node) {
+    const std::lock_guard lock(mutex_);
+    if (const auto group = at(node).group) return [group, node] { return group->caughtUp(node); };
+    return [this, node]() -> Result<bool> {
+        const auto admitted = set_.admit(node, [this, node](uint32_t view) { return hooks_.admitted(node, view); });
+        if (!admitted) return admitted.error();
+        return true;
+    };
+}
+
+// Ends a node of a group that has failed. Returns false for a member.
+bool NodeRestarter::cancels(int node, Phase phase) {
+    if (phase == Phase::Member || phase == Phase::Over) return false;
+    if (phase != Phase::Waiting && phase != Phase::Starting) { // tick() ends it after its loss
+        set_.link(node).lose("the change was cancelled");
+        return true;
+    }
+    failGroup(node, "the change was cancelled");
+    return true;
+}
+
+void NodeRestarter::failGroup(int node, const std::string& why) {
+    std::shared_ptr<NodeGroup> group;
+    {
+        const std::lock_guard lock(mutex_);
+        Node& n = at(node);
+        n.phase = Phase::Over;
+        n.isRetired = true;
+        n.starting.reset();
+        group = std::move(n.group);
+    }
+    group->fail(why);
 }
 
 void NodeRestarter::start(int node, int64_t nowNs) {
@@ -255,14 +329,15 @@ void NodeRestarter::pollStart(int node, int64_t nowNs) {
 
 void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
     std::string line = set_.link(node).describe() + " did not rejoin: " + why + "; ";
-    bool again = false;
+    bool again = false, isInGroup = false;
     {
         const std::lock_guard lock(mutex_);
         Node& n = at(node);
         // the loss is caused by skipped frames: does not count as an attempt
         if (n.catchUp && n.catchUp->invalid() && std::exchange(skipsFrames_, false)) --n.tries;
         n.problem.clear();
-        again = n.tries < terms_.tries && !stopped_ && !n.isRetired;
+        isInGroup = n.group != nullptr;
+        again = n.tries < terms_.tries && !stopped_ && !n.isRetired && !isInGroup;
         n.phase = again ? Phase::Waiting : Phase::Over;
         const int64_t pauseMs = terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)];
         n.nextNs = nowNs + pauseMs * kNsPerMs;
@@ -273,6 +348,7 @@ void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
             line +=
                 "after " + std::to_string(n.tries) + (n.tries == 1 ? " try, " : " tries, ") + hooks_.tilesOfLost(node);
     }
+    if (isInGroup) return failGroup(node, set_.link(node).describe() + ": " + why);
     log::warning(log::Topic::Node, line);
     if (!again) hooks_.gaveUp(node);
 }

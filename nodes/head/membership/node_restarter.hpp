@@ -2,6 +2,7 @@
 // the pauses between them.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -10,6 +11,7 @@
 
 #include "common/base/result.hpp"
 #include "nodes/head/membership/node_resync.hpp"
+#include "nodes/head/membership/node_group.hpp"
 #include "nodes/head/membership/node_launcher.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 
@@ -56,6 +58,10 @@ public:
     // Starts a node again that has been stopped or removed, or that stays lost, with all attempts. Errors: it is a
     // member or being restarted; the session cannot take it back.
     Result<void> bringBack(int node);
+    // Adds new nodes, which become members together. They are started once. Call from the thread of tick().
+    void addGroup(std::shared_ptr<NodeGroup> group);
+    // Makes all nodes of a group members, at the current position. Returns false if one of them is lost already.
+    bool becomeMembers(const NodeGroup& group);
     // Records that a node was absent when the session began. It is restarted as well.
     void notThere(int node);
     // Returns true if the node was being restarted: the attempt has failed, and no member was lost.
@@ -88,6 +94,7 @@ private:
         Phase phase = Phase::Member;
         int tries = 0; // attempts since it was last steady
         bool isRetired = false;
+        std::shared_ptr<NodeGroup> group; // null: it becomes a member alone
         int64_t lostNs = 0, nextNs = 0, memberNs = 0;
         Deadline readyBy = Deadline::never();
         std::unique_ptr<StartingNode> starting; // accessed by tick() only
@@ -100,6 +107,10 @@ private:
     [[nodiscard]] bool settled() const;
     void catchUp(int node);
     void fail(int node, const std::string& why, int64_t nowNs);
+    void failGroup(int node, const std::string& why);
+    bool cancels(int node, Phase phase);
+    void becomeMember(Node& n);
+    NodeResync::Join joinOf(int node);
     void tickNode(int node, int64_t nowNs);
     void start(int node, int64_t nowNs);
     void pollStart(int node, int64_t nowNs);
@@ -108,7 +119,7 @@ private:
     StreamBroadcaster& set_;
     const Hooks hooks_;
     mutable std::mutex mutex_; // guards the members below
-    std::vector<Node> nodes_;
+    std::deque<Node> nodes_;
     bool stopped_ = false;
     bool skipsFrames_ = true;
     uint32_t phaseRequests_ = 0; // accessed by tick() only

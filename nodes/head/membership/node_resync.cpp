@@ -18,6 +18,7 @@ constexpr int64_t kShortRoundNs = 20 * kNsPerMs; // a pause of this length is in
 constexpr int kMaxRounds = 8;                    // a node that is no faster than the others never converges
 constexpr int64_t kDrawPatienceMs = 500;         // until each window has had a frame
 constexpr int64_t kDirectPatienceMs = 2'000;     // after this time the queue is flushed while other nodes wait
+constexpr int kJoinPollMs = 2;                   // while other nodes of its group catch up
 constexpr int64_t kSnapshotMs = 20'000;          // limit for the snapshot
 constexpr int64_t kPollMs = 50;                  // interval of the check that a member is left to report the phase
 constexpr int64_t kSyncLimitMs = 600'000;        // a last resort: watch() loses silent nodes earlier
@@ -25,8 +26,8 @@ constexpr int64_t kSyncLimitMs = 600'000;        // a last resort: watch() loses
 } // namespace
 
 NodeResync::NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::PhaseRequest> turns,
-                       Admitted admitted)
-    : nodes_(nodes), node_(node), link_(nodes.link(node)), turns_(std::move(turns)), admitted_(std::move(admitted)) {}
+                       Join join)
+    : nodes_(nodes), node_(node), link_(nodes.link(node)), turns_(std::move(turns)), join_(std::move(join)) {}
 
 NodeResync::~NodeResync() {
     if (thread_.joinable()) thread_.join();
@@ -72,9 +73,7 @@ void NodeResync::work() {
                    queuedBytes_.load(), " bytes of later commands so far");
         if (tookNs <= kShortRoundNs) break;
     }
-    there = there && drawsAgain();
-    if (there)
-        if (const auto admitted = nodes_.admit(node_, admitted_); !admitted) link_.lose(admitted.error().message);
+    there = there && drawsAgain() && joins();
     const Deadline deadline = Deadline::inMs(kDirectPatienceMs);
     while (there && link_.alive() && !nodes_.goDirect(node_, deadline.passed())) sendQueue();
     if (there && link_.alive()) nodes_.inviteToGroup(node_);
@@ -145,6 +144,18 @@ bool NodeResync::drawsAgain() {
         sendQueue();
     }
     return false;
+}
+
+// Meanwhile the node receives everything that programs send. Returns false if the node is lost.
+bool NodeResync::joins() {
+    while (true) {
+        auto joined = join_();
+        if (!joined) link_.lose(joined.error().message);
+        if (!joined || *joined) return joined.ok();
+        poll(nullptr, 0, kJoinPollMs);
+        sendQueue();
+        if (!synchronize()) return false;
+    }
 }
 
 // Returns false if the node is lost.

@@ -18,11 +18,11 @@ namespace mural {
 
 class NodeResync {
 public:
-    // receives the view in which the node becomes a member
-    using Admitted = std::function<StreamBroadcaster::Admission(uint32_t view)>;
+    // Makes the node a member, once it has caught up. Returns false if it must wait for other nodes, and is called
+    // again.
+    using Join = std::function<Result<bool>()>;
     // turns: for nodes whose phase or areas members report.
-    NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::PhaseRequest> turns,
-               Admitted admitted);
+    NodeResync(StreamBroadcaster& nodes, int node, std::optional<StreamBroadcaster::PhaseRequest> turns, Join join);
     NodeResync(const NodeResync&) = delete;
     NodeResync& operator=(const NodeResync&) = delete;
     ~NodeResync(); // joins the thread, which ends soon after its link is lost
@@ -50,12 +50,13 @@ private:
     void sendCommand(wire::HeadCommand command, std::span<const std::byte> arguments);
     bool synchronize(bool draws = false);
     bool drawsAgain();
+    bool joins();
 
     StreamBroadcaster& nodes_;
     const int node_;
     NodeConnection& link_;
     std::optional<StreamBroadcaster::PhaseRequest> turns_;
-    const Admitted admitted_;
+    const Join join_;
     uint32_t syncNumber_ = 0; // number of the last Synchronize
     std::atomic<bool> done_{false};
     std::atomic<bool> invalid_{false};

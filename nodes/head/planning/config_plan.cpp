@@ -93,6 +93,7 @@ Result<SessionPlan> planOf(const LoadedConfig& loaded, const PlanOptions& option
     auto first = planCanvas(loaded, options);
     if (!first) return first.error();
     SessionPlan plan = std::move(first->plan);
+    if (first->choice.canvas != kNone) plan.canvas = canvasName(loaded.resolved, first->choice.canvas);
     addOtherCanvases(loaded, options, first->choice, plan);
     std::ranges::copy(fieldsWithoutEffect(loaded.diagnostics), std::back_inserter(plan.warnings));
     return plan;

@@ -110,7 +110,7 @@ std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const Se
     std::vector<const NodePlan*> members;
     if (node.swapBarrier.empty() || !showsWall(config, plan, node)) return members;
     for (const NodePlan& other : plan.nodes)
-        if (other.swapBarrier == node.swapBarrier && showsWall(config, plan, other)) members.push_back(&other);
+        if (!other.isVacant && other.swapBarrier == node.swapBarrier && showsWall(config, plan, other)) members.push_back(&other);
     if (members.size() < 2) members.clear();
     return members;
 }
@@ -145,7 +145,8 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
         }
     setup.sharesMachine = std::ranges::any_of(plan.nodes, [&](const NodePlan& other) {
         const bool bothHere = other.reach != NodeReach::LaunchCommand && node.reach != NodeReach::LaunchCommand;
-        return other.node != node.node && (bothHere || (other.reach == node.reach && other.where == node.where));
+        return other.node != node.node && !other.isVacant &&
+               (bothHere || (other.reach == node.reach && other.where == node.where));
     });
     setup.pass = node.pass;
     setup.transferScale = node.transferScale;
@@ -159,7 +160,7 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.readback = config.readback;
     setup.answers = node.answers;
     setup.exchangeHere = std::none_of(plan.nodes.begin(), plan.nodes.end(), [&](const NodePlan& other) {
-        return other.collector == node.collector && other.reach == NodeReach::LaunchCommand;
+        return !other.isVacant && other.collector == node.collector && other.reach == NodeReach::LaunchCommand;
     });
     setup.eyeBase = config.eyeBase;
     setup.focusDistance = config.focusDistance;

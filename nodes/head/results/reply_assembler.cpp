@@ -21,7 +21,7 @@ Error contradiction(const ReplyPartHeader& header) {
 } // namespace
 
 ReplyAssembler::ReplyAssembler(int nodes, Deliver deliver)
-    : deliver_(std::move(deliver)), nodes_(static_cast<size_t>(nodes)), views_(static_cast<size_t>(nodes)) {}
+    : deliver_(std::move(deliver)), views_(static_cast<size_t>(nodes)) {}
 
 Result<void> ReplyAssembler::answer(int node, const ReplyPartHeader& header, ByteBuffer bytes) {
     Request complete;
@@ -56,7 +56,7 @@ Result<void> ReplyAssembler::add(int node, const ReplyPartHeader& header, ByteBu
         r.groupBytes = header.groupBytes;
     }
     const auto index = static_cast<size_t>(node);
-    if (!r.awaited[index]) return {};
+    if (index >= r.awaited.size() || !r.awaited[index]) return {};
     if (r.kind != header.kind || r.last[index]) return contradiction(header);
     r.last[index] = header.last != 0;
     if (r.delivered || (bytes.size() == 0 && header.first == 0)) return {};
@@ -101,6 +101,10 @@ void ReplyAssembler::nodeLost(int node) {
         views_.lost(node);
         for (auto it = requests_.begin(); it != requests_.end();) {
             Request& request = it->second;
+            if (static_cast<size_t>(node) >= request.awaited.size()) { // it came later
+                ++it;
+                continue;
+            }
             request.awaited[static_cast<size_t>(node)] = false;
             // Discards a partial reply of kind Bytes: another node sends all bytes.
             if (request.firstNode == node && !request.last[static_cast<size_t>(node)]) request.firstNode = -1;
@@ -113,6 +117,11 @@ void ReplyAssembler::nodeLost(int node) {
         }
     }
     for (auto& [key, request] : complete) deliver_(key.first, assemble(key.second, request));
+}
+
+void ReplyAssembler::addNodes(size_t count) {
+    const std::lock_guard lock(mutex_);
+    views_.addNodes(count);
 }
 
 void ReplyAssembler::nodeJoins(int node, uint32_t view) {
@@ -135,7 +144,7 @@ std::vector<int> ReplyAssembler::missing(uint32_t client) const {
     std::vector<int> nodes;
     const auto oldest = requests_.lower_bound({client, 0});
     const bool known = oldest != requests_.end() && oldest->first.first == client;
-    for (size_t node = 0; node < nodes_; ++node) {
+    for (size_t node = 0; node < (known ? oldest->second.awaited.size() : views_.size()); ++node) {
         const bool isAwaited =
             known ? oldest->second.awaited[node] && !oldest->second.last[node] : views_.isAlive(static_cast<int>(node));
         if (isAwaited) nodes.push_back(static_cast<int>(node));

@@ -29,6 +29,8 @@ public:
     // Completes pending requests from the replies that have arrived.
     void nodeLost(int node);
 
+    // Adds nodes that are no members yet.
+    void addNodes(size_t count);
     // Adds a returned node. It answers requests from this view on.
     void nodeJoins(int node, uint32_t view);
     void nodeInView(int node, uint32_t view);
@@ -49,7 +51,7 @@ private:
         uint32_t kind = 0;
         uint32_t groupBytes = 0;
         std::vector<Part> parts;
-        std::vector<bool> awaited; // per node; false after it is lost
+        std::vector<bool> awaited; // per node at that time; false after it is lost
         std::vector<bool> last;    // per node: its reply is complete
         int firstNode = -1;        // the node whose reply counts (ReplyKind::Bytes)
         bool delivered = false;    // later replies are discarded
@@ -61,7 +63,6 @@ private:
 
     mutable std::mutex mutex_;
     const Deliver deliver_;
-    const size_t nodes_;
     ReplySenders views_;
     std::map<Key, Request> requests_;
 

@@ -13,7 +13,10 @@ namespace mural {
 class ReplySenders {
 public:
     explicit ReplySenders(size_t nodes) : nodes_(nodes) {}
+    [[nodiscard]] size_t size() const { return nodes_.size(); }
 
+    // Adds nodes that are no members yet.
+    void addNodes(size_t count) { nodes_.resize(nodes_.size() + count, {false, 0, 0}); }
     // Makes the node a member from this view on. It must have sent nothing before.
     void joins(int node, uint32_t view) { at(node) = {true, view, view}; }
     // Records that the node's messages belong to this view from now on.

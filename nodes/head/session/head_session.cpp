@@ -19,38 +19,15 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int64_t kTickMs = 50;
+constexpr int64_t kStartTickMs = 5;             // while nodes start or catch up
 constexpr int64_t kProgressNs = 200 * kNsPerMs; // at most 5 lines per second
 constexpr int64_t kOutputProgressMs = 20'000;   // below the silence after which `mural run` gives up the head
 constexpr int64_t kProcessPatienceMs = 2000;    // time between a node's Bye and the end of its process
 
-std::vector<int> picturesOf(const SessionPlan& plan) {
-    std::vector<int> pictures;
-    for (const NodePlan& node : plan.nodes) pictures.push_back(node.picture);
-    return pictures;
-}
-
-PictureAssembler::Compose composeBy(const WallComposition& wall) {
-    if (picturesOf(wall) == 1) return {};
-    return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
-}
-
-std::vector<PictureAssembler::Compose> composeOthersBy(const SessionPlan& plan) {
-    std::vector<PictureAssembler::Compose> others;
-    for (const CanvasPlan& canvas : plan.canvases)
-        others.push_back([wall = canvas.wall](const std::vector<Picture>& passes, OwnedPicture& into) {
-            composeWall(wall, passes, into);
-        });
-    return others;
-}
-
-// Returns the zoom of each picture relative to the program's.
-std::vector<Zoom> sizesOf(const SessionPlan& plan) {
-    std::vector<Zoom> sizes;
-    for (const NodePlan& node : plan.nodes) {
-        sizes.resize(std::max(sizes.size(), static_cast<size_t>(node.picture) + 1));
-        sizes[static_cast<size_t>(node.picture)] = node.pass.shown;
-    }
-    return sizes;
+std::vector<NodeClock> clocksOf(const SessionPlan& plan) {
+    std::vector<NodeClock> clocks;
+    for (const NodePlan& node : plan.nodes) clocks.push_back(NodeClock::ofNode(node.reach == NodeReach::SharedMemory));
+    return clocks;
 }
 
 std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
@@ -60,49 +37,38 @@ std::map<int, std::string> absencesOf(const std::vector<LaunchedNode>& nodes) {
     return absences;
 }
 
-std::string plantOf() {
-    const char* const plant = std::getenv("MURAL_PLANT"); // fault injection, for tests of the tests
-    return plant != nullptr ? plant : "";
-}
-
 } // namespace
 
 HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<LaunchedNode> nodes,
                          ControlChannel& control, HeadOptions options)
     : config_(std::move(config)),
-      plan_(std::move(plan)),
       control_(control),
       options_(std::move(options)),
-      nodeCount_(static_cast<int>(nodes.size())),
-      sendsPictures_(headTakesPictures(config_, plan_)),
-      statistics_(clocksOf(plan_)),
+      sendsPictures_(headTakesPictures(config_, plan)),
+      statistics_(clocksOf(plan)),
       pacer_([this](uint32_t client, uint32_t finished, uint32_t shown) {
           if (serving_) programs_->credit(client, finished, shown);
       }),
-      frames_(nodeCount_,
+      frames_(static_cast<int>(nodes.size()),
               [this](uint32_t client, uint32_t finished, uint32_t shown) { pacer_.add(client, finished, shown); }),
-      answers_(nodeCount_,
+      answers_(static_cast<int>(nodes.size()),
                [this](uint32_t client, Reply reply) {
                    if (serving_) programs_->reply(client, std::move(reply));
                }),
-      pictures_(
-          picturesOf(plan_), composeBy(plan_.wall),
-          [this](WindowPicture picture) {
-              frames_.delayPicture(picture.client, picture.frame);
-              frames_.isOn(picture.client, picture.window, picture.nativeWindow);
-              output_->add(std::move(picture));
-          },
-          composeOthersBy(plan_), sizesOf(plan_)),
-      balancer_(plan_,
-                {[this](const ViewportAssignment& areas) {
-                     nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas));
-                 },
-                 [this](const RangeAssignment& ranges) {
-                     nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(ranges));
-                 },
-                 [this](uint32_t client, double framesPerSecond) { pacer_.setPace(client, framesPerSecond); }},
-                plantOf()),
-      advice_(config_, nodeCount_),
+      plans_(config_, std::move(plan),
+             {[this](const WindowPicture& picture) {
+                  frames_.delayPicture(picture.client, picture.frame);
+                  frames_.isOn(picture.client, picture.window, picture.nativeWindow);
+              },
+              [this](WindowPicture picture) { output_->add(std::move(picture)); },
+              {[this](const ViewportAssignment& areas) {
+                   nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas));
+               },
+               [this](const RangeAssignment& ranges) {
+                   nodes_.scheduleBeforeNextPacket(wire::HeadCommand::RangeAssignment, bytesOf(ranges));
+               },
+               [this](uint32_t client, double framesPerSecond) { pacer_.setPace(client, framesPerSecond); }}}),
+      advice_(config_, static_cast<int>(nodes.size())),
       absences_(absencesOf(nodes)),
       views_(nodes.size()),
       facts_(nodes.size()),
@@ -112,7 +78,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
       refusals_(nodes.size()),
       totals_(nodes.size()) {
     NodeEvents& events = *this; // make_unique can't convert to a private base
-    for (int node = 0; node < nodeCount_; ++node) {
+    for (int node = 0; node < nodeCount(); ++node) {
         LaunchedNode& launched = nodes[static_cast<size_t>(node)];
         totals_[static_cast<size_t>(node)].node = node;
         ready_[static_cast<size_t>(node)] = !launched.connection; // the start does not wait for an absent node
@@ -131,17 +97,17 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     output.saveFrames = config_.saveFrames;
     output.lastFrame = config_.frames;
     output.toNativeWindows = config_.display == Display::App;
-    output.pairs = plan_.wall.stereo == StereoMode::Quad;
+    output.pairs = currentPlan().wall.stereo == StereoMode::Quad;
     output.statistics = &statistics_;
     output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
-    if (headShowsWall(config_, plan_)) output.openWall = [this] { return options_.openWall(0); };
-    for (size_t i = 0; i < plan_.canvases.size(); ++i) {
+    if (headShowsWall(config_, currentPlan())) output.openWall = [this] { return options_.openWall(0); };
+    for (size_t i = 0; i < currentPlan().canvases.size(); ++i) {
         OtherCanvas& canvas = output.canvases.emplace_back();
-        canvas.name = plan_.canvases[i].name;
-        canvas.pairs = plan_.canvases[i].wall.stereo == StereoMode::Quad;
+        canvas.name = currentPlan().canvases[i].name;
+        canvas.pairs = currentPlan().canvases[i].wall.stereo == StereoMode::Quad;
         if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
-        if (headShowsCanvas(config_, plan_.canvases[i]))
-            canvas.openWall = [this, offset = plan_.canvases[i].offsetX] { return options_.openWall(offset); };
+        if (headShowsCanvas(config_, currentPlan().canvases[i]))
+            canvas.openWall = [this, offset = currentPlan().canvases[i].offsetX] { return options_.openWall(offset); };
     }
     output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
     output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
@@ -182,7 +148,7 @@ int HeadSession::run() {
 // ---- while it runs
 
 void HeadSession::serve() {
-    while (!finishRequested(Deadline::inMs(kTickMs))) tick();
+    while (!finishRequested(Deadline::inMs(returns_->awaited() ? kStartTickMs : kTickMs))) tick();
 }
 
 bool HeadSession::finishRequested(Deadline deadline) {
@@ -212,7 +178,9 @@ void HeadSession::tick() {
     programs_->beat();
     watchNodes(nowNs);
     programs_->reap();
+    beginPlanChange();
     returns_->tick(nowNs);
+    endLeftNodes(nowNs);
     reportProgress(nowNs);
     tickStatistics(nowNs);
 }
@@ -255,13 +223,13 @@ Result<void> HeadSession::nodeReady(int node, const std::string& json) {
 }
 
 Result<void> HeadSession::nodeAnswer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes) {
-    balancer_.answered();
+    plans_.of(node).balancer.answered();
     return answers_.answer(node, header, std::move(bytes));
 }
 
 Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& message) {
     if (sendsPictures_) {
-        pictures_.frameDone(node, message.client, message.window, message.frame);
+        plans_.of(node).pictures.frameDone(node, message.client, message.window, message.frame);
         output_->waitForRoom();
     }
     {
@@ -271,15 +239,16 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
         totals.readbackSeconds += static_cast<double>(message.readbackNs) / static_cast<double>(kNsPerS);
         totals.cpuSeconds = totals.replaySeconds + totals.readbackSeconds; // the node's Bye replaces this value
     }
-    balancer_.frameDone(node, message, monotonicNowNs());
-    advice_.frameDone(message.flags, plan_.nodes[static_cast<size_t>(node)].pass.ranges > 1);
+    plans_.of(node).balancer.frameDone(node, message, monotonicNowNs());
+    advice_.frameDone(message.flags, plans_.nodePlan(node).pass.ranges > 1);
     return recordFrame(node, message, frames_.frameDone(node, message, monotonicNowNs()));
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
     if (!sendsPictures_) return Error{"it sent a picture that was not requested"};
-    auto placed = placeOnWall(plan_.nodes[static_cast<size_t>(node)], header, std::move(rows));
-    auto done = placed ? pictures_.part(node, placed->header, std::move(placed->rows)) : Result<void>(placed.error());
+    auto placed = placeOnWall(plans_.nodePlan(node), header, std::move(rows));
+    auto done = placed ? plans_.of(node).pictures.part(node, placed->header, std::move(placed->rows))
+                       : Result<void>(placed.error());
     output_->waitForRoom();
     return done;
 }
@@ -302,7 +271,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
         gone_.erase(entry);
     }
     const auto [client, id] = window;
-    balancer_.windowGone(client, id);
+    plans_.windowGone(client, id);
     if (id != wire::kAllWindows) {
         frames_.windowGone(client, id);
         if (output_) output_->windowGone(client, id);
@@ -311,7 +280,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
     frames_.clientGone(client);
     pacer_.clientGone(client);
     if (!sendsPictures_) return;
-    pictures_.clientGone(client);
+    plans_.clientGone(client);
     output_->clientGone(client);
 }
 
@@ -374,7 +343,7 @@ void HeadSession::finish() {
     recording_.finish(Deadline::inMs(options_.recordPatienceMs));
     reportProgress(monotonicNowNs());
     const Deadline deadline = Deadline::inMs(kProcessPatienceMs);
-    for (int node = 0; node < nodeCount_; ++node) {
+    for (int node = 0; node < nodeCount(); ++node) {
         NodeConnection& link = nodes_.link(node);
         if (link.process() != nullptr && link.goodbyeReceived()) link.process()->waitEnded(deadline);
     }
@@ -414,7 +383,7 @@ void HeadSession::finishOutput() {
 
 void HeadSession::loseSilentNodes(int64_t sinceNs, bool all) {
     const int64_t nowNs = monotonicNowNs();
-    for (int node = 0; node < nodeCount_; ++node) {
+    for (int node = 0; node < nodeCount(); ++node) {
         NodeConnection& link = nodes_.link(node);
         const int64_t silentNs = nowNs - std::max(sinceNs, link.lastProgressNs(nowNs));
         const bool silent = silentNs > options_.goodbyePatienceMs * kNsPerMs;
@@ -423,7 +392,7 @@ void HeadSession::loseSilentNodes(int64_t sinceNs, bool all) {
 }
 
 bool HeadSession::allReadersEnded() {
-    for (int node = 0; node < nodeCount_; ++node)
+    for (int node = 0; node < nodeCount(); ++node)
         if (!nodes_.link(node).readerEnded()) return false;
     return true;
 }
@@ -455,7 +424,7 @@ SessionStatus HeadSession::status() {
     result.latency = programs_->latency();
     result.recording = recording_.status();
     result.delta = nodes_.deltaCounts();
-    result.equalizers = balancer_.totals();
+    result.equalizers = balancer().totals();
     result.programs = programs_->status();
     for (ProgramStatus& program : result.programs) {
         program.progress = frames_.progressOf(program.id);
@@ -463,9 +432,14 @@ SessionStatus HeadSession::status() {
     }
     const std::lock_guard lock(mutex_);
     for (size_t i = 0; i < facts_.size(); ++i) {
+        if (hasLeft(static_cast<int>(i))) continue;
         NodeConnection& link = nodes_.link(static_cast<int>(i));
-        NodeStatus node{totals_[i], link.location().where,   facts_[i].pid, facts_[i].renderer,
-                        0,          streamOf(plan_.nodes[i])};
+        NodeStatus node{totals_[i],
+                        link.location().where,
+                        facts_[i].pid,
+                        facts_[i].renderer,
+                        0,
+                        streamOf(plans_.nodePlan(static_cast<int>(i)))};
         node.totals.frames = frames_.framesOf(node.totals.node);
         node.totals.pictureBytes = link.pictureBytes(); // the node's Bye holds the other numbers
         node.totals.pictureRawBytes = link.pictureRawBytes();
@@ -482,7 +456,7 @@ SessionNumbers HeadSession::numbers() {
     result.frames = frames_.totals();
     result.bytesSent = nodes_.bytesSent();
     result.delta = nodes_.deltaCounts();
-    result.equalizers = balancer_.totals();
+    result.equalizers = balancer().totals();
     result.programs = programs_->counts();
     if (output_) result.output = output_->totals();
     result.drawnWhole = advice_.drawnWhole();

@@ -22,6 +22,7 @@
 #include "nodes/head/control/control_feed.hpp"
 #include "nodes/head/control/control_server.hpp"
 #include "nodes/head/session/control_channel.hpp"
+#include "nodes/head/session/plan_sequence.hpp"
 #include "nodes/head/frames/credit_pacer.hpp"
 #include "nodes/head/frames/frame_tracker.hpp"
 #include "nodes/head/results/driver_event_merger.hpp"
@@ -32,6 +33,7 @@
 #include "nodes/head/frames/picture_assembler.hpp"
 #include "nodes/head/frames/picture_output.hpp"
 #include "nodes/head/capture/program_table.hpp"
+#include "nodes/head/planning/plan_change.hpp"
 #include "nodes/head/recording/session_recording.hpp"
 #include "nodes/head/session/session_report.hpp"
 #include "nodes/head/session/session_status.hpp"
@@ -82,6 +84,15 @@ public:
     int run(); // returns the exit status of the head
 
 private:
+    // A change of the plan that the control thread requests.
+    struct PendingChange {
+        SessionConfig config;
+        PlanChange change;
+        SessionStage* stage = nullptr;
+        std::shared_ptr<NodeGroup> group;  // null: no node joins
+        std::atomic<bool> hasBegun{false}; // the session's thread starts the new nodes
+    };
+
     Result<void> nodeReady(int node, const std::string& json) override;
     Result<void> nodeAnswer(int node, const wire::ReplyPartHeader& header, ByteBuffer bytes) override;
     Result<void> nodeFrameDone(int node, const wire::FrameDoneMessage& message) override;
@@ -108,7 +119,6 @@ private:
     void tickStatistics(int64_t nowNs);
     void announceStatistics();
     [[nodiscard]] bool areClocksKnown() const; // of all nodes that live
-    static std::vector<NodeClock> clocksOf(const SessionPlan& plan);
 
     // Restarts of nodes (head_session_restarts.cpp).
     NodeRestarter::Hooks returnHooks();
@@ -116,6 +126,7 @@ private:
     void introduceAgain(int node);
     Result<void> takeAgain(int node, NodeCapabilities facts);
     StreamBroadcaster::Admission admit(int node, uint32_t view);
+    StreamBroadcaster::Admission admission(int node, uint32_t view);
     void loseMember(int node, const std::string& why);
     void goOnWithoutAbsent();
     void goOnWithout(int node);
@@ -130,6 +141,15 @@ private:
     Result<nlohmann::json> changeLatency(const nlohmann::json& arguments);
     Result<nlohmann::json> startRecording(const nlohmann::json& arguments);
     Result<nlohmann::json> stopRecording();
+    // Changes of the plan (head_session_plans.cpp).
+    void addPlanOperations(ControlOperations& operations);
+    Result<nlohmann::json> changeLayout(const nlohmann::json& arguments);
+    Result<nlohmann::json> changePlan(SessionConfig config, bool isDryRun);
+    Result<void> canTakeNodes(size_t members);
+    Result<void> carryOut(SessionConfig config, PlanChange change);
+    void beginPlanChange();
+    Result<void> exchangeNodes(PendingChange& change);
+    void endLeftNodes(int64_t nowNs);
     void addStopOperations(ControlOperations& operations);
     bool hasOtherMembers(int node);
     Result<void> stopNode(int node, bool isForced);
@@ -137,6 +157,9 @@ private:
     Result<void> leaveAt(int node, Deadline deadline);
     void memberLeft(int node);
     Result<void> startNode(int node);
+    [[nodiscard]] int nodeCount() const { return plans_.nodeCount(); }
+    [[nodiscard]] const SessionPlan& currentPlan() const { return plans_.current().plan; }
+    [[nodiscard]] LoadBalancer& balancer() const { return plans_.current().balancer; }
     // Returns an operation that changes a node. canForce: it has the argument `force`.
     ControlOperation nodeOperation(std::string name, std::string meaning, bool canForce,
                                    std::function<Result<void>(int node, bool isForced)> change);
@@ -177,15 +200,16 @@ private:
     SessionStatus status();
     std::vector<int> waitsFor(const ProgramStatus& program);
     std::string streamOf(const NodePlan& plan); // requires mutex_
+    [[nodiscard]] bool hasLeft(int node);       // with a change of the plan
+    // It comes with a change of the plan, and was no member yet. Requires mutex_.
+    [[nodiscard]] bool isNew(int node) const { return newNodes_.contains(node); }
     void noNodeIsLeft();
 
     const SessionConfig config_;
-    const SessionPlan plan_;
     ControlChannel& control_;
     HeadOptions options_;
     ControlFeed feed_;
     const LogToFeed logToFeed_{feed_};
-    const int nodeCount_;
     const bool sendsPictures_;
     std::string placement_;  // placement of the head's threads
     std::string deltaLine_;  // for --explain: nodes with delta coding
@@ -200,9 +224,8 @@ private:
     ReplyAssembler answers_;
     DriverEventMerger driverEvents_;
     std::unique_ptr<PictureOutput> output_; // null: the head receives no pictures
-    PictureAssembler pictures_;
-    LoadBalancer balancer_;
-    BalancerControl equalizers_{balancer_};
+    PlanSequence plans_;
+    BalancerControl equalizers_{[this]() -> LoadBalancer& { return plans_.current().balancer; }};
     SlowdownAdvice advice_;
     StreamBroadcaster nodes_;
     SessionRecording recording_{nodes_};
@@ -215,6 +238,11 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
+    std::mutex changing_;                                 // held during a change of the plan
+    std::vector<std::shared_ptr<PendingChange>> changed_; // guarded by mutex_; their groups refer to them
+    std::shared_ptr<PendingChange> pending_;              // guarded by mutex_; for the session's thread to begin
+    std::set<int> newNodes_;              // guarded by mutex_; come with a change of the plan, and were no members yet
+    std::map<int, int64_t> leavingSince_; // guarded by mutex_; nodes of earlier plans, since their Leave
     const std::map<int, std::string> absences_; // nodes absent at the start, with the reason
     std::set<int> multicastNodes_;              // nodes that receive the stream by multicast if it reaches them
     std::set<int> deltaNodes_;                  // nodes with delta coding

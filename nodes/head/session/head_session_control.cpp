@@ -79,8 +79,9 @@ ControlOperations HeadSession::controlOperations() {
     addNodeOperations(all);
     addStopOperations(all);
     addChangeOperations(all);
+    addPlanOperations(all);
     addFramesOperation(all);
-    if (balancer_.isActive()) addEqualizerOperations(all, equalizers_);
+    if (balancer().isActive() || !config_.configFile.empty()) addEqualizerOperations(all, equalizers_);
     return all;
 }
 
@@ -112,9 +113,11 @@ ControlOperation HeadSession::nodeOperation(std::string name, std::string meanin
 }
 
 Result<void> HeadSession::checkNode(int64_t node) {
-    if (node < 0 || node >= nodeCount_)
+    if (node < 0 || node >= nodeCount())
         return Error{"the session has no node " + std::to_string(node) + "; its nodes are 0 to " +
-                     std::to_string(nodeCount_ - 1)};
+                     std::to_string(nodeCount() - 1)};
+    if (currentPlan().nodes[static_cast<size_t>(node)].isVacant)
+        return Error{"node " + std::to_string(node) + " has left the session; see mural ctl nodes"};
     if (finishing_) return Error{"the session is ending; its nodes end with it"};
     return {};
 }
@@ -132,7 +135,7 @@ Result<void> HeadSession::removeNode(int node, bool isForced) {
     const std::string subject = link.describe() + " cannot be removed: ";
     if (!hasOtherMembers(node))
         return Error{subject + "it is the only node that draws at the moment; end the session with mural ctl stop"};
-    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+    const NodePlan& plan = plans_.nodePlan(node);
     const bool isReplaced = plan.movesArea || plan.movesRange;
     if (!isReplaced && !isForced)
         return Error{subject + "no other node takes its part of the picture; add force, or use --balance"};

@@ -30,8 +30,7 @@ std::string seconds(double value) {
 
 NodeRestarter::Hooks HeadSession::returnHooks() {
     NodeRestarter::Hooks hooks;
-    if (options_.startNode)
-        hooks.start = [this](int node) { return options_.startNode(plan_.nodes[static_cast<size_t>(node)]); };
+    if (options_.startNode) hooks.start = [this](int node) { return options_.startNode(plans_.nodePlan(node)); };
     hooks.connected = [this](int node, StartingNode& starting) { linkAgain(node, starting); };
     hooks.introduce = [this](int node) { introduceAgain(node); };
     hooks.whyNever = [this](int) -> std::string {
@@ -42,13 +41,13 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
     };
     // Only members know the state of time-multiplexed nodes and of moving areas.
     hooks.turns = [this](int node) {
-        const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+        const NodePlan& plan = plans_.nodePlan(node);
         return plan.pass.period > 1 ? StreamBroadcaster::Turns::OfFrames
                : plan.movesArea     ? StreamBroadcaster::Turns::OfAreas
                                     : StreamBroadcaster::Turns::None;
     };
     hooks.tilesOfLost = [this](int node) -> std::string {
-        const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+        const NodePlan& plan = plans_.nodePlan(node);
         if (plan.pass.range > 0) return plan.movesRange ? "other nodes take its draws" : "its draws are missing";
         return plan.movesArea ? "other nodes take its tiles" : "its tiles keep their last picture";
     };
@@ -62,6 +61,7 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
 
 void HeadSession::linkAgain(int node, StartingNode& starting) {
     uint32_t incarnation = 0;
+    bool isNewNode = false;
     {
         const std::lock_guard lock(mutex_);
         ready_[static_cast<size_t>(node)] = false;
@@ -70,8 +70,9 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
         introduced_[static_cast<size_t>(node)] = false;
         incarnation = ++incarnations_[static_cast<size_t>(node)];
         statistics_.forgetClock(node);
+        isNewNode = isNew(node);
     }
-    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+    const NodePlan& plan = plans_.nodePlan(node);
     NodeEvents& events = *this; // a private base: make_unique could not convert
     auto link = std::make_unique<NodeConnection>(NodeLocation{node, plan.where}, std::move(starting.node.connection),
                                                  std::move(starting.node.process), events);
@@ -83,7 +84,7 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
     NodeSetup setup = setupFor(plan);
     setup.isResyncing = true;
     setup.incarnation = incarnation;
-    setup.swapMembers = 0; // the other members of its swap barrier continue without it
+    if (!isNewNode) setup.swapMembers = 0; // the other members of its swap barrier continue without it
     setup.skipsFrames = returns_->skipsFrames();
     setup.delta = false; // its snapshot is not delta-coded; ResetDictionary starts the batches
     nodes_.sendAlone(node, wire::HeadCommand::Setup, toJson(setup));
@@ -92,11 +93,16 @@ void HeadSession::linkAgain(int node, StartingNode& starting) {
 // The restarted node connects to the other nodes of its picture: to members, and among restarted nodes to those
 // introduced earlier. The other nodes accept the connection without further notice.
 void HeadSession::introduceAgain(int node) {
-    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
-    if (plan.pass.ranges < 2) return;
-    nlohmann::json pictures = nlohmann::json::object();
+    const NodePlan& plan = plans_.nodePlan(node);
+    const SessionStage& stage = plans_.of(node);
+    const auto barrier = swapMembersOf(stage.config, stage.plan, plan);
+    nlohmann::json pictures = nlohmann::json::object(), swaps = nlohmann::json::object();
     {
         const std::lock_guard lock(mutex_);
+        if (isNew(node) && !barrier.empty()) {
+            const int leader = barrier.front()->node;
+            swaps[std::to_string(leader)] = facts_[static_cast<size_t>(leader)].swapBarrier;
+        }
         for (int other = plan.collector; other < plan.collector + plan.pass.ranges; ++other) {
             const auto index = static_cast<size_t>(other);
             if (other != node && introduced_[index] && ready_[index] && nodes_.link(other).alive())
@@ -104,7 +110,9 @@ void HeadSession::introduceAgain(int node) {
         }
         introduced_[static_cast<size_t>(node)] = true;
     }
-    nodes_.sendAlone(node, wire::HeadCommand::Exchange, jsonText(nlohmann::json{{"pictures", pictures}}));
+    if (plan.pass.ranges < 2 && swaps.empty()) return;
+    nodes_.sendAlone(node, wire::HeadCommand::Exchange,
+                     jsonText(nlohmann::json{{"pictures", pictures}, {"swaps", swaps}}));
 }
 
 // The restarted node's GL must support everything that has been announced to programs.
@@ -131,22 +139,28 @@ Result<void> HeadSession::takeAgain(int node, NodeCapabilities facts) {
 // Called with the lock that orders packets.
 StreamBroadcaster::Admission HeadSession::admit(int node, uint32_t view) {
     const std::lock_guard membership(membership_);
+    if (returns_->becomesMember(node)) return admission(node, view);
+    StreamBroadcaster::Admission refused;
+    refused.refused = true;
+    return refused;
+}
+
+// Requires membership_, and the lock that orders packets.
+StreamBroadcaster::Admission HeadSession::admission(int node, uint32_t view) {
     StreamBroadcaster::Admission admission;
-    admission.refused = !returns_->becomesMember(node);
-    if (admission.refused) return admission;
     answers_.nodeJoins(node, view);
-    pictures_.nodeJoins(node, view);
+    plans_.nodeJoins(node, view);
     frames_.nodeJoins(node);
     driverEvents_.nodeJoins(node);
     const std::lock_guard lock(mutex_);
     views_.joins(node, view);
     admission.incarnation = incarnations_[static_cast<size_t>(node)];
     admission.first = true; // of time-multiplexed nodes or nodes with moving areas
-    for (size_t other = 0; other < plan_.nodes.size(); ++other)
-        admission.first = admission.first && (totals_[other].lost ||
-                                              (plan_.nodes[other].pass.period < 2 && !plan_.nodes[other].movesArea));
+    for (size_t other = 0; other < currentPlan().nodes.size(); ++other)
+        admission.first = admission.first && (totals_[other].lost || (currentPlan().nodes[other].pass.period < 2 &&
+                                                                      !currentPlan().nodes[other].movesArea));
     totals_[static_cast<size_t>(node)].lost = false;
-    for (size_t other = 0; other < plan_.nodes.size(); ++other)
+    for (size_t other = 0; other < currentPlan().nodes.size(); ++other)
         if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive())
             admission.absent.push_back(static_cast<uint32_t>(other));
     return admission;
@@ -164,7 +178,7 @@ Result<void> HeadSession::nodeSynchronized(int node, const wire::SynchronizedMes
 
 Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<wire::ClientFrame>& frames) {
     answers_.nodeInView(node, view);
-    pictures_.nodeInView(node, view);
+    plans_.nodeInView(node, view);
     {
         const std::lock_guard lock(mutex_);
         const bool itself = views_.since(node) == view;
@@ -174,25 +188,26 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     const NodeRestarter::Numbers numbers = returns_->numbers(node);
     frames_.nodeJoined(node, numbers.framesGiven, monotonicNowNs()); // plus the frames that it has drawn itself
     frames_.nodeJoined(node, frames, monotonicNowNs());
-    balancer_.nodeJoined(node);
+    plans_.of(node).balancer.nodeJoined(node);
     if (statistics_.isOn()) announceStatistics(); // its Setup may be older than the request
     int64_t joins = 0;
-    bool wasStopped = false;
+    bool wasStopped = false, isNewNode = false;
     {
         const std::lock_guard lock(mutex_);
+        isNewNode = newNodes_.erase(node) > 0;
         NodeTotals& totals = totals_[static_cast<size_t>(node)];
-        joins = ++totals.joins;
+        joins = isNewNode ? 0 : ++totals.joins;
         wasStopped = stopped_.erase(node) > 0;
         totals.snapshotBytes = static_cast<int64_t>(numbers.snapshotBytes);
         totals.secondsToRejoin = numbers.secondsToRejoin;
     }
     feed_.publish(ControlTopic::Events, {{"event", "node-joined"}, {"node", node}, {"joins", joins}});
     const bool first = absences_.contains(node) && joins == 1;
-    log::info(log::Topic::Node, nodes_.link(node).describe(), first ? " joined " : " rejoined ",
-              seconds(numbers.secondsToRejoin),
-              first        ? " after the start of the session, with a snapshot of "
-              : wasStopped ? " after its start, with a snapshot of "
-                           : " after its loss, with a snapshot of ",
+    log::line(log::Topic::Node, isNewNode ? log::Level::Debug : log::Level::Info, nodes_.link(node).describe(),
+              first || isNewNode ? " joined " : " rejoined ", seconds(numbers.secondsToRejoin),
+              first                     ? " after the start of the session, with a snapshot of "
+              : wasStopped || isNewNode ? " after its start, with a snapshot of "
+                                        : " after its loss, with a snapshot of ",
               (numbers.snapshotBytes + numbers.queuedBytes + (1 << 19)) >> 20, " MiB");
     return {};
 }
@@ -214,7 +229,7 @@ void HeadSession::loseMember(int node, const std::string& why) {
 void HeadSession::goOnWithoutAbsent() {
     for (const auto& [node, why] : absences_) {
         const std::lock_guard membership(membership_);
-        const bool taken = plan_.nodes[static_cast<size_t>(node)].movesArea;
+        const bool taken = plans_.nodePlan(node).movesArea;
         log::warning(log::Topic::Node, nodes_.link(node).describe(), " is not connected yet: it ", why,
                      taken ? "; other nodes take its tiles until it joins" : "; its tiles stay empty until it joins");
         returns_->notThere(node);
@@ -230,9 +245,8 @@ void HeadSession::goOnWithout(int node) {
         views_.lost(node);
     }
     answers_.nodeLost(node);
-    pictures_.nodeLost(node);
+    plans_.nodeLost(node);
     frames_.nodeLost(node, monotonicNowNs());
-    balancer_.nodeLost(node);
     std::vector<std::pair<uint32_t, uint32_t>> waiting; // requests that wait for this node
     {
         const std::lock_guard lock(mutex_);

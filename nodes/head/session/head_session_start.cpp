@@ -32,6 +32,11 @@ const char* explainTiling(Tiling tiling) {
            "those of a single machine";
 }
 
+bool hasOtherLayouts(const SessionPlan& plan) {
+    return plan.balance && std::ranges::any_of(plan.balance->config.canvases,
+                                               [](const auto& canvas) { return canvas.layouts.size() > 1; });
+}
+
 const char* whyOwnStreams(const std::string& stream) {
     return stream == "tcp" ? "--stream tcp" : "fewer than two other machines";
 }
@@ -39,21 +44,22 @@ const char* whyOwnStreams(const std::string& stream) {
 } // namespace
 
 Result<void> HeadSession::bringUp() {
-    log::debug(log::Topic::Session, "session ", config_.session, " begins with ", nodeCount_, " nodes, wall ",
+    log::debug(log::Topic::Session, "session ", config_.session, " begins with ", nodeCount(), " nodes, wall ",
                config_.columns, "x", config_.rows, ", display ", nameOf(config_.display));
     placement_ = placeOwnThreads(); // before its threads start, because they inherit the placement
-    for (const NodePlan& node : plan_.nodes) nodes_.link(node.node).unpackBy(node.pictureCodec, node.transferScale);
+    for (const NodePlan& node : currentPlan().nodes)
+        nodes_.link(node.node).unpackBy(node.pictureCodec, node.transferScale);
     nodes_.startReading();
     openMulticast();
     if (auto opened = openDeltaStream(); !opened) return opened;
-    if (std::ranges::any_of(plan_.nodes, [this](const NodePlan& n) {
-            return n.pass.ranges > 1 || !swapMembersOf(config_, plan_, n).empty();
+    if (std::ranges::any_of(currentPlan().nodes, [this](const NodePlan& n) {
+            return n.pass.ranges > 1 || !swapMembersOf(config_, currentPlan(), n).empty();
         })) {
         const auto secret = makeSessionSecret();
         if (!secret) return secret.error();
         exchangeSecret_ = toHex(secret.value());
     }
-    for (const NodePlan& plan : plan_.nodes)
+    for (const NodePlan& plan : currentPlan().nodes)
         if (nodes_.link(plan.node).alive())
             nodes_.sendAlone(plan.node, wire::HeadCommand::Setup, toJson(setupFor(plan)));
     if (auto ready = awaitReady(); !ready) return ready;
@@ -71,7 +77,8 @@ Result<void> HeadSession::bringUp() {
 }
 
 NodeSetup HeadSession::setupFor(const NodePlan& plan) {
-    NodeSetup setup = setupOf(config_, plan_, plan);
+    const SessionStage& stage = plans_.of(plan.node);
+    NodeSetup setup = setupOf(stage.config, stage.plan, plan);
     setup.exchangeSecret = exchangeSecret_;
     if (nodes_.link(plan.node).byMulticast() || nodes_.link(plan.node).joinsGroup()) {
         setup.stream = nodes_.multicast()->invitation();
@@ -86,7 +93,7 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
 
 // Opens one stream for all nodes of other machines. Without it each node has its own connection.
 void HeadSession::openMulticast() {
-    std::vector<int> nodes = nodesForMulticast(config_.stream, plan_);
+    std::vector<int> nodes = nodesForMulticast(config_.stream, currentPlan());
     multicastNodes_.insert(nodes.begin(), nodes.end());
     std::erase_if(nodes, [this](int node) { return absences_.contains(node); });
     if (nodes.empty()) {
@@ -116,7 +123,8 @@ void HeadSession::openMulticast() {
 }
 
 Result<void> HeadSession::openDeltaStream() {
-    const DeltaPlan plan = planDelta(config_, plan_, [this](int node) { return nodes_.link(node).byMulticast(); });
+    const DeltaPlan plan =
+        planDelta(config_, currentPlan(), [this](int node) { return nodes_.link(node).byMulticast(); });
     deltaLine_ = plan.explain;
     log::debug(log::Topic::Stream, deltaLine_);
     if (plan.nodes.empty()) return {};
@@ -187,8 +195,9 @@ void HeadSession::openTables() {
         config_.localRendering == LocalRendering::On ? capture::kLocalRenderingOn : capture::kLocalRenderingOff;
     welcome.verifyEvery = static_cast<uint32_t>(config_.verifyEvery);
     // A recording must play on any number of nodes. The program therefore fetches the pixels that it copies from a
-    // window, as it does with several nodes.
-    welcome.nodeCount = static_cast<uint32_t>(options_.recorder ? std::max(nodeCount_, 2) : nodeCount_);
+    // window, as it does with several nodes. So do programs of a session that may get more nodes.
+    const bool mayGrow = options_.recorder || hasOtherLayouts(currentPlan());
+    welcome.nodeCount = static_cast<uint32_t>(mayGrow ? std::max(nodeCount(), 2) : nodeCount());
     fetchesCopies_ = welcome.nodeCount > 1;
     welcome.displayApp = config_.display == Display::App ? 1 : 0;
     {
@@ -240,9 +249,9 @@ std::string HeadSession::placeOwnThreads() const {
 }
 
 std::vector<std::string> HeadSession::explainLines() {
-    std::vector<std::string> lines = plan_.explain;
-    for (const NodePlan& node : plan_.nodes)
-        if (const auto members = swapMembersOf(config_, plan_, node);
+    std::vector<std::string> lines = currentPlan().explain;
+    for (const NodePlan& node : currentPlan().nodes)
+        if (const auto members = swapMembersOf(config_, currentPlan(), node);
             !members.empty() && members.front()->node == node.node)
             lines.push_back("windows of " + std::to_string(members.size()) +
                             " nodes show each frame together: swap barrier \"" + node.swapBarrier +
@@ -252,7 +261,7 @@ std::vector<std::string> HeadSession::explainLines() {
     lines.push_back(deltaLine_);
     lines.push_back("threads of the head: " + placement_);
     const std::lock_guard lock(mutex_);
-    for (const NodePlan& plan : plan_.nodes) {
+    for (const NodePlan& plan : currentPlan().nodes) {
         const std::string& placement = facts_[static_cast<size_t>(plan.node)].placement;
         if (!placement.empty()) lines.push_back("thread of node " + std::to_string(plan.node) + ": " + placement);
     }
@@ -263,14 +272,14 @@ void HeadSession::announceReady() {
     Json nodes = Json::array();
     {
         const std::lock_guard lock(mutex_);
-        for (const NodePlan& plan : plan_.nodes) {
+        for (const NodePlan& plan : currentPlan().nodes) {
             if (absences_.contains(plan.node)) continue;
             const NodeCapabilities& facts = facts_[static_cast<size_t>(plan.node)];
             nodes.push_back({{"node", plan.node}, {"where", plan.where}, {"pid", facts.pid}, {"gl", facts.renderer}});
         }
     }
-    for (const std::string& warning : plan_.warnings) log::warning(log::Topic::Session, warning);
-    if (plan_.wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, plan_))
+    for (const std::string& warning : currentPlan().warnings) log::warning(log::Topic::Session, warning);
+    if (currentPlan().wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, currentPlan()))
         log::warning(log::Topic::Session,
                      "both eyes are shown side by side, because only wall windows have a buffer for each eye; add "
                      "--display windows");

@@ -63,16 +63,8 @@ void HeadSession::tickStatistics(int64_t nowNs) {
     if (statistics_.expire(nowNs)) announceStatistics();
     if (!statistics_.isOn() || nowNs - probedNs_ < kProbeNs) return;
     probedNs_ = nowNs;
-    if (std::ranges::any_of(plan_.nodes, [](const NodePlan& n) { return n.reach != NodeReach::SharedMemory; }))
+    if (std::ranges::any_of(currentPlan().nodes, [](const NodePlan& n) { return n.reach != NodeReach::SharedMemory; }))
         nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ClockProbe, bytesOf(nowNs));
-}
-
-// Nodes of this machine have the head's clock.
-std::vector<NodeClock> HeadSession::clocksOf(const SessionPlan& plan) {
-    std::vector<NodeClock> clocks;
-    for (const NodePlan& node : plan.nodes)
-        clocks.push_back(node.reach == NodeReach::SharedMemory ? NodeClock::shared() : NodeClock());
-    return clocks;
 }
 
 // Called by the thread that reads the node's messages, after the frame was counted. The spans of that thread begin with

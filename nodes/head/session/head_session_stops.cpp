@@ -31,7 +31,7 @@ void HeadSession::addStopOperations(ControlOperations& operations) {
 
 // Nodes that catch up draw nothing yet.
 bool HeadSession::hasOtherMembers(int node) {
-    for (int other = 0; other < nodeCount_; ++other)
+    for (int other = 0; other < nodeCount(); ++other)
         if (other != node && nodes_.link(other).alive() && !returns_->isRestarting(other)) return true;
     return false;
 }
@@ -40,7 +40,7 @@ Result<void> HeadSession::stopNode(int node, bool isForced) {
     const std::string subject = nodes_.link(node).describe() + " cannot be stopped: ";
     if (!hasOtherMembers(node))
         return Error{subject + "it is the only node that draws at the moment; end the session with mural ctl stop"};
-    const NodePlan& plan = plan_.nodes[static_cast<size_t>(node)];
+    const NodePlan& plan = plans_.nodePlan(node);
     if (plan.pass.ranges > 1 && !isForced)
         return Error{subject + "the nodes of its picture share the draws, and frames in progress would lack its range; "
                                "add force"};
@@ -53,14 +53,14 @@ Result<void> HeadSession::stopNode(int node, bool isForced) {
     if (done) return {};
     if (nodes_.link(node).alive()) { // otherwise its loss has the same effect as the stop
         returns_->stay(node);
-        balancer_.takeBack(node);
+        balancer().takeBack(node);
     }
     return Error{subject + done.error().message};
 }
 
 Result<void> HeadSession::handOver(int node, Deadline deadline) {
-    if (auto given = balancer_.giveUp(node); !given) return given;
-    while (!balancer_.hasGivenUp(node)) {
+    if (auto given = balancer().giveUp(node); !given) return given;
+    while (!balancer().hasGivenUp(node)) {
         if (!nodes_.link(node).alive())
             return Error{"it was lost meanwhile; mural ctl start-node " + std::to_string(node) + " starts it again"};
         if (deadline.passed())
@@ -105,10 +105,13 @@ void HeadSession::memberLeft(int node) {
     const std::lock_guard membership(membership_);
     const std::string tiles = returns_->memberLost(node);
     goOnWithout(node);
-    log::info(log::Topic::Node, nodes_.link(node).describe(), " has stopped after its last frame; ", tiles,
-              "; mural ctl start-node ", node, " starts it again");
-    feed_.publish(ControlTopic::Events, {{"event", "node-stopped"}, {"node", node}});
     const std::lock_guard lock(mutex_);
+    if (leavingSince_.contains(node))
+        log::debug(log::Topic::Node, nodes_.link(node).describe(), " has left after its last frame");
+    else
+        log::info(log::Topic::Node, nodes_.link(node).describe(), " has stopped after its last frame; ", tiles,
+                  "; mural ctl start-node ", node, " starts it again");
+    feed_.publish(ControlTopic::Events, {{"event", "node-stopped"}, {"node", node}});
     leaving_.erase(node);
     stopped_.insert(node);
     nodeStopped_.notify_all();

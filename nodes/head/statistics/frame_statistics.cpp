@@ -61,6 +61,11 @@ std::vector<NodeClock> FrameStatistics::clocks() const {
     return clocks_;
 }
 
+void FrameStatistics::addNode(NodeClock clock) {
+    const std::lock_guard lock(mutex_);
+    clocks_.push_back(clock);
+}
+
 void FrameStatistics::forgetClock(int node) {
     const std::lock_guard lock(mutex_);
     NodeClock& clock = clocks_[static_cast<size_t>(node)];

@@ -38,6 +38,7 @@ public:
 
     void addRoundTrip(int node, const ClockSample& sample);
     [[nodiscard]] std::vector<NodeClock> clocks() const;
+    void addNode(NodeClock clock); // the next node
     // Resets the clock of a node that starts again.
     void forgetClock(int node);
 

@@ -17,6 +17,7 @@ class NodeClock {
 public:
     // For a node on the head's machine: both have the same clock.
     static NodeClock shared();
+    static NodeClock ofNode(bool isOnHeadsMachine) { return isOnHeadsMachine ? shared() : NodeClock(); }
 
     void addRoundTrip(const ClockSample& sample);
     // A message that left the node at leftThereNs (its clock) and arrived at arrivedNs (the head's).

@@ -18,11 +18,21 @@ Index canvasOf(const config::ResolvedConfig& config, const ConfigDraw& draw) {
     return segment == kNone ? kNone : config.segments[at(segment)].canvas;
 }
 
-// Activates the layout on every canvas that has it. Returns false if none has it.
-bool activateLayout(const config::ResolvedConfig& config, const std::string& name, compound::FrameInput& input) {
+constexpr const char* kOff = "off";
+
+// Activates the layout on every canvas that has it. wanted: the layout's name, or "CANVAS:LAYOUT" for one canvas. The
+// layout "off" turns a canvas off. Returns false if no canvas has it.
+bool activateLayout(const config::ResolvedConfig& config, const std::string& wanted, compound::FrameInput& input) {
     bool found = false;
     for (size_t c = 0; c < config.canvases.size(); ++c) {
+        const std::string prefix = config.canvases[c].name + ":";
+        const bool isOwn = !config.canvases[c].name.empty() && wanted.starts_with(prefix);
+        const std::string name = isOwn ? wanted.substr(prefix.size()) : wanted;
         const auto& layouts = config.canvases[c].layouts;
+        if (isOwn && name == kOff) {
+            input.activeLayouts[c] = kNone;
+            found = true;
+        }
         for (size_t i = 0; i < layouts.size(); ++i) {
             if (layouts[i] == kNone || config.layouts[at(layouts[i])].name != name) continue;
             input.activeLayouts[c] = static_cast<Index>(i);

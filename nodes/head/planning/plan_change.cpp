@@ -1,0 +1,94 @@
+#include "nodes/head/planning/plan_change.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace mural {
+
+namespace {
+
+const char* nameOfEnd(bool isHead) { return isHead ? "the head" : "the nodes"; }
+
+// Returns why the outputs of the session cannot show the plan. Empty: they can.
+std::string whyOutputsDiffer(const SessionConfig& config, const SessionPlan& current, const SessionPlan& wanted) {
+    const std::string subject = "the new plan needs a new session: ";
+    if (current.canvas != wanted.canvas)
+        return subject + "its first canvas is " + (wanted.canvas.empty() ? "none" : "\"" + wanted.canvas + "\"") +
+               " instead of \"" + current.canvas + "\"";
+    if (headShowsWall(config, current) != headShowsWall(config, wanted))
+        return subject + nameOfEnd(headShowsWall(config, wanted)) + " would show its wall, and not " +
+               nameOfEnd(headShowsWall(config, current));
+    if ((current.wall.stereo == StereoMode::Quad) != (wanted.wall.stereo == StereoMode::Quad))
+        return subject + "windows with a buffer for each eye are opened at the start only";
+    for (const CanvasPlan& canvas : wanted.canvases) {
+        const auto same = std::ranges::find(current.canvases, canvas.name, &CanvasPlan::name);
+        if (same == current.canvases.end())
+            return subject + "canvas \"" + canvas.name + "\" was off when the session began";
+        if (headShowsCanvas(config, *same) != headShowsCanvas(config, canvas))
+            return subject + nameOfEnd(headShowsCanvas(config, canvas)) + " would show canvas \"" + canvas.name +
+                   "\", and not " + nameOfEnd(headShowsCanvas(config, *same));
+    }
+    if (headTakesPictures(config, current) != headTakesPictures(config, wanted))
+        return subject + "nodes send their pictures to the head in one of both plans only";
+    return {};
+}
+
+// Returns true if nothing that the node does depends on other nodes of the plan.
+bool drawsAlone(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
+    return !node.movesArea && !node.movesRange && node.pass.ranges == 1 && node.pass.period == 1 &&
+           swapMembersOf(config, plan, node).empty();
+}
+
+// Returns the setup of a node without its numbers.
+std::string taskOf(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
+    NodeSetup setup = setupOf(config, plan, node);
+    setup.node = setup.collector = 0;
+    setup.nodeCount = 1;
+    return toJson(setup) + " " + node.where + " " + std::to_string(static_cast<int>(node.reach));
+}
+
+NodePlan vacant(int number) {
+    NodePlan node;
+    node.node = node.collector = number;
+    node.isVacant = true;
+    node.area = Viewport{0, 0, 0, 0};
+    node.answers = false;
+    return node;
+}
+
+} // namespace
+
+Result<PlanChange> changeOf(const SessionConfig& config, const SessionPlan& current, SessionPlan wanted,
+                            const std::function<bool(int node)>& isMember, int firstNumber) {
+    if (const std::string why = whyOutputsDiffer(config, current, wanted); !why.empty()) return Error{why};
+    std::multimap<std::string, int> tasks; // of members, to their numbers
+    for (const NodePlan& node : current.nodes)
+        if (!node.isVacant && isMember(node.node) && drawsAlone(config, current, node))
+            tasks.emplace(taskOf(config, current, node), node.node);
+
+    PlanChange change;
+    std::vector<int> numbers; // of the nodes of the new plan
+    int next = firstNumber;
+    for (const NodePlan& node : wanted.nodes) {
+        const auto same = drawsAlone(config, wanted, node) ? tasks.find(taskOf(config, wanted, node)) : tasks.end();
+        const bool isKept = same != tasks.end();
+        numbers.push_back(isKept ? same->second : next++);
+        (isKept ? change.kept : change.joining).push_back(numbers.back());
+        if (isKept) tasks.erase(same);
+    }
+    std::vector<NodePlan> nodes;
+    for (int number = 0; number < next; ++number) nodes.push_back(vacant(number));
+    for (NodePlan& node : wanted.nodes) {
+        const int number = numbers[static_cast<size_t>(node.node)];
+        node.collector = numbers[static_cast<size_t>(node.collector)];
+        node.node = number;
+        nodes[static_cast<size_t>(number)] = std::move(node);
+    }
+    for (const NodePlan& node : current.nodes)
+        if (!node.isVacant && nodes[static_cast<size_t>(node.node)].isVacant) change.leaving.push_back(node.node);
+    change.plan = std::move(wanted);
+    change.plan.nodes = std::move(nodes);
+    return change;
+}
+
+} // namespace mural

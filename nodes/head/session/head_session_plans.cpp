@@ -1,0 +1,297 @@
+// Changes of the session's plan: the operation `layout`. The control thread calls it.
+//
+// The control thread makes the new plan and the difference. The session's thread starts the new nodes, which receive
+// the state of the programs and draw in silence. When all of them have caught up, one position in the stream makes them
+// members and ends the membership of the others (exchangeMembers). Until then nothing has changed, so a failure only
+// ends the new nodes.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <unistd.h>
+
+#include "common/log/log.hpp"
+#include "nodes/head/planning/delta_plan.hpp"
+#include "nodes/head/planning/make_plan.hpp"
+#include "nodes/head/session/head_session.hpp"
+#include "nodes/session/session_secret.hpp"
+
+namespace mural {
+namespace {
+
+using Json = nlohmann::json;
+using Kind = ControlArgument::Kind;
+
+// The sum stays below the patience of mural ctl.
+constexpr int64_t kJoinMs = 16'000;    // until all new nodes have caught up
+constexpr int64_t kCancelMs = 2'000;   // until they have ended after a failure
+constexpr int64_t kExchangeMs = 4'000; // until the connections of all nodes accept data
+constexpr int64_t kSettleMs = 4'000;   // until all nodes have passed an earlier change
+constexpr int64_t kLeaveMs = 10'000;   // until a node has finished its last frames
+constexpr int64_t kProcessMs = 500;    // from its Goodbye to the end of its process
+
+constexpr const char* kOff = "off";
+
+std::string nameOf(const std::string& name, size_t index) { return name.empty() ? std::to_string(index) : name; }
+
+// Returns the canvases of the file with their layouts.
+Json canvasesJson(const BalancePlan& plan) {
+    Json canvases = Json::array();
+    for (size_t c = 0; c < plan.config.canvases.size(); ++c) {
+        const config::ResolvedCanvas& canvas = plan.config.canvases[c];
+        Json layouts = Json::array();
+        std::string shown = kOff;
+        for (size_t i = 0; i < canvas.layouts.size(); ++i) {
+            const config::Index layout = canvas.layouts[i];
+            const std::string name = layout == config::kNone
+                                         ? kOff
+                                         : nameOf(plan.config.layouts[config::at(layout)].name, config::at(layout));
+            layouts.push_back(name);
+            if (plan.input.activeLayouts[c] == static_cast<config::Index>(i)) shown = name;
+        }
+        canvases.push_back({{"canvas", nameOf(canvas.name, c)}, {"layout", shown}, {"layouts", layouts}});
+    }
+    return canvases;
+}
+
+} // namespace
+
+void HeadSession::addPlanOperations(ControlOperations& operations) {
+    operations.add({"layout",
+                    "layout [CANVAS] [LAYOUT] [dry-run]",
+                    "show another layout on a canvas, or turn it off; without arguments: list the layouts",
+                    {{"canvas", Kind::Text, false, "name of the canvas"},
+                     {"layout", Kind::Text, false, "name of the layout, or off"},
+                     {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
+                    [this](const Json& arguments) { return changeLayout(arguments); }});
+}
+
+Result<Json> HeadSession::changeLayout(const Json& arguments) {
+    const SessionStage& stage = plans_.current();
+    if (stage.config.configFile.empty() || !stage.plan.balance)
+        return Error{"this session has no canvases with layouts; start it with --config"};
+    const std::string canvas = arguments.value("canvas", ""), layout = arguments.value("layout", "");
+    if (canvas.empty() && layout.empty()) return Json{{"canvases", canvasesJson(*stage.plan.balance)}};
+    if (canvas.empty() || layout.empty())
+        return Error{"a layout is shown on a canvas; name both, such as mural ctl layout wall 2D"};
+    SessionConfig config = stage.config;
+    std::erase_if(config.layouts, [&](const std::string& other) { return other.starts_with(canvas + ":"); });
+    config.layouts.push_back(canvas + ":" + layout);
+    return changePlan(std::move(config), arguments.value("dry-run", false));
+}
+
+// Prepares a change and carries it out. Errors: nothing has changed.
+Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
+    const int64_t beganNs = monotonicNowNs();
+    const std::unique_lock changing(changing_, std::try_to_lock);
+    if (!changing.owns_lock()) return Error{"another change is in progress; try again"};
+    if (finishing_) return Error{"the session is ending"};
+    const Deadline settled = Deadline::inMs(kSettleMs);
+    while (!plans_.isSettled() && !settled.passed()) poll(nullptr, 0, 2);
+    if (!plans_.isSettled()) return Error{"nodes have not finished the frames before the last change; try again"};
+    char host[256] = "localhost";
+    gethostname(host, sizeof(host) - 1);
+    auto wanted = makePlan(config, host);
+    if (!wanted) return wanted.error();
+    const auto difference = [&] {
+        return changeOf(
+            config, currentPlan(), *wanted,
+            [this](int node) { return nodes_.link(node).alive() && !returns_->isRestarting(node); }, nodeCount());
+    };
+    auto change = difference();
+    if (!change) return change.error();
+    const auto nodesJson = [&] {
+        return Json{{"joined", change->joining}, {"left", change->leaving}, {"kept", change->kept}};
+    };
+    if (isDryRun) return nodesJson();
+    const size_t members = change->joining.size() + change->kept.size();
+    if (!change->joining.empty()) {
+        if (const auto can = canTakeNodes(members); !can) return can.error();
+    }
+    const bool skips = returns_->skipsFrames();
+    Result<void> done = carryOut(config, *change);
+    if (!done && returns_->skipsFrames() != skips) { // the frames of the new nodes depended on skipped ones
+        change = difference();
+        if (!change) return change.error();
+        done = carryOut(config, *change);
+    }
+    if (!done) return Error{"nothing has changed: " + done.error().message};
+    Json result = nodesJson();
+    result["seconds"] = static_cast<double>(monotonicNowNs() - beganNs) / static_cast<double>(kNsPerS);
+    feed_.publish(ControlTopic::Events,
+                  {{"event", "plan-changed"}, {"joined", result["joined"]}, {"left", result["left"]}});
+    return result;
+}
+
+// Returns an error if the session cannot bring new nodes to the state of its programs.
+Result<void> HeadSession::canTakeNodes(size_t members) {
+    const std::string subject = "no node can join this session: ";
+    if (!options_.startNode || !nodes_.hasRejoinLog())
+        return Error{subject + "it keeps no state of its programs; start it with --restart-nodes 1 or more"};
+    if (!nodes_.canJoin())
+        return Error{subject + "programs have sent more than the " + std::to_string(config_.cacheBytes >> 20) +
+                     " MiB of the rejoin log; start the session with a larger --cache-size"};
+    if (members > 1 && !fetchesCopies_)
+        return Error{subject + "it began with one node, so programs do not send the pixels that they copy from "
+                               "windows; start it with two nodes, or with --record"};
+    return {};
+}
+
+Result<void> HeadSession::carryOut(SessionConfig config, PlanChange change) {
+    if (static_cast<size_t>(nodeCount()) + change.joining.size() > NodeLinks::kMaxNodes)
+        return Error{"the session has had " + std::to_string(nodeCount()) + " nodes and can have " +
+                     std::to_string(NodeLinks::kMaxNodes) + "; start a new one"};
+    for (const int node : change.leaving)
+        if (returns_->isRestarting(node) && nodes_.link(node).alive())
+            return Error{nodes_.link(node).describe() + " is being restarted; try again when it has joined"};
+    const auto pending = std::make_shared<PendingChange>();
+    pending->config = std::move(config);
+    pending->change = std::move(change);
+    {
+        const std::lock_guard lock(mutex_);
+        pending_ = pending;
+    }
+    const Deadline deadline = Deadline::inMs(kJoinMs);
+    while (!pending->hasBegun && !finishing_) poll(nullptr, 0, 1);
+    if (finishing_) return Error{"the session is ending"};
+    if (!pending->group) return exchangeNodes(*pending);
+    while (!pending->group->outcome() && !deadline.passed() && !finishing_) poll(nullptr, 0, 1);
+    pending->group->fail(finishing_ ? "the session is ending"
+                                    : "the new nodes have not caught up within " + std::to_string(kJoinMs / 1000) +
+                                          " s; see mural stat");
+    // an exchange in progress ends soon
+    for (const Deadline end = Deadline::inMs(kExchangeMs); !pending->group->outcome() && !end.passed();)
+        poll(nullptr, 0, 1);
+    const auto outcome = pending->group->outcome();
+    if (outcome && *outcome) return {};
+    const auto isEnding = [&] {
+        return std::ranges::any_of(pending->change.joining, [this](int n) { return returns_->isRestarting(n); });
+    };
+    for (const Deadline end = Deadline::inMs(kCancelMs); isEnding() && !end.passed();) poll(nullptr, 0, 2);
+    return outcome ? *outcome : Result<void>(Error{"a node accepts no data at the moment; see mural stat"});
+}
+
+// Called by the session's thread: only it starts nodes.
+void HeadSession::beginPlanChange() {
+    std::shared_ptr<PendingChange> pending;
+    {
+        const std::lock_guard lock(mutex_);
+        pending = std::move(pending_);
+    }
+    if (!pending) return;
+    const PlanChange& change = pending->change;
+    const size_t count = change.joining.size();
+    for (const int node : change.joining) {
+        const NodePlan& plan = change.plan.nodes[static_cast<size_t>(node)];
+        nodes_.add(std::make_unique<NodeConnection>(NodeLocation{node, plan.where}, nullptr, nullptr,
+                                                    static_cast<NodeEvents&>(*this)));
+        statistics_.addNode(NodeClock::ofNode(plan.reach == NodeReach::SharedMemory));
+    }
+    answers_.addNodes(count);
+    frames_.addNodes(count);
+    std::shared_ptr<NodeGroup> group;
+    if (count > 0)
+        group = std::make_shared<NodeGroup>(change.joining,
+                                            [this, change = pending.get()] { return exchangeNodes(*change); });
+    if (group) returns_->addGroup(group);
+    pending->stage = &plans_.prepare(pending->config, change.plan);
+    if (nodes_.multicast() != nullptr)
+        for (const int node : nodesForMulticast(pending->config.stream, change.plan)) multicastNodes_.insert(node);
+    if (nodes_.hasDeltaStream()) {
+        const auto planned =
+            planDelta(pending->config, change.plan, [this](int node) { return multicastNodes_.contains(node); });
+        deltaNodes_.insert(planned.nodes.begin(), planned.nodes.end());
+    }
+    if (exchangeSecret_.empty())
+        if (const auto secret = makeSessionSecret()) exchangeSecret_ = toHex(secret.value());
+    const std::lock_guard lock(mutex_);
+    for (const int node : change.joining) {
+        facts_.emplace_back();
+        ready_.push_back(false);
+        introduced_.push_back(true);
+        incarnations_.push_back(0);
+        refusals_.emplace_back();
+        NodeTotals& totals = totals_.emplace_back();
+        totals.node = node;
+        totals.lost = true; // until it joins
+        newNodes_.insert(node);
+    }
+    views_.addNodes(count);
+    changed_.push_back(pending); // the group refers to it
+    pending->group = std::move(group);
+    pending->hasBegun = true;
+}
+
+// The one position of the change. Called by the thread of the last new node's resync, or by the control thread.
+Result<void> HeadSession::exchangeNodes(PendingChange& pending) {
+    const PlanChange& change = pending.change;
+    StreamBroadcaster::MemberExchange exchange;
+    exchange.joining = change.joining;
+    std::vector<int> retired;
+    Result<void> done;
+    for (const int node : change.leaving) {
+        const bool isMember = nodes_.link(node).alive() && returns_->leave(node).ok();
+        if (!isMember) done = returns_->retire(node);
+        if (!done) break;
+        retired.push_back(node);
+        if (isMember) exchange.leaving.push_back(node);
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        for (const int node : exchange.leaving) leaving_.insert(node), leavingSince_[node] = monotonicNowNs();
+    }
+    if (std::ranges::any_of(change.plan.nodes, &NodePlan::movesArea))
+        exchange.viewports = pending.stage->balancer.viewports();
+    std::unique_lock membership(membership_, std::defer_lock);
+    exchange.atPosition = [&](uint32_t view) {
+        membership.lock();
+        if (pending.group && !returns_->becomeMembers(*pending.group)) return false;
+        std::set<int> kept;
+        {
+            const std::lock_guard lock(mutex_);
+            for (const int node : change.kept)
+                if (!totals_[static_cast<size_t>(node)].lost) kept.insert(node);
+        }
+        plans_.change(*pending.stage, std::move(kept), exchange.leaving, view);
+        pacer_.endPaces(); // of the earlier plan's equalizers
+        return true;
+    };
+    exchange.announce = [this](int node, uint32_t view) { return admission(node, view); };
+    if (done) done = nodes_.exchangeMembers(exchange, Deadline::inMs(kExchangeMs));
+    if (done) {
+        log::info(log::Topic::Session, "the plan of the session has changed: new nodes ", change.joining.size(),
+                  ", ended ", exchange.leaving.size(), ", unchanged ", change.kept.size());
+        return {};
+    }
+    for (const int node : retired) returns_->stay(node);
+    const std::lock_guard lock(mutex_);
+    for (const int node : exchange.leaving) leaving_.erase(node), leavingSince_.erase(node);
+    return done;
+}
+
+// Ends the processes of nodes that have left with a change of the plan.
+void HeadSession::endLeftNodes(int64_t nowNs) {
+    std::map<int, int64_t> leaving;
+    {
+        const std::lock_guard lock(mutex_);
+        leaving = leavingSince_;
+    }
+    for (const auto& [node, sinceNs] : leaving) {
+        NodeConnection& link = nodes_.link(node);
+        if (!link.readerEnded()) {
+            if (nowNs - sinceNs > kLeaveMs * kNsPerMs) link.lose("it did not finish its last frames in time");
+            continue;
+        }
+        link.endAfterGoodbye(Deadline::inMs(kProcessMs));
+        nodes_.retire(node);
+        const std::lock_guard lock(mutex_);
+        leavingSince_.erase(node);
+    }
+}
+
+bool HeadSession::hasLeft(int node) {
+    const std::vector<NodePlan>& nodes = currentPlan().nodes;
+    const bool isPlanned = static_cast<size_t>(node) < nodes.size() && !nodes[static_cast<size_t>(node)].isVacant;
+    return !isPlanned && !nodes_.link(node).alive();
+}
+
+} // namespace mural

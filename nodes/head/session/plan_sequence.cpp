@@ -1,0 +1,225 @@
+#include "nodes/head/session/plan_sequence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace mural {
+namespace {
+
+std::vector<int> picturesOf(const SessionPlan& plan) {
+    std::vector<int> pictures;
+    for (const NodePlan& node : plan.nodes) pictures.push_back(node.picture);
+    return pictures;
+}
+
+PictureAssembler::Compose composeBy(const WallComposition& wall) {
+    if (picturesOf(wall) == 1) return {};
+    return [wall](const std::vector<Picture>& passes, OwnedPicture& into) { composeWall(wall, passes, into); };
+}
+
+// Composes a canvas that is off. The first picture has the size of the program's picture.
+PictureAssembler::Compose composeBlack(const Zoom& shown) {
+    return [shown](const std::vector<Picture>& passes, OwnedPicture& into) {
+        const auto side = [](int pixels, double scale) {
+            return std::max(1, static_cast<int>(std::lround(pixels * scale)));
+        };
+        into.resize(side(passes.front().width, shown.x), side(passes.front().height, shown.y), PictureFormat::Bgra8);
+        std::memset(into.data(), 0, into.view().sizeBytes());
+    };
+}
+
+std::vector<PictureAssembler::Compose> composeOthersBy(const SessionPlan& plan, const SessionPlan& outputs) {
+    std::vector<PictureAssembler::Compose> others;
+    for (const CanvasPlan& output : outputs.canvases) {
+        const auto canvas = std::ranges::find(plan.canvases, output.name, &CanvasPlan::name);
+        if (canvas == plan.canvases.end())
+            others.push_back(composeBlack(output.shown));
+        else
+            others.push_back([wall = canvas->wall](const std::vector<Picture>& passes, OwnedPicture& into) {
+                composeWall(wall, passes, into);
+            });
+    }
+    return others;
+}
+
+// Returns the zoom of each picture relative to the program's.
+std::vector<Zoom> sizesOf(const SessionPlan& plan) {
+    std::vector<Zoom> sizes;
+    for (const NodePlan& node : plan.nodes) {
+        sizes.resize(std::max(sizes.size(), static_cast<size_t>(node.picture) + 1));
+        if (!node.isVacant) sizes[static_cast<size_t>(node.picture)] = node.pass.shown;
+    }
+    return sizes;
+}
+
+std::string plantOf() {
+    const char* const plant = std::getenv("MURAL_PLANT"); // fault injection, for tests of the tests
+    return plant != nullptr ? plant : "";
+}
+
+} // namespace
+
+SessionStage::SessionStage(SessionConfig sessionConfig, SessionPlan sessionPlan, const SessionPlan& outputs,
+                           PictureAssembler::Deliver deliver, LoadBalancer::Announce announce)
+    : config(std::move(sessionConfig)),
+      plan(std::move(sessionPlan)),
+      pictures(picturesOf(plan), composeBy(plan.wall), std::move(deliver), composeOthersBy(plan, outputs),
+               sizesOf(plan)),
+      balancer(plan, std::move(announce), plantOf()) {}
+
+PlanSequence::PlanSequence(SessionConfig config, SessionPlan plan, Hooks hooks) : hooks_(std::move(hooks)) {
+    SessionStage& first = addStage(std::move(config), std::move(plan));
+    entries_.push_back({&first, {}, {}, false});
+    current_ = &first;
+}
+
+SessionStage& PlanSequence::addStage(SessionConfig config, SessionPlan plan) {
+    const auto itself = std::make_shared<SessionStage*>(nullptr); // the address, once it is known
+    const SessionPlan outputs = stages_.empty() ? plan : stages_.front()->plan;
+    auto stage = std::make_unique<SessionStage>(
+        std::move(config), std::move(plan), outputs,
+        [this, itself](WindowPicture picture) { deliver(**itself, std::move(picture)); }, announceOf(itself));
+    *itself = stage.get();
+    const auto count = static_cast<int>(stage->plan.nodes.size());
+    for (int node = nodeCount(); node < count; ++node) assign(node, *stage);
+    nodeCount_.store(std::max(count, nodeCount()), std::memory_order_release);
+    const std::lock_guard lock(mutex_);
+    stages_.push_back(std::move(stage));
+    return *stages_.back();
+}
+
+// Assignments of an earlier stage have no receiver, and those of a later one wait for its change.
+LoadBalancer::Announce PlanSequence::announceOf(const std::shared_ptr<SessionStage*>& stage) {
+    const auto ifCurrent = [this, stage](const auto& announce, const auto&... values) {
+        const std::lock_guard lock(announceMutex_);
+        if (announce && current_.load() == *stage) announce(values...);
+    };
+    return {[this, ifCurrent](const ViewportAssignment& areas) { ifCurrent(hooks_.announce.viewports, areas); },
+            [this, ifCurrent](const RangeAssignment& ranges) { ifCurrent(hooks_.announce.ranges, ranges); },
+            [this, ifCurrent](uint32_t client, double rate) { ifCurrent(hooks_.announce.pace, client, rate); }};
+}
+
+SessionStage& PlanSequence::prepare(SessionConfig config, SessionPlan plan) {
+    const int before = nodeCount();
+    SessionStage& stage = addStage(std::move(config), std::move(plan));
+    for (const NodePlan& node : stage.plan.nodes)
+        if (node.isVacant || node.node >= before) stage.pictures.nodeLost(node.node); // until it joins
+    return stage;
+}
+
+void PlanSequence::change(SessionStage& next, std::set<int> kept, const std::vector<int>& leaving, uint32_t view) {
+    {
+        const std::lock_guard lock(announceMutex_);
+        current_.store(&next, std::memory_order_release);
+    }
+    for (const NodePlan& node : next.plan.nodes) { // lost nodes of both stages
+        const bool isOld = !node.isVacant && &of(node.node) != &next;
+        if (!isOld || kept.contains(node.node)) continue;
+        next.pictures.nodeLost(node.node);
+        next.balancer.nodeLost(node.node);
+        assign(node.node, next);
+    }
+    const std::lock_guard lock(mutex_);
+    Entry& before = entries_.back();
+    before.draining = kept;
+    before.draining.insert(leaving.begin(), leaving.end());
+    before.isOver = before.draining.empty();
+    entries_.push_back({&next, {}, {}, false});
+    kept_ = std::move(kept);
+    view_ = view;
+}
+
+bool PlanSequence::isSettled() const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::all_of(entries_, [&](const Entry& e) { return e.isOver || &e == &entries_.back(); });
+}
+
+// Called with the lock of the stage's pictures.
+void PlanSequence::deliver(const SessionStage& stage, WindowPicture picture) {
+    hooks_.isWhole(picture);
+    const std::lock_guard lock(mutex_);
+    for (Entry& entry : entries_) {
+        if (entry.stage != &stage) {
+            if (entry.isOver) continue;
+            const auto own = std::ranges::find(entries_, &stage, &Entry::stage);
+            if (own != entries_.end()) own->held.push_back(std::move(picture));
+            return;
+        }
+        return hooks_.output(std::move(picture));
+    }
+}
+
+// The node's messages have passed the end of its stage: a change, its Goodbye or its loss.
+void PlanSequence::passed(int node) {
+    std::vector<SessionStage*> over;
+    {
+        const std::lock_guard lock(mutex_);
+        bool isNext = true; // all earlier stages are over
+        for (Entry& entry : entries_) {
+            if (isNext)
+                for (; !entry.held.empty(); entry.held.pop_front()) hooks_.output(std::move(entry.held.front()));
+            if (entry.draining.erase(node) > 0 && entry.draining.empty()) {
+                entry.isOver = true;
+                over.push_back(entry.stage);
+            }
+            isNext = isNext && entry.isOver;
+        }
+    }
+    for (SessionStage* const stage : over) stage->pictures.release();
+}
+
+std::vector<SessionStage*> PlanSequence::stagesWith(int node) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<SessionStage*> found;
+    for (const Entry& entry : entries_)
+        if (!entry.isOver && static_cast<size_t>(node) < entry.stage->plan.nodes.size()) found.push_back(entry.stage);
+    return found;
+}
+
+void PlanSequence::nodeJoins(int node, uint32_t view) { current().pictures.nodeJoins(node, view); }
+
+void PlanSequence::nodeInView(int node, uint32_t view) {
+    for (SessionStage* const stage : stagesWith(node)) stage->pictures.nodeInView(node, view);
+    {
+        const std::lock_guard lock(mutex_);
+        if (view < view_ || kept_.erase(node) == 0) return;
+        assign(node, *entries_.back().stage);
+    }
+    passed(node);
+}
+
+void PlanSequence::nodeLost(int node) {
+    for (SessionStage* const stage : stagesWith(node)) {
+        stage->pictures.nodeLost(node);
+        stage->balancer.nodeLost(node);
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        if (kept_.erase(node) > 0) assign(node, *entries_.back().stage);
+    }
+    passed(node);
+}
+
+void PlanSequence::windowGone(uint32_t client, uint32_t window) {
+    std::vector<SessionStage*> stages;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const Entry& entry : entries_)
+            if (!entry.isOver) stages.push_back(entry.stage);
+    }
+    for (SessionStage* const stage : stages) stage->balancer.windowGone(client, window);
+}
+
+void PlanSequence::clientGone(uint32_t client) {
+    std::vector<SessionStage*> stages;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const Entry& entry : entries_)
+            if (!entry.isOver) stages.push_back(entry.stage);
+    }
+    for (SessionStage* const stage : stages) stage->pictures.clientGone(client);
+}
+
+} // namespace mural
