@@ -17,6 +17,7 @@
 #include "tools/mural/accuracy/accuracy_command.hpp"
 #include "nodes/trace_player/player.hpp"
 #include "tools/mural/commands.hpp"
+#include "tools/mural/change/change_command.hpp"
 #include "tools/mural/config/config_command.hpp"
 #include "tools/mural/ctl/ctl_command.hpp"
 #include "tools/mural/daemon/discover.hpp"
@@ -85,9 +86,10 @@ class HelpFormatter : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         if (app->get_parent() == nullptr) return "Usage: mural COMMAND [OPTIONS]\n";
-        const std::string rest = app->get_name() == "run"     ? " -- PROGRAM ARGUMENTS..."
-                                 : app->get_name() == "ctl"   ? " [SESSION] COMMAND..."
-                                 : app->get_name() == "bench" ? " accuracy [-- PROGRAM ARGUMENTS...]"
+        const std::string rest = app->get_name() == "run"      ? " -- PROGRAM ARGUMENTS..."
+                                 : app->get_name() == "ctl"    ? " [SESSION] COMMAND..."
+                                 : app->get_name() == "change" ? " [SESSION]"
+                                 : app->get_name() == "bench"  ? " accuracy [-- PROGRAM ARGUMENTS...]"
                                  : app->get_name() == "replay" || app->get_name() == "dump" ? " FILE"
                                  : app->get_name() == "trim"                                ? " FILE FRAMES"
                                  : app->get_name() == "call"                                ? " HOST MURAL ARGUMENTS..."
@@ -267,6 +269,10 @@ private:
             "ctl", "request an operation of a running session: state, nodes, log, equalizers, end",
             [this] { return runCtl(); }, mural::cli::kCtlFooter);
         mural::cli::describeCtl(ctl, ctl_);
+        CLI::App& change = add(
+            "change", "divide the work of a running session in another way",
+            [this] { return mural::cli::changeCommand(change_); }, mural::cli::kChangeFooter);
+        mural::cli::describeChange(change, change_);
         CLI::App& stat = add(
             "stat", "show the running sessions: programs, frames, round trips, nodes",
             [this] { return mural::cli::statCommand(stat_); },
@@ -401,6 +407,7 @@ private:
     bool asJson_ = false;
     bool onlyUnsupported_ = false;
     mural::cli::StatOptions stat_;
+    mural::cli::ChangeArguments change_;
     mural::cli::CtlArguments ctl_;
     mural::cli::BenchArguments bench_;
     mural::cli::ConfigArguments config_;

@@ -21,6 +21,7 @@ std::string nameOf(Kind kind) {
     case Kind::Text: return "text";
     case Kind::Truth: return "truth value";
     case Kind::File: return "file";
+    case Kind::Object: return "object";
     case Kind::Scalar: break;
     }
     return "text, number or truth value";
@@ -33,6 +34,7 @@ bool fits(Kind kind, const Json& value) {
     case Kind::Text:
     case Kind::File: return value.is_string();
     case Kind::Truth: return value.is_boolean();
+    case Kind::Object: return value.is_object();
     case Kind::Scalar: break;
     }
     return value.is_string() || value.is_number() || value.is_boolean();

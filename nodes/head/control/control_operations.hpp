@@ -13,7 +13,7 @@ namespace mural {
 
 struct ControlArgument {
     // File: text; mural ctl completes a relative path. Scalar: text, number or truth value.
-    enum class Kind { Whole, Text, Truth, File, Scalar };
+    enum class Kind { Whole, Text, Truth, File, Scalar, Object };
     std::string name;
     Kind kind = Kind::Text;
     bool isRequired = true;

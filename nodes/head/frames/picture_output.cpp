@@ -52,6 +52,8 @@ void PictureOutput::windowGone(uint32_t client, uint32_t window) {
     add(std::move(last));
 }
 
+void PictureOutput::closeWall() { add({}); }
+
 void PictureOutput::clientGone(uint32_t client) {
     WindowPicture last;
     last.client = client;
@@ -116,6 +118,7 @@ void PictureOutput::finishFile() {
 }
 
 void PictureOutput::take(const WindowPicture& picture) {
+    if (!picture.picture && picture.client == 0) return wall_.reset();
     if (!picture.picture) return forget(picture);
     recordOutput(config_.statistics, spans_, picture.client, picture.frame, "output", [&] { show(picture); });
 }
@@ -127,7 +130,7 @@ void PictureOutput::show(const WindowPicture& picture) {
     const bool inTime = config_.lastFrame == 0 || wallFrame <= config_.lastFrame;
     const bool wanted = wallFrame > 0 && inTime && (saveFrames_.empty() || saveFrames_.contains(wallFrame));
     if (wanted && file_ && !fileFailed_) save(wallFrame, view);
-    if (wallFrame > 0 && config_.openWall) showOnWall(wallFrame, view);
+    if (wallFrame > 0 && config_.openWall && picture.isOnWall) showOnWall(wallFrame, view);
     for (size_t i = 0; wallFrame > 0 && i < std::min(canvases_.size(), picture.others.size()); ++i)
         if (picture.others[i]) showOnCanvas(i, wallFrame, picture.others[i]->view(), wanted);
     if (wallFrame > 0) {

@@ -69,6 +69,7 @@ public:
     void waitForRoom();              // waits until the queue is short or the output ends
     void clientGone(uint32_t client);
     void windowGone(uint32_t client, uint32_t window); // called after its last picture
+    void closeWall(); // closes the wall windows after the queued pictures; a later picture opens them again
 
     // Writes the queued pictures and completes the files. Returns false if the deadline passes first.
     bool finish(Deadline deadline);
@@ -105,7 +106,8 @@ private:
 
     mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    std::deque<WindowPicture> queue_; // null picture: the window is gone; window 0: the client
+    // null picture: the window is gone; window 0: the client; client 0: the wall windows close
+    std::deque<WindowPicture> queue_;
     OutputTotals totals_;
     bool finishing_ = false;
     bool dropped_ = false;

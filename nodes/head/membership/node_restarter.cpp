@@ -348,7 +348,8 @@ void NodeRestarter::fail(int node, const std::string& why, int64_t nowNs) {
             line +=
                 "after " + std::to_string(n.tries) + (n.tries == 1 ? " try, " : " tries, ") + hooks_.tilesOfLost(node);
     }
-    if (isInGroup) return failGroup(node, set_.link(node).describe() + ": " + why);
+    const std::string name = set_.link(node).describe();
+    if (isInGroup) return failGroup(node, why.starts_with(name) ? why : name + ": " + why);
     log::warning(log::Topic::Node, line);
     if (!again) hooks_.gaveUp(node);
 }

@@ -10,26 +10,22 @@ namespace {
 const char* nameOfEnd(bool isHead) { return isHead ? "the head" : "the nodes"; }
 
 // Returns why the outputs of the session cannot show the plan. Empty: they can.
-std::string whyOutputsDiffer(const SessionConfig& config, const SessionPlan& current, const SessionPlan& wanted) {
+std::string whyOutputsDiffer(const PlanInForce& inForce, const SessionConfig& config, const SessionPlan& wanted) {
+    const SessionPlan &current = inForce.plan, &outputs = inForce.outputs;
     const std::string subject = "the new plan needs a new session: ";
-    if (current.canvas != wanted.canvas)
-        return subject + "its first canvas is " + (wanted.canvas.empty() ? "none" : "\"" + wanted.canvas + "\"") +
-               " instead of \"" + current.canvas + "\"";
-    if (headShowsWall(config, current) != headShowsWall(config, wanted))
-        return subject + nameOfEnd(headShowsWall(config, wanted)) + " would show its wall, and not " +
-               nameOfEnd(headShowsWall(config, current));
+    const bool isSameFile = !config.configFile.empty() && config.configFile == inForce.config.configFile;
+    if (isSameFile && current.canvas != wanted.canvas)
+        return subject + "the first canvas, \"" + current.canvas + "\", shows the program's picture and cannot be off";
     if ((current.wall.stereo == StereoMode::Quad) != (wanted.wall.stereo == StereoMode::Quad))
         return subject + "windows with a buffer for each eye are opened at the start only";
     for (const CanvasPlan& canvas : wanted.canvases) {
-        const auto same = std::ranges::find(current.canvases, canvas.name, &CanvasPlan::name);
-        if (same == current.canvases.end())
+        const auto same = std::ranges::find(outputs.canvases, canvas.name, &CanvasPlan::name);
+        if (same == outputs.canvases.end())
             return subject + "canvas \"" + canvas.name + "\" was off when the session began";
-        if (headShowsCanvas(config, *same) != headShowsCanvas(config, canvas))
+        if (headShowsCanvas(inForce.config, *same) != headShowsCanvas(config, canvas))
             return subject + nameOfEnd(headShowsCanvas(config, canvas)) + " would show canvas \"" + canvas.name +
-                   "\", and not " + nameOfEnd(headShowsCanvas(config, *same));
+                   "\", and not " + nameOfEnd(headShowsCanvas(inForce.config, *same));
     }
-    if (headTakesPictures(config, current) != headTakesPictures(config, wanted))
-        return subject + "nodes send their pictures to the head in one of both plans only";
     return {};
 }
 
@@ -58,13 +54,13 @@ NodePlan vacant(int number) {
 
 } // namespace
 
-Result<PlanChange> changeOf(const SessionConfig& config, const SessionPlan& current, SessionPlan wanted,
+Result<PlanChange> changeOf(const PlanInForce& current, const SessionConfig& config, SessionPlan wanted,
                             const std::function<bool(int node)>& isMember, int firstNumber) {
-    if (const std::string why = whyOutputsDiffer(config, current, wanted); !why.empty()) return Error{why};
+    if (const std::string why = whyOutputsDiffer(current, config, wanted); !why.empty()) return Error{why};
     std::multimap<std::string, int> tasks; // of members, to their numbers
-    for (const NodePlan& node : current.nodes)
-        if (!node.isVacant && isMember(node.node) && drawsAlone(config, current, node))
-            tasks.emplace(taskOf(config, current, node), node.node);
+    for (const NodePlan& node : current.plan.nodes)
+        if (!node.isVacant && isMember(node.node) && drawsAlone(current.config, current.plan, node))
+            tasks.emplace(taskOf(current.config, current.plan, node), node.node);
 
     PlanChange change;
     std::vector<int> numbers; // of the nodes of the new plan
@@ -84,7 +80,7 @@ Result<PlanChange> changeOf(const SessionConfig& config, const SessionPlan& curr
         node.node = number;
         nodes[static_cast<size_t>(number)] = std::move(node);
     }
-    for (const NodePlan& node : current.nodes)
+    for (const NodePlan& node : current.plan.nodes)
         if (!node.isVacant && nodes[static_cast<size_t>(node.node)].isVacant) change.leaving.push_back(node.node);
     change.plan = std::move(wanted);
     change.plan.nodes = std::move(nodes);

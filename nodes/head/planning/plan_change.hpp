@@ -16,9 +16,15 @@ struct PlanChange {
     std::vector<int> kept, joining, leaving;
 };
 
+struct PlanInForce {
+    const SessionConfig& config;
+    const SessionPlan& plan;
+    const SessionPlan& outputs; // of the start, whose canvases the session shows
+};
+
 // isMember: the node of the current plan draws at the moment. firstNumber: the first number that no node has had.
 // Errors, one line each: the new plan needs outputs or transports that the session has not opened.
-Result<PlanChange> changeOf(const SessionConfig& config, const SessionPlan& current, SessionPlan wanted,
+Result<PlanChange> changeOf(const PlanInForce& current, const SessionConfig& config, SessionPlan wanted,
                             const std::function<bool(int node)>& isMember, int firstNumber);
 
 } // namespace mural

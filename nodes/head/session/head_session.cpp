@@ -44,7 +44,6 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     : config_(std::move(config)),
       control_(control),
       options_(std::move(options)),
-      sendsPictures_(headTakesPictures(config_, plan)),
       statistics_(clocksOf(plan)),
       pacer_([this](uint32_t client, uint32_t finished, uint32_t shown) {
           if (serving_) programs_->credit(client, finished, shown);
@@ -61,6 +60,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
                   frames_.isOn(picture.client, picture.window, picture.nativeWindow);
               },
               [this](WindowPicture picture) { output_->add(std::move(picture)); },
+              [this] { output_->closeWall(); },
               {[this](const ViewportAssignment& areas) {
                    nodes_.scheduleBeforeNextPacket(wire::HeadCommand::ViewportAssignment, bytesOf(areas));
                },
@@ -92,7 +92,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     if (terms.tries > 0 && options_.startNode)
         nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes)));
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
-    if (!sendsPictures_) return;
+    if (!plans_.current().takesPictures && config_.display != Display::Windows) return; // no plan needs them
     PictureOutputConfig output;
     output.saveFrames = config_.saveFrames;
     output.lastFrame = config_.frames;
@@ -100,7 +100,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     output.pairs = currentPlan().wall.stereo == StereoMode::Quad;
     output.statistics = &statistics_;
     output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
-    if (headShowsWall(config_, currentPlan())) output.openWall = [this] { return options_.openWall(0); };
+    if (config_.display == Display::Windows) output.openWall = [this] { return options_.openWall(0); };
     for (size_t i = 0; i < currentPlan().canvases.size(); ++i) {
         OtherCanvas& canvas = output.canvases.emplace_back();
         canvas.name = currentPlan().canvases[i].name;
@@ -187,7 +187,9 @@ void HeadSession::tick() {
 
 void HeadSession::reportProgress(int64_t nowNs) {
     const FrameTotals totals = frames_.totals();
-    const int64_t onWall = sendsPictures_ ? output_->totals().wallFrames : totals.wallFrames;
+    // a change of the plan may move the wall windows to the nodes and back
+    const bool isOutputs = config_.display == Display::App || !config_.out.empty();
+    const int64_t onWall = isOutputs ? output_->totals().wallFrames : totals.wallFrames;
     if (config_.frames > 0 && onWall >= config_.frames && !framesReached_) {
         framesReached_ = true;
         announce({{"event", "frames-reached"}});
@@ -228,7 +230,7 @@ Result<void> HeadSession::nodeAnswer(int node, const wire::ReplyPartHeader& head
 }
 
 Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& message) {
-    if (sendsPictures_) {
+    if (plans_.of(node).takesPictures) {
         plans_.of(node).pictures.frameDone(node, message.client, message.window, message.frame);
         output_->waitForRoom();
     }
@@ -245,7 +247,7 @@ Result<void> HeadSession::nodeFrameDone(int node, const wire::FrameDoneMessage& 
 }
 
 Result<void> HeadSession::nodePicture(int node, const wire::PictureHeader& header, ByteBuffer rows) {
-    if (!sendsPictures_) return Error{"it sent a picture that was not requested"};
+    if (!plans_.of(node).takesPictures) return Error{"it sent a picture that was not requested"};
     auto placed = placeOnWall(plans_.nodePlan(node), header, std::move(rows));
     auto done = placed ? plans_.of(node).pictures.part(node, placed->header, std::move(placed->rows))
                        : Result<void>(placed.error());
@@ -279,9 +281,8 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
     }
     frames_.clientGone(client);
     pacer_.clientGone(client);
-    if (!sendsPictures_) return;
     plans_.clientGone(client);
-    output_->clientGone(client);
+    if (output_) output_->clientGone(client);
 }
 
 Result<void> HeadSession::nodeDriverEvent(int node, const wire::DriverEvent& event, const std::string& text) {

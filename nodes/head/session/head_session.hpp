@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -143,6 +144,7 @@ private:
     Result<nlohmann::json> stopRecording();
     // Changes of the plan (head_session_plans.cpp).
     void addPlanOperations(ControlOperations& operations);
+    Result<nlohmann::json> undoChange(bool isDryRun);
     Result<nlohmann::json> changeLayout(const nlohmann::json& arguments);
     Result<nlohmann::json> changePlan(SessionConfig config, bool isDryRun);
     Result<void> canTakeNodes(size_t members);
@@ -210,7 +212,6 @@ private:
     HeadOptions options_;
     ControlFeed feed_;
     const LogToFeed logToFeed_{feed_};
-    const bool sendsPictures_;
     std::string placement_;  // placement of the head's threads
     std::string deltaLine_;  // for --explain: nodes with delta coding
     std::string streamLine_; // for --explain: transport of the stream; empty: shared memory only
@@ -241,6 +242,7 @@ private:
     std::mutex changing_;                                 // held during a change of the plan
     std::vector<std::shared_ptr<PendingChange>> changed_; // guarded by mutex_; their groups refer to them
     std::shared_ptr<PendingChange> pending_;              // guarded by mutex_; for the session's thread to begin
+    std::deque<SessionConfig> history_;   // guarded by mutex_; configurations before the changes, the latest last
     std::set<int> newNodes_;              // guarded by mutex_; come with a change of the plan, and were no members yet
     std::map<int, int64_t> leavingSince_; // guarded by mutex_; nodes of earlier plans, since their Leave
     const std::map<int, std::string> absences_; // nodes absent at the start, with the reason

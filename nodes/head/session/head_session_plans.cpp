@@ -1,4 +1,4 @@
-// Changes of the session's plan: the operation `layout`. The control thread calls it.
+// Changes of the session's plan: the operations `plan`, `layout` and `undo`. The control thread calls them.
 //
 // The control thread makes the new plan and the difference. The session's thread starts the new nodes, which receive
 // the state of the programs and draw in silence. When all of them have caught up, one position in the stream makes them
@@ -13,6 +13,7 @@
 #include "nodes/head/planning/delta_plan.hpp"
 #include "nodes/head/planning/make_plan.hpp"
 #include "nodes/head/session/head_session.hpp"
+#include "nodes/session/plan_fields.hpp"
 #include "nodes/session/session_secret.hpp"
 
 namespace mural {
@@ -29,9 +30,18 @@ constexpr int64_t kSettleMs = 4'000;   // until all nodes have passed an earlier
 constexpr int64_t kLeaveMs = 10'000;   // until a node has finished its last frames
 constexpr int64_t kProcessMs = 500;    // from its Goodbye to the end of its process
 
+constexpr size_t kMaxHistory = 16;
 constexpr const char* kOff = "off";
 
 std::string nameOf(const std::string& name, size_t index) { return name.empty() ? std::to_string(index) : name; }
+
+// Returns an error if --verify would compare different pictures.
+Result<void> checkVerification(const SessionConfig& config) {
+    const PassCounts& p = config.passes;
+    if (config.verifyEvery > 0 && (p.stereo != StereoMode::Off || p.samples > 1 || !p.zoom.none()))
+        return Error{"--verify compares with the program's own picture, which stereo, subpixels and zoom change"};
+    return {};
+}
 
 // Returns the canvases of the file with their layouts.
 Json canvasesJson(const BalancePlan& plan) {
@@ -63,6 +73,37 @@ void HeadSession::addPlanOperations(ControlOperations& operations) {
                      {"layout", Kind::Text, false, "name of the layout, or off"},
                      {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
                     [this](const Json& arguments) { return changeLayout(arguments); }});
+    operations.add({"plan",
+                    "plan [OPTIONS] [dry-run]",
+                    "divide the work in another way, see mural change; without arguments: the current options",
+                    {{"options", Kind::Object, false, "fields of the plan"},
+                     {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
+                    [this](const Json& arguments) -> Result<Json> {
+                        const auto options = arguments.find("options");
+                        if (options == arguments.end()) return Json{{"options", planFieldsOf(plans_.current().config)}};
+                        auto config = withPlanFields(plans_.current().config, *options);
+                        if (!config) return config.error();
+                        return changePlan(std::move(*config), arguments.value("dry-run", false));
+                    }});
+    operations.add({"undo",
+                    "undo [dry-run]",
+                    "return to the plan before the last change",
+                    {{"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
+                    [this](const Json& arguments) { return undoChange(arguments.value("dry-run", false)); }});
+}
+
+Result<Json> HeadSession::undoChange(bool isDryRun) {
+    std::optional<SessionConfig> before;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!history_.empty()) before = history_.back();
+    }
+    if (!before) return Error{"no change has happened that can be undone"};
+    auto done = changePlan(std::move(*before), isDryRun);
+    if (!done || isDryRun) return done;
+    const std::lock_guard lock(mutex_);
+    for (int i = 0; i < 2 && !history_.empty(); ++i) history_.pop_back(); // the change, and its undo
+    return done;
 }
 
 Result<Json> HeadSession::changeLayout(const Json& arguments) {
@@ -82,6 +123,7 @@ Result<Json> HeadSession::changeLayout(const Json& arguments) {
 // Prepares a change and carries it out. Errors: nothing has changed.
 Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
     const int64_t beganNs = monotonicNowNs();
+    if (const auto possible = checkVerification(config); !possible) return possible.error();
     const std::unique_lock changing(changing_, std::try_to_lock);
     if (!changing.owns_lock()) return Error{"another change is in progress; try again"};
     if (finishing_) return Error{"the session is ending"};
@@ -93,20 +135,25 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
     auto wanted = makePlan(config, host);
     if (!wanted) return wanted.error();
     const auto difference = [&] {
+        const SessionStage& stage = plans_.current();
         return changeOf(
-            config, currentPlan(), *wanted,
+            {stage.config, stage.plan, plans_.outputs()}, config, *wanted,
             [this](int node) { return nodes_.link(node).alive() && !returns_->isRestarting(node); }, nodeCount());
     };
     auto change = difference();
     if (!change) return change.error();
     const auto nodesJson = [&] {
-        return Json{{"joined", change->joining}, {"left", change->leaving}, {"kept", change->kept}};
+        return Json{{"joined", change->joining},
+                    {"left", change->leaving},
+                    {"kept", change->kept},
+                    {"warnings", change->plan.warnings}};
     };
     if (isDryRun) return nodesJson();
     const size_t members = change->joining.size() + change->kept.size();
     if (!change->joining.empty()) {
         if (const auto can = canTakeNodes(members); !can) return can.error();
     }
+    SessionConfig before = plans_.current().config;
     const bool skips = returns_->skipsFrames();
     Result<void> done = carryOut(config, *change);
     if (!done && returns_->skipsFrames() != skips) { // the frames of the new nodes depended on skipped ones
@@ -115,6 +162,15 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
         done = carryOut(config, *change);
     }
     if (!done) return Error{"nothing has changed: " + done.error().message};
+    {
+        const std::lock_guard lock(mutex_);
+        history_.push_back(std::move(before));
+        if (history_.size() > kMaxHistory) history_.pop_front();
+    }
+    int turns = 1;
+    for (const NodePlan& node : currentPlan().nodes) turns = std::max(turns, node.pass.period);
+    if (programs_->latency() < static_cast<uint32_t>(turns))
+        programs_->setLatency(static_cast<uint32_t>(turns)); // so that the turns overlap
     Json result = nodesJson();
     result["seconds"] = static_cast<double>(monotonicNowNs() - beganNs) / static_cast<double>(kNsPerS);
     feed_.publish(ControlTopic::Events,

@@ -279,7 +279,8 @@ void HeadSession::announceReady() {
         }
     }
     for (const std::string& warning : currentPlan().warnings) log::warning(log::Topic::Session, warning);
-    if (currentPlan().wall.stereo == StereoMode::Quad && sendsPictures_ && !headShowsWall(config_, currentPlan()))
+    if (currentPlan().wall.stereo == StereoMode::Quad && plans_.current().takesPictures &&
+        !plans_.current().ownsWallWindows)
         log::warning(log::Topic::Session,
                      "both eyes are shown side by side, because only wall windows have a buffer for each eye; add "
                      "--display windows");

@@ -65,11 +65,14 @@ SessionStage::SessionStage(SessionConfig sessionConfig, SessionPlan sessionPlan,
                            PictureAssembler::Deliver deliver, LoadBalancer::Announce announce)
     : config(std::move(sessionConfig)),
       plan(std::move(sessionPlan)),
+      takesPictures(headTakesPictures(config, plan)),
+      ownsWallWindows(headShowsWall(config, plan)),
       pictures(picturesOf(plan), composeBy(plan.wall), std::move(deliver), composeOthersBy(plan, outputs),
                sizesOf(plan)),
       balancer(plan, std::move(announce), plantOf()) {}
 
-PlanSequence::PlanSequence(SessionConfig config, SessionPlan plan, Hooks hooks) : hooks_(std::move(hooks)) {
+PlanSequence::PlanSequence(SessionConfig config, SessionPlan plan, Hooks hooks)
+    : hooks_(std::move(hooks)), outputs_(plan) {
     SessionStage& first = addStage(std::move(config), std::move(plan));
     entries_.push_back({&first, {}, {}, false});
     current_ = &first;
@@ -77,9 +80,8 @@ PlanSequence::PlanSequence(SessionConfig config, SessionPlan plan, Hooks hooks) 
 
 SessionStage& PlanSequence::addStage(SessionConfig config, SessionPlan plan) {
     const auto itself = std::make_shared<SessionStage*>(nullptr); // the address, once it is known
-    const SessionPlan outputs = stages_.empty() ? plan : stages_.front()->plan;
     auto stage = std::make_unique<SessionStage>(
-        std::move(config), std::move(plan), outputs,
+        std::move(config), std::move(plan), outputs_,
         [this, itself](WindowPicture picture) { deliver(**itself, std::move(picture)); }, announceOf(itself));
     *itself = stage.get();
     const auto count = static_cast<int>(stage->plan.nodes.size());
@@ -139,6 +141,7 @@ bool PlanSequence::isSettled() const {
 // Called with the lock of the stage's pictures.
 void PlanSequence::deliver(const SessionStage& stage, WindowPicture picture) {
     hooks_.isWhole(picture);
+    picture.isOnWall = stage.ownsWallWindows;
     const std::lock_guard lock(mutex_);
     for (Entry& entry : entries_) {
         if (entry.stage != &stage) {
@@ -163,6 +166,7 @@ void PlanSequence::passed(int node) {
             if (entry.draining.erase(node) > 0 && entry.draining.empty()) {
                 entry.isOver = true;
                 over.push_back(entry.stage);
+                if (entry.stage->ownsWallWindows && !current().ownsWallWindows) hooks_.closeWall();
             }
             isNext = isNext && entry.isOver;
         }

@@ -29,6 +29,8 @@ struct SessionStage {
 
     const SessionConfig config;
     const SessionPlan plan;
+    const bool takesPictures;   // nodes send their pictures to the head
+    const bool ownsWallWindows; // the head shows the wall in windows
     PictureAssembler pictures;
     LoadBalancer balancer;
 };
@@ -39,11 +41,14 @@ public:
     struct Hooks {
         std::function<void(const WindowPicture& picture)> isWhole; // called before the frame counts as finished
         std::function<void(WindowPicture picture)> output;         // the same pictures, in the order of the frames
+        std::function<void()> closeWall;                           // nodes show the wall from now on
         LoadBalancer::Announce announce;                           // of the current stage
     };
 
     PlanSequence(SessionConfig config, SessionPlan plan, Hooks hooks);
 
+    // The plan of the start, whose canvases the session shows.
+    [[nodiscard]] const SessionPlan& outputs() const { return outputs_; }
     [[nodiscard]] SessionStage& current() const { return *current_.load(std::memory_order_acquire); }
     // Returns the stage of the node's latest message; before it is a member, the stage that it joins.
     [[nodiscard]] SessionStage& of(int node) const {
@@ -87,6 +92,7 @@ private:
     [[nodiscard]] LoadBalancer::Announce announceOf(const std::shared_ptr<SessionStage*>& stage);
 
     const Hooks hooks_;
+    const SessionPlan outputs_;
     const std::unique_ptr<StagesOfNodes> ofNodes_ = std::make_unique<StagesOfNodes>();
     std::atomic<int> nodeCount_{0};
     std::atomic<SessionStage*> current_{nullptr};

@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "common/json/json_text.hpp"
 #include "nodes/head/control/control_operations.hpp"
 #include "tools/mural/ctl/control_client.hpp"
 
@@ -73,6 +74,11 @@ Result<Json> valueOf(const std::string& word, const Json& argument) {
         const auto path = std::filesystem::absolute(word, failed);
         if (word.empty() || failed) return Error{name + " must be a file instead of \"" + word + "\""};
         return Json(path.lexically_normal().string());
+    }
+    if (kind == "object") {
+        Json object = parseJson(word);
+        if (object.is_object()) return object;
+        return Error{name + " must be an object of JSON instead of " + word};
     }
     return Json(word);
 }

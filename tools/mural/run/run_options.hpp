@@ -45,6 +45,8 @@ struct RunArguments {
 
 // Adds the options to the subcommand; `arguments` must outlive the parsing.
 void describeRunOptions(CLI::App& command, RunArguments& arguments);
+// The same for the options that divide the work, which describeRunOptions() includes.
+void describePlanOptions(CLI::App& command, RunArguments& arguments);
 
 // Returns one error, for the first invalid argument.
 Result<RunOptions> runOptionsFrom(const RunArguments& arguments);
