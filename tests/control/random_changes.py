@@ -10,6 +10,7 @@ import json
 import os
 import random
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -25,6 +26,8 @@ SECONDS = float("inf") if "RANDOM_CHANGES" in os.environ else 100  # limit for t
 LEAST_CHANGES = 16
 GROWTH_MIB = 64  # allowed growth in the second half
 NODES = 3
+PLANS = [("--balance", "auto", "--local-nodes", "3"), ("--tiles", "2x1"), ("--balance", "load", "--local-nodes", "2"), ("--db", "2"),
+         ("--dplex", "2"), ("--tile-queue", "64x64", "--local-nodes", "3"), ("--undo",)]
 
 
 def memory_mib(pid):
@@ -57,9 +60,18 @@ def frames_go_on(context, run):
     return False
 
 
+def change_plan(context, run, words):
+    """Returns (exit status, errors) of `mural change`."""
+    done = subprocess.run([context.mural, "change", str(run.process.pid), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          timeout=PATIENCE_SECONDS, check=False)
+    return done.returncode, done.stderr.decode()
+
+
 def change(context, run, numbers, folder, kills):
     """Performs one change; returns its words, and whether it succeeded. A refused change is right as well."""
-    node, number = numbers.randrange(NODES), numbers.randrange(1000)
+    number = numbers.randrange(1000)
+    present = [entry["node"] for entry in result_of(context, run, "nodes").get("nodes", [])]
+    node = numbers.choice(present or range(NODES))
     changes = [("latency", str(numbers.randrange(5))), ("record", "start", os.path.join(folder, "%d.mural" % number)), ("record", "stop"),
                ("stop-node", str(node)), ("start-node", str(node)), ("stop-node", str(node)), ("start-node", str(node)), ("frames",)]
     if kills and numbers.random() < 0.15:
@@ -71,8 +83,12 @@ def change(context, run, numbers, folder, kills):
         except ProcessLookupError:  # the node has just ended
             return ("kill",), False
         return ("kill",), True
-    words = numbers.choice(changes)
-    status, _, message = ctl(context, str(run.process.pid), *words)
+    if numbers.random() < 0.3:
+        words = ("change",) + numbers.choice(PLANS)
+        status, message = change_plan(context, run, words[1:])
+    else:
+        words = numbers.choice(changes)
+        status, _, message = ctl(context, str(run.process.pid), *words)
     if status != 0 and (status != 1 or message.count("\n") != 1):
         raise SystemExit("%s: status %d, %s" % (" ".join(words), status, message))
     return words, status == 0

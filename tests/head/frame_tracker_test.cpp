@@ -37,6 +37,20 @@ TEST_F(FrameTrackerTest, followsTheSlowestNode) {
     EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 2, 2}));
 }
 
+TEST_F(FrameTrackerTest, waitsForAnAddedNodeFromItsMembershipOn) {
+    done(0, 1);
+    tracker.addNodes(1);
+    done(1, 1);
+    EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 1, 1}));
+    tracker.nodeJoins(2);
+    tracker.nodeJoined(2, {{1, 1}}, 0);
+    done(0, 2);
+    done(1, 2);
+    EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 1, 1}));
+    done(2, 2);
+    EXPECT_EQ(credits.back(), (std::vector<uint32_t>{1, 2, 2}));
+}
+
 TEST_F(FrameTrackerTest, doesNotWaitForALostNode) {
     done(0, 1);
     done(0, 2);

@@ -40,6 +40,24 @@ protected:
     }
 };
 
+TEST_F(AnswerAssemblerTest, waitsForAnAddedNodeFromItsViewOn) {
+    rectangle(0, 0, 1, 1);
+    assembler.addNodes(1);
+    assembler.nodeJoins(3, 1);
+    rectangle(1, 1, 1, 2);
+    assembler.nodeLost(3); // its absence does not matter to the open request
+    rectangle(2, 2, 1, 3);
+    ASSERT_EQ(replies.size(), 1u);
+    EXPECT_EQ(replyBytes(), (std::vector<uint8_t>{1, 1, 2, 2, 3, 3}));
+    assembler.nodeJoins(3, 2);
+    for (int node = 0; node < 4; ++node) assembler.nodeInView(node, 2);
+    for (int node = 0; node < 3; ++node) rectangle(node, node, 1, 4);
+    EXPECT_EQ(assembler.missing(1), std::vector<int>{3});
+    rectangle(3, 3, 1, 5);
+    ASSERT_EQ(replies.size(), 2u);
+    EXPECT_EQ(replyBytes(), (std::vector<uint8_t>{4, 4, 4, 4, 4, 4, 5, 5}));
+}
+
 TEST_F(AnswerAssemblerTest, waitsForTheLastPartOfEveryNode) {
     rectangle(0, 0, 2, 1);
     rectangle(1, 2, 1, 2, false);

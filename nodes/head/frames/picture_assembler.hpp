@@ -25,10 +25,10 @@ struct WindowPicture {
     uint32_t window = 0;
     uint32_t frame = 0;
     uint64_t nativeWindow = 0; // X window id, 0: none; bits 32 and up: number of its display (CaptureHeader::displays)
-    bool isOnWall = true;      // shown in the wall windows of the head, if it has them
     std::shared_ptr<const OwnedPicture> picture;
     // pictures of the other canvases, in their order; null: out of memory
     std::vector<std::shared_ptr<const OwnedPicture>> others;
+    bool isOnWall = true; // shown in the wall windows of the head, if it has them
 };
 
 // Sessions with several passes (render_pass.hpp) have a picture of each, which `compose` combines. A picture is

@@ -57,8 +57,8 @@ struct CanvasPlan {
 struct NodePlan {
     int node = 0;
     bool isVacant = false; // no node: an earlier or later plan of the session uses this number
-    int canvas = 0;    // 0: the first; n: SessionPlan::canvases[n - 1]
-    std::string where; // "local" or the host
+    int canvas = 0;        // 0: the first; n: SessionPlan::canvases[n - 1]
+    std::string where;     // "local" or the host
     NodeReach reach = NodeReach::SharedMemory;
     RenderPass pass;
     int picture = 0;     // index of the picture within the pass (WallPart)
@@ -81,8 +81,8 @@ struct NodePlan {
 };
 
 struct SessionPlan {
-    std::vector<NodePlan> nodes; // by number
-    std::string canvas;          // name of the first canvas; empty: none
+    std::vector<NodePlan> nodes;                // by number
+    std::string canvas;                         // name of the first canvas; empty: none
     std::shared_ptr<const BalancePlan> balance; // null: nothing moves
     WallComposition wall;
     bool nodesShowWall = true;                    // each node draws an unscaled part of the wall
