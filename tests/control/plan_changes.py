@@ -141,6 +141,13 @@ def layouts_in_the_programs_window(context):
 
 
 @cases.case
+def layouts_in_wall_windows(context):
+    """The head and the nodes show the wall by turns."""
+    order = [("2D", 3), ("simple", 1), ("DB", 2), ("turns", 2)]
+    return exact_changes(context, ["--config", LAYOUTS, "--all-local", "--display", "windows"], [layout("wall", *entry) for entry in order])
+
+
+@cases.case
 def one_canvas_of_two(context):
     """The nodes of the other canvas continue."""
     changes = [layout("monitor", "off", 0, 1), layout("monitor", "all", 1, 0), layout("monitor", "off", 0, 1)]
@@ -155,6 +162,24 @@ def options_of_the_division(context):
                options("--config", LAYOUTS, "--all-local", "--layout", "2D", joined=3), options("--tiles", "2x1", joined=2),
                options("--tiles", "2x1", joined=0, kept=2)]
     return exact_changes(context, ["--tiles", "3x1", "--display", "none"], changes)
+
+
+def on_hosts(context, *more):
+    hosts = ("--nodes", "localhost,localhost")
+    changes = [options("--tiles", "3x1", "--nodes", "localhost,localhost,localhost", joined=3), options("--db", "2", *hosts, joined=2),
+               options("--balance", "auto", *hosts, joined=2), options("--tiles", "2x1", "--nodes", "localhost", "--local-nodes", "1", joined=2),
+               options("--tiles", "2x1", *hosts, joined=1, kept=1)]
+    return exact_changes(context, ["--tiles", "2x1", "--display", "none", *hosts, *more], changes)
+
+
+@cases.case
+def delta_coded_streams(context):
+    return on_hosts(context, "--stream", "tcp", "--delta", "on")
+
+
+@cases.case
+def multicast_streams(context):
+    return on_hosts(context, "--stream", "rsp://239.255.77.9:4297?interface=127.0.0.1", "--delta", "on")
 
 
 @cases.case

@@ -123,7 +123,7 @@ bool StreamBroadcaster::sendToLinksLocked(std::span<const std::byte> header, std
     for (NodeConnection* link : links_) {
         if (link->inBatches() != inBatches) continue;
         if (link->byMulticast())
-            byMulticast = byMulticast || link->alive();
+            byMulticast = byMulticast || (link->member() && link->alive()); // others have left
         else
             sendTo(*link, header, payload);
         byMulticast = byMulticast || link == changingOver_;

@@ -146,15 +146,16 @@ bool NodeResync::drawsAgain() {
     return false;
 }
 
-// Meanwhile the node receives everything that programs send. Returns false if the node is lost.
+// Meanwhile the node receives everything that programs send. No Synchronize: another thread may make the node a member
+// at any time, and its stream is delta-coded from then on. Returns false if the node is lost.
 bool NodeResync::joins() {
     while (true) {
         auto joined = join_();
         if (!joined) link_.lose(joined.error().message);
         if (!joined || *joined) return joined.ok();
         poll(nullptr, 0, kJoinPollMs);
+        if (!link_.alive()) return false;
         sendQueue();
-        if (!synchronize()) return false;
     }
 }
 

@@ -163,11 +163,18 @@ bool HeadSession::finishRequested(Deadline deadline) {
 
 void HeadSession::watchNodes(int64_t nowNs) {
     nodes_.watch(nowNs, options_.silencePatienceMs * kNsPerMs, [this](int node, bool multicast) {
+        bool isFirst = false; // a new node joins the group
         {
             const std::lock_guard lock(mutex_);
-            multicast ? rerouted_.erase(node) : static_cast<size_t>(rerouted_.insert(node).second);
+            const bool wasRerouted = rerouted_.erase(node) > 0;
+            isFirst = multicast && !wasRerouted && totals_[static_cast<size_t>(node)].joins == 0;
+            if (!multicast) rerouted_.insert(node);
         }
-        log::line(log::Topic::Stream, multicast ? log::Level::Info : log::Level::Warning, nodes_.link(node).describe(),
+        log::line(log::Topic::Stream,
+                  isFirst     ? log::Level::Debug
+                  : multicast ? log::Level::Info
+                              : log::Level::Warning,
+                  nodes_.link(node).describe(),
                   multicast ? ": multicast works again"
                             : ": no reply to multicast; its stream uses TCP; see mural doctor --network");
     });
