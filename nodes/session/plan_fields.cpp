@@ -11,10 +11,10 @@ namespace mural {
 namespace {
 
 constexpr std::string_view kPlanFields[] = {
-    "columns",     "rows",         "tileWidth",  "tileHeight", "chunks",      "balance", "localNodes",
-    "hosts",       "configFile",   "allLocal",   "canvas",     "layouts",     "stereo",  "modelUnit",
-    "kernelWidth", "kernelHeight", "samples",    "period",     "ranges",      "zoomX",   "zoomY",
-    "codec",       "readback",     "projection", "eyeBase",    "composition", "tiling",  "focusDistance"};
+    "columns",    "rows",        "tileWidth", "tileHeight",    "chunks",    "balance",   "localNodes",  "hosts",
+    "configFile", "allLocal",    "canvas",    "layouts",       "stereo",    "modelUnit", "kernelWidth", "kernelHeight",
+    "samples",    "period",      "ranges",    "zoomX",         "zoomY",     "codec",     "readback",    "projection",
+    "eyeBase",    "composition", "tiling",    "focusDistance", "movedHosts"};
 
 } // namespace
 

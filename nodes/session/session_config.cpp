@@ -67,6 +67,8 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("tileHeight", c.tileHeight, 0);
     visit("localNodes", c.localNodes, 0);
     visit("hosts", c.hosts);
+    visit("spareHosts", c.spareHosts);
+    visit("movedHosts", c.movedHosts);
     visit("launchCommand", c.launchCommand);
     visit("stream", c.stream);
     visit("delta", c.delta);

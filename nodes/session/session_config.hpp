@@ -37,8 +37,10 @@ struct SessionConfig {
     int tileWidth = 0, tileHeight = 0; // --tile-queue: tile size in pixels, replaces columns and rows; 0: no queue
     int chunks = 0; // --chunk-queue: number of chunks of a picture's draws, for nodes of --db; 0: fixed shares
     balance::Balance balance = balance::Balance::AsInFile; // --balance: the equalizers of areas and ranges
-    int localNodes = 0;             // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
-    std::vector<std::string> hosts; // --nodes
+    int localNodes = 0;                  // --local-nodes; 0: min(columns * rows, 4) if there are no hosts
+    std::vector<std::string> hosts;      // --nodes
+    std::vector<std::string> spareHosts; // --spare-nodes: hosts that take over the nodes of a lost one, in this order
+    std::vector<std::string> movedHosts; // "FROM=TO": nodes of FROM run on TO; one entry per replacement, in order
     std::string launchCommand = "ssh -o BatchMode=yes"; // --launch: prefix that runs a command on a host
     std::string stream = "auto";                        // --stream: transport to other machines: auto, tcp, rsp://…
     DeltaMode delta = DeltaMode::Auto;                  // --delta: delta coding

@@ -259,6 +259,52 @@ def failing_nodes(context):
         return options("--tiles", "1x2", joined=2)(drawing) or drawing.finish()
 
 
+HOST = """#!/bin/sh
+# HOST COMMAND...: runs the command unless the host is off
+[ -e "$0.$1.off" ] && exit 255
+shift
+exec "$@"
+"""
+
+
+def hosts_of(context, run):
+    return sorted(node["where"] for node in result_of(context, run, "nodes").get("nodes", []))
+
+
+@cases.case
+def spare_host(context):
+    """A host fails, and its node moves to the spare host. Then the nodes of another host move on request."""
+    with tempfile.TemporaryDirectory(prefix="mural-spares.") as folder:
+        launch = os.path.join(folder, "launch")
+        with open(launch, "w", encoding="ascii") as file:
+            file.write(HOST)
+        os.chmod(launch, 0o755)
+        hosts = ["--nodes", "127.0.0.2,127.0.0.3", "--spare-nodes", "127.0.0.4", "--stream", "tcp", "--launch", launch]
+        with Drawing(context, ["--tiles", "2x1", "--display", "none"] + hosts) as drawing:
+            run = drawing.run
+            if not drawing.begins():
+                return "no frames: %s" % " | ".join(run.standard_error[-3:])
+            lost = next(node for node in result_of(context, run, "nodes")["nodes"] if node["where"] == "127.0.0.3")
+            with open(launch + ".127.0.0.3.off", "w", encoding="ascii"):
+                os.kill(lost["pid"], signal.SIGKILL)
+            deadline = time.monotonic() + PATIENCE_SECONDS
+            while time.monotonic() < deadline and hosts_of(context, run) != ["127.0.0.2", "127.0.0.4"]:
+                time.sleep(0.05)
+            if hosts_of(context, run) != ["127.0.0.2", "127.0.0.4"]:
+                return "nodes on %s: %s" % (hosts_of(context, run), " | ".join(run.standard_error[-4:]))
+            reply = result_of(context, run, "move-nodes", "127.0.0.2", "127.0.0.5")
+            if len(reply.get("joined", [])) != 1 or len(reply.get("kept", [])) != 1 or hosts_of(context, run) != ["127.0.0.4", "127.0.0.5"]:
+                return "move-nodes: %s, nodes on %s" % (reply, hosts_of(context, run))
+            for words, text in ((("nowhere", "127.0.0.6"), "no node"), (("127.0.0.5", "a=b"), "no name")):
+                status, _, errors = ctl(context, str(run.process.pid), "move-nodes", *words)
+                if status == 0 or text not in errors:
+                    return "move-nodes %s: %s" % (" ".join(words), errors)
+            if not draws_further(context, run, 5):
+                return "no frames after the moves"
+            session.end_after(drawing.end_file, 3)
+            return cases.check_end(run, 0)
+
+
 @cases.case
 def killed_nodes(context):
     """Nodes are killed at random moments of the changes. The program continues, and later changes succeed."""

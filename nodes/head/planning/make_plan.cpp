@@ -1,5 +1,7 @@
 #include "nodes/head/planning/make_plan.hpp"
 
+#include <utility>
+
 #include "nodes/head/planning/balance_plan.hpp"
 #include "nodes/head/planning/codec_choice.hpp"
 #include "nodes/head/planning/composition_choice.hpp"
@@ -18,9 +20,19 @@ Result<compound::LoadedConfig> loadFor(const SessionConfig& config) {
     return compound::loadConfig(std::move(*file), "options", compound::processEnvironment);
 }
 
+// Returns the host on which nodes of `host` run (SessionConfig::movedHosts).
+std::string movedTo(std::string host, const std::vector<std::string>& moves) {
+    for (const std::string& move : moves)
+        if (const size_t at = move.find('='); at != std::string::npos && move.substr(0, at) == host)
+            host = move.substr(at + 1);
+    return host;
+}
+
 } // namespace
 
-Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& ownHost) {
+Result<SessionPlan> makePlan(const SessionConfig& wanted, const std::string& ownHost) {
+    SessionConfig config = wanted;
+    for (std::string& host : config.hosts) host = movedTo(host, config.movedHosts);
     if (config.configFile.empty() && !movesWork(config)) return planSession(config, ownHost);
     auto loaded = loadFor(config);
     if (!loaded) return loaded.error();
@@ -28,6 +40,10 @@ Result<SessionPlan> makePlan(const SessionConfig& config, const std::string& own
     auto plan = planOf(*loaded, {ownHost, config.allLocal, config.canvas, config.layouts, config.projection,
                                  config.modelUnit, config.width, config.balance});
     if (!plan) return plan;
+    for (NodePlan& node : plan->nodes) {
+        const std::string host = movedTo(node.where, config.movedHosts);
+        if (std::exchange(node.where, host) != host) node.reach = reachOf(host, ownHost);
+    }
     chooseComposition(*plan, config.composition);
     chooseCodecs(*plan, config.codec);
     settleBalance(*plan, config);

@@ -87,7 +87,8 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
                                                     events));
     }
     ReturnTerms terms;
-    terms.tries = config_.restartNodes;
+    spares_ = config_.spareHosts;
+    terms.tries = spares_.empty() ? config_.restartNodes : std::min(config_.restartNodes, 1);
     terms.readyPatienceMs = options_.readyPatienceMs;
     if (terms.tries > 0 && options_.startNode)
         nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes)));
@@ -121,7 +122,8 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
 }
 
 HeadSession::~HeadSession() {
-    tearingDown_ = true;
+    tearingDown_ = finishing_ = true;
+    if (spareMove_.joinable()) spareMove_.join();
     controlServer_.reset();
     server_.reset();
     if (output_) output_->drop();
@@ -339,6 +341,7 @@ void HeadSession::nodeLost(int node, const std::string& why) {
 
 void HeadSession::finish() {
     finishing_ = true;
+    if (spareMove_.joinable()) spareMove_.join();
     log::debug(log::Topic::Session, "the session ends: drains programs, nodes and outputs");
     returns_->stop([this] { watchNodes(monotonicNowNs()); });
     programs_->refuseFrom("the session is ending");

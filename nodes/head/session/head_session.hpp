@@ -15,6 +15,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "nodes/head/results/reply_assembler.hpp"
@@ -144,6 +145,8 @@ private:
     Result<nlohmann::json> stopRecording();
     // Changes of the plan (head_session_plans.cpp).
     void addPlanOperations(ControlOperations& operations);
+    Result<nlohmann::json> moveNodes(const std::string& from, const std::string& to, bool isDryRun);
+    void takeSpareFor(int node);
     Result<nlohmann::json> undoChange(bool isDryRun);
     Result<nlohmann::json> changeLayout(const nlohmann::json& arguments);
     Result<nlohmann::json> changePlan(SessionConfig config, bool isDryRun);
@@ -239,6 +242,10 @@ private:
     std::atomic<bool> finishing_{false};
     std::atomic<bool> tearingDown_{false};
     std::atomic<bool> serving_{false};
+    std::vector<std::string> spares_;  // remaining hosts of --spare-nodes; used by the session's thread
+    std::vector<int> waitingForSpare_; // lost nodes; used by the session's thread
+    std::thread spareMove_;            // moves nodes to a spare host
+    std::atomic<bool> isMovingToSpare_{false};
     std::mutex changing_;                                 // held during a change of the plan
     std::vector<std::shared_ptr<PendingChange>> changed_; // guarded by mutex_; their groups refer to them
     std::shared_ptr<PendingChange> pending_;              // guarded by mutex_; for the session's thread to begin

@@ -30,6 +30,8 @@ constexpr int64_t kSettleMs = 4'000;   // until all nodes have passed an earlier
 constexpr int64_t kLeaveMs = 10'000;   // until a node has finished its last frames
 constexpr int64_t kProcessMs = 500;    // from its Goodbye to the end of its process
 
+constexpr int64_t kSpareMs = 60'000; // until the nodes of a lost host have moved
+constexpr int kSpareRetryMs = 500;
 constexpr size_t kMaxHistory = 16;
 constexpr const char* kOff = "off";
 
@@ -85,11 +87,63 @@ void HeadSession::addPlanOperations(ControlOperations& operations) {
                         if (!config) return config.error();
                         return changePlan(std::move(*config), arguments.value("dry-run", false));
                     }});
+    operations.add({"move-nodes",
+                    "move-nodes FROM TO [dry-run]",
+                    "run the nodes of a host on another one",
+                    {{"from", Kind::Text, true, "host, as mural ctl nodes shows it"},
+                     {"to", Kind::Text, true, "host that takes over its nodes"},
+                     {"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
+                    [this](const Json& arguments) {
+                        return moveNodes(arguments.at("from").get<std::string>(), arguments.at("to").get<std::string>(),
+                                         arguments.value("dry-run", false));
+                    }});
     operations.add({"undo",
                     "undo [dry-run]",
                     "return to the plan before the last change",
                     {{"dry-run", Kind::Truth, false, "only report the nodes that would start and end"}},
                     [this](const Json& arguments) { return undoChange(arguments.value("dry-run", false)); }});
+}
+
+Result<Json> HeadSession::moveNodes(const std::string& from, const std::string& to, bool isDryRun) {
+    const std::vector<NodePlan>& nodes = currentPlan().nodes;
+    const bool isKnown = from != "local" && std::ranges::any_of(nodes, [&](const NodePlan& node) {
+                             return !node.isVacant && node.where == from;
+                         });
+    if (!isKnown) return Error{"no node of the session runs on the host \"" + from + "\"; see mural ctl nodes"};
+    if (to.empty() || to.find_first_of("= \t") != std::string::npos || to.front() == '-')
+        return Error{"\"" + to + "\" is no name of a host"};
+    SessionConfig config = plans_.current().config;
+    config.movedHosts.push_back(from + "=" + to);
+    return changePlan(std::move(config), isDryRun);
+}
+
+// Called by the session's thread when a node stays lost. The move runs in a thread of its own, because it waits for
+// this one.
+void HeadSession::takeSpareFor(int node) {
+    const std::string from = plans_.nodePlan(node).where;
+    if (spares_.empty() || from == "local" || finishing_ || hasLeft(node)) return;
+    if (spareMove_.joinable()) {
+        if (!isMovingToSpare_)
+            spareMove_.join();
+        else
+            return waitingForSpare_.push_back(node);
+    }
+    const std::string to = spares_.front();
+    spares_.erase(spares_.begin());
+    log::info(log::Topic::Node, "the spare host ", to, " takes over the nodes of ", from);
+    isMovingToSpare_ = true;
+    spareMove_ = std::thread([this, from, to] {
+        const Deadline deadline = Deadline::inMs(kSpareMs);
+        auto moved = moveNodes(from, to, false);
+        while (!moved && !deadline.passed() && !finishing_) { // other nodes of the host may be in their restarts
+            poll(nullptr, 0, kSpareRetryMs);
+            if (!finishing_) moved = moveNodes(from, to, false);
+        }
+        if (!moved && !finishing_)
+            log::warning(log::Topic::Node, "the spare host ", to, " cannot take over the nodes of ", from, ": ",
+                         moved.error().message);
+        isMovingToSpare_ = false;
+    });
 }
 
 Result<Json> HeadSession::undoChange(bool isDryRun) {
@@ -324,8 +378,10 @@ Result<void> HeadSession::exchangeNodes(PendingChange& pending) {
     return done;
 }
 
-// Ends the processes of nodes that have left with a change of the plan.
+// Ends the processes of nodes that have left with a change of the plan, and moves nodes that wait for a spare host.
 void HeadSession::endLeftNodes(int64_t nowNs) {
+    if (!isMovingToSpare_)
+        for (const int node : std::exchange(waitingForSpare_, {})) takeSpareFor(node);
     std::map<int, int64_t> leaving;
     {
         const std::lock_guard lock(mutex_);

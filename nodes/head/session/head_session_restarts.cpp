@@ -52,7 +52,8 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
         return plan.movesArea ? "other nodes take its tiles" : "its tiles keep their last picture";
     };
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
-    hooks.gaveUp = [this](int) {
+    hooks.gaveUp = [this](int node) {
+        takeSpareFor(node);
         const std::lock_guard membership(membership_);
         if (noneIsLeft()) noNodeIsLeft();
     };

@@ -84,6 +84,10 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("SIZE");
     command.add_option("--restart-nodes", a.restartNodes, "restart a lost node up to N times in a row; 0: never (3)")
         ->type_name("N");
+    command
+        .add_option("--spare-nodes", a.spareNodes,
+                    "hosts, separated by commas, that take over the nodes of a host whose node cannot be restarted")
+        ->type_name("H1,H2");
     command.add_option("--min-nodes", a.minNodes, "begin with N nodes; late or failed ones join later (all)")
         ->type_name("N");
     command.add_option("--remote-mural", a.remoteMural, "path of mural on the hosts (the local path)")

@@ -36,27 +36,32 @@ Result<void> checkStream(const std::string& stream) {
     return {};
 }
 
+Result<void> readHosts(const char* option, const OptionText& text, std::vector<std::string>& hosts) {
+    if (!text) return {};
+    hosts = listOf(*text);
+    const bool bad = std::any_of(hosts.begin(), hosts.end(), [](const std::string& h) {
+        return h.empty() || h.front() == '-' || h.find_first_of(" \t\"'=") != std::string::npos;
+    });
+    if (bad) return badValue(option, *text, "must be host names separated by commas, such as wall1,wall2");
+    // Rejects numbers as host names, because connecting to them would only time out.
+    const bool counts = std::any_of(hosts.begin(), hosts.end(), [](const std::string& h) {
+        return h.find_first_not_of("0123456789") == std::string::npos;
+    });
+    if (counts)
+        return badValue(
+            option, *text,
+            "must be host names, such as wall1,wall2; --local-nodes sets the number of nodes on this machine");
+    return {};
+}
+
 } // namespace
 
 Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     int64_t local = 0;
     if (auto r = readNumber("--local-nodes", a.localNodes, 1, kMaxNodes, local); !r) return r;
     c.localNodes = static_cast<int>(local);
-    if (a.nodes) {
-        c.hosts = listOf(*a.nodes);
-        const bool bad = std::any_of(c.hosts.begin(), c.hosts.end(), [](const std::string& h) {
-            return h.empty() || h.front() == '-' || h.find_first_of(" \t\"'") != std::string::npos;
-        });
-        if (bad) return badValue("--nodes", *a.nodes, "must be host names separated by commas, such as wall1,wall2");
-        // Rejects numbers as host names, because connecting to them would only time out.
-        const bool counts = std::any_of(c.hosts.begin(), c.hosts.end(), [](const std::string& h) {
-            return h.find_first_not_of("0123456789") == std::string::npos;
-        });
-        if (counts)
-            return badValue(
-                "--nodes", *a.nodes,
-                "must be host names, such as wall1,wall2; --local-nodes sets the number of nodes on this machine");
-    }
+    if (auto r = readHosts("--nodes", a.nodes, c.hosts); !r) return r;
+    if (auto r = readHosts("--spare-nodes", a.spareNodes, c.spareHosts); !r) return r;
     const int requested = c.localNodes + static_cast<int>(c.hosts.size());
     const int passes = static_cast<int>(passesOf(c.passes).size()) * c.passes.ranges;
     if (requested > 0 && !a.tiles && !a.tileQueue)
@@ -86,6 +91,8 @@ Result<void> readNodes(const RunArguments& a, SessionConfig& c) {
     c.minNodes = static_cast<int>(minNodes);
     if (requested > 0 && c.minNodes > requested)
         return badValue("--min-nodes", *a.minNodes, fmt::format("must be at most {}, the number of nodes", requested));
+    if (!c.spareHosts.empty() && c.restartNodes == 0)
+        return Error{"--spare-nodes needs the state that --restart-nodes 0 does not keep; omit one of them"};
     if (c.minNodes > 0 && c.restartNodes == 0)
         return Error{"--min-nodes needs restarts of late nodes, but --restart-nodes 0 disables them; omit one of them"};
     return {};
