@@ -23,7 +23,7 @@
 namespace mural::capture {
 
 constexpr uint32_t kMagic = 0x4d55524c; // "MURL"
-constexpr uint32_t kVersion = 10;
+constexpr uint32_t kVersion = 11;
 constexpr uint32_t kChunkBytes = 256 * 1024;
 constexpr uint32_t kDefaultChunks = 256; // 64 MiB
 constexpr uint32_t kReplyBytes = 4 * 1024 * 1024;
@@ -160,6 +160,10 @@ struct alignas(64) CaptureHeader {
     std::atomic<uint32_t> framesSubmitted; // app writes
     // Frames of the app's own window that the screen shows (--display app). futex.
     std::atomic<uint32_t> framesShown;
+    // 1: the app reads its windows through X, so the head draws no overlay over them any more. App writes.
+    std::atomic<uint32_t> readsWindows;
+    // 1: windows of the app may show an overlay. The app waits for 0 before it reads. futex.
+    std::atomic<uint32_t> overlayShown;
 
     // The head's main loop increments it about every 50 ms. Limits of the app's waits count only time in which it
     // changes.

@@ -279,6 +279,13 @@ uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t m
     return count;
 }
 
+bool hasWindow(uint64_t native) {
+    Guard guard(tableLock);
+    for (const Window* w = windows; w; w = w->next)
+        if (w->drawable && w->native == native && native != 0) return true;
+    return false;
+}
+
 Window* bareWindow(uintptr_t drawable, void* display, const wire::WindowConfig& config) {
     Guard guard(tableLock);
     Window* w = findLocked(drawable, display);

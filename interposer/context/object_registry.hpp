@@ -34,6 +34,8 @@ void inherit();
 bool nativeEnds(uint64_t server, uint64_t native);
 // Stores the ids of the drawables on an X window, up to `maximum`. Returns their number.
 uint32_t drawablesOf(uint64_t server, uint64_t native, uint32_t* ids, uint32_t maximum);
+// Returns whether the program draws into an X window of this number, on any server.
+bool hasWindow(uint64_t native);
 // Returns the plain X window of this number, for which the program has created no GLX drawable. Null: no memory.
 //
 // Mesa creates a drawable at the first binding, with the configuration of that context. It destroys the drawable when

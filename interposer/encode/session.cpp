@@ -267,6 +267,19 @@ void Session::waitShown() {
     }
 }
 
+void Session::hideOverlay() {
+    if (!alive() || !welcome_.displayApp) return;
+    header_->readsWindows.store(1, std::memory_order_seq_cst);
+    if (header_->overlayShown.load(std::memory_order_seq_cst) == 0) return;
+    Waiting waiting(*header_, capture::Wait::Window);
+    while (alive()) {
+        const uint32_t shown = header_->overlayShown.load(std::memory_order_acquire);
+        if (shown == 0 || waiting.forNs() > kStuckNs) break;
+        futexWait(header_->overlayShown, shown, kSliceNs);
+        if (!headAlive()) return;
+    }
+}
+
 uint32_t Session::beginRequest(const char* by) {
     requestLock.lock();
     if (alive()) countTrip(*header_, by);

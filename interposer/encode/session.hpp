@@ -38,6 +38,8 @@ public:
     void waitForCredit();
     // Blocks until all frames of this process are in its windows (--display app). The wait is bounded.
     void waitShown();
+    // Waits, with a limit, until the program's windows show no overlay. They show none from then on.
+    void hideOverlay();
 
     // Blocks until the picture of a frame is in the window. Requires announceOwnPut() for the frame, and published
     // records. The wait is bounded.

@@ -2,6 +2,7 @@
 
 #include "encoders.hpp"
 #include "interposer/context/context.hpp"
+#include "interposer/context/object_registry.hpp"
 #include "interposer/encode/session.hpp"
 
 namespace mural {
@@ -9,6 +10,15 @@ namespace mural {
 void waitWindowsShown() {
     if (Session* s = Session::current()) s->waitShown();
 }
+
+void waitBeforeRead() {
+    if (Session* s = Session::current()) {
+        s->hideOverlay();
+        s->waitShown();
+    }
+}
+
+void waitBeforeCopy(unsigned long drawable) { known::hasWindow(drawable) ? waitBeforeRead() : waitWindowsShown(); }
 
 void waitGlShown() {
     Session* s = Session::current();

@@ -9,6 +9,11 @@ namespace mural {
 // frames, without --display app, and without a session.
 void waitWindowsShown();
 
+// Do the same before a read of an image, and before a copy from this drawable. The program's windows show no overlay
+// from then on. Toolkits copy from pixmaps in each frame, so only copies from windows with pictures count.
+void waitBeforeRead();
+void waitBeforeCopy(unsigned long drawable);
+
 // For glXWaitGL and similar calls: GL draws precede later X draws, so single-buffered windows are shown too.
 void waitGlShown();
 

@@ -87,12 +87,15 @@ Result<void> addOutputs(const SessionConfig& config, const SessionPlan& plan, He
         if (!opened) return Result<std::unique_ptr<PictureSink>>(opened.error());
         return Result<std::unique_ptr<PictureSink>>(std::move(*opened));
     };
-    options.openWall = [config](int offsetX) {
+    options.openWall = [config, overlay = options.overlay](const WallPlace& place) {
         WallWindowsConfig wall;
         wall.displayName = config.displayName;
-        wall.positionX = config.windowX + offsetX;
+        wall.positionX = config.windowX + place.offsetX;
         wall.positionY = config.windowY;
         wall.fullScreen = config.fullScreen;
+        wall.overlay = overlay;
+        wall.wall.wallWidthMm = place.size.width;
+        wall.wall.wallHeightMm = place.size.height;
         return Result<std::unique_ptr<PictureSink>>(
             std::make_unique<WallSink>(std::move(wall), TileGrid{config.columns, config.rows, 1}));
     };
@@ -122,6 +125,7 @@ Result<int> runSession(ControlChannel& control) {
     HeadOptions options;
     options.registryDigest = registryDigest();
     options.interrupted = [] { return endRequested != 0; };
+    options.overlay = std::make_shared<Overlay>(host, "head");
     if (const auto outputs = addOutputs(*config, plan, options); !outputs) return outputs.error();
     if (!config->record.empty()) {
         trace::RecorderConfig recorder;

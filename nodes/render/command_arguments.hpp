@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "transport/tcp/socket_address.hpp"
 
@@ -18,6 +19,13 @@ template <class T> std::optional<T> argument(std::span<const std::byte> bytes) {
     T value;
     std::memcpy(&value, bytes.data(), sizeof value);
     return value;
+}
+
+// Returns as many values as the bytes contain, without an incomplete last one.
+template <class T> std::vector<T> argumentList(std::span<const std::byte> bytes) {
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    return values;
 }
 
 // Returns the address at which `node` listens. `what`: member of the message. A node without a host runs on the head's

@@ -4,7 +4,6 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -28,7 +27,7 @@
 #include "nodes/render/node_description.hpp"
 #include "nodes/render/replay_config.hpp"
 #include "nodes/render/replay_spans.hpp"
-#include "nodes/render/tile_windows.hpp"
+#include "nodes/render/windows/tile_windows.hpp"
 #include "nodes/render/work_clock.hpp"
 #include "nodes/frame_transfer/picture_sender.hpp"
 #include "nodes/replay/engine/replay.hpp"
@@ -118,6 +117,7 @@ private:
             return connectNodes(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
         case wire::HeadCommand::Statistics: return spans_.record(rest);
         case wire::HeadCommand::ClockProbe: return replyClock(rest);
+        case wire::HeadCommand::Overlay: return !windows_ || windows_->overlay()->take(rest);
         case wire::HeadCommand::Finish:
             log::debug(log::Topic::Node, "the session ends");
             sendGoodbye();
@@ -312,10 +312,8 @@ private:
         const auto rank = exchange_ && replay_ ? exchange_->rankOf(node) : std::nullopt;
         if (!rank) return;
         std::set<int> absentRanks;
-        for (; absent.size() >= sizeof(uint32_t); absent = absent.subspan(sizeof(uint32_t))) {
-            const auto other = argument<uint32_t>(absent);
-            if (const auto absentRank = exchange_->rankOf(static_cast<int>(*other))) absentRanks.insert(*absentRank);
-        }
+        for (const uint32_t other : argumentList<uint32_t>(absent))
+            if (const auto absentRank = exchange_->rankOf(static_cast<int>(other))) absentRanks.insert(*absentRank);
         replay_->resetShares(node == setup_.node, [this, rank = *rank, incarnation, absentRanks] {
             exchange_->composer().returned(rank, incarnation, absentRanks);
         });
@@ -349,9 +347,7 @@ private:
     bool takeTurns(std::span<const std::byte> bytes) {
         if (!setup_.areas.empty()) return !replay_ || replay_->takeMemberAreas(bytes);
         if (bytes.size() % sizeof(wire::WindowTurn) != 0) return false;
-        std::vector<wire::WindowTurn> turns(bytes.size() / sizeof(wire::WindowTurn));
-        if (!bytes.empty()) std::memcpy(turns.data(), bytes.data(), bytes.size());
-        if (replay_) replay_->takeTurns(turns);
+        if (replay_) replay_->takeTurns(argumentList<wire::WindowTurn>(bytes));
         return true;
     }
 
@@ -402,7 +398,10 @@ private:
     void sendDone(const wire::FrameDoneMessage& done, std::span<const wire::FrameSpan> spans) {
         const wire::FrameSpansHeader header = spansHeaderOf(done);
         const auto bytes = std::as_bytes(std::span(&header, 1));
-        if (!spans.empty()) sendMessage(wire::NodeMessage::FrameSpans, bytes, std::as_bytes(spans));
+        if (!spans.empty()) {
+            if (windows_ && !sender_) windows_->overlay()->frameSpans(bytes, std::as_bytes(spans));
+            sendMessage(wire::NodeMessage::FrameSpans, bytes, std::as_bytes(spans));
+        }
         sendMessage(wire::NodeMessage::FrameDone, std::as_bytes(std::span(&done, 1)));
     }
 
@@ -425,7 +424,9 @@ private:
         config.addsCpu = work_.countsCpu();
         config.transferScale = setup_.transferScale;
         config.alpha = setup_.windowPixels ? PictureAlpha::Preserved : PictureAlpha::Dropped;
-        const auto send = [this](wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+        const auto send = [this, overlay = windows_ ? windows_->overlay() : nullptr](
+                              wire::NodeMessage type, std::span<const std::byte> a, std::span<const std::byte> b) {
+            if (overlay && type == wire::NodeMessage::FrameSpans && !b.empty()) overlay->frameSpans(a, b);
             line_->send(type, a, b);
         };
         sender_ = std::make_unique<PictureSender>(config, send);

@@ -40,6 +40,7 @@ template <> struct EnumNames<Readback> {
     static constexpr std::pair<Readback, const char*> kAll[] = {
         {Readback::Auto, "auto"}, {Readback::Direct, "direct"}, {Readback::Buffer, "buffer"}};
 };
+template <> struct EnumNames<OverlayMode> { static constexpr auto& kAll = kOverlayModes; };
 template <> struct EnumNames<Eye> {
     static constexpr std::pair<Eye, const char*> kAll[] = {
         {Eye::Cyclop, "cyclop"}, {Eye::Left, "left"}, {Eye::Right, "right"}};
@@ -110,6 +111,8 @@ void visitFields(Config& c, Visitor&& visit) {
     visit("fullScreen", c.fullScreen);
     visit("windowX", c.windowX);
     visit("windowY", c.windowY);
+    visit("overlay", c.overlay);
+    visit("overlayInFiles", c.overlayInFiles);
     visit("placeThreads", c.placeThreads);
     visit("explain", c.explain);
     visit("displayName", c.displayName);
@@ -170,6 +173,9 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("fullScreen", s.fullScreen);
     visit("windowX", s.windowX);
     visit("windowY", s.windowY);
+    visit("overlay", s.overlay);
+    visit("wallWidthMm", s.wallWidthMm);
+    visit("wallHeightMm", s.wallHeightMm);
     visit("placeThreads", s.placeThreads);
     visit("displayName", s.displayName);
     visit("stream", s.stream);

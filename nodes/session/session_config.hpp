@@ -10,6 +10,7 @@
 #include "balancer/equalizers/balance.hpp"
 #include "common/base/result.hpp"
 #include "common/geometry/viewport.hpp"
+#include "nodes/overlay/overlay_mode.hpp"
 #include "nodes/session/readback.hpp"
 #include "nodes/session/render_pass.hpp"
 #include "nodes/session/screen_view.hpp"
@@ -63,17 +64,19 @@ struct SessionConfig {
     Tiling tiling = Tiling::Exact;
     Display display = Display::None;
     LocalRendering localRendering = LocalRendering::Off;
-    std::string glBackend = "auto";  // --gl: auto, egl, osmesa, glx
-    int latency = 1;                 // credit: frames that the program may be ahead of the wall
-    int verifyEvery = 0;             // --verify[=n]
-    int64_t frames = 0;              // --frames; 0: until the program ends
-    std::string out;                 // --out: folder (PNG) or video file; empty: none
-    std::vector<int64_t> saveFrames; // --save 1,30,90: saved frames; empty: all
-    std::string record;              // --record: file of the programs' streams; empty: none
-    int width = 0, height = 0;       // --size; 0: the program's size
-    bool fullScreen = false;         // --fullscreen: wall windows without borders, one per monitor
-    int windowX = 0, windowY = 0;    // --position of the wall's upper left corner
-    bool placeThreads = true;        // --no-placement turns it off
+    std::string glBackend = "auto";         // --gl: auto, egl, osmesa, glx
+    int latency = 1;                        // credit: frames that the program may be ahead of the wall
+    int verifyEvery = 0;                    // --verify[=n]
+    int64_t frames = 0;                     // --frames; 0: until the program ends
+    std::string out;                        // --out: folder (PNG) or video file; empty: none
+    std::vector<int64_t> saveFrames;        // --save 1,30,90: saved frames; empty: all
+    std::string record;                     // --record: file of the programs' streams; empty: none
+    int width = 0, height = 0;              // --size; 0: the program's size
+    bool fullScreen = false;                // --fullscreen: wall windows without borders, one per monitor
+    int windowX = 0, windowY = 0;           // --position of the wall's upper left corner
+    OverlayMode overlay = OverlayMode::Off; // --overlay: drawn over the windows of the wall, at the start
+    bool overlayInFiles = false;            // --overlay-in-files
+    bool placeThreads = true;               // --no-placement turns it off
     bool explain = false;
     std::string displayName; // X display of the wall windows and of the program's window
 };
@@ -113,6 +116,8 @@ struct NodeSetup {
     bool windowAsOnWall = true;
     bool fullScreen = false;
     int windowX = 0, windowY = 0;
+    OverlayMode overlay = OverlayMode::Off;   // drawn over its windows
+    double wallWidthMm = 0, wallHeightMm = 0; // size of its canvas; 0: unknown
     bool placeThreads = true;
     std::string displayName;
     std::string stream;       // rsp://…: group that carries the packets; empty: this connection does

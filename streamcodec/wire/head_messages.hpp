@@ -42,6 +42,7 @@ enum class HeadCommand : uint32_t {
     Statistics = 14, // u32 on: the node sends FrameSpans with each frame from here on, or no longer
     ClockProbe = 15, // i64 sentNs: the node replies ClockReply
     Leave = 16,      // u32 node: that node sends everything about earlier packets, replies Goodbye, and is no member
+    Overlay = 17,    // u32 mode of each node, by number (nodes/overlay/overlay_mode.hpp): drawn over its windows
 };
 struct SwitchToMulticastCommand {
     uint32_t node;

@@ -13,7 +13,7 @@ namespace mural::wire {
 constexpr uint32_t kMagic = 0x4d52534d; // "MSRM"
 constexpr uint32_t kVersion = 4;        // of packets and records, also in traces
 constexpr uint32_t kBatchVersion =
-    10; // of batches (streamcodec/delta/), head commands and messages, between head and nodes only
+    11; // of batches (streamcodec/delta/), head commands and messages, between head and nodes only
 
 // Identifier of a capture stream: a client (a process of the program) and one of its threads.
 // streamOf(0, 0) is the head's own stream, whose packets hold one HeadCommand each.

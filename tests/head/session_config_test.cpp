@@ -31,6 +31,8 @@ TEST(SessionConfig, roundTripsEveryField) {
     c.windowX = -10;
     c.windowY = 20;
     c.placeThreads = false;
+    c.overlay = OverlayMode::Names;
+    c.overlayInFiles = true;
     c.explain = true;
     c.displayName = ":7";
     const std::string json = toJson(c);
@@ -41,6 +43,7 @@ TEST(SessionConfig, roundTripsEveryField) {
     EXPECT_EQ(back.value().saveFrames, c.saveFrames);
     EXPECT_EQ(back.value().hosts, c.hosts);
     EXPECT_EQ(back.value().display, Display::App);
+    EXPECT_EQ(back.value().overlay, OverlayMode::Names);
     EXPECT_NE(json, toJson(SessionConfig{}));
 }
 

@@ -70,6 +70,8 @@ TEST(RunOptions, readEveryOption) {
         a.fullScreen = true;
         a.position = "-10,20";
         a.noPlacement = true;
+        a.overlay = "grid";
+        a.overlayInFiles = true;
         a.launch = "rsh";
         a.remoteMural = "/opt/mural";
         a.delta = "off";
@@ -95,6 +97,8 @@ TEST(RunOptions, readEveryOption) {
     EXPECT_EQ(c.windowX, -10);
     EXPECT_EQ(c.windowY, 20);
     EXPECT_FALSE(c.placeThreads);
+    EXPECT_EQ(c.overlay, OverlayMode::Grid);
+    EXPECT_TRUE(c.overlayInFiles);
     EXPECT_EQ(c.launchCommand, "rsh");
     EXPECT_EQ(c.remoteMural, "/opt/mural");
     EXPECT_EQ(c.delta, DeltaMode::Off);
@@ -125,6 +129,8 @@ TEST(RunOptions, nameTheOptionAndTheExpectedValue) {
     EXPECT_NE(refusal([](RunArguments& a) { a.size = "32768x1"; }).find("32767"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.frames = "0"; }).find("--frames"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.latency = "-1"; }).find("--latency"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.overlay = "on"; }).find("off, stats, names or grid"), std::string::npos);
+    EXPECT_NE(refusal([](RunArguments& a) { a.overlayInFiles = true; }).find("--out"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.verify = "0"; }).find("--verify"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.gl = "vulkan"; }).find("auto, egl, osmesa, glx"), std::string::npos);
     EXPECT_NE(refusal([](RunArguments& a) { a.captureVia = "both"; }).find("auto, glvnd, preload"), std::string::npos);

@@ -1,5 +1,6 @@
 // Wall windows on a private X server: position, size, contents.
 #include "nodes/output/windows/wall_windows.hpp"
+#include "nodes/overlay/overlay_picture.hpp"
 
 #include <csignal>
 #include <cstring>
@@ -149,6 +150,47 @@ TEST_P(DrawnWalls, moveAndResizeWhenArranged) {
     expectOnScreen(200, 300, second.view());
     expectOnScreen(0, 0, plainPicture(100, 100, 0, 0, 0).view());
     EXPECT_FALSE(wall_->arrange({}));
+}
+
+TEST_P(DrawnWalls, drawTheOverlayOverKeptPictures) {
+    startServer();
+    const auto overlay = std::make_shared<Overlay>("host", "node 0");
+    WallWindowsConfig config = configFor({{{90, 70, 220, 150}, 20, 30, "wall", -1}}, GetParam());
+    config.overlay = overlay;
+    config.wall.wallWidth = 400;
+    config.wall.wallHeight = 300;
+    openWall(config);
+    const auto shows = [&](const Picture& expected) {
+        return becomesTrue([&] {
+            auto seen = client_->seeScreen(20, 30, expected.width, expected.height);
+            return seen && comparePictures(expected, seen->view()).same();
+        });
+    };
+    OverlayPlace place = config.wall;
+    place.title = "wall";
+    place.part = {90, 70, 220, 150};
+    const auto withOverlay = [&](const OwnedPicture& picture) {
+        OwnedPicture both(picture.view());
+        drawOverlay(overlay->content(), place).drawOver(both.data(), PictureFormat::Bgra8);
+        return both;
+    };
+    const OwnedPicture first = noisePicture(220, 150, 1), second = noisePicture(220, 150, 2);
+    show(0, first.view());
+    EXPECT_TRUE(shows(first.view()));
+    for (const OverlayMode mode : {OverlayMode::Grid, OverlayMode::Names}) {
+        overlay->setMode(mode);
+        EXPECT_TRUE(shows(withOverlay(first).view())) << nameOf(mode);
+        overlay->setMode(OverlayMode::Off);
+        EXPECT_TRUE(shows(first.view())) << nameOf(mode);
+    }
+    // A picture that waits for a swap barrier is not shown early.
+    const WallWindows::TilePicture waiting[] = {{0, second.view()}};
+    ASSERT_TRUE(wall_->drawAll(waiting));
+    overlay->setMode(OverlayMode::Grid);
+    ::poll(nullptr, 0, static_cast<int>(2 * kOverlayMs));
+    EXPECT_TRUE(shows(first.view()));
+    ASSERT_TRUE(wall_->present(0));
+    EXPECT_TRUE(shows(withOverlay(second).view()));
 }
 
 TEST_P(DrawnWalls, fillTheMonitorWithoutScalingInFullScreen) {

@@ -75,12 +75,25 @@ void StreamBroadcaster::scheduleBeforeNextPacket(wire::HeadCommand command, std:
     hasLead_ = true;
 }
 
+void StreamBroadcaster::scheduleSoon(wire::HeadCommand command, std::span<const std::byte> arguments) {
+    scheduleBeforeNextPacket(command, arguments);
+    isLeadUrgent_ = true;
+}
+
+void StreamBroadcaster::sendScheduled() {
+    if (!isLeadUrgent_.load(std::memory_order_relaxed)) return;
+    const std::lock_guard lock(sendMutex_);
+    sendLeadLocked();
+    flushLocked();
+}
+
 void StreamBroadcaster::sendLeadLocked() {
     std::map<wire::HeadCommand, std::vector<std::byte>> leads;
     {
         const std::lock_guard lock(leadMutex_);
         leads.swap(leads_);
         hasLead_ = false;
+        isLeadUrgent_ = false;
     }
     for (auto& [command, bytes] : leads) {
         if (command == wire::HeadCommand::ClockProbe) bytes = commandBytes(command, bytesOf(monotonicNowNs()));

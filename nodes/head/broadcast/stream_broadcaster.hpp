@@ -46,6 +46,11 @@ public:
     // Queues a command that precedes the next packet of a program on all nodes. Replaces a queued command of the same
     // kind. A ClockProbe gets the time at which it is sent. Never blocks.
     void scheduleBeforeNextPacket(wire::HeadCommand command, std::span<const std::byte> arguments);
+    // Does the same for a command that must not wait until a program draws: the next call of sendScheduled() sends it.
+    void scheduleSoon(wire::HeadCommand command, std::span<const std::byte> arguments);
+    // Sends queued commands if scheduleSoon() was called since. Blocks while a node's connection is full. For threads
+    // that have no packet to send.
+    void sendScheduled();
     // Gives up if the connections stay full until the deadline.
     bool broadcast(wire::HeadCommand command, Deadline deadline);
     // Sends to one node before it receives any of the stream. Does not wait for other nodes.
@@ -166,6 +171,7 @@ private:
     std::mutex leadMutex_;
     std::map<wire::HeadCommand, std::vector<std::byte>> leads_; // the latest payload of each queued command
     std::atomic<bool> hasLead_{false};
+    std::atomic<bool> isLeadUrgent_{false};
     static constexpr int kNobody = -1, kMulticast = -2;
     std::atomic<int> sendingTo_{kNobody}; // the node whose connection is being written
 };

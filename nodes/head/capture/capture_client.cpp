@@ -94,7 +94,9 @@ void CaptureClient::pump() {
         spans_.sent();
         if (stop_ || gone) break; // gone: no publication has arrived since the program's end was detected
         gone = programGone();
-        if (!gone) waitForMore();
+        if (gone) continue;
+        nodes_.sendScheduled();
+        waitForMore();
     }
     flushNodes();
     const bool inOrder = drained() && !gone && !stop_;

@@ -232,10 +232,18 @@ void CaptureMemory::setFramesDone(uint32_t frames) {
 }
 void CaptureMemory::setFramesShown(uint32_t frames) { store(shared_->framesShown, frames); }
 
+// Both sides first write their own word and then read the other's, so at least one of them sees the other.
+bool CaptureMemory::beginOverlay() {
+    shared_->overlayShown.store(1, std::memory_order_seq_cst);
+    return shared_->readsWindows.load(std::memory_order_seq_cst) == 0;
+}
+
+void CaptureMemory::endOverlay() { store(shared_->overlayShown, 0); }
+
 void CaptureMemory::setHeadGone() {
     store(shared_->headGone, 1);
     for (const auto* word : {&shared_->publishedTail, &shared_->publishedHead, &shared_->freedTail, &shared_->replyTail,
-                             &shared_->replyHead, &shared_->framesDone, &shared_->framesShown})
+                             &shared_->replyHead, &shared_->framesDone, &shared_->framesShown, &shared_->overlayShown})
         futexWakeAll(*word);
 }
 

@@ -88,6 +88,10 @@ public:
     void setLatency(uint32_t frames);
     void setFramesDone(uint32_t frames);
     void setFramesShown(uint32_t frames);
+    // Announces that windows of the program show an overlay from now on. Returns false if the program reads its
+    // windows: endOverlay() then follows when none shows it.
+    bool beginOverlay();
+    void endOverlay();
     void beat() { shared_->headBeat.fetch_add(1, std::memory_order_relaxed); } // heartbeat of the head
     void setHeadGone();                                                        // also wakes the waiters on all words
     std::atomic<uint32_t>& livenessWord() { return shared_->headLiveness; }    // the word of a LivenessMark

@@ -153,6 +153,15 @@ bool ProgramTable::giveOwnPicture(uint32_t id, uint32_t frame, uint64_t nativeWi
     return true;
 }
 
+bool ProgramTable::beginOverlay(uint32_t id) {
+    const auto client = find(id);
+    return !client || client->memory().beginOverlay();
+}
+
+void ProgramTable::endOverlay(uint32_t id) {
+    if (const auto client = find(id)) client->memory().endOverlay();
+}
+
 void ProgramTable::beat() {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, client] : clients_) client->memory().beat();

@@ -57,6 +57,9 @@ public:
     // the program has the picture.
     bool giveOwnPicture(uint32_t client, uint32_t frame, uint64_t nativeWindow, const Picture& picture,
                         std::function<void()> done);
+    // See CaptureMemory. Without such a program, an overlay may be drawn.
+    bool beginOverlay(uint32_t client);
+    void endOverlay(uint32_t client);
     void beat();           // sends the heartbeat to all programs; called by the main loop
     void reportHeadGone(); // all programs continue without Mural
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr size_t kMaxWindows = 64;
 constexpr std::chrono::milliseconds kSlice{500};
+constexpr std::chrono::milliseconds kOverlaySlice{50}; // the program may wait for the end of the overlay
 
 } // namespace
 
@@ -65,11 +66,24 @@ public:
     }
 
 private:
+    struct Window {
+        explicit Window(std::shared_ptr<const Overlay> shown) : overlay(std::move(shown)) {}
+
+        std::unique_ptr<PictureSink> sink; // null: the window could not be opened
+        OverlayLayer overlay;
+        WindowPicture latest;    // the picture that it shows; none without overlay
+        bool hasOverlay = false; // its picture was drawn with the overlay
+    };
+
     void work() {
         std::unique_lock lock(mutex_);
         while (!dropped_ && !(ending_ && (queue_.empty() || isBlocked_))) {
             if (queue_.empty()) {
-                changed_.wait_for(lock, kSlice);
+                if (changed_.wait_for(lock, isAnnounced_ ? kOverlaySlice : kSlice) == std::cv_status::no_timeout)
+                    continue;
+                lock.unlock();
+                redrawOutdated();
+                lock.lock();
                 continue;
             }
             const WindowPicture picture = std::move(queue_.front());
@@ -83,6 +97,7 @@ private:
         }
         queue_.clear();
         lock.unlock();
+        if (isAnnounced_) config_.endOverlay(client_);
         windows_.clear();
         lock.lock();
         ended_ = true;
@@ -90,8 +105,15 @@ private:
     }
 
     void take(const WindowPicture& picture) {
-        if (config_.giveToProgram(picture, wholeOf(picture))) return;
+        if (config_.giveToProgram(picture, wholeOf(picture))) {
+            if (const auto older = windows_.find(picture.window); older != windows_.end()) {
+                older->second.latest = {};
+                older->second.hasOverlay = false;
+            }
+            return;
+        }
         showInWindow(picture);
+        if (isAnnounced_ && !mayDrawOverlay()) redrawOutdated();
         config_.done(client_, picture.frame);
     }
 
@@ -104,10 +126,11 @@ private:
     }
 
     void showInWindow(const WindowPicture& picture) {
-        PictureSink* const window = windowOf(picture);
-        while (window != nullptr) {
-            const auto shown = window->show(picture.frame, wholeOf(picture));
-            const bool isBlocked = !shown && window->isBlocked();
+        Window& window = windowOf(picture);
+        window.latest = config_.overlay ? picture : WindowPicture();
+        while (window.sink != nullptr) {
+            const auto shown = window.sink->show(picture.frame, withOverlay(window, picture, mayDrawOverlay()));
+            const bool isBlocked = !shown && window.sink->isBlocked();
             setBlocked(isBlocked);
             if (!shown && complained_.insert(picture.window).second)
                 log::warning(log::Topic::Output, shown.error().message);
@@ -116,16 +139,46 @@ private:
         }
     }
 
-    PictureSink* windowOf(const WindowPicture& picture) {
+    Picture withOverlay(Window& window, const WindowPicture& picture, bool may) {
+        const Picture whole = wholeOf(picture);
+        window.hasOverlay = may;
+        if (!may) return whole;
+        OverlayPlace place;
+        place.title = "window of the program";
+        place.wallWidth = whole.width;
+        place.wallHeight = whole.height;
+        return window.overlay.over(whole, std::move(place));
+    }
+
+    // Returns whether pictures have the overlay now. A program that reads its windows never finds it there.
+    bool mayDrawOverlay() {
+        if (readsWindows_ || !config_.overlay || config_.overlay->mode() == OverlayMode::Off) return false;
+        isAnnounced_ = true;
+        readsWindows_ = !config_.beginOverlay(client_);
+        return !readsWindows_;
+    }
+
+    // Shows the latest pictures again after a change of the overlay. An error recurs with the next picture.
+    void redrawOutdated() {
+        const bool may = mayDrawOverlay();
+        for (auto& [id, window] : windows_)
+            if (window.sink && window.latest.picture && (may ? window.overlay.isOutdated() : window.hasOverlay))
+                (void)window.sink->show(window.latest.frame, withOverlay(window, window.latest, may));
+        if (may || !isAnnounced_) return;
+        isAnnounced_ = false;
+        config_.endOverlay(client_);
+    }
+
+    Window& windowOf(const WindowPicture& picture) {
         const auto found = windows_.find(picture.window);
-        if (found != windows_.end()) return found->second.get();
+        if (found != windows_.end()) return found->second;
         if (windows_.size() >= kMaxWindows) windows_.clear(); // most of them are closed
         auto opened = config_.openWindow(picture);
         if (!opened && complained_.insert(picture.window).second)
             log::warning(log::Topic::Output, opened.error().message);
-        auto& window = windows_[picture.window];
-        if (opened) window = std::move(*opened);
-        return window.get();
+        Window& window = windows_.try_emplace(picture.window, config_.overlay).first->second;
+        if (opened) window.sink = std::move(*opened);
+        return window;
     }
 
     void setBlocked(bool isBlocked) {
@@ -151,10 +204,12 @@ private:
 
     const uint32_t client_;
     const NativeWindowsConfig& config_;
-    OwnedPicture bothEyes_;                                    // used by thread_, as the next three
-    std::map<uint32_t, std::unique_ptr<PictureSink>> windows_; // null: the window could not be opened
+    OwnedPicture bothEyes_; // used by thread_, as the members up to mutex_
+    std::map<uint32_t, Window> windows_;
     std::set<uint32_t> complained_;
     ThreadSpans spans_;
+    bool readsWindows_ = false;
+    bool isAnnounced_ = false; // the program waits before it reads a window
 
     std::mutex mutex_; // guards the members below
     std::condition_variable changed_;

@@ -17,6 +17,7 @@
 #include "nodes/head/frames/picture_assembler.hpp"
 #include "nodes/head/statistics/frame_statistics.hpp"
 #include "nodes/output/picture_sink.hpp"
+#include "nodes/output/windows/overlay_layer.hpp"
 
 namespace mural {
 
@@ -28,6 +29,11 @@ struct NativeWindowsConfig {
     std::function<void(uint32_t client, uint32_t frame)> done;    // the picture was shown or dropped
     std::function<void(uint32_t client, bool isBlocked)> blocked; // its X server stops or resumes to answer
     FrameStatistics* statistics = nullptr;                        // null: none
+    std::shared_ptr<const Overlay> overlay;                       // drawn over the pictures; null: none
+    // Required with overlay. beginOverlay returns false if the program reads its windows: no overlay is drawn, and
+    // endOverlay follows when none is shown.
+    std::function<bool(uint32_t client)> beginOverlay;
+    std::function<void(uint32_t client)> endOverlay;
 };
 
 // The threads of the programs call the functions of the config.

@@ -22,9 +22,10 @@ PictureOutput::PictureOutput(PictureOutputConfig config, std::unique_ptr<Picture
     : config_(std::move(config)),
       saveFrames_(config_.saveFrames.begin(), config_.saveFrames.end()),
       file_(std::move(file)),
+      fileOverlay_(config_.overlayInFiles ? config_.overlay : nullptr),
       canvases_(config_.canvases.size()),
       natives_({config_.pairs, config_.openWindow, config_.giveToProgram, config_.done, config_.displayBlocked,
-                config_.statistics}),
+                config_.statistics, config_.overlay, config_.beginOverlay, config_.endOverlay}),
       thread_([this] { work(); }) {}
 
 PictureOutput::~PictureOutput() {
@@ -157,7 +158,11 @@ Result<void> PictureOutput::give(PictureSink& sink, int64_t frame, const Picture
 void PictureOutput::save(int64_t frame, const Picture& picture) {
     if (picture.format != PictureFormat::Bgra8 && !std::exchange(eightBitsReported_, true))
         warn("the program's window has 10 bits per channel; --out saves 8 of them");
-    const auto saved = give(*file_, frame, picture, config_.pairs);
+    OverlayPlace place = config_.overlayInFiles.value_or(OverlayPlace{});
+    place.title = "file";
+    place.wallWidth = picture.width;
+    place.wallHeight = picture.height;
+    const auto saved = give(*file_, frame, fileOverlay_.over(picture, std::move(place)), config_.pairs);
     if (!saved) {
         warn(saved.error().message, "; no further pictures are saved");
         fileFailed_ = true;

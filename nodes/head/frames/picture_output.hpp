@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -46,8 +47,13 @@ struct PictureOutputConfig {
     std::function<void(uint32_t client, bool isBlocked)> displayBlocked = [](uint32_t, bool) {};
     // Opens the windows of the wall. Empty: the head has no such windows.
     std::function<Result<std::unique_ptr<PictureSink>>()> openWall;
-    std::vector<OtherCanvas> canvases;     // in the order of WindowPicture::others
-    FrameStatistics* statistics = nullptr; // null: none
+    std::vector<OtherCanvas> canvases;      // in the order of WindowPicture::others
+    FrameStatistics* statistics = nullptr;  // null: none
+    std::shared_ptr<const Overlay> overlay; // drawn in native windows; null: none
+    // Set: saved pictures have the overlay as well. Contains the size of the wall in mm.
+    std::optional<OverlayPlace> overlayInFiles;
+    std::function<bool(uint32_t client)> beginOverlay = [](uint32_t) { return true; };
+    std::function<void(uint32_t client)> endOverlay = [](uint32_t) {};
     // Called when a picture was passed to all its outputs, by any thread of the output.
     std::function<void(uint32_t client, uint32_t frame)> done;
 };
@@ -92,6 +98,7 @@ private:
     std::unique_ptr<PictureSink> file_;
     bool fileFailed_ = false;
     bool eightBitsReported_ = false;
+    OverlayLayer fileOverlay_;
     OwnedPicture eightBits_; // scratch memory of give()
     std::unique_ptr<PictureSink> wall_;
     bool wallFailed_ = false;

@@ -34,6 +34,7 @@ void addCanvas(SessionPlan& plan, SessionPlan other, CanvasPlan canvas) {
     for (const CanvasPlan& c : plan.canvases) pictures = std::max(pictures, picturesOf(c.wall));
     canvas.wall = std::move(other.wall);
     canvas.nodesShowWall = other.nodesShowWall;
+    canvas.size = other.size;
     for (WallPart& part : canvas.wall.parts) part.firstPicture += pictures;
     for (NodePlan& node : other.nodes) {
         node.node += nodes;

@@ -181,6 +181,10 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.fullScreen = config.fullScreen || window.fullScreen;
     setup.windowX = config.windowX + window.x;
     setup.windowY = config.windowY + window.y;
+    const CanvasMillimetres size =
+        node.canvas == 0 ? plan.size : plan.canvases[static_cast<size_t>(node.canvas) - 1].size;
+    setup.wallWidthMm = size.width;
+    setup.wallHeightMm = size.height;
     setup.placeThreads = config.placeThreads;
     setup.displayName = window.displayName.empty() ? config.displayName : window.displayName;
     setup.build = streamBuild();

@@ -45,13 +45,19 @@ struct BalancePlan {
     std::vector<std::string> equalizers; // ids of those that nodes can follow; set by settleBalance()
 };
 
+// The size of a canvas in the room, in mm. 0: the configuration has none.
+struct CanvasMillimetres {
+    double width = 0, height = 0;
+};
+
 // A canvas beside the first: the same picture at its own resolution.
 struct CanvasPlan {
     std::string name;
     WallComposition wall;
     bool nodesShowWall = true; // see SessionPlan
     Zoom shown;                // its size relative to the program's picture
-    int offsetX = 0;           // horizontal offset of its windows if the windows of all canvases share one screen
+    CanvasMillimetres size;
+    int offsetX = 0; // horizontal offset of its windows if the windows of all canvases share one screen
 };
 
 struct NodePlan {
@@ -86,6 +92,7 @@ struct SessionPlan {
     std::shared_ptr<const BalancePlan> balance; // null: nothing moves
     WallComposition wall;
     bool nodesShowWall = true;                    // each node draws an unscaled part of the wall
+    CanvasMillimetres size;                       // of the first canvas
     std::vector<CanvasPlan> canvases;             // canvases beside the first
     std::optional<double> eyeBase, focusDistance; // from the configuration file, metres
     std::vector<std::string> explain;             // lines for --explain

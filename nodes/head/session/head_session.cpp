@@ -45,6 +45,8 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
       control_(control),
       options_(std::move(options)),
       statistics_(clocksOf(plan)),
+      overlay_(makeOverlay(options_.overlay, config_.overlay)),
+      overlayModes_(nodes.size(), config_.overlay),
       pacer_([this](uint32_t client, uint32_t finished, uint32_t shown) {
           if (serving_) programs_->credit(client, finished, shown);
       }),
@@ -93,32 +95,9 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
     if (terms.tries > 0 && options_.startNode)
         nodes_.setRejoinLog(std::make_unique<RejoinLog>(static_cast<uint64_t>(config_.cacheBytes)));
     returns_ = std::make_unique<NodeRestarter>(std::move(terms), nodes_, returnHooks());
-    if (!plans_.current().takesPictures && config_.display != Display::Windows) return; // no plan needs them
-    PictureOutputConfig output;
-    output.saveFrames = config_.saveFrames;
-    output.lastFrame = config_.frames;
-    output.toNativeWindows = config_.display == Display::App;
-    output.pairs = currentPlan().wall.stereo == StereoMode::Quad;
-    output.statistics = &statistics_;
-    output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
-    if (config_.display == Display::Windows) output.openWall = [this] { return options_.openWall(0); };
-    for (size_t i = 0; i < currentPlan().canvases.size(); ++i) {
-        OtherCanvas& canvas = output.canvases.emplace_back();
-        canvas.name = currentPlan().canvases[i].name;
-        canvas.pairs = currentPlan().canvases[i].wall.stereo == StereoMode::Quad;
-        if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
-        if (headShowsCanvas(config_, currentPlan().canvases[i]))
-            canvas.openWall = [this, offset = currentPlan().canvases[i].offsetX] { return options_.openWall(offset); };
-    }
-    output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
-    output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
-    output.giveToProgram = [this](const WindowPicture& picture, const Picture& whole) {
-        const auto done = [this, client = picture.client, frame = picture.frame] {
-            frames_.pictureReleased(client, frame);
-        };
-        return programs_->giveOwnPicture(picture.client, picture.frame, picture.nativeWindow, whole, done);
-    };
-    output_ = std::make_unique<PictureOutput>(std::move(output), std::move(options_.file));
+    // other displays need no pictures in any plan
+    if (plans_.current().takesPictures || config_.display == Display::Windows)
+        output_ = std::make_unique<PictureOutput>(outputConfig(), std::move(options_.file));
 }
 
 HeadSession::~HeadSession() {
@@ -192,6 +171,7 @@ void HeadSession::tick() {
     endLeftNodes(nowNs);
     reportProgress(nowNs);
     tickStatistics(nowNs);
+    tickOverlay(nowNs);
 }
 
 void HeadSession::reportProgress(int64_t nowNs) {

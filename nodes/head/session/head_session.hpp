@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -41,6 +42,8 @@
 #include "nodes/head/session/session_status.hpp"
 #include "nodes/head/session/slowdown_advice.hpp"
 #include "nodes/head/statistics/frame_statistics.hpp"
+#include "nodes/head/statistics/overlay_numbers.hpp"
+#include "nodes/overlay/overlay.hpp"
 #include "nodes/session/session_config.hpp"
 #include "streamcodec/wire/node_messages.hpp"
 #include "streamcodec/wire/replies.hpp"
@@ -54,14 +57,21 @@ struct NativeWindow {
     std::string display;             // name in the program; empty: unknown
 };
 
+// The windows of a canvas on the head's display.
+struct WallPlace {
+    int offsetX = 0; // relative to --position
+    CanvasMillimetres size;
+};
+
 struct HeadOptions {
     uint64_t registryDigest = 0;
     std::unique_ptr<PictureSink> file;        // sink of --out; null: none
     std::function<std::string()> lastPicture; // path of the last file; may be empty
     std::function<Result<std::unique_ptr<PictureSink>>(const NativeWindow& window)> openWindow;
+    std::shared_ptr<Overlay> overlay;                      // of the windows that openWall opens; null: they show none
     std::vector<std::shared_ptr<PictureSink>> canvasFiles; // sinks of --out for the further canvases
     // opens wall windows if the head shows the wall (headShowsWall) or a further canvas
-    std::function<Result<std::unique_ptr<PictureSink>>(int offsetX)> openWall;
+    std::function<Result<std::unique_ptr<PictureSink>>(const WallPlace& place)> openWall;
     std::unique_ptr<trace::StreamRecorder> recorder; // --record; null: none
     std::function<bool()> interrupted;               // returns whether a signal requests the end; may be empty
     // Restarts a lost node. Called by the session's thread. Empty: nodes are not restarted.
@@ -122,6 +132,14 @@ private:
     void announceStatistics();
     [[nodiscard]] bool areClocksKnown() const; // of all nodes that live
 
+    // The overlay (head_session_overlay.cpp).
+    static std::shared_ptr<Overlay> makeOverlay(std::shared_ptr<Overlay> given, OverlayMode mode);
+    void addOverlayOperation(ControlOperations& operations);
+    Result<nlohmann::json> changeOverlay(const nlohmann::json& arguments);
+    nlohmann::json overlayJson();
+    void announceOverlay();
+    void tickOverlay(int64_t nowNs);
+
     // Restarts of nodes (head_session_restarts.cpp).
     NodeRestarter::Hooks returnHooks();
     void linkAgain(int node, StartingNode& starting);
@@ -178,6 +196,7 @@ private:
     void openMulticast();
     Result<void> openDeltaStream();
     void introduceNodes();
+    PictureOutputConfig outputConfig();
     NodeSetup setupFor(const NodePlan& plan);
     Result<void> awaitReady();
     Result<void> checkSize();
@@ -221,8 +240,13 @@ private:
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameStatistics statistics_;
-    std::mutex announceMutex_; // orders announcements of the statistics' state
-    int64_t probedNs_ = 0;     // the latest ClockProbe
+    std::mutex announceMutex_; // orders announcements of the statistics' state and of the overlay; guards overlayModes_
+    const std::shared_ptr<Overlay> overlay_;       // of the head's windows
+    std::vector<OverlayMode> overlayModes_;        // of the windows of each node
+    std::optional<OverlayNumbers> overlayNumbers_; // while the head's windows show statistics; used by the main thread
+    const SessionStage* overlayStage_ = nullptr;   // of those numbers
+    int64_t overlayNumbersNs_ = 0;                 // the latest numbers
+    int64_t probedNs_ = 0;                         // the latest ClockProbe
     CreditPacer pacer_;
     FrameTracker frames_;
     ReplyAssembler answers_;

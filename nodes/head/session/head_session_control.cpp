@@ -80,6 +80,7 @@ ControlOperations HeadSession::controlOperations() {
     addStopOperations(all);
     addChangeOperations(all);
     addPlanOperations(all);
+    addOverlayOperation(all);
     addFramesOperation(all);
     if (balancer().isActive() || !config_.configFile.empty()) addEqualizerOperations(all, equalizers_);
     return all;

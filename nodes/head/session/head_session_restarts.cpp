@@ -191,6 +191,7 @@ Result<void> HeadSession::nodeInView(int node, uint32_t view, const std::vector<
     frames_.nodeJoined(node, frames, monotonicNowNs());
     plans_.of(node).balancer.nodeJoined(node);
     if (statistics_.isOn()) announceStatistics(); // its Setup may be older than the request
+    announceOverlay();                            // the same
     int64_t joins = 0;
     bool wasStopped = false, isNewNode = false;
     {

@@ -76,6 +76,46 @@ Result<void> HeadSession::bringUp() {
     return {};
 }
 
+PictureOutputConfig HeadSession::outputConfig() {
+    PictureOutputConfig output;
+    output.saveFrames = config_.saveFrames;
+    output.lastFrame = config_.frames;
+    output.toNativeWindows = config_.display == Display::App;
+    output.pairs = currentPlan().wall.stereo == StereoMode::Quad;
+    output.statistics = &statistics_;
+    output.overlay = overlay_;
+    if (config_.overlayInFiles) {
+        output.overlayInFiles.emplace();
+        output.overlayInFiles->wallWidthMm = currentPlan().size.width;
+        output.overlayInFiles->wallHeightMm = currentPlan().size.height;
+    }
+    output.beginOverlay = [this](uint32_t client) { return programs_->beginOverlay(client); };
+    output.endOverlay = [this](uint32_t client) { programs_->endOverlay(client); };
+    output.openWindow = [this](const WindowPicture& picture) { return openNativeWindow(picture); };
+    if (config_.display == Display::Windows)
+        output.openWall = [this] { return options_.openWall({0, currentPlan().size}); };
+    for (size_t i = 0; i < currentPlan().canvases.size(); ++i) {
+        OtherCanvas& canvas = output.canvases.emplace_back();
+        canvas.name = currentPlan().canvases[i].name;
+        canvas.pairs = currentPlan().canvases[i].wall.stereo == StereoMode::Quad;
+        if (i < options_.canvasFiles.size()) canvas.file = options_.canvasFiles[i];
+        if (headShowsCanvas(config_, currentPlan().canvases[i]))
+            canvas.openWall = [this,
+                               place = WallPlace{currentPlan().canvases[i].offsetX, currentPlan().canvases[i].size}] {
+                return options_.openWall(place);
+            };
+    }
+    output.done = [this](uint32_t client, uint32_t frame) { frames_.pictureReleased(client, frame); };
+    output.displayBlocked = [this](uint32_t client, bool isBlocked) { programs_->displayBlocked(client, isBlocked); };
+    output.giveToProgram = [this](const WindowPicture& picture, const Picture& whole) {
+        const auto done = [this, client = picture.client, frame = picture.frame] {
+            frames_.pictureReleased(client, frame);
+        };
+        return programs_->giveOwnPicture(picture.client, picture.frame, picture.nativeWindow, whole, done);
+    };
+    return output;
+}
+
 NodeSetup HeadSession::setupFor(const NodePlan& plan) {
     const SessionStage& stage = plans_.of(plan.node);
     NodeSetup setup = setupOf(stage.config, stage.plan, plan);
@@ -88,6 +128,8 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
     setup.cacheBytes = config_.cacheBytes;
     setup.log = log::environmentLevels();
     setup.recordsSpans = statistics_.isOn();
+    const std::lock_guard lock(announceMutex_);
+    setup.overlay = overlayModes_[static_cast<size_t>(plan.node)];
     return setup;
 }
 

@@ -42,6 +42,8 @@ Result<void> WallScreen::openWindows(bool openGl, bool stereo) {
         // Only one swap waits for the refresh: several waits would add up.
         options.waitForRefresh = config_.waitForRefresh && i == 0;
         options.timeoutMs = config_.showTimeoutMs;
+        options.overlay = config_.overlay;
+        options.onWall = onWall(tile);
         Result<std::unique_ptr<WallWindow>> window = WallWindow::open(*session_, options);
         if (!window) return window.error();
         windows_.push_back(std::move(window.value()));
@@ -52,6 +54,13 @@ Result<void> WallScreen::openWindows(bool openGl, bool stereo) {
 // Upper left corner and size, y down as on the screen.
 PixelViewport WallScreen::placeOf(const TileWindow& tile) const {
     return {tile.screenX + config_.positionX, tile.screenY + config_.positionY, tile.tile.w, tile.tile.h};
+}
+
+OverlayPlace WallScreen::onWall(const TileWindow& tile) const {
+    OverlayPlace place = config_.wall;
+    place.title = tile.title;
+    place.part = tile.tile;
+    return place;
 }
 
 Result<void> WallScreen::checkDisplay() const {
@@ -85,7 +94,7 @@ Result<void> WallScreen::arrange(const std::vector<TileWindow>& tiles) {
     if (Result<void> there = checkDisplay(); !there) return there;
     config_.tiles = tiles;
     for (size_t i = 0; i < windows_.size(); ++i)
-        if (Result<void> moved = windows_[i]->move(placeOf(tiles[i])); !moved) return moved;
+        if (Result<void> moved = windows_[i]->move(placeOf(tiles[i]), onWall(tiles[i])); !moved) return moved;
     return checkDisplay();
 }
 
@@ -93,8 +102,9 @@ Result<void> WallScreen::doWork() {
     if (session_->displayLost()) return checkDisplay();
     session_->guardErrors();
     glfwPollEvents();
+    if (!drawn_.empty()) return {}; // present() shows the drawn pictures, at its time
     for (const auto& window : windows_)
-        if (Result<void> redrawn = window->redrawIfUncovered(); !redrawn) return redrawn;
+        if (Result<void> redrawn = window->redrawIfNeeded(); !redrawn) return redrawn;
     return {};
 }
 

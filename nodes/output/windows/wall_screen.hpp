@@ -7,6 +7,7 @@
 
 #include "nodes/output/windows/app_window.hpp"
 #include "nodes/output/windows/glfw_session.hpp"
+#include "nodes/output/windows/overlay_layer.hpp"
 #include "nodes/output/windows/texture_blit.hpp"
 #include "nodes/output/windows/wall_windows.hpp"
 
@@ -26,6 +27,8 @@ public:
         bool stereo = false; // with openGl
         bool waitForRefresh = false;
         int64_t timeoutMs = 0;
+        std::shared_ptr<const Overlay> overlay; // null: none
+        OverlayPlace onWall;                    // for the overlay
     };
 
     static Result<std::unique_ptr<WallWindow>> open(GlfwSession& session, const Options& options);
@@ -37,7 +40,8 @@ public:
     WallWindow& operator=(const WallWindow&) = delete;
     ~WallWindow();
 
-    Result<void> move(const PixelViewport& place);
+    // onWall: for the overlay.
+    Result<void> move(const PixelViewport& place, OverlayPlace onWall);
 
     // Swaps the picture with the previous one, whose memory can be reused. right: for windows with a buffer per eye;
     // empty: both eyes show `picture`.
@@ -45,12 +49,14 @@ public:
     Result<void> present(); // makes the drawn picture visible
     void finish();          // returns when the picture is on its way to the screen
 
-    Result<void> redrawIfUncovered();
+    // Shows the latest picture again if the window was uncovered or the overlay has changed.
+    Result<void> redrawIfNeeded();
     [[nodiscard]] bool closeRequested() const;
     [[nodiscard]] std::string drawnBy() const;
 
 private:
-    explicit WallWindow(GlfwSession& session) : session_(session) {}
+    WallWindow(GlfwSession& session, std::shared_ptr<const Overlay> overlay)
+        : session_(session), overlay_(std::move(overlay)) {}
 
     Result<void> create(const Options& options);
     Result<void> createFullScreen(const Options& options);
@@ -66,8 +72,11 @@ private:
     int wantedWidth_ = 0; // last requested size; a window manager may refuse it
     int wantedHeight_ = 0;
     std::string title_;
-    OwnedPicture shown_;      // the shown picture
+    OverlayLayer overlay_;
+    OverlayPlace onWall_;
+    OwnedPicture shown_;      // the shown picture, without overlay
     OwnedPicture shownRight_; // empty: both eyes show shown_
+    Picture painted_;         // for painter_: shown_ with the overlay
     bool stereo_ = false;
     std::unique_ptr<TextureBlit> blit_; // one of the two is set
     std::unique_ptr<AppWindow> painter_;
@@ -104,6 +113,7 @@ private:
 
     Result<void> openWindows(bool openGl, bool stereo);
     [[nodiscard]] PixelViewport placeOf(const TileWindow& tile) const;
+    [[nodiscard]] OverlayPlace onWall(const TileWindow& tile) const;
     Result<void> checkDisplay() const;
 
     WallWindowsConfig config_;

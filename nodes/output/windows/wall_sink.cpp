@@ -7,6 +7,8 @@ namespace mural {
 
 Result<void> WallSink::reopen(int width, int height) {
     config_.tiles = windowsOfTiles(grid_, {0, 0, grid_.columns, grid_.rows}, width, height);
+    config_.wall.wallWidth = width;
+    config_.wall.wallHeight = height;
     windows_.reset(); // one set per process
     auto opened = WallWindows::open(config_);
     if (!opened) return opened.error();

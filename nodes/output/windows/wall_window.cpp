@@ -80,7 +80,8 @@ bool WallWindow::openGlIsFast(const GlfwSession& session) {
 }
 
 Result<std::unique_ptr<WallWindow>> WallWindow::open(GlfwSession& session, const Options& options) {
-    std::unique_ptr<WallWindow> window(new WallWindow(session));
+    std::unique_ptr<WallWindow> window(new WallWindow(session, options.overlay));
+    window->onWall_ = options.onWall;
     window->fullScreen_ = options.fullScreen;
     window->title_ = options.title;
     window->stereo_ = options.stereo;
@@ -162,7 +163,8 @@ Result<void> WallWindow::prepareDrawing(const Options& options) {
     return present();
 }
 
-Result<void> WallWindow::move(const PixelViewport& place) {
+Result<void> WallWindow::move(const PixelViewport& place, OverlayPlace onWall) {
+    onWall_ = std::move(onWall);
     if (fullScreen_) return {};
     glfwSetWindowPos(window_, place.x, place.y);
     resize(std::max(place.w, 1), std::max(place.h, 1));
@@ -203,7 +205,10 @@ Result<void> WallWindow::draw(OwnedPicture& picture, OwnedPicture& right) {
 
 Result<void> WallWindow::drawShown() {
     uncovered_ = false;
-    if (!blit_) return {};
+    if (!blit_) {
+        painted_ = overlay_.over(shown_.view(), onWall_);
+        return {};
+    }
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
@@ -217,7 +222,7 @@ Result<void> WallWindow::drawShown() {
 // Without a picture, draws black.
 Result<void> WallWindow::drawEye(const Picture& picture, TextureBlit::Target target, int width, int height) {
     if (!picture.empty())
-        if (Result<void> uploaded = blit_->upload(picture); !uploaded) return uploaded;
+        if (Result<void> uploaded = blit_->upload(overlay_.over(picture, onWall_)); !uploaded) return uploaded;
     return blit_->draw(target, width, height);
 }
 
@@ -227,8 +232,8 @@ Result<void> WallWindow::present() {
         glfwSwapBuffers(window_);
         return {};
     }
-    if (shown_.view().empty()) return {};
-    return painter_->show(0, shown_.view());
+    if (painted_.empty()) return {};
+    return painter_->show(0, painted_);
 }
 
 void WallWindow::finish() {
@@ -237,8 +242,8 @@ void WallWindow::finish() {
     blit_->finish();
 }
 
-Result<void> WallWindow::redrawIfUncovered() {
-    if (!uncovered_) return {};
+Result<void> WallWindow::redrawIfNeeded() {
+    if (!uncovered_ && (shown_.view().empty() || !overlay_.isOutdated())) return {};
     if (blit_) glfwMakeContextCurrent(window_);
     if (Result<void> drawn = drawShown(); !drawn) return drawn;
     return present();

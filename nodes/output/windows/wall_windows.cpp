@@ -22,7 +22,7 @@ namespace mural {
 
 namespace {
 
-constexpr int64_t kIdleNs = 250 * kNsPerMs; // poll interval of an idle display
+constexpr int64_t kIdleNs = kOverlayMs * kNsPerMs; // poll interval of an idle display, and of the overlay
 constexpr size_t kMaxSpareBuffers = 32;
 
 // A task for the windows' thread.

@@ -16,6 +16,7 @@
 #include "common/geometry/pixel_viewport.hpp"
 #include "common/base/result.hpp"
 #include "nodes/output/picture.hpp"
+#include "nodes/overlay/overlay.hpp"
 
 namespace mural {
 
@@ -35,6 +36,9 @@ std::vector<TileWindow> placeTiles(std::span<const PixelViewport> tiles, int wal
 // Both are exact on 24-bit screens.
 enum class WallDrawing { Auto, OpenGl, XPut };
 
+// A change of the overlay's mode appears in windows without new pictures within this time, in ms.
+inline constexpr int64_t kOverlayMs = 250;
+
 struct WallWindowsConfig {
     std::string displayName; // empty: DISPLAY
     std::vector<TileWindow> tiles;
@@ -42,7 +46,10 @@ struct WallWindowsConfig {
     int positionY = 0;
     bool fullScreen = false;
     WallDrawing drawing = WallDrawing::Auto;
-    bool stereo = false;        // requests a buffer per eye, which needs OpenGl
+    bool stereo = false; // requests a buffer per eye, which needs OpenGl
+    // Drawn over the pictures when they are shown; null: none. A change of its mode appears within kOverlayMs.
+    std::shared_ptr<const Overlay> overlay;
+    OverlayPlace wall;          // the size of the wall; each window has its own title and part
     bool waitForRefresh = true; // OpenGl: swaps at the monitor's refresh (once per showAll)
     int64_t openTimeoutMs = 20'000;
     int64_t showTimeoutMs = 5'000; // for show, showAll, arrange, and closing

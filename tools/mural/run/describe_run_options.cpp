@@ -59,6 +59,9 @@ void describeRunOptions(CLI::App& command, RunArguments& a) {
         ->type_name("WAY");
     command.add_option("--latency", a.latency, "number of frames that the program may be ahead of the wall (1)")
         ->type_name("N");
+    command.add_option("--overlay", a.overlay, "drawn over the wall's windows: off, stats, names, grid (off)")
+        ->type_name("MODE");
+    command.add_flag("--overlay-in-files", a.overlayInFiles, "the overlay also in the pictures of --out");
     command.add_flag("--verify{1}", a.verify, "compare every frame (=N: every Nth) with the program's own picture");
     command.add_flag("--fullscreen", a.fullScreen, "wall windows without borders, one per monitor");
     command.add_option("--position", a.position, "upper left corner of the wall windows on the screen")

@@ -12,6 +12,12 @@ Result<void> readOutput(const RunArguments& a, SessionConfig& c) {
     c.out = a.out.value_or("");
     if (a.record && a.record->empty()) return badValue("--record", "", "must be a file, such as --record app.mural");
     c.record = a.record.value_or("");
+    if (a.overlayInFiles && !a.out)
+        return Error{"--overlay-in-files requires --out; add a destination, such as --out shots"};
+    if (a.overlayInFiles && c.passes.stereo == StereoMode::Quad)
+        return Error{
+            "--overlay-in-files draws over pictures of one eye, but --stereo quad saves both; omit one of them"};
+    c.overlayInFiles = a.overlayInFiles;
     if (!a.save) return {};
     if (!a.out) return Error{"--save requires --out; add a destination, such as --out shots"};
     for (const std::string& part : listOf(*a.save)) {

@@ -37,9 +37,10 @@ struct RunArguments {
     std::vector<std::string> layouts;
     bool allLocal = false, printConfig = false;
     OptionText stereo, eyeBase, focus, pixel, subpixel, dplex, db, zoom, composition, codec, readback;
-    OptionText localNodes, frames, latency, report, record;
+    OptionText localNodes, frames, latency, report, record, overlay;
     std::string verify; // empty: not given
-    bool fullScreen = false, noPlacement = false, explain = false, native = false, quiet = false;
+    bool fullScreen = false, noPlacement = false, overlayInFiles = false, explain = false, native = false,
+         quiet = false;
     std::vector<std::string> program;
 };
 

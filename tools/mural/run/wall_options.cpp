@@ -44,6 +44,11 @@ Result<void> readSizes(const RunArguments& a, SessionConfig& c) {
         if (!position) return badValue("--position", *a.position, "must be X,Y in pixels, such as 0,0");
         std::tie(c.windowX, c.windowY) = *position;
     }
+    if (a.overlay) {
+        const auto mode = overlayModeOf(*a.overlay);
+        if (!mode) return badValue("--overlay", *a.overlay, fmt::format("must be {}", kOverlayModeNames));
+        c.overlay = *mode;
+    }
     return {};
 }
 

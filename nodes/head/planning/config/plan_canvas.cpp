@@ -1,5 +1,8 @@
 #include "nodes/head/planning/config/plan_canvas.hpp"
 
+#include <variant>
+
+#include "balancer/config/screen.hpp"
 #include "nodes/head/planning/config/explain_nodes.hpp"
 #include "nodes/head/planning/config/follow_frames.hpp"
 #include "nodes/head/planning/config/node_windows.hpp"
@@ -8,6 +11,18 @@
 #include "nodes/head/planning/config/wall_parts.hpp"
 
 namespace mural {
+
+namespace {
+
+// A surface without a position in the file is the default wall.
+CanvasMillimetres millimetresOf(const config::ProjectionSurface& surface) {
+    const bool isGiven = std::visit([](const auto& s) { return s.at.line > 0; }, surface);
+    if (!isGiven) return {};
+    const config::Screen screen = screenOf(surface);
+    return {screen.width * 1000, screen.height * 1000};
+}
+
+} // namespace
 
 Result<PlannedCanvas> planCanvas(const compound::LoadedConfig& loaded, const PlanOptions& options, compound::Index only,
                                  int nodesBefore) {
@@ -32,6 +47,8 @@ Result<PlannedCanvas> planCanvas(const compound::LoadedConfig& loaded, const Pla
     if (!channels) return channels.error();
     placeWindows({source, input->sizes, *channels, gathered.barriers, options.allLocal}, plan);
     takeObserver(source.config, draws, plan);
+    if (planned.choice.canvas != config::kNone)
+        plan.size = millimetresOf(source.config.canvases[config::at(planned.choice.canvas)].surface);
     explainNodes(source, *channels, nodesBefore, plan);
     plan.balance = std::make_shared<BalancePlan>(BalancePlan{
         source.config, std::move(*input), canvasSize(source.config, planned.choice.canvas), options.balance, {}});

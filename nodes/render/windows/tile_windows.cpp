@@ -1,4 +1,4 @@
-#include "nodes/render/tile_windows.hpp"
+#include "nodes/render/windows/tile_windows.hpp"
 
 #include "nodes/frame_spans/span_scope.hpp"
 #include "nodes/output/windows/wall_layout.hpp"
@@ -34,6 +34,11 @@ Result<void> TileWindows::reopen(int width, int height) {
     config.positionX = setup_.windowX;
     config.positionY = setup_.windowY;
     config.fullScreen = setup_.fullScreen;
+    config.overlay = overlay_->overlay();
+    config.wall.wallWidth = width;
+    config.wall.wallHeight = height;
+    config.wall.wallWidthMm = setup_.wallWidthMm;
+    config.wall.wallHeightMm = setup_.wallHeightMm;
     windows_.reset(); // one set per process
     auto opened = WallWindows::open(config);
     if (!opened) return opened.error();

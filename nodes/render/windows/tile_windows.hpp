@@ -5,6 +5,7 @@
 
 #include "common/base/main_window.hpp"
 #include "nodes/output/windows/wall_windows.hpp"
+#include "nodes/render/windows/overlay_part.hpp"
 #include "nodes/replay/engine/replay.hpp"
 #include "nodes/session/session_config.hpp"
 #include "nodes/swap_barrier/swap_barrier.hpp"
@@ -14,6 +15,8 @@ namespace mural {
 class TileWindows {
 public:
     static Result<std::unique_ptr<TileWindows>> open(const NodeSetup& setup);
+    // The overlay over the pictures. Never null.
+    [[nodiscard]] const std::shared_ptr<OverlayPart>& overlay() const { return overlay_; }
     // Shows the tiles of the main window (the largest that swaps). With a barrier, waits for its other members.
     Result<void> show(const ReplayOutputs::Frame& frame, SwapBarrier* barrier);
 
@@ -21,12 +24,13 @@ public:
     void clientGone(uint32_t client) { mainWindow_.clientGone(client); }
 
 private:
-    explicit TileWindows(const NodeSetup& setup) : setup_(setup) {}
+    explicit TileWindows(const NodeSetup& setup) : setup_(setup), overlay_(std::make_shared<OverlayPart>(setup)) {}
     [[nodiscard]] std::vector<TileWindow> windowsFor(int width, int height) const;
     Result<void> reopen(int width, int height);
     static int64_t awaitBarrier(SwapBarrier& barrier, const SwapKey& key);
 
     NodeSetup setup_;
+    const std::shared_ptr<OverlayPart> overlay_;
     std::unique_ptr<WallWindows> windows_;
     int width_ = 0, height_ = 0;
     MainWindow mainWindow_;
