@@ -74,7 +74,8 @@ def change(context, run, numbers, folder, kills):
     present = [entry["node"] for entry in result_of(context, run, "nodes").get("nodes", [])]
     node = numbers.choice(present or range(NODES))
     changes = [("latency", str(numbers.randrange(5))), ("record", "start", os.path.join(folder, "%d.mural" % number)), ("record", "stop"),
-               ("stop-node", str(node)), ("start-node", str(node)), ("stop-node", str(node)), ("start-node", str(node)), ("frames",)]
+               ("stop-node", str(node)), ("start-node", str(node)), ("stop-node", str(node)), ("start-node", str(node)), ("frames",),
+               ("overlay", numbers.choice(("off", "stats", "names", "grid")))]
     if kills and numbers.random() < 0.15:
         alive = run.processes(cases.NODE)
         if len(alive) < 2:
