@@ -31,7 +31,8 @@ void Equalizer::update(const FrameContext& context, States& states) {
     decision_.moved = false;
     decision_.predictedGain = 0;
     decision_.inputs.clear();
-    if (isFrozen_ && !isAvailabilityChanged(states)) {
+    const bool dividesAnew = isFrozen_ && isAvailabilityChanged(states) && effect_ != Effect::Zooms;
+    if (isFrozen_ && !dividesAnew) {
         decision_.what = "frozen";
         return;
     }

@@ -54,7 +54,8 @@ public:
     [[nodiscard]] const Parameters& parameters() const { return parameters_; }
     Result<void> set(std::string_view parameter, std::string_view value) { return parameters_.set(parameter, value); }
 
-    // A frozen equalizer observes, but leaves all states as they are, unless nodes are lost or return.
+    // A frozen equalizer observes, but leaves all states as they are. Equalizers that divide work still act when nodes
+    // are lost or return.
     void freeze(bool frozen, const States& states);
     [[nodiscard]] bool isFrozen() const { return isFrozen_; }
 

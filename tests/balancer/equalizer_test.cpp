@@ -247,6 +247,31 @@ TEST(DfrEqualizer, neverDrawsFewerThan128Pixels) {
     EXPECT_NEAR(z.picture.states()[at(z.source)].zoom->y * 1080, 128, 1);
 }
 
+// A zoom of the file, here or above, is full resolution.
+TEST(DfrEqualizer, neverExceedsTheZoomOfTheFile) {
+    ZoomedSource z;
+    config::ResolvedConfig config = z.picture.config();
+    config.compounds[at(z.picture.root())].zoom = {.5, .5};
+    config.compounds[at(z.source)].zoom = {.5, .5};
+    DfrEqualizer equalizer("dfr", config, z.source, z.fields);
+    EXPECT_EQ(equalizer.targets(config), std::vector<Index>{z.source});
+    const auto after = [&](double seconds, double zoom) {
+        FrameStatistics statistics = z.draw();
+        statistics.leaves[0].zoom = {.25 * zoom, .25 * zoom};
+        statistics.roots[0].frameSeconds = seconds;
+        equalizer.observe(statistics);
+        const FrameContext context{config, z.picture.input()};
+        States states = z.picture.states();
+        equalizer.update(context, states);
+        return states[at(z.source)].zoom.value_or(Zoom{.5, .5});
+    };
+    EXPECT_EQ(after(.001, 1), (Zoom{.5, .5}));
+    ASSERT_TRUE(equalizer.set("damping", "1").ok());
+    EXPECT_NEAR(after(.2, 1).x, .5 * std::sqrt(.5), 1e-9);
+    EXPECT_NEAR(after(.1, std::sqrt(.5)).x, .5 * std::sqrt(.5), 1e-9);
+    EXPECT_EQ(after(.001, std::sqrt(.5)), (Zoom{.5, .5}));
+}
+
 compound::LoadedConfig presetOf(const config::Preset& form) {
     const auto file = config::shortForm(form);
     EXPECT_TRUE(file.ok());
