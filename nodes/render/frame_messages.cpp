@@ -27,7 +27,8 @@ wire::FrameDoneMessage frameDoneMessageOf(const ReplayOutputs::Frame& frame) {
     done.width = frame.config.width;
     done.height = frame.config.height;
     done.flags = (frame.drawnWhole ? wire::kDrawnWhole : 0) | (frame.keepsPicture ? wire::kKeepsPicture : 0) |
-                 (frame.notSplit ? wire::kNotSplit : 0) | (frame.keepsAreas ? wire::kKeepsAreas : 0);
+                 (frame.notSplit ? wire::kNotSplit : 0) | (frame.keepsAreas ? wire::kKeepsAreas : 0) |
+                 (frame.isUnzoomed ? wire::kDrawnUnzoomed : 0);
     done.areas = frame.areas;
     done.shares = frame.shares;
     return done;

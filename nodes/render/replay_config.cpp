@@ -31,7 +31,9 @@ ReplayConfig replayConfigOf(const NodeSetup& setup, const std::string& renderer)
     config.grid = {setup.columns, setup.rows, config.lean ? 2 : 1};
     config.region = {setup.regionColumn, setup.regionRow, setup.regionColumns, setup.regionRows};
     if (setup.hasArea) config.area = setup.area;
-    if (!setup.areas.empty()) config.areas.emplace(ViewportAssignment{0, areasOf(setup.areas)});
+    if (!setup.areas.empty()) config.areas.emplace(ViewportAssignment{0, areasOf(setup.areas), {}});
+    config.anyMovesZoom = setup.anyMovesZoom;
+    config.movesZoom = setup.movesZoom;
     config.pass = setup.pass;
     config.readback = setup.sendPictures ? readbackBy(renderer, setup.readback) : Readback::Direct;
     config.deepPictures = setup.deepPictures;

@@ -135,6 +135,8 @@ void visitFields(Setup& s, Visitor&& visit) {
     visit("areaWidth", s.area.w);
     visit("areaHeight", s.area.h);
     visit("areas", s.areas);
+    visit("anyMovesZoom", s.anyMovesZoom);
+    visit("movesZoom", s.movesZoom);
     visit("sharesMachine", s.sharesMachine);
     visit("screen", s.screen);
     visit("shareStart", s.pass.share.start);

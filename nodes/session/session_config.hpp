@@ -94,8 +94,11 @@ struct NodeSetup {
     int regionColumn = 0, regionRow = 0, regionColumns = 1, regionRows = 1;
     bool hasArea = false; // the node draws `area` instead of tiles
     Viewport area;        // region of the picture
-    // x, y, width, height of every node's area, if areas move (HeadCommand::ViewportAssignment); empty: fixed areas
+    // x, y, width, height of every node's area, if areas or this node's zoom change
+    // (HeadCommand::ViewportAssignment); empty: fixed
     std::vector<double> areas;
+    // zooms change with the areas (HeadCommand::ViewportAssignment): of any node, and of this one
+    bool anyMovesZoom = false, movesZoom = false;
     RenderPass pass;
     bool sharesMachine = false;       // other nodes of the session run on the same machine
     std::optional<ScreenView> screen; // view of a screen in a room; null: a part of a flat wall with the program's view

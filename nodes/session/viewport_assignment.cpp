@@ -1,5 +1,6 @@
 #include "nodes/session/viewport_assignment.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace mural {
@@ -7,6 +8,7 @@ namespace mural {
 namespace {
 
 constexpr double kRounding = 1e-9; // tolerates the rounding of decimal fractions
+constexpr size_t kNumbers = 5;     // per node
 
 bool inPicture(const Viewport& v) {
     // false for NaN
@@ -17,11 +19,11 @@ bool inPicture(const Viewport& v) {
 
 std::vector<std::byte> bytesOf(const ViewportAssignment& areas) {
     const uint32_t head[] = {areas.number, static_cast<uint32_t>(areas.ofNodes.size())};
-    std::vector<std::byte> bytes(sizeof head + areas.ofNodes.size() * 4 * sizeof(double));
+    std::vector<std::byte> bytes(sizeof head + areas.ofNodes.size() * kNumbers * sizeof(double));
     std::memcpy(bytes.data(), head, sizeof head);
     for (size_t i = 0; i < areas.ofNodes.size(); ++i) {
         const Viewport& v = areas.ofNodes[i];
-        const double numbers[] = {v.x, v.y, v.w, v.h};
+        const double numbers[kNumbers] = {v.x, v.y, v.w, v.h, areas.zoomOf(i)};
         std::memcpy(bytes.data() + sizeof head + i * sizeof numbers, numbers, sizeof numbers);
     }
     return bytes;
@@ -32,15 +34,17 @@ std::optional<ViewportAssignment> takeAreas(std::span<const std::byte>& bytes) {
     if (bytes.size() < sizeof head) return {};
     std::memcpy(head, bytes.data(), sizeof head);
     const auto rest = bytes.subspan(sizeof head);
-    double numbers[4] = {};
+    double numbers[kNumbers] = {};
     if (rest.size() / sizeof numbers < head[1]) return {};
     ViewportAssignment areas;
     areas.number = head[0];
     for (size_t i = 0; i < head[1]; ++i) {
         std::memcpy(numbers, rest.data() + i * sizeof numbers, sizeof numbers);
         areas.ofNodes.push_back({numbers[0], numbers[1], numbers[2], numbers[3]});
-        if (!inPicture(areas.ofNodes.back())) return {};
+        areas.zooms.push_back(numbers[4]);
+        if (!inPicture(areas.ofNodes.back()) || !(numbers[4] > 0 && numbers[4] <= 1)) return {};
     }
+    if (std::ranges::all_of(areas.zooms, [](double zoom) { return zoom == 1; })) areas.zooms.clear();
     bytes = rest.subspan(head[1] * sizeof numbers);
     return areas;
 }

@@ -40,7 +40,7 @@ struct FrameDoneMessage {
     uint32_t frame; // number of the frame of this client, from 1
     uint32_t width; // of the window, pixels
     uint32_t height;
-    uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas
+    uint32_t flags;    // kDrawnWhole, kKeepsPicture, kNotSplit, kKeepsAreas, kDrawnUnzoomed
     uint32_t areas;    // number of the ViewportAssignment that divides its picture; 0: of Setup
     uint32_t shares;   // number of the RangeAssignment that divides its draws; 0: of Setup
     uint64_t busyNs;   // work since the previous frame, without waits and sending; CPU time where nodes share cores
@@ -59,6 +59,8 @@ constexpr uint32_t kKeepsPicture = 2;
 constexpr uint32_t kNotSplit = 4;
 // The window has not been cleared completely since a ViewportAssignment was announced long ago.
 constexpr uint32_t kKeepsAreas = 8;
+// The zoom of the node did not apply to the frame, because the program reads or copies pixels of the window.
+constexpr uint32_t kDrawnUnzoomed = 16;
 
 // Progress of a program when a node became a member.
 struct ClientFrame {
@@ -86,9 +88,11 @@ struct WindowAreas {
     uint32_t window;
     uint32_t areas, wanted, front;
     uint32_t drawn; // buffers that are divided: each node has its own part only
-    uint32_t fixed; // 1: the areas no longer change
+    uint32_t state; // kAreas…
 };
 static_assert(sizeof(WindowAreas) == 28);
+// The areas no longer change. This frame, or the next one, is drawn without kernel and zoom.
+constexpr uint32_t kAreasFixed = 1, kAreasPlain = 2, kAreasPlainNext = 4;
 
 struct SynchronizedMessage {
     uint32_t number;   // of the Synchronize

@@ -1,4 +1,4 @@
-// The wire format of areas.
+// The wire format of areas and zooms.
 #include "nodes/session/viewport_assignment.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 TEST(AreasOnTheWire, roundTrip) {
     const ViewportAssignment first{7, {{0, 0, 1. / 3, 1}, {1. / 3, 0, 2. / 3, 1}, {0, 0, 0, 0}}}, second{8, {}};
     auto bytes = bytesOf(first);
-    EXPECT_EQ(bytes.size(), 8u + 3 * 32);
+    EXPECT_EQ(bytes.size(), 8u + 3 * 40);
     const auto more = bytesOf(second);
     bytes.insert(bytes.end(), more.begin(), more.end());
     std::span<const std::byte> rest(bytes);
@@ -19,6 +19,19 @@ TEST(AreasOnTheWire, roundTrip) {
     EXPECT_EQ(takeAreas(rest), second);
     EXPECT_TRUE(rest.empty());
     EXPECT_FALSE(takeAreas(rest).has_value());
+}
+
+TEST(AreasOnTheWire, haveAZoomPerNode) {
+    const auto back = [](const std::vector<double>& zooms) {
+        const auto bytes = bytesOf(ViewportAssignment{1, {{0, 0, 1, 1}, {0, 0, 1, 1}}, zooms});
+        std::span<const std::byte> rest(bytes);
+        return takeAreas(rest);
+    };
+    EXPECT_EQ(back({.25, 1})->zooms, (std::vector<double>{.25, 1}));
+    EXPECT_TRUE(back({1, 1})->zooms.empty());
+    EXPECT_EQ(back({})->zoomOf(1), 1);
+    for (const double wrong : {0., -1., 1.01, double(NAN), double(INFINITY)})
+        EXPECT_FALSE(back({.5, wrong}).has_value()) << wrong;
 }
 
 TEST(AreasOnTheWire, areRejectedWhenInvalid) {

@@ -1,4 +1,4 @@
-// Moving areas: the time at which a window adopts them, and its area before.
+// Moving areas and zooms: the time at which a window adopts them, and its area and zoom before.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,8 +31,7 @@ class DynamicTiles : public ::testing::Test {
 protected:
     void SetUp() override { replay_ = make(false); }
 
-    std::unique_ptr<Replay> make(bool isResyncing) {
-        ReplayConfig config;
+    std::unique_ptr<Replay> make(bool isResyncing, ReplayConfig config = {}) {
         config.areas = leftAndRight(0, false);
         config.isResyncing = isResyncing;
         ReplayOutputs out;
@@ -299,6 +298,127 @@ TEST_F(DynamicTiles, rejectInvalidReports) {
         EXPECT_FALSE(replay_->takeMemberAreas(std::span(sentAreas).first(size)))
             << size << " of " << sentAreas.size() << " bytes";
     }
+}
+
+// Node 0 starts with the left half at full size, and is to draw the same half with half the size in both directions.
+class DynamicZooms : public DynamicTiles {
+protected:
+    void SetUp() override { replay_ = makeZooming(false); }
+    std::unique_ptr<Replay> makeZooming(bool isResyncing) {
+        ReplayConfig config;
+        config.anyMovesZoom = config.movesZoom = true;
+        return make(isResyncing, config);
+    }
+    void announceZoom(double zoom, uint32_t number = 1) {
+        send();
+        ViewportAssignment areas = leftAndRight(number, false);
+        areas.zooms = {zoom, 1};
+        replay_->moveAreas(areas);
+    }
+    // The first frames are drawn without zoom, until it is known that the program reads nothing.
+    void drawPlainFrames() {
+        for (int i = 0; i < 2; ++i) {
+            encode_glClear(t_, kColour);
+            draw();
+            EXPECT_EQ(shown(), kLeft);
+            EXPECT_TRUE(frame_.isUnzoomed);
+        }
+    }
+    // The pixels that the latest draw could change.
+    PixelViewport drawnBox() {
+        drawn_.clear();
+        draw();
+        send();
+        return drawn_.back();
+    }
+};
+constexpr PixelViewport kHalf{0, 0, 16, 16};
+
+TEST_F(DynamicZooms, areAdoptedAtTheNextFullClear) {
+    open();
+    drawPlainFrames();
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(drawnBox(), kLeft);
+    announceZoom(.5);
+    EXPECT_EQ(drawnBox(), kLeft) << "announced in the middle of a frame";
+    EXPECT_EQ(shown(), kLeft);
+    EXPECT_EQ(drawnBox(), kLeft) << "a frame that is drawn over the one before";
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(drawnBox(), kHalf);
+    EXPECT_EQ(shown(), kLeft) << "the shown size";
+    EXPECT_EQ(frame_.picture, (PixelViewport{0, 0, 64, 32}));
+    EXPECT_EQ(frame_.areas, 1u);
+    EXPECT_FALSE(frame_.isUnzoomed);
+    announceZoom(1, 2);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(drawnBox(), kLeft);
+}
+
+TEST_F(DynamicZooms, waitAfterPartialClears) {
+    open();
+    drawPlainFrames();
+    announceZoom(.5);
+    encode_glClear(t_, kColour);
+    encode_glEnable(t_, GL_SCISSOR_TEST);
+    encode_glScissor(t_, 0, 0, 10, 10);
+    encode_glClear(t_, kColour);
+    encode_glDisable(t_, GL_SCISSOR_TEST);
+    EXPECT_EQ(drawnBox(), kHalf) << "with the full clear";
+    announceZoom(.25, 2);
+    EXPECT_EQ(shown(), kLeft);
+    encode_glEnable(t_, GL_SCISSOR_TEST);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(shown(), kLeft);
+    EXPECT_EQ(frame_.areas, 1u) << "the cleared part has its place by the old zoom";
+}
+
+TEST_F(DynamicZooms, doNotApplyToWindowsThatAreRead) {
+    open();
+    drawPlainFrames();
+    announceZoom(.5);
+    for (int i = 0; i < 3; ++i) {
+        encode_glClear(t_, kColour);
+        const PixelViewport box = drawnBox();
+        records::requestPixels(t_, 1, 0, 0, 64, 32, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+        EXPECT_EQ(shown(), kLeft);
+        if (i == 0) continue; // the first read is not known before
+        EXPECT_EQ(box, kLeft);
+        EXPECT_TRUE(frame_.isUnzoomed);
+    }
+}
+
+TEST_F(DynamicZooms, doNotApplyToWindowsThatKeepTheirAreas) {
+    open();
+    drawPlainFrames();
+    announceZoom(.5);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(drawnBox(), kHalf);
+    encode_glDrawBuffer(t_, GL_FRONT);
+    draw();
+    encode_glDrawBuffer(t_, GL_BACK);
+    EXPECT_EQ(shown(), kLeft);
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(drawnBox(), kLeft);
+    EXPECT_EQ(shown(), kLeft);
+    EXPECT_TRUE(frame_.isUnzoomed);
+}
+
+TEST_F(DynamicZooms, areReportedToReturningNodes) {
+    open();
+    drawPlainFrames();
+    announceZoom(.5);
+    encode_glClear(t_, kColour);
+    draw();
+    EXPECT_EQ(shown(), kLeft);
+    const auto sentAreas = replay_->memberAreas();
+    replay_ = makeZooming(true);
+    open();
+    ASSERT_TRUE(replay_->takeMemberAreas(sentAreas));
+    encode_glClear(t_, kColour);
+    EXPECT_EQ(drawnBox(), kHalf);
+    EXPECT_EQ(shown(), kLeft);
+    EXPECT_FALSE(frame_.isUnzoomed) << "as on the member";
+    EXPECT_EQ(replay_->memberAreas(), sentAreas);
 }
 
 TEST_F(DynamicTiles, restartWithoutAMember) {

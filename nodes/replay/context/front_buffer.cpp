@@ -176,7 +176,7 @@ bool Replay::readsFront() const { return isFront(readFrom(c_->readBuffer0)); }
 // This node's region of the window's back or front buffer.
 PixelViewport Replay::regionOf(const Window& w, bool front) const {
     if (!moves() || !front || !w.front || w.skipped) return w.region;
-    return partOf(w, w.moving.front.get());
+    return partDrawn(w, true);
 }
 
 // Called when the window receives another surface.

@@ -96,12 +96,14 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
         f.notSplit = takesRanges() && !w.range.wasSplit;
         f.config = w.config;
         f.format = PictureFormat::Bgra8;
-        f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, w.part) : regionOf(w, front);
+        const PixelViewport part = front ? partOf(w, areasOf(w, true)) : w.part;
+        f.region = drawsOtherPixels() && !w.region.empty() ? inShown(config_.pass, part) : regionOf(w, front);
         f.picture = drawsOtherPixels() ? inShown(config_.pass, w.whole) : w.whole;
         f.keepsPicture = keepsTurn(w);
         f.areas = moves() ? w.moving.areas->number : 0;
         f.shares = w.range.drawnBy;
         f.keepsAreas = moves() && w.moving.areas != areas_ && ++w.moving.waits >= kPatientFrames;
+        f.isUnzoomed = config_.movesZoom && w.plain;
         f.valid = isValid(w, front);
         if (!front && f.valid) w.frontStaled = false;
         showedInvalid_ = showedInvalid_ || (!f.valid && !w.skipped && w.begun);
@@ -109,7 +111,7 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
             readable = &w, f.format = pictureFormatOf(*bound_, w),
             f.pixels = [this, &w, front](const PixelViewport& r) {
                 ContextState* const own = std::exchange(c_, bound_);
-                const bool zoomed = (w.plain ? Zoom{} : config_.pass.zoom) != config_.pass.shown && !r.empty();
+                const bool zoomed = (w.plain ? Zoom{} : passOf(w, front).zoom) != config_.pass.shown && !r.empty();
                 const std::byte* pixels = zoomed                                 ? readScaled(w, r, front)
                                           : hasKernel() && w.plain && !r.empty() ? readEveryNth(w, r, front)
                                                                                  : readShown(w, r, front);
@@ -127,7 +129,7 @@ void Replay::showWindow(Window* window, uint32_t id, uint32_t frame, bool front)
     // A frame ends after its draws, because pacing and frame rates depend on that. If its picture is read later, the
     // frame ends with that read.
     const bool shown = frame != wire::kUnseenFrame;
-    const bool later = shown && readable && readsLater(*readable, f.region);
+    const bool later = shown && readable && readsLater(*readable, f.region, front);
     const int64_t beganNs = monotonicNowNs();
     if (!skips_ && !later) waitUntilDrawn();
     reportDriverProblems();

@@ -36,7 +36,7 @@ PixelViewport Replay::origin() const {
 void Replay::applyScissor(int index, bool all) {
     const replay::Scissor& app = c_->scissors[static_cast<size_t>(index)];
     bool enabled = app.enabled;
-    PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inPass(config_.pass, app.box) : app.box;
+    PixelViewport box = drawsWindow() && interleaves(c_->draw) ? inPass(passOf(*c_->draw), app.box) : app.box;
     if (!isReplicatedDraw() && c_->draw) {
         const PixelViewport part = c_->draw->drawn;
         if (drawsLean()) { // the framebuffer ends at the tile's edges

@@ -202,9 +202,10 @@ bool Replay::onWindow(Args& in) {
     w.programRed = config->red;
     const auto width = static_cast<int32_t>(config->width), height = static_cast<int32_t>(config->height);
     w.whole = {0, 0, width, height};
-    if (moves() && (!w.surface || renewed || w.surface->width() != std::max(width, 1) ||
-                    w.surface->height() != std::max(height, 1)))
-        redivide(w);
+    if (moves()) {
+        const PixelViewport whole = surfaceOf(w, false);
+        if (!w.surface || renewed || w.surface->width() != whole.w || w.surface->height() != whole.h) redivide(w);
+    }
     w.part = partOf(w, w.moving.areas.get());
     placePart(w);
     const PixelViewport size = surfaceOf(w, w.lean);

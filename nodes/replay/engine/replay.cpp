@@ -89,7 +89,7 @@ bool Replay::execute(uint16_t opcode, std::span<const std::byte> arguments, Blob
     if (takesTurns()) onTurn(opcode, arguments);
     if (hasSkipped_) onSkipped(opcode, arguments);
     if (movesView() || config_.pass.samples > 1) onEye(opcode, arguments);
-    if (drawsOtherPixels()) onWholeWindow(opcode, arguments);
+    if (tracksCopies()) onWholeWindow(opcode, arguments);
     if (takesRanges()) in = Args(onRange(opcode, arguments), blobs); // reduced to this node's piece, or empty
     // after onRange(), which decides whether this node draws the command
     const bool skips = (takesTurns() || (hasSkipped_ && c_->draw && c_->draw->skipped)) && shouldSkipDraw(opcode);

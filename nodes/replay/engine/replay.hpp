@@ -200,7 +200,7 @@ private:
     // readback/frame_readback.cpp
     [[nodiscard]] bool hasFences(const ContextState& c) const;
     std::shared_ptr<AsyncReadback> laterReads();
-    [[nodiscard]] bool readsLater(const Window& w, const PixelViewport& region);
+    [[nodiscard]] bool readsLater(const Window& w, const PixelViewport& region, bool front);
     std::unique_ptr<PictureRead> readAtOnce(const ReplayOutputs::Frame& f, const PixelViewport& r);
     std::unique_ptr<PictureRead> readLater(Window& w, const PixelViewport& r, bool front);
     AsyncReadback* into_ = nullptr; // destination of readRegion(); null: pixels_
@@ -273,6 +273,9 @@ private:
     [[nodiscard]] bool moves() const { return areas_ != nullptr; }
     [[nodiscard]] bool isLearningAreas(const Window& w) const { return moves() && !knowsAreas_ && !w.skipped; }
     [[nodiscard]] PixelViewport partOf(const Window& w, const ViewportAssignment* areas) const;
+    [[nodiscard]] const ViewportAssignment* areasOf(const Window& w, bool front) const {
+        return (front && w.front ? w.moving.front : w.moving.areas).get();
+    }
     void onArea(uint16_t opcode, std::span<const std::byte> arguments);
     [[nodiscard]] GLbitfield clearedBy(uint16_t opcode, std::span<const std::byte> arguments) const;
     [[nodiscard]] GLbitfield drawnBy(uint16_t opcode) const;
@@ -321,17 +324,20 @@ private:
     [[nodiscard]] bool hasKernel() const { return config_.pass.kernelWidth * config_.pass.kernelHeight > 1; }
     // True if the pass does not draw exactly the pixels of this node's part of the window.
     [[nodiscard]] bool drawsOtherPixels() const {
-        return hasKernel() || !config_.pass.zoom.none() || !config_.pass.shown.none();
+        return hasKernel() || config_.movesZoom || !config_.pass.zoom.none() || !config_.pass.shown.none();
     }
+    // True if frames after reads and copies may differ from others: on this node, or on members of its session.
+    [[nodiscard]] bool tracksCopies() const { return drawsOtherPixels() || config_.anyMovesZoom; }
+    [[nodiscard]] RenderPass passOf(const Window& w, bool front = false) const;
     // True if the pixels that other tiles deliver for copies belong to another pass: the answering one.
     [[nodiscard]] bool copiesOthers() const { return !config_.answers && !drawsOtherPixels() && !takesRanges(); }
     [[nodiscard]] bool interleaves(const Window* w) const { return drawsOtherPixels() && w && !w->plain; }
-    [[nodiscard]] PixelViewport partDrawn(const Window& w) const;
+    [[nodiscard]] PixelViewport partDrawn(const Window& w, bool front = false) const;
     [[nodiscard]] bool movesPicture() const { return config_.pass.samples > 1 || drawsOtherPixels(); }
     const std::byte* readScaled(Window& w, const PixelViewport& r, bool front);
     [[nodiscard]] PixelViewport surfaceOf(const Window& w, bool lean) const;
     const std::byte* readEveryNth(Window& w, const PixelViewport& r, bool front);
-    const std::byte* readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group);
+    const std::byte* readRepeated(const PixelViewport& part, bool front, GLenum format, GLenum type, size_t group);
     [[nodiscard]] bool movesByShaders() const;
     [[nodiscard]] bool movesView() const { return config_.pass.eye != Eye::Cyclop || config_.screen; }
     [[nodiscard]] double eyeOffset() const { return (config_.pass.eye == Eye::Left ? -0.5 : 0.5) * config_.eyeBase; }

@@ -38,6 +38,8 @@ struct ReplayConfig {
     TileRegion region;
     std::optional<Viewport> area;            // replaces grid and region
     std::optional<ViewportAssignment> areas; // replaces `area`; moveAreas() sets the following ones
+    bool anyMovesZoom = false;               // the zooms of `areas` change, of any node; they apply to this node if…
+    bool movesZoom = false;                  // …its own zoom changes
     RenderPass pass;
     bool answers = true;                      // answers requests for pixels; false: nodes of another pass answer them
     double eyeBase = 0.05, focusDistance = 1; // in the program's units
@@ -75,6 +77,7 @@ struct ReplayOutputs {
         uint32_t
             shares; // number of the RangeAssignment that divided the draws; 0: the initial ones, or no shared draws
         bool keepsAreas; // newer areas have waited too long for a full clear
+        bool isUnzoomed; // drawn without the node's zoom
         std::function<const std::byte*(const PixelViewport&)> pixels;
         // Reads `region` once, for another thread, which may have to wait for its drawing. Set where `pixels` is.
         // Returns null if no picture is available.

@@ -9,6 +9,9 @@
 //
 // A front buffer with a surface of its own has the areas of the frame that was swapped. Its drawn content persists.
 // Windows that draw into the front, or accumulate, therefore keep their areas.
+//
+// An assignment also has zooms (balancer/equalizers/dfr_equalizer). Buffers that are cleared whole look equal at any
+// zoom, so the same position serves both. Windows that keep their areas are drawn without zoom.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -45,6 +48,11 @@ bool clears(uint16_t opcode, GLuint first, GLuint second) {
 GLbitfield buffersOf(const wire::WindowConfig& config) {
     return GLbitfield{GL_COLOR_BUFFER_BIT} | (config.depth > 0 ? GL_DEPTH_BUFFER_BIT : 0) |
            (config.stencil > 0 ? GL_STENCIL_BUFFER_BIT : 0);
+}
+
+uint32_t stateOf(const replay::Window& w) {
+    return (w.moving.fixed ? wire::kAreasFixed : 0) | (w.plain ? wire::kAreasPlain : 0) |
+           (w.copied ? wire::kAreasPlainNext : 0);
 }
 
 } // namespace
@@ -145,8 +153,12 @@ void Replay::onArea(uint16_t opcode, std::span<const std::byte> arguments) {
         m.wanted = m.areas;
     }
     // All clears, including partial ones, run without the tile (withoutTile), so buffers that are equal on all nodes
-    // stay so.
-    if (use == WindowUse::Clears && (m.drawn & cleared)) m.drawn &= ~clearedBy(opcode, arguments);
+    // stay so. With a zoom that changes, a partial clear counts as a draw, because its place depends on the zoom.
+    if (use == WindowUse::Clears && ((m.drawn & cleared) || config_.anyMovesZoom)) {
+        const GLbitfield whole = clearedBy(opcode, arguments);
+        m.drawn &= ~whole;
+        if (config_.anyMovesZoom) m.drawn |= cleared & ~whole & buffersOf(w.config);
+    }
     if (m.wanted != m.areas && (m.drawn == 0 || config_.plant == "uncleared")) takeAreas(w);
     if (use == WindowUse::Draws) m.drawn |= drawnBy(opcode) & buffersOf(w.config);
 }
@@ -179,8 +191,7 @@ std::vector<std::byte> Replay::memberAreas() const {
         for (const auto& [id, w] : its.windows) {
             const replay::MovingPart& m = w->moving;
             if (!m.areas) continue;
-            windows.push_back(
-                {client, id, m.areas->number, m.wanted->number, m.front->number, m.drawn, m.fixed ? 1U : 0U});
+            windows.push_back({client, id, m.areas->number, m.wanted->number, m.front->number, m.drawn, stateOf(*w)});
             for (const auto& areas : {m.areas, m.wanted, m.front})
                 if (std::ranges::find(named, areas) == named.end()) named.push_back(areas);
         }
@@ -222,7 +233,11 @@ bool Replay::takeMemberAreas(std::span<const std::byte> bytes) {
         m.wanted = named[member.wanted];
         m.front = named[member.front];
         m.drawn = member.drawn;
-        m.fixed = member.fixed != 0;
+        m.fixed = (member.state & wire::kAreasFixed) != 0;
+        if (!config_.anyMovesZoom) continue;
+        Window& w = *client->second.windows[member.window];
+        w.plain = (member.state & wire::kAreasPlain) != 0;
+        w.copied = (member.state & wire::kAreasPlainNext) != 0;
     }
     knowsAreas_ = true;
     areasChanged();

@@ -16,10 +16,20 @@ namespace mural {
 
 bool Replay::movesByShaders() const { return c_->api != wire::Api::Desktop || !gl.glViewportIndexedf; }
 
+// Returns the pass of a window's buffer, with the zoom that its areas came with.
+RenderPass Replay::passOf(const Window& w, bool front) const {
+    RenderPass p = config_.pass;
+    const ViewportAssignment* const areas = areasOf(w, front);
+    if (!config_.movesZoom || !areas || config_.plant == "zoom") return p; // planted fault: never takes a zoom over
+    const double zoom = areas->zoomOf(static_cast<size_t>(config_.node));
+    p.zoom = {p.zoom.x * zoom, p.zoom.y * zoom};
+    return p;
+}
+
 // Returns the pass for the current draws. A window whose pixels were copied or read in the previous frame is drawn
 // without a kernel. A draw that only shows an already sampled scene is not sampled again (stereo_scenes.cpp).
 RenderPass Replay::passOfDraws() const {
-    RenderPass p = config_.pass;
+    RenderPass p = c_->draw ? passOf(*c_->draw) : config_.pass;
     if (!drawsWindow() || !interleaves(c_->draw))
         p.kernelX = p.kernelY = 0, p.kernelWidth = p.kernelHeight = 1, p.zoom = {};
     if (!drawsScene()) p.sample = 0, p.samples = 1;
@@ -27,11 +37,13 @@ RenderPass Replay::passOfDraws() const {
 }
 
 // This node's part of the window in the drawn picture.
-PixelViewport Replay::partDrawn(const Window& w) const {
-    return interleaves(&w) ? inPass(config_.pass, w.part) : w.part;
+PixelViewport Replay::partDrawn(const Window& w, bool front) const {
+    const PixelViewport part = front ? partOf(w, areasOf(w, true)) : w.part;
+    return interleaves(&w) ? inPass(passOf(w, front), part) : part;
 }
 
-// The required size of the framebuffer: large enough for the drawn and the shown picture.
+// The required size of the framebuffer: large enough for the drawn and the shown picture. The zoom of the pass is the
+// largest one. Pictures with smaller zooms use the lower left corner of the framebuffer.
 PixelViewport Replay::surfaceOf(const Window& w, bool lean) const {
     const PixelViewport shown = lean ? w.part : w.whole, drawn = inPass(config_.pass, shown);
     return {0, 0, std::max({shown.w, drawn.w, 1}), std::max({shown.h, drawn.h, 1})};
@@ -40,8 +52,9 @@ PixelViewport Replay::surfaceOf(const Window& w, bool lean) const {
 // Reads pixels `r` of the output picture from a window drawn at another size. Pixels of other nodes are not available:
 // edge pixels of this node's part are extended.
 const std::byte* Replay::readScaled(Window& w, const PixelViewport& r, bool front) {
-    const RenderPass& p = config_.pass;
-    const PixelViewport all = inShown(p, w.part), area = w.plain ? inKernel(p, w.part) : w.region;
+    const RenderPass p = passOf(w, front);
+    const PixelViewport part = front ? partOf(w, areasOf(w, true)) : w.part;
+    const PixelViewport all = inShown(p, part), area = w.plain ? inKernel(p, part) : regionOf(w, front);
     const Zoom drawnBy = w.plain ? Zoom{} : p.zoom;
     std::vector<std::byte> drawn(static_cast<size_t>(area.area()) * 4);
     if (!drawn.empty())
@@ -74,8 +87,8 @@ const std::byte* Replay::readEveryNth(Window& w, const PixelViewport& r, bool fr
 
 // Returns pixels of a window with every nth pixel drawn, for a program's read. Each pixel is repeated for its
 // neighbours.
-const std::byte* Replay::readRepeated(const PixelViewport& part, GLenum format, GLenum type, size_t group) {
-    const RenderPass& p = config_.pass;
+const std::byte* Replay::readRepeated(const PixelViewport& part, bool front, GLenum format, GLenum type, size_t group) {
+    const RenderPass p = passOf(*c_->read, front);
     const PixelViewport picture = inPass(p, c_->read->whole);
     const PixelViewport from = intersect(standingFor(p, part), picture);
     if (!from.empty()) (void)readRegion(from, format, type, static_cast<size_t>(from.area()) * group);

@@ -65,7 +65,7 @@ void Replay::placePart(Window& w) {
     if (takesRanges() && !collects()) w.region = {}; // the collector has it
     if (!drawsWholeBins(w) || w.drawn.empty()) return;
     w.drawn =
-        intersect(widenToBins(w.drawn, surfaceOf(w, false)), interleaves(&w) ? inPass(config_.pass, w.whole) : w.whole);
+        intersect(widenToBins(w.drawn, surfaceOf(w, false)), interleaves(&w) ? inPass(passOf(w), w.whole) : w.whole);
 }
 
 // Returns whether pixels of the window may depend on the position of scissor edges inside a bin of the driver.
@@ -173,10 +173,11 @@ void Replay::partChanged(Window& w) {
 
 void Replay::turnDrawn(Window& w, bool shownInFront) {
     w.sceneWasElsewhere = std::exchange(w.sceneElsewhere, false);
-    if (drawsOtherPixels()) {
-        // modules that read gl_FragCoord, or counted fragments
+    if (tracksCopies()) {
+        // windows that keep their areas would keep their zoom; modules that read gl_FragCoord, or counted fragments
         const bool needsAll = bound_ && bound_->shared && bound_->shared->allDrawn;
-        const bool plain = std::exchange(w.plain, std::exchange(w.copied, false) || needsAll);
+        const bool keepsZoom = config_.anyMovesZoom && w.moving.fixed;
+        const bool plain = std::exchange(w.plain, std::exchange(w.copied, false) || needsAll || keepsZoom);
         w.levelChecks = 0;
         if (plain != w.plain) partChanged(w);
     }

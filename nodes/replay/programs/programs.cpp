@@ -15,8 +15,11 @@ namespace mural {
 
 ShaderRewrites Replay::rewrites() const {
     const bool moved = movesView() || (movesPicture() && movesByShaders());
+    // Lookups with gradients may differ in the last bit. A zoom that changes must be exact at full resolution, so
+    // texture levels follow the zoomed pixels.
+    const bool gradients = drawsOtherPixels() && (hasKernel() || !config_.movesZoom);
     return {config_.cull && !alone() && !moved, (config_.lean && !alone()) || drawsOtherPixels(), drawsOtherPixels(),
-            drawsOtherPixels(), moved};
+            gradients, moved};
 }
 
 void Replay::applyTileValues() {

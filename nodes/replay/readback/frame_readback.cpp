@@ -33,10 +33,10 @@ std::shared_ptr<AsyncReadback> Replay::laterReads() {
 }
 
 // Pictures that are assembled from other pixels than the shown ones are read synchronously.
-bool Replay::readsLater(const Window& w, const PixelViewport& region) {
+bool Replay::readsLater(const Window& w, const PixelViewport& region, bool front) {
     if (config_.readback == Readback::Direct || skips_ || region.empty() || !bound_ || !bound_->shared) return false;
     if (config_.readback == Readback::Auto && !w.readback.later()) return false;
-    if ((!config_.pass.zoom.none() && !w.plain) || (hasKernel() && w.plain)) return false;
+    if ((!passOf(w, front).zoom.none() && !w.plain) || (hasKernel() && w.plain)) return false;
     const bool buffers =
         gl.glGenBuffers && gl.glBindBuffer && gl.glBufferData && gl.glMapBufferRange && gl.glUnmapBuffer && gl.glFlush;
     return buffers && hasFences(*bound_) && isAnswering() && laterReads();

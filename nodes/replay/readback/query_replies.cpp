@@ -98,10 +98,11 @@ bool Replay::onRequestPixels(Args& in) {
     const bool deep = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL || format == GL_STENCIL_INDEX;
     if (deep) depthForReading();
     const bool repeats = c_->read && interleaves(c_->read) && !c_->read->region.empty();
-    const PixelViewport part =
-        c_->read && config_.answers
-            ? intersect(requested, repeats ? c_->read->part : regionOf(*c_->read, readsFront() && !deep))
-            : PixelViewport{};
+    const bool front = readsFront() && !deep;
+    const auto owned = [&](const Window& from) {
+        return repeats ? partOf(from, areasOf(from, front)) : regionOf(from, front);
+    };
+    const PixelViewport part = c_->read && config_.answers ? intersect(requested, owned(*c_->read)) : PixelViewport{};
     if (c_->read) c_->read->copied = true;
     if (hasSkipped_ && c_->read && !mayRead(*c_->read, deep)) out_.invalid();
     const size_t bytes = static_cast<size_t>(part.area()) * group;
@@ -111,7 +112,7 @@ bool Replay::onRequestPixels(Args& in) {
     const bool nothing = !deep && c_->readBuffer0 == GL_NONE;
     const auto read = [&] {
         pixels = repeats && !nothing && !part.empty()
-                     ? readRepeated(part, format, type, group)
+                     ? readRepeated(part, front, format, type, group)
                      : readRegion(nothing ? PixelViewport{} : part, format, type, bytes);
     };
     if ((groupAndFlags & wire::kResolved) && !nothing && !part.empty() && resolves(*c_->read))
