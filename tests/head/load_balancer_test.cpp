@@ -548,5 +548,128 @@ TEST_F(BalancerTest, endsThePaceOfAProgramThatIsNoLongerFollowed) {
     EXPECT_EQ(paces_[before], (std::pair<uint32_t, double>{1, 0}));
 }
 
+// ---- zooms
+
+class ZoomTest : public BalancerTest {
+protected:
+    void SetUp() override {
+        SessionConfig config;
+        config.configFile = std::string(MURAL_SOURCE_DIR) + "/configs/dfr.eqc";
+        config.allLocal = true;
+        begin(config);
+        ASSERT_EQ(plan_.nodes.size(), 2u);
+        ASSERT_TRUE(balancer_->movesZooms());
+    }
+    [[nodiscard]] double zoom() const { return areas_.empty() ? 1 : areas_.back().zoomOf(0); }
+    void send(bool isRepeated) { balancer_->frameSent({client_, 1, ++sent_, isRepeated, nowNs_}); }
+    // Both nodes draw a frame that takes this long at full resolution. fixedMs: the part that no zoom changes.
+    void draw(double fullMs, double fixedMs = 0, uint32_t flags = 0) {
+        send(false);
+        const double drawn = flags == 0 ? zoom() * zoom() : 1;
+        const auto tookNs = static_cast<int64_t>(1e6 * (fixedMs + drawn * fullMs));
+        finish(tookNs, flags);
+    }
+    void finish(int64_t tookNs, uint32_t flags = 0) {
+        nowNs_ += tookNs;
+        wire::FrameDoneMessage m{};
+        m.client = client_;
+        m.window = 1;
+        m.frame = sent_;
+        m.width = kWidth;
+        m.height = kHeight;
+        m.areas = areas_.empty() ? 0 : areas_.back().number;
+        m.flags = flags;
+        m.busyNs = static_cast<uint64_t>(tookNs);
+        for (int node = 0; node < 2; ++node) balancer_->frameDone(node, m, nowNs_);
+        tookMs_ = static_cast<double>(tookNs) / 1e6;
+    }
+
+    uint32_t sent_ = 0;
+    int64_t nowNs_ = 1'000'000'000;
+    double tookMs_ = 0;
+};
+
+TEST_F(ZoomTest, holdsTheRateAfterAStepOfTheLoad) {
+    constexpr double kTargetMs = 1000. / 15;
+    for (const double fullMs : {20., 150., 90., 20.}) {
+        for (int i = 0; i < 10; ++i) draw(fullMs, 5);
+        for (int i = 0; i < 30; ++i) {
+            draw(fullMs, 5);
+            if (fullMs + 5 < kTargetMs)
+                EXPECT_EQ(zoom(), 1);
+            else
+                EXPECT_NEAR(tookMs_ / kTargetMs, 1, .1) << fullMs;
+        }
+    }
+    const EqualizerTotals totals = balancer_->totals().at(0);
+    EXPECT_EQ(totals.division, Division::Zooms);
+    EXPECT_EQ(totals.kind, "DFR_equalizer");
+    EXPECT_EQ(totals.zoom, zoom());
+    EXPECT_GT(totals.moves, 0);
+    EXPECT_LT(totals.moves, 60) << "a settled zoom stays";
+}
+
+TEST_F(ZoomTest, announcesFullResolutionBeforeTheFrameAfterARepeatedOne) {
+    for (int i = 0; i < 20; ++i) draw(300);
+    const double moving = zoom();
+    EXPECT_LT(moving, .6);
+    send(false);
+    const size_t announced = areas_.size();
+    send(true); // while both frames are in progress
+    ASSERT_EQ(areas_.size(), announced + 1);
+    EXPECT_EQ(zoom(), 1);
+    finish(300'000'000);
+    EXPECT_EQ(zoom(), 1) << "slow frames are right while nothing moves";
+    send(false);
+    EXPECT_NEAR(zoom(), moving, .05) << "it moves again";
+}
+
+TEST_F(ZoomTest, announcesFullResolutionWhenNoFramesFollow) {
+    for (int i = 0; i < 20; ++i) draw(300);
+    const double moving = zoom();
+    balancer_->tick(nowNs_ + 100'000'000);
+    EXPECT_EQ(zoom(), moving);
+    balancer_->tick(nowNs_ + 500'000'000);
+    EXPECT_EQ(zoom(), 1);
+    nowNs_ += 5'000'000'000;
+    send(false);
+    finish(300'000'000);
+    EXPECT_NEAR(zoom(), moving, .05) << "the pause is no frame's time";
+    send(false);
+    balancer_->tick(nowNs_ + 5'000'000'000);
+    EXPECT_NEAR(zoom(), moving, .05) << "nodes draw for long, but the program waits for them";
+}
+
+TEST_F(ZoomTest, ignoresOtherWindowsAndPrograms) {
+    for (int i = 0; i < 20; ++i) draw(300);
+    const double moving = zoom();
+    balancer_->frameSent({client_, 2, 100, true, nowNs_});
+    balancer_->frameSent({client_ + 1, 1, 100, true, nowNs_});
+    EXPECT_EQ(zoom(), moving);
+}
+
+TEST_F(ZoomTest, measuresFramesWithoutZoomAsThose) {
+    for (int i = 0; i < 20; ++i) draw(50, 0, wire::kDrawnUnzoomed);
+    EXPECT_EQ(zoom(), 1);
+    for (int i = 0; i < 20; ++i) draw(300, 0, wire::kDrawnUnzoomed);
+    EXPECT_NEAR(zoom(), std::sqrt(1000. / 15 / 300), .03) << "not less and less";
+}
+
+TEST_F(ZoomTest, keepsAFrozenZoomAndAnnouncesItToReturningNodes) {
+    for (int i = 0; i < 20; ++i) draw(300);
+    const double moving = zoom();
+    const std::string name = balancer_->totals().at(0).id;
+    ASSERT_TRUE(balancer_->freeze(name, true).ok());
+    ASSERT_TRUE(balancer_->set(name, "framerate", "1").ok());
+    for (int i = 0; i < 20; ++i) draw(300);
+    send(true);
+    EXPECT_EQ(zoom(), moving);
+    const size_t announced = areas_.size();
+    balancer_->nodeLost(1);
+    balancer_->nodeJoined(1);
+    EXPECT_GT(areas_.size(), announced);
+    EXPECT_EQ(zoom(), moving);
+}
+
 } // namespace
 } // namespace mural

@@ -119,6 +119,11 @@ std::vector<std::string> reportLines(const SessionReport& r) {
             lines.push_back(fmt::format("equalizer \"{}\": frames began {}", e.name, pace));
             continue;
         }
+        if (e.divides == "zoom") {
+            lines.push_back(fmt::format("equalizer \"{}\": zoom changed after {} of {} frame{}; at the end {:.2f}",
+                                        e.name, e.moves, e.frames, plural(e.frames), e.zoom));
+            continue;
+        }
         std::string nodes;
         for (const auto& [node, part] : e.nodes)
             nodes += fmt::format("{}node {} {:.0f} %", nodes.empty() ? "" : ", ", node, 100 * part);

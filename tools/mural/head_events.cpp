@@ -69,6 +69,7 @@ std::vector<EqualizerReport> equalizersFrom(const Json& list) {
                               whole(e, "moves"),
                               real(e, "efficiency"),
                               real(e, "framesPerSecond"),
+                              real(e, "zoom"),
                               {}});
         const auto nodes = e.find("nodes");
         if (nodes == e.end() || !nodes->is_array()) continue;

@@ -44,10 +44,11 @@ struct DeltaReport {
 // Numbers of one equalizer.
 struct EqualizerReport {
     std::string name, kind;
-    std::string divides; // "picture", "draws" or "frames"
+    std::string divides; // "picture", "draws" or "frames"; "zoom": it changes a zoom
     int64_t frames = 0, moves = 0;
-    double efficiency = 0;                         // 1: all nodes were busy for the same time; 0 for "frames"
+    double efficiency = 0;                         // 1: all nodes were busy for the same time; 0 for "frames", "zoom"
     double framesPerSecond = 0;                    // highest rate, for "frames"; 0: no limit
+    double zoom = 0;                               // relative to the file, for "zoom"
     std::vector<std::pair<int64_t, double>> nodes; // node, and its part of the picture or the draws
 };
 

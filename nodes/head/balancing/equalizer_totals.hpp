@@ -8,8 +8,9 @@
 
 namespace mural {
 
-// The kind of parts among which an equalizer divides work. Frames: nodes draw whole frames in turn.
-enum class Division : uint8_t { Areas, Ranges, Frames };
+// The parts among which an equalizer divides work. Frames: nodes draw whole frames in turn. Zooms: none; it changes the
+// zoom of all its nodes.
+enum class Division : uint8_t { Areas, Ranges, Frames, Zooms };
 
 struct EqualizerTotals {
     std::string id;
@@ -18,11 +19,13 @@ struct EqualizerTotals {
     bool frozen = false;
     std::string decision; // the latest one
     int64_t frames = 0;   // measured frames
-    int64_t moves = 0;    // decisions that changed a part or the pace
+    int64_t moves = 0;    // decisions that changed a part, a zoom or the pace
     int64_t taken = 0;    // frames drawn with other parts than the previous one
-    // total busy time / (nodes * longest busy time), mean of the last 32 measured frames; 0 for Division::Frames
+    // total busy time / (nodes * longest busy time), mean of the last 32 measured frames; 0 for Division::Frames and
+    // Zooms
     double efficiency = 0;
     double framesPerSecond = 0; // highest rate of the program, for Division::Frames; 0: no limit
+    double zoom = 0;            // announced zoom relative to the file, for Division::Zooms
     std::vector<std::pair<std::string, std::string>> parameters; // name and value
     std::vector<std::pair<int, double>> nodes;                   // node and its part of the area, range or frames
 };

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "balancer/equalizers/make_equalizers.hpp"
 #include "balancer/equalizers/random_equalizer.hpp"
+#include "common/base/clock.hpp"
 #include "nodes/head/planning/balance_plan.hpp"
+#include "nodes/head/planning/compound_pass.hpp"
 
 namespace mural {
 namespace {
@@ -52,11 +53,16 @@ compound::DisplaySizes scaled(compound::DisplaySizes sizes, double x, double y) 
 
 Division divisionBy(Effect effect) {
     if (effect == Effect::Viewports) return Division::Areas;
+    if (effect == Effect::Zooms) return Division::Zooms;
     return effect == Effect::Ranges ? Division::Ranges : Division::Frames;
 }
 
-double partOf(const Viewport& area) { return area.w * area.h; }
-double partOf(const Range& range) { return range.end - range.start; }
+// Returns a zoom of few distinct values, with a difference in time of at most 2 %. Times vary from frame to frame, and
+// the zoom need not follow that.
+double stepOf(double zoom) {
+    constexpr double kSteps = 32; // per octave
+    return std::min(1., std::exp2(std::round(std::log2(zoom) * kSteps) / kSteps));
+}
 
 } // namespace
 
@@ -70,6 +76,7 @@ LoadBalancer::LoadBalancer(const SessionPlan& plan, Announce announce, const std
         ranges_.ofNodes.push_back(node.pass.share);
         if (node.isVacant) times_.lost(node.node);
     }
+    if (movesZooms()) areas_.zooms.assign(nodes_.size(), 1);
     if (!plan.balance || plan.balance->equalizers.empty()) return;
     fileSizes_ = plan.balance->input.sizes;
     wall_ = plan.balance->wall;
@@ -96,6 +103,7 @@ void LoadBalancer::frameDone(int node, const wire::FrameDoneMessage& message, in
     const std::lock_guard lock(mutex_);
     if (times_.follow(message)) {
         resize();
+        program_ = {};
         issues_.clear();
         advance(false);
     }
@@ -112,7 +120,35 @@ void LoadBalancer::frameDone(int node, const wire::FrameDoneMessage& message, in
     if (isRandom_) return;
     const auto frame = times_.finished(node, message);
     if (!frame) return;
-    observe(*frame, nowNs);
+    observe(*frame, message.frame, nowNs);
+    if (issues_.size() < kMaxIssues) advance(false);
+}
+
+bool LoadBalancer::movesZooms() const { return std::ranges::any_of(nodes_, &NodePlan::movesZoom); }
+
+void LoadBalancer::frameSent(const SentFrame& frame) {
+    const std::lock_guard lock(mutex_);
+    if (!times_.known() || frame.client != times_.client() || frame.window != times_.window()) return;
+    program_.sent(frame);
+    observeStill(monotonicNowNs());
+}
+
+void LoadBalancer::tick(int64_t nowNs) {
+    if (!movesZooms()) return;
+    const std::lock_guard lock(mutex_);
+    observeStill(nowNs);
+}
+
+// Only equalizers of zooms use this, and at once: their next frame depends on it.
+void LoadBalancer::observeStill(int64_t nowNs) {
+    const bool isStill = program_.isStill(nowNs);
+    if (!isActive() || isRandom_ || isStill == isStill_) return;
+    isStill_ = isStill;
+    balance::FrameStatistics statistics;
+    statistics.frameNumber = measured_;
+    for (const Index root : planner_->config().roots) statistics.roots.push_back({root, 0, isStill_});
+    for (const auto& e : planner_->equalizers())
+        if (e->effect() == Effect::Zooms) e->observe(statistics);
     if (issues_.size() < kMaxIssues) advance(false);
 }
 
@@ -136,16 +172,18 @@ void LoadBalancer::advance(bool repeats) {
     ViewportAssignment areas = areas_;
     RangeAssignment ranges = ranges_;
     findParts(areas, ranges);
-    const bool movesAreas = std::ranges::any_of(nodes_, &NodePlan::movesArea);
+    const bool movesAreas = std::ranges::any_of(nodes_, followsAssignments);
     const bool movesRanges = std::ranges::any_of(nodes_, &NodePlan::movesRange);
     // Without a window the areas have no pixels to align to. The first frame of a window replaces them.
-    const bool hasAreas = movesAreas && (repeats || (times_.known() && areas.ofNodes != areas_.ofNodes));
+    const bool hasAreas =
+        movesAreas && (repeats || (times_.known() && (areas.ofNodes != areas_.ofNodes || areas.zooms != areas_.zooms)));
     const bool hasRanges = movesRanges && (repeats || ranges.ofNodes != ranges_.ofNodes);
     for (Watched& w : watched_) {
         const auto moved = [&](int n) {
             const auto i = static_cast<size_t>(n);
-            return w.totals.division == Division::Ranges ? ranges.ofNodes[i] != ranges_.ofNodes[i]
-                                                         : areas.ofNodes[i] != areas_.ofNodes[i];
+            return w.totals.division == Division::Ranges  ? ranges.ofNodes[i] != ranges_.ofNodes[i]
+                   : w.totals.division == Division::Zooms ? areas.zoomOf(i) != areas_.zoomOf(i)
+                                                          : areas.ofNodes[i] != areas_.ofNodes[i];
         };
         if (!repeats && !issues_.empty() && std::ranges::any_of(w.nodes, moved)) ++w.totals.moves;
     }
@@ -181,7 +219,7 @@ void LoadBalancer::announcePace() {
     announce_.pace(pacedClient_, pace_);
 }
 
-// Sets the areas and ranges of the nodes that move. A task without a context draws nothing.
+// Sets the areas, ranges and zooms of the nodes that change. A task without a context draws nothing.
 void LoadBalancer::findParts(ViewportAssignment& areas, RangeAssignment& ranges) const {
     constexpr size_t kEyeCount = 3;
     const auto& contexts = planner_->plan().contexts;
@@ -190,7 +228,10 @@ void LoadBalancer::findParts(ViewportAssignment& areas, RangeAssignment& ranges)
     for (const RenderContext& c : contexts) found[key(c.compound, c.eye)] = &c;
     for (size_t i = 0; i < nodes_.size(); ++i) {
         const NodePlan& node = nodes_[i];
-        if (!node.task || (!node.movesArea && !node.movesRange)) continue;
+        if (!node.task) continue;
+        if (node.movesZoom)
+            areas.zooms[i] = stepOf(zoomChangeOf(planner_->config(), planner_->input().compounds, node.task->compound));
+        if (!node.movesArea && !node.movesRange) continue;
         const RenderContext* c = found[key(node.task->compound, node.task->eye)];
         const bool draws = c != nullptr && c->view != kNone && !c->part.empty() && !c->range.empty();
         if (node.movesArea) {
@@ -209,6 +250,10 @@ void LoadBalancer::findParts(ViewportAssignment& areas, RangeAssignment& ranges)
 void LoadBalancer::snap(Viewport& area) const {
     if (!times_.known() || area.empty()) return;
     const PixelViewport window{0, 0, times_.width(), times_.height()};
+    // Edges of a zoomed plan may lie between pixels. Neighbours may differ by a rounding error, also where that
+    // decides.
+    constexpr double kNudge = 1e-6; // in pixels
+    if (!areas_.zooms.empty()) area.x += kNudge / window.w, area.y += kNudge / window.h;
     const PixelViewport pixels = intersect(apply(window, area), window);
     area = pixels.empty() ? Viewport{0, 0, 0, 0} : relativeTo(pixels, window);
 }
@@ -221,9 +266,28 @@ std::vector<LeafStatistics> LoadBalancer::leavesOfPlan() const {
             const RenderContext& c = planner_->plan().contexts[at(task.context)];
             const bool isKnown =
                 std::ranges::any_of(leaves, [&](const LeafStatistics& l) { return l.compound == c.compound; });
-            if (!isKnown) leaves.push_back(balance::leafOf(c, planner_->input().sizes)); // both eyes have one part
+            if (isKnown) continue; // both eyes have one part
+            leaves.push_back(balance::leafOf(c, planner_->input().sizes));
+            if (const auto zoom = drawnZoomOf(c.compound)) leaves.back().zoom = *zoom;
         }
     return leaves;
+}
+
+// Returns the announced zoom of the nodes of a compound. Empty: it never changes.
+std::optional<Zoom> LoadBalancer::drawnZoomOf(Index compound) const {
+    for (size_t i = 0; i < nodes_.size(); ++i)
+        if (nodes_[i].task && nodes_[i].task->compound == compound && nodes_[i].movesZoom)
+            return compose(zoomOf(planner_->config(), compound), Zoom{areas_.zooms[i], areas_.zooms[i]});
+    return {};
+}
+
+// True if some node of the compound drew this frame without its zoom.
+bool LoadBalancer::isUnzoomed(const FrameTimes::Frame& frame, Index compound) const {
+    for (size_t i = 0; i < nodes_.size(); ++i)
+        if (nodes_[i].task && nodes_[i].task->compound == compound && frame.busyNs[i] >= 0 &&
+            (frame.done[i].flags & wire::kDrawnUnzoomed) != 0)
+            return true;
+    return false;
 }
 
 // Returns the parts that the nodes drew in this frame; null if they drew different or older ones.
@@ -232,9 +296,10 @@ const LoadBalancer::Issue* LoadBalancer::issueOf(const FrameTimes::Frame& frame)
     for (size_t i = 0; i < nodes_.size(); ++i) {
         if (frame.busyNs[i] < 0) continue;
         const wire::FrameDoneMessage& done = frame.done[i];
-        if (nodes_[i].movesArea && viewports.value_or(done.areas) != done.areas) return nullptr;
+        const bool follows = followsAssignments(nodes_[i]);
+        if (follows && viewports.value_or(done.areas) != done.areas) return nullptr;
         if (nodes_[i].movesRange && ranges.value_or(done.shares) != done.shares) return nullptr;
-        if (nodes_[i].movesArea) viewports = done.areas;
+        if (follows) viewports = done.areas;
         if (nodes_[i].movesRange) ranges = done.shares;
     }
     const auto issue = std::ranges::find_if(issues_, [&](const Issue& i) {
@@ -256,9 +321,9 @@ std::vector<double> LoadBalancer::busyByCompound(const FrameTimes::Frame& frame)
     return busy;
 }
 
-void LoadBalancer::observe(const FrameTimes::Frame& frame, int64_t nowNs) {
+void LoadBalancer::observe(const FrameTimes::Frame& frame, uint32_t number, int64_t nowNs) {
     const Issue* const issue = issueOf(frame);
-    const int64_t frameNs = nowNs - std::exchange(lastFrameNs_, nowNs);
+    const int64_t frameNs = program_.finished(number, nowNs);
     if (issue == nullptr) return;
     const std::vector<double> busy = busyByCompound(frame);
     balance::FrameStatistics statistics;
@@ -266,11 +331,12 @@ void LoadBalancer::observe(const FrameTimes::Frame& frame, int64_t nowNs) {
     for (LeafStatistics leaf : issue->leaves) {
         if (busy[at(leaf.compound)] < 0 || drawsInTurn(leaf.compound)) continue;
         leaf.busySeconds = leaf.end = 1e-9 * busy[at(leaf.compound)];
+        if (isUnzoomed(frame, leaf.compound)) leaf.zoom = zoomOf(planner_->config(), leaf.compound);
         statistics.leaves.push_back(leaf);
     }
     addTurns(frame, statistics);
     for (const Index root : planner_->config().roots)
-        statistics.roots.push_back({root, 1e-9 * static_cast<double>(frameNs), false});
+        statistics.roots.push_back({root, 1e-9 * static_cast<double>(frameNs), isStill_});
     while (&issues_.front() != issue) issues_.pop_front();
     if (statistics.leaves.empty()) return;
     countFrame(frame);
@@ -310,7 +376,7 @@ void LoadBalancer::countFrame(const FrameTimes::Frame& frame) {
         }
         if (longest <= 0) continue;
         ++w.totals.frames;
-        if (w.totals.division == Division::Frames) continue; // one of its nodes draws each frame
+        if (w.totals.division == Division::Frames || w.totals.division == Division::Zooms) continue; // divide nothing
         w.efficiencies.push_back(sum / (alive * longest));
         if (w.efficiencies.size() > kRatedFrames) w.efficiencies.pop_front();
     }
@@ -382,61 +448,6 @@ bool LoadBalancer::hasGivenUp(int node) const {
     return !latest.empty() && std::ranges::all_of(latest, [&](const auto& entry) {
         return entry.second >= given->second.number && entry.second > 0;
     });
-}
-
-void LoadBalancer::count(Watched& w) const {
-    w.totals.frozen = w.equalizer->isFrozen();
-    w.totals.decision = w.equalizer->lastDecision().what;
-    w.totals.efficiency = w.efficiencies.empty() ? 0
-                                                 : std::accumulate(w.efficiencies.begin(), w.efficiencies.end(), 0.) /
-                                                       static_cast<double>(w.efficiencies.size());
-    w.totals.parameters.clear();
-    for (const balance::Parameter& p : w.equalizer->parameters().all())
-        w.totals.parameters.emplace_back(p.name, balance::textOf(p.value));
-    w.totals.nodes.clear();
-    double whole = 0;
-    for (const int node : w.nodes) {
-        const auto i = static_cast<size_t>(node);
-        const double part = w.totals.division == Division::Frames   ? 1
-                            : w.totals.division == Division::Ranges ? partOf(ranges_.ofNodes[i])
-                                                                    : partOf(areas_.ofNodes[i]);
-        w.totals.nodes.emplace_back(node, part);
-        whole += part;
-    }
-    for (auto& [node, part] : w.totals.nodes) part = whole > 0 ? part / whole : 0;
-}
-
-Result<balance::Equalizer*> LoadBalancer::find(const std::string& name) const {
-    if (!isActive()) return Error{"this session has no equalizers; start it with --balance"};
-    if (balance::Equalizer* const found = planner_->find(name)) return found;
-    std::string names;
-    for (const auto& e : planner_->equalizers()) names += (names.empty() ? "" : ", ") + e->id();
-    return Error{"equalizer \"" + name + "\" does not exist; the names are " + names};
-}
-
-Result<void> LoadBalancer::set(const std::string& name, const std::string& parameter, const std::string& value) {
-    const std::lock_guard lock(mutex_);
-    const auto found = find(name);
-    if (!found) return found.error();
-    return found.value()->set(parameter, value);
-}
-
-Result<void> LoadBalancer::freeze(const std::string& name, bool isFrozen) {
-    const std::lock_guard lock(mutex_);
-    const auto found = find(name);
-    if (!found) return found.error();
-    found.value()->freeze(isFrozen, planner_->input().compounds);
-    return {};
-}
-
-std::vector<EqualizerTotals> LoadBalancer::totals() const {
-    const std::lock_guard lock(mutex_);
-    std::vector<EqualizerTotals> totals;
-    for (Watched w : watched_) {
-        count(w);
-        totals.push_back(std::move(w.totals));
-    }
-    return totals;
 }
 
 } // namespace mural

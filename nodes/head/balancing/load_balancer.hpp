@@ -1,4 +1,4 @@
-// Runs the planner of a session (balancer/planner): measured times of nodes → equalizers → areas and ranges of nodes.
+// Runs the planner of a session (balancer/planner): measured times of nodes → equalizers → areas, ranges and zooms.
 //
 // FrameTimes selects the window whose times count. A frame counts after all living nodes have finished it. Nodes take
 // an assignment over at a frame of their own (nodes/replay/features/dynamic_tiles.cpp, sort_last.cpp) and report its
@@ -18,6 +18,7 @@
 
 #include "balancer/planner/frame_planner.hpp"
 #include "nodes/head/balancing/equalizer_totals.hpp"
+#include "nodes/head/balancing/program_frames.hpp"
 #include "nodes/head/frames/frame_times.hpp"
 #include "nodes/head/planning/node_plan.hpp"
 #include "nodes/session/range_assignment.hpp"
@@ -44,6 +45,11 @@ public:
 
     // nowNs: time at which the node's message arrived, on the monotonic clock.
     void frameDone(int node, const wire::FrameDoneMessage& message, int64_t nowNs);
+    // True if zooms change. Only then frameSent() and tick() have an effect.
+    [[nodiscard]] bool movesZooms() const;
+    // Call before the first command of the next frame is sent, so that a zoom applies to that frame.
+    void frameSent(const SentFrame& frame);
+    void tick(int64_t nowNs);
     void answered();                                   // a reply within a frame; relevant to fault injection only
     void windowGone(uint32_t client, uint32_t window); // or wire::kAllWindows
     void nodeLost(int node);
@@ -69,7 +75,7 @@ private:
         uint32_t viewports = 0, ranges = 0; // numbers of the assignments; 0: the parts of Setup
         std::vector<balance::LeafStatistics> leaves;
     };
-    struct Watched { // one equalizer of areas, ranges or the frame rate
+    struct Watched { // one equalizer of areas, ranges, zooms or the frame rate
         balance::Equalizer* equalizer;
         std::vector<int> nodes;
         EqualizerTotals totals;
@@ -83,7 +89,10 @@ private:
     void snap(Viewport& area) const;
     void announcePace();
     [[nodiscard]] std::vector<balance::LeafStatistics> leavesOfPlan() const;
-    void observe(const FrameTimes::Frame& frame, int64_t nowNs);
+    [[nodiscard]] std::optional<Zoom> drawnZoomOf(balance::Index compound) const;
+    [[nodiscard]] bool isUnzoomed(const FrameTimes::Frame& frame, balance::Index compound) const;
+    void observe(const FrameTimes::Frame& frame, uint32_t number, int64_t nowNs);
+    void observeStill(int64_t nowNs);
     [[nodiscard]] const Issue* issueOf(const FrameTimes::Frame& frame) const;
     [[nodiscard]] std::vector<double> busyByCompound(const FrameTimes::Frame& frame) const;
     [[nodiscard]] bool drawsInTurn(balance::Index compound) const;
@@ -108,7 +117,8 @@ private:
     uint32_t pacedClient_ = 0; // the latest announced pace
     double pace_ = 0;
     uint64_t measured_ = 0; // frames
-    int64_t lastFrameNs_ = 0;
+    ProgramFrames program_; // of the followed window
+    bool isStill_ = false;  // as the equalizers of zooms have it
     bool isRandom_ = false;
     struct GivenUp {
         uint32_t number = 0;                                      // of the first assignment without its area

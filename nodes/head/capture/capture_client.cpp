@@ -27,14 +27,16 @@ std::string nameOf(pid_t pid) {
 } // namespace
 
 CaptureClient::CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                             CaptureEvents& events, FrameStatistics* statistics)
+                             CaptureEvents& events, FrameStatistics* statistics, OnSentFrame onSentFrame)
     : id_(id),
       pid_(pid),
       name_(nameOf(pid)),
       memory_(std::move(memory)),
       nodes_(nodes),
       events_(events),
-      spans_(statistics, id, *memory_) {}
+      spans_(statistics, id, *memory_),
+      onSentFrame_(std::move(onSentFrame)),
+      frames_(id) {}
 
 CaptureClient::~CaptureClient() {
     stop();
@@ -139,6 +141,8 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
         nodes_.broadcast(wire::streamOf(id_, range.stream), range.bytes);
         unflushedBytes_ += range.bytes.size();
         bytesSent_.fetch_add(range.bytes.size(), std::memory_order_relaxed);
+        if (onSentFrame_)
+            if (const auto frame = frames_.published(range.stream, range.bytes)) onSentFrame_(*frame);
     }
     if (!memory_->take(range)) {
         drop("it returned more chunks than it received; the program may have overwritten its shared memory");

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "nodes/head/capture/arrival_rate.hpp"
+#include "nodes/head/capture/frame_comparer.hpp"
 #include "nodes/head/results/byte_buffer.hpp"
 #include "nodes/head/capture/capture_memory.hpp"
 #include "nodes/head/broadcast/stream_broadcaster.hpp"
@@ -39,12 +40,15 @@ struct Reply {
     std::function<void()> written; // called after the complete reply was written to the program's memory; may be empty
 };
 
+// Called by the pump's thread before it sends any command of the next frame.
+using OnSentFrame = std::function<void(const SentFrame&)>;
+
 // Thread-safe.
 class CaptureClient {
 public:
-    // statistics: null: none.
+    // statistics: null: none. onSentFrame: empty: frames are not compared.
     CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                  CaptureEvents& events, FrameStatistics* statistics);
+                  CaptureEvents& events, FrameStatistics* statistics, OnSentFrame onSentFrame);
     ~CaptureClient(); // calls stop()
 
     // Errors: no threads available.
@@ -85,11 +89,13 @@ private:
     FileDescriptor socket_;
     std::thread pumpThread_;
     std::thread replyThread_;
-    size_t unflushedBytes_ = 0; // used by the pump's thread, as the next four
+    size_t unflushedBytes_ = 0; // used by the pump's thread, as the next six
     bool arrived_ = false;      // data arrived since the last wait
     int64_t arrivedNs_ = 0;     // start of the last wait after arrived data
     ArrivalRate pace_;
     PumpSpans spans_;
+    const OnSentFrame onSentFrame_;
+    FrameComparer frames_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> draining_{false};
     std::atomic<uint32_t> drainTail_{0};

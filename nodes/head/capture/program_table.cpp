@@ -35,7 +35,8 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
     (*memory)->setLatency(latency_);
     admission.memoryFd = (*memory)->fdToPass();
     admission.extensions = terms_.extensions;
-    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.statistics);
+    admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.statistics,
+                                                    terms_.onSentFrame);
     return admission;
 }
 

@@ -25,6 +25,7 @@ struct ProgramTerms {
     uint32_t latency = 1; // of the start; setLatency() changes it
     uint32_t chunkCount = capture::kDefaultChunks;
     FrameStatistics* statistics = nullptr; // null: none
+    OnSentFrame onSentFrame;               // empty: frames are not compared
 };
 
 // Thread-safe, except that drainAll(), reap() and endAll() need one thread.

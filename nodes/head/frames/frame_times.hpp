@@ -41,6 +41,7 @@ public:
 
     [[nodiscard]] bool known() const { return width_ > 0; } // a window is followed
     [[nodiscard]] uint32_t client() const { return followed_.first; }
+    [[nodiscard]] uint32_t window() const { return followed_.second; }
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
 

@@ -47,6 +47,21 @@ std::string whyRangesAreFixed(const SessionPlan& plan, const std::vector<int>& n
     return {};
 }
 
+// Returns why the zooms of these nodes cannot change. Empty: they can.
+std::string whyZoomsAreFixed(const SessionPlan& plan, const SessionConfig& config, const std::vector<int>& nodes) {
+    if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its part's size";
+    const auto isZoomed = [&](const NodePlan& node) { return std::ranges::find(nodes, node.node) != nodes.end(); };
+    for (const NodePlan& node : plan.nodes) {
+        if (!isZoomed(node)) continue;
+        if (node.pass.period > 1) return "its nodes draw whole frames in turn (--dplex)";
+        // pictures are composited by depth at their drawn size
+        for (const NodePlan& other : plan.nodes)
+            if (other.collector == node.collector && !isZoomed(other))
+                return "it does not cover all ranges of a picture; set it in the compound above the ranges";
+    }
+    return {};
+}
+
 std::string listOf(const std::vector<int>& nodes) {
     std::string list;
     for (size_t i = 0; i < nodes.size(); ++i)
@@ -97,6 +112,24 @@ void settlePace(SessionPlan& plan, const balance::Equalizer& e, BalancePlan& int
                            listOf(nodes));
 }
 
+void settleZoom(SessionPlan& plan, const SessionConfig& config, const balance::Equalizer& e, BalancePlan& into) {
+    const std::vector<int> nodes = nodesOf(plan, e);
+    const std::string name = "equalizer \"" + e.id() + "\"";
+    if (nodes.empty()) {
+        plan.explain.push_back(name + " has no effect: no node of this session draws its part");
+        return;
+    }
+    const std::string why = whyZoomsAreFixed(plan, config, nodes);
+    if (!why.empty()) {
+        plan.warnings.push_back(name + ": the zoom stays fixed: " + why);
+        return;
+    }
+    for (const int node : nodes) plan.nodes[static_cast<size_t>(node)].movesZoom = true;
+    into.equalizers.push_back(e.id());
+    plan.explain.push_back(name + " (" + e.kind() + ") changes the zoom of " + (nodes.size() > 1 ? "nodes " : "node ") +
+                           listOf(nodes) + " by the frame rate");
+}
+
 } // namespace
 
 std::vector<int> nodesOf(const SessionPlan& plan, const balance::Equalizer& equalizer) {
@@ -118,6 +151,8 @@ void settleBalance(SessionPlan& plan, const SessionConfig& config) {
             settleDivision(plan, config, *e, *settled);
         else if (e->effect() == Effect::FrameRates)
             settlePace(plan, *e, *settled);
+        else if (e->effect() == Effect::Zooms)
+            settleZoom(plan, config, *e, *settled);
     for (const auto& e : all)
         if (e->effect() == Effect::Usage && dividesBelow(*settled, all, e->compound()))
             settled->equalizers.push_back(e->id());

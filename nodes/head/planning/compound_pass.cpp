@@ -1,6 +1,7 @@
 #include "nodes/head/planning/compound_pass.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mural {
 
@@ -9,6 +10,17 @@ Zoom zoomOf(const config::ResolvedConfig& config, compound::Index compound) {
     for (compound::Index i = compound; i != config::kNone; i = config.compounds[config::ResolvedConfig::at(i)].parent)
         zoom = compose(zoom, config.compounds[config::ResolvedConfig::at(i)].zoom);
     return zoom;
+}
+
+double zoomChangeOf(const config::ResolvedConfig& config, const std::vector<compound::CompoundState>& states,
+                    compound::Index compound) {
+    double area = 1;
+    for (compound::Index i = compound; i != config::kNone; i = config.compounds[config::ResolvedConfig::at(i)].parent) {
+        const Zoom& file = config.compounds[config::ResolvedConfig::at(i)].zoom;
+        const Zoom now = states[config::ResolvedConfig::at(i)].zoom.value_or(file);
+        area *= now.x / file.x * (now.y / file.y);
+    }
+    return std::sqrt(area);
 }
 
 RenderPass passOf(const config::ResolvedConfig& config, const compound::RenderContext& c) {

@@ -120,7 +120,7 @@ namespace {
 // Returns true if the node's pixels reach the program's window unchanged: without scaling, averaging or a lossy codec.
 bool keepsPixels(const SessionPlan& plan, const NodePlan& node) {
     const RenderPass& p = node.pass;
-    const bool scales = !node.transferScale.none() || node.shown || !p.zoom.none() || !p.shown.none();
+    const bool scales = !node.transferScale.none() || node.shown || node.movesZoom || !p.zoom.none() || !p.shown.none();
     return picturesOf(plan.wall) == 1 && plan.canvases.empty() && !scales && !mayLose(node.pictureCodec);
 }
 
@@ -138,7 +138,9 @@ NodeSetup setupOf(const SessionConfig& config, const SessionPlan& plan, const No
     setup.regionRows = node.region.rows;
     setup.hasArea = node.area.has_value();
     setup.area = node.area.value_or(Viewport{});
-    if (node.movesArea)
+    setup.anyMovesZoom = std::ranges::any_of(plan.nodes, &NodePlan::movesZoom);
+    setup.movesZoom = node.movesZoom;
+    if (followsAssignments(node))
         for (const NodePlan& other : plan.nodes) {
             const Viewport area = other.area.value_or(Viewport{});
             setup.areas.insert(setup.areas.end(), {area.x, area.y, area.w, area.h});

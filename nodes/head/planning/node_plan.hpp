@@ -73,18 +73,22 @@ struct NodePlan {
     std::optional<Viewport> area;  // on the picture, instead of tiles
     std::optional<Viewport> shown; // place on the wall, if different from area
     Zoom transferScale; // scale of its pictures in transfer, at most 1; the receiver scales them to their shown size
-    std::optional<DrawTask> task;               // empty: a node of options without equalizers
-    bool isPlacedByFrames = false;              // frames of the file crop, move or scale its picture
-    bool movesArea = false, movesRange = false; // equalizers change its area or range; set by settleBalance()
-    std::optional<ScreenView> screen;           // for a screen in a room
-    std::optional<NodeWindow> window;           // replaces the windows of tiles
-    std::string swapBarrier;                    // swap barrier of the node's windows; empty: none
+    std::optional<DrawTask> task;  // empty: a node of options without equalizers
+    bool isPlacedByFrames = false; // frames of the file crop, move or scale its picture
+    // equalizers change its area, range or zoom; set by settleBalance()
+    bool movesArea = false, movesRange = false, movesZoom = false;
+    std::optional<ScreenView> screen; // for a screen in a room
+    std::optional<NodeWindow> window; // replaces the windows of tiles
+    std::string swapBarrier;          // swap barrier of the node's windows; empty: none
     // the node with the composited picture of all ranges, which has range 0; range r is node collector + r
     int collector = 0;
     std::string codec = "auto";       // codec of its pictures to other nodes; before chooseCodecs: the file's
     std::string pictureCodec = "raw"; // codec of its pictures to the head
     std::optional<compositor::Strategy> composition; // strategy of its group; before chooseComposition: the file's
 };
+
+// True if the node's part changes at a full clear of a window (HeadCommand::ViewportAssignment).
+[[nodiscard]] inline bool followsAssignments(const NodePlan& node) { return node.movesArea || node.movesZoom; }
 
 struct SessionPlan {
     std::vector<NodePlan> nodes;                // by number

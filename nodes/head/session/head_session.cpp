@@ -172,6 +172,7 @@ void HeadSession::tick() {
     reportProgress(nowNs);
     tickStatistics(nowNs);
     tickOverlay(nowNs);
+    balancer().tick(nowNs);
 }
 
 void HeadSession::reportProgress(int64_t nowNs) {

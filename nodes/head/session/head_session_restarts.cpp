@@ -39,12 +39,12 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
                    " MiB of the rejoin log; a larger --cache-size holds more";
         return "";
     };
-    // Only members know the state of time-multiplexed nodes and of moving areas.
+    // Only members know the state of time-multiplexed nodes, moving areas and zooms.
     hooks.turns = [this](int node) {
         const NodePlan& plan = plans_.nodePlan(node);
-        return plan.pass.period > 1 ? StreamBroadcaster::Turns::OfFrames
-               : plan.movesArea     ? StreamBroadcaster::Turns::OfAreas
-                                    : StreamBroadcaster::Turns::None;
+        return plan.pass.period > 1       ? StreamBroadcaster::Turns::OfFrames
+               : followsAssignments(plan) ? StreamBroadcaster::Turns::OfAreas
+                                          : StreamBroadcaster::Turns::None;
     };
     hooks.tilesOfLost = [this](int node) -> std::string {
         const NodePlan& plan = plans_.nodePlan(node);
@@ -159,7 +159,7 @@ StreamBroadcaster::Admission HeadSession::admission(int node, uint32_t view) {
     admission.first = true; // of time-multiplexed nodes or nodes with moving areas
     for (size_t other = 0; other < currentPlan().nodes.size(); ++other)
         admission.first = admission.first && (totals_[other].lost || (currentPlan().nodes[other].pass.period < 2 &&
-                                                                      !currentPlan().nodes[other].movesArea));
+                                                                      !followsAssignments(currentPlan().nodes[other])));
     totals_[static_cast<size_t>(node)].lost = false;
     for (size_t other = 0; other < currentPlan().nodes.size(); ++other)
         if (totals_[other].lost || !nodes_.link(static_cast<int>(other)).alive())

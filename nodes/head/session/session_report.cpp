@@ -84,6 +84,7 @@ const char* nameOf(Division division) {
     switch (division) {
     case Division::Areas: return "picture";
     case Division::Ranges: return "draws";
+    case Division::Zooms: return "zoom";
     case Division::Frames: break;
     }
     return "frames";
@@ -108,6 +109,7 @@ Json equalizersJson(const std::vector<EqualizerTotals>& equalizers) {
                         {"taken", e.taken},
                         {"efficiency", e.efficiency},
                         {"framesPerSecond", e.framesPerSecond},
+                        {"zoom", e.zoom},
                         {"nodes", nodes}});
     }
     return list;

@@ -1,32 +1,17 @@
 #include "nodes/head/statistics/pump_spans.hpp"
 
-#include <array>
-#include <cstring>
 #include <utility>
 
 #include "nodes/head/capture/capture_memory.hpp"
-#include "streamcodec/wire/control_records.hpp"
+#include "nodes/head/capture/frame_end.hpp"
 
 namespace mural {
-namespace {
-
-// Returns the number of the frame that the last record ends; 0: none.
-uint32_t frameEndedBy(std::span<const std::byte> records) {
-    std::array<uint32_t, 3> last{}; // header, window, frame
-    if (records.size() < sizeof last) return 0;
-    std::memcpy(last.data(), records.data() + records.size() - sizeof last, sizeof last);
-    constexpr uint32_t kWords = 3U << 16;
-    const bool isEnd = last[0] == (wire::kOpSwap | kWords) || last[0] == (wire::kOpFrontPicture | kWords);
-    return isEnd && last[2] != wire::kUnseenFrame ? last[2] : 0;
-}
-
-} // namespace
 
 void PumpSpans::published(std::span<const std::byte> records) {
     if (!spans_.isActive()) return;
-    const uint32_t frame = frameEndedBy(records);
-    if (frame == 0) return;
-    endedFrame_ = frame;
+    const auto end = frameEndOf(records);
+    if (!end || end->frame == wire::kUnseenFrame) return;
+    endedFrame_ = end->frame;
     publishedNs_ = quickNowNs();
 }
 

@@ -1,7 +1,6 @@
 // The spans of a pump's thread by frames, and with them the program's spans. Used by that thread.
 //
-// A program publishes a swap as the last record of a publication, which therefore ends a frame. Frames that follow each
-// other without a pause count as one.
+// A swap ends a frame (nodes/head/capture/frame_end.hpp). Frames that follow each other without a pause count as one.
 #pragma once
 
 #include <cstddef>

@@ -328,17 +328,51 @@ TEST(ConfigPlan, reportsUnsupportedZooms) {
     EXPECT_NE(ranges.error().message.find("the same zoom"), std::string::npos) << ranges.error().message;
 }
 
+TEST(ConfigPlan, changesTheZoomsOfNodesBelowADfrEqualizer) {
+    const auto settled = [](const std::string& compounds, const SessionConfig& config = {}) {
+        auto plan = planOfText(compounds);
+        EXPECT_TRUE(plan) << plan.error().message;
+        settleBalance(*plan, config);
+        return *plan;
+    };
+    const std::string left = "compound { viewport [ 0 0 .5 1 ] } ";
+    const SessionPlan one =
+        settled(left + "compound { channel \"b\" viewport [ .5 0 .5 1 ] DFR_equalizer { } outputframe { } }");
+    EXPECT_TRUE(one.warnings.empty());
+    EXPECT_FALSE(one.nodes[0].movesZoom);
+    EXPECT_TRUE(one.nodes[1].movesZoom && !one.nodes[1].movesArea);
+    const NodeSetup first = setupOf({}, one, one.nodes[0]), second = setupOf({}, one, one.nodes[1]);
+    EXPECT_TRUE(first.areas.empty() && first.anyMovesZoom && !first.movesZoom);
+    EXPECT_TRUE(second.areas.size() == 8 && second.anyMovesZoom && second.movesZoom);
+    EXPECT_TRUE(nodeSetupFromJson(toJson(second))->movesZoom);
+    const SessionPlan all = settled("compound { DFR_equalizer { } load_equalizer { } compound { } compound { channel "
+                                    "\"b\" outputframe { } } }");
+    EXPECT_TRUE(all.warnings.empty());
+    for (const NodePlan& n : all.nodes) EXPECT_TRUE(n.movesZoom && n.movesArea);
+    SessionConfig lean;
+    lean.tiling = Tiling::Lean;
+    const std::string ranges = "compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] ";
+    for (const SessionPlan& fixed :
+         {settled(left + "compound { channel \"b\" viewport [ .5 0 .5 1 ] DFR_equalizer { } outputframe { } }", lean),
+          settled(ranges + "DFR_equalizer { } outputframe { } }")}) {
+        for (const NodePlan& n : fixed.nodes) EXPECT_FALSE(n.movesZoom);
+        ASSERT_EQ(fixed.warnings.size(), 1u);
+        EXPECT_NE(fixed.warnings[0].find("the zoom stays fixed: "), std::string::npos) << fixed.warnings[0];
+    }
+    const SessionPlan together = settled("compound { DFR_equalizer { } " + ranges + "outputframe { } } }");
+    EXPECT_TRUE(together.warnings.empty());
+    for (const NodePlan& n : together.nodes) EXPECT_TRUE(n.movesZoom);
+}
+
 // Fields without effect are reported with position and remedy.
 TEST(ConfigPlan, reportsFieldsWithoutEffect) {
     auto plan = planOfText("monitor_equalizer { } compound { viewport [ 0 0 .5 1 ] }\ncompound { channel \"b\" "
-                           "viewport [ .5 0 .5 1 ] DFR_equalizer { } outputframe { } }");
+                           "viewport [ .5 0 .5 1 ] outputframe { } }");
     ASSERT_TRUE(plan) << plan.error().message;
-    ASSERT_EQ(plan->warnings.size(), 2u) << plan->warnings.front();
+    ASSERT_EQ(plan->warnings.size(), 1u) << plan->warnings.front();
     EXPECT_NE(plan->warnings[0].find("config_plan_test.eqc:4:47: monitor_equalizer has no effect"), std::string::npos)
         << plan->warnings[0];
-    EXPECT_NE(plan->warnings[1].find("config_plan_test.eqc:5:47: DFR_equalizer has no effect"), std::string::npos)
-        << plan->warnings[1];
-    EXPECT_NE(plan->warnings[1].find("; "), std::string::npos) << "a remedy";
+    EXPECT_NE(plan->warnings[0].find("; "), std::string::npos) << "a remedy";
     EXPECT_TRUE(planOfText("compound { viewport [ 0 0 .5 1 ] } compound { channel \"b\" viewport [ .5 0 .5 1 ] zoom [ "
                            ".5 .5 ] outputframe { } }")
                     ->warnings.empty())

@@ -155,17 +155,23 @@ void addDelta(const Json& delta, std::vector<std::string>& lines) {
 }
 
 void addEqualizer(const Json& equalizer, std::vector<std::string>& lines) {
+    const bool isFrozen = equalizer.value("frozen", false);
+    const std::string decision = isFrozen ? "frozen" : memberText(equalizer, "decision");
+    if (memberText(equalizer, "divides") == "zoom") {
+        lines.push_back(fmt::format("  equalizer \"{}\"  zoom {:.2f}; changed after {:.0f} of {:.0f} frames; {}",
+                                    memberText(equalizer, "name"), number(equalizer, "zoom"),
+                                    number(equalizer, "moves"), number(equalizer, "frames"), decision));
+        return;
+    }
     std::string nodes;
     for (const Json& node : entries(equalizer, "nodes"))
         nodes += fmt::format("{}node {:.0f} {:.0f} %", nodes.empty() ? "" : ", ", number(node, "node"),
                              100 * number(node, "part"));
-    const bool frozen = equalizer.value("frozen", false);
     lines.push_back(fmt::format("  equalizer \"{}\"  {}: {}; moved after {:.0f} of {:.0f} frames; busy {:.0f} % of the "
                                 "longest time; {}",
                                 memberText(equalizer, "name"), memberText(equalizer, "divides"), nodes,
                                 number(equalizer, "moves"), number(equalizer, "frames"),
-                                100 * number(equalizer, "efficiency"),
-                                frozen ? "frozen" : memberText(equalizer, "decision")));
+                                100 * number(equalizer, "efficiency"), decision));
 }
 
 void addNode(const Json& node, std::vector<std::string>& lines) {
