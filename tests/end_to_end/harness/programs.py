@@ -13,7 +13,7 @@ GROUPS = {
                  "evaluators", "same_scene", "late_uploads", "equal_state"],
     "pixels": ["textures_classic", "textures_modern", "framebuffers", "framebuffers_layered", "core_depth",
                "pixels_draw", "copied_samples", "copied_scene", "pixels_read", "texture_reads", "sized_reads", "compressed_reads", "reads_later", "reads_deferred", "reads_threads",
-               "front_buffer", "front_and_back", "single_buffered", "frames_kept", "clears_in_turns", "uneven_cost", "uneven_draws",
+               "front_buffer", "front_and_back", "single_buffered", "frames_kept", "clears_in_turns", "load_step", "uneven_cost", "uneven_draws",
                "accum_buffer"],
     "state": ["raster_state", "blend_modes", "blended_rectangles", "multisampled_lines", "stippled_strips", "clipping", "fixed_lighting", "feedback_select",
               "attribute_stacks", "list_materials", "range_ties", "shared_draws", "arb_programs", "odd_calls", "list_questions", "refused_calls", "refused_core"],

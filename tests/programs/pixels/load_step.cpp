@@ -1,0 +1,75 @@
+// Frames that move, cost the more from one frame on, and then stand still: the same commands again and again. By the
+// environment: LOAD_LAYERS blended layers over the whole picture (4), LOAD_STEP_LAYERS (40) from frame LOAD_STEP (20)
+// on. Frames from LOAD_STILL (60) on equal that one. LOAD_PAUSE_MS (0): pause before each frame. Prints
+// the time of each frame, in ms.
+#include "tests/programs/support/gl.hpp"
+#include "tests/programs/support/program.hpp"
+#include "tests/programs/support/show.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+using namespace programs;
+
+namespace {
+
+int numberOf(const char* name, int otherwise) {
+    const char* const text = std::getenv(name);
+    return text ? std::atoi(text) : otherwise;
+}
+
+void setUp(Window&) {
+    glEnable(GL_DEPTH_TEST);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+void triangles(Sequence& numbers) {
+    glBegin(GL_TRIANGLES);
+    for (int i = 0; i < 90; ++i) {
+        if (i % 3 == 0) glColor3f(numbers.unit(), numbers.unit(), numbers.unit());
+        glVertex3f(numbers.unit() * 2 - 1, numbers.unit() * 2 - 1, numbers.unit());
+    }
+    glEnd();
+}
+
+void layer(float x, Sequence& numbers) {
+    glColor4f(numbers.unit(), numbers.unit(), numbers.unit(), 0.05F);
+    glBegin(GL_QUADS);
+    glVertex3f(x - 3, -1, -0.9F);
+    glVertex3f(x + 3, -1, -0.9F);
+    glVertex3f(x + 3, 1, -0.9F);
+    glVertex3f(x - 3, 1, -0.9F);
+    glEnd();
+}
+
+void draw(Window&, int frame) {
+    static const int first = numberOf("LOAD_LAYERS", 4), step = numberOf("LOAD_STEP", 20),
+                     later = numberOf("LOAD_STEP_LAYERS", 40), still = numberOf("LOAD_STILL", 60),
+                     pause = numberOf("LOAD_PAUSE_MS", 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(pause));
+    const auto now = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch());
+    std::printf("frame %d %.3f\n", frame, now.count());
+    std::fflush(stdout);
+    const int at = std::min(frame, still);
+    glClearColor(0.1F, 0.1F, 0.2F, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glMatrixMode(GL_MODELVIEW);
+    glLoadIdentity();
+    glRotatef(float(at) * 3, 0, 0, 1);
+    Sequence numbers(5);
+    triangles(numbers);
+    glLoadIdentity();
+    glEnable(GL_BLEND);
+    glDepthMask(GL_FALSE);
+    const int layers = frame < step ? first : later;
+    for (int i = 0; i < layers; ++i) layer(0.01F * float((at + i) % 7), numbers);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+}
+
+} // namespace
+
+int main(int argc, char** argv) { return runInGlxWindow(argc, argv, {}, setUp, draw); }
