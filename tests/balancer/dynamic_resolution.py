@@ -7,13 +7,14 @@ stands still has each pixel of the native picture. The load rises in between.
 
 import json
 import os
+import signal
 import statistics
 import sys
 import tempfile
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(TOP, "tests", "end_to_end"))
-from harness import cases, control, pictures, programs  # noqa: E402
+from harness import cases, control, pictures, programs, session  # noqa: E402
 
 PROGRAM = "load_step"
 WIDTH, HEIGHT = 320, 240
@@ -22,7 +23,7 @@ DETECTED = STILL + 2  # frame STILL + 1 is the first repetition, so the next one
 HIGH_RATE = 500       # Hz; no machine draws the loaded frames at this rate, so the zoom falls to its limit
 # The pause is longer than the time in which a program may be many frames ahead (common/ipc/capture_ring.hpp).
 LOAD = {"LOAD_PAUSE_MS": "2", "LOAD_STEP": str(STEP), "LOAD_STILL": str(STILL), "LOAD_LAYERS": "2", "LOAD_STEP_LAYERS": "60"}
-LEAST_PIXELS = 128  # of the shorter side (balancer/equalizers/dfr_equalizer.cpp)
+TAIL = 20  # frames without motion after the return of a node
 
 FILE = """#Equalizer 1.2 ascii
 server { config { appNode { pipe {
@@ -48,7 +49,7 @@ ONE_RANGE = """compound { channel "one" range [ 0 .5 ] DFR_equalizer { framerate
 class Drawn:
     """One run of the program with a configuration: its pictures, report and messages."""
 
-    def __init__(self, context, tree, rate, frames=FRAMES, options=(), environment=None, saves=True, during=None):
+    def __init__(self, context, tree, rate, frames=FRAMES, options=(), environment=None, saves=True, during=None, complete=True):
         with tempfile.TemporaryDirectory(prefix="mural-resolution.") as folder:
             config, report = os.path.join(folder, "dfr.eqc"), os.path.join(folder, "report.json")
             out = os.path.join(folder, "out")
@@ -59,8 +60,9 @@ class Drawn:
             more += ["--out", out] if saves else []
             with context.run(command, more, dict(LOAD, **(environment or {}))) as run:
                 self.wrong = during(context, run) if during else None
-                self.wrong = self.wrong or cases.check_end(run, 0, frames)
+                self.wrong = self.wrong or cases.check_end(run, 0, frames if complete else None)
                 self.messages = "\n".join(run.standard_error)
+                self.still = max((int(line.split()[3]) for line in run.standard_output if line.startswith("frame ")), default=0)
                 self.times = [float(line.split()[2]) for line in run.standard_output if line.startswith("frame ")]
             self.pictures, self.equalizers = [], []
             if self.wrong is not None:
@@ -127,6 +129,13 @@ def still_pictures_are_native(context):
 
 
 @cases.case
+def planted_faults_are_found(context):
+    """A node that never takes a zoom over."""
+    wrong = judged(context, Drawn(context, ONE, HIGH_RATE, environment={"MURAL_PLANT": "zoom"}))
+    return None if wrong is not None and "are coarser" in wrong else "not found: %s" % wrong
+
+
+@cases.case
 def halves_of_the_picture(context):
     return judged(context, Drawn(context, HALVES, HIGH_RATE))
 
@@ -166,6 +175,54 @@ def full_resolution_at_low_rates(context):
         return drawn.wrong
     apart = [differing(a, b) for a, b in zip(native(context), drawn.pictures)]
     return None if not any(apart) else "pixels differ: %s" % apart
+
+
+def killed_and_returned(context, run, victim, end_file):
+    """Kills a node in motion. The program stands still after the return of the node."""
+    if not run.wait_for_line("frame %d " % (STEP + 20)):
+        return "no frames: %s" % run.standard_error[-3:]
+    os.kill(run.processes(cases.NODE)[victim], signal.SIGKILL)
+    if not run.wait_for_line("rejoined "):
+        return "node %d did not rejoin: %s" % (victim, run.standard_error[-3:])
+    before = len(run.standard_output)
+    run.wait_for_line("frame ")
+    if not run.wait_for_line("frame ") or len(run.standard_output) == before:
+        return "no frames after the return"
+    session.end_after(end_file, TAIL)
+    return None
+
+
+def returns(context, tree, victim):
+    with tempfile.TemporaryDirectory(prefix="mural-resolution.") as folder:
+        end_file = os.path.join(folder, "end")
+        during = lambda context, run: killed_and_returned(context, run, victim, end_file)
+        drawn = Drawn(context, tree, HIGH_RATE, 6000, environment={"LOAD_PAUSE_MS": "15", "LOAD_STILL": "6000", "LOAD_STEP_LAYERS": "20", "END_FILE": end_file}, during=during, complete=False)
+        if drawn.wrong is not None:
+            return drawn.wrong
+        still = str(drawn.still)
+        wanted = native(context, {"LOAD_FIRST": still, "LOAD_STILL": still, "LOAD_STEP": "0", "LOAD_STEP_LAYERS": "20"})[-1]
+        coarse = sum(differing(a, b) > 0 for a, b in zip(drawn.pictures[-TAIL - 12:-TAIL - 2], drawn.pictures[-TAIL - 11:-TAIL - 1]))
+        apart = [differing(wanted, picture) for picture in drawn.pictures[3 - TAIL:]]
+        if any(apart) or coarse == 0:
+            return "pixels differ after the return: %s; %d pictures moved before" % (apart, coarse)
+        e = drawn.equalizer()
+        return None if e["moves"] > 0 and e["zoom"] == 1 else "the equalizer reports %s" % e
+
+
+@cases.case
+def returning_half(context):
+    return returns(context, HALVES, 1)
+
+
+@cases.case
+def returning_range(context):
+    """A returned node takes the zoom over that the others have; otherwise its part has another size."""
+    return returns(context, RANGES, 1)
+
+
+@cases.case
+def returning_collector(context):
+    return returns(context, RANGES, 0)
 
 
 def freezes(context, run):

@@ -21,7 +21,7 @@ void SlowdownAdvice::frameDone(uint32_t flags, bool sharesDraws) {
                   "the picture, or its samples are copied; more nodes do not make this program faster");
     if (flags & wire::kKeepsAreas && !keepsAreas_.exchange(true))
         advise("tiles of a window stay with their nodes, because frames do not clear all of its buffers, draw "
-               "into its front buffer, or accumulate; a tile queue does not make this program faster");
+               "into its front buffer, or accumulate; a tile queue or DFR_equalizer does not make this program faster");
     if (flags & wire::kKeepsPicture && !keepsPicture_.exchange(true))
         advise("one node draws all frames, because they build on the previous picture (no clear, accumulation, "
                "or front buffer); --dplex does not make this program faster");

@@ -1,7 +1,8 @@
 // Frames that move, cost the more from one frame on, and then stand still: the same commands again and again. By the
 // environment: LOAD_LAYERS blended layers over the whole picture (4), LOAD_STEP_LAYERS (40) from frame LOAD_STEP (20)
-// on. Frames from LOAD_STILL (60) on equal that one. LOAD_PAUSE_MS (0): pause before each frame. Prints
-// the time of each frame, in ms.
+// on. Frames from LOAD_STILL (60) on equal that one, or from the frame on that finds END_FILE. LOAD_FIRST (0): number
+// of the first frame. LOAD_PAUSE_MS (0): pause before each frame. Prints for each frame its time in ms, and the frame
+// that it equals.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -11,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
+#include <unistd.h>
 
 using namespace programs;
 
@@ -45,15 +47,19 @@ void layer(float x, Sequence& numbers) {
     glEnd();
 }
 
-void draw(Window&, int frame) {
-    static const int first = numberOf("LOAD_LAYERS", 4), step = numberOf("LOAD_STEP", 20),
-                     later = numberOf("LOAD_STEP_LAYERS", 40), still = numberOf("LOAD_STILL", 60),
+void draw(Window&, int number) {
+    static const char* const end = std::getenv("END_FILE");
+    static int still = numberOf("LOAD_STILL", 60);
+    static const int layersBefore = numberOf("LOAD_LAYERS", 4), step = numberOf("LOAD_STEP", 20),
+                     layersAfter = numberOf("LOAD_STEP_LAYERS", 40), first = numberOf("LOAD_FIRST", 0),
                      pause = numberOf("LOAD_PAUSE_MS", 0);
     std::this_thread::sleep_for(std::chrono::milliseconds(pause));
-    const auto now = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch());
-    std::printf("frame %d %.3f\n", frame, now.count());
-    std::fflush(stdout);
+    const int frame = first + number;
+    if (end && access(end, F_OK) == 0) still = std::min(still, frame);
     const int at = std::min(frame, still);
+    const auto now = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch());
+    std::printf("frame %d %.3f %d\n", frame, now.count(), at);
+    std::fflush(stdout);
     glClearColor(0.1F, 0.1F, 0.2F, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glMatrixMode(GL_MODELVIEW);
@@ -64,7 +70,7 @@ void draw(Window&, int frame) {
     glLoadIdentity();
     glEnable(GL_BLEND);
     glDepthMask(GL_FALSE);
-    const int layers = frame < step ? first : later;
+    const int layers = frame < step ? layersBefore : layersAfter;
     for (int i = 0; i < layers; ++i) layer(0.01F * float((at + i) % 7), numbers);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
