@@ -110,7 +110,8 @@ std::vector<const NodePlan*> swapMembersOf(const SessionConfig& config, const Se
     std::vector<const NodePlan*> members;
     if (node.swapBarrier.empty() || !showsWall(config, plan, node)) return members;
     for (const NodePlan& other : plan.nodes)
-        if (!other.isVacant && other.swapBarrier == node.swapBarrier && showsWall(config, plan, other)) members.push_back(&other);
+        if (!other.isVacant && other.swapBarrier == node.swapBarrier && showsWall(config, plan, other))
+            members.push_back(&other);
     if (members.size() < 2) members.clear();
     return members;
 }

@@ -31,7 +31,7 @@ std::string whyOutputsDiffer(const PlanInForce& inForce, const SessionConfig& co
 
 // Returns true if nothing that the node does depends on other nodes of the plan.
 bool drawsAlone(const SessionConfig& config, const SessionPlan& plan, const NodePlan& node) {
-    return !node.movesArea && !node.movesRange && node.pass.ranges == 1 && node.pass.period == 1 &&
+    return !followsAssignments(node) && !node.movesRange && node.pass.ranges == 1 && node.pass.period == 1 &&
            swapMembersOf(config, plan, node).empty();
 }
 

@@ -23,12 +23,12 @@ using Json = nlohmann::json;
 using Kind = ControlArgument::Kind;
 
 // The sum stays below the patience of mural ctl.
-constexpr int64_t kJoinMs = 16'000;    // until all new nodes have caught up
-constexpr int64_t kCancelMs = 2'000;   // until they have ended after a failure
-constexpr int64_t kExchangeMs = 4'000; // until the connections of all nodes accept data
-constexpr int64_t kSettleMs = 4'000;   // until all nodes have passed an earlier change
-constexpr int64_t kLeaveMs = 10'000;   // until a node has finished its last frames
-constexpr int64_t kProcessMs = 500;    // from its Goodbye to the end of its process
+constexpr int64_t kJoinMs = 16'000;       // until all new nodes have caught up
+constexpr int64_t kCancelMs = 2'000;      // until they have ended after a failure
+constexpr int64_t kExchangeMs = 4'000;    // until the connections of all nodes accept data
+constexpr int64_t kSettleMs = 4'000;      // until all nodes have passed an earlier change
+constexpr int64_t kLastFramesMs = 10'000; // until a node has finished its last frames
+constexpr int64_t kProcessEndMs = 500;    // from its Goodbye to the end of its process
 
 constexpr int64_t kSpareMs = 60'000; // until the nodes of a lost host have moved
 constexpr int kSpareRetryMs = 500;
@@ -351,7 +351,7 @@ Result<void> HeadSession::exchangeNodes(PendingChange& pending) {
         const std::lock_guard lock(mutex_);
         for (const int node : exchange.leaving) leaving_.insert(node), leavingSince_[node] = monotonicNowNs();
     }
-    if (std::ranges::any_of(change.plan.nodes, &NodePlan::movesArea))
+    if (std::ranges::any_of(change.plan.nodes, followsAssignments))
         exchange.viewports = pending.stage->balancer.viewports();
     std::unique_lock membership(membership_, std::defer_lock);
     exchange.atPosition = [&](uint32_t view) {
@@ -392,10 +392,10 @@ void HeadSession::endLeftNodes(int64_t nowNs) {
     for (const auto& [node, sinceNs] : leaving) {
         NodeConnection& link = nodes_.link(node);
         if (!link.readerEnded()) {
-            if (nowNs - sinceNs > kLeaveMs * kNsPerMs) link.lose("it did not finish its last frames in time");
+            if (nowNs - sinceNs > kLastFramesMs * kNsPerMs) link.lose("it did not finish its last frames in time");
             continue;
         }
-        link.endAfterGoodbye(Deadline::inMs(kProcessMs));
+        link.endAfterGoodbye(Deadline::inMs(kProcessEndMs));
         nodes_.retire(node);
         const std::lock_guard lock(mutex_);
         leavingSince_.erase(node);

@@ -255,7 +255,8 @@ void HeadSession::openTables() {
     terms.latency = static_cast<uint32_t>(config_.latency);
     terms.chunkCount = options_.chunkCount;
     terms.statistics = &statistics_;
-    if (balancer_.movesZooms()) terms.onSentFrame = [this](const SentFrame& frame) { balancer_.frameSent(frame); };
+    if (balancer().movesZooms() || hasOtherLayouts(currentPlan()))
+        terms.onSentFrame = [this](const SentFrame& frame) { balancer().frameSent(frame); };
     if (options_.recorder) recording_.beginAtStart(std::move(options_.recorder), aboutTrace());
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {
