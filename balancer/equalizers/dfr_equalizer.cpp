@@ -73,7 +73,9 @@ void DfrEqualizer::decide(const FrameContext& context, States& states) {
         const bool isNear = std::abs(rate_ / target - 1) < kNearRate && std::abs(goal / zoom_ - 1) < kNearRate;
         // As in the Equalizer framework, a larger damping reacts faster.
         if (!isNear) zoom_ = std::clamp(zoom_ + parameters_.number("damping") * (goal - zoom_), least, 1.);
-        decision_.what = isNear ? "the rate is right" : "zoom changed towards the rate";
+        decision_.what = goal == 1 && zoom_ > .99 ? "the rate permits full resolution"
+                         : isNear                 ? "the rate is right"
+                                                  : "zoom changed towards the rate";
         shown = zoom_;
     }
     decision_.inputs = {{"rate", rate_}, {"target", target}, {"zoom", shown}};

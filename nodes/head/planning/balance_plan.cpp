@@ -48,8 +48,7 @@ std::string whyRangesAreFixed(const SessionPlan& plan, const std::vector<int>& n
 }
 
 // Returns why the zooms of these nodes cannot change. Empty: they can.
-std::string whyZoomsAreFixed(const SessionPlan& plan, const SessionConfig& config, const std::vector<int>& nodes) {
-    if (config.tiling == Tiling::Lean) return "--tiling lean gives each node a framebuffer of its part's size";
+std::string whyZoomsAreFixed(const SessionPlan& plan, const std::vector<int>& nodes) {
     const auto isZoomed = [&](const NodePlan& node) { return std::ranges::find(nodes, node.node) != nodes.end(); };
     for (const NodePlan& node : plan.nodes) {
         if (!isZoomed(node)) continue;
@@ -112,14 +111,14 @@ void settlePace(SessionPlan& plan, const balance::Equalizer& e, BalancePlan& int
                            listOf(nodes));
 }
 
-void settleZoom(SessionPlan& plan, const SessionConfig& config, const balance::Equalizer& e, BalancePlan& into) {
+void settleZoom(SessionPlan& plan, const balance::Equalizer& e, BalancePlan& into) {
     const std::vector<int> nodes = nodesOf(plan, e);
     const std::string name = "equalizer \"" + e.id() + "\"";
     if (nodes.empty()) {
         plan.explain.push_back(name + " has no effect: no node of this session draws its part");
         return;
     }
-    const std::string why = whyZoomsAreFixed(plan, config, nodes);
+    const std::string why = whyZoomsAreFixed(plan, nodes);
     if (!why.empty()) {
         plan.warnings.push_back(name + ": the zoom stays fixed: " + why);
         return;
@@ -152,7 +151,7 @@ void settleBalance(SessionPlan& plan, const SessionConfig& config) {
         else if (e->effect() == Effect::FrameRates)
             settlePace(plan, *e, *settled);
         else if (e->effect() == Effect::Zooms)
-            settleZoom(plan, config, *e, *settled);
+            settleZoom(plan, *e, *settled);
     for (const auto& e : all)
         if (e->effect() == Effect::Usage && dividesBelow(*settled, all, e->compound()))
             settled->equalizers.push_back(e->id());

@@ -329,10 +329,10 @@ TEST(ConfigPlan, reportsUnsupportedZooms) {
 }
 
 TEST(ConfigPlan, changesTheZoomsOfNodesBelowADfrEqualizer) {
-    const auto settled = [](const std::string& compounds, const SessionConfig& config = {}) {
+    const auto settled = [](const std::string& compounds) {
         auto plan = planOfText(compounds);
         EXPECT_TRUE(plan) << plan.error().message;
-        settleBalance(*plan, config);
+        settleBalance(*plan, {});
         return *plan;
     };
     const std::string left = "compound { viewport [ 0 0 .5 1 ] } ";
@@ -349,12 +349,10 @@ TEST(ConfigPlan, changesTheZoomsOfNodesBelowADfrEqualizer) {
                                     "\"b\" outputframe { } } }");
     EXPECT_TRUE(all.warnings.empty());
     for (const NodePlan& n : all.nodes) EXPECT_TRUE(n.movesZoom && n.movesArea);
-    SessionConfig lean;
-    lean.tiling = Tiling::Lean;
     const std::string ranges = "compound { range [ 0 .5 ] } compound { channel \"b\" range [ .5 1 ] ";
-    for (const SessionPlan& fixed :
-         {settled(left + "compound { channel \"b\" viewport [ .5 0 .5 1 ] DFR_equalizer { } outputframe { } }", lean),
-          settled(ranges + "DFR_equalizer { } outputframe { } }")}) {
+    const std::string turns = "compound { period 2 phase 0 } compound { channel \"b\" period 2 phase 1 ";
+    for (const std::string& other : {ranges, turns}) {
+        const SessionPlan fixed = settled(other + "DFR_equalizer { } outputframe { } }");
         for (const NodePlan& n : fixed.nodes) EXPECT_FALSE(n.movesZoom);
         ASSERT_EQ(fixed.warnings.size(), 1u);
         EXPECT_NE(fixed.warnings[0].find("the zoom stays fixed: "), std::string::npos) << fixed.warnings[0];
