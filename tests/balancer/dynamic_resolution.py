@@ -151,6 +151,17 @@ def moving_halves(context):
 
 
 @cases.case
+def frame_after_a_pause(context):
+    """A program that draws nothing for a while stands still. Its next frame has full resolution, also if it moves."""
+    rest = STEP + 20
+    drawn = Drawn(context, HALVES, HIGH_RATE, environment={"LOAD_REST": str(rest)})
+    if drawn.wrong is not None:
+        return drawn.wrong
+    apart = [differing(a, b) for a, b in zip(native(context), drawn.pictures)]
+    return None if apart[rest - 1] > 0 and apart[rest] == 0 and apart[rest + 3] > 0 else "pixels differ: %s" % apart
+
+
+@cases.case
 def ranges_of_the_draws(context):
     """All nodes of a composited picture take a zoom over at one frame; otherwise their parts would not fit."""
     return judged(context, Drawn(context, RANGES, HIGH_RATE))

@@ -1,8 +1,8 @@
 // Frames that move, cost the more from one frame on, and then stand still: the same commands again and again. By the
 // environment: LOAD_LAYERS blended layers over the whole picture (4), LOAD_STEP_LAYERS (40) from frame LOAD_STEP (20)
 // on. Frames from LOAD_STILL (60) on equal that one, or from the frame on that finds END_FILE. LOAD_FIRST (0): number
-// of the first frame. LOAD_PAUSE_MS (0): pause before each frame. Prints for each frame its time in ms, and the frame
-// that it equals.
+// of the first frame. LOAD_PAUSE_MS (0): pause before each frame; before frame LOAD_REST (none) one of 1.5 s. Prints
+// for each frame its time in ms, and the frame that it equals.
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -52,9 +52,9 @@ void draw(Window&, int number) {
     static int still = numberOf("LOAD_STILL", 60);
     static const int layersBefore = numberOf("LOAD_LAYERS", 4), step = numberOf("LOAD_STEP", 20),
                      layersAfter = numberOf("LOAD_STEP_LAYERS", 40), first = numberOf("LOAD_FIRST", 0),
-                     pause = numberOf("LOAD_PAUSE_MS", 0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(pause));
+                     pause = numberOf("LOAD_PAUSE_MS", 0), rest = numberOf("LOAD_REST", -1);
     const int frame = first + number;
+    std::this_thread::sleep_for(std::chrono::milliseconds(frame == rest ? 1500 : pause));
     if (end && access(end, F_OK) == 0) still = std::min(still, frame);
     const int at = std::min(frame, still);
     const auto now = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch());
