@@ -34,12 +34,12 @@ FrameRecord frame(uint64_t number) {
 }
 
 TEST(OverlayNumbers, belongToTheirNode) {
-    OverlayNumbers numbers({"node 0 on a", "node 1 on b"});
+    OverlayNumbers numbers({{0, "node 0 on a"}, {1, "node 1 on b"}});
     numbers.add({frame(1), frame(2)});
     ASSERT_EQ(numbers.nodes().size(), 2U);
     EXPECT_EQ(numbers.nodes()[1].name, "node 1 on b");
     EXPECT_TRUE(numbers.nodes()[0].frames.frames().empty());
-    const FrameHistory& history = numbers.nodes()[1].frames;
+    const FrameHistory history = numbers.nodes()[1].frames;
     ASSERT_EQ(history.frames().size(), 2U);
     EXPECT_EQ(history.frames().back().frame, 7U);
     EXPECT_DOUBLE_EQ(history.meanMs(FramePart::Replay), 4);
@@ -50,15 +50,15 @@ TEST(OverlayNumbers, belongToTheirNode) {
 }
 
 TEST(OverlayNumbers, countFramesOnce) {
-    OverlayNumbers numbers({"node 0", "node 1"});
+    OverlayNumbers numbers({{1, "node 1"}, {4, "node 4"}});
     numbers.add({frame(1), frame(2)});
     EXPECT_EQ(numbers.next(), 3U);
     numbers.add({frame(2), frame(3)});
-    EXPECT_EQ(numbers.nodes()[1].frames.frames().size(), 3U);
+    EXPECT_EQ(numbers.nodes()[0].frames.frames().size(), 3U);
 }
 
 TEST(OverlayNumbers, ignoreUnknownNodes) {
-    OverlayNumbers numbers({"node 0"});
+    OverlayNumbers numbers({{0, "node 0"}});
     numbers.add({frame(1)});
     EXPECT_TRUE(numbers.nodes()[0].frames.frames().empty());
 }

@@ -234,6 +234,25 @@ def restarted_nodes_and_single_nodes(context):
 
 
 @cases.case
+def new_nodes_of_another_plan(context):
+    """Nodes that come with a change of the plan show the current overlay."""
+    command = [context.program("long_run"), "--frames", "1000000", "--size", "%dx%d" % SIZE]
+    with context.run(command, ["--tiles", "2x1", "--display", "windows"]) as run:
+        if not run.wait_for_line("frame 5"):
+            return "no frames: %s" % " | ".join(run.standard_error[-3:])
+        wrong = change(context, run, "grid")
+        changed = subprocess.run([context.mural, "change", "--tiles", "2x2", str(run.process.pid)], capture_output=True, timeout=PATIENCE_SECONDS, check=False)
+        if not wrong and changed.returncode != 0:
+            wrong = changed.stderr.decode()
+        wrong = wrong or next((text for text in (grid_in(context, number) for number in range(4)) if text), None)
+        told = {node["overlay"] for node in result_of(context, run, "overlay")["nodes"]}
+        if not wrong and told != {"grid"}:
+            wrong = "the overlays are %s" % told
+        ctl(context, str(run.process.pid), "stop")
+        return wrong or cases.check_end(run, 0)
+
+
+@cases.case
 def wrong_values_are_refused(context):
     """Each error is one line with the valid values."""
     with context.run([context.program("long_run"), "--frames", "1000000", "--size", "100x80"], ["--tiles", "2x1", "--display", "none"]) as run:

@@ -46,7 +46,7 @@ HeadSession::HeadSession(SessionConfig config, SessionPlan plan, std::vector<Lau
       options_(std::move(options)),
       statistics_(clocksOf(plan)),
       overlay_(makeOverlay(options_.overlay, config_.overlay)),
-      overlayModes_(nodes.size(), config_.overlay),
+      overlayMode_(config_.overlay),
       pacer_([this](uint32_t client, uint32_t finished, uint32_t shown) {
           if (serving_) programs_->credit(client, finished, shown);
       }),

@@ -137,6 +137,8 @@ private:
     void addOverlayOperation(ControlOperations& operations);
     Result<nlohmann::json> changeOverlay(const nlohmann::json& arguments);
     nlohmann::json overlayJson();
+    [[nodiscard]] OverlayMode overlayOf(int node) const; // requires announceMutex_
+    bool showsStatistics();
     void announceOverlay();
     void tickOverlay(int64_t nowNs);
 
@@ -240,11 +242,13 @@ private:
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameStatistics statistics_;
-    std::mutex announceMutex_; // orders announcements of the statistics' state and of the overlay; guards overlayModes_
+    std::mutex announceMutex_; // orders announcements of the statistics' state and of the overlay; guards overlayMode_
+                               // and overlayOfNodes_
     const std::shared_ptr<Overlay> overlay_;       // of the head's windows
-    std::vector<OverlayMode> overlayModes_;        // of the windows of each node
+    OverlayMode overlayMode_ = OverlayMode::Off;   // of all windows except these:
+    std::map<int, OverlayMode> overlayOfNodes_;    // of the windows of single nodes
+    const SessionPlan* overlayPlan_ = nullptr;     // the plan of overlayNumbers_
     std::optional<OverlayNumbers> overlayNumbers_; // while the head's windows show statistics; used by the main thread
-    const SessionStage* overlayStage_ = nullptr;   // of those numbers
     int64_t overlayNumbersNs_ = 0;                 // the latest numbers
     int64_t probedNs_ = 0;                         // the latest ClockProbe
     CreditPacer pacer_;

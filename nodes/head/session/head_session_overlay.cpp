@@ -47,10 +47,11 @@ Result<Json> HeadSession::changeOverlay(const Json& arguments) {
         if (node != arguments.end()) {
             if (const auto known = checkNode(node->get<int64_t>()); !known) return known.error();
             const std::lock_guard lock(announceMutex_);
-            overlayModes_[static_cast<size_t>(node->get<int64_t>())] = *mode;
+            overlayOfNodes_[static_cast<int>(node->get<int64_t>())] = *mode;
         } else {
             const std::lock_guard lock(announceMutex_);
-            std::ranges::fill(overlayModes_, *mode);
+            overlayMode_ = *mode;
+            overlayOfNodes_.clear();
             overlay_->setMode(*mode);
         }
         log::info(log::Topic::Output, "the overlay changes to ", text, " at the request of mural ctl overlay");
@@ -59,44 +60,53 @@ Result<Json> HeadSession::changeOverlay(const Json& arguments) {
     return overlayJson();
 }
 
+OverlayMode HeadSession::overlayOf(int node) const {
+    const auto own = overlayOfNodes_.find(node);
+    return own == overlayOfNodes_.end() ? overlayMode_ : own->second;
+}
+
 Json HeadSession::overlayJson() {
     const std::lock_guard lock(announceMutex_);
     Json nodes = Json::array();
-    for (size_t i = 0; i < overlayModes_.size(); ++i)
-        if (!hasLeft(static_cast<int>(i))) nodes.push_back({{"node", i}, {"overlay", nameOf(overlayModes_[i])}});
-    return {{"overlay", nameOf(overlay_->mode())}, {"nodes", std::move(nodes)}};
+    for (const NodePlan& node : currentPlan().nodes)
+        if (!node.isVacant) nodes.push_back({{"node", node.node}, {"overlay", nameOf(overlayOf(node.node))}});
+    return {{"overlay", nameOf(overlayMode_)}, {"nodes", std::move(nodes)}};
 }
 
 // The lock orders the announcements of two threads. The calling thread must not wait for a node.
 void HeadSession::announceOverlay() {
     const std::lock_guard lock(announceMutex_);
-    nodes_.scheduleSoon(wire::HeadCommand::Overlay, std::as_bytes(std::span(overlayModes_)));
+    std::vector<OverlayMode> modes;
+    for (int node = 0; node < nodeCount(); ++node) modes.push_back(overlayOf(node));
+    nodes_.scheduleSoon(wire::HeadCommand::Overlay, std::as_bytes(std::span(modes)));
+}
+
+bool HeadSession::showsStatistics() {
+    const std::lock_guard lock(announceMutex_);
+    return overlayMode_ == OverlayMode::Stats ||
+           std::ranges::any_of(overlayOfNodes_, [](const auto& own) { return own.second == OverlayMode::Stats; });
 }
 
 // Requests statistics while an overlay shows them, and passes them on to the head's windows.
 void HeadSession::tickOverlay(int64_t nowNs) {
     if (nowNs - overlayNumbersNs_ < kOverlayNumbersNs) return;
     overlayNumbersNs_ = nowNs;
-    {
-        const std::lock_guard lock(announceMutex_);
-        if (std::ranges::find(overlayModes_, OverlayMode::Stats) == overlayModes_.end() &&
-            overlay_->mode() != OverlayMode::Stats) {
-            overlayNumbers_.reset();
-            return;
-        }
+    if (!showsStatistics()) {
+        overlayNumbers_.reset();
+        return;
     }
     if (statistics_.request(nowNs)) announceStatistics();
     if (overlay_->mode() != OverlayMode::Stats) return;
-    if (std::exchange(overlayStage_, &plans_.current()) != &plans_.current()) overlayNumbers_.reset();
-    if (!overlayNumbers_) {
+    const SessionPlan& plan = currentPlan();
+    if (!overlayNumbers_ || overlayPlan_ != &plan) {
         const std::string host = overlay_->content().host;
-        std::vector<std::string> names;
-        for (const NodePlan& node : currentPlan().nodes)
-            names.push_back(node.isVacant
-                                ? ""
-                                : "node " + std::to_string(node.node) + " on " +
-                                      (node.reach == NodeReach::SharedMemory && !host.empty() ? host : node.where));
-        overlayNumbers_.emplace(std::move(names));
+        std::map<int, std::string> names;
+        for (const NodePlan& node : plan.nodes)
+            if (!node.isVacant)
+                names[node.node] = "node " + std::to_string(node.node) + " on " +
+                                   (node.reach == NodeReach::SharedMemory && !host.empty() ? host : node.where);
+        overlayNumbers_.emplace(names);
+        overlayPlan_ = &plan;
     }
     overlayNumbers_->add(statistics_.since(overlayNumbers_->next(), nowNs));
     overlay_->setNodes(overlayNumbers_->nodes());

@@ -295,8 +295,6 @@ void HeadSession::beginPlanChange() {
         nodes_.add(std::make_unique<NodeConnection>(NodeLocation{node, plan.where}, nullptr, nullptr,
                                                     static_cast<NodeEvents&>(*this)));
         statistics_.addNode(NodeClock::ofNode(plan.reach == NodeReach::SharedMemory));
-        const std::lock_guard lock(announceMutex_);
-        overlayModes_.push_back(overlay_->mode());
     }
     answers_.addNodes(count);
     frames_.addNodes(count);

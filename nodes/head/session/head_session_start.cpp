@@ -129,7 +129,7 @@ NodeSetup HeadSession::setupFor(const NodePlan& plan) {
     setup.log = log::environmentLevels();
     setup.recordsSpans = statistics_.isOn();
     const std::lock_guard lock(announceMutex_);
-    setup.overlay = overlayModes_[static_cast<size_t>(plan.node)];
+    setup.overlay = overlayOf(plan.node);
     return setup;
 }
 

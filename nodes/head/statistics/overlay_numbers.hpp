@@ -1,9 +1,8 @@
 // The numbers of all nodes for the overlay `stats`, from the statistics of frames. Pure; not thread-safe.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,18 +13,17 @@ namespace mural {
 
 class OverlayNumbers {
 public:
-    // names: one per node; empty: the number has no node, and nodes() omits it.
-    explicit OverlayNumbers(std::vector<std::string> names);
+    // names: of the nodes, by their numbers.
+    explicit OverlayNumbers(const std::map<int, std::string>& names);
 
     // Adds complete frames, in order. Frames with numbers below next() count once.
     void add(const std::vector<FrameRecord>& records);
     [[nodiscard]] uint64_t next() const { return next_; }
-    [[nodiscard]] const std::vector<OverlayNode>& nodes() const { return nodes_; }
+    [[nodiscard]] std::vector<OverlayNode> nodes() const; // in the order of their numbers
 
 private:
-    std::vector<OverlayNode> nodes_;
-    std::vector<std::optional<size_t>> places_; // in nodes_, by number of the node
-    uint64_t next_ = 1;                         // number of the first frame that is not added yet
+    std::map<int, OverlayNode> nodes_;
+    uint64_t next_ = 1; // number of the first frame that is not added yet
 };
 
 } // namespace mural

@@ -29,10 +29,11 @@ OverlayPart::OverlayPart(const NodeSetup& setup)
 }
 
 bool OverlayPart::take(std::span<const std::byte> modes) {
-    if (modes.size() < (node_ + 1) * sizeof(uint32_t)) return false;
-    const auto mode = argument<uint32_t>(modes.subspan(node_ * sizeof(uint32_t)));
-    if (!mode || *mode > static_cast<uint32_t>(kLastOverlayMode)) return false;
-    show(static_cast<OverlayMode>(*mode));
+    if (modes.size() % sizeof(uint32_t) != 0) return false;
+    const auto all = argumentList<uint32_t>(modes);
+    if (node_ >= all.size()) return true; // older than this node
+    if (all[node_] > static_cast<uint32_t>(kLastOverlayMode)) return false;
+    show(static_cast<OverlayMode>(all[node_]));
     return true;
 }
 
