@@ -102,7 +102,7 @@ public:
     struct MemberExchange {
         std::vector<int> joining, leaving;
         // Called at the position, with the lock that orders packets. Members report that they have passed `view`.
-        // Returns false to refuse the exchange.
+        // Returns false to refuse the exchange. May set `viewports`.
         std::function<bool(uint32_t view)> atPosition;
         std::function<Admission(int node, uint32_t view)> announce; // for each joining node, in order
         ViewportAssignment viewports; // initial areas of the joining nodes; no nodes: areas stay fixed

@@ -258,7 +258,7 @@ void HeadSession::windowGone(const std::pair<uint32_t, uint32_t>& window, int no
         const auto [entry, fresh] = gone_.try_emplace(window);
         if (fresh) entry->second = views_.awaited(node);
         std::vector<bool>& awaited = entry->second;
-        awaited[static_cast<size_t>(node)] = false;
+        if (static_cast<size_t>(node) < awaited.size()) awaited[static_cast<size_t>(node)] = false; // or it came later
         if (std::ranges::find(awaited, true) != awaited.end()) return;
         gone_.erase(entry);
     }

@@ -117,8 +117,9 @@ Result<void> HeadSession::checkNode(int64_t node) {
     if (node < 0 || node >= nodeCount())
         return Error{"the session has no node " + std::to_string(node) + "; its nodes are 0 to " +
                      std::to_string(nodeCount() - 1)};
-    if (currentPlan().nodes[static_cast<size_t>(node)].isVacant)
-        return Error{"node " + std::to_string(node) + " has left the session; see mural ctl nodes"};
+    const std::vector<NodePlan>& nodes = currentPlan().nodes; // without those of a change in progress
+    if (static_cast<size_t>(node) >= nodes.size() || nodes[static_cast<size_t>(node)].isVacant)
+        return Error{"node " + std::to_string(node) + " is no node of the current plan; see mural ctl nodes"};
     if (finishing_) return Error{"the session is ending; its nodes end with it"};
     return {};
 }

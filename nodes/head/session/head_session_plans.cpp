@@ -349,8 +349,6 @@ Result<void> HeadSession::exchangeNodes(PendingChange& pending) {
         const std::lock_guard lock(mutex_);
         for (const int node : exchange.leaving) leaving_.insert(node), leavingSince_[node] = monotonicNowNs();
     }
-    if (std::ranges::any_of(change.plan.nodes, followsAssignments))
-        exchange.viewports = pending.stage->balancer.viewports();
     std::unique_lock membership(membership_, std::defer_lock);
     exchange.atPosition = [&](uint32_t view) {
         membership.lock();
@@ -363,6 +361,8 @@ Result<void> HeadSession::exchangeNodes(PendingChange& pending) {
         }
         plans_.change(*pending.stage, std::move(kept), exchange.leaving, view);
         pacer_.endPaces(); // of the earlier plan's equalizers
+        if (std::ranges::any_of(change.plan.nodes, followsAssignments))
+            exchange.viewports = pending.stage->balancer.viewports();
         return true;
     };
     exchange.announce = [this](int node, uint32_t view) { return admission(node, view); };

@@ -124,6 +124,7 @@ void PlanSequence::change(SessionStage& next, std::set<int> kept, const std::vec
         assign(node.node, next);
     }
     const std::lock_guard lock(mutex_);
+    std::erase_if(entries_, [](const Entry& entry) { return entry.isOver; });
     Entry& before = entries_.back();
     before.draining = kept;
     before.draining.insert(leaving.begin(), leaving.end());
