@@ -222,7 +222,7 @@ def refused_changes(context):
         if not drawing.begins():
             return "no frames"
         before = nodes_of(context, run)
-        refused = [(["--tiles", "2xx1"], 2, "COLUMNSxROWS"), (["--config", "nope.eqc"], 2, "nope.eqc"), (["--undo"], 1, "no change"),
+        refused = [([], 2, "no option"), (["--undo", "--db", "2"], 2, "--undo"), (["--tiles", "2xx1"], 2, "COLUMNSxROWS"), (["--config", "nope.eqc"], 2, "nope.eqc"), (["--undo"], 1, "no change"),
                    (["--stereo", "anaglyph"], 1, "--verify"), (["--config", CANVASES, "--all-local"], 1, "monitor"),
                    (["--config", LAYOUTS, "--all-local", "--layout", "wall:off"], 2, "draws")]
         for words, wanted, text in refused:

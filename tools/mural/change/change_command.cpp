@@ -13,9 +13,19 @@ namespace {
 
 constexpr const char* kChange = "change";
 
+// Returns true if the command line has an option that divides the work. Without one, the options describe one node.
+bool dividesWork(const CLI::App& app) {
+    const auto options = app.get_options([](const CLI::Option* option) {
+        const bool isOwn = option->check_lname("dry-run") || option->check_lname("undo") || option->check_lname("json");
+        return option->count() > 0 && !isOwn && !option->get_positional();
+    });
+    return !options.empty();
+}
+
 } // namespace
 
 void describeChange(CLI::App& app, ChangeArguments& arguments) {
+    arguments.app = &app;
     describePlanOptions(app, arguments.options);
     app.add_option("session", arguments.session, "name of a session, or pid of its mural run; default the only one")
         ->type_name("SESSION");
@@ -25,6 +35,12 @@ void describeChange(CLI::App& app, ChangeArguments& arguments) {
 }
 
 int changeCommand(const ChangeArguments& arguments) {
+    if (arguments.isUndo == dividesWork(*arguments.app))
+        return requestFailure(kChange,
+                              arguments.isUndo ? "--undo excludes other options (see mural change --help)"
+                                               : "no option divides the work; give one, such as --tiles 2x2, or --undo "
+                                                 "(see mural change --help)",
+                              launch::kExitUsage);
     nlohmann::json request = nlohmann::json::object();
     if (arguments.isDryRun) request["dry-run"] = true;
     if (!arguments.isUndo) {

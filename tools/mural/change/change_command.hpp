@@ -19,6 +19,7 @@ struct ChangeArguments {
     std::string session; // empty: the only one
     RunArguments options;
     bool isDryRun = false, isUndo = false, asJson = false;
+    CLI::App* app = nullptr; // has parsed the options
 };
 
 void describeChange(CLI::App& app, ChangeArguments& arguments);
