@@ -233,6 +233,11 @@ def refused_changes(context):
             status, _, errors = ctl(context, str(run.process.pid), "layout", *words)
             if status != 1 or text not in errors or errors.count("\n") != 1:
                 return "layout %s: status %d, %s" % (" ".join(words), status, errors)
+        for fields, text in (({"samples": 1000000000}, "256 passes"), ({"columns": 100000, "localNodes": 100000}, "256 tiles"), ({"zoomX": 0}, "zoom"),
+                             ({"frames": 5}, "no field"), ({"columns": "2"}, "columns"), ({"localNodes": 2000}, "1024 nodes")):
+            status, _, errors = ctl(context, str(run.process.pid), "plan", json.dumps(fields))
+            if status != 1 or text not in errors or errors.count("\n") != 1:
+                return "plan %s: status %d, %s" % (fields, status, errors)
         status, reply, errors = change(context, run, "--tiles", "2x1", "--dry-run")
         if status != 0 or len(reply["joined"]) != 2 or len(reply["left"]) != 1:
             return "dry run: %s %s" % (reply, errors)
@@ -311,10 +316,35 @@ def spare_host(context):
 
 
 @cases.case
+def spare_of_the_only_node(context):
+    """The programs wait for the spare host, since no node is left."""
+    with tempfile.TemporaryDirectory(prefix="mural-spares.") as folder:
+        launch = os.path.join(folder, "launch")
+        with open(launch, "w", encoding="ascii") as file:
+            file.write(HOST)
+        os.chmod(launch, 0o755)
+        hosts = ["--nodes", "127.0.0.3", "--spare-nodes", "127.0.0.4", "--stream", "tcp", "--launch", launch]
+        with Drawing(context, ["--display", "none"] + hosts) as drawing:
+            run = drawing.run
+            if not drawing.begins():
+                return "no frames: %s" % " | ".join(run.standard_error[-3:])
+            lost = result_of(context, run, "nodes")["nodes"][0]
+            with open(launch + ".127.0.0.3.off", "w", encoding="ascii"):
+                os.kill(lost["pid"], signal.SIGKILL)
+            if not runs_on(context, run, ["127.0.0.4"]):
+                return "nodes on %s: %s" % (hosts_of(context, run), " | ".join(run.standard_error[-4:]))
+            if not draws_further(context, run, 5):
+                return "no frames after the move"
+            session.end_after(drawing.end_file, 3)
+            return cases.check_end(run, 0)
+
+
+@cases.case
 def killed_nodes(context):
     """Nodes are killed at random moments of the changes. The program continues, and later changes succeed."""
     numbers = random.Random(7)
-    with Drawing(context, ["--tiles", "2x1", "--display", "none", "--restart-nodes", "1000"]) as drawing:
+    with tempfile.TemporaryDirectory(prefix="mural-plans.") as out, \
+            Drawing(context, ["--tiles", "2x1", "--display", "none", "--restart-nodes", "1000", "--out", out]) as drawing:
         run = drawing.run
         if not drawing.begins():
             return "no frames"
@@ -339,10 +369,21 @@ def killed_nodes(context):
                 return "no frames after change %d, %s: %s" % (count, " ".join(words), " | ".join(run.standard_error[-5:]))
         print("    %d changes succeeded, %d did not" % (done[0], done[1]))
         deadline = time.monotonic() + PATIENCE_SECONDS
-        while time.monotonic() < deadline and change(context, run, "--tiles", "1x2")[0] != 0:
+        last = change(context, run, "--tiles", "1x2")
+        while time.monotonic() < deadline and last[0] != 0:
             time.sleep(0.5)
+            last = change(context, run, "--tiles", "1x2")
+        if last[0] != 0:
+            return "the last change failed: %s" % last[2]
+        # Frames without the node that has their picture are not saved (--db). The pictures of the last plan are.
+        before = len(os.listdir(out))
+        if not draws_further(context, run, 20):
+            return "no frames after the last change"
         session.end_after(drawing.end_file, 3)
-        return cases.check_end(run, 0)
+        wrong = cases.check_end(run, 0)
+        saved = len(os.listdir(out)) - before
+        print("    %d pictures saved after the last change" % saved)
+        return wrong or (None if saved >= 20 else "%d pictures saved of 20 frames after the last change" % saved)
 
 
 if __name__ == "__main__":

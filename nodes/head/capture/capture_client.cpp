@@ -27,7 +27,7 @@ std::string nameOf(pid_t pid) {
 } // namespace
 
 CaptureClient::CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                             CaptureEvents& events, FrameStatistics* statistics, OnSentFrame onSentFrame)
+                             CaptureEvents& events, FrameStatistics* statistics, SentFrames* sentFrames)
     : id_(id),
       pid_(pid),
       name_(nameOf(pid)),
@@ -35,7 +35,7 @@ CaptureClient::CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemo
       nodes_(nodes),
       events_(events),
       spans_(statistics, id, *memory_),
-      onSentFrame_(std::move(onSentFrame)),
+      sentFrames_(sentFrames),
       frames_(id) {}
 
 CaptureClient::~CaptureClient() {
@@ -141,8 +141,8 @@ bool CaptureClient::pumpNext(CaptureMemory::Range& range) {
         nodes_.broadcast(wire::streamOf(id_, range.stream), range.bytes);
         unflushedBytes_ += range.bytes.size();
         bytesSent_.fetch_add(range.bytes.size(), std::memory_order_relaxed);
-        if (onSentFrame_)
-            if (const auto frame = frames_.published(range.stream, range.bytes)) onSentFrame_(*frame);
+        if (sentFrames_ && sentFrames_->areWanted)
+            if (const auto frame = frames_.published(range.stream, range.bytes)) sentFrames_->add(*frame);
     }
     if (!memory_->take(range)) {
         drop("it returned more chunks than it received; the program may have overwritten its shared memory");

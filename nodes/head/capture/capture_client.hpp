@@ -40,15 +40,19 @@ struct Reply {
     std::function<void()> written; // called after the complete reply was written to the program's memory; may be empty
 };
 
-// Called by the pump's thread before it sends any command of the next frame.
-using OnSentFrame = std::function<void(const SentFrame&)>;
+// Receives the frames of all programs, compared with the previous ones.
+struct SentFrames {
+    std::atomic<bool> areWanted{false}; // otherwise frames are not compared
+    // Called by the pump's thread before it sends any command of the next frame.
+    std::function<void(const SentFrame&)> add;
+};
 
 // Thread-safe.
 class CaptureClient {
 public:
-    // statistics: null: none. onSentFrame: empty: frames are not compared.
+    // statistics: null: none. sentFrames: null: none.
     CaptureClient(uint32_t id, pid_t pid, std::unique_ptr<CaptureMemory> memory, StreamBroadcaster& nodes,
-                  CaptureEvents& events, FrameStatistics* statistics, OnSentFrame onSentFrame);
+                  CaptureEvents& events, FrameStatistics* statistics, SentFrames* sentFrames);
     ~CaptureClient(); // calls stop()
 
     // Errors: no threads available.
@@ -94,7 +98,7 @@ private:
     int64_t arrivedNs_ = 0;     // start of the last wait after arrived data
     ArrivalRate pace_;
     PumpSpans spans_;
-    const OnSentFrame onSentFrame_;
+    SentFrames* const sentFrames_;
     FrameComparer frames_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> draining_{false};

@@ -36,7 +36,7 @@ Result<Admission> ProgramTable::admitProgram(pid_t pid) {
     admission.memoryFd = (*memory)->fdToPass();
     admission.extensions = terms_.extensions;
     admitted_[id] = std::make_shared<CaptureClient>(id, pid, std::move(*memory), nodes_, *this, terms_.statistics,
-                                                    terms_.onSentFrame);
+                                                    terms_.sentFrames);
     return admission;
 }
 

@@ -25,7 +25,7 @@ struct ProgramTerms {
     uint32_t latency = 1; // of the start; setLatency() changes it
     uint32_t chunkCount = capture::kDefaultChunks;
     FrameStatistics* statistics = nullptr; // null: none
-    OnSentFrame onSentFrame;               // empty: frames are not compared
+    SentFrames* sentFrames = nullptr;      // null: none
 };
 
 // Thread-safe, except that drainAll(), reap() and endAll() need one thread.

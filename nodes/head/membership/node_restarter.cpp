@@ -37,7 +37,8 @@ std::string NodeRestarter::memberLost(int node) {
     if (terms_.tries == 0 || !hooks_.start || stopped_ || n.isRetired) return tiles;
     if (!never.empty()) return tiles + ": " + never;
     if (nowNs - n.memberNs > terms_.steadyMs * kNsPerMs) n.tries = 0;
-    if (n.tries >= terms_.tries)
+    n.givesUp = n.tries >= terms_.tries;
+    if (n.givesUp)
         return tiles + ": it was restarted " + std::to_string(n.tries) + " times, and lost again soon each time";
     n.phase = Phase::Waiting;
     n.nextNs = nowNs + terms_.pausesMs[std::min(static_cast<size_t>(n.tries), terms_.pausesMs.size() - 1)] * kNsPerMs;
@@ -158,13 +159,22 @@ bool NodeRestarter::becomesMember(int node) {
     return true;
 }
 
-bool NodeRestarter::becomeMembers(const NodeGroup& group) {
+Result<void> NodeRestarter::exchange(const NodeGroup* group, const std::vector<int>& leaving) {
     const std::lock_guard lock(mutex_);
-    if (stopped_) return false;
-    for (const int node : group.nodes())
-        if (at(node).phase != Phase::CatchingUp || !at(node).problem.empty()) return false;
-    for (const int node : group.nodes()) becomeMember(at(node));
-    return true;
+    if (stopped_) return Error{"the session is ending"};
+    const std::vector<int> joining = group ? group->nodes() : std::vector<int>();
+    for (const int node : joining)
+        if (at(node).phase != Phase::CatchingUp || !at(node).problem.empty())
+            return Error{set_.link(node).describe() + " was lost meanwhile"};
+    for (const int node : leaving)
+        if (at(node).phase != Phase::Member && at(node).phase != Phase::Waiting && at(node).phase != Phase::Over)
+            return Error{set_.link(node).describe() + " is being restarted; try again when it has joined"};
+    for (const int node : joining) becomeMember(at(node));
+    for (const int node : leaving) {
+        at(node).isRetired = true;
+        if (at(node).phase == Phase::Waiting) at(node).phase = Phase::Over;
+    }
+    return {};
 }
 
 // Requires mutex_.
@@ -205,7 +215,7 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
     Phase phase = Phase::Over;
     std::shared_ptr<NodeResync> over;
     std::string problem;
-    bool due = false;
+    bool due = false, givesUp = false;
     std::shared_ptr<NodeGroup> group;
     Deadline readyBy = Deadline::never();
     {
@@ -217,8 +227,10 @@ void NodeRestarter::tickNode(int node, int64_t nowNs) {
         problem = n.problem;
         readyBy = n.readyBy;
         group = n.group;
+        givesUp = std::exchange(n.givesUp, false);
     }
     over.reset();
+    if (givesUp) hooks_.gaveUp(node);
     if (!problem.empty()) return fail(node, problem, nowNs);
     if (group && group->hasFailed() && cancels(node, phase)) return;
     switch (phase) {

@@ -60,8 +60,10 @@ public:
     Result<void> bringBack(int node);
     // Adds new nodes, which become members together. They are started once. Call from the thread of tick().
     void addGroup(std::shared_ptr<NodeGroup> group);
-    // Makes all nodes of a group members, at the current position. Returns false if one of them is lost already.
-    bool becomeMembers(const NodeGroup& group);
+    // Makes all nodes of a group members, at the current position, and ends the restarts of the leaving ones. group:
+    // null: none. Errors: a node of the group is lost already, or a leaving one is being restarted; nothing has
+    // happened then.
+    Result<void> exchange(const NodeGroup* group, const std::vector<int>& leaving);
     // Records that a node was absent when the session began. It is restarted as well.
     void notThere(int node);
     // Returns true if the node was being restarted: the attempt has failed, and no member was lost.
@@ -99,7 +101,8 @@ private:
         Deadline readyBy = Deadline::never();
         std::unique_ptr<StartingNode> starting; // accessed by tick() only
         std::shared_ptr<NodeResync> catchUp;
-        std::string problem; // why the last attempt failed, for tick()
+        bool givesUp = false; // tick() reports that it stays lost
+        std::string problem;  // why the last attempt failed, for tick()
         Numbers numbers;
     };
 

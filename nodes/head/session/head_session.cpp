@@ -409,8 +409,8 @@ SessionStatus HeadSession::status() {
     result.runPid = getppid();
     result.headPid = getpid();
     result.nowNs = monotonicNowNs();
-    result.columns = config_.columns;
-    result.rows = config_.rows;
+    result.columns = plans_.current().config.columns;
+    result.rows = plans_.current().config.rows;
     result.display = nameOf(config_.display);
     result.wallFrames = frames_.totals().wallFrames;
     result.latency = programs_->latency();

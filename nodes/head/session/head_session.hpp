@@ -175,6 +175,7 @@ private:
     void beginPlanChange();
     Result<void> exchangeNodes(PendingChange& change);
     void endLeftNodes(int64_t nowNs);
+    void checkForNodes();
     void addStopOperations(ControlOperations& operations);
     bool hasOtherMembers(int node);
     Result<void> stopNode(int node, bool isForced);
@@ -242,6 +243,7 @@ private:
 
     // Declared in the order of construction. The readers of the nodes use all of them and end first.
     FrameStatistics statistics_;
+    SentFrames sentFrames_;    // for equalizers of zooms
     std::mutex announceMutex_; // orders announcements of the statistics' state and of the overlay; guards overlayMode_
                                // and overlayOfNodes_
     const std::shared_ptr<Overlay> overlay_;       // of the head's windows
@@ -274,6 +276,9 @@ private:
     std::vector<int> waitingForSpare_; // lost nodes; used by the session's thread
     std::thread spareMove_;            // moves nodes to a spare host
     std::atomic<bool> isMovingToSpare_{false};
+    std::atomic<int> lostAfterMove_{-1}; // node whose move to a spare host failed; -1: none
+    std::atomic<bool> wallLost_{false};
+    std::atomic<bool> checksForNodes_{false};             // tick() checks whether any node is left
     std::mutex changing_;                                 // held during a change of the plan
     std::vector<std::shared_ptr<PendingChange>> changed_; // guarded by mutex_; their groups refer to them
     std::shared_ptr<PendingChange> pending_;              // guarded by mutex_; for the session's thread to begin

@@ -30,8 +30,8 @@ constexpr int64_t kSettleMs = 4'000;      // until all nodes have passed an earl
 constexpr int64_t kLastFramesMs = 10'000; // until a node has finished its last frames
 constexpr int64_t kProcessEndMs = 500;    // from its Goodbye to the end of its process
 
-constexpr int64_t kSpareMs = 60'000; // until the nodes of a lost host have moved
-constexpr int kSpareRetryMs = 500;
+constexpr int kSpareAttempts = 6;
+constexpr int64_t kSparePauseMs = 5'000; // between two attempts
 constexpr size_t kMaxHistory = 16;
 constexpr const char* kOff = "off";
 
@@ -132,17 +132,20 @@ void HeadSession::takeSpareFor(int node) {
     spares_.erase(spares_.begin());
     log::info(log::Topic::Node, "the spare host ", to, " takes over the nodes of ", from);
     isMovingToSpare_ = true;
-    spareMove_ = std::thread([this, from, to] {
-        const Deadline deadline = Deadline::inMs(kSpareMs);
+    spareMove_ = std::thread([this, from, to, node] {
         auto moved = moveNodes(from, to, false);
-        while (!moved && !deadline.passed() && !finishing_) { // other nodes of the host may be in their restarts
-            poll(nullptr, 0, kSpareRetryMs);
+        for (int attempt = 1; !moved && attempt < kSpareAttempts && !finishing_; ++attempt) {
+            // other nodes of the host may be in their restarts, or another change may be in progress
+            for (const Deadline pause = Deadline::inMs(kSparePauseMs); !pause.passed() && !finishing_;)
+                poll(nullptr, 0, 20);
             if (!finishing_) moved = moveNodes(from, to, false);
         }
         if (!moved && !finishing_)
             log::warning(log::Topic::Node, "the spare host ", to, " cannot take over the nodes of ", from, ": ",
                          moved.error().message);
+        lostAfterMove_ = moved ? -1 : node;
         isMovingToSpare_ = false;
+        checksForNodes_ = true;
     });
 }
 
@@ -215,7 +218,10 @@ Result<Json> HeadSession::changePlan(SessionConfig config, bool isDryRun) {
         if (!change) return change.error();
         done = carryOut(config, *change);
     }
-    if (!done) return Error{"nothing has changed: " + done.error().message};
+    if (!done) {
+        checksForNodes_ = true; // the new nodes counted as nodes that may come
+        return Error{"nothing has changed: " + done.error().message};
+    }
     {
         const std::lock_guard lock(mutex_);
         history_.push_back(std::move(before));
@@ -268,16 +274,15 @@ Result<void> HeadSession::carryOut(SessionConfig config, PlanChange change) {
     pending->group->fail(finishing_ ? "the session is ending"
                                     : "the new nodes have not caught up within " + std::to_string(kJoinMs / 1000) +
                                           " s; see mural stat");
-    // an exchange in progress ends soon
-    for (const Deadline end = Deadline::inMs(kExchangeMs); !pending->group->outcome() && !end.passed();)
-        poll(nullptr, 0, 1);
+    // Otherwise the exchange is in progress. It ends when all connections accept data: watchNodes() loses others.
+    while (!pending->group->outcome() && !finishing_) poll(nullptr, 0, 1);
     const auto outcome = pending->group->outcome();
     if (outcome && *outcome) return {};
     const auto isEnding = [&] {
         return std::ranges::any_of(pending->change.joining, [this](int n) { return returns_->isRestarting(n); });
     };
     for (const Deadline end = Deadline::inMs(kCancelMs); isEnding() && !end.passed();) poll(nullptr, 0, 2);
-    return outcome ? *outcome : Result<void>(Error{"a node accepts no data at the moment; see mural stat"});
+    return outcome ? *outcome : Result<void>(Error{"the session is ending"});
 }
 
 // Called by the session's thread: only it starts nodes.
@@ -336,52 +341,50 @@ Result<void> HeadSession::exchangeNodes(PendingChange& pending) {
     const PlanChange& change = pending.change;
     StreamBroadcaster::MemberExchange exchange;
     exchange.joining = change.joining;
-    std::vector<int> retired;
-    Result<void> done;
-    for (const int node : change.leaving) {
-        const bool isMember = nodes_.link(node).alive() && returns_->leave(node).ok();
-        if (!isMember) done = returns_->retire(node);
-        if (!done) break;
-        retired.push_back(node);
-        if (isMember) exchange.leaving.push_back(node);
-    }
-    {
-        const std::lock_guard lock(mutex_);
-        for (const int node : exchange.leaving) leaving_.insert(node), leavingSince_[node] = monotonicNowNs();
-    }
+    Result<void> possible;
     std::unique_lock membership(membership_, std::defer_lock);
     exchange.atPosition = [&](uint32_t view) {
         membership.lock();
-        if (pending.group && !returns_->becomeMembers(*pending.group)) return false;
+        possible = returns_->exchange(pending.group.get(), change.leaving);
+        if (!possible) return false;
         std::set<int> kept;
+        std::vector<int> draining; // leaving nodes whose loss is not handled yet
         {
             const std::lock_guard lock(mutex_);
+            const int64_t nowNs = monotonicNowNs();
             for (const int node : change.kept)
                 if (!totals_[static_cast<size_t>(node)].lost) kept.insert(node);
+            for (const int node : change.leaving) {
+                leavingSince_[node] = nowNs;
+                if (totals_[static_cast<size_t>(node)].lost) continue;
+                draining.push_back(node);
+                leaving_.insert(node);
+            }
         }
-        plans_.change(*pending.stage, std::move(kept), exchange.leaving, view);
+        exchange.leaving = draining;
+        plans_.change(*pending.stage, std::move(kept), draining, view);
         pacer_.endPaces(); // of the earlier plan's equalizers
+        sentFrames_.areWanted = pending.stage->balancer.movesZooms();
         if (std::ranges::any_of(change.plan.nodes, followsAssignments))
             exchange.viewports = pending.stage->balancer.viewports();
         return true;
     };
     exchange.announce = [this](int node, uint32_t view) { return admission(node, view); };
-    if (done) done = nodes_.exchangeMembers(exchange, Deadline::inMs(kExchangeMs));
-    if (done) {
-        log::info(log::Topic::Session, "the plan of the session has changed: new nodes ", change.joining.size(),
-                  ", ended ", exchange.leaving.size(), ", unchanged ", change.kept.size());
-        return {};
-    }
-    for (const int node : retired) returns_->stay(node);
-    const std::lock_guard lock(mutex_);
-    for (const int node : exchange.leaving) leaving_.erase(node), leavingSince_.erase(node);
-    return done;
+    const auto done = nodes_.exchangeMembers(exchange, Deadline::inMs(kExchangeMs));
+    if (!possible) return possible;
+    if (!done) return done;
+    log::info(log::Topic::Session, "the plan of the session has changed: new nodes ", change.joining.size(), ", ended ",
+              exchange.leaving.size(), ", unchanged ", change.kept.size());
+    return {};
 }
 
 // Ends the processes of nodes that have left with a change of the plan, and moves nodes that wait for a spare host.
 void HeadSession::endLeftNodes(int64_t nowNs) {
-    if (!isMovingToSpare_)
+    if (!isMovingToSpare_) {
+        if (const int node = lostAfterMove_.exchange(-1); node >= 0) waitingForSpare_.push_back(node);
         for (const int node : std::exchange(waitingForSpare_, {})) takeSpareFor(node);
+    }
+    if (checksForNodes_.exchange(false)) checkForNodes();
     std::map<int, int64_t> leaving;
     {
         const std::lock_guard lock(mutex_);
@@ -390,14 +393,29 @@ void HeadSession::endLeftNodes(int64_t nowNs) {
     for (const auto& [node, sinceNs] : leaving) {
         NodeConnection& link = nodes_.link(node);
         if (!link.readerEnded()) {
-            if (nowNs - sinceNs > kLastFramesMs * kNsPerMs) link.lose("it did not finish its last frames in time");
+            if (nowNs - std::max(sinceNs, link.lastProgressNs(nowNs)) > kLastFramesMs * kNsPerMs)
+                link.lose("it did not finish its last frames in time");
             continue;
         }
         link.endAfterGoodbye(Deadline::inMs(kProcessEndMs));
         nodes_.retire(node);
+        {
+            const std::lock_guard lock(announceMutex_);
+            overlayOfNodes_.erase(node);
+        }
         const std::lock_guard lock(mutex_);
         leavingSince_.erase(node);
     }
+}
+
+// Called by the session's thread. A thread that exchanges nodes holds the lock while it waits for connections, and this
+// thread must watch them.
+void HeadSession::checkForNodes() {
+    const std::unique_lock membership(membership_, std::try_to_lock);
+    if (!membership.owns_lock())
+        checksForNodes_ = true; // with the next tick
+    else if (noneIsLeft())
+        noNodeIsLeft();
 }
 
 bool HeadSession::hasLeft(int node) {

@@ -54,8 +54,7 @@ NodeRestarter::Hooks HeadSession::returnHooks() {
     hooks.admitted = [this](int node, uint32_t view) { return admit(node, view); };
     hooks.gaveUp = [this](int node) {
         takeSpareFor(node);
-        const std::lock_guard membership(membership_);
-        if (noneIsLeft()) noNodeIsLeft();
+        checkForNodes();
     };
     return hooks;
 }
@@ -259,6 +258,7 @@ void HeadSession::goOnWithout(int node) {
 }
 
 void HeadSession::noNodeIsLeft() {
+    if (wallLost_.exchange(true)) return; // programs have gone on alone
     log::error(log::Topic::Session,
                "all render nodes are lost: programs continue alone, without the wall; restart the session");
     programs_->refuseFrom("all render nodes of this session are lost; restart it");
@@ -268,7 +268,7 @@ void HeadSession::noNodeIsLeft() {
 
 // True if no node lives and none can be restarted.
 bool HeadSession::noneIsLeft() {
-    if (returns_->awaited()) return false;
+    if (returns_->awaited() || isMovingToSpare_) return false;
     const std::lock_guard lock(mutex_);
     return std::ranges::all_of(totals_, [](const NodeTotals& totals) { return totals.lost; });
 }

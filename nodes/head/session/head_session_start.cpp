@@ -255,8 +255,9 @@ void HeadSession::openTables() {
     terms.latency = static_cast<uint32_t>(config_.latency);
     terms.chunkCount = options_.chunkCount;
     terms.statistics = &statistics_;
-    if (balancer().movesZooms() || hasOtherLayouts(currentPlan()))
-        terms.onSentFrame = [this](const SentFrame& frame) { balancer().frameSent(frame); };
+    sentFrames_.areWanted = balancer().movesZooms();
+    sentFrames_.add = [this](const SentFrame& frame) { balancer().frameSent(frame); };
+    terms.sentFrames = &sentFrames_;
     if (options_.recorder) recording_.beginAtStart(std::move(options_.recorder), aboutTrace());
     ProgramTable::Events events;
     events.came = [this](const CaptureClient& client) {
