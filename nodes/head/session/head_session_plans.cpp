@@ -121,7 +121,8 @@ Result<Json> HeadSession::moveNodes(const std::string& from, const std::string& 
 // this one.
 void HeadSession::takeSpareFor(int node) {
     const std::string from = plans_.nodePlan(node).where;
-    if (spares_.empty() || from == "local" || finishing_ || hasLeft(node)) return;
+    const bool isBack = nodes_.link(node).alive() || returns_->isRestarting(node);
+    if (spares_.empty() || from == "local" || finishing_ || isBack || hasLeft(node)) return;
     if (spareMove_.joinable()) {
         if (!isMovingToSpare_)
             spareMove_.join();
