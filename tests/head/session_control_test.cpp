@@ -29,7 +29,9 @@ TEST(SessionControl, repliesWithStatusReportAndNodes) {
     const Json report = head.request("report");
     EXPECT_EQ(report["result"]["nodes"].size(), 2U) << report;
     EXPECT_EQ(head.request("stat")["code"], "unknown-operation");
-    EXPECT_EQ(head.request("equalizers")["code"], "unknown-operation"); // the session has none
+    EXPECT_EQ(head.request("equalizers")["result"]["equalizers"], Json()) << "the session has none";
+    const Json set = head.request("equalizer-freeze", {{"name", "none"}, {"frozen", true}});
+    EXPECT_NE(set.value("error", std::string()).find("no equalizers"), std::string::npos) << set;
     head.finish();
 }
 

@@ -82,7 +82,7 @@ ControlOperations HeadSession::controlOperations() {
     addPlanOperations(all);
     addOverlayOperation(all);
     addFramesOperation(all);
-    if (balancer().isActive() || !config_.configFile.empty()) addEqualizerOperations(all, equalizers_);
+    addEqualizerOperations(all, equalizers_); // a later plan may have equalizers
     return all;
 }
 
