@@ -33,8 +33,8 @@ enum class HeadCommand : uint32_t {
     // SwitchToMulticastCommand: the last packet, or batch, on the node's own connection. The group carries it too, and
     // carries all later ones alone.
     SwitchToMulticast = 11,
-    // u32 number, u32 nodes, {f64 x, y, w, h, zoom} of each: the areas of the picture that nodes draw, and the zoom
-    // relative to that of Setup, from the next full clear of each window on.
+    // u32 number, u32 nodes, {f64 x, y, w, h, zoom} of each: area of the picture, and zoom relative to Setup's. A
+    // window takes them at its next full clear.
     ViewportAssignment = 12,
     // u32 number, u32 nodes, {f64 start, end} of each: the ranges of a frame's draws that nodes draw, from the next
     // shared draws of each window on.

@@ -284,59 +284,52 @@ def runs_on(context, run, hosts):
     return hosts_of(context, run) == hosts
 
 
-@cases.case
-def spare_host(context):
-    """A host fails, and its node moves to the spare host. Then the nodes of another host move on request."""
+def moves_to_spare(context, hosts, options, after):
+    """The last host fails, and its node moves to the spare host. `after` continues; it returns an error or None."""
+    spare = "127.0.0.9"
     with tempfile.TemporaryDirectory(prefix="mural-spares.") as folder:
         launch = os.path.join(folder, "launch")
         with open(launch, "w", encoding="ascii") as file:
             file.write(HOST)
         os.chmod(launch, 0o755)
-        hosts = ["--nodes", "127.0.0.2,127.0.0.3", "--spare-nodes", "127.0.0.4", "--stream", "tcp", "--launch", launch]
-        with Drawing(context, ["--tiles", "2x1", "--display", "none"] + hosts) as drawing:
+        command = ["--display", "none", "--nodes", ",".join(hosts), "--spare-nodes", spare, "--stream", "tcp", "--launch", launch]
+        with Drawing(context, command + options) as drawing:
             run = drawing.run
             if not drawing.begins():
                 return "no frames: %s" % " | ".join(run.standard_error[-3:])
-            lost = next(node for node in result_of(context, run, "nodes")["nodes"] if node["where"] == "127.0.0.3")
-            with open(launch + ".127.0.0.3.off", "w", encoding="ascii"):
+            lost = next(node for node in result_of(context, run, "nodes")["nodes"] if node["where"] == hosts[-1])
+            with open("%s.%s.off" % (launch, hosts[-1]), "w", encoding="ascii"):
                 os.kill(lost["pid"], signal.SIGKILL)
-            if not runs_on(context, run, ["127.0.0.2", "127.0.0.4"]):
+            if not runs_on(context, run, hosts[:-1] + [spare]):
                 return "nodes on %s: %s" % (hosts_of(context, run), " | ".join(run.standard_error[-4:]))
-            reply = result_of(context, run, "move-nodes", "127.0.0.2", "127.0.0.5")
-            if len(reply.get("joined", [])) != 1 or len(reply.get("kept", [])) != 1 or not runs_on(context, run, ["127.0.0.4", "127.0.0.5"]):
-                return "move-nodes: %s, nodes on %s" % (reply, hosts_of(context, run))
-            for words, text in ((("nowhere", "127.0.0.6"), "no node"), (("127.0.0.5", "a=b"), "no name")):
-                status, _, errors = ctl(context, str(run.process.pid), "move-nodes", *words)
-                if status == 0 or text not in errors:
-                    return "move-nodes %s: %s" % (" ".join(words), errors)
+            wrong = after(run)
+            if wrong is not None:
+                return wrong
             if not draws_further(context, run, 5):
-                return "no frames after the moves"
+                return "no frames after the move"
             session.end_after(drawing.end_file, 3)
             return cases.check_end(run, 0)
+
+
+@cases.case
+def spare_host(context):
+    """Then the nodes of another host move on request."""
+    def after(run):
+        reply = result_of(context, run, "move-nodes", "127.0.0.2", "127.0.0.5")
+        if len(reply.get("joined", [])) != 1 or len(reply.get("kept", [])) != 1 or not runs_on(context, run, ["127.0.0.5", "127.0.0.9"]):
+            return "move-nodes: %s, nodes on %s" % (reply, hosts_of(context, run))
+        for words, text in ((("nowhere", "127.0.0.6"), "no node"), (("127.0.0.5", "a=b"), "no name")):
+            status, _, errors = ctl(context, str(run.process.pid), "move-nodes", *words)
+            if status == 0 or text not in errors:
+                return "move-nodes %s: %s" % (" ".join(words), errors)
+        return None
+    return moves_to_spare(context, ["127.0.0.2", "127.0.0.3"], ["--tiles", "2x1"], after)
 
 
 @cases.case
 def spare_of_the_only_node(context):
     """The programs wait for the spare host, since no node is left."""
-    with tempfile.TemporaryDirectory(prefix="mural-spares.") as folder:
-        launch = os.path.join(folder, "launch")
-        with open(launch, "w", encoding="ascii") as file:
-            file.write(HOST)
-        os.chmod(launch, 0o755)
-        hosts = ["--nodes", "127.0.0.3", "--spare-nodes", "127.0.0.4", "--stream", "tcp", "--launch", launch]
-        with Drawing(context, ["--display", "none"] + hosts) as drawing:
-            run = drawing.run
-            if not drawing.begins():
-                return "no frames: %s" % " | ".join(run.standard_error[-3:])
-            lost = result_of(context, run, "nodes")["nodes"][0]
-            with open(launch + ".127.0.0.3.off", "w", encoding="ascii"):
-                os.kill(lost["pid"], signal.SIGKILL)
-            if not runs_on(context, run, ["127.0.0.4"]):
-                return "nodes on %s: %s" % (hosts_of(context, run), " | ".join(run.standard_error[-4:]))
-            if not draws_further(context, run, 5):
-                return "no frames after the move"
-            session.end_after(drawing.end_file, 3)
-            return cases.check_end(run, 0)
+    return moves_to_spare(context, ["127.0.0.3"], [], lambda run: None)
 
 
 @cases.case

@@ -1,5 +1,5 @@
-// The frames of one window, as its program sends them and the nodes finish them. The picture stands still if a frame's
-// commands equal those of the previous one, or if the program sends no frame for a while. Not thread-safe.
+// The frames of one window, as its program sends them and the nodes finish them. The picture stands still after
+// two frames with equal commands, or after a pause of the program. Not thread-safe.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 // on. Frames from LOAD_STILL (60) on equal that one, or from the frame on that finds END_FILE. LOAD_FIRST (0): number
 // of the first frame. LOAD_PAUSE_MS (0): pause before each frame; before frame LOAD_REST (none) one of 1.5 s. Prints
 // for each frame its time in ms, and the frame that it equals.
+#include "tests/programs/support/environment.hpp"
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -17,11 +18,6 @@
 using namespace programs;
 
 namespace {
-
-int numberOf(const char* name, int otherwise) {
-    const char* const text = std::getenv(name);
-    return text ? std::atoi(text) : otherwise;
-}
 
 void setUp(Window&) {
     glEnable(GL_DEPTH_TEST);

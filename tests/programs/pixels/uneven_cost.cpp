@@ -1,5 +1,6 @@
 // Frames whose cost lies mostly in one corner of the picture: many layers over each other. After UNEVEN_STAY frames
 // (20) it is another corner. UNEVEN_LAYERS (150) sets the cost. With UNEVEN_EVENLY the layers cover the whole picture.
+#include "tests/programs/support/environment.hpp"
 #include "tests/programs/support/gl.hpp"
 #include "tests/programs/support/program.hpp"
 #include "tests/programs/support/show.hpp"
@@ -9,11 +10,6 @@
 using namespace programs;
 
 namespace {
-
-int numberOf(const char* name, int otherwise) {
-    const char* const text = std::getenv(name);
-    return text ? std::atoi(text) : otherwise;
-}
 
 void setUp(Window&) {
     glEnable(GL_DEPTH_TEST);
