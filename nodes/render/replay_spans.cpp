@@ -1,5 +1,7 @@
 #include "nodes/render/replay_spans.hpp"
 
+#include <utility>
+
 #include "common/base/clock.hpp"
 #include "common/base/quick_clock.hpp"
 #include "nodes/frame_spans/frame_spans_message.hpp"
@@ -12,13 +14,16 @@ void ReplaySpans::record(bool isOn) { recordThread(spans_, isOn, SpanKind::Repla
 
 bool ReplaySpans::record(std::span<const std::byte> arguments) {
     const auto on = argument<uint32_t>(arguments);
-    if (on) record(*on != 0);
-    return on.has_value();
+    if (!on) return false;
+    if (*on != 0 && !spans_.isActive()) isPartial_ = true;
+    record(*on != 0);
+    return true;
 }
 
 std::vector<wire::FrameSpan> ReplaySpans::take() {
     std::vector<wire::FrameSpan> spans;
     if (spans_.isActive()) addSpans(spans, wire::SpanThread::Replay, spans_.take(quickNowNs()));
+    if (std::exchange(isPartial_, false)) return {};
     if (isLate_)
         for (wire::FrameSpan& span : spans) span.beginNs += kNsPerS, span.endNs += kNsPerS;
     return spans;

@@ -24,11 +24,12 @@ public:
     // Planted fault: all spans are one second late.
     void delay() { isLate_ = true; }
 
-    // Returns the spans since the last call. Empty: statistics are off.
+    // Returns the spans of the frame that ends now. Empty: statistics are off, or began within this frame.
     std::vector<wire::FrameSpan> take();
 
 private:
     ThreadSpans spans_;
+    bool isPartial_ = false; // the spans may lack the begin of the frame
     bool isLate_ = false;
 };
 
