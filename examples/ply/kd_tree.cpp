@@ -91,7 +91,7 @@ KdTree KdTree::build(const Mesh& mesh, std::vector<uint32_t>& order, uint32_t ma
     std::iota(order.begin(), order.end(), 0u);
     Builder builder(mesh, order);
     builder.add(0, order.size(), static_cast<uint32_t>((order.size() + maxLeafTriangles - 1) / maxLeafTriangles));
-    // The order inside of a leaf is that of the mesh, which suits the caches of vertices.
+    // Inside of a leaf, triangles keep the order of the mesh, which suits the caches of vertices.
     for (size_t leaf = 0, begin = 0; leaf < builder.leafEnds.size(); begin = builder.leafEnds[leaf++]) {
         std::sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
                   order.begin() + static_cast<std::ptrdiff_t>(builder.leafEnds[leaf]));

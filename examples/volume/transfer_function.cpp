@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "examples/base/arguments.hpp"
+
 namespace mural::examples {
 namespace {
 
@@ -23,8 +25,8 @@ Error problemOf(std::string_view point) {
                  "\" is no point of a transfer function such as 0.5:ffcc99:0.3; the names are " + transferPresets()};
 }
 
-template <class T, class... Base> bool parseAll(std::string_view word, T& value, Base... base) {
-    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value, base...);
+bool parseNumber(std::string_view word, float& value) {
+    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
     return problem == std::errc{} && end == word.data() + word.size();
 }
 
@@ -32,11 +34,11 @@ bool parsePoint(std::string_view text, TransferPoint& point) {
     const size_t colour = text.find(':');
     const size_t opacity = colour == std::string_view::npos ? colour : text.find(':', colour + 1);
     if (opacity == std::string_view::npos || opacity - colour != 7) return false;
-    uint32_t rgb = 0;
-    if (!parseAll(text.substr(0, colour), point.value) || !parseAll(text.substr(colour + 1, 6), rgb, 16) ||
-        !parseAll(text.substr(opacity + 1), point.opacity))
+    if (!parseNumber(text.substr(0, colour), point.value) || !parseNumber(text.substr(opacity + 1), point.opacity))
         return false;
-    for (size_t k = 0; k < 3; ++k) point.colour[k] = static_cast<float>(rgb >> (16 - 8 * k) & 0xff) / 255;
+    const Result<std::array<float, 3>> rgb = parseColour(text.substr(colour + 1, 6));
+    if (!rgb) return false;
+    point.colour = rgb.value();
     const auto isFraction = [](float x) { return x >= 0 && x <= 1; };
     return isFraction(point.value) && isFraction(point.opacity);
 }
