@@ -1,4 +1,5 @@
-// A turning ring of triangles on any wall: every node draws its part of the picture, and its range of the triangles.
+// A turning ring of triangles on any wall. Every node draws its part of the picture, and its range of the triangles.
+//
 //   mural run --tiles 2x2 -- ./hello      mural run --db 2 -- ./hello
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -14,7 +15,7 @@ struct Scene {
 
 class Hello : public mural::Application {
     mural::Next update(mural::Session& session, const mural::FrameClock& clock) override {
-        session.state<Scene>().angle = clock.seconds;
+        session.state<Scene>().angle = .02 * static_cast<double>(clock.frame);
         return mural::Next::Frame;
     }
 };

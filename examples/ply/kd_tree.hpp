@@ -51,8 +51,8 @@ public:
     // Returns the leaves whose middle triangle lies in the range. Neighbouring ranges share no leaf and leave none out.
     [[nodiscard]] LeafRun leavesOf(const Range& range) const;
 
-    // Calls use(leaf) in the order of the leaves for each leaf of the run that has no box outside. isOutside(box) must
-    // be true for boxes inside of a box for which it is true.
+    // Calls use(leaf) for each leaf of the run, in the order of the leaves. Leaves with an outer box for which
+    // isOutside(box) is true are left out.
     template <class IsOutside, class Use> void visit(const LeafRun& run, IsOutside&& isOutside, Use&& use) const {
         for (size_t n = 0; n < nodes_.size();) {
             const KdNode& node = nodes_[n];
