@@ -1,0 +1,35 @@
+// How an object travels from its writer to its readers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace mural {
+
+// Which parts of an object a commit sends, and whether readers keep older versions.
+enum class Sharing : uint8_t {
+    Static,     // one version, sent once
+    Instance,   // all fields with every commit; versions of frames in progress stay available
+    Delta,      // changed fields only; versions of frames in progress stay available
+    Unbuffered, // all fields with every commit; only the newest version is kept, so frames may see a newer one
+};
+
+// When readers receive an object.
+enum class Delivery : uint8_t {
+    Push,     // every reader, with the commit
+    OnDemand, // readers that request it; simultaneous requests of several readers are answered by one multicast
+};
+
+struct ShareOptions {
+    Sharing sharing = Sharing::Delta;
+    Delivery delivery = Delivery::Push;
+    // Number of older versions that stay available in addition to those of frames in progress.
+    uint32_t keptVersions = 0;
+    // Largest number of commits that a reader may lag behind before commit() waits. 0: no limit of its own; the frame
+    // credit bounds the lag.
+    uint32_t mostUnread = 0;
+    // Name for lookups and messages, at most 255 bytes.
+    std::string name;
+};
+
+} // namespace mural
