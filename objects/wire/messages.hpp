@@ -194,7 +194,7 @@ struct GoMessage {
     uint32_t entered = 0; // number of members
 };
 
-// Reports to a member that gave up who is missing. The member has left the round.
+// Names the missing members to one that gave up. The member has left the round.
 struct LateMessage {
     uint32_t barrier = 0;
     uint64_t round = 0;

@@ -34,7 +34,7 @@ public:
     // copy. Error: out of memory.
     static Result<Blob> make(size_t sizeBytes, const std::function<void(std::span<std::byte>)>& fill);
 
-    // Maps a file. Reads it once, to name it. Requires that nobody writes the file while the blob exists. Errors: the
+    // Maps a file. Reads it once, to name it. Requires that the file does not change while the blob exists. Errors: the
     // file is missing or not readable, or its size changes during the call.
     static Result<Blob> mapFile(const std::string& path);
 

@@ -6,7 +6,7 @@
 
 namespace mural {
 
-// Which parts of an object a commit sends, and whether readers keep older versions.
+// The parts of an object that a commit sends, and the lifetime of older versions.
 enum class Sharing : uint8_t {
     Static,     // one version, sent once
     Instance,   // all fields with every commit; versions of frames in progress stay available
@@ -23,7 +23,7 @@ enum class Delivery : uint8_t {
 struct ShareOptions {
     Sharing sharing = Sharing::Delta;
     Delivery delivery = Delivery::Push;
-    // Number of older versions that stay available in addition to those of frames in progress.
+    // Number of older versions that stay available; the versions of frames in progress always do.
     uint32_t keptVersions = 0;
     // Largest number of commits that a reader may lag behind before commit() waits. 0: no limit of its own; the frame
     // credit bounds the lag.

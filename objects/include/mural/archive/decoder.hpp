@@ -50,7 +50,7 @@ public:
         if (from) std::memcpy(&value, from, sizeof(T));
         return from != nullptr;
     }
-    // Reads the number of elements of a container, each of which takes at least one byte.
+    // Reads the number of elements of a container. Each element takes at least one byte.
     uint32_t count() {
         uint32_t elements = 0;
         plain(elements);

@@ -64,7 +64,7 @@ private:
     std::vector<const void*> open_; // structures around the current field
 };
 
-// What both ends must agree on to exchange objects of a type.
+// The layout of a type; both ends of an object must have the same.
 struct TypeLayout {
     std::string typeName;
     std::string text;        // fields in words, separated by "; "
