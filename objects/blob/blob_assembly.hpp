@@ -16,6 +16,7 @@ public:
     // A repeated part is accepted and ignored.
     bool add(uint64_t offset, std::span<const std::byte> bytes);
 
+    [[nodiscard]] std::span<const std::byte> received() const { return received_; }
     [[nodiscard]] uint64_t receivedBytes() const { return received_.size(); }
     [[nodiscard]] uint64_t sizeBytes() const { return sizeBytes_; }
     [[nodiscard]] bool isComplete() const { return receivedBytes() == sizeBytes_; }

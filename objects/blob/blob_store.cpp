@@ -8,12 +8,13 @@ constexpr size_t kVisitsPerInsert = 64; // bounds the cost of an insertion while
 
 } // namespace
 
-void BlobStore::insert(const Blob& blob) {
-    if (blob.empty()) return;
+Blob BlobStore::insert(const Blob& blob) {
+    if (blob.empty()) return blob;
     const auto [at, isNew] = entries_.try_emplace(blob.name(), Entry{blob});
-    if (!isNew) return;
+    if (!isNew) return at->second.blob;
     sizeBytes_ += blob.sizeBytes();
     if (sizeBytes_ > mostBytes_) trim(kVisitsPerInsert);
+    return blob;
 }
 
 Blob BlobStore::find(const BlobName& name) {

@@ -13,7 +13,8 @@ class BlobStore {
 public:
     explicit BlobStore(uint64_t mostBytes) : mostBytes_(mostBytes) {}
 
-    void insert(const Blob& blob);
+    // Returns the stored blob of this name, which may have been there before.
+    Blob insert(const Blob& blob);
     // Returns an empty blob if the name is unknown.
     [[nodiscard]] Blob find(const BlobName& name);
     // Drops unused blobs down to the limit, with at most `visits` steps of the hand.

@@ -68,8 +68,7 @@ Result<void> BlobIntake::input(const BlobDataMessage& message, int64_t nowNs) {
         pushes_.erase(push);
         const Result<Blob> blob = assembly.finish();
         if (!blob) return blob.error();
-        pushed_.push_back(blob.value());
-        arrived(blob.value());
+        pushed_.push_back(arrived(blob.value()));
         startRequests(nowNs);
         return {};
     }
@@ -96,6 +95,14 @@ Result<void> BlobIntake::input(const BlobDataMessage& message, int64_t nowNs) {
     return {};
 }
 
+void BlobIntake::writePushed(BlobTransfer transfer, const MessageFunction& emit) const {
+    for (const Blob& blob : pushed_) sendBlob(blob, transfer, emit);
+    for (const auto& [name, assembly] : pushes_) {
+        emit(encode(BlobBeginMessage{{name, assembly.sizeBytes()}}).bytes());
+        emit(encode(BlobDataMessage{name, 0, assembly.received()}).bytes());
+    }
+}
+
 void BlobIntake::input(const BlobAtMessage& message) {
     const BlobPlace& place = message.place;
     if (place.sizeBytes > options_.mostBlobBytes) return;
@@ -108,8 +115,7 @@ void BlobIntake::input(const BlobAtMessage& message) {
         mappingProblem_ = blob.error().message;
         return;
     }
-    pushed_.push_back(blob.value());
-    arrived(blob.value());
+    pushed_.push_back(arrived(blob.value()));
 }
 
 Result<void> BlobIntake::input(const RefuseMessage& message, int64_t nowNs) {
@@ -119,15 +125,16 @@ Result<void> BlobIntake::input(const RefuseMessage& message, int64_t nowNs) {
                  "; keep a reference to it until its readers have received it"};
 }
 
-void BlobIntake::arrived(const Blob& blob) {
-    store_.insert(blob);
+Blob BlobIntake::arrived(const Blob& blob) {
+    const Blob stored = store_.insert(blob);
     requests_.erase(blob.name());
     const auto found = entries_.find(blob.name());
-    if (found == entries_.end()) return;
-    const std::shared_ptr<BlobEntry> entry = found->second.lock();
-    if (!entry || entry->ref.sizeBytes != blob.sizeBytes()) return;
-    entry->blob = blob;
-    entry->isHere = true;
+    const std::shared_ptr<BlobEntry> entry = found == entries_.end() ? nullptr : found->second.lock();
+    if (entry && !entry->isHere && entry->ref.sizeBytes == stored.sizeBytes()) {
+        entry->blob = stored;
+        entry->isHere = true;
+    }
+    return stored;
 }
 
 void BlobIntake::tick(int64_t nowNs) {

@@ -7,6 +7,7 @@
 
 #include "objects/blob/blob_assembly.hpp"
 #include "objects/blob/blob_store.hpp"
+#include "objects/core/catalogue_writer.hpp"
 #include "objects/core/message_sink.hpp"
 #include "objects/core/object_state.hpp"
 
@@ -44,6 +45,8 @@ public:
     Result<void> input(const RefuseMessage& message, int64_t nowNs);
     // Pushed blobs stay at least until this call, after the commit that follows them.
     void releasePushed() { pushed_.clear(); }
+    // Writes the pushed blobs whose commit has not arrived, complete or not, for a newcomer that receives that commit.
+    void writePushed(BlobTransfer transfer, const MessageFunction& emit) const;
     // Repeats requests, and drops those that no state needs.
     void tick(int64_t nowNs);
 
@@ -61,7 +64,8 @@ private:
         uint64_t askedBytes = 0;
         int64_t progressNs = 0;
     };
-    void arrived(const Blob& blob);
+    // Returns the stored blob; it stays in the store as long as a copy exists.
+    Blob arrived(const Blob& blob);
     void startRequests(int64_t nowNs);
     void ask(const BlobName& name, Request& request, int64_t nowNs);
 

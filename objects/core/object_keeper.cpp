@@ -51,6 +51,7 @@ Result<void> ObjectKeeper::apply(const CommitMessage& message, int64_t nowNs) {
         return Error{"a commit of object number " + std::to_string(message.number) +
                      " precedes its Share; it is ignored"};
     Object& object = found->second;
+    if (object.share.delivery == Delivery::OnDemand) return {}; // a reply to several readers
     if (object.state && message.version <= object.state->version) return {};
     const bool fits = message.base == 0 || (object.state && object.state->version == message.base);
     StatePointer state;
@@ -81,6 +82,7 @@ void ObjectKeeper::remove(ObjectNumber number) {
 void ObjectKeeper::writeCatalogue(BlobTransfer transfer, const MessageFunction& emit) const {
     CatalogueWriter writer(transfer, emit);
     for (const auto& [number, object] : objects_) writer.add(object.share, object.state, object.offered);
+    blobs_.writePushed(transfer, emit); // the keeper may stand between a blob and its commit
     writer.end();
 }
 

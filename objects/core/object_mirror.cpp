@@ -25,7 +25,7 @@ Result<void> ObjectMirror::input(const Message& message, int64_t nowNs) {
     } else if (const auto* unshare = std::get_if<UnshareMessage>(&message)) {
         apply(*unshare);
     } else if (std::holds_alternative<CatalogueEndMessage>(message)) {
-        hasCatalogue_ = true;
+        endCatalogue(nowNs);
     } else {
         return unexpectedMessage(message, "a reader of objects");
     }
@@ -38,6 +38,7 @@ Result<void> ObjectMirror::apply(const ShareMessage& message) {
         return Error{describe(message) + " has the number of " + describe(known->second.share) +
                      "; both are refused until the writer is restarted"};
     }
+    if (const auto early = early_.find(message.number); early != early_.end() && early->second == 0) return {};
     if (objects_.size() >= kMaxObjects)
         return Error{describe(message) + " is refused: " + std::to_string(kMaxObjects) + " objects are shared already"};
     if (const auto [at, isNew] = numbers_.try_emplace(message.id, message.number); !isNew) {
@@ -54,7 +55,10 @@ Result<void> ObjectMirror::apply(const ShareMessage& message) {
 
 Result<void> ObjectMirror::apply(const CommitMessage& message, int64_t nowNs) {
     const auto found = objects_.find(message.number);
-    if (found == objects_.end()) return {}; // ended, or not introduced yet; then the catalogue follows
+    if (found == objects_.end()) {
+        noteEarly(message.number, message.version);
+        return {};
+    }
     Object& object = found->second;
     const bool isOnDemand = object.share.delivery == Delivery::OnDemand;
     if (isOnDemand && object.wanted == 0 && !object.history.newestState()) return {}; // requested by others
@@ -93,6 +97,25 @@ void ObjectMirror::store(Object& object, StatePointer state, int64_t nowNs) {
     }
 }
 
+// Without the catalogue, an unknown object may be introduced later. With it, the object has ended.
+void ObjectMirror::noteEarly(ObjectNumber number, Version version) {
+    if (hasCatalogue_ || early_.size() >= kMaxObjects) return;
+    const auto [at, isNew] = early_.try_emplace(number, version);
+    if (isNew || at->second == 0) return;
+    at->second = version == 0 ? 0 : std::max(at->second, version);
+}
+
+void ObjectMirror::endCatalogue(int64_t nowNs) {
+    hasCatalogue_ = true;
+    for (const auto& [number, version] : std::exchange(early_, {})) {
+        const auto found = objects_.find(number);
+        if (found == objects_.end() || version <= found->second.history.newest()) continue;
+        Object& object = found->second;
+        object.history.announce(version, currentFrame_);
+        if (object.share.delivery == Delivery::Push) request(object, version, nowNs);
+    }
+}
+
 void ObjectMirror::requestBlobs(const ObjectState& state, int64_t nowNs) {
     for (const auto& slot : state.slots)
         for (const auto& entry : slot->blobs)
@@ -101,8 +124,9 @@ void ObjectMirror::requestBlobs(const ObjectState& state, int64_t nowNs) {
 
 void ObjectMirror::apply(const OfferMessage& message, int64_t nowNs) {
     const auto found = objects_.find(message.number);
-    if (found == objects_.end() || message.version == 0) return;
+    if (found == objects_.end()) return noteEarly(message.number, message.version);
     Object& object = found->second;
+    if (message.version == 0) return;
     object.history.announce(message.version, currentFrame_);
     if (object.share.sharing == Sharing::Unbuffered) object.history.keepNewest();
     if (object.history.size() > 1) aged_.insert(message.number);
@@ -111,7 +135,7 @@ void ObjectMirror::apply(const OfferMessage& message, int64_t nowNs) {
 
 void ObjectMirror::apply(const UnshareMessage& message) {
     const auto found = objects_.find(message.number);
-    if (found == objects_.end()) return;
+    if (found == objects_.end()) return noteEarly(message.number, 0);
     found->second.endFrame = std::min(found->second.endFrame, currentFrame_);
     if (!settle(message.number)) aged_.insert(message.number);
 }

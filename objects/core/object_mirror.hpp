@@ -82,6 +82,8 @@ private:
     [[nodiscard]] const Object* objectOf(const Uuid& id) const;
     [[nodiscard]] Found found(const Object& object, Version version) const;
     void store(Object& object, StatePointer state, int64_t nowNs);
+    void noteEarly(ObjectNumber number, Version version);
+    void endCatalogue(int64_t nowNs);
     void requestBlobs(const ObjectState& state, int64_t nowNs);
     void request(Object& object, Version version, int64_t nowNs);
     // Drops what no unfinished frame uses. Returns true if nothing is left to drop later.
@@ -92,6 +94,8 @@ private:
     std::map<ObjectNumber, Object> objects_;
     std::map<Uuid, ObjectNumber> numbers_;
     std::multimap<std::string, ObjectNumber, std::less<>> names_;
+    // Objects whose messages overtook the catalogue: their last version, 0 after their end.
+    std::map<ObjectNumber, Version> early_;
     std::set<ObjectNumber> aged_; // objects with more than one version, or ended
     uint64_t currentFrame_ = 1;   // in preparation
     uint64_t finishedFrame_ = 0;
